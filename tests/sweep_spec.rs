@@ -112,6 +112,31 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
         ("preset = './none.toml'", "s.toml:1: preset: ./none.toml: cannot read: No such file"),
         ("preset = 'cone'\naxes = 1", "s.toml:2: unknown key axes; did you mean axis?"),
         ("preset = 'cone'", "s.toml:1: axis is missing: it must be one or more tables [[axis]]"),
+        (
+            "preset = 'cone'\n[ensemble]\nmembers = 9\nseed = 1",
+            "s.toml:2: the members would all be the same: the preset has no gap.seed that may differ, and no axis has a distribution",
+        ),
+        (
+            "preset = 'random-waves'\nset = ['gap.seed=1']\n[ensemble]\nmembers = 9\nseed = 1",
+            "s.toml:3: the members would all be the same",
+        ),
+        (
+            "preset = 'random-waves'\n[ensemble]\nmembers = 1\nseed = 1",
+            "s.toml:3: ensemble.members = 1 is out of range: it must be a whole number from 2 to 100000",
+        ),
+        (
+            "preset = 'random-waves'\nensemble = { members = 9 }",
+            "s.toml:2: ensemble.seed is missing: it must be a whole number",
+        ),
+        (
+            "preset = 'random-waves'\nensemble = { members = 9, seed = 1 }\nrandom = { draws = 9, seed = 1 }",
+            "s.toml:2: [ensemble] draws its members itself: it goes with no [random]",
+        ),
+        (
+            "preset = 'random-waves'\nensemble = { members = 99999, seed = 1 }\n[[axis]]\nkey = 'gap.rms'\n\
+             linear = { from = 0, to = 1, count = 200 }",
+            "s.toml:2: 200 points x 99999 members are out of range: at most 10000000 rows",
+        ),
         ("preset = 'cone'\naxis = []", "s.toml:2: axis must be one or more tables [[axis]]"),
         (
             "preset = 'wavy-sphere'\nset = ['gap.amplitude=-1']\n[[axis]]\nkey = 'gap.amplitude'\nvalues = [1]",

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import os
 from operator import index
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Tuple, Union
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union
 
 from . import _engine
 from ._afm import AfmCurve, read_afm
@@ -83,6 +83,7 @@ __all__ = [
     "presets",
     "quantities",
     "read_afm",
+    "merge",
     "sweep",
 ]
 
@@ -144,7 +145,9 @@ def sweep(
     -------
     Sweep
         Columns ``row``, the keys of the axes, the quantities and ``error``, each of the shape (rows,). A row that cannot be
-        computed has NaN and its error; the others are computed all the same.
+        computed has NaN and its error; the others are computed all the same. Of an ensemble there is a row for each point, with
+        ``NAME.mean``, ``NAME.q50`` and the other statistics of every quantity; ``of_members`` has the members. A part of one has
+        its members alone.
 
     Raises
     ------
@@ -187,9 +190,29 @@ def sweep(
         "overwrite": overwrite,
     }
     with told(progress, "sweep") as tell:
-        columns, axes, interrupt = _engine.sweep(text, folder, problem, wanted, tell)
-    swept = Sweep(columns, tuple(axes))
+        rows, statistics, interrupt = _engine.sweep(text, folder, problem, wanted, tell)
+    swept = Sweep(rows[0], tuple(rows[1]))
+    if statistics is not None:
+        swept = Sweep(statistics[0], tuple(statistics[1]), of_members=swept)
     if interrupt is not None:
         kept = "" if out is None else f"; {os.fspath(out)} has them, and the same call goes on from there"
         raise Interrupted(f"stopped with {swept.row_count} rows{kept}", result=swept) from interrupt
     return swept
+
+
+def merge(
+    parts: Iterable[Union[str, "os.PathLike[str]"]],
+    out: Union[str, "os.PathLike[str]"],
+    *,
+    overwrite: bool = False,
+) -> None:
+    """Joins the parts of a sweep, each made with ``shard=(i, n)``, in any order: to the very bytes of a single run.
+
+    ``sweep(spec, out=out)`` reads the whole, and computes nothing again.
+
+    Raises
+    ------
+    OutputError
+        A part is missing, doubled, unfinished or of another sweep; ``out`` exists and ``overwrite`` is not set.
+    """
+    _engine.merge([os.fspath(part) for part in parts], out, overwrite)

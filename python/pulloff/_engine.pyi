@@ -6,6 +6,7 @@ from typing import Any, Callable, Dict, List, Optional, Tuple, Union
 from numpy import float64
 from numpy.typing import NDArray
 
+_Columns = Tuple[Dict[str, Any], List[str]]
 _Tell = Optional[Callable[[float], object]]
 
 __version__: str
@@ -69,4 +70,5 @@ def sweep(
     problem: Optional[Problem],
     wanted: Dict[str, Any],
     progress: _Tell,
-) -> Tuple[Dict[str, Any], List[str], Optional[BaseException]]: ...
+) -> Tuple[_Columns, Optional[_Columns], Optional[BaseException]]: ...
+def merge(parts: List[Union[str, PathLike[str]]], out: Union[str, PathLike[str]], overwrite: bool) -> None: ...

@@ -419,10 +419,14 @@ class Sweep(Table):
     error: Texts
     """Why a row has not all of its quantities; None where it has."""
 
-    def __init__(self, columns: Mapping[str, Any], axes: Tuple[str, ...]) -> None:
+    def __init__(
+        self, columns: Mapping[str, Any], axes: Tuple[str, ...], of_members: Optional["Sweep"] = None
+    ) -> None:
         super().__init__(columns)
         self.axes = axes
         """The keys of the axes, which are names of columns: ``sweep["gap.amplitude"]``."""
+        self.of_members = of_members
+        """Of an ensemble, whose rows are statistics: a row for each member at each point. None else."""
 
     def to_dict(self) -> Dict[str, List[Any]]:
         """All columns as lists."""
@@ -433,16 +437,26 @@ class Sweep(Table):
         return f"{self.row_count} rows, {wrong} with an error"
 
     def plot(self, quantity: Optional[str] = None, ax: Any = None) -> Any:
-        """Draws a quantity, the first where none is named, over the first axis, and returns the axes of matplotlib."""
+        """Draws a quantity, the first where none is named, over the first axis, and returns the axes of matplotlib.
+
+        Of an ensemble it is the median, with areas in which 50 and 90 % of the members are.
+        """
         if quantity is None:
             quantity = self.columns[1 + len(self.axes)]
+            if self.of_members is not None:
+                quantity = quantity.rpartition(".")[0]
         if ax is None:
             try:
                 import matplotlib.pyplot as plt
             except ImportError:
                 raise ImportError("plot needs matplotlib: pip install matplotlib") from None
             ax = plt.figure().add_subplot()
-        ax.plot(self[self.axes[0]], self[quantity], ".-" if len(self.axes) == 1 else ".")
+        along, drawn = self[self.axes[0]], quantity
+        if self.of_members is not None and f"{quantity}.q50" in self:
+            drawn = f"{quantity}.q50"
+            for low, high in (("q05", "q95"), ("q25", "q75")):
+                ax.fill_between(along, self[f"{quantity}.{low}"], self[f"{quantity}.{high}"], alpha=0.3, color="tab:blue")
+        ax.plot(along, self[drawn], ".-" if len(self.axes) == 1 else ".")
         ax.set_xlabel(self.axes[0])
         ax.set_ylabel(quantity)
         return ax

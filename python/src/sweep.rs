@@ -8,12 +8,15 @@ use numpy::PyArray1;
 use pulloff::store::FILES;
 use pulloff::store::file::{LARGEST, read_text};
 use pulloff::store::stream::is_stream;
+use pulloff::sweep::record::{COUNTS, statistic};
 use pulloff::sweep::run::rows;
-use pulloff::sweep::{Existing, Means, Output, OutputError, Results, Shard, run};
+use pulloff::sweep::{Existing, Means, Output, OutputError, Results, Shard, ensemble, run};
 use pulloff_engine::preset::read::read_in;
 use pulloff_engine::preset::{Preset, Value, shipped};
 use pulloff_engine::progress::Progress;
 use pulloff_engine::sweep::axis::SweepAxis;
+use pulloff_engine::sweep::ensemble::{STATISTICS, Statistics, at_points};
+use pulloff_engine::sweep::spec::{Design, points, values};
 use pulloff_engine::sweep::{Cell, Measured, QUANTITIES, Spec};
 use pulloff_engine::text::{quote, show_path};
 use pyo3::exceptions::PyKeyboardInterrupt;
@@ -80,8 +83,10 @@ struct Rows {
     faults: Vec<Option<String>>,
 }
 
-/// The columns of a sweep by name, the keys of its axes, and the interrupt that ended it early.
-type Swept<'py> = (Bound<'py, PyDict>, Vec<String>, Option<PyErr>);
+/// Columns by name, and the keys of the axes.
+type Columns<'py> = (Bound<'py, PyDict>, Vec<String>);
+/// The rows of a sweep, the statistics of an ensemble, and the interrupt that ended it early.
+type Swept<'py> = (Columns<'py>, Option<Columns<'py>>, Option<PyErr>);
 
 /// The rows of the spec `text` as columns. `problem` stands in place of its preset.
 #[pyfunction]
@@ -120,7 +125,16 @@ pub fn sweep<'py>(
         None => None,
     };
     let axes = spec.axes.iter().map(|axis| axis.key.clone()).collect();
-    Ok((columns(py, &spec, &made)?, axes, interrupt))
+    let statistics = (shard == Shard::WHOLE).then(|| statistics(py, &spec, &made)).transpose()?.flatten();
+    Ok(((columns(py, &spec, &made)?, axes), statistics, interrupt))
+}
+
+/// Joins the parts of a sweep to `out`.
+#[pyfunction]
+pub fn merge(py: Python<'_>, parts: Vec<PathBuf>, out: PathBuf, overwrite: bool) -> PyResult<()> {
+    let existing = if overwrite { Existing::Overwrite } else { Existing::GoOn };
+    let joined = py.detach(|| ensemble::join(&parts, &out, existing).map_err(|error| error.to_string()));
+    joined.map(drop).map_err(|sentence| errors::of_output(py, &sentence))
 }
 
 /// Asks `listener` while rows are handed over on its own thread, and tells all threads what it said.
@@ -150,11 +164,7 @@ fn in_memory(spec: &Spec, shard: Shard, means: Means, listener: &Listener) -> Re
         if let Some((row, measured)) = item {
             made.numbers.push(row);
             for (at, column) in made.columns.iter_mut().enumerate() {
-                column.push(match measured.cells.get(at).copied().flatten() {
-                    Some(Cell::Number(x)) => x,
-                    Some(Cell::Count(n)) => n as f64,
-                    None => f64::NAN,
-                });
+                column.push(number(measured.cells.get(at).copied().flatten()));
             }
             made.faults.push(measured.fault.as_ref().map(ToString::to_string));
         }
@@ -178,7 +188,9 @@ fn to_file(
     if is_stream(out) {
         return Err(format!("{}: results are read back, so they go to a file", show_path(out)));
     }
-    let is_there = out.metadata().is_ok_and(|metadata| metadata.is_file() && metadata.len() > 0);
+    let is_there = ensemble::file_of_rows(out, spec)
+        .metadata()
+        .is_ok_and(|metadata| metadata.is_file() && metadata.len() > 0);
     if is_there && !wanted.resume && !wanted.overwrite {
         return Err(format!(
             "{}: exists already; resume=True goes on with it, overwrite=True replaces it",
@@ -186,10 +198,18 @@ fn to_file(
         ));
     }
     let existing = if wanted.overwrite { Existing::Overwrite } else { Existing::GoOn };
-    let output = Output::open(out, spec, shard, existing).map_err(words)?;
+    let has_statistics = spec.is_ensemble() && shard == Shard::WHOLE;
+    if has_statistics {
+        ensemble::may_write(out, spec, existing).map_err(words)?;
+    }
+    let rows_in = ensemble::file_of_rows(out, spec);
+    let output = Output::open(&rows_in, spec, shard, existing).map_err(words)?;
     let (stop, of) = (Stop(AtomicBool::new(false)), shard.len(spec.rows));
     run(spec, shard, output, means, &stop, |done, _| stop.ask(listener, done, of)).map_err(words)?;
-    read_back(spec, out)
+    if has_statistics {
+        ensemble::summarize(out).map_err(words)?;
+    }
+    read_back(spec, &rows_in)
 }
 
 /// The rows of the results in a file.
@@ -213,12 +233,68 @@ fn read_back(spec: &Spec, out: &Path) -> Result<Rows, String> {
     })
 }
 
+/// The statistics of the members at each point; none where it is no ensemble.
+fn statistics<'py>(py: Python<'py>, spec: &Spec, made: &Rows) -> PyResult<Option<Columns<'py>>> {
+    let Design::Ensemble { members, seed, .. } = spec.design else { return Ok(None) };
+    arrays_ready(py)?;
+    let design = spec.design.of_points();
+    let axes: Vec<SweepAxis> = spec.axes.iter().filter(|axis| axis.count().is_some()).cloned().collect();
+    let count = points(&axes, design);
+    let at = usize::try_from(count).unwrap_or(usize::MAX);
+    let all = PyDict::new(py);
+    all.set_item("row", PyArray1::from_iter(py, 0..count.cast_signed()))?;
+    let values: Vec<Vec<Value>> = (0..count).map(|point| values(&axes, design, point)).collect();
+    lay_axes(py, &all, &axes, &values)?;
+    for (column, cells) in spec.columns.iter().zip(&made.columns) {
+        let found = at_points(cells, at, seed);
+        for (which, (name, _)) in STATISTICS.iter().enumerate() {
+            let cell = |found: &Option<Statistics>| found.as_ref().and_then(|found| found.cells()[which]);
+            let numbers = found.iter().map(|found| number(cell(found)));
+            all.set_item(statistic(&column.name(), name), PyArray1::from_iter(py, numbers))?;
+        }
+    }
+    let own = ensemble::members_at(at, made.faults.iter().map(|fault| fault.as_deref().unwrap_or_default()));
+    let counts =
+        [own.iter().map(|point| point.there).collect(), own.iter().map(ensemble::AtPoint::refused).collect()];
+    for ((name, _), counts) in COUNTS.iter().zip(counts) {
+        let counts: Vec<u64> = counts;
+        all.set_item(name, PyArray1::from_iter(py, counts.into_iter().map(u64::cast_signed)))?;
+    }
+    let faults = own.iter().map(|point| point.fault(members).map(|fault| fault.to_string()));
+    all.set_item("error", PyList::new(py, faults.collect::<Vec<_>>())?)?;
+    Ok(Some((all, axes.into_iter().map(|axis| axis.key).collect())))
+}
+
+/// A cell as a number; what is not there is none.
+fn number(cell: Option<Cell>) -> f64 {
+    match cell {
+        Some(Cell::Number(x)) => x,
+        Some(Cell::Count(n)) => n as f64,
+        None => f64::NAN,
+    }
+}
+
 fn columns<'py>(py: Python<'py>, spec: &Spec, made: &Rows) -> PyResult<Bound<'py, PyDict>> {
     arrays_ready(py)?;
     let all = PyDict::new(py);
     all.set_item("row", PyArray1::from_iter(py, made.numbers.iter().map(|row| row.cast_signed())))?;
     let values: Vec<Vec<Value>> = made.numbers.iter().map(|row| spec.values(*row)).collect();
-    for (at, SweepAxis { key, .. }) in spec.axes.iter().enumerate() {
+    lay_axes(py, &all, &spec.axes, &values)?;
+    for (column, cells) in spec.columns.iter().zip(&made.columns) {
+        all.set_item(column.name(), PyArray1::from_slice(py, cells))?;
+    }
+    all.set_item("error", PyList::new(py, &made.faults)?)?;
+    Ok(all)
+}
+
+/// Lays the columns of the axes into `all`, from their values in each row.
+fn lay_axes(
+    py: Python<'_>,
+    all: &Bound<'_, PyDict>,
+    axes: &[SweepAxis],
+    values: &[Vec<Value>],
+) -> PyResult<()> {
+    for (at, SweepAxis { key, .. }) in axes.iter().enumerate() {
         let axis = || values.iter().filter_map(|row| row.get(at));
         let whole = |value: &Value| if let Value::Integer(n) = value { Some(*n) } else { None };
         let number = |value: &Value| match value {
@@ -234,9 +310,5 @@ fn columns<'py>(py: Python<'py>, spec: &Spec, made: &Rows) -> PyResult<Bound<'py
             all.set_item(key, PyList::new(py, axis().map(ToString::to_string))?)?;
         }
     }
-    for (column, cells) in spec.columns.iter().zip(&made.columns) {
-        all.set_item(column.name(), PyArray1::from_slice(py, cells))?;
-    }
-    all.set_item("error", PyList::new(py, &made.faults)?)?;
-    Ok(all)
+    Ok(())
 }

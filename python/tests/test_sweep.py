@@ -155,3 +155,49 @@ def test_a_sweep_is_a_mapping():
     assert list(swept) == ["row", "gap.amplitude", "path.end_contact_radius", "last_contact_force", "snaps", "error"]
     assert "snaps" in swept and len(swept) == 6 and swept.row_count == 10 and dict(swept)["snaps"] is swept.snaps
     assert swept == pulloff.sweep(SPEC, jobs=2) and swept != pulloff.sweep(SPEC, shard=(1, 2))
+
+
+ENSEMBLE = {
+    "preset": "random-waves",
+    "set": ["gap.count=6", "path.start_contact_radius=0.45", "gap.rms=0.0003"],
+    "quantities": ["last_contact_force", "snaps"],
+    "ensemble": {"members": 10, "seed": 7},
+    "axis": [{"key": "material.work_of_adhesion", "values": [0.003, 0.004]}],
+}
+
+
+def test_an_ensemble_is_a_loop_over_its_surfaces():
+    swept = pulloff.sweep(ENSEMBLE)
+    members = swept.of_members
+    assert swept.axes == ("material.work_of_adhesion",) and swept.row_count == 2 and members.row_count == 20
+    seeds = members["gap.seed"].reshape(10, 2)
+    assert (seeds[:, 0] == seeds[:, 1]).all() and len(set(seeds[:, 0])) == 10
+    problem = pulloff.Problem(
+        "random-waves", {"gap.count": 6, "path.start_contact_radius": 0.45, "gap.rms": 0.0003}
+    )
+    for point, adhesion in enumerate((0.003, 0.004)):
+        forces = []
+        for seed in seeds[:, 0]:
+            one = problem.replace({"gap.seed": int(seed), "material.work_of_adhesion": adhesion})
+            forces.append(one.unload(areas=False, admissibility=False, one_disc=True).before_force[-1])
+        at = {name: swept[f"last_contact_force.{name}"][point] for name in ("mean", "sd", "q05", "q50", "q95")}
+        assert at["mean"] == pytest.approx(np.mean(forces), rel=1e-12)
+        assert at["sd"] == pytest.approx(np.std(forces, ddof=1), rel=1e-9)
+        quantiles = np.quantile(forces, [0.05, 0.5, 0.95])
+        assert [at["q05"], at["q50"], at["q95"]] == pytest.approx(quantiles, rel=1e-12)
+    assert swept["members"].tolist() == [10, 10] and swept["refused"].tolist() == [0, 0]
+    assert swept == pulloff.sweep(ENSEMBLE, jobs=2) and members != pulloff.sweep(ENSEMBLE, shard=(1, 2))
+
+
+def test_parts_of_an_ensemble_are_joined(tmp_path):
+    whole = pulloff.sweep(ENSEMBLE, out=tmp_path / "whole.csv")
+    assert whole == pulloff.sweep(ENSEMBLE)
+    parts = [tmp_path / f"{i}.csv" for i in (1, 2)]
+    for i, part in enumerate(parts, 1):
+        assert pulloff.sweep(ENSEMBLE, out=part, shard=(i, 2)).of_members is None
+    pulloff.merge(parts, tmp_path / "all.csv")
+    for ending in (".csv", ".csv.spec.toml", ".members.csv", ".members.csv.spec.toml"):
+        assert (tmp_path / f"all{ending}").read_bytes() == (tmp_path / f"whole{ending}").read_bytes()
+    assert pulloff.sweep(ENSEMBLE, out=tmp_path / "all.csv") == whole
+    with pytest.raises(pulloff.OutputError, match="exists already"):
+        pulloff.merge(parts, tmp_path / "all.csv")

@@ -18,6 +18,7 @@ use crate::plot::{Width, series, svg, table};
 use crate::print::{Format, FormatError};
 use crate::store::stream;
 use crate::sweep::Results;
+use crate::sweep::record::statistic;
 use clap::{Args, ValueEnum};
 use pulloff_engine::preset::{Preset, data};
 use pulloff_engine::progress::Unwatched;
@@ -230,6 +231,10 @@ impl Arguments {
         let results = Results::open(path).map_err(MapError::from)?;
         let quantity = self.quantity.as_deref().unwrap_or(QUANTITY);
         let axis = match &results.axes[..] {
+            [] => {
+                let what = "--sweep: an ensemble without an axis has one row of statistics, and nothing to draw it over";
+                return Err(Failure::Usage(what.to_owned()));
+            }
             [axis] => axis,
             // Drawn at random they make no grid.
             [axis, ..] if results.is_random => axis,
@@ -240,7 +245,9 @@ impl Arguments {
                         "is for a sweep over one axis: a map has the whole grid, which the results hold";
                     return Err(Failure::Usage(format!("{flag}: {what}")));
                 }
-                return Ok((Map::of(&results, axes, quantity)?.svg(self.width), None));
+                let median = statistic(quantity, "q50");
+                let column = if results.has_statistics_of(quantity) { &median } else { quantity };
+                return Ok((Map::of(&results, axes, column)?.svg(self.width), None));
             }
         };
         let figure = self.part(series::figure(&results, axis, quantity)?)?;

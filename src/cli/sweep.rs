@@ -11,7 +11,7 @@ use super::watch::Stop;
 use crate::store::stream;
 use crate::sweep::output::Faults;
 use crate::sweep::{
-    Existing, Means, Output, OutputError, Shard, Summary, check, merge, run as compute, sidecar, spec,
+    Existing, Means, Output, OutputError, Shard, Summary, check, ensemble, run as compute, sidecar, spec,
 };
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -137,15 +137,22 @@ fn time(text: &str) -> Result<Duration, String> {
 /// Joins parts.
 fn merged(parts: &[PathBuf], results: &Results, console: &Console) -> Result<ExitCode, Failure> {
     let Results { output, .. } = results;
+    let parts: Vec<PathBuf> = parts.iter().map(|part| ensemble::found_rows(part)).collect();
+    let rows = &ensemble::joined_rows(&parts, output);
     let inputs = parts.iter().fold(Inputs::default(), |inputs, part| inputs.with_results(part));
     let mut outputs = Outputs::beside(inputs, results.replacing);
     format::only(OUTPUT, output, Format::Csv)?;
-    outputs.file(OUTPUT, output)?;
-    if !stream::is_stream(output) {
+    if rows != output {
+        results.two_files()?;
+        outputs.file(OUTPUT, output)?;
         outputs.file(OUTPUT, &sidecar::path(output))?;
     }
-    let merged = merge(parts, output, results.existing())?;
-    console.say(&format!("{} rows of {} shards in {}", merged.rows, parts.len(), stream::shown(output)));
+    outputs.file(OUTPUT, rows)?;
+    if !stream::is_stream(rows) {
+        outputs.file(OUTPUT, &sidecar::path(rows))?;
+    }
+    let merged = ensemble::join(&parts, output, results.existing())?;
+    console.say(&format!("{} rows of {} shards in {}", merged.rows, parts.len(), stream::shown(rows)));
     with_an_error(&merged.faults, console);
     fruitful(merged.faults.failures < merged.rows, console)
 }
@@ -168,6 +175,7 @@ fn fruitful(is_fruitful: bool, console: &Console) -> Result<ExitCode, Failure> {
 
 /// Says what results are.
 fn checked(results: &Path, console: &Console) -> Result<ExitCode, Failure> {
+    let results = &ensemble::found_rows(results);
     let found = check(results)?;
     let shard =
         if found.shard == Shard::WHOLE { String::new() } else { format!(" of shard {}", found.shard) };
@@ -198,6 +206,15 @@ impl Results {
     fn existing(&self) -> Existing {
         if self.replacing.overwrite { Existing::Overwrite } else { Existing::GoOn }
     }
+
+    /// Refuses what cannot hold the two files of an ensemble.
+    fn two_files(&self) -> Result<(), Failure> {
+        if stream::is_stream(&self.output) {
+            let what = "an ensemble has two files, the members and what they say together: name one";
+            return Err(Failure::Usage(format!("{OUTPUT} {}: {what}", stream::shown(&self.output))));
+        }
+        Ok(())
+    }
 }
 
 /// The table of quantities as text.
@@ -222,14 +239,22 @@ impl Sweep {
         let console = self.messages.open();
         format::only(OUTPUT, &self.results.output, Format::Csv)?;
         let loaded = spec::load(&super::problem::store(), &self.spec, &self.changes.all())?;
+        if loaded.spec.is_ensemble() {
+            self.results.two_files()?;
+        }
+        let rows_in = ensemble::file_of_rows(&self.results.output, &loaded.spec);
         let subject = Subject {
-            results: output::shown(&self.results.output),
+            results: output::shown(&rows_in),
             identity: spec::identity(&loaded.spec),
             shard: self.shard,
         };
-        let status = self.look(&loaded, &subject)?;
+        let status = self.look(&loaded, &subject, &rows_in)?;
         let spec = loaded.spec;
-        let results = self.open(&spec, &console)?;
+        let has_statistics = spec.is_ensemble() && self.shard == Shard::WHOLE;
+        if has_statistics {
+            ensemble::may_write(&self.results.output, &spec, self.results.existing())?;
+        }
+        let results = self.open(&rows_in, &spec, &console)?;
         let stop = Stop::catch()?;
         let jobs = self.jobs.count();
         let [before, of] = [results.rows, self.shard.len(spec.rows)];
@@ -250,7 +275,11 @@ impl Sweep {
         if let Some(trouble) = &status.trouble {
             console.warn(&[format!("the status is not that of the end: {trouble}")]);
         }
-        self.tell(&spec, &summary, jobs, begun.elapsed(), &console);
+        let took = begun.elapsed();
+        if has_statistics {
+            ensemble::summarize(&self.results.output)?;
+        }
+        self.tell(&spec, &summary, jobs, took, &console);
         match stop.signal().filter(|_| !summary.is_complete()) {
             // A shard of failures alone may be a part of a good sweep.
             None => fruitful(self.shard != Shard::WHOLE || !summary.is_failure(), &console),
@@ -268,7 +297,12 @@ impl Sweep {
     }
 
     /// Looks at all outputs; the status where there is one.
-    fn look(&self, loaded: &spec::Loaded, subject: &Subject) -> Result<Option<Sink>, Failure> {
+    fn look(
+        &self,
+        loaded: &spec::Loaded,
+        subject: &Subject,
+        rows_in: &Path,
+    ) -> Result<Option<Sink>, Failure> {
         let inputs = Inputs::default().with("the spec", &self.spec);
         let inputs = loaded.preset.iter().fold(inputs, |inputs, file| inputs.with("the preset", file));
         let inputs = spec::presets(&loaded.spec).fold(inputs, |inputs, preset| inputs.with_data(&preset));
@@ -285,14 +319,18 @@ impl Sweep {
         if !stream::is_stream(output) {
             outputs.kept(OUTPUT, &sidecar::path(output))?;
         }
+        if rows_in != output {
+            outputs.kept(OUTPUT, rows_in)?;
+            outputs.kept(OUTPUT, &sidecar::path(rows_in))?;
+        }
         self.status.as_ref().map(|file| subject.sink(file, &mut outputs, *replacing)).transpose()
     }
 
     /// The results, once nobody else writes them.
-    fn open(&self, spec: &Spec, console: &Console) -> Result<Output, Failure> {
+    fn open(&self, rows_in: &Path, spec: &Spec, console: &Console) -> Result<Output, Failure> {
         let mut has_told = false;
         loop {
-            match Output::open(&self.results.output, spec, self.shard, self.results.existing()) {
+            match Output::open(rows_in, spec, self.shard, self.results.existing()) {
                 Err(OutputError::Busy { path }) if self.wait => {
                     if !has_told {
                         console.say(&format!("{path}: another pulloff is writing it; waiting for its end"));
@@ -310,8 +348,8 @@ impl Sweep {
         let rows = summary.before + summary.now;
         let kept =
             if summary.before > 0 { format!(" ({} from before)", summary.before) } else { String::new() };
-        let mut text =
-            format!("{rows} of {} rows in {}{kept}", summary.of, stream::shown(&self.results.output));
+        let rows_in = ensemble::file_of_rows(&self.results.output, spec);
+        let mut text = format!("{rows} of {} rows in {}{kept}", summary.of, stream::shown(&rows_in));
         let seconds = took.as_secs_f64();
         if summary.now > 0 && seconds > 0.0 {
             let rate = summary.now as f64 / seconds;
@@ -333,10 +371,12 @@ impl Sweep {
 
 /// How to draw it, where it is a curve or a map.
 fn how_to_plot(spec: &Spec, results: &Path) -> Option<String> {
-    let is_numeric = spec.axes.iter().all(SweepAxis::is_numeric);
-    let picture = match &spec.axes[..] {
+    let own = spec.axes.iter().filter(|axis| !spec.is_ensemble() || axis.count().is_some());
+    let axes: Vec<&SweepAxis> = own.collect();
+    let is_numeric = axes.iter().all(|axis| axis.is_numeric());
+    let picture = match &axes[..] {
         [_] if is_numeric => "curve",
-        axes @ [_, _] if is_numeric && spec.design == Design::Grid => {
+        axes @ [_, _] if is_numeric && spec.design.of_points() == Design::Grid => {
             axes.iter().all(|axis| axis.count() > Some(1)).then_some("map")?
         }
         _ => return None,

@@ -125,6 +125,9 @@ pub enum Meaning {
     Contact,
     /// They pull at each other, within a contact.
     Tension,
+    /// Where 90 % of the members of an ensemble are, and where half of them.
+    Most,
+    Half,
 }
 
 impl Meaning {
@@ -134,6 +137,8 @@ impl Meaning {
             Self::Lost => "energy lost",
             Self::Contact => "in contact",
             Self::Tension => "pulling",
+            Self::Most => "5-95 % of the members",
+            Self::Half => "25-75 % of the members",
         }
     }
 }

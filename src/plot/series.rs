@@ -1,12 +1,59 @@
-//! A quantity of a sweep over its one axis: a mark for every row, joined where neighbours have a value.
+//! A quantity of a sweep over its one axis: a mark for every row, joined where neighbours have a value; of an ensemble the median,
+//! and where half and nine tenths of the members are.
 
 use super::map::{MapError, distinct, is_logarithmic};
-use crate::figure::{Axis, Figure, Line, Mark, Role, Run, Sign};
+use crate::figure::{Area, Axis, Figure, Line, Mark, Meaning, Role, Run, Sign};
 use crate::sweep::Results;
+use crate::sweep::record::statistic;
+
+/// The quantiles that bound the areas, the median between them.
+const QUANTILES: [&str; 5] = ["q05", "q25", "q50", "q75", "q95"];
+
+/// The figure of the statistics of `quantity`, which are in `results`, over the column `axis`.
+/// Errors: As [`figure`].
+fn bands(results: &Results, axis: &str, quantity: &str) -> Result<Figure, MapError> {
+    let names = QUANTILES.map(|of| statistic(quantity, of));
+    let [along, found @ ..] =
+        &results.numbers(&[axis, &names[0], &names[1], &names[2], &names[3], &names[4]])?[..]
+    else {
+        return Err(MapError::empty(quantity));
+    };
+    let mut points: Vec<[f64; 6]> = (0..along.len())
+        .filter_map(|row| {
+            let at = |of: usize| found[of][row].unwrap_or(f64::NAN);
+            Some([along[row]?, at(0), at(1), at(2), at(3), at(4)])
+        })
+        .collect();
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    if !points.iter().flatten().any(|x| x.is_finite()) {
+        return Err(MapError::empty(quantity));
+    }
+    let run = if is_logarithmic(&distinct(along)) { Run::Logarithmic } else { Run::Linear };
+    let (x, y) =
+        (Axis::pure(results.title(axis)).running(run), Axis::pure(results.title_of(quantity, &names[2])));
+    let line = |of: usize| points.iter().map(|point| (point[0], point[of])).collect::<Vec<_>>();
+    let lines = (1..=5).map(|of| Line::new(Role::Body, "median", line(of))).collect();
+    let mut figure = Figure::of(x, y, lines);
+    figure.lines = figure.lines.drain(2..3).collect();
+    // A point without members parts the areas as it parts the line.
+    for part in points.split(|point| !point[3].is_finite()).filter(|part| part.len() > 1) {
+        for (meaning, [lower, upper]) in [(Meaning::Most, [1, 5]), (Meaning::Half, [2, 4])] {
+            let there = part.iter().map(|point| (point[0], point[lower]));
+            let back = part.iter().rev().map(|point| (point[0], point[upper]));
+            figure.areas.push(Area { meaning, outline: there.chain(back).collect(), lost: None });
+        }
+    }
+    let known = figure.lines[0].points.iter().filter(|(_, y)| y.is_finite());
+    figure.marks = known.map(|at| Mark { sign: Sign::Value, at: *at }).collect();
+    Ok(figure)
+}
 
 /// The figure of `quantity` in `results` over the column `axis`; a row without a value is a gap.
 /// Errors: [`MapError`] when there is no such column, one is not of numbers, or no row has a value.
 pub fn figure(results: &Results, axis: &str, quantity: &str) -> Result<Figure, MapError> {
+    if results.has_statistics_of(quantity) {
+        return bands(results, axis, quantity);
+    }
     let mut columns = results.numbers(&[axis, quantity])?.into_iter();
     let mut next = || columns.next().unwrap_or_default();
     let (along, found) = (next(), next());

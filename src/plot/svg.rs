@@ -283,8 +283,7 @@ fn legend(figure: &Figure) -> Vec<LegendEntry> {
     for area in &figure.areas {
         add(match area.meaning {
             Meaning::Lost => hatched(Meaning::Lost.name()),
-            Meaning::Contact => entry(Meaning::Contact.name(), CONTACT, LegendShape::Rect, ""),
-            Meaning::Tension => entry(Meaning::Tension.name(), TENSION, LegendShape::Rect, ""),
+            meaning => entry(meaning.name(), tint(meaning), LegendShape::Rect, ""),
         });
     }
     entries
@@ -308,6 +307,20 @@ const LOST: &str = "#f3d9e6";
 const CONTACT: &str = "#b9d7ea";
 /// The tint of contact in which the bodies pull.
 const TENSION: &str = "#f6cfb5";
+/// Where 90 % of an ensemble are, and half of it: apart in a grey print.
+const MOST: &str = "#d9e8f3";
+const HALF: &str = "#93bedd";
+
+/// The filling of an area that is not hatched, and the ground of the hatches.
+fn tint(meaning: Meaning) -> &'static str {
+    match meaning {
+        Meaning::Lost => LOST,
+        Meaning::Contact => CONTACT,
+        Meaning::Tension => TENSION,
+        Meaning::Most => MOST,
+        Meaning::Half => HALF,
+    }
+}
 
 pub(super) fn hatched(name: &str) -> LegendEntry {
     entry(name, &format!("url(#{})", PATTERN.id()), LegendShape::Rect, "")
@@ -394,9 +407,10 @@ fn hatch(figure: &Figure, field: &ComputedLayout, scene: &mut Scene) {
     let begin = scene.elements.iter().position(|element| matches!(element, Primitive::ClipStart { .. }));
     let (Some(begin), false) = (begin, figure.areas.is_empty()) else { return };
     let of = |meaning| figure.areas.iter().filter(move |area| area.meaning == meaning);
-    let contact = of(Meaning::Contact).map(|area| filled(outline(&area.outline, field), CONTACT.into()));
-    let tension = of(Meaning::Tension).map(|area| filled(outline(&area.outline, field), TENSION.into()));
-    let mut paths: Vec<Primitive> = contact.chain(tension).collect();
+    // The last lies over those before it.
+    let plain = [Meaning::Contact, Meaning::Tension, Meaning::Most, Meaning::Half].into_iter().flat_map(of);
+    let mut paths: Vec<Primitive> =
+        plain.map(|area| filled(outline(&area.outline, field), tint(area.meaning).into())).collect();
     if of(Meaning::Lost).next().is_some() {
         paths.extend(hatches(of(Meaning::Lost).map(|area| outline(&area.outline, field)), LOST, scene));
     }

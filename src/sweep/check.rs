@@ -3,7 +3,7 @@
 use super::output::{Faults, OutputError};
 use super::record::{Layout, Outcome, Wrong};
 use super::shard::Shard;
-use super::sidecar::{Sidecar, SidecarError};
+use super::sidecar::{self, Sidecar, SidecarError};
 use crate::store::hash::sha256;
 use pulloff_engine::text::show_path;
 use std::fs::File;
@@ -43,7 +43,7 @@ pub fn check(path: &Path) -> Result<Checked, OutputError> {
     let layout = sidecar.layout(path, &text).map_err(not_ours)?;
     if hash(&text).as_ref() != Some(&sidecar.identity) {
         let what = "the sweep in it has not the hash that stands there: it was changed by hand".to_owned();
-        let path = show_path(&super::sidecar::path(path));
+        let path = show_path(&sidecar::path(path));
         return Err(not_ours(SidecarError::Unknown { path, what }));
     }
     let shard = sidecar.shard();
@@ -88,7 +88,5 @@ fn outcome(layout: &Layout, shard: Shard, index: u64, of: u64, line: &[u8]) -> R
 
 /// The hash of the canonical form that stands in the file beside the results.
 fn hash(text: &str) -> Option<String> {
-    let (_, rest) = text.split_once("\n\n")?;
-    let end = rest.find("\n[[column]]\n").unwrap_or(rest.len());
-    Some(sha256(&rest.as_bytes()[..end]))
+    Some(sha256(sidecar::canonical_in(text)?.as_bytes()))
 }

@@ -11,12 +11,14 @@
 //! | [`run`](mod@run) | rows on every core, written in order |
 //! | [`sidecar`] | the file beside the results that says what they are of |
 //! | [`output`] | the file of the results: begun, gone on with, appended to |
+//! | [`ensemble`] | the members of an ensemble, and what they say together |
 //! | [`shard`] | a part of the rows |
 //! | [`merge`](mod@merge) | parts joined |
 //! | [`check`](mod@check) | results looked at without computing |
 //! | [`results`] | the results read by the name of a column |
 
 pub mod check;
+pub mod ensemble;
 pub mod in_order;
 pub mod merge;
 pub mod output;

@@ -5,6 +5,7 @@
 //! of ours and are not touched. Standard output, a pipe or a device takes the rows as they come, and nothing else.
 
 use super::record::{Layout, Outcome, Wrong};
+use super::results::ResultsError;
 use super::shard::Shard;
 use super::sidecar::{self, Sidecar, SidecarError};
 use super::spec::identity;
@@ -58,6 +59,9 @@ pub enum OutputError {
         line: u64,
         what: Wrong,
     },
+    /// Rows of members of which there are no statistics.
+    #[error(transparent)]
+    Rows(#[from] ResultsError),
     #[error("cannot start the threads: {0}")]
     Threads(#[from] ThreadPoolBuildError),
 }
@@ -68,6 +72,7 @@ impl Mend for OutputError {
             Self::Write(error) => error.can_be_mended(),
             Self::Io { cause, .. } => cause.can_be_mended(),
             Self::NotOurs { cause, .. } => cause.can_be_mended(),
+            Self::Rows(error) => error.can_be_mended(),
             Self::Threads(_) => false,
             Self::Busy { .. }
             | Self::Described { .. }

@@ -13,6 +13,16 @@ pub const ROW: &str = "row";
 /// The name of the last column.
 pub const ERROR: &str = "error";
 
+/// The columns that count the rows at a point of an ensemble, and those of them with an error, with their meanings.
+pub const COUNTS: [(&str, &str); 2] =
+    [("members", "members computed"), ("refused", "members with an error, of whose values some are missing")];
+
+/// The name of a statistic of a quantity.
+#[must_use]
+pub fn statistic(quantity: &str, of: &str) -> String {
+    format!("{quantity}.{of}")
+}
+
 /// What is known of the rows without computing them: the values of the axes in each, and the names of all columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
@@ -83,14 +93,18 @@ fn beginning(fields: &[String]) -> String {
     text
 }
 
+/// The line of what is known of a row and what was found.
+fn after(known: &[String], found: &[String]) -> String {
+    format!("{}{}", beginning(known), line(found.iter().map(String::as_str)))
+}
+
 /// The line of a row.
 #[must_use]
 pub fn record(spec: &Spec, row: u64, measured: &Measured) -> String {
     let cells = measured.cells.iter().map(|cell| cell.map_or_else(String::new, |cell| cell.to_string()));
     let fault = measured.fault.as_ref().map_or_else(String::new, Fault::to_string);
     let fields: Vec<String> = cells.chain([fault]).collect();
-    let beginning = beginning(&known(&spec.axes, spec.design, row));
-    format!("{beginning}{}", line(fields.iter().map(String::as_str)))
+    after(&known(&spec.axes, spec.design, row), &fields)
 }
 
 /// The fields of a line; none where it is no CSV.
@@ -106,10 +120,23 @@ impl Layout {
         Self { axes: spec.axes.clone(), design: spec.design, columns: names(spec) }
     }
 
+    /// That of the points of an ensemble, which have no values of what the members draw.
+    #[must_use]
+    pub fn of_points(mut self) -> Self {
+        self.axes.retain(|axis| axis.count().is_some());
+        self.design = self.design.of_points();
+        self
+    }
+
     /// The first line.
     #[must_use]
     pub fn header(&self) -> String {
         line(self.columns.iter().map(String::as_str))
+    }
+
+    /// The line of a row whose other cells are `found`.
+    pub(super) fn line(&self, row: u64, found: impl Iterator<Item = String>) -> String {
+        after(&known(&self.axes, self.design, row), &found.collect::<Vec<_>>())
     }
 
     /// Looks at the first line.

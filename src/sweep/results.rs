@@ -1,5 +1,6 @@
 //! The results of a sweep read again: columns by their names.
 
+use super::record::statistic;
 use super::sidecar::{ColumnInfo, Sidecar, SidecarError};
 use crate::mend::Mend;
 use pulloff_engine::text::{closest, quote, sanitize, show_path};
@@ -38,6 +39,8 @@ pub struct Results {
     pub axes: Vec<String>,
     /// Whether their values are drawn at random.
     pub is_random: bool,
+    /// Whether they are statistics of an ensemble.
+    pub is_statistics: bool,
     /// The rows of the whole sweep: there may be fewer.
     pub rows: u64,
 }
@@ -47,8 +50,9 @@ impl Results {
     pub fn open(path: &Path) -> Result<Self, ResultsError> {
         let (sidecar, _) = Sidecar::read(path)?;
         let axes = sidecar.axes();
-        let is_random = sidecar.is_random();
-        Ok(Self { path: path.to_owned(), columns: sidecar.columns, axes, is_random, rows: sidecar.rows })
+        let (is_random, is_statistics) = (sidecar.is_random(), sidecar.is_statistics());
+        let (path, columns, rows) = (path.to_owned(), sidecar.columns, sidecar.rows);
+        Ok(Self { path, columns, axes, is_random, is_statistics, rows })
     }
 
     /// What stands beside an axis of this column.
@@ -56,6 +60,21 @@ impl Results {
     pub fn title(&self, name: &str) -> String {
         let column = self.columns.iter().find(|column| column.name == name);
         column.map_or_else(|| name.to_owned(), ColumnInfo::title)
+    }
+
+    /// The same of a quantity, of which this column has a statistic.
+    #[must_use]
+    pub fn title_of(&self, quantity: &str, name: &str) -> String {
+        let column = self.columns.iter().find(|column| column.name == name);
+        let named = |column: &ColumnInfo| ColumnInfo { name: quantity.to_owned(), ..column.clone() }.title();
+        column.map_or_else(|| quantity.to_owned(), named)
+    }
+
+    /// Whether there are statistics of this quantity, and no column of its own.
+    #[must_use]
+    pub fn has_statistics_of(&self, quantity: &str) -> bool {
+        let median = statistic(quantity, "q50");
+        self.is_statistics && self.columns.iter().any(|column| column.name == median)
     }
 
     fn place(&self, name: &str) -> Result<usize, ResultsError> {
@@ -82,6 +101,12 @@ impl Results {
             column.iter_mut().flatten().for_each(|number| *number = info.shown(*number));
         }
         Ok(columns)
+    }
+
+    /// The cells of one column as `value` reads them.
+    /// Errors: As [`texts`](Self::texts), or `value` says of one that it is none.
+    pub fn cells<T>(&self, name: &str, value: impl Fn(&str) -> Option<T>) -> Result<Vec<T>, ResultsError> {
+        Ok(self.read(&[name], value)?.pop().unwrap_or_default())
     }
 
     fn read<T>(

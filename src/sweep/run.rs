@@ -13,6 +13,9 @@ use std::time::{Duration, Instant};
 /// The most rows begun and not written: a slow one among fast ones, and a few megabytes.
 const WINDOW: u64 = 1 << 14;
 
+/// The most rows of an ensemble that one thread takes together.
+const MOST_TOGETHER: u64 = 16;
+
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Summary {
@@ -94,9 +97,9 @@ pub fn rows<T: Send>(
     means: Means,
     progress: &(dyn Progress + Sync),
     make: &(impl Fn(u64, Measured) -> T + Sync),
-    write: impl FnMut(Option<T>) -> Result<(), OutputError>,
+    mut write: impl FnMut(Option<T>) -> Result<(), OutputError>,
 ) -> Result<(), OutputError> {
-    let compute = |index: u64| {
+    let one = |index: u64| {
         let row = shard.row(index);
         let begun = Instant::now();
         let is_late = || means.row_limit.is_some_and(|limit| begun.elapsed() > limit);
@@ -106,5 +109,17 @@ pub fn rows<T: Send>(
             || means.row_limit.filter(|_| !progress.stop()).map(|limit| spec.lost(Fault::of_limit(limit)));
         Some(make(row, measured.or_else(late)?))
     };
-    in_order(indices, means.jobs, WINDOW, &compute, progress, write)
+    // The points of a member have one surface, whose table costs more than they do: one thread computes them all.
+    let size = if spec.is_ensemble() { spec.points().min(MOST_TOGETHER) } else { 1 };
+    let first = |unit: u64| (unit * size).saturating_sub(shard.number - 1).div_ceil(shard.of);
+    let unit_of = |index: u64| shard.row(index) / size;
+    let units = if indices.is_empty() { 0..0 } else { unit_of(indices.start)..unit_of(indices.end - 1) + 1 };
+    let compute = |unit: u64| {
+        let own = first(unit).max(indices.start)..first(unit + 1).min(indices.end);
+        own.map(one).collect::<Option<Vec<T>>>()
+    };
+    in_order(units, means.jobs, WINDOW / size, &compute, progress, |unit| match unit {
+        Some(items) => items.into_iter().try_for_each(|item| write(Some(item))),
+        None => write(None),
+    })
 }

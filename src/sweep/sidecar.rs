@@ -3,13 +3,14 @@
 //! Readers of CSV dislike comments, so the results themselves hold nothing but the table. The sweep is recognised by the
 //! hash of its canonical form, which stands here as well, with the whole preset: the results can be repeated from it.
 
-use super::record::{self, Layout};
+use super::record::{self, COUNTS, Layout};
 use super::shard::Shard;
 use super::spec::{canonical, identity};
 use crate::mend::Mend;
 use crate::store::file::{self, FileError, read_text};
 use pulloff_engine::sweep::Spec;
 use pulloff_engine::sweep::document::SpecText;
+use pulloff_engine::sweep::ensemble::{COUNT, STATISTICS};
 use pulloff_engine::sweep::spec::of_canonical;
 use pulloff_engine::text::{greek, headline, sanitize, show_path};
 use pulloff_engine::units::{Quantity, Unit, UnitSystem};
@@ -64,6 +65,9 @@ pub struct Sidecar {
     pub identity: String,
     shard: String,
     pub rows: u64,
+    /// Whether its rows are statistics of the members of an ensemble.
+    #[serde(default)]
+    statistics: bool,
     #[serde(rename = "column")]
     pub columns: Vec<ColumnInfo>,
     sweep: Canonical,
@@ -75,6 +79,7 @@ struct Canonical {
     axis: Vec<AxisKey>,
     /// How rows are drawn, where they are.
     random: Option<Draws>,
+    ensemble: Option<Draws>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
@@ -83,6 +88,14 @@ struct Draws {}
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 struct AxisKey {
     key: String,
+    /// From what its values are drawn, where they are.
+    distribution: Option<Draws>,
+}
+
+/// What stands beside the statistics of an ensemble, and how they are laid out.
+pub(super) struct Beside {
+    pub(super) text: String,
+    pub(super) layout: Layout,
 }
 
 /// The file beside these results.
@@ -96,17 +109,19 @@ pub fn path(results: &Path) -> PathBuf {
 /// The text of the file for a part of a sweep.
 #[must_use]
 pub fn text(spec: &Spec, shard: Shard) -> String {
+    let rows = format!("rows = {}", spec.rows);
+    written(&identity(spec), shard, &rows, &canonical(spec), &columns(spec))
+}
+
+fn written(identity: &str, shard: Shard, rows: &str, canonical: &str, columns: &[ColumnInfo]) -> String {
     let mut text = format!(
         "# What the results beside this file are of. `pulloff sweep` reads it, to go on and to join shards.\n\
-         identity = \"{}\"\nshard = \"{shard}\"\nrows = {}\n\n{}",
-        identity(spec),
-        spec.rows,
-        canonical(spec)
+         identity = \"{identity}\"\nshard = \"{shard}\"\n{rows}\n\n{canonical}"
     );
-    for ColumnInfo { name, symbol, unit, shown, meaning } in columns(spec) {
-        let quoted = |text: String| Value::String(text).to_string();
-        let line = |key: &str, value: Option<String>| {
-            value.map_or_else(String::new, |value| format!("{key} = {}\n", quoted(value)))
+    for ColumnInfo { name, symbol, unit, shown, meaning } in columns {
+        let quoted = |text: &str| Value::String(text.to_owned()).to_string();
+        let line = |key: &str, value: &Option<String>| {
+            value.as_ref().map_or_else(String::new, |value| format!("{key} = {}\n", quoted(value)))
         };
         let (symbol, unit, shown) = (line("symbol", symbol), line("unit", unit), line("shown", shown));
         // Writing to a String cannot fail.
@@ -118,6 +133,12 @@ pub fn text(spec: &Spec, shard: Shard) -> String {
         );
     }
     text
+}
+
+/// The canonical form that stands in the text of the file.
+pub(super) fn canonical_in(text: &str) -> Option<&str> {
+    let (_, rest) = text.split_once("\n\n")?;
+    Some(&rest[..rest.find("\n[[column]]\n").unwrap_or(rest.len())])
 }
 
 /// The text for the whole sweep, made from that of a part.
@@ -132,7 +153,7 @@ const PARTS: [(&[&str], &str); 6] = [
     (&["program_version"], "another version of pulloff"),
     (&["preset"], "another preset"),
     (&["data"], "other measured data"),
-    (&["combine", "random"], "other rows of the same axes"),
+    (&["combine", "random", "ensemble"], "other rows of the same axes"),
     (&["quantities"], "other quantities"),
     (&["axis"], "other axes or values"),
 ];
@@ -186,15 +207,13 @@ fn changed(theirs: &BTreeMap<String, Value>, ours: &BTreeMap<String, Value>) -> 
     if told.is_empty() { String::new() } else { format!(" ({}{rest})", told.join(", ")) }
 }
 
+/// A column without a unit.
+fn plain(name: &str, meaning: &str) -> ColumnInfo {
+    ColumnInfo { name: name.to_owned(), symbol: None, unit: None, shown: None, meaning: meaning.to_owned() }
+}
+
 fn columns(spec: &Spec) -> Vec<ColumnInfo> {
     let units = &spec.preset.units;
-    let column = |name: &str, meaning: &str| ColumnInfo {
-        name: name.to_owned(),
-        symbol: None,
-        unit: None,
-        shown: None,
-        meaning: meaning.to_owned(),
-    };
     let measured = |info: ColumnInfo, quantity: Quantity, shown: Option<&Unit>| ColumnInfo {
         unit: (*units != UnitSystem::Reduced).then(|| quantity.si()).flatten().map(str::to_owned),
         shown: shown.map(ToString::to_string),
@@ -202,10 +221,10 @@ fn columns(spec: &Spec) -> Vec<ColumnInfo> {
     };
     let axes = spec.axes.iter().map(|axis| match spec.preset.row(&axis.key) {
         Some(row) => {
-            let info = ColumnInfo { symbol: Some(greek(&row.label)), ..column(&axis.key, &row.meaning) };
+            let info = ColumnInfo { symbol: Some(greek(&row.label)), ..plain(&axis.key, &row.meaning) };
             measured(info, row.quantity, row.unit_in(units))
         }
-        None => column(&axis.key, ""),
+        None => plain(&axis.key, ""),
     });
     let quantities = spec.columns.iter().map(|wanted| {
         let (name, quantity) = (wanted.name(), wanted.quantity);
@@ -216,11 +235,11 @@ fn columns(spec: &Spec) -> Vec<ColumnInfo> {
             _ => "",
         };
         let symbol = Some(quantity.symbol).filter(|symbol| !symbol.is_empty()).map(str::to_owned);
-        let info = ColumnInfo { symbol, ..column(&name, &format!("{}{under}", quantity.meaning)) };
+        let info = ColumnInfo { symbol, ..plain(&name, &format!("{}{under}", quantity.meaning)) };
         measured(info, quantity.unit, units.unit(quantity.unit))
     });
-    let row = column(record::ROW, "number of the row, from 0");
-    let error = column(record::ERROR, "why a quantity could not be had; empty where all is well");
+    let row = plain(record::ROW, "number of the row, from 0");
+    let error = plain(record::ERROR, "why a quantity could not be had; empty where all is well");
     std::iter::once(row).chain(axes).chain(quantities).chain([error]).collect()
 }
 
@@ -268,19 +287,70 @@ impl Sidecar {
         let (axes, design) = of_canonical(document)
             .map_err(|error| SidecarError::Unknown { path: error.origin.to_string(), what: error.what })?;
         let columns = self.columns.iter().map(|column| column.name.clone()).collect();
-        Ok(Layout { axes, design, columns })
+        let layout = Layout { axes, design, columns };
+        Ok(if self.statistics { layout.of_points() } else { layout })
+    }
+
+    /// What stands beside the statistics of the members that this file, of this `text`, is of.
+    pub(super) fn of_statistics(&self, text: &str, members: &Layout, points: u64) -> Beside {
+        let is_drawn = |column: &ColumnInfo| {
+            members.axes.iter().any(|axis| axis.key == column.name && axis.count().is_none())
+        };
+        let is_axis = |name: &str| members.axes.iter().any(|axis| axis.key == name);
+        let mut columns: Vec<ColumnInfo> = Vec::new();
+        for column in self.columns.iter().filter(|column| !is_drawn(column)) {
+            match column.name.as_str() {
+                record::ROW => {
+                    let meaning = "number of the point, from 0".to_owned();
+                    columns.push(ColumnInfo { meaning, ..column.clone() });
+                }
+                record::ERROR => {
+                    columns.extend(COUNTS.map(|(name, meaning)| plain(name, meaning)));
+                    columns.push(plain(record::ERROR, "which members are missing or have an error"));
+                }
+                name if is_axis(name) => columns.push(column.clone()),
+                name => columns.extend(STATISTICS.map(|(statistic, words)| {
+                    let meaning = format!("{words} of {}: {}", name.replace('_', " "), column.meaning);
+                    let own =
+                        ColumnInfo { name: record::statistic(name, statistic), meaning, ..column.clone() };
+                    if statistic == COUNT {
+                        ColumnInfo { unit: None, shown: None, symbol: None, ..own }
+                    } else {
+                        own
+                    }
+                })),
+            }
+        }
+        let rows = format!("rows = {points}\nstatistics = true");
+        let canonical = canonical_in(text).unwrap_or_default();
+        let text = written(&self.identity, Shard::WHOLE, &rows, canonical, &columns);
+        let columns = columns.into_iter().map(|column| column.name).collect();
+        Beside { text, layout: Layout { columns, ..members.clone().of_points() } }
     }
 
     /// The keys of the axes, which are the names of their columns.
     #[must_use]
     pub fn axes(&self) -> Vec<String> {
-        self.sweep.axis.iter().map(|axis| axis.key.clone()).collect()
+        let all = self.sweep.axis.iter().filter(|axis| !self.statistics || axis.distribution.is_none());
+        all.map(|axis| axis.key.clone()).collect()
+    }
+
+    /// Whether the rows are the members of an ensemble.
+    #[must_use]
+    pub fn is_of_members(&self) -> bool {
+        self.sweep.ensemble.is_some() && !self.statistics
+    }
+
+    /// Whether the rows are statistics of the members of an ensemble.
+    #[must_use]
+    pub fn is_statistics(&self) -> bool {
+        self.statistics
     }
 
     /// Whether the values of the axes are drawn at random.
     #[must_use]
     pub fn is_random(&self) -> bool {
-        self.sweep.random.is_some()
+        self.sweep.random.is_some() || self.is_of_members()
     }
 
     /// The part.

@@ -94,6 +94,10 @@ pub fn canonical(spec: &Spec) -> String {
     let _ = match spec.design {
         Design::Grid => writeln!(text, "combine = \"grid\""),
         Design::Pairs => writeln!(text, "combine = \"pairs\""),
+        Design::Ensemble { members, seed, in_pairs } => {
+            let combine = if in_pairs { "pairs" } else { "grid" };
+            writeln!(text, "combine = \"{combine}\"\nensemble = {{ members = {members}, seed = {seed} }}")
+        }
         Design::Random { draws, seed } => writeln!(text, "random = {{ draws = {draws}, seed = {seed} }}"),
     };
     let names: Vec<String> = spec.columns.iter().map(|column| format!("\"{}\"", column.name())).collect();

@@ -219,8 +219,8 @@ impl Chart<'_> {
             Meaning::Lost if at.is_multiple_of(2) => (styles.lost, theme.shade("░", "/")),
             Meaning::Lost => (styles.lost, theme.shade("▒", "\\")),
             Meaning::Tension if self.hides_tension => return,
-            Meaning::Tension => (styles.curve, theme.shade("░", "-")),
-            Meaning::Contact => (styles.curve, theme.shade("▒", "#")),
+            Meaning::Tension | Meaning::Most => (styles.curve, theme.shade("░", "-")),
+            Meaning::Contact | Meaning::Half => (styles.curve, theme.shade("▒", "#")),
         };
         if region.outline.iter().any(|(x, y)| !(x.is_finite() && y.is_finite())) {
             return;

@@ -24,6 +24,7 @@ use crate::gap::{panels::Refused, panels::Span, panels::Variable, panels::divide
 use crate::progress::{Progress, Unwatched};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::num::NonZero;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// The smallest radius that matters, as a share of the largest asked for first.
@@ -54,7 +55,7 @@ const ROUNDING: f64 = 1e-13;
 /// Radii at which the table is checked against the gap itself.
 const CHECKS: u32 = 6;
 
-/// Tables kept.
+/// Tables kept, and as many more as there are cores: each may be at work on a gap of its own.
 const KEPT: usize = 8;
 
 /// The tables of the last gaps, each with its key.
@@ -116,24 +117,29 @@ impl Table {
         progress: &dyn Progress,
     ) -> Result<Arc<Self>, TableError> {
         let lock = || store.lock().unwrap_or_else(PoisonError::into_inner);
-        {
+        let known = {
             let mut kept = lock();
-            if let Some(at) = kept.iter().position(|(known, _)| known == key) {
-                let found = kept.remove(at);
-                let table = Arc::clone(&found.1);
-                kept.push(found);
-                drop(kept);
-                table.up_to_while(reach, 0, progress)?;
-                return Ok(table);
-            }
+            let at = kept.iter().position(|(known, _)| known == key);
+            at.map(|at| {
+                let place = kept.len() - 1;
+                kept[at..].rotate_left(1);
+                Arc::clone(&kept[place].1)
+            })
+        };
+        if let Some(table) = known {
+            table.up_to_while(reach, 0, progress)?;
+            return Ok(table);
         }
-        // Not under the lock: another gap must not wait for this one.
+        // Not under the lock, nor what takes memory or gives it back: another gap must not wait for this one.
         let table = Arc::new(Self::new(Arc::clone(gap), reach, progress)?);
-        let mut kept = lock();
-        if kept.len() >= KEPT {
-            kept.remove(0);
-        }
-        kept.push((key.clone(), Arc::clone(&table)));
+        let entry = (key.clone(), Arc::clone(&table));
+        let oldest = {
+            let mut kept = lock();
+            let oldest = (kept.len() >= kept_at_most()).then(|| kept.remove(0));
+            kept.push(entry);
+            oldest
+        };
+        drop(oldest);
         Ok(table)
     }
 
@@ -291,6 +297,12 @@ impl Table {
             -log10(error.clamp(ROUNDING, 1.0))
         })
     }
+}
+
+/// How many tables are kept.
+fn kept_at_most() -> usize {
+    static CORES: OnceLock<usize> = OnceLock::new();
+    KEPT + *CORES.get_or_init(|| std::thread::available_parallelism().map_or(1, NonZero::get))
 }
 
 /// Whether each wave may be transformed for itself.

@@ -115,6 +115,17 @@ impl Shape {
         }
     }
 
+    /// Amplitude and wavelength of each of its waves, where it is a paraboloid with waves.
+    pub fn waves(&self) -> Vec<(f64, f64)> {
+        match self {
+            Self::WavySphere { amplitude, wavelength, .. } => vec![(*amplitude, *wavelength)],
+            Self::Harmonics(waves) | Self::RandomWaves { drawn: waves, .. } => {
+                waves.waves().iter().map(|wave| (wave.amplitude, wave.wavelength)).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// What was changed in the gap without being asked for, in words with numbers as `units` show them.
     pub fn notes(&self, units: &UnitSystem) -> Vec<String> {
         match self {

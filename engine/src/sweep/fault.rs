@@ -6,6 +6,7 @@ use crate::preset::Invalid;
 use crate::quasistatic::path::PathError;
 use crate::text::sanitize;
 use std::any::Any;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
@@ -20,7 +21,7 @@ pub struct Fault {
 }
 
 /// All reasons.
-pub const REASONS: [&str; 10] = [
+pub const REASONS: [&str; 11] = [
     "refused value",
     "no basis",
     "no start",
@@ -31,6 +32,7 @@ pub const REASONS: [&str; 10] = [
     "no loop",
     "row limit",
     "no fit",
+    "members",
 ];
 
 impl Fault {
@@ -73,6 +75,29 @@ impl Fault {
     #[must_use]
     pub fn incomplete(why: &str) -> Self {
         Self::new(REASONS[4], why)
+    }
+
+    /// A point of an ensemble at which members are missing: so many are there of all, and some of them have a fault of these
+    /// reasons.
+    #[must_use]
+    pub fn of_members([there, of]: [u64; 2], refused: &BTreeMap<&str, u64>) -> Option<Self> {
+        let counts: Vec<String> = refused.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
+        let total: u64 = refused.values().sum();
+        match (there < of, total > 0) {
+            (false, false) => None,
+            (true, false) => Some(Self::new(REASONS[4], &format!("{there} of {of} members"))),
+            (true, true) => {
+                let counts = counts.join(", ");
+                Some(Self::new(
+                    REASONS[4],
+                    &format!("{there} of {of} members, {total} of them with an error ({counts})"),
+                ))
+            }
+            (false, true) => Some(Self::new(
+                REASONS[10],
+                &format!("{total} of {of} with an error ({})", counts.join(", ")),
+            )),
+        }
     }
 
     /// A row that took longer than it may.

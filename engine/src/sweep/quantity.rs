@@ -84,8 +84,10 @@ quantities! {
     "waves" "s/λ" Number "waves in the disc at the smallest force, s/lambda": Stage::Curve(CurveMinima::waves);
     "critical_force" "P_c" Force "P_c = 3/2 pi gamma R, the pull-off force of the smooth sphere":
         Stage::Preset(PresetValues::critical_force);
-    "kesari_lew" "P_min/P_c" Number "estimate (1 + 1/(sqrt(pi) alpha))^2 of the enhancement, good for many waves":
+    "kesari_lew" "P_min/P_c" Number "estimate (1 + 1/(sqrt(pi) alpha))^2 of the enhancement, good for many waves; of several waves the sum, a bound":
         Stage::Preset(PresetValues::kesari_lew);
+    "guduru" "P_min/P_c" Number "bound of the enhancement of one disc: Guduru's force with every wave in its worst phase":
+        Stage::Preset(PresetValues::guduru);
     "johnson" "α" Number "alpha = sqrt(2 gamma lambda/(pi^2 E* A^2))":
         Stage::Preset(|ground| ground.groups.johnson.map(Cell::Number));
     "adhesion" "γ'" Number "gamma' = 2 pi gamma/(E* R)": Stage::Preset(|ground| ground.groups.adhesion.map(Cell::Number));

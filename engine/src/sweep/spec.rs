@@ -1,8 +1,9 @@
 //! The spec of a sweep: TOML text → preset, axes, quantities; and the values of each row.
 
 use super::MOST_ROWS;
-use super::axis::{Points, SweepAxis, overrides, rival};
+use super::axis::{Distribution, Points, SweepAxis, overrides, rival};
 use super::document::{Entry, Section, SpecError, SpecText};
+use super::ensemble::MEMBERS;
 use super::fault::Fault;
 use super::measure::{Measured, measure};
 use super::quantity::{Column, USUAL};
@@ -33,6 +34,27 @@ pub enum Design {
         /// From which all random numbers follow.
         seed: u64,
     },
+    /// Members drawn at random at every point of the other axes: all points of the first member, then those of the second, …
+    Ensemble {
+        /// How many members.
+        members: u64,
+        /// From which all random numbers follow.
+        seed: u64,
+        /// Whether the points are pairs, and not a grid.
+        in_pairs: bool,
+    },
+}
+
+impl Design {
+    /// How the axes that are not drawn make the points of an ensemble; any other design itself.
+    #[must_use]
+    pub fn of_points(self) -> Self {
+        match self {
+            Self::Ensemble { in_pairs: true, .. } => Self::Pairs,
+            Self::Ensemble { in_pairs: false, .. } => Self::Grid,
+            other => other,
+        }
+    }
 }
 
 /// A sweep: what is computed of what.
@@ -40,7 +62,7 @@ pub enum Design {
 pub struct Spec {
     /// What every row begins with.
     pub preset: Preset,
-    /// The axes; at least one.
+    /// The axes; at least one. An ensemble has those that its members draw behind the others.
     pub axes: Vec<SweepAxis>,
     /// How they make rows.
     pub design: Design,
@@ -54,6 +76,8 @@ pub struct Spec {
 const ASSIGNMENTS: &str = "an array of texts \"KEY=VALUE\"";
 /// The words of `combine`.
 const DESIGNS: [&str; 2] = ["grid", "pairs"];
+/// The key by which one random surface differs from another.
+const SEED: &str = "gap.seed";
 
 impl Spec {
     /// Reads a spec from text that `name` names in messages; its preset comes from `presets`.
@@ -64,11 +88,17 @@ impl Spec {
         let document = SpecText { name, text };
         let table = document.parse()?;
         let section = document.section(&table);
-        section.only(&["preset", "set", "combine", "random", "quantities", "axis"])?;
+        section.only(&["preset", "set", "combine", "random", "ensemble", "quantities", "axis"])?;
         let preset = preset(presets, &section)?;
         let assigned = assigned(&section)?;
-        let axes = section.need("axis", "one or more tables [[axis]]")?;
-        let given = axes.array("one or more tables [[axis]]")?;
+        let design = design(&section)?;
+        let wanted = "one or more tables [[axis]]";
+        // One surface with its error bars needs no axis.
+        let axes = match section.get("axis") {
+            None if matches!(design, Design::Ensemble { .. }) => None,
+            _ => Some(section.need("axis", wanted)?),
+        };
+        let given = axes.as_ref().map_or_else(|| Ok(Vec::new()), |axes| axes.array(wanted))?;
         let tables: Vec<Section<'_>> =
             given.iter().map(|entry| entry.section("a table [[axis]]")).collect::<Result<_, _>>()?;
         let key =
@@ -90,12 +120,36 @@ impl Spec {
             }
             read.push(axis);
         }
-        if read.is_empty() {
+        if let (Some(axes), true) = (&axes, read.is_empty()) {
             return Err(axes.fault("axis must be one or more tables [[axis]]"));
         }
-        let design = design(&section)?;
-        let rows = rows(design, &read, &tables)?;
+        let mut rows = rows(design, &read, &tables)?;
+        if let (Design::Ensemble { members, .. }, Some(entry)) = (design, section.get("ensemble")) {
+            let fixed = assigned.iter().any(|(_, key)| key == SEED);
+            read = drawn(read, &preset, fixed).map_err(|what| entry.fault(&what))?;
+            let points = rows;
+            rows = points.checked_mul(members).filter(|rows| *rows <= MOST_ROWS).ok_or_else(|| {
+                entry.fault(&format!(
+                    "{points} points x {members} members are out of range: at most {MOST_ROWS} rows"
+                ))
+            })?;
+        }
         Ok(Self { preset, axes: read, design, columns: columns(&section)?, rows })
+    }
+
+    /// The number of points at which there are members; all rows where it is no ensemble.
+    #[must_use]
+    pub fn points(&self) -> u64 {
+        match self.design {
+            Design::Ensemble { members, .. } => self.rows / members,
+            _ => self.rows,
+        }
+    }
+
+    /// Whether a point has many members, of which there are statistics.
+    #[must_use]
+    pub fn is_ensemble(&self) -> bool {
+        matches!(self.design, Design::Ensemble { .. })
     }
 
     /// The values of the axes in a row below [`rows`](Self::rows), in the order of the axes.
@@ -133,20 +187,39 @@ impl Spec {
 
 /// The values of the axes in a row, in the order of the axes.
 pub fn values(axes: &[SweepAxis], design: Design, row: u64) -> Vec<Value> {
-    let mut index = row;
-    let mut random = match design {
-        Design::Random { seed, .. } => Some(SplitMix64::row(seed, row)),
-        Design::Grid | Design::Pairs => None,
-    };
-    // Drawn in the order of the axes; counted from the last, which runs fastest.
-    if let Some(random) = &mut random {
-        let draw = |axis: &SweepAxis| match &axis.points {
-            Points::Drawn(distribution) => Some(distribution.draw(random)),
+    let draws = |seed, row| {
+        let mut random = SplitMix64::row(seed, row);
+        // Drawn in the order of the axes.
+        let draw = move |axis: &SweepAxis| match &axis.points {
+            Points::Drawn(distribution) => Some(distribution.draw(&mut random)),
             _ => None,
         };
-        return axes.iter().filter_map(draw).collect();
+        axes.iter().filter_map(draw)
+    };
+    match design {
+        Design::Grid | Design::Pairs => point(axes, design, row),
+        Design::Random { seed, .. } => draws(seed, row).collect(),
+        Design::Ensemble { seed, .. } => {
+            let own = design.of_points();
+            let points = points(axes, own);
+            let mut values = point(axes, own, row % points);
+            values.extend(draws(seed, row / points));
+            values
+        }
     }
+}
+
+/// How many points the axes make that are not drawn; at least one.
+pub fn points(axes: &[SweepAxis], design: Design) -> u64 {
+    let mut counts = axes.iter().filter_map(SweepAxis::count);
+    let count = if design == Design::Grid { counts.product() } else { counts.next().unwrap_or(1) };
+    count.max(1)
+}
+
+/// The values at a point of a grid or of pairs, of the axes that are not drawn.
+fn point(axes: &[SweepAxis], design: Design, mut index: u64) -> Vec<Value> {
     let mut values: Vec<Value> = Vec::with_capacity(axes.len());
+    // Counted from the last, which runs fastest.
     for axis in axes.iter().rev() {
         let count = axis.count().unwrap_or(1).max(1);
         let own = if design == Design::Grid { index % count } else { index };
@@ -155,6 +228,26 @@ pub fn values(axes: &[SweepAxis], design: Design, row: u64) -> Vec<Value> {
     }
     values.reverse();
     values
+}
+
+/// The axes of an ensemble: those of its points, then what its members draw, a surface each where the preset has a seed that is
+/// not `fixed`.
+fn drawn(axes: Vec<SweepAxis>, preset: &Preset, fixed: bool) -> Result<Vec<SweepAxis>, String> {
+    let has_seed = preset.get(SEED).is_some() && !axes.iter().any(|axis| axis.key == SEED) && !fixed;
+    let (mut own, mut all): (Vec<SweepAxis>, Vec<SweepAxis>) =
+        axes.into_iter().partition(|axis| axis.count().is_none());
+    if has_seed {
+        // Every seed is as good as any other; a table of numbers in double precision keeps these.
+        let points = Points::Drawn(Distribution::Integers([0, (1 << 53) - 1]));
+        own.push(SweepAxis { key: SEED.to_owned(), points });
+    }
+    if own.is_empty() {
+        return Err(format!(
+            "the members would all be the same: the preset has no {SEED} that may differ, and no axis has a distribution"
+        ));
+    }
+    all.append(&mut own);
+    Ok(all)
 }
 
 /// The axes of a canonical form, as the program keeps it beside results, and how they make rows.
@@ -212,64 +305,86 @@ fn keys_of(key: &str, table: Option<&DeTable<'_>>) -> Vec<String> {
 }
 
 fn design(section: &Section<'_>) -> Result<Design, SpecError> {
-    match (section.get("random"), section.get("combine")) {
-        (Some(_), Some(combine)) => {
-            Err(combine.fault("combine is of a grid or of pairs: [random] has neither"))
+    let seed =
+        |section: &Section<'_>| section.need("seed", "a whole number")?.count(0..=i64::MAX.unsigned_abs());
+    let in_pairs = match section.get("combine") {
+        Some(combine) if section.get("random").is_some() => {
+            return Err(combine.fault("combine is of a grid or of pairs: [random] has neither"));
+        }
+        Some(combine) => is_pairs(&combine)?,
+        None => false,
+    };
+    match (section.get("random"), section.get("ensemble")) {
+        (Some(_), Some(ensemble)) => {
+            Err(ensemble.fault("[ensemble] draws its members itself: it goes with no [random]"))
         }
         (Some(random), None) => {
             let random = random.section("a table with draws and seed")?;
             random.only(&["draws", "seed"])?;
             let draws = random.need("draws", "the number of rows")?.count(1..=MOST_ROWS)?;
-            let seed = random.need("seed", "a whole number")?.count(0..=i64::MAX.unsigned_abs())?;
-            Ok(Design::Random { draws, seed })
+            Ok(Design::Random { draws, seed: seed(&random)? })
         }
-        (None, Some(combine)) => match combine.text("\"grid\" or \"pairs\"")? {
-            "grid" => Ok(Design::Grid),
-            "pairs" => Ok(Design::Pairs),
-            other => {
-                let what =
-                    format!("combine = \"{}\" is not known: it must be \"grid\" or \"pairs\"", quote(other));
-                let meant = closest(other, DESIGNS);
-                Err(combine
-                    .fault(&meant.map_or(what.clone(), |meant| format!("{what}; did you mean {meant}?"))))
-            }
-        },
+        (None, Some(ensemble)) => {
+            let ensemble = ensemble.section("a table with members and seed")?;
+            ensemble.only(&["members", "seed"])?;
+            let members = ensemble.need("members", "the number of members")?.count(MEMBERS)?;
+            Ok(Design::Ensemble { members, seed: seed(&ensemble)?, in_pairs })
+        }
+        (None, None) if in_pairs => Ok(Design::Pairs),
         (None, None) => Ok(Design::Grid),
     }
 }
 
-/// The number of rows; every axis must fit the design.
+/// Whether `combine` asks for pairs.
+fn is_pairs(combine: &Entry<'_>) -> Result<bool, SpecError> {
+    match combine.text("\"grid\" or \"pairs\"")? {
+        "grid" => Ok(false),
+        "pairs" => Ok(true),
+        other => {
+            let what =
+                format!("combine = \"{}\" is not known: it must be \"grid\" or \"pairs\"", quote(other));
+            let meant = closest(other, DESIGNS);
+            Err(combine.fault(&meant.map_or(what.clone(), |meant| format!("{what}; did you mean {meant}?"))))
+        }
+    }
+}
+
+/// The number of rows, or of points of an ensemble; every axis must fit the design.
 fn rows(design: Design, axes: &[SweepAxis], tables: &[Section<'_>]) -> Result<u64, SpecError> {
     let counts: Vec<Option<u64>> = axes.iter().map(SweepAxis::count).collect();
+    // The first of the axes that are not drawn, which all others of pairs are as long as.
+    let first = axes.iter().zip(&counts).find_map(|(axis, count)| Some((axis, (*count)?)));
     let mut product = 1_u64;
     for ((axis, table), count) in axes.iter().zip(tables).zip(&counts) {
         let key = &axis.key;
-        match (design, count) {
-            (Design::Random { .. }, Some(_)) => {
+        match (design, design.of_points(), count) {
+            (Design::Random { .. }, _, Some(_)) => {
                 return Err(table.fault(&format!("with [random] the axis {key} must have a distribution")));
             }
-            (Design::Random { draws, .. }, None) => product = draws,
-            (_, None) => {
-                let what =
-                    format!("the axis {key} has a distribution: it needs [random] with draws and seed");
+            (Design::Random { draws, .. }, _, None) => product = draws,
+            // Of the members, whatever the points are.
+            (Design::Ensemble { .. }, _, None) => {}
+            (_, _, None) => {
+                let what = format!(
+                    "the axis {key} has a distribution: it needs [random] with draws and seed, or [ensemble] with members and seed"
+                );
                 return Err(table.fault(&what));
             }
-            (Design::Grid, Some(count)) => {
-                product = product.checked_mul(*count).filter(|rows| *rows <= MOST_ROWS).ok_or_else(|| {
-                    let counts: Vec<String> = counts.iter().flatten().map(u64::to_string).collect();
-                    table.fault(&format!("{} rows are out of range: at most {MOST_ROWS}", counts.join(" x ")))
-                })?;
-            }
-            (Design::Pairs, Some(count)) => {
-                if counts[0] != Some(*count) {
-                    let first = counts[0].unwrap_or(0);
+            (_, Design::Pairs, Some(count)) => {
+                if let Some((other, first)) = first.filter(|(_, first)| first != count) {
                     let what = format!(
                         "pairs need axes of one length: {key} has {count} values, {} has {first}",
-                        axes[0].key
+                        other.key
                     );
                     return Err(table.fault(&what));
                 }
                 product = *count;
+            }
+            (_, _, Some(count)) => {
+                product = product.checked_mul(*count).filter(|rows| *rows <= MOST_ROWS).ok_or_else(|| {
+                    let counts: Vec<String> = counts.iter().flatten().map(u64::to_string).collect();
+                    table.fault(&format!("{} rows are out of range: at most {MOST_ROWS}", counts.join(" x ")))
+                })?;
             }
         }
     }

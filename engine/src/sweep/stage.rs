@@ -13,8 +13,8 @@ use crate::progress::Progress;
 use crate::quasistatic::monotone::weighted;
 use crate::quasistatic::{Curve, Detail, Equilibrium, Event, EventKind, Monotone, Path, PathState, State};
 use crate::report::number::exact;
-use crate::theory::guduru::Guduru;
-use crate::theory::kesari_lew::KesariLew;
+use crate::theory::jkr::Jkr;
+use crate::theory::worst_phase::WorstPhase;
 use std::cell::OnceCell;
 use std::fmt;
 
@@ -193,17 +193,24 @@ impl PresetValues {
         Some(Cell::Number(1.5 * std::f64::consts::PI * self.problem.work_of_adhesion * radius))
     }
 
-    pub(super) fn kesari_lew(&self) -> Option<Cell> {
-        let (amplitude, wavelength) = self.problem.shape.wave()?;
-        let sphere = Guduru {
+    /// The gap without its waves, and they; none where it has none, or no adhesion.
+    fn worst_phase(&self) -> Option<WorstPhase> {
+        let smooth = Jkr {
             effective_modulus: self.problem.effective_modulus,
             work_of_adhesion: self.problem.work_of_adhesion,
             radius_of_curvature: self.problem.shape.radius_of_curvature()?,
-            amplitude,
-            wavelength,
         };
-        let ratio = KesariLew { sphere }.pull_off_ratio();
+        let waves = self.problem.shape.waves();
+        (!waves.is_empty()).then_some(WorstPhase { smooth, waves })
+    }
+
+    pub(super) fn kesari_lew(&self) -> Option<Cell> {
+        let ratio = self.worst_phase()?.kesari_lew();
         ratio.is_finite().then_some(Cell::Number(ratio))
+    }
+
+    pub(super) fn guduru(&self) -> Option<Cell> {
+        self.worst_phase()?.guduru().map(Cell::Number)
     }
 }
 

@@ -15,6 +15,7 @@
 //! | [`guduru`] | the wavy sphere: the transform in closed form |
 //! | [`struve`] | the functions H₀, H₁ of that closed form |
 //! | [`kesari_lew`] | the wavy sphere of many small waves: envelope and pull-off |
+//! | [`worst_phase`] | waves of unknown phases: bounds of the pull-off |
 //! | [`onset`] | the smallest waves on which a crest can snap at all |
 //! | [`exact`] | the best of these for a problem |
 //! | [`unloading`] | the quasi-static path of an exact disc: limit points, landings, losses |
@@ -38,6 +39,7 @@ pub mod sneddon;
 pub mod sphere;
 pub mod struve;
 pub mod unloading;
+pub mod worst_phase;
 
 pub use disc::{Disc, Equilibrium};
 pub use exact::Exact;

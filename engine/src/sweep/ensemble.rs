@@ -1,0 +1,180 @@
+//! What many members of an ensemble say of one quantity: mean, spread, quantiles, and how sure they are.
+//!
+//! ```text
+//! sd² = Σ (xᵢ − mean)²/(n − 1),    q_p: linear between the order statistics, at the place (n − 1) p from the first
+//! ```
+//!
+//! The errors of mean and median are their standard deviations over [`RESAMPLES`] bootstrap samples: n values drawn from the n with
+//! replacement. B. Efron, *Bootstrap methods: another look at the jackknife*, Ann. Statist. 7, 1 (1979),
+//! doi:10.1214/aos/1176344552. The quantiles are type 7 of R. J. Hyndman and Y. Fan, *Sample quantiles in statistical packages*,
+//! Am. Stat. 50, 361 (1996), doi:10.2307/2684934, as those of `NumPy` and R.
+
+use super::stage::Cell;
+use crate::gap::shapes::split_mix::SplitMix64;
+
+/// Bootstrap samples: the errors themselves are then known to 2 %.
+pub const RESAMPLES: u32 = 1000;
+
+/// The fewest and the most members.
+pub const MEMBERS: std::ops::RangeInclusive<u64> = 2..=100_000;
+
+/// The shares of the members below a quantile.
+const SHARES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
+
+/// The statistic that has no unit.
+pub const COUNT: &str = "count";
+
+/// What stands behind the name of a quantity, and what it means, in the order of [`Statistics::cells`].
+pub const STATISTICS: [(&str, &str); 10] = [
+    ("mean", "mean"),
+    ("sd", "standard deviation"),
+    ("q05", "5 % quantile"),
+    ("q25", "25 % quantile"),
+    ("q50", "median"),
+    ("q75", "75 % quantile"),
+    ("q95", "95 % quantile"),
+    ("mean.error", "standard error of the mean"),
+    ("q50.error", "standard error of the median"),
+    (COUNT, "members that have a value"),
+];
+
+/// One quantity over the members that have it, at least one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Statistics {
+    pub mean: f64,
+    /// None of one member alone, as are the errors.
+    pub deviation: Option<f64>,
+    /// At 5, 25, 50, 75 and 95 %.
+    pub quantiles: [f64; 5],
+    pub mean_error: Option<f64>,
+    pub median_error: Option<f64>,
+    pub count: usize,
+}
+
+impl Statistics {
+    /// Of the finite ones of `values`; none where there is none. The bootstrap draws from `random`.
+    pub fn of(values: impl IntoIterator<Item = f64>, random: &mut SplitMix64) -> Option<Self> {
+        let mut sorted: Vec<f64> = values.into_iter().filter(|x| x.is_finite()).collect();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let count = sorted.len();
+        let mean = (count > 0).then(|| sorted.iter().sum::<f64>() / count as f64)?;
+        let [mean_error, median_error] = bootstrap(&sorted, random).map(|error| error.filter(|_| count > 1));
+        let counts = vec![1; count];
+        let quantiles = SHARES.map(|share| quantile(&sorted, &counts, share));
+        Some(Self { mean, deviation: deviation(&sorted), quantiles, mean_error, median_error, count })
+    }
+
+    /// The numbers in the order of [`STATISTICS`].
+    pub fn cells(&self) -> [Option<Cell>; STATISTICS.len()] {
+        let number = |x: Option<f64>| x.map(Cell::Number);
+        let [q05, q25, q50, q75, q95] = self.quantiles.map(|x| number(Some(x)));
+        let errors = [self.mean_error, self.median_error].map(number);
+        let (mean, deviation) = (number(Some(self.mean)), number(self.deviation));
+        [mean, deviation, q05, q25, q50, q75, q95, errors[0], errors[1], Some(Cell::Count(self.count))]
+    }
+}
+
+/// The statistics of every point, of which the members have the `values` in the order of the rows: all points of the first member,
+/// then all of the second, …; what is not finite is no value.
+pub fn at_points(values: &[f64], points: usize, seed: u64) -> Vec<Option<Statistics>> {
+    // No row has this number: the bootstrap shares no bits with what the members draw.
+    let seed = SplitMix64::row(seed, u64::MAX).bits();
+    let at = |point: usize| {
+        let mut random = SplitMix64::row(seed, point as u64);
+        Statistics::of(values.iter().copied().skip(point).step_by(points.max(1)), &mut random)
+    };
+    (0..points).map(at).collect()
+}
+
+/// √(Σ (x − mean)²/(n − 1)); none of fewer than two.
+fn deviation(values: &[f64]) -> Option<f64> {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
+    (values.len() > 1).then(|| (squares / (values.len() - 1) as f64).sqrt())
+}
+
+/// The quantile of a sample that has each of `sorted` so many times, as many in all as there are.
+fn quantile(sorted: &[f64], counts: &[u32], share: f64) -> f64 {
+    let place = (sorted.len() - 1) as f64 * share;
+    let (mut below, mut lower) = (0.0, f64::NAN);
+    for (x, count) in sorted.iter().zip(counts).filter(|(_, count)| **count > 0) {
+        // Those before end at `below`; this one stands at the places from `below` to `last`.
+        let last = below + f64::from(*count) - 1.0;
+        if place < below {
+            return lower + (place - (below - 1.0)) * (x - lower);
+        }
+        if place <= last {
+            return *x;
+        }
+        (below, lower) = (last + 1.0, *x);
+    }
+    lower
+}
+
+/// The standard deviations of mean and median over bootstrap samples.
+fn bootstrap(sorted: &[f64], random: &mut SplitMix64) -> [Option<f64>; 2] {
+    let mut found = [(); 2].map(|()| Vec::with_capacity(RESAMPLES as usize));
+    let mut counts = vec![0_u32; sorted.len()];
+    for _ in 0..RESAMPLES {
+        counts.fill(0);
+        for _ in 0..sorted.len() {
+            // The upper half of the product is uniform below the length.
+            let at = (u128::from(random.bits()) * sorted.len() as u128) >> 64;
+            counts[usize::try_from(at).unwrap_or_default()] += 1;
+        }
+        let sum: f64 = sorted.iter().zip(&counts).map(|(x, count)| x * f64::from(*count)).sum();
+        found[0].push(sum / sorted.len() as f64);
+        found[1].push(quantile(sorted, &counts, 0.5));
+    }
+    found.map(|values| deviation(&values))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An exponential distribution: skewed, of mean 1 and median ln 2.
+    fn skewed(random: &mut SplitMix64) -> f64 {
+        -(1.0 - random.unit()).ln()
+    }
+
+    #[test]
+    fn the_errors_hold_the_truth_as_often_as_they_say() {
+        let mut held = [0; 2];
+        for repetition in 0..1000 {
+            let mut random = SplitMix64::row(1, repetition);
+            let values: Vec<f64> = (0..400).map(|_| skewed(&mut random)).collect();
+            let found = Statistics::of(values, &mut SplitMix64::row(2, repetition)).unwrap();
+            let truths =
+                [(found.mean, found.mean_error, 1.0), (found.quantiles[2], found.median_error, 2_f64.ln())];
+            for (held, (value, error, truth)) in held.iter_mut().zip(truths) {
+                *held += i32::from((value - truth).abs() <= 1.96 * error.unwrap());
+            }
+        }
+        assert!(held.iter().all(|held| (930..=970).contains(held)), "{held:?}");
+    }
+
+    #[test]
+    fn the_numbers_are_those_of_numpy() {
+        // numpy.percentile([1, 2, 4, 8, 16, 32], [5, 25, 50, 75, 95]), numpy.std(…, ddof=1).
+        let values = [4.0, f64::NAN, 32.0, 1.0, 8.0, 2.0, 16.0];
+        let found = Statistics::of(values, &mut SplitMix64::new(1)).unwrap();
+        let exact = (found.mean, found.count, found.quantiles);
+        assert_eq!(exact, (10.5, 6, [1.25, 2.5, 6.0, 14.0, 28.0]));
+        assert!((found.deviation.unwrap() - 11.861_703_081_766_97).abs() < 1e-13);
+        // That of the mean is known: σ/√n, where σ² divides by n.
+        let exact = found.deviation.unwrap() * (5.0_f64 / 36.0).sqrt();
+        assert!((found.mean_error.unwrap() / exact - 1.0).abs() < 0.07);
+    }
+
+    #[test]
+    fn what_is_not_there_is_not_made_up() {
+        let random = || SplitMix64::new(1);
+        assert_eq!(Statistics::of([f64::NAN], &mut random()), None);
+        let one = Statistics::of([3.0], &mut random()).unwrap();
+        let none = [one.deviation, one.mean_error, one.median_error];
+        assert_eq!((one.mean, one.quantiles, none), (3.0, [3.0; 5], [None; 3]));
+        let points = at_points(&[1.0, f64::NAN, 3.0, f64::NAN, 5.0], 2, 7);
+        assert_eq!((points[0].unwrap().mean, points[0].unwrap().count, points[1]), (3.0, 3, None));
+    }
+}
