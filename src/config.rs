@@ -2,7 +2,7 @@
 //!
 //! ```toml
 //! [keys]
-//! next-limit = "n"
+//! next-event = "n"
 //! step = ["Space", "F2"]
 //!
 //! [look]

@@ -77,19 +77,19 @@ fn turning_the_stiffness_moves_limit_points_and_events_and_sweeps_nothing_again(
 #[test]
 fn the_walker_stays_and_its_flags_follow_the_device() {
     let mut session = on_control_knob("wavy-sphere");
-    session.does(Id::NextLimit);
+    session.does(Id::NextEvent);
     let (state, nodes) = (session.radius(), session.model.history.nodes().len());
-    assert!(session.status().starts_with("Limit point 1/"), "{}", session.status());
+    assert!(session.status().starts_with("Event 1 of"), "{}", session.status());
     // Softer than fixed grips, the same state is past its limit point: unstable.
     session.set("path.control", "0.15");
     assert_eq!(session.model.preset.path.control, Control::Stiffness(0.15));
     assert_eq!((session.radius(), session.model.history.nodes().len()), (state, nodes));
-    assert!(session.status().starts_with("Unstable under stiffness"), "{}", session.status());
+    assert!(session.status().starts_with("Off the path, unstable under stiffness"), "{}", session.status());
     assert!(session.model.can_jump());
     session.set("path.control", "displacement");
-    assert!(session.status().starts_with("Limit point 1/"), "{}", session.status());
+    assert!(session.status().starts_with("Event 1 of"), "{}", session.status());
     // A limit point of the spring is located for the spring.
-    session.set("path.control", "stiffness=0.15").does(Id::Restart).does(Id::NextLimit);
+    session.set("path.control", "stiffness=0.15").does(Id::Restart).does(Id::NextEvent);
     assert!(session.radius() > state);
     session.does(Id::Less);
     assert!(session.model.can_jump());
@@ -118,10 +118,10 @@ fn the_control_goes_round_and_comes_back_to_the_last_stiffness() {
 #[test]
 fn an_outward_jump_is_announced_as_an_inward_one_is() {
     let mut session = Session::new("wavy-sphere");
-    session.all(&[Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump, Id::Reverse, Id::NextLimit]);
+    session.all(&[Id::NextEvent, Id::Jump, Id::NextEvent, Id::Jump, Id::Reverse, Id::NextEvent]);
     let status = session.status();
-    assert!(status.contains("jump jumps to crest") && status.contains("(loses "), "{status}");
-    assert!(status.contains("goes on unstable"), "{status}");
+    assert!(status.contains("jump lets the edge snap to crest") && status.contains("(loses "), "{status}");
+    assert!(status.contains("goes on, unstable"), "{status}");
     let ahead = session.model.history.current().unwrap().ahead.unwrap();
     session.does(Id::Jump);
     let NodeKind::Jump(event) = session.kind() else { panic!() };
@@ -134,13 +134,13 @@ fn an_outward_jump_is_announced_as_an_inward_one_is() {
     session.set("path.control", "force");
     for _ in 0..20 {
         session.model.inward = true;
-        session.does(Id::NextLimit);
-        if session.status().contains("pulls off") {
+        session.does(Id::NextEvent);
+        if session.status().contains("come apart") {
             break;
         }
         session.does(Id::Jump);
     }
-    assert!(session.status().contains("pulls off, step goes on"), "{}", session.status());
+    assert!(session.status().contains("lets the bodies come apart; step goes on"), "{}", session.status());
 }
 
 #[test]
@@ -172,10 +172,10 @@ fn the_line_of_the_device_has_its_slope_and_ends_at_the_landing() {
             points.iter().any(|p| p.force <= force + 1e-9) && points.iter().any(|p| p.force >= force - 1e-9)
         );
     }
-    session.does(Id::NextLimit);
+    session.does(Id::NextEvent);
     let ends = line(&session.model).unwrap();
     assert!((slope(ends) / -0.3 - 1.0).abs() < 1e-6, "{ends:?}");
-    let event = session.model.shown_events()[0].clone();
+    let event = session.model.path_events()[0].clone();
     assert!((ends[0].0 - event.before.as_ref().unwrap().approach).abs() < 1e-9);
     assert!((ends[1].0 - event.after.as_ref().unwrap().approach).abs() < 1e-9);
     assert!((ends[1].1 - event.after.as_ref().unwrap().force).abs() < 1e-9);

@@ -5,10 +5,9 @@ mod session;
 
 use pulloff::explorer::data::Folder;
 use pulloff::explorer::export::ExportKind;
+use pulloff::explorer::log::Mark;
 use pulloff::explorer::model::{Level, Question};
-use pulloff::explorer::{
-    Axes, Command, Effect, EventSource, Id, NodeKind, Overlay, Panel, Reply, View, answer, update,
-};
+use pulloff::explorer::{Axes, Command, Effect, Id, NodeKind, Overlay, Panel, Reply, View, answer, update};
 use pulloff::store::{Overwrite, Source, save_file};
 use pulloff_engine::quasistatic::EventKind;
 use session::Session;
@@ -28,7 +27,7 @@ fn the_walk_meets_the_events_of_the_curve() {
     let events = curve.unloading.as_ref().unwrap().events.clone();
     assert_eq!(events.len(), 6);
     for expected in &events {
-        session.does(Id::NextLimit);
+        session.does(Id::NextEvent);
         assert!((session.radius() / expected.before.as_ref().unwrap().contact_radius - 1.0).abs() < 1e-9);
         assert!(session.model.can_jump());
         session.does(Id::Jump);
@@ -49,10 +48,97 @@ fn the_walk_meets_the_events_of_the_curve() {
 }
 
 #[test]
+fn the_next_event_again_and_again_detaches_and_ticks_the_log() {
+    for (preset, assignments) in [
+        ("wavy-sphere", &[][..]),
+        ("wavy-sphere", &["path.control=force"][..]),
+        ("fig-3-jkr", &[][..]),
+        ("fig-8", &[][..]),
+    ] {
+        let mut session = Session::with(preset, assignments);
+        let count = session.model.path_events().len();
+        for _ in 0..2 * count {
+            session.does(Id::NextEvent);
+        }
+        let log = session.model.log();
+        assert!(session.model.history.current().unwrap().is_apart(), "{preset}: {}", session.status());
+        assert!(log.entries.iter().all(|entry| entry.mark == Mark::Done), "{preset}: {log:?}");
+        // What is lost by hand is what the path loses.
+        let (lost, unbounded) = log.lost();
+        let totals = session.model.path().unwrap().totals.clone();
+        let all = totals.dissipated.unwrap_or(totals.dissipated_before_last_contact);
+        assert_eq!(unbounded, totals.dissipated.is_none());
+        assert!((lost - all).abs() <= 1e-12 * all, "{preset}: {lost} {all}");
+        // Anew, nothing of it has happened.
+        session.does(Id::Restart);
+        assert!(session.model.log().entries.iter().all(|entry| entry.mark == Mark::Ahead));
+    }
+}
+
+#[test]
+fn a_step_past_a_limit_point_says_so_and_the_next_event_goes_on_from_there() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::NextEvent);
+    assert!(session.status().starts_with("Event 1 of 6: next-event or jump"), "{}", session.status());
+    session.all(&[Id::Step, Id::Step]);
+    assert!(session.status().starts_with("Off the path, unstable"), "{}", session.status());
+    session.does(Id::NextEvent);
+    assert!(matches!(session.kind(), NodeKind::Jump(_)));
+    // What happened off the path has no number.
+    let log = session.model.log();
+    assert!(log.entries.iter().any(|entry| entry.number.is_none() && entry.mark == Mark::Done), "{log:?}");
+    assert_eq!(log.entries.iter().filter_map(|entry| entry.number).collect::<Vec<_>>(), [1, 2, 3, 4, 5, 6]);
+    for _ in 0..14 {
+        session.does(Id::NextEvent);
+    }
+    assert!(session.model.history.current().unwrap().is_apart(), "{}", session.status());
+}
+
+#[test]
+fn outward_the_next_event_ends_where_the_path_does() {
+    let mut session = Session::new("wavy-sphere");
+    let start = session.radius();
+    session.does(Command::Steps(3)).does(Id::Reverse).does(Id::NextEvent);
+    assert!((session.radius() - start).abs() <= 1e-12 * start, "{} {start}", session.radius());
+    assert!(session.status().starts_with("Here the path begins"), "{}", session.status());
+    let nodes = session.model.history.len();
+    session.does(Id::NextEvent);
+    assert_eq!(session.model.history.len(), nodes);
+    assert!(session.status().contains("reverse turns round"), "{}", session.status());
+    // A step goes on, and a script says all of it again.
+    session.does(Id::Step);
+    assert!(session.radius() > start);
+    assert!(
+        session.model.script().unwrap().contains(&"next-event".to_owned()),
+        "{:?}",
+        session.model.script()
+    );
+}
+
+#[test]
+fn from_apart_the_path_goes_up_to_its_turn_and_back() {
+    let mut session = Session::with("wavy-sphere", &["path.begin=touch"]);
+    let events = session.model.path_events().to_vec();
+    let turn = events.iter().position(|event| event.kind == "turn").unwrap();
+    assert!(turn > 0 && events.len() > turn + 1, "{events:?}");
+    assert_eq!(session.model.log().entries[0].mark, Mark::Done, "the first touch");
+    for _ in 0..4 * events.len() {
+        session.does(Id::NextEvent);
+        if session.model.history.current().unwrap().is_apart() {
+            break;
+        }
+    }
+    let log = session.model.log();
+    assert!(session.model.history.current().unwrap().is_apart(), "{}", session.status());
+    assert!(log.entries.iter().all(|entry| entry.mark == Mark::Done), "{log:#?}");
+    assert!(log.entries.iter().all(|entry| entry.number.is_some()), "{log:#?}");
+}
+
+#[test]
 fn outward_the_edge_jumps_on_loading() {
     let mut session = Session::new("wavy-sphere");
     // Down to the third stable piece, then back up: the maximum there is left outward.
-    session.all(&[Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump, Id::Reverse, Id::NextLimit]);
+    session.all(&[Id::NextEvent, Id::Jump, Id::NextEvent, Id::Jump, Id::Reverse, Id::NextEvent]);
     let before = session.radius();
     session.does(Id::Jump);
     let NodeKind::Jump(event) = session.kind() else { panic!() };
@@ -77,7 +163,7 @@ fn steps_stop_at_a_limit_point_and_go_on_along_the_unstable_branch() {
     session.does(Id::Step).does(Id::Step);
     assert_eq!(session.kind(), NodeKind::Step);
     assert!(!session.model.history.current().unwrap().stability.under(control));
-    assert!(session.status().starts_with("Unstable"));
+    assert!(session.status().starts_with("Off the path, unstable"));
     // From an unstable state the edge runs as well, the way it is walked.
     session.does(Id::Jump);
     let NodeKind::Jump(event) = session.kind() else { panic!() };
@@ -115,9 +201,9 @@ fn undo_moves_a_cursor_a_step_after_it_makes_a_branch_and_nothing_is_erased() {
 #[test]
 fn a_knob_moves_curve_log_and_walker_and_undo_brings_the_value_back() {
     let mut session = Session::new("wavy-sphere");
-    session.does(Id::NextLimit).does(Id::Jump);
+    session.does(Id::NextEvent).does(Id::Jump);
     let before = session.model.history.current().unwrap().state;
-    let events = session.model.shown_events();
+    let events = session.model.path_events().to_vec();
     session.does(Id::MuchMore);
     assert!(session.model.is_unsaved());
     assert_eq!(session.kind(), NodeKind::Solved);
@@ -125,14 +211,14 @@ fn a_knob_moves_curve_log_and_walker_and_undo_brings_the_value_back() {
     // Solved again at its control value: the same approach, another force.
     assert!((after.approach - before.approach).abs() < 1e-9);
     assert!((after.force / before.force - 1.0).abs() > 1e-3);
-    assert_ne!(session.model.shown_events()[0].before, events[0].before);
+    assert_ne!(session.model.path_events()[0].before, events[0].before);
     // Turned further it is another command.
     session.does(Id::More).does(Id::Undo);
     assert_eq!(session.model.history.current().unwrap().state, after);
     session.does(Id::Undo);
     assert!(!session.model.is_unsaved());
     assert_eq!(session.model.history.current().unwrap().state, before);
-    assert_eq!(session.model.shown_events()[0], events[0]);
+    assert_eq!(session.model.path_events()[0], events[0]);
 }
 
 #[test]
@@ -144,7 +230,7 @@ fn undo_before_the_answer_takes_the_value_back() {
     assert!(!session.model.is_unsaved());
     session.driver.settle(&mut session.model, late);
     session.driver.settle(&mut session.model, effects);
-    assert_eq!(session.model.shown_events().len(), 6);
+    assert_eq!(session.model.path_events().len(), 6);
     assert!(session.model.walker().is_some());
     assert!(!session.model.is_computing());
 }
@@ -152,14 +238,14 @@ fn undo_before_the_answer_takes_the_value_back() {
 #[test]
 fn a_state_that_cannot_be_solved_stays_with_the_reason() {
     let mut session = Session::new("wavy-sphere");
-    session.all(&[Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump]);
+    session.all(&[Id::NextEvent, Id::Jump, Id::NextEvent, Id::Jump, Id::NextEvent, Id::Jump]);
     let before = session.radius();
     // Without adhesion no contact exists at this negative approach.
     session.set("material.work_of_adhesion", "0");
     assert!(matches!(session.kind(), NodeKind::Stale(_)), "{:?}", session.kind());
     assert!((session.radius() / before - 1.0).abs() < 1e-15);
     session.does(Id::Step);
-    assert!(session.status().contains("restart restarts"), "{}", session.status());
+    assert!(session.status().contains("restart starts again"), "{}", session.status());
     session.does(Id::Restart).does(Id::Step);
     assert_eq!(session.kind(), NodeKind::Step);
 }
@@ -193,9 +279,9 @@ fn the_control_can_change_in_mid_walk() {
     session.does(Id::Control);
     // The state stays the same state; only its stability is judged anew.
     assert_eq!(session.model.history.nodes().len(), nodes);
-    assert_eq!(session.model.shown_events().last().unwrap().dissipated, None);
-    session.does(Id::NextLimit);
-    assert!(session.status().starts_with("Limit point 1/"), "{}", session.status());
+    assert_eq!(session.model.path_events().last().unwrap().dissipated, None);
+    session.does(Id::NextEvent);
+    assert!(session.status().starts_with("Event 1 of"), "{}", session.status());
     session.does(Id::Jump);
     let NodeKind::Jump(event) = session.kind() else { panic!() };
     assert!((event.before.as_ref().unwrap().force - event.after.as_ref().unwrap().force).abs() < 1e-12);
@@ -206,15 +292,16 @@ fn the_control_can_change_in_mid_walk() {
 #[test]
 fn selecting_an_event_moves_the_walker_to_its_limit_point() {
     let mut session = Session::new("wavy-sphere");
-    session.model.panel = Panel::Events;
+    session.model.panel = Panel::Log;
     session.all(&[Id::Down, Id::Down, Id::Edit]);
-    let event = &session.model.shown_events()[2];
+    let event = &session.model.path_events()[2];
     assert!((session.radius() / event.before.as_ref().unwrap().contact_radius - 1.0).abs() < 1e-9);
-    assert!(session.status().contains("jumps to crest 5"), "{}", session.status());
+    assert!(session.status().contains("snap to crest 5"), "{}", session.status());
     assert!(!session.model.is_unsaved());
-    // In the walked list it goes back to before the jump.
-    session.all(&[Id::Jump, Id::NextLimit, Id::Events, Id::Events]);
-    assert_eq!(session.model.events, EventSource::Walked);
+    // Done, it is ticked, and one goes back to it.
+    session.all(&[Id::Jump, Id::NextEvent]);
+    let marks: Vec<Mark> = session.model.log().entries.iter().map(|entry| entry.mark).collect();
+    assert_eq!(marks, [Mark::Done, Mark::Done, Mark::Done, Mark::Here, Mark::Ahead, Mark::Ahead]);
     session.does(Id::Edit);
     assert_eq!(session.kind(), NodeKind::Limit);
     assert!(
@@ -282,14 +369,14 @@ fn a_walker_that_was_stable_stays_so_when_a_value_changes() {
     assert!((node.state.contact_radius - direct).abs() < 1e-9 * direct);
     // Where its part of the curve is still there, nothing is said; where a limit point has passed it, that is.
     let mut session = Session::new("wavy-sphere");
-    session.all(&[Id::NextLimit, Id::Reverse]).does(Command::Steps(1));
+    session.all(&[Id::NextEvent, Id::Reverse]).does(Command::Steps(1));
     set(&mut session, "0.00251");
     assert!(!session.status().contains("next stable one"), "{}", session.status());
     set(&mut session, "0.004");
     assert!(session.status().contains("on the next stable one, s "), "{}", session.status());
     // From an unstable state its own branch is followed.
     let mut session = Session::new("wavy-sphere");
-    session.all(&[Id::NextLimit, Id::Step]);
+    session.all(&[Id::NextEvent, Id::Step]);
     set(&mut session, "0.00251");
     let node = session.model.history.current().unwrap();
     assert!(!node.stability.under(node.control), "{}", session.status());
@@ -299,7 +386,7 @@ fn a_walker_that_was_stable_stays_so_when_a_value_changes() {
 fn the_least_force_is_one_key_away_under_every_control() {
     for control in ["displacement", "force"] {
         let mut session = Session::new("wavy-sphere");
-        session.set("path.control", control).does(Id::LeastForce);
+        session.set("path.control", control).does(Id::LargestPull);
         let model = &session.model;
         let least = model
             .curve
@@ -329,7 +416,7 @@ fn the_least_force_is_one_key_away_under_every_control() {
 #[test]
 fn exports_hold_what_is_on_the_screen_and_never_replace_a_file_unasked() {
     let mut session = Session::new("fig-8");
-    session.all(&[Id::NextLimit, Id::Jump]);
+    session.all(&[Id::NextEvent, Id::Jump]);
     for what in [ExportKind::Curve, ExportKind::Walk, ExportKind::Events] {
         for ending in ["csv", "json"] {
             let path = session.folder.path().join(format!("{}.{ending}", what.name()));
@@ -363,7 +450,7 @@ fn walking_selecting_and_views_are_not_unsaved_changes() {
     let mut session = Session::new("wavy-sphere");
     session.all(&[
         Id::Step,
-        Id::NextLimit,
+        Id::NextEvent,
         Id::Jump,
         Id::Undo,
         Id::Redo,
@@ -372,7 +459,6 @@ fn walking_selecting_and_views_are_not_unsaved_changes() {
         Id::Halve,
         Id::Double,
         Id::Axes,
-        Id::Events,
         Id::NextView,
         Id::PreviousView,
         Id::ZoomIn,
@@ -393,9 +479,9 @@ fn walking_selecting_and_views_are_not_unsaved_changes() {
 #[test]
 fn a_restart_begins_a_walk_of_its_own() {
     let mut session = Session::new("wavy-sphere");
-    session.all(&[Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump]);
+    session.all(&[Id::NextEvent, Id::Jump, Id::NextEvent, Id::Jump]);
     assert_eq!(session.model.walked_events().len(), 2);
-    session.all(&[Id::Restart, Id::NextLimit, Id::Jump]);
+    session.all(&[Id::Restart, Id::NextEvent, Id::Jump]);
     assert_eq!(session.model.walked_events().len(), 1);
     // Nothing is erased: the walk before is an undo away.
     session.all(&[Id::Restart, Id::Undo]);
@@ -406,7 +492,7 @@ fn a_restart_begins_a_walk_of_its_own() {
 fn from_an_unstable_start_the_edge_runs_outward_as_in_an_unloading() {
     let mut session = Session::new("wavy-sphere");
     session.set("path.start_contact_radius", "0.385").does(Id::Restart);
-    assert!(session.status().contains("jump lets the edge run outward"), "{}", session.status());
+    assert!(session.status().contains("next-event lets the edge run outward"), "{}", session.status());
     session.does(Id::Jump);
     let start = session.model.curve.as_ref().unwrap().unloading.clone().unwrap();
     let start = start.start().unwrap();
@@ -418,7 +504,7 @@ fn a_problem_without_adhesion_or_waves_can_be_walked() {
     let mut session = Session::new("fig-1-hertz");
     session.does(Command::Steps(10));
     assert_eq!(session.kind(), NodeKind::Step);
-    session.does(Id::NextLimit);
+    session.does(Id::NextEvent);
     assert!(session.status().contains("end contact radius"), "{}", session.status());
     session.does(Id::MuchMore).does(Id::Control).does(Id::Control);
     assert!(session.model.curve_error.is_none());
@@ -429,7 +515,7 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
     let mut session = Session::new("wavy-sphere");
     assert!(session.model.curve.as_ref().unwrap().is_checked());
     assert!(session.model.shown_inadmissible().is_empty());
-    let events = session.model.shown_events();
+    let events = session.model.path_events().to_vec();
     assert!(events.iter().all(|event| event.admissible != Some(false)));
 
     let effects = update(
@@ -467,14 +553,14 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
         last = to;
     }
     // A path with rings passes no such state.
-    assert!(session.model.shown_events().iter().all(|event| event.admissible.is_none()));
+    assert!(session.model.path_events().iter().all(|event| event.admissible.is_none()));
     session.set("path.contact", "one-disc");
-    assert!(session.model.shown_events().iter().all(|event| event.admissible.is_some()));
+    assert!(session.model.path_events().iter().all(|event| event.admissible.is_some()));
     session.does(Id::Undo);
 
     // The log goes on to them, but they are no place to go to.
-    session.model.panel = Panel::Events;
-    let count = session.model.shown_events().len();
+    session.model.panel = Panel::Log;
+    let count = session.model.path_events().len();
     for _ in 0..50 {
         session.does(Id::Down);
     }
@@ -483,13 +569,8 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
     session.does(Id::Edit);
     assert!(session.status().contains("crest would touch"), "{}", session.status());
     assert!((session.radius() - before).abs() < f64::EPSILON);
-    session.all(&[Id::Events, Id::Events]);
-    assert!(session.model.shown_inadmissible().is_empty());
-
     // Another control keeps what is known of the curve.
     session.does(Id::Control);
-    assert_eq!(session.model.events, EventSource::Walked);
-    session.does(Id::Events);
     assert_eq!(session.model.shown_inadmissible(), parts);
     // Where the walker is told so, the curve is drawn so.
     let part = parts[0].report;

@@ -34,7 +34,7 @@ fn a_fit_tells_its_progress_and_escape_takes_the_best_so_far() {
     fs::write(&path, preset).unwrap();
     let program = Path::new(env!("CARGO_BIN_EXE_pulloff"));
     let mut pty = Pty::spawn(program, &[path.to_str().unwrap()], &[], 120, 36);
-    pty.wait_for(|screen| screen.contains("Events on the curve"), "the curve");
+    pty.wait_for(|screen| screen.contains("Log"), "the curve");
     pty.keys("F");
     let progress = |screen: &str| {
         let percent = screen.split_once("fitting, ")?.1.split_once(" %")?.0;

@@ -83,7 +83,7 @@ fn a_whole_command_is_undone_at_once() {
     session.does(Id::Undo);
     assert!(session.status().contains("nothing to undo"));
     // Each command of its own.
-    session.does(Id::NextLimit);
+    session.does(Id::NextEvent);
     let limit = cursor(&session);
     session.does(Id::Jump).does(Command::Steps(3)).does(Id::Undo);
     assert!(matches!(session.kind(), NodeKind::Jump(_)));
@@ -148,12 +148,12 @@ fn a_walk_counts_its_states_and_a_pause_is_no_error() {
 #[test]
 fn what_is_typed_behind_a_change_of_values_is_done_with_the_new_ones() {
     let mut session = Session::new("wavy-sphere");
-    session.all(&[Id::NextLimit, Id::Jump]);
+    session.all(&[Id::NextEvent, Id::Jump]);
     let steps = session.model.history.len();
     // All in one burst, before any of it is done.
     let set = Command::Set { key: "gap.amplitude".into(), text: "0.0023".to_owned() };
     let effects = update(&mut session.model, set);
-    for id in [Id::NextLimit, Id::Jump, Id::Reverse, Id::Step, Id::Reverse, Id::NextLimit] {
+    for id in [Id::NextEvent, Id::Jump, Id::Reverse, Id::Step, Id::Reverse, Id::NextEvent] {
         assert!(update(&mut session.model, id.into()).is_empty());
     }
     assert_eq!((session.model.history.len(), session.model.queue.len()), (steps, 6));
@@ -162,8 +162,8 @@ fn what_is_typed_behind_a_change_of_values_is_done_with_the_new_ones() {
     let node = session.model.history.current().unwrap();
     assert!(node.is_limit(Control::Displacement) && session.model.is_on_curve(node) && session.model.inward);
     let mut one_by_one = Session::new("wavy-sphere");
-    one_by_one.all(&[Id::NextLimit, Id::Jump]).set("gap.amplitude", "0.0023");
-    one_by_one.all(&[Id::NextLimit, Id::Jump, Id::Reverse, Id::Step, Id::Reverse, Id::NextLimit]);
+    one_by_one.all(&[Id::NextEvent, Id::Jump]).set("gap.amplitude", "0.0023");
+    one_by_one.all(&[Id::NextEvent, Id::Jump, Id::Reverse, Id::Step, Id::Reverse, Id::NextEvent]);
     assert_eq!(session.model.journal.lines(), one_by_one.model.journal.lines());
     assert_eq!(node.state, one_by_one.model.history.current().unwrap().state);
 }
@@ -171,7 +171,7 @@ fn what_is_typed_behind_a_change_of_values_is_done_with_the_new_ones() {
 #[test]
 fn nothing_is_walked_on_a_curve_of_other_values() {
     let mut session = Session::new("wavy-sphere");
-    session.does(Id::NextLimit);
+    session.does(Id::NextEvent);
     let steps = session.model.history.len();
     let set = |text: &str| Command::Set { key: "gap.amplitude".into(), text: text.to_owned() };
     // Given up, with a step that waited for it.
@@ -179,8 +179,8 @@ fn nothing_is_walked_on_a_curve_of_other_values() {
     drop(update(&mut session.model, Id::Step.into()));
     drop(update(&mut session.model, Id::Cancel.into()));
     assert!(session.model.queue.is_empty());
-    assert_eq!(session.model.script().unwrap(), ["next-limit"], "nothing was done with these values");
-    for id in [Id::Step, Id::NextLimit, Id::PreviousLimit, Id::Run] {
+    assert_eq!(session.model.script().unwrap(), ["next-event"], "nothing was done with these values");
+    for id in [Id::Step, Id::NextEvent, Id::Run] {
         session.does(id);
         assert_eq!(session.model.history.len(), steps, "{id:?}");
         assert!(session.status().contains("the curve shown is of the values before"), "{}", session.status());

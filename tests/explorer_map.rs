@@ -7,7 +7,7 @@ mod session;
 
 use pulloff::explorer::maps::MapAxes;
 use pulloff::explorer::session::{Document, Ended, Snapshot};
-use pulloff::explorer::{Command, EventSource, Id, Panel, View};
+use pulloff::explorer::{Command, Id, Panel, View};
 use pulloff::figure::{Figure, Role, Sign, Subject};
 use session::Session;
 
@@ -33,8 +33,8 @@ fn the_limit_points_over_the_amplitude_carry_the_events_and_the_selected_one_is_
     assert_eq!((&*report.x.key, &*report.y.key), ("gap.amplitude", "control"));
     let shown = figure(&session);
     assert!(shown.title.contains("δ over A"), "{}", shown.title);
-    let events = session.model.shown_events().len();
-    assert_eq!(count(&shown, |sign| matches!(sign, Sign::Event(_) | Sign::LastContact)), events);
+    let events = session.model.path_events().len();
+    assert_eq!(count(&shown, |sign| matches!(sign, Sign::Event(_) | Sign::LastContact(_))), events);
     assert!(
         count(&shown, |sign| *sign == Sign::Cusp) > 2 && count(&shown, |sign| *sign == Sign::Landing) > 0
     );
@@ -42,12 +42,12 @@ fn the_limit_points_over_the_amplitude_carry_the_events_and_the_selected_one_is_
     // The curve of each event passes its mark, and is another one.
     let mut chosen = Vec::new();
     for number in 1..=events {
-        session.does(Command::Pick { panel: Panel::Events, line: Some(number - 1) });
+        session.does(Command::Pick { panel: Panel::Log, line: Some(number - 1) });
         let shown = figure(&session);
         let line = shown.lines.iter().find(|line| line.role == Role::Chosen).unwrap();
         assert_eq!(line.name, format!("event {number}"));
         let is_it = |sign: &Sign| {
-            if number == events { *sign == Sign::LastContact } else { *sign == Sign::Event(number) }
+            if number == events { *sign == Sign::LastContact(number) } else { *sign == Sign::Event(number) }
         };
         let (x, y) = shown.marks.iter().find(|mark| is_it(&mark.sign)).unwrap().at;
         let height = shown.bounds.y[1] - shown.bounds.y[0];
@@ -59,11 +59,6 @@ fn the_limit_points_over_the_amplitude_carry_the_events_and_the_selected_one_is_
         assert!(!chosen.contains(&line.points), "event {number} has the curve of another");
         chosen.push(line.points.clone());
     }
-    // Folded, the events are still those of the curve.
-    while session.model.events != EventSource::Folded {
-        session.does(Id::Events);
-    }
-    assert!(figure(&session).lines.iter().any(|line| line.role == Role::Chosen));
 }
 
 #[test]

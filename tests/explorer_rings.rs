@@ -6,7 +6,7 @@
 mod session;
 
 use pulloff::explorer::session::{Document, Ended, Snapshot};
-use pulloff::explorer::{Command, EventSource, Id, NodeKind, View};
+use pulloff::explorer::{Command, Id, NodeKind, View};
 use pulloff::figure::{Meaning, Role, Subject};
 use session::Session;
 
@@ -20,7 +20,7 @@ fn begun() -> Session {
 /// The same with a disc and a ring.
 fn with_ring() -> Session {
     let mut session = begun();
-    session.all(&[Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump]);
+    session.all(&[Id::NextEvent, Id::Jump, Id::NextEvent, Id::Jump]);
     assert!(session.model.walker().unwrap().has_rings(), "{}", session.status());
     session
 }
@@ -39,11 +39,11 @@ fn it_begins_at_the_first_touch_and_says_at_each_touch_what_can_be_done() {
     assert_eq!((start.kind.clone(), start.contacts().len()), (NodeKind::Start, 1));
     assert!((start.state.contact_radius - 0.007_794_041).abs() < 1e-8 && start.state.approach.abs() < 1e-12);
     assert!(!session.model.inward && start.stability.under(start.control));
-    session.does(Id::NextLimit);
+    session.does(Id::NextEvent);
     let NodeKind::Touch(radius) = session.kind() else { panic!("{:?}", session.kind()) };
     assert!((radius - 0.049).abs() < 1e-3);
     let said = session.status();
-    assert!(said.starts_with("The next crest touches at r 0.04") && said.contains("inadmissible"), "{said}");
+    assert!(said.contains("a crest touches at r 0.04") && said.contains("inadmissible"), "{said}");
     // Without the ring the walk goes on through states that cannot be, and says so.
     session.does(Command::Steps(3));
     let said = session.status();
@@ -70,10 +70,10 @@ fn the_loop_is_walked_and_its_states_are_kept_undone_and_resumed() {
     session.does(Id::Undo);
     assert_eq!(session.model.walker().unwrap().state, state);
     // On to the merge, round, and off.
-    session.all(&[Id::NextLimit, Id::Jump]);
+    session.all(&[Id::NextEvent, Id::Jump]);
     let merged = session.model.walker().unwrap();
     assert!(!merged.has_rings() && (merged.state.contact_radius - 0.110_140_7).abs() < 1e-6);
-    session.all(&[Id::Reverse, Id::NextLimit, Id::Jump, Id::NextLimit, Id::Jump]);
+    session.all(&[Id::Reverse, Id::NextEvent, Id::Jump, Id::NextEvent, Id::Jump]);
     assert!(session.model.history.current().unwrap().is_apart(), "{}", session.status());
     let kinds: Vec<&str> = session.model.walked_events().iter().map(|(_, event)| event.kind).collect();
     assert_eq!(kinds, ["touch", "touch", "snap-in", "snap", "last-contact"]);
@@ -82,7 +82,7 @@ fn the_loop_is_walked_and_its_states_are_kept_undone_and_resumed() {
 #[test]
 fn a_script_walks_the_rings_again() {
     let mut session = with_ring();
-    session.does(Command::Steps(2)).set("material.work_of_adhesion", "0.000101").does(Id::NextLimit);
+    session.does(Command::Steps(2)).set("material.work_of_adhesion", "0.000101").does(Id::NextEvent);
     let last = session.model.walker().unwrap().state;
     let lines = session.model.journal.lines().to_vec();
     let mut again = Session::new("fig-9-weak");
@@ -130,8 +130,6 @@ fn every_view_of_a_state_knows_its_rings() {
     let figure = Subject::of(&session.model).unwrap().figure(View::ForceRadius);
     // The walk's own line, and the two edges within.
     assert!(figure.lines.iter().filter(|line| line.role == Role::Walk).count() >= 3);
-    session.does(Id::Events);
-    assert_eq!(session.model.events, EventSource::Cycle);
 }
 
 #[test]

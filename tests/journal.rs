@@ -28,11 +28,10 @@ fn any_command(rng: &mut Rng) -> Command {
     let set = |key: &'static str, text: String| Command::Set { key: key.into(), text };
     match rng.u8(..32) {
         0..=5 => Command::Steps(rng.usize(1..6)),
-        6..=8 => Id::NextLimit.into(),
-        9 => Id::PreviousLimit.into(),
+        6..=8 => Id::NextEvent.into(),
         10..=12 => Id::Jump.into(),
         13 => Command::RunOf(rng.usize(1..8)),
-        14 => Id::Reverse.into(),
+        9 | 14 => Id::Reverse.into(),
         15 => [Id::Halve, Id::Double][rng.usize(..2)].into(),
         16..=18 => Id::Undo.into(),
         19 => Id::Redo.into(),
@@ -46,7 +45,7 @@ fn any_command(rng: &mut Rng) -> Command {
             Command::Try { key: "gap.radius_of_curvature".into(), text: format!("{}", 1.0 + 0.1 * rng.f64()) }
         }
         29 => Command::TakeBack,
-        30 => [Id::Pin, Id::ZoomIn, Id::NextView, Id::NextPanel, Id::Events, Id::Axes][rng.usize(..6)].into(),
+        30 => [Id::Pin, Id::ZoomIn, Id::NextView, Id::NextPanel, Id::Axes][rng.usize(..5)].into(),
         _ => [Id::Down, Id::Up, Id::Cancel][rng.usize(..3)].into(),
     }
 }
@@ -239,13 +238,13 @@ fn the_journal_says_what_was_done_and_leaves_out_what_was_not() {
     }
     session.does(Command::Steps(2)).does(Id::ZoomIn).does(Id::Step);
     assert_eq!(session.model.journal.lines(), ["step 6"]);
-    session.all(&[Id::NextLimit, Id::Jump, Id::Undo, Id::Undo, Id::Redo]);
+    session.all(&[Id::NextEvent, Id::Jump, Id::Undo, Id::Undo, Id::Redo]);
     session.all(&[Id::Reverse, Id::Reverse, Id::Halve]).does(Id::Step);
     // Turned four times, each with a state of its own; the values are exact.
     session.all(&[Id::More, Id::More]).does(Id::Control).does(Id::Step);
     let expected = [
         "step 6",
-        "next-limit",
+        "next-event",
         "jump",
         "undo 1 states",
         "undo 18 states",

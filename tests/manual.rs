@@ -105,7 +105,7 @@ fn screen() -> String {
     let (mut app, effects) = App::new(loaded, Theme::default());
     let driver = Inline::new(store);
     driver.settle(&mut app.model, effects);
-    for id in [Id::NextLimit, Id::Jump, Id::NextLimit] {
+    for id in [Id::NextEvent, Id::Jump, Id::NextEvent] {
         let effects = update(&mut app.model, id.into());
         driver.settle(&mut app.model, effects);
     }

@@ -55,13 +55,13 @@ impl Scripts {
 fn a_script_walks_and_exports_and_its_session_walks_again() {
     let home = Scripts::new();
     let script = "# the first instability\nopen wavy-sphere gap.amplitude=0.003\nstep 3\nrun-to instability\njump\n\
-                  set gap.amplitude=0.0025\ncontrol force\nselect-event 2\nundo\nnext-limit\n\
+                  set gap.amplitude=0.0025\ncontrol force\nselect-event 2\nundo\nnext-event\n\
                   export walk walk.csv\nexport script again.pulloff\npin\npins all\nexport curve curve.json\n";
     home.quiet(script, &[]);
     let walk = fs::read(home.at("here/walk.csv")).unwrap();
     assert!(String::from_utf8_lossy(&walk).lines().count() > 5);
     let again = fs::read_to_string(home.at("here/again.pulloff")).unwrap();
-    assert!(again.contains("\nopen wavy-sphere gap.amplitude=0.003\nstep 3\nnext-limit\njump\n"), "{again}");
+    assert!(again.contains("\nopen wavy-sphere gap.amplitude=0.003\nstep 3\nrun\njump\n"), "{again}");
     home.quiet(&format!("{again}export walk again.csv\nexport script third.pulloff\n"), &[]);
     assert_eq!(fs::read(home.at("here/again.csv")).unwrap(), walk);
     assert_eq!(fs::read_to_string(home.at("here/third.pulloff")).unwrap(), again);
@@ -89,10 +89,10 @@ fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
     home.fails("step\n\njump\nexport walk w.csv", &preset, 2, "standard input:3: jump: the state is stable");
     assert!(!home.at("here/w.csv").exists());
     // The end of the path, twice, and then a line that may fail.
-    home.quiet("next-limit\nnext-limit\ntry jump\ntry open none\nquit\nundo\nundo\nundo\nundo", &preset);
+    home.quiet("next-event\nnext-event\ntry jump\ntry open none\nquit\nundo\nundo\nundo\nundo", &preset);
     for (script, said) in [
         ("set gap.amplitude=-1", "1: set gap.amplitude=-1: gap.amplitude = -1.0 is out of range"),
-        ("select-event 9", "there is no event 9: the list has"),
+        ("select-event 9", "there is no event 9: the path has"),
         ("open wavy", "no preset is called \"wavy\""),
         ("set gap.shape=profile gap.file=none.csv", "none.csv"),
     ] {
@@ -110,7 +110,7 @@ fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
     home.fails("open cone", &preset, 2, "--preset, --set and --control would be lost");
     home.fails("step", &["--preset", "none"], 2, "no preset is called");
     home.fails(&"#\n".repeat(600_000), &[], 2, "more than the 1048576 bytes");
-    let output = home.run("step 2\nnext-limit\n", &["--verbose"]);
+    let output = home.run("step 2\nnext-event\n", &["--verbose"]);
     assert!(output.err.starts_with("1: step 2: Stable under"), "{}", output.err);
     assert_eq!(output.err.lines().count(), 2);
 }
@@ -235,7 +235,7 @@ fn the_manual_page_has_every_subcommand_and_every_command_with_its_keys() {
         assert!(page.contains(&heading), "no {heading} in\n{page}");
     }
     for text in
-        ["overwrite", "\\fBnext\\-limit\\fR", "\\fBset\\fR [KEY=VALUE ...]", "write curve, walk or events"]
+        ["overwrite", "\\fBnext\\-event\\fR", "\\fBset\\fR [KEY=VALUE ...]", "write curve, walk or events"]
     {
         assert!(page.contains(text), "no {text} in\n{page}");
     }
@@ -267,10 +267,7 @@ fn a_script_draws_what_is_seen() {
     // The screen of 100x30, with the walk in it.
     let screen = drawn("screen.txt");
     assert_eq!(screen.lines().count(), 30);
-    assert!(
-        screen.lines().all(|line| line.chars().count() <= 100) && screen.contains("Walker, step 5"),
-        "{screen}"
-    );
+    assert!(screen.lines().all(|line| line.chars().count() <= 100) && screen.contains("@ 5 "), "{screen}");
     // Nothing is replaced unasked; what cannot be drawn says why.
     home.fails("export screen screen.txt\n", &[], 2, "exists");
     home.fails("export figure walk.svg walk\n", &[], 2, "export walk writes it");

@@ -84,10 +84,10 @@ fn a_terminal_that_nobody_reads_does_not_hold_up_the_end() {
 #[test]
 fn keys_and_pastes_arrive_and_a_paste_is_never_a_command() {
     let mut pty = start(80, 24);
-    pty.keys("j");
+    pty.keys("l");
     pty.wait_for(|screen| selects(screen, "λ"), "the next knob");
     pty.keys("\x1b[A");
-    pty.wait_for(|screen| selects(screen, "A"), "the knob above");
+    pty.wait_for(|screen| selects(screen, "E*"), "the knob above");
     // Outside a prompt a paste does nothing; inside it is text up to its first line end.
     pty.paste("q\rq\x1b[31m");
     pty.keys("\r");
@@ -102,13 +102,13 @@ fn keys_and_pastes_arrive_and_a_paste_is_never_a_command() {
 fn no_key_waits_for_the_next_one() {
     let mut pty = start(80, 24);
     // More than the reader takes at once, without the marks of a paste.
-    pty.keys(&"jk".repeat(1500));
-    pty.keys("j");
+    pty.keys(&"lh".repeat(1500));
+    pty.keys("l");
     pty.wait_for(|screen| selects(screen, "λ"), "the last key");
     for round in 2..20 {
         // Together with a resize, which the reader takes from the same wait.
         pty.resize(80 + round, 24);
-        let (key, label) = if round % 2 == 0 { ("k", "A") } else { ("j", "λ") };
+        let (key, label) = if round % 2 == 0 { ("h", "A") } else { ("l", "λ") };
         pty.keys(key);
         pty.wait_for(|screen| selects(screen, label), "the key");
     }
@@ -158,10 +158,10 @@ fn ctrl_z_hands_the_terminal_to_the_shell_and_fg_takes_it_again() {
         pty.assert_restored();
         pty.resize(90 + round, 24);
         pty.keys("\r");
-        pty.wait_for(|screen| screen.contains("Walker") && screen.contains("quit"), "all of it");
+        pty.wait_for(|screen| screen.contains("Log") && screen.contains("quit"), "all of it");
         assert_eq!(pty.line_modes(), ours);
         assert_eq!(pty.modes_left(), [25, 1049, 2004]);
-        let (key, label) = if round == 1 { ("j", "λ") } else { ("k", "A") };
+        let (key, label) = if round == 1 { ("l", "λ") } else { ("h", "A") };
         pty.keys(key);
         pty.wait_for(|screen| selects(screen, label), "an answer to a key");
     }
@@ -175,7 +175,7 @@ fn ctrl_z_hands_the_terminal_to_the_shell_and_fg_takes_it_again() {
 #[test]
 fn without_a_shell_ctrl_z_does_nothing() {
     let mut pty = start(80, 24);
-    pty.keys("\x1aj");
+    pty.keys("\x1al");
     pty.wait_for(|screen| selects(screen, "λ"), "an answer to the next key");
     pty.keys("q");
     assert_eq!(pty.exit_code(), 0);
@@ -184,7 +184,7 @@ fn without_a_shell_ctrl_z_does_nothing() {
 #[test]
 fn nothing_is_written_while_nothing_changes() {
     let mut pty = start(80, 24);
-    pty.keys("jk");
+    pty.keys("lh");
     pty.wait_for(|screen| selects(screen, "A"), "a round trip");
     pty.keys("{");
     pty.wait_for(|screen| screen.contains("unsaved"), "a change");
@@ -192,9 +192,9 @@ fn nothing_is_written_while_nothing_changes() {
     pty.wait_for(|screen| !screen.contains("unsaved"), "the change undone");
     let before = pty.raw().len();
     // Back where it was: only what differs between two frames is sent.
-    pty.keys("jk");
+    pty.keys("lh");
     pty.keys("t");
-    pty.wait_for(|screen| screen.contains("P/Pc over s/λ  (t:"), "the next view");
+    pty.wait_for(|screen| screen.contains("s/λ over δ/R  (t:"), "the next view");
     let bytes = pty.raw().len() - before;
     assert!(bytes < 8000, "{bytes} bytes");
     pty.keys("q");

@@ -45,11 +45,10 @@ fn any_command(rng: &mut Rng) -> Command {
     let set = |key: &'static str, text: String| Command::Set { key: key.into(), text };
     match rng.u8(..28) {
         0..=5 => Command::Steps(rng.usize(1..5)),
-        6..=7 => Id::NextLimit.into(),
-        8 => Id::PreviousLimit.into(),
+        6..=7 => Id::NextEvent.into(),
         9..=10 => Id::Jump.into(),
         11 => Command::RunOf(rng.usize(1..8)),
-        12 => Id::Reverse.into(),
+        8 | 12 => Id::Reverse.into(),
         13 => [Id::Halve, Id::Double][rng.usize(..2)].into(),
         14 => Id::Restart.into(),
         15 => Id::Control.into(),
@@ -193,11 +192,11 @@ fn each_value_is_a_command_of_its_own_and_redo_returns_each() {
 #[test]
 fn a_burst_of_walks_and_undos_is_taken_in_its_order() {
     let mut session = Session::new("wavy-sphere");
-    burst(&mut session, &[Id::NextLimit, Id::Jump, Id::NextLimit, Id::Undo].map(Command::from));
+    burst(&mut session, &[Id::NextEvent, Id::Jump, Id::NextEvent, Id::Undo].map(Command::from));
     assert!(matches!(session.kind(), NodeKind::Jump(_)), "{:?}", session.kind());
     // Another line is selected before the turn comes: what is turned is what was selected at the key.
     let amplitude = session.model.preset.get("gap.amplitude");
-    let all = [Id::NextLimit, Id::Down, Id::More, Id::Up, Id::More].map(Command::from);
+    let all = [Id::NextEvent, Id::Down, Id::More, Id::Up, Id::More].map(Command::from);
     assert_eq!(session.model.panel, Panel::Problem);
     burst(&mut session, &all);
     assert_ne!(session.model.preset.get("gap.amplitude"), amplitude);
@@ -209,7 +208,7 @@ fn a_burst_of_walks_and_undos_is_taken_in_its_order() {
 #[test]
 fn an_opened_preset_is_one_command_and_its_walk_comes_back() {
     let mut session = Session::new("wavy-sphere");
-    session.does(Id::NextLimit).does(Id::More).does(Id::Pin);
+    session.does(Id::NextEvent).does(Id::More).does(Id::Pin);
     let before = told(&session);
     session.does(Command::Open("fig-9".to_owned())).does(Command::Steps(2));
     let after = told(&session);
@@ -226,7 +225,7 @@ fn an_opened_preset_is_one_command_and_its_walk_comes_back() {
 #[test]
 fn looking_is_not_in_the_history() {
     let mut session = Session::new("wavy-sphere");
-    session.all(&[Id::Pin, Id::ZoomIn, Id::NextView, Id::Axes, Id::Events, Id::NextPanel, Id::Down]);
+    session.all(&[Id::Pin, Id::ZoomIn, Id::NextView, Id::Axes, Id::NextPanel, Id::Down]);
     session.does(Id::Undo);
     assert!(session.status().contains("nothing to undo"), "{}", session.status());
     // Nor is what came to nothing.
@@ -265,7 +264,7 @@ fn scripts_undo_as_keys_do() {
 #[test]
 fn an_exported_script_of_undos_walks_the_same_again() {
     let mut session = Session::new("wavy-sphere");
-    session.all(&[Id::Step, Id::Step, Id::NextLimit, Id::Jump, Id::Undo, Id::Undo, Id::More, Id::More]);
+    session.all(&[Id::Step, Id::Step, Id::NextEvent, Id::Jump, Id::Undo, Id::Undo, Id::More, Id::More]);
     session.all(&[Id::Undo, Id::Step, Id::Undo, Id::Undo, Id::Redo, Id::Redo, Id::Control, Id::Step]);
     let path = session.folder.path().join("s.pulloff");
     let path = path.to_string_lossy().into_owned();

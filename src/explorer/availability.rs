@@ -39,13 +39,10 @@ pub(super) fn why_unavailable(model: &Model, id: Id) -> String {
         }
         Id::Jump if apart => format!("the bodies are apart: {}", back_or_anew()),
         Id::Jump => {
-            format!(
-                "the state is stable: the edge stays; {} runs to the next limit point",
-                Id::NextLimit.named()
-            )
+            format!("the state is stable: the edge stays; {} runs to the next event", Id::NextEvent.named())
         }
         Id::Less | Id::More | Id::MuchLess | Id::MuchMore | Id::Free => {
-            format!("select a parameter first: {} goes to the Problem panel", Id::NextPanel.named())
+            format!("select a value first: {} goes to Problem", Id::NextPanel.named())
         }
         Id::Whole => "the whole chart is shown".to_owned(),
         Id::Pins => format!("no curve is pinned: {} pins the one on the screen", Id::Pin.named()),

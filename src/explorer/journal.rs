@@ -161,11 +161,17 @@ impl Journal {
                 // Beyond a limit point, or the end, a further step is a walk of its own.
                 self.step(walking.made, matches!(outcome, Outcome::Done | Outcome::Paused));
             }
-            Action::ToLimit | Action::Run(_) => {
+            Action::ToLimit | Action::ToEvent(_) | Action::Run(_) => {
                 self.sync(preset, way, false);
-                self.write(&match (outcome, walking.action) {
-                    (Outcome::AtLimit, _) | (Outcome::Ended(_), Action::ToLimit) => Id::NextLimit.into(),
-                    _ => Command::RunOf(walking.made),
+                let is_over = match outcome {
+                    Outcome::AtLimit => true,
+                    Outcome::Ended(_) => !matches!(walking.action, Action::Run(_)),
+                    _ => false,
+                };
+                self.write(&match (is_over, walking.action) {
+                    (true, Action::ToEvent(_)) => Id::NextEvent.into(),
+                    (true, _) => Id::Run.into(),
+                    (false, _) => Command::RunOf(walking.made),
                 });
             }
             Action::Jump => {
@@ -190,7 +196,7 @@ impl Journal {
             Action::MoveToEvent { event, .. } => {
                 self.sync(preset, None, false);
                 self.write(&Command::SelectEvent(event + 1));
-                self.turned(true);
+                self.turned(walking.inward);
             }
         }
     }

@@ -146,7 +146,7 @@ pub(super) fn unpin(model: &mut Model, number: Option<usize>) {
 /// Carries views, overlays and pins over to another session.
 pub(super) fn carry_on(from: &Model, to: &mut Model) {
     (to.axes, to.overlays, to.view, to.views) = (from.axes, from.overlays, from.view, from.views);
-    (to.panel, to.events, to.studied) = (from.panel, from.events, from.studied);
+    (to.panel, to.studied) = (from.panel, from.studied);
     to.pins = from.pins.clone();
 }
 

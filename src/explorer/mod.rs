@@ -15,6 +15,7 @@
 //! | [`status_line`] | what the status line says |
 //! | [`view`] | panels, views, windows, overlays |
 //! | [`look`] | the commands that change them |
+//! | [`log`] | what happens on the path: done, here, ahead |
 //! | [`reach`] | which views have something to show, and why the others have not |
 //! | [`pins`] | curves kept to compare the next ones with |
 //! | [`theory`] | closed forms drawn over a curve |
@@ -64,6 +65,7 @@ pub mod follow;
 pub mod history;
 pub mod job;
 pub mod journal;
+pub mod log;
 pub mod look;
 pub mod loops;
 pub mod maps;
@@ -102,4 +104,4 @@ pub use model::{Level, Model};
 pub use node::{Node, NodeKind};
 pub use progress::{Stage, Staged};
 pub use update::{answer, open, update};
-pub use view::{Axes, EventSource, Overlay, Overlays, Panel, View, Window};
+pub use view::{Axes, Overlay, Overlays, Panel, View, Window};

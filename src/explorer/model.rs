@@ -16,17 +16,20 @@ use super::progress::Stage;
 use super::setting::same_curve;
 use super::studies::{StudyData, StudyWish};
 use super::undo::{Place, Undo};
-use super::view::{Axes, EventSource, Overlays, Panel, View, Window};
+use super::view::{Axes, Overlays, Panel, View, Window};
+use super::walk::measure;
 use crate::mend::Reason;
 use crate::store::{Fingerprint, Listing, Loaded, Source};
 use pulloff_engine::fit::Fit;
 use pulloff_engine::preset::groups::GROUPS;
 use pulloff_engine::preset::{Key, Preset, Row, Value, data};
-use pulloff_engine::problem::Control;
+use pulloff_engine::problem::{Begin, Control, Turn};
+use pulloff_engine::quasistatic::Path;
 use pulloff_engine::quasistatic::walk::At;
 use pulloff_engine::report::path::EventReport;
 use pulloff_engine::sweep::quantity::Under;
 use pulloff_engine::sweep::{Column, QUANTITIES};
+use pulloff_engine::text::sanitize;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -127,6 +130,8 @@ pub struct Model {
     /// The state before the value that is being typed and tried.
     pub untried: Option<Box<Untried>>,
     pub source: Source,
+    /// What the file of the preset says before its first key, a line each; empty where that is not known.
+    pub comment: String,
     pub fingerprint: Option<Fingerprint>,
     /// The curve on the screen; it can be older than the preset while a new one is computed.
     pub curve: Option<Arc<CurveData>>,
@@ -198,7 +203,6 @@ pub struct Model {
     /// The cross-hair in the first view, in shares of its window.
     pub cross: Option<(f64, f64)>,
     pub axes: Axes,
-    pub events: EventSource,
     /// The theory drawn over the curve.
     pub overlays: Overlays,
     pub pins: Pins,
@@ -226,6 +230,17 @@ pub fn is_on_curve(curve: &CurveData, node: &Node) -> bool {
     same_curve(&node.setting.preset, &curve.setting.preset) && !matches!(node.kind, NodeKind::Stale(_))
 }
 
+/// The comment with which the text of a preset begins.
+fn comment(loaded: &Loaded) -> String {
+    let text = match &loaded.source {
+        Source::Shipped(shipped) => shipped.text,
+        Source::Piped { text, .. } => text,
+        Source::User { .. } | Source::File(_) => &loaded.text,
+    };
+    let lines = text.lines().map_while(|line| line.strip_prefix('#')).map(str::trim);
+    lines.map(|line| sanitize(line, 200)).collect::<Vec<_>>().join("\n")
+}
+
 impl Model {
     /// A session on a loaded preset; nothing is computed yet.
     pub fn new(loaded: Loaded) -> Self {
@@ -233,11 +248,13 @@ impl Model {
             Control::Stiffness(k) => Some(k),
             Control::Displacement | Control::Force => None,
         };
+        let comment = comment(&loaded);
         let mut model = Self {
             session: 0,
             saved: loaded.preset.clone(),
             preset: loaded.preset,
             untried: None,
+            comment,
             source: loaded.source,
             fingerprint: loaded.fingerprint,
             curve: None,
@@ -280,7 +297,6 @@ impl Model {
             windows: [Window::WHOLE; View::ALL.len()],
             cross: None,
             axes: Axes::Reduced,
-            events: EventSource::Curve,
             overlays: Overlays::default(),
             pins: Pins::default(),
             profile: None,
@@ -490,6 +506,26 @@ impl Model {
         !node.is_apart() && runs
     }
 
+    /// Where the path ends outward (reduced): its turn, or where it begins from a disc.
+    pub fn outer_end(&self) -> Option<Turn> {
+        let curve = self.curve.as_ref()?;
+        let (path, units) = (&self.preset.path, curve.case.units());
+        let turn = path.turn.filter(|_| path.begin == Begin::Touch);
+        let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, curve.case.control));
+        let start =
+            curve.unloading.as_ref().ok().and_then(Path::start).map_or(0.0, |start| start.contact_radius);
+        Some(turn.unwrap_or(Turn::Radius(curve.case.start.max(start))))
+    }
+
+    /// Whether the walker stands there, or beyond.
+    pub fn is_at_outer_end(&self) -> bool {
+        let (Some(node), Some(end), Some(control)) = (self.walker(), self.outer_end(), self.control()) else {
+            return false;
+        };
+        let slack = 1e-9 * end.value().abs();
+        measure(end, control, &node.state) >= end.value() - slack
+    }
+
     /// The jumps of the walk that led to the walker, with the number of their node.
     pub fn walked_events(&self) -> Vec<(usize, EventReport)> {
         let mut made = 0;
@@ -507,25 +543,9 @@ impl Model {
         self.history.path().into_iter().filter_map(event).collect()
     }
 
-    /// The inadmissible parts of the curve, where the events shown are the curve's; they stand behind those.
+    /// The inadmissible parts of the curve; they stand behind the events.
     pub fn shown_inadmissible(&self) -> &[Inadmissible] {
-        let base = self.curve.as_ref().map(|curve| &curve.base).filter(|_| self.events.is_curve());
+        let base = self.curve.as_ref().map(|curve| &curve.base);
         base.and_then(|base| base.inadmissible.as_deref()).unwrap_or_default()
-    }
-
-    /// The events of the source shown.
-    pub fn shown_events(&self) -> Vec<EventReport> {
-        match self.events {
-            EventSource::Walked => self.walked_events().into_iter().map(|(_, event)| event).collect(),
-            EventSource::Cycle => {
-                let report = self.cycle.as_ref().and_then(|cycle| cycle.report());
-                report.map_or_else(Vec::new, |report| report.events.clone())
-            }
-            EventSource::Curve | EventSource::Folded => self
-                .curve
-                .as_ref()
-                .and_then(|curve| curve.report.as_ref())
-                .map_or_else(Vec::new, |report| report.events.clone()),
-        }
     }
 }

@@ -136,10 +136,15 @@ pub(super) fn labelled(row: &Row, value: &Value, units: &UnitSystem) -> String {
 
 /// The same with `between` the two.
 pub(super) fn labelled_with(row: &Row, value: &Value, units: &UnitSystem, between: &str) -> String {
+    labelled_in(row, value, units, (between, 4))
+}
+
+/// The same with so many digits.
+fn labelled_in(row: &Row, value: &Value, units: &UnitSystem, (between, digits): (&str, usize)) -> String {
     let shown = match value {
         Value::Number(x) => {
             let shown = row.shown(units, *x);
-            shown.text(&short(shown.number, 4), false)
+            shown.text(&short(shown.number, digits), false)
         }
         other => other.to_string(),
     };
@@ -150,6 +155,20 @@ pub(super) fn labelled_with(row: &Row, value: &Value, units: &UnitSystem, betwee
 pub fn name(pinned: &Preset, now: &Preset) -> String {
     // A value that only the other preset has is not named.
     named(&differences(pinned, now), &now.units).unwrap_or_else(|| "as now".to_owned())
+}
+
+/// Each value that `after` has otherwise than `before`, as label and both values: `A 0.0025 → 0.0031`.
+pub fn changes(before: &Preset, after: &Preset) -> Vec<String> {
+    let told = differences(after, before).into_iter().map(|(row, value)| {
+        let said =
+            |value: &Value, preset: &Preset, digits| labelled_in(&row, value, &preset.units, (" ", digits));
+        let Some(was) = before.get(&row.key) else { return said(&value, after, 4) };
+        // As many digits as tell them apart.
+        let both = [4, 7, 10, 17].map(|digits| (said(&was, before, digits), said(&value, after, digits)));
+        let (was, now) = both.iter().find(|(was, now)| was != now).unwrap_or(&both[0]);
+        format!("{was} →{}", now.strip_prefix(&*row.label).unwrap_or(now))
+    });
+    told.collect()
 }
 
 /// The values of `after` that `before` has not, as labels and values; `None` where there are none.

@@ -43,7 +43,7 @@ pub fn why_not(model: &Model, view: View) -> Option<String> {
         }),
         View::Study => study_range(model).err(),
         View::Walk => (model.history.len() < 2)
-            .then(|| format!("nothing is walked yet: {} runs to a limit point", Id::NextLimit.named())),
+            .then(|| format!("nothing is walked yet: {} runs to the first event", Id::NextEvent.named())),
     }
 }
 
@@ -75,7 +75,10 @@ fn has_others(model: &Model) -> bool {
 
 /// The next view, or the one before, that has something to show.
 pub fn next(model: &Model, forward: bool) -> View {
-    model.view.others(forward).find(|view| why_not(model, *view).is_none()).unwrap_or(model.view)
+    // What stands beside it already is none.
+    let is_beside = |view: View| model.views > 1 && model.view.is_of_force() && view == View::ForceRadius;
+    let mut others = model.view.others(forward).filter(|view| !is_beside(*view));
+    others.find(|view| why_not(model, *view).is_none()).unwrap_or(model.view)
 }
 
 /// Shows a view, and says so where there is nothing on it.

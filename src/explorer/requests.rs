@@ -8,9 +8,9 @@ use super::model::{Awaits, Checking, Model, Walking};
 use super::node::NodeKind;
 use super::reach::study_range;
 use super::studies::StudyWish;
-use super::view::{EventSource, View};
+use super::view::View;
 use pulloff_engine::preset::{Key, Preset, Value};
-use pulloff_engine::problem::Control;
+use pulloff_engine::problem::{Begin, Control};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -45,7 +45,9 @@ pub(super) fn want_check(model: &mut Model) -> Option<Effect> {
 /// only when it is looked at.
 pub(super) fn want_loop(model: &mut Model) -> Option<Effect> {
     let curve = model.curve.as_ref().filter(|_| model.shows_its_curve() && !model.is_computing()).cloned()?;
-    let is_shown = model.events == EventSource::Cycle || model.shown_views().into_iter().any(View::is_cycle);
+    // From apart the loop is the path.
+    let is_path = model.preset.path.begin == Begin::Touch;
+    let is_shown = is_path || model.shown_views().into_iter().any(View::is_cycle);
     if !is_shown && !has_crests(&curve) {
         (model.cycle, model.cycle_wanted) = (None, None);
         return None;

@@ -4,7 +4,7 @@ use super::command::Id;
 use super::model::{Level, Model, Walking};
 use super::node::{Node, NodeKind};
 use pulloff_engine::gap::{Gap, wave_index};
-use pulloff_engine::problem::Control;
+use pulloff_engine::problem::{Begin, Control};
 use pulloff_engine::quasistatic::EventKind;
 use pulloff_engine::report::number::{loss, short, significant, with_unit};
 use pulloff_engine::report::problem::control_name;
@@ -12,7 +12,7 @@ use pulloff_engine::units::Quantity;
 
 /// The ways out of a state from which no walk goes on.
 pub(super) fn back_or_anew() -> String {
-    format!("{} goes back, {} restarts", Id::Undo.named(), Id::Restart.named())
+    format!("{} goes back, {} starts again", Id::Undo.named(), Id::Restart.named())
 }
 
 /// Why nothing is walked on a curve that stayed when another was given up.
@@ -63,7 +63,7 @@ fn fault(node: &Node) -> Option<String> {
 
 /// What happens instead of a state that one disc cannot be in.
 fn real_path() -> String {
-    format!("the real path has rings: {} shows its loop, as pulloff cycle does", Id::Events.named())
+    "the real path has rings: begin = apart leads along it, as pulloff cycle does".to_owned()
 }
 
 fn next(model: &Model) -> String {
@@ -85,7 +85,7 @@ fn next(model: &Model) -> String {
         return format!("walking, {made}{of} states; {} stops", Id::Cancel.named());
     }
     if let NodeKind::Stale(reason) = &node.kind {
-        return format!("not solved: {reason}; {} restarts", Id::Restart.named());
+        return format!("not solved: {reason}; {} starts again", Id::Restart.named());
     }
     if model.is_computing() {
         let waiting = match model.queue.len() {
@@ -96,40 +96,8 @@ fn next(model: &Model) -> String {
         return format!("computing the curve for the new values{waiting}{}", progress(model));
     }
     let Some(control) = model.control() else { return String::new() };
-    if let NodeKind::Jump(event) = &node.kind {
-        let units = node.setting.units();
-        let lost = event.dissipated.map(|lost| {
-            format!(
-                ", lost {}",
-                with_unit(&node.setting.preset.units, Quantity::Energy, lost * units.energy, false, loss)
-            )
-        });
-        return match event.kind {
-            EventKind::LastContact => {
-                format!("Pulled off: the bodies are apart{}. {}", lost.unwrap_or_default(), back_or_anew())
-            }
-            _ => {
-                format!(
-                    "Landed, stable again{}. {} runs to the next limit point, {} undoes",
-                    lost.unwrap_or_default(),
-                    Id::NextLimit.named(),
-                    Id::Undo.named()
-                )
-            }
-        };
-    }
-    if let NodeKind::Touch(radius) = node.kind {
-        let radius = with_unit(
-            &node.setting.preset.units,
-            Quantity::Length,
-            radius * node.setting.units().length,
-            false,
-            |r| significant(r, 4),
-        );
-        let [jump, step] = [Id::Jump, Id::Step].map(Id::named);
-        return format!(
-            "The next crest touches at r {radius}: {jump} lets it run to a ring or a larger disc, {step} goes on without it, inadmissible"
-        );
+    if let Some(said) = happened(model, node) {
+        return said;
     }
     let way = if model.inward { "inward" } else { "outward" };
     let held = control_name(control);
@@ -140,49 +108,105 @@ fn next(model: &Model) -> String {
     if node.is_limit(control) {
         return limit_hint(model, node);
     }
-    let [limit, jump, step] = [Id::NextLimit, Id::Jump, Id::Step].map(Id::named);
+    let [next, step] = [Id::NextEvent, Id::Step].map(Id::named);
+    if !model.inward && model.is_at_outer_end() && node.stability.under(control) {
+        let turn = Id::Reverse.named();
+        return match model.preset.path.begin {
+            Begin::Touch => {
+                format!("Here the control turns round: {next} goes on down, {step} further out, off the path")
+            }
+            Begin::Disc => {
+                format!("Here the path begins: {turn} turns round, {step} goes on outward, off the path")
+            }
+        };
+    }
     match (node.stability.under(control), &node.kind) {
         (true, NodeKind::Start) => {
             let help = Id::Help.named();
-            format!("Start, stable under {held} control. {limit} runs to a limit point, {help} helps")
+            format!("Start, stable under {held} control. {next} runs to the first event, {help} helps")
         }
         (true, NodeKind::Solved) => {
-            format!("Solved again {kept}, stable. {limit} runs to a limit point")
+            format!("Solved again {kept}, stable. {next} runs to the next event")
         }
         (true, _) => {
-            format!("Stable under {held} control. {step} steps {way}, {limit} runs to a limit point")
+            format!("Stable under {held} control. {step} steps {way}, {next} runs to the next event")
         }
         (false, NodeKind::Start | NodeKind::Moved) => {
-            format!("This start is unstable under {held} control: {jump} lets the edge run outward")
+            format!("This start is unstable under {held} control: {next} lets the edge run outward")
         }
         (false, NodeKind::Solved) => {
-            format!("Solved again {kept}, unstable there: {jump} lets the edge run")
+            format!("Solved again {kept}, unstable there: {next} lets the edge run")
         }
         (false, _) => {
-            format!("Unstable under {held} control. {jump} lets the edge run, {step} steps {way}")
+            format!(
+                "Off the path, unstable under {held} control: {next} lets the edge run, {step} steps {way}"
+            )
         }
     }
 }
 
+/// What a jump came to, or what is pending where a crest touches.
+fn happened(model: &Model, node: &Node) -> Option<String> {
+    if let NodeKind::Jump(event) = &node.kind {
+        let units = node.setting.units();
+        let lost = event.dissipated.map(|lost| {
+            format!(
+                ", lost {}",
+                with_unit(&node.setting.preset.units, Quantity::Energy, lost * units.energy, false, loss)
+            )
+        });
+        return Some(match event.kind {
+            EventKind::LastContact => {
+                format!("Last contact: the bodies are apart{}. {}", lost.unwrap_or_default(), back_or_anew())
+            }
+            _ => {
+                format!(
+                    "Landed, stable again{}. {} runs to the next event, {} undoes",
+                    lost.unwrap_or_default(),
+                    Id::NextEvent.named(),
+                    Id::Undo.named()
+                )
+            }
+        });
+    }
+    if let NodeKind::Touch(radius) = node.kind {
+        let radius = with_unit(
+            &node.setting.preset.units,
+            Quantity::Length,
+            radius * node.setting.units().length,
+            false,
+            |r| significant(r, 4),
+        );
+        let [next, step] = [Id::NextEvent, Id::Step].map(Id::named);
+        let name = event_here(model).map_or_else(String::new, |name| format!("{name}: "));
+        return Some(format!(
+            "{name}a crest touches at r {radius}: {next} lets it run to a ring or a larger disc, {step} goes on without it, inadmissible"
+        ));
+    }
+    None
+}
+
+/// The event of the path where the walker stands, by its number.
+fn event_here(model: &Model) -> Option<String> {
+    let number = model.log().here()?.number?;
+    Some(format!("Event {number} of {}", model.path_events().len()))
+}
+
 /// At the limit point `node`: where the edge would run and what that would cost.
 fn limit_hint(model: &Model, node: &Node) -> String {
-    let name = match (model.limit_number(), &model.curve) {
-        (Some(at), Some(curve)) => format!("Limit point {}/{}", at + 1, curve.limits.len()),
-        _ if node.has_rings() => "Limit point with rings".to_owned(),
-        _ => "Limit point outside the curve".to_owned(),
-    };
-    let [jump, step] = [Id::Jump, Id::Step].map(Id::named);
+    let name = event_here(model).unwrap_or_else(|| "Limit point off the path".to_owned());
+    let [next, jump, step] = [Id::NextEvent, Id::Jump, Id::Step].map(Id::named);
     let Some(ahead) = node.ahead else {
-        return format!("{name}: {jump} lets the edge run, {step} goes on along the curve");
+        return format!("{name}: {next} or {jump} lets the edge run, {step} goes on along the curve");
     };
     let reduced = &node.setting.reduced;
     let wave = ahead.after.and_then(|after| wave_index(after.contact_radius, reduced.gap.wavelength()));
     let after = ahead.after.map(|after| after.in_units(&reduced.units));
     let lands = match (after, wave) {
-        (None, _) => "pulls off".to_owned(),
-        (Some(_), Some(wave)) => format!("jumps to crest {wave}"),
+        (None, _) => "lets the bodies come apart".to_owned(),
+        (Some(_), Some(wave)) => format!("lets the edge snap to crest {wave}"),
         (Some(after), None) => format!(
-            "jumps to s {}",
+            "lets the edge snap to s {}",
             with_unit(&node.setting.preset.units, Quantity::Length, after.contact_radius, false, |s| {
                 significant(s, 4)
             })
@@ -203,5 +227,7 @@ fn limit_hint(model: &Model, node: &Node) -> String {
     // The edge runs over the unstable part: walking the same way leads onto it.
     let runs_inward = ahead.after.is_none_or(|after| after.contact_radius < node.state.contact_radius);
     let part = if runs_inward == model.inward { "unstable" } else { "stable" };
-    format!("{name}: {jump} {lands}{}, {step} goes on {part}", lost.unwrap_or_default())
+    // The log has the losses of its events.
+    let lost = lost.filter(|_| model.log().here().is_none()).unwrap_or_default();
+    format!("{name}: {next} or {jump} {lands}{lost}; {step} goes on, {part}")
 }

@@ -24,7 +24,6 @@ use super::command::{Command, Id, LENGTHS};
 use super::effect::{Effect, Reply};
 use super::fit::{fit, fit_came, mark, want_distances};
 use super::job::{Done, Job};
-use super::loops::has_crests;
 use super::model::{Awaits, Level, Model};
 use super::requests::{browse, file, stop, want_check, want_curve, want_loop, want_map, want_study};
 use super::view::{Axes, Panel, View};
@@ -33,13 +32,13 @@ use super::{background_jobs, look, reach};
 use crate::store::{Loaded, Overwrite};
 use curve::{checked, curve_came, give_up};
 use files::{export, export_page, file_done, save, save_back};
-use places::{go_to_event, move_to, select_event, to_least_force};
+use places::{go_to_event, move_to, select_event, to_largest_pull};
 use pulloff_engine::preset::{Row, Value, groups};
 use pulloff_engine::text::{greek, show_name};
 use travel::{by_states, go_to, go_to_state, travel};
 use turns::{Turn, enqueue, is_blocked, recorded};
 use values::{assign, change_control, set, try_out, turn, untry};
-use walk::{restart, run, scale_length, scale_pace, walk, walked};
+use walk::{next_event, restart, run, scale_length, scale_pace, walk, walked};
 
 /// Begins a session on a preset: its curve is asked for.
 pub fn open(loaded: Loaded) -> (Model, Vec<Effect>) {
@@ -199,8 +198,7 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
         Reply::Loop(found) => {
             if model.cycle_wanted.as_ref().is_some_and(|wanted| found.id <= wanted.id) {
                 model.cycle = Some(found);
-                let lines = model.shown_events().len() + model.shown_inadmissible().len();
-                model.event = model.event.min(lines.saturating_sub(1));
+                model.event = model.event.min(model.log_lines().saturating_sub(1));
             }
             Vec::new()
         }
@@ -257,16 +255,9 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
 fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
     match id {
         Id::Step => return walk(model, Action::Steps(1)),
-        Id::NextLimit => return walk(model, Action::ToLimit),
-        Id::PreviousLimit => {
-            model.inward = !model.inward;
-            let effects = walk(model, Action::ToLimit);
-            // Refused, it turns nothing round.
-            model.inward ^= model.walking.is_none();
-            return effects;
-        }
+        Id::NextEvent => return next_event(model),
         Id::Jump => return walk(model, Action::Jump),
-        Id::LeastForce => return to_least_force(model),
+        Id::LargestPull => return to_largest_pull(model),
         Id::Run => return if model.walking.is_some() { stop(model) } else { run(model, Action::ToLimit) },
         Id::Slower => return scale_pace(model, 0.5),
         Id::Faster => return scale_pace(model, 2.0),
@@ -284,10 +275,10 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Down if model.panel == Panel::Charts => look::go(model, 0.0, -1.0),
         Id::Left if model.panel == Panel::Charts => look::go(model, -1.0, 0.0),
         Id::Right if model.panel == Panel::Charts => look::go(model, 1.0, 0.0),
-        Id::Up => move_selection(model, false),
-        Id::Down => move_selection(model, true),
-        Id::NextPanel | Id::Right => next_panel(model, 1),
-        Id::PreviousPanel | Id::Left => next_panel(model, Panel::ALL.len() - 1),
+        Id::Up | Id::Left => move_selection(model, false),
+        Id::Down | Id::Right => move_selection(model, true),
+        Id::NextPanel => next_panel(model, 1),
+        Id::PreviousPanel => next_panel(model, Panel::ALL.len() - 1),
         Id::NextView => model.view = reach::next(model, true),
         Id::PreviousView => model.view = reach::next(model, false),
         Id::ZoomIn => look::zoom(model, model.view, true, model.cross.unwrap_or(look::MIDDLE)),
@@ -297,11 +288,6 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Map => look::map(model),
         Id::Pin => look::pin(model),
         Id::Axes => model.axes = if model.axes == Axes::Reduced { Axes::Raw } else { Axes::Reduced },
-        Id::Events => {
-            let has_loop = model.curve.as_ref().is_some_and(|curve| has_crests(curve));
-            model.events = model.events.next(has_loop);
-            model.event = 0;
-        }
         Id::Device => model.device = Some(!model.shows_device()),
         Id::Open => return vec![file(Job::List)],
         Id::CommandLine => return vec![file(Job::Names)],
@@ -323,6 +309,7 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         | Id::Copy
         | Id::Enlarge
         | Id::Mouse
+        | Id::About
         | Id::Help
         | Id::Assign
         | Id::StepLength
@@ -354,11 +341,10 @@ fn move_selection(model: &mut Model, down: bool) {
                 model.tell(Level::Info, text);
             }
         }
-        Panel::Events => {
-            let lines = model.shown_events().len() + model.shown_inadmissible().len();
-            model.event = moved(model.event, lines);
+        Panel::Log => {
+            model.event = moved(model.event, model.log_lines());
         }
-        Panel::Walker | Panel::Charts => {}
+        Panel::Here | Panel::Result | Panel::Charts => {}
     }
 }
 
@@ -384,16 +370,16 @@ fn pick(model: &mut Model, panel: Panel, line: Option<usize>) {
     model.panel = panel;
     let lines = match panel {
         Panel::Problem => model.knobs().len(),
-        Panel::Events => model.shown_events().len() + model.shown_inadmissible().len(),
+        Panel::Log => model.log_lines(),
         Panel::Charts if model.view.is_table() => model.history.path().len(),
-        Panel::Walker | Panel::Charts => 0,
+        Panel::Here | Panel::Result | Panel::Charts => 0,
     };
     let Some(line) = line.map(|line| line.min(lines.saturating_sub(1))) else { return };
     match panel {
         Panel::Problem => model.parameter = line,
-        Panel::Events => model.event = line,
+        Panel::Log => model.event = line,
         Panel::Charts if model.view.is_table() => reach::pick_walk_line(model, line),
-        Panel::Walker | Panel::Charts => {}
+        Panel::Here | Panel::Result | Panel::Charts => {}
     }
 }
 
@@ -401,8 +387,11 @@ fn pick(model: &mut Model, panel: Panel, line: Option<usize>) {
 fn select(model: &mut Model) -> Vec<Effect> {
     match model.panel {
         // Chosen in the list of a curve that will have gone, or in the middle of a walk.
-        Panel::Events if model.is_busy() => update(model, Command::SelectEvent(model.event + 1)),
-        Panel::Events => go_to_event(model),
+        Panel::Log if model.is_busy() => {
+            let number = model.log().entries.get(model.event).and_then(|entry| entry.number);
+            number.map_or_else(Vec::new, |number| update(model, Command::SelectEvent(number)))
+        }
+        Panel::Log => go_to_event(model),
         Panel::Charts if model.view.is_table() => go_to_line(model),
         _ => Vec::new(),
     }

@@ -10,14 +10,17 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "kebab-case")]
 pub enum Panel {
     Problem,
-    Walker,
+    /// The state on which the walker stands.
+    Here,
+    /// What comes of the path.
+    Result,
     Charts,
-    Events,
+    Log,
 }
 
 impl Panel {
     /// All, in the order of the Tab key.
-    pub const ALL: [Self; 4] = [Self::Problem, Self::Walker, Self::Charts, Self::Events];
+    pub const ALL: [Self; 5] = [Self::Problem, Self::Here, Self::Result, Self::Charts, Self::Log];
 }
 
 /// What the axes show.
@@ -28,36 +31,6 @@ pub enum Axes {
     Reduced,
     /// The preset's own units.
     Raw,
-}
-
-/// Where the events come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum EventSource {
-    Curve,
-    /// The loop of loading and unloading.
-    Cycle,
-    Walked,
-    /// The curve's, of which only the heading is shown: the charts have the room.
-    Folded,
-}
-
-impl EventSource {
-    /// Whether they are those of the curve.
-    pub fn is_curve(self) -> bool {
-        matches!(self, Self::Curve | Self::Folded)
-    }
-
-    /// The one that comes after it; the loop only where there is one.
-    #[must_use]
-    pub fn next(self, has_loop: bool) -> Self {
-        match self {
-            Self::Curve if has_loop => Self::Cycle,
-            Self::Curve | Self::Cycle => Self::Walked,
-            Self::Walked => Self::Folded,
-            Self::Folded => Self::Curve,
-        }
-    }
 }
 
 /// The views of a problem and its walker.
@@ -217,7 +190,8 @@ impl View {
             Map, Pressure, RadiusApproach, Residuals, Stability, Study, Unloading, Walk,
         };
         match self {
-            ForceApproach => [ForceRadius, Pressure, Energy],
+            ForceApproach | ForcePosition => [ForceRadius, Contact, Energy],
+            ForceRadius => [ForceApproach, Contact, Energy],
             Cycle => [ContactMap, ForceApproach, Pressure],
             ContactMap => [Cycle, ForceApproach, ForceRadius],
             Contact => [ForceApproach, Gap, Pressure],
@@ -226,7 +200,7 @@ impl View {
             Residuals => [ForceApproach, ForceRadius, Pressure],
             Study => [ForceApproach, Unloading, ForceRadius],
             Differences => [ForceApproach, ForceRadius, RadiusApproach],
-            ForcePosition | ForceRadius | Gap | Unloading | Walk => [ForceApproach, Pressure, Energy],
+            Gap | Unloading | Walk => [ForceApproach, Pressure, Energy],
             RadiusApproach => [ForceApproach, Energy, Pressure],
             Pressure => [ForceApproach, Gap, Energy],
             Energy => [RadiusApproach, ForceApproach, Pressure],

@@ -8,9 +8,11 @@ use super::follow::Before;
 use super::node::{Node, NodeKind};
 use super::setting::Setting;
 use pulloff_engine::case::Case;
-use pulloff_engine::problem::Control;
+use pulloff_engine::problem::{Control, Turn};
 pub(super) use pulloff_engine::quasistatic::walk::ROOM;
-use pulloff_engine::quasistatic::walk::{Ahead, Arrival, At, Reached, Walk, WalkEnd, WalkFailure, edges};
+use pulloff_engine::quasistatic::walk::{
+    Ahead, Arrival, At, Emit, Reached, Walk, WalkEnd, WalkFailure, edges,
+};
 use pulloff_engine::quasistatic::{Admissibility, Point, Stability, State, Stiffness};
 use pulloff_engine::report::problem::control_name;
 use pulloff_engine::theory::Exact;
@@ -28,6 +30,8 @@ pub enum Action {
     Steps(usize),
     /// Steps to the next limit point of the control.
     ToLimit,
+    /// The same, outward no further than to the end of the path, where there is one (reduced).
+    ToEvent(Option<Turn>),
     /// The same, and no further than so many states.
     Run(usize),
     /// The edge runs at constant control to the next stable state.
@@ -128,7 +132,8 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     let mut arrive = |reached: Reached| emit(made(request, reached));
     let end = match &request.action {
         Action::Steps(count) => walk.steps(*count, false, &mut arrive),
-        Action::ToLimit => walk.steps(RUN_POINTS, true, &mut arrive),
+        Action::ToLimit | Action::ToEvent(None) => walk.steps(RUN_POINTS, true, &mut arrive),
+        Action::ToEvent(Some(end)) => to_end(&walk, *end, &mut arrive),
         Action::Run(count) => walk.steps(*count, true, &mut arrive),
         Action::Jump => walk.jump(&mut arrive),
         Action::MoveTo(s) => walk.move_to(*s, &mut arrive),
@@ -146,7 +151,7 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     };
     let length = |r: f64| said(&case.shown, Quantity::Length, r * case.units().length);
     match end {
-        WalkEnd::Done if request.action == Action::ToLimit => {
+        WalkEnd::Done if matches!(request.action, Action::ToLimit | Action::ToEvent(_)) => {
             Outcome::Ended(format!("no limit point and no touch within {RUN_POINTS} steps"))
         }
         WalkEnd::Done => Outcome::Done,
@@ -180,6 +185,73 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
         }
         WalkEnd::Failed(failure) => Outcome::Stopped(failure.to_string()),
     }
+}
+
+/// What the end of a path is measured by, in a state.
+pub(super) fn measure(end: Turn, control: Control, state: &State) -> f64 {
+    match end {
+        Turn::Approach(_) => state.approach,
+        Turn::Force(_) => state.force,
+        Turn::Radius(_) => state.contact_radius,
+        Turn::Control(_) => control.value(state.approach, state.force),
+    }
+}
+
+/// Steps to the next event, and no further than to `end`, which is found by halving the step that would pass it.
+fn to_end(walk: &Walk<'_>, end: Turn, arrive: &mut Emit<'_>) -> WalkEnd {
+    /// Each round gives a binary digit.
+    const ROUNDS: usize = 60;
+    /// So near to the end the walker stands on it.
+    const ON_IT: f64 = 1e-12;
+    let over = |reached: &Reached| measure(end, walk.control, &reached.state) - end.value();
+    let (mut last, mut passing): (Option<Point>, Option<f64>) = (None, None);
+    let ended = walk.steps(RUN_POINTS, true, &mut |reached| {
+        if over(&reached) > 0.0 {
+            passing = Some(reached.point.length);
+            return false;
+        }
+        last = Some(reached.point.clone());
+        arrive(reached)
+    });
+    let Some(passing) = passing else { return ended };
+    let from = Walk {
+        from: last.as_ref().or(walk.from),
+        at: if last.is_some() { At::Nothing } else { walk.at },
+        ..*walk
+    };
+    let mut found = None;
+    if let (Turn::Radius(radius), false) = (end, from.from.is_some_and(edges::has_rings)) {
+        from.move_to(radius, &mut |reached| {
+            found = Some(reached);
+            true
+        });
+    } else {
+        let (mut short, mut long) = (0.0, 2.0 * passing);
+        for _ in 0..ROUNDS {
+            let length = 0.5 * (short + long);
+            let mut here = None;
+            Walk { length, ..from }.steps(1, false, &mut |reached| {
+                here = Some(reached);
+                true
+            });
+            let Some(here) = here else { break };
+            let is_short = over(&here) <= 0.0;
+            let is_on_it = over(&here).abs() <= ON_IT * end.value().abs();
+            if is_short {
+                short = length;
+                found = Some(here);
+            } else {
+                long = length;
+            }
+            if is_short && is_on_it {
+                break;
+            }
+        }
+    }
+    if let Some(found) = found {
+        arrive(Reached { arrival: Arrival::Step, ..found });
+    }
+    WalkEnd::AtLimit
 }
 
 /// The relative difference of the force of `state` from the exact solution of `case` at the same contact radius.

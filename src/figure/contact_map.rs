@@ -106,7 +106,9 @@ fn jump(event: &EventReport, way: Way<'_>, scale: Scale<'_>) -> Line {
 /// Where a crest touches, contacts merge or split, and the bodies come apart.
 fn mark(event: &EventReport, way: Way<'_>, scale: Scale<'_>) -> Option<Mark> {
     let (sign, radius) = match event.kind {
-        "last-contact" => (Sign::LastContact, event.before.as_ref().map(|state| state.contact_radius)),
+        "last-contact" => {
+            (Sign::LastContact(event.number), event.before.as_ref().map(|state| state.contact_radius))
+        }
         "turn" | "snap-in" | "snap" => return None,
         _ => (Sign::Touch, event.radius),
     };

@@ -159,23 +159,25 @@ fn pins(subject: &Subject<'_>, view: View, figure: &mut Figure) -> Vec<(f64, f64
     all
 }
 
-/// The limit points of the control and of the others, and the pull-off.
+/// The events of the path, A and B, and the limit points off it: those behind, for they are the least.
 fn limit_marks(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
     let curve = subject.curve;
-    figure.marks.extend(
-        curve
-            .other_limits
-            .iter()
-            .map(|(control, p)| Mark { sign: Sign::OtherLimit(*control), at: scale.place(view, place(p)) }),
-    );
-    let own = curve.shown_limits().into_iter();
-    figure.marks.extend(own.map(|at| Mark { sign: Sign::Limit, at: scale.place(view, at) }));
-    // Over the others: the same points, where an event begins.
     let events: Vec<Mark> = events_before(subject, scale, view).collect();
-    let is_off =
-        |mark: &Mark| mark.sign != Sign::Limit || !events.iter().any(|event| is_near(mark.at, event.at));
-    figure.marks.retain(is_off);
-    figure.marks.extend(events);
+    let totals = subject.path.map(|path| &path.totals);
+    let pull = totals.and_then(|totals| totals.largest_pull.as_ref());
+    let far = totals.and_then(|totals| totals.farthest.as_ref());
+    let ends = [(Sign::LargestPull, pull), (Sign::Farthest, far)];
+    let ends = ends.into_iter().filter_map(|(sign, at)| {
+        let at = at?;
+        Some(Mark { sign, at: scale.place(view, [at.approach, at.force, at.contact_radius]) })
+    });
+    let own = curve.shown_limits().into_iter();
+    let own = own.map(|at| Mark { sign: Sign::Limit, at: scale.place(view, at) });
+    let is_off = |mark: &Mark| !events.iter().any(|event| is_near(mark.at, event.at));
+    let others = curve.other_limits.iter();
+    let others =
+        others.map(|(control, p)| Mark { sign: Sign::OtherLimit(*control), at: scale.place(view, place(p)) });
+    figure.marks.extend(events.iter().copied().chain(ends).chain(own.filter(is_off)).chain(others));
 }
 
 /// Whether two places are the same limit point, found in two ways.

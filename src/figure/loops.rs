@@ -105,7 +105,7 @@ fn marks(event: &EventReport, scale: Scale<'_>, view: View) -> Vec<Mark> {
     let sign = match event.kind {
         "first-touch" | "touch" | "merge" | "split" | "vanish" => Sign::Touch,
         "turn" => Sign::Turn,
-        "last-contact" => Sign::LastContact,
+        "last-contact" => Sign::LastContact(event.number),
         _ => Sign::Limit,
     };
     let at = |state: &StateReport| scale.place(view, quantities(state));

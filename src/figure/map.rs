@@ -101,7 +101,7 @@ fn events(report: &MapReport, subject: &Subject<'_>, x: &Places, y: &Places) -> 
         _ => Some(event.control),
     };
     let sign = |event: &EventReport, number| {
-        if event.after.is_some() { Sign::Event(number) } else { Sign::LastContact }
+        if event.after.is_some() { Sign::Event(number) } else { Sign::LastContact(number) }
     };
     events.zip(1..).map(|(event, n)| Mark { sign: sign(event, n), at: (x, y.at(place(event))) }).collect()
 }

@@ -70,10 +70,14 @@ pub enum Sign {
     OtherLimit(Control),
     /// A limit point of the control, on no path.
     Limit,
-    /// The limit point where an event of the path begins, by its number from 1.
+    /// The state in which an event of the path begins, by its number from 1.
     Event(usize),
-    /// The last limit point of a path: the bodies come apart.
-    LastContact,
+    /// The event that ends a path, by its number: the bodies come apart.
+    LastContact(usize),
+    /// A of the paper: where a dead load lets go.
+    LargestPull,
+    /// B of the paper: where fixed grips let go.
+    Farthest,
     Landing,
     /// A crest touches.
     Touch,

@@ -25,11 +25,13 @@ pub struct Subject<'a> {
     pub inside: Option<&'a Inside>,
     /// The ends (δ, P) of the line of the loading device through the walker, where it is shown.
     pub device: Option<[(f64, f64); 2]>,
+    /// The path of the device from where it begins, where there is one.
+    pub path: Option<&'a PathReport>,
     /// The loop of loading and unloading, where there is one.
     pub cycle: Option<&'a PathReport>,
     /// The map of two numbers, or why there is none, where it is known.
     pub map: Option<Result<&'a MapReport, &'a str>>,
-    /// The number of the selected event, from 1, where those of the curve are listed.
+    /// The number of the selected event on the path.
     pub event: Option<usize>,
     /// The measured points, where there are any.
     pub measured: Option<Points>,
@@ -54,9 +56,10 @@ impl<'a> Subject<'a> {
             branches: branches(&model.history).into_iter().filter(|branch| !branch.is_here).collect(),
             inside: model.shown_profile(),
             device: device::line(model),
+            path: model.path(),
             cycle: model.cycle.as_ref().and_then(|cycle| cycle.report()),
             map: model.map.as_ref().map(|map| map.report()),
-            event: model.events.is_curve().then_some(model.event + 1),
+            event: model.log().entries.get(model.event).and_then(|entry| entry.number),
             measured: Points::of(&model.preset).and_then(Result::ok),
             distances: model.distances.as_ref().map(|distances| &distances.found),
             study: study(model),
@@ -75,6 +78,7 @@ impl<'a> Subject<'a> {
             branches: Vec::new(),
             inside: None,
             device: None,
+            path: curve.report.as_ref(),
             cycle: None,
             map: None,
             event: None,

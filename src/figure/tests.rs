@@ -56,10 +56,14 @@ fn is_fit(figure: &Figure) -> bool {
     [x, y].iter().all(|[lo, hi]| lo.is_finite() && hi.is_finite() && lo < hi)
 }
 
+fn last_contacts(figure: &Figure) -> usize {
+    figure.marks.iter().filter(|mark| matches!(mark.sign, Sign::LastContact(_))).count()
+}
+
 #[test]
 fn the_curve_has_its_pieces_its_limit_points_and_the_walk() {
     let mut session = Session::new("wavy-sphere");
-    session.does(Id::NextLimit).does(Id::Jump).does(Id::Step);
+    session.does(Id::NextEvent).does(Id::Jump).does(Id::Step);
     let curve = session.model.curve.clone().unwrap();
     for view in [View::ForceApproach, View::ForceRadius, View::RadiusApproach] {
         let figure = session.figure(view);
@@ -69,7 +73,7 @@ fn the_curve_has_its_pieces_its_limit_points_and_the_walk() {
         let snaps = curve.report.as_ref().unwrap().events.len() - 1;
         assert!((1..=snaps).all(|number| signs(&figure, Sign::Event(number)) == 1));
         assert_eq!(signs(&figure, Sign::Limit) + snaps + 1, curve.limits.len());
-        assert_eq!(signs(&figure, Sign::LastContact), 1);
+        assert_eq!(last_contacts(&figure), 1);
         assert_eq!((signs(&figure, Sign::Landing), signs(&figure, Sign::Walker)), (1, 1));
         assert_eq!((count(&figure, Role::Walk), count(&figure, Role::Jump)), (2, 1));
         assert_eq!((count(&figure, Role::Smooth), count(&figure, Role::Exact)), (1, 0));
@@ -187,7 +191,7 @@ fn the_unloading_has_an_area_for_every_loss_that_has_a_bound() {
         let figure = session.figure(View::Unloading);
         assert_eq!(figure.areas.len() + unbounded, unloading.events.len(), "{control}");
         assert_eq!(count(&figure, Role::Jump), unloading.events.len());
-        assert_eq!(signs(&figure, Sign::LastContact), 1);
+        assert_eq!(last_contacts(&figure), 1);
         let scale = curve.base.critical_force;
         for (area, event) in figure.areas.iter().zip(&unloading.events) {
             // The outline encloses what was lost: P/Pc over δ.
@@ -242,7 +246,7 @@ fn the_areas_of_a_loop_are_its_losses() {
         let (report, figure, lost) = whole("fig-9-cycle", &[&control]);
         let jumps = report.events.iter().filter(|event| event.before != event.after).count();
         assert_eq!((figure.areas.len() + unbounded, count(&figure, Role::Jump)), (jumps, jumps), "{control}");
-        assert_eq!((signs(&figure, Sign::LastContact), signs(&figure, Sign::Turn)), (1, 1));
+        assert_eq!((last_contacts(&figure), signs(&figure, Sign::Turn)), (1, 1));
         let all = report.totals.dissipated.unwrap_or(report.totals.dissipated_before_last_contact);
         assert!((lost / all - 1.0).abs() < 1e-9, "{control}: {lost} {all}");
     }
@@ -391,7 +395,7 @@ fn among_pins_the_curve_is_named_by_what_differs() {
 #[test]
 fn the_inside_of_a_state_is_drawn_with_its_edge_and_crests() {
     let mut session = Session::new("wavy-sphere");
-    session.does(Command::Overlay(Overlay::Exact)).does(Id::NextLimit).does(Id::Jump);
+    session.does(Command::Overlay(Overlay::Exact)).does(Id::NextEvent).does(Id::Jump);
     let node = session.model.walker().unwrap();
     let case: &Case = &session.model.curve.as_ref().unwrap().case;
     let radius = node.state.contact_radius / case.reduced.gap.feature_length().unwrap();
@@ -427,7 +431,7 @@ fn the_inside_of_a_state_is_drawn_with_its_edge_and_crests() {
 
     // Apart there is no inside, and no figure of the last one.
     for _ in 0..8 {
-        session.does(Id::NextLimit).does(Id::Jump);
+        session.does(Id::NextEvent).does(Id::Jump);
     }
     assert!(session.figure(View::Pressure).missing.unwrap().contains("apart"));
 }
@@ -435,7 +439,7 @@ fn the_inside_of_a_state_is_drawn_with_its_edge_and_crests() {
 #[test]
 fn the_barrier_appears_shrinks_and_is_gone_at_the_limit_point() {
     let mut session = Session::new("wavy-sphere");
-    session.does(Id::NextLimit).does(Id::Jump);
+    session.does(Id::NextEvent).does(Id::Jump);
     let mut heights = Vec::new();
     for _ in 0..100 {
         session.does(Id::Step);
@@ -489,7 +493,7 @@ fn differences_are_those_of_the_curves_at_equal_radius_and_at_equal_approach() {
     }
     assert!(is_fit(&figure) && figure.walker().is_some());
     // What is said of the walker is of its own state: far from a limit point and on it, against a closed form.
-    session.does(Id::NextLimit);
+    session.does(Id::NextEvent);
     let figure = session.figure(View::Differences);
     let jkr = session.model.curve.as_ref().unwrap().case.smooth().unwrap();
     let node = session.model.history.current().unwrap();

@@ -6,7 +6,7 @@ use super::subject::Subject;
 use crate::explorer::View;
 use crate::explorer::node::{Node, NodeKind};
 use pulloff_engine::problem::Control;
-use pulloff_engine::quasistatic::{EventKind, PathState, State};
+use pulloff_engine::quasistatic::{PathState, State};
 
 /// Where the bodies are once they are apart: the device holds its approach, its load, or its slack spring.
 pub fn apart(control: Control, before: &State, control_value: f64) -> State {
@@ -25,18 +25,18 @@ pub fn quantities(state: &State) -> [f64; 3] {
     [state.approach, state.force, state.contact_radius]
 }
 
-/// The limit points of the quasi-static path, as marks.
+/// Where the events of the path begin, as marks.
 pub fn events_before<'a>(
     subject: &Subject<'a>,
     scale: Scale<'a>,
     view: View,
 ) -> impl Iterator<Item = Mark> + 'a {
-    let units = *subject.curve.case.units();
-    let events = subject.curve.unloading.iter().flat_map(|unloading| &unloading.events);
-    (1..).zip(events).filter_map(move |(number, event)| {
-        let sign = if event.kind == EventKind::LastContact { Sign::LastContact } else { Sign::Event(number) };
-        let before = event.before.as_ref()?.state().in_units(&units);
-        Some(Mark { sign, at: scale.place(view, quantities(&before)) })
+    let events = subject.path.into_iter().flat_map(|path| &path.events);
+    events.filter_map(move |event| {
+        let number = event.number;
+        let sign = if event.after.is_none() { Sign::LastContact(number) } else { Sign::Event(number) };
+        let state = event.before.as_ref().or(event.after.as_ref())?;
+        Some(Mark { sign, at: scale.place(view, [state.approach, state.force, state.contact_radius]) })
     })
 }
 

@@ -89,7 +89,9 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::OtherLimit(_) => stamp(MarkerShape::Diamond, ORANGE, 1.8, "limit of δ"),
         Sign::Limit | Sign::Event(_) => stamp(MarkerShape::TriangleDown, VERMILLION, 2.3, "limit point"),
         // The name in the tables of the figures, which programs read.
-        Sign::LastContact => stamp(MarkerShape::Cross, VERMILLION, 2.8, "pull-off"),
+        Sign::LastContact(_) => stamp(MarkerShape::Cross, VERMILLION, 2.8, "last contact"),
+        Sign::LargestPull => stamp(MarkerShape::Triangle, BLACK, 2.4, "A, largest pull"),
+        Sign::Farthest => stamp(MarkerShape::Diamond, BLACK, 2.4, "B, farthest"),
         Sign::Landing => stamp(MarkerShape::Circle, GREEN, 2.2, "landing"),
         Sign::Touch => stamp(MarkerShape::Pentagon, BLACK, 2.4, "touch"),
         Sign::Turn => stamp(MarkerShape::Square, BLACK, 2.2, "turn"),

@@ -494,10 +494,10 @@ mod tests {
         let mut figure = figure(vec![Line::new(Role::Stable, "curve", vec![(0.0, 0.0), (1.0, 1.0)])]);
         figure.marks = vec![
             Mark { sign: Sign::Limit, at: (0.8, 0.8) },
-            Mark { sign: Sign::LastContact, at: (0.1, 0.1) },
+            Mark { sign: Sign::LastContact(1), at: (0.1, 0.1) },
         ];
         let names = |figure: &Figure| legend(figure).into_iter().map(|entry| entry.label).collect::<Vec<_>>();
-        assert_eq!(names(&figure), ["curve", "limit point", "pull-off"]);
+        assert_eq!(names(&figure), ["curve", "limit point", "last contact"]);
         let close = figure.across("0.5..".parse().unwrap()).unwrap();
         assert_eq!(names(&close), ["curve", "limit point"]);
         assert_eq!(names(&close.clone().naming("A 2")), ["A 2, curve", "limit point"]);

@@ -93,9 +93,13 @@ impl Chart<'_> {
             return;
         }
         let Some(plot) = self.plot(area) else { return };
-        if plot.y > inner.y {
+        if self.has_legend_row(area, inner) {
             let line = Line::from(self.legend_spans(usize::from(plot.width)));
             buffer.set_line(plot.x, inner.y, &line, plot.width);
+        }
+        if self.has_note_row(area, inner) {
+            let note = theme.whole_words(&self.note(), usize::from(inner.width - 2));
+            buffer.set_string(inner.x + 1, plot.y - 1, note, theme.dim());
         }
         for (at, region) in self.figure.areas.iter().enumerate() {
             self.fill(buffer, plot, at, region);
@@ -177,6 +181,17 @@ impl Chart<'_> {
         spans
     }
 
+    /// Whether a row inside is that of the legend.
+    fn has_legend_row(&self, area: Rect, inner: Rect) -> bool {
+        inner.height >= LEGEND_ROWS && !self.legend.is_empty() && !self.legend_fits(area)
+    }
+
+    /// Whether a row inside is that of the note, which has no room in the wall; of a pair both plots are as high.
+    fn has_note_row(&self, area: Rect, inner: Rect) -> bool {
+        let is_in_wall = self.heading() + 3 <= usize::from(area.width);
+        inner.height > LEGEND_ROWS && !self.is_paired && !self.note().is_empty() && !is_in_wall
+    }
+
     /// The ticks of y in a frame of this inside.
     fn y_ticks(&self, inner: Rect) -> Vec<(f64, String)> {
         ticks(self.bounds.y, self.figure.y.run, usize::from(inner.height / 3).clamp(2, 8))
@@ -190,8 +205,7 @@ impl Chart<'_> {
         }
         let gutter = self.y_ticks(inner).iter().map(|(_, label)| label.len()).max().unwrap_or(0);
         let gutter = u16::try_from(gutter + 1).unwrap_or(u16::MAX).min(inner.width / 3);
-        let has_row = inner.height >= LEGEND_ROWS && !self.legend.is_empty() && !self.legend_fits(area);
-        let above = u16::from(has_row);
+        let above = u16::from(self.has_legend_row(area, inner)) + u16::from(self.has_note_row(area, inner));
         Some(Rect {
             x: inner.x + gutter,
             y: inner.y + above,
@@ -311,7 +325,15 @@ impl Chart<'_> {
                 plot.contains(at).then_some(at)
             });
             // What it marks stays seen.
-            let is_beside = matches!(mark.sign, Sign::OtherLimit(_) | Sign::Limit | Sign::Event(_));
+            let is_beside = matches!(
+                mark.sign,
+                Sign::OtherLimit(_)
+                    | Sign::Limit
+                    | Sign::Event(_)
+                    | Sign::LastContact(_)
+                    | Sign::LargestPull
+                    | Sign::Farthest
+            );
             let found = if is_beside { beside.into_iter().find(is_free) } else { None };
             let at = found.unwrap_or(own);
             if is_beside && marked.contains(&at) {

@@ -40,7 +40,7 @@ pub fn text(app: &App, content: Content) -> String {
         Content::State => app.theme.text(&state(&app.model)),
         // The columns are this program's, and a row always fits them.
         Content::Events => {
-            events_table(&app.model.shown_events()).and_then(|table| table.tsv()).unwrap_or_default()
+            events_table(app.model.path_events()).and_then(|table| table.tsv()).unwrap_or_default()
         }
         Content::Chart | Content::Screen => drawn(app, content),
     };

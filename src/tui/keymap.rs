@@ -121,10 +121,9 @@ fn usual(id: Id) -> &'static [Key] {
         Id::Run => &[Char('r')],
         Id::Slower => &[Char('(')],
         Id::Faster => &[Char(')')],
-        Id::NextLimit => &[Char('n')],
-        Id::PreviousLimit => &[Char('N')],
+        Id::NextEvent => &[Char('n')],
         Id::Jump => &[Char('x')],
-        Id::LeastForce => &[Char('L')],
+        Id::LargestPull => &[Char('L')],
         Id::Reverse => &[Char('b')],
         Id::Halve => &[Char('[')],
         Id::Double => &[Char(']')],
@@ -133,7 +132,7 @@ fn usual(id: Id) -> &'static [Key] {
         Id::Undo => &[Char('u')],
         Id::Redo => &[Ctrl('r')],
         Id::Branches => &[Char('B')],
-        Id::Restart => &[Char('0')],
+        Id::Restart => &[Named(KeyCode::Home)],
         Id::Control => &[Char('c')],
         Id::Less => &[Char('<'), Char(',')],
         Id::More => &[Char('>'), Char('.')],
@@ -159,7 +158,6 @@ fn usual(id: Id) -> &'static [Key] {
         Id::CrossHair => &[Char('i')],
         Id::Map => &[Char('M')],
         Id::Axes => &[Char('a')],
-        Id::Events => &[Char('v')],
         Id::Device => &[Char('K')],
         Id::Overlays => &[Char('y')],
         Id::Pin => &[Char('p')],
@@ -171,6 +169,7 @@ fn usual(id: Id) -> &'static [Key] {
         Id::CommandLine => &[Char(':')],
         Id::Copy => &[Char('Y')],
         Id::Mouse => &[Char('m')],
+        Id::About => &[Char('I')],
         Id::Help => &[Char('?')],
         Id::Cancel => &[Named(KeyCode::Esc)],
         Id::Quit => &[Char('q'), Ctrl('c')],
@@ -337,7 +336,7 @@ mod tests {
         assert_eq!(map.command(KeyEvent::new(KeyCode::Char('x'), KeyModifiers::NONE)), Some(Id::Step));
         assert_eq!(map.command(KeyEvent::new(KeyCode::Char('x'), KeyModifiers::CONTROL)), Some(Id::Step));
         assert_eq!(map.command(KeyEvent::new(KeyCode::Char('u'), KeyModifiers::NONE)), None);
-        assert_eq!(map.label(Id::NextLimit), Keymap::default().label(Id::NextLimit));
+        assert_eq!(map.label(Id::NextEvent), Keymap::default().label(Id::NextEvent));
         let line = of("[keys]\ncommand-line = \";\"\njump = []").unwrap();
         assert_eq!(line.first(Id::Jump), ";jump");
     }

@@ -1,17 +1,14 @@
-//! Which region goes where at which size. Neighbours share a wall.
+//! Which pane goes where at which size. Neighbours share a wall.
 //!
-//! | size | left | charts | events |
-//! |---|---|---|---|
-//! | below 60 wide | nothing | one | below, from 18 rows on |
-//! | 60-99 | 26 | one | below |
-//! | 100-159 | 31 | two of the force, side by side; of others one, or where events are folded two, one above the other | below |
-//! | from 160x45 | 36 | two, side by side | below |
-//! | from 200x60 | 36 | four, of at least 14 rows of plot each; the lower two over the whole width where the left has room | below |
-//! | from 240 wide, below 30 rows | 36 | two, side by side | a column of their own |
+//! | from | panes |
+//! |---|---|
+//! | 40x10 | the selected one alone |
+//! | 60x16 | Problem with the state in its last line; one chart; the log |
+//! | 80x16 | the same with both charts side by side |
+//! | 120x36 | Problem, Here and Result in a column of 27; both charts; the log below, whole |
+//! | 160x45 | the same with a third chart |
 //!
-//! Side by side, P over δ and P over s have one axis of P: an event stands on the same row in both.
-//!
-//! Events take the rows they need, as many as leave the charts theirs. The panel that `z` chose has the whole screen.
+//! Charts of the force have one axis of it: an event stands on the same row in both. The pane that `z` chose has the whole screen.
 
 use crate::explorer::{Panel, View};
 use ratatui::layout::Rect;
@@ -19,66 +16,162 @@ use ratatui::layout::Rect;
 /// The smallest screen on which anything is shown.
 pub const SMALLEST: (u16, u16) = (40, 10);
 
-/// Where the regions are; those that do not fit are left out.
+/// How the panes stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Shape {
+    /// The selected one alone.
+    Alone,
+    /// One above the other over the whole width.
+    Stacked,
+    /// A column of what is read, the charts beside it.
+    Column,
+}
+
+/// The panes of a size.
+#[derive(Debug, Clone, Copy)]
+struct Arrangement {
+    /// The smallest width and height.
+    from: (u16, u16),
+    shape: Shape,
+    charts: usize,
+}
+
+/// The panes of every size, the largest first: the first that fits is taken.
+const ARRANGEMENTS: [Arrangement; 5] = [
+    Arrangement { from: (160, 45), shape: Shape::Column, charts: 3 },
+    Arrangement { from: (120, 36), shape: Shape::Column, charts: 2 },
+    Arrangement { from: (80, 16), shape: Shape::Stacked, charts: 2 },
+    Arrangement { from: (60, 16), shape: Shape::Stacked, charts: 1 },
+    Arrangement { from: SMALLEST, shape: Shape::Alone, charts: 1 },
+];
+
+/// The inside of the column.
+pub const COLUMN: u16 = 27;
+/// Lines of values where panes are stacked; the state has one more.
+pub const VALUE_LINES: u16 = 2;
+/// The rows of the log with its walls, up to so many rows of the screen.
+const LOG_ROWS: [(u16, u16); 6] = [(19, 4), (24, 5), (29, 6), (35, 8), (44, 11), (u16::MAX, 16)];
+/// Lines of Result.
+const RESULT_LINES: u16 = 9;
+/// Lines of Here that stepping needs, and those of the slopes.
+const HERE_LINES: [u16; 2] = [6, 12];
+/// Lines of values that are worth more than the slopes.
+const LEAST_VALUES: u16 = 8;
+
+/// Where the panes are; those that do not fit are left out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Regions {
     pub header: Rect,
     pub problem: Option<Rect>,
-    pub walker: Option<Rect>,
+    pub here: Option<Rect>,
+    pub result: Option<Rect>,
     /// The views with their place, the first one first.
     pub charts: Vec<(View, Rect)>,
-    pub events: Option<Rect>,
+    pub log: Option<Rect>,
     pub status: Rect,
     pub footer: Rect,
+    /// Whether Problem is lines of cells, with the state below.
+    pub is_stacked: bool,
 }
 
-/// What the panels want.
+impl Regions {
+    /// The panes that are drawn, in the order of the Tab key; alone, each is drawn when it is selected.
+    pub fn panels(&self, is_alone: bool) -> Vec<Panel> {
+        let is_drawn = |panel: &Panel| match panel {
+            Panel::Problem => self.problem.is_some(),
+            Panel::Here => self.here.is_some(),
+            Panel::Result => self.result.is_some(),
+            Panel::Charts => !self.charts.is_empty(),
+            Panel::Log => self.log.is_some(),
+        };
+        Panel::ALL.into_iter().filter(|panel| is_alone || is_drawn(panel)).collect()
+    }
+}
+
+/// What the panes want.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Wants {
     /// The first view.
     pub view: View,
-    /// Rows of events; `None` where only their heading is shown.
-    pub events: Option<usize>,
-    /// Rows of the problem.
+    /// Lines of the log.
+    pub log: usize,
+    /// Lines of the problem, one a value.
     pub problem: usize,
-    /// The panel that has the whole screen.
-    pub whole: Option<Panel>,
+    pub panel: Panel,
+    /// Whether the selected pane has the whole screen.
+    pub is_whole: bool,
 }
 
-/// Width of the column of the events where they have one.
-const EVENTS_COLUMN: u16 = 88;
-/// From this width on two charts of the force stand side by side.
-const PAIR: u16 = 100;
-/// Rows of folded events: two walls, the upper one with their heading.
-const FOLDED: usize = 2;
-/// Rows of a chart that has a plot of 14: its walls, its legend, its labels.
-const CHART_ROWS: u16 = 18;
+/// Whether only the selected pane is shown at this size.
+pub fn is_alone(area: Rect, is_whole: bool) -> bool {
+    is_whole || arrangement(area).is_some_and(|found| found.shape == Shape::Alone)
+}
 
-/// The regions of a screen; `None` below the smallest size.
+fn arrangement(area: Rect) -> Option<Arrangement> {
+    let fits = |it: &Arrangement| area.width >= it.from.0 && area.height >= it.from.1;
+    ARRANGEMENTS.into_iter().find(fits)
+}
+
+/// The panes of a screen; `None` below the smallest size.
 pub fn regions(area: Rect, wants: Wants) -> Option<Regions> {
-    let (width, height) = (area.width, area.height);
-    if width < SMALLEST.0 || height < SMALLEST.1 {
-        return None;
-    }
+    let found = arrangement(area)?;
     let line = |y: u16| Rect { y, height: 1, ..area };
-    let body = Rect { y: area.y + 1, height: height - 3, ..area };
+    let body = Rect { y: area.y + 1, height: area.height - 3, ..area };
     let mut regions = Regions {
         header: line(area.y),
         problem: None,
-        walker: None,
+        here: None,
+        result: None,
         charts: Vec::new(),
-        events: None,
+        log: None,
         status: line(body.bottom()),
         footer: line(body.bottom() + 1),
+        is_stacked: false,
     };
-    match wants.whole {
-        Some(Panel::Problem) => regions.problem = Some(body),
-        Some(Panel::Walker) => regions.walker = Some(body),
-        Some(Panel::Events) => regions.events = Some(body),
-        Some(Panel::Charts) => regions.charts = vec![(wants.view, body)],
-        None => fill(&mut regions, body, (width, height), wants),
+    if wants.is_whole || found.shape == Shape::Alone {
+        match wants.panel {
+            Panel::Problem => regions.problem = Some(body),
+            Panel::Here => regions.here = Some(body),
+            Panel::Result => regions.result = Some(body),
+            Panel::Charts => regions.charts = vec![(wants.view, body)],
+            Panel::Log => regions.log = Some(body),
+        }
+        return Some(regions);
     }
+    let most = LOG_ROWS.iter().find(|(height, _)| area.height <= *height).map_or(0, |(_, rows)| *rows);
+    let wanted = u16::try_from(wants.log.max(1) + 2).unwrap_or(u16::MAX);
+    // Where panes are stacked the log keeps its rows: charts that grow and shrink with it would send all of it.
+    let rows = if found.shape == Shape::Stacked { most } else { wanted.clamp(3, most) };
+    let (main, log) = split_top(body, body.height + 1 - rows);
+    regions.log = Some(log);
+    let charts = if found.shape == Shape::Stacked {
+        regions.is_stacked = true;
+        let (problem, charts) = split_top(main, VALUE_LINES + 3);
+        regions.problem = Some(problem);
+        charts
+    } else {
+        let (side, charts) = split_left(main, COLUMN + 2);
+        column(&mut regions, side, wants);
+        charts
+    };
+    let views = std::iter::once(wants.view).chain(wants.view.companions());
+    regions.charts = views.zip(beside(charts, found.charts)).collect();
     Some(regions)
+}
+
+/// Problem, Here and Result; what has no room gives way in this order: values of Problem, the slopes of Here, half of Result.
+fn column(regions: &mut Regions, side: Rect, wants: Wants) {
+    let values = u16::try_from(wants.problem).unwrap_or(u16::MAX);
+    // Four walls, two of them shared.
+    let lines = side.height.saturating_sub(4);
+    let [least, most] = HERE_LINES;
+    let spare = lines.saturating_sub(least + RESULT_LINES + LEAST_VALUES.min(values));
+    let here = least + spare.min(most - least);
+    let problem = values.min(lines.saturating_sub(here + RESULT_LINES)).max(LEAST_VALUES.min(values));
+    let here = here.max(lines.saturating_sub(problem + RESULT_LINES).min(most + 3));
+    let (top, rest) = split_top(side, lines.saturating_sub(here + RESULT_LINES) + 2);
+    let (middle, bottom) = split_top(rest, here + 2);
+    (regions.problem, regions.here, regions.result) = (Some(top), Some(middle), Some(bottom));
 }
 
 /// The first `count` columns, and the rest from the wall that both share.
@@ -90,95 +183,40 @@ fn split_left(area: Rect, count: u16) -> (Rect, Rect) {
 
 /// The first `count` rows, and the rest from the wall that both share.
 fn split_top(area: Rect, count: u16) -> (Rect, Rect) {
+    let count = count.min(area.height);
     let first = Rect { height: count, ..area };
     let shared = count.saturating_sub(1);
     (first, Rect { y: area.y + shared, height: area.height - shared, ..area })
 }
 
-fn fill(regions: &mut Regions, body: Rect, (width, height): (u16, u16), wants: Wants) {
-    let side_width = match width {
-        ..=59 => 0,
-        60..=99 => 27,
-        100..=159 => 32,
-        _ => 37,
-    };
-    let is_flat = width >= 240 && height < 30;
-    let main = if is_flat {
-        let (main, events) = split_left(body, body.width + 1 - EVENTS_COLUMN);
-        regions.events = Some(events);
-        main
-    } else {
-        let most = match height {
-            ..=17 => 0,
-            18..=23 => 5,
-            24..=29 => 6,
-            30..=39 => 9,
-            40..=49 => 12,
-            _ => 19,
-        };
-        // The walls and the heads take three lines; what there is to say instead of events takes one.
-        let rows = wants.events.map_or(FOLDED, |events| events.max(1) + 3);
-        let rows = u16::try_from(rows).unwrap_or(u16::MAX).min(most);
-        if rows == 0 {
-            body
-        } else {
-            let (main, events) = split_top(body, body.height + 1 - rows);
-            regions.events = Some(events);
-            main
-        }
-    };
-    let mut charts = main;
-    // The walker needs six lines, and the parameters more than that, as far as there are lines.
-    let walker_rows = match main.height {
-        26.. => 12,
-        25 => 10,
-        rows => 8.min(rows / 2 + 2),
-    };
-    let wanted = u16::try_from(wants.problem + 2).unwrap_or(u16::MAX).saturating_add(walker_rows - 1);
-    if side_width > 0 {
-        let (side, right) = split_left(main, side_width);
-        charts = right;
-        let (problem, walker) = split_top(side, side.height + 1 - walker_rows);
-        (regions.problem, regions.walker) = (Some(problem), Some(walker));
+/// So many charts side by side, the first ones a column wider where it does not come out even.
+fn beside(area: Rect, count: usize) -> Vec<Rect> {
+    let mut rest = area;
+    let mut places = Vec::new();
+    for left in (1..=count).rev() {
+        let share = u16::try_from(left).unwrap_or(1);
+        let (first, others) = split_left(rest, (rest.width - 1).div_ceil(share) + 1);
+        places.push(first);
+        rest = others;
     }
-    let views = std::iter::once(wants.view).chain(wants.view.companions());
-    let half = |area: Rect| <[Rect; 2]>::from(split_left(area, area.width / 2 + 1));
-    let places = if !is_flat && width >= 200 && height >= 60 && charts.height >= 2 * CHART_ROWS {
-        let middle = charts.height / 2 + 1;
-        let top = middle.max(wanted);
-        let is_wide = charts.height + 1 >= top + CHART_ROWS;
-        let (above, below) = split_top(charts, if is_wide { top } else { middle });
-        let below = if is_wide { Rect { x: main.x, width: main.width, ..below } } else { below };
-        if is_wide {
-            // The left column ends with the upper charts.
-            let side = Rect { width: side_width, height: top, ..main };
-            let (problem, walker) = split_top(side, side.height + 1 - walker_rows);
-            (regions.problem, regions.walker) = (Some(problem), Some(walker));
-        }
-        [half(above), half(below)].concat()
-    } else if is_flat || (width >= 160 && height >= 45) || (width >= PAIR && wants.view.is_of_force()) {
-        half(charts).to_vec()
-    } else if wants.events.is_none() && charts.height + 1 >= 2 * CHART_ROWS {
-        <[Rect; 2]>::from(split_top(charts, charts.height / 2 + 1)).to_vec()
-    } else {
-        vec![charts]
-    };
-    regions.charts = views.zip(places).collect();
-    let is_seen = |rect: &Rect| rect.width > 2 && rect.height > 2;
-    regions.problem = regions.problem.filter(is_seen);
-    regions.walker = regions.walker.filter(is_seen);
+    places
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn wants(events: usize) -> Wants {
-        Wants { view: View::ForceApproach, events: Some(events), problem: 14, whole: None }
+    fn wants(log: usize) -> Wants {
+        Wants { view: View::ForceApproach, log, problem: 16, panel: Panel::Charts, is_whole: false }
+    }
+
+    fn all(regions: &Regions) -> Vec<Rect> {
+        let panes = [regions.problem, regions.here, regions.result, regions.log];
+        panes.into_iter().flatten().chain(regions.charts.iter().map(|(_, rect)| *rect)).collect()
     }
 
     #[test]
-    fn regions_fill_the_screen_and_share_walls_only_at_every_size() {
+    fn panes_fill_the_screen_and_share_walls_only_at_every_size() {
         for width in 0..310 {
             for height in 0..70 {
                 let area = Rect::new(0, 0, width, height);
@@ -186,11 +224,11 @@ mod tests {
                     assert!(width < SMALLEST.0 || height < SMALLEST.1);
                     continue;
                 };
-                let mut all = vec![regions.header, regions.status, regions.footer];
-                all.extend(regions.problem.into_iter().chain(regions.walker).chain(regions.events));
-                all.extend(regions.charts.iter().map(|(_, rect)| *rect));
+                let mut all = all(&regions);
+                all.extend([regions.header, regions.status, regions.footer]);
                 for (i, a) in all.iter().enumerate() {
                     assert_eq!(a.intersection(area), *a);
+                    assert!(a.width > 2 && a.height > 0, "{width}x{height} {a:?}");
                     for b in &all[i + 1..] {
                         // At most a wall, which is one cell wide.
                         let shared = a.intersection(*b);
@@ -203,47 +241,48 @@ mod tests {
                 for cell in area.positions() {
                     assert!(all.iter().any(|rect| rect.contains(cell)), "{width}x{height} {cell:?}");
                 }
-                let views = match (width, height) {
-                    (200.., 60..) => 4,
-                    (100.., _) => 2,
-                    _ => 1,
-                };
-                assert_eq!(regions.charts.len(), views, "{width}x{height}");
-                for (_, chart) in &regions.charts {
-                    assert!(views < 4 || chart.height >= CHART_ROWS, "{width}x{height}");
-                }
             }
         }
     }
 
+    /// Sizes and the panes on them: charts with the cells of each, lines of Problem, Here, Result and the log.
     #[test]
-    fn folded_events_leave_their_rows_to_the_charts() {
-        let folded = Wants { events: None, ..wants(6) };
-        for (size, charts) in [((80, 24), 1), ((100, 30), 2), ((120, 40), 2), ((160, 45), 2), ((200, 60), 4)]
-        {
-            let area = Rect::new(0, 0, size.0, size.1);
-            let [plain, folded] = [wants(6), folded].map(|wants| regions(area, wants).unwrap());
-            assert_eq!(folded.charts.len(), charts, "{size:?}");
-            assert_eq!(folded.events.map(|events| events.height), Some(2), "{size:?}");
-            let rows = |regions: &Regions| {
-                regions.charts.iter().map(|(_, chart)| u32::from(chart.height)).sum::<u32>()
-            };
-            assert!(rows(&folded) > rows(&plain), "{size:?}");
-            assert!(
-                charts < 4 || folded.charts.iter().all(|(_, chart)| chart.height >= CHART_ROWS),
-                "{size:?}"
-            );
+    fn every_size_has_its_panes() {
+        use View::{Contact, ForceApproach, ForceRadius};
+        type Row = ((u16, u16), &'static [(u16, u16)], [Option<u16>; 4]);
+        const TABLE: [Row; 7] = [
+            ((40, 12), &[(40, 9)], [None; 4]),
+            ((60, 20), &[(60, 9)], [Some(3), None, None, Some(3)]),
+            ((80, 24), &[(41, 13), (40, 13)], [Some(3), None, None, Some(3)]),
+            ((100, 30), &[(51, 16), (50, 16)], [Some(3), None, None, Some(6)]),
+            ((120, 40), &[(47, 30), (46, 30)], [Some(8), Some(9), Some(9), Some(6)]),
+            ((160, 45), &[(45, 35), (45, 35), (44, 35)], [Some(10), Some(12), Some(9), Some(6)]),
+            ((200, 60), &[(58, 50), (58, 50), (58, 50)], [Some(22), Some(15), Some(9), Some(6)]),
+        ];
+        let pair = [ForceApproach, ForceRadius, Contact];
+        for ((width, height), charts, lines) in TABLE {
+            let regions = regions(Rect::new(0, 0, width, height), wants(6)).unwrap();
+            let size = format!("{width}x{height}");
+            let cells: Vec<_> = regions.charts.iter().map(|(_, at)| (at.width, at.height)).collect();
+            assert_eq!(cells, charts, "{size}");
+            assert!(regions.charts.iter().map(|(view, _)| *view).eq(pair[..charts.len()].iter().copied()));
+            let inside = [regions.problem, regions.here, regions.result, regions.log];
+            let inside = inside.map(|pane| pane.map(|pane| pane.height - 2));
+            assert_eq!(inside, lines, "{size}");
+            // Tab goes to what is drawn, and where only one is, to each.
+            let alone = is_alone(Rect::new(0, 0, width, height), false);
+            let panels = regions.panels(alone);
+            let drawn = if alone { 5 } else { 1 + inside.iter().flatten().count() };
+            assert_eq!(panels.len(), drawn, "{size}");
         }
     }
 
     #[test]
     fn one_panel_can_have_the_whole_screen() {
-        for whole in Panel::ALL {
+        for panel in Panel::ALL {
             let area = Rect::new(0, 0, 80, 24);
-            let regions = regions(area, Wants { whole: Some(whole), ..wants(6) }).unwrap();
-            let shown = [regions.problem, regions.walker, regions.events].into_iter().flatten();
-            let all: Vec<Rect> = shown.chain(regions.charts.iter().map(|(_, rect)| *rect)).collect();
-            assert_eq!(all, [Rect::new(0, 1, 80, 21)]);
+            let regions = regions(area, Wants { panel, is_whole: true, ..wants(6) }).unwrap();
+            assert_eq!(all(&regions), [Rect::new(0, 1, 80, 21)]);
         }
     }
 }

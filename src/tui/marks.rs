@@ -90,9 +90,9 @@ pub fn letter(sign: Sign, theme: Theme) -> String {
     let one = |unicode: &str, ascii: &str| theme.glyph(unicode, ascii).to_owned();
     match sign {
         Sign::OtherLimit(_) | Sign::Limit => one("·", "."),
-        Sign::Event(number @ 1..=9) => number.to_string(),
+        Sign::Event(number @ 1..=9) | Sign::LastContact(number @ 1..=9) => number.to_string(),
         Sign::Event(_) => "v".to_owned(),
-        Sign::LastContact => one("×", "X"),
+        Sign::LastContact(_) => one("×", "X"),
         Sign::Landing => one("○", "O"),
         Sign::Touch => "t".to_owned(),
         Sign::Turn => "T".to_owned(),
@@ -100,7 +100,8 @@ pub fn letter(sign: Sign, theme: Theme) -> String {
         Sign::Edge => "|".to_owned(),
         Sign::Minimum => "m".to_owned(),
         Sign::Maximum => "M".to_owned(),
-        Sign::Barrier => "B".to_owned(),
+        Sign::LargestPull => "A".to_owned(),
+        Sign::Farthest | Sign::Barrier => "B".to_owned(),
         Sign::Stray | Sign::Walker => "@".to_owned(),
         Sign::Value => "o".to_owned(),
         Sign::Letter(letter) => letter.to_string(),

@@ -307,6 +307,18 @@ impl Theme {
             .merge_borders(MergeStrategy::Exact)
     }
 
+    /// As much of a line as there is room for, no word and no number cut: an ellipsis stands for the rest.
+    pub fn whole_words(self, line: &str, room: usize) -> String {
+        if line.chars().count() <= room {
+            return line.to_owned();
+        }
+        let kept: String = line.chars().take(room.saturating_sub(1)).collect();
+        // What was cut in its middle goes.
+        let is_whole = line.chars().nth(kept.chars().count()).is_none_or(char::is_whitespace);
+        let end = if is_whole { kept.len() } else { kept.rfind(' ').unwrap_or(0) };
+        format!("{}{}", kept[..end].trim_end(), self.glyph("…", "."))
+    }
+
     /// A label of the parameter table with its Greek letters, where the terminal can show them.
     pub fn symbols(self, label: &str) -> String {
         if self.ascii { self.text(label) } else { greek(label) }

@@ -13,10 +13,15 @@ pub struct Session {
 
 impl Session {
     pub fn new(preset: &str) -> Self {
+        Self::with(preset, &[])
+    }
+
+    /// A session on a preset with other values for some keys.
+    pub fn with(preset: &str, assignments: &[&str]) -> Self {
         let folder = tempfile::tempdir().expect("a session");
         let store = Store::at(folder.path().join("presets"), &["trace"]);
         let source = store.resolve(preset).expect("a session");
-        let (mut model, effects) = open(store.load(&source, &[] as &[&str]).expect("a session"));
+        let (mut model, effects) = open(store.load(&source, assignments).expect("a session"));
         let driver = Inline::new(store);
         driver.settle(&mut model, effects);
         Self { model, driver, folder }

@@ -66,23 +66,22 @@ macro_rules! commands {
 
 commands! {
     "Walk along the curve" {
-        Step "step" Walker ("number of steps") "step": "one step along the curve; type a number first for that many";
-        NextLimit "next-limit" Walker "next limit": "run to the next limit point of the control, or to where a crest touches";
-        PreviousLimit "previous-limit" Walker "previous": "turn round and run to the previous limit point";
+        Step "step" Walker ("number of steps") "step": "one step along the equilibrium curve, past limit points too; type a number first for that many";
+        NextEvent "next-event" Walker "next event": "to the next event of the path; at a limit point or a touch, let it happen";
         Jump "jump" Jump "jump": "let edges run at constant control to the next stable state; from a touch, with the new contact";
         Run "run" Walker ("number of states") "run": "run at a pace one can watch, to the next limit point or touch; any key but those of the pace pauses";
         Slower "slower" Nothing "slower": "half as many states a second in a run, at first 20";
         Faster "faster" Nothing "faster": "twice as many";
         MoveTo "move-to" Curve ("contact radius") "move to": "the walker to the state of a contact radius on the curve";
-        LeastForce "least-force" Curve "least P": "the walker to the least force of the path: the strongest pull";
-        Reverse "reverse" Walker "reverse": "walk the other way";
+        LargestPull "largest-pull" Curve "to A": "the walker to A, the largest pull of the path: where a dead load lets go";
+        Reverse "reverse" Walker "turn round": "turn round: steps and events are then those of the other way";
         Halve "halve-step" Nothing "half step": "halve the step length";
         Double "double-step" Nothing "double step": "double the step length";
         StepLength "step-length" Nothing ("length") "step length": "the longest step, as a share of every quantity's range";
         Undo "undo" Undo ("number") "undo": "take the last command back, whatever it was; no state is erased";
         Redo "redo" Redo ("number") "redo": "do again what was taken back";
         Branches "branches" Branches ("branch") "branches": "the branches of the walk: what each ended with, and back to it";
-        Restart "restart" WalkerOrNoCurve "restart": "back to the start state";
+        Restart "restart" WalkerOrNoCurve "start": "start again";
         Control "control" Nothing ("control") "control": "control the displacement, the force, or a spring's far end";
         SelectEvent "select-event" Walker ("number") "event": "the walker to the event of this number in the list";
     }
@@ -93,16 +92,16 @@ commands! {
         MuchMore "much-more" Parameter "much more": "the selected value, much more";
         Free "free" Parameter "free": "let a fit change the selected value, or no longer";
         Fit "fit" Nothing "fit": "fit the free values to the measured curve; Esc takes the best so far";
-        Edit "edit" Nothing ("value") "type value": "type the selected value, or choose it; in Events: go to the selected event; at the cross-hair: go there";
+        Edit "edit" Nothing ("value") "type value": "type the selected value, or choose it; in the log: go to the selected event; at the cross-hair: go there";
         Data "data" Nothing ("file, or none") "data": "a measured curve behind the chart, to compare and to fit; none takes it away";
         Assign "set" Nothing ("KEY=VALUE ...") "set": "other values for some keys, as one change";
     }
     "Look" {
-        Up "up" Nothing "up": "select the line above; in Charts: move up";
-        Down "down" Nothing "down": "select the line below; in Charts: move down";
-        Left "left" Nothing "left": "the panel before; in Charts: move left";
-        Right "right" Nothing "right": "the next panel; in Charts: move right";
-        NextPanel "next-panel" Nothing "panel": "next panel";
+        Up "up" Nothing "up": "the line above; in Charts: move up";
+        Down "down" Nothing "down": "the line below; in Charts: move down";
+        Left "left" Nothing "left": "the value before; in Charts: move left";
+        Right "right" Nothing "right": "the next value; in Charts: move right";
+        NextPanel "next-panel" Nothing "panel": "the next panel on the screen";
         PreviousPanel "previous-panel" Nothing "panel back": "previous panel";
         Enlarge "enlarge" Nothing "whole": "the selected panel on the whole screen, and back";
         NextView "next-view" Nothing "view": "the next view of the chart";
@@ -115,7 +114,6 @@ commands! {
         CrossHair "cross-hair" Curve "cross-hair": "a cross-hair that reads the chart; arrows move it";
         Map "map" Curve ("KEY [KEY, control, approach or force]") "map": "where snaps happen over the selected value; again: the map of it and the adhesion";
         Axes "axes" Nothing "axes": "axes in P/Pc, delta, s/lambda, or raw values";
-        Events "events" Nothing "events": "events on the curve, of the loop with rings, walked, or folded";
         Device "device-line" Nothing "device": "show or hide the line of the loading device through the walker";
         Overlays "overlays" Curve ("theory") "theory": "theory over the curve: smooth sphere, exact solution, envelope";
         Pin "pin" Curve "pin": "keep this curve to compare the next ones with";
@@ -131,6 +129,7 @@ commands! {
     "Program" {
         CommandLine "command-line" Nothing "command": "type a command by its name; Tab completes, up and down bring lines back";
         Mouse "mouse" Nothing "mouse": "take the mouse (click, wheel), or leave it to the terminal to select text";
+        About "about" Nothing "about": "what the preset says of itself, and what was changed since";
         Help "help" Nothing "help": "this help; / searches it";
         Cancel "cancel" Nothing "back": "take typed text back, close, stop a run or a curve";
         Quit "quit" Nothing "quit": "quit; asks only if the preset has unsaved changes";

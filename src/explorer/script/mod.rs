@@ -10,7 +10,7 @@
 //! | `set KEY=VALUE ...` | other values, as one change; a bare number is SI in an SI preset |
 //! | `control displacement`, `force`, `stiffness=K`, or nothing | what is controlled, or the next of them |
 //! | `step [N]`, `step-length X`, `halve-step`, `double-step`, `reverse` | steps, their length, their way |
-//! | `next-limit`, `run-to instability` | to the next limit point of the control |
+//! | `next-event`, `run-to instability` | to the next limit point of the control |
 //! | `run [N]`, `previous-limit`, `jump`, `restart` | as the keys of these names |
 //! | `undo [N]`, `redo [N]` | so many commands taken back, done again |
 //! | `undo N states`, `redo N states` | so many single states along the walk, with their values |

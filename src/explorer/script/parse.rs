@@ -19,7 +19,7 @@ use pulloff_engine::text::{closest, closest_key, quote};
 const TRY: &str = "try";
 /// What is drawn rather than written.
 pub(super) const PICTURES: [Picture; 2] = [Picture::Figure(None), Picture::Screen];
-/// What a synonym of `next-limit` runs to.
+/// What a synonym of `next-event` runs to.
 pub(super) const RUN_TO: (&str, [&str; 2]) = ("run-to", ["instability", "limit"]);
 
 /// The command of a line; `None` where there is none.
@@ -95,6 +95,7 @@ fn is_of_screen(id: Id) -> bool {
             | Id::CommandLine
             | Id::Copy
             | Id::Mouse
+            | Id::About
             | Id::Help
             | Id::Cancel
     )
@@ -162,7 +163,7 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
         if !RUN_TO.1.contains(&&*word.text) {
             return Err(unknown(word, "such end of a run", &RUN_TO.1));
         }
-        return rest.done(Id::NextLimit.into());
+        return rest.done(Id::Run.into());
     }
     if name.text == TRY {
         return Err(Fault::new(name.column, "try stands in a script, once, before a command"));

@@ -93,7 +93,7 @@ fn a_script_is_read_with_comments_quotes_and_synonyms() {
     };
     let expected = [
         (3, Command::Steps(20)),
-        (4, Id::NextLimit.into()),
+        (4, Id::Run.into()),
         (5, set(&[("path.control", "force")])),
         (6, set(&[("gap.wavelength", "3 um"), ("title", "a \"b\" # c")])),
         (7, Command::Export { what: ExportKind::Curve, path: "out file.csv".to_owned(), replace: false }),

@@ -9,7 +9,7 @@ use crate::explorer::model::Model;
 use crate::explorer::pins::Pins;
 use crate::explorer::requests::want_curve;
 use crate::explorer::undo::Undo;
-use crate::explorer::view::{Axes, EventSource, Overlays, Panel, View, Window};
+use crate::explorer::view::{Axes, Overlays, Panel, View, Window};
 use crate::store::{Fingerprint, Loaded, Source};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
@@ -43,7 +43,6 @@ pub struct Look {
     pub windows: Vec<(View, Window)>,
     pub cross: Option<(f64, f64)>,
     pub axes: Axes,
-    pub events: EventSource,
     pub overlays: Overlays,
     pub inward: bool,
     pub length: f64,
@@ -64,7 +63,6 @@ impl Look {
             windows: windows.filter(|(_, window)| !window.is_whole()).collect(),
             cross: model.cross,
             axes: model.axes,
-            events: model.events,
             overlays: model.overlays,
             inward: model.inward,
             length: model.length,
@@ -77,7 +75,7 @@ impl Look {
     /// Gives `model` this look; what cannot be looked at so is left as in a new session.
     fn lay_over(self, model: &mut Model) {
         (model.panel, model.view, model.axes) = (self.panel, self.view, self.axes);
-        (model.events, model.overlays, model.inward) = (self.events, self.overlays, self.inward);
+        (model.overlays, model.inward) = (self.overlays, self.inward);
         (model.event, model.device) = (self.event, self.device);
         model.map_axes = self.map;
         model.parameter = self.parameter.min(model.knobs().len().saturating_sub(1));

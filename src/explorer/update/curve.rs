@@ -60,8 +60,7 @@ pub(super) fn curve_came(
             model.curve_error = None;
             let first = model.history.current().is_none();
             model.curve = Some(Arc::clone(&curve));
-            let lines = model.shown_events().len() + model.shown_inadmissible().len();
-            model.event = model.event.min(lines.saturating_sub(1));
+            model.event = model.event.min(model.log_lines().saturating_sub(1));
             if first {
                 return begin_walk(model, &curve);
             }

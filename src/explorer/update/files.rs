@@ -52,7 +52,7 @@ pub(super) fn export(model: &mut Model, what: ExportKind, path: String, replace:
         ExportKind::Walk => {
             Content::Walk(curve, model.history.path().into_iter().map(|(_, node)| node.clone()).collect())
         }
-        ExportKind::Events => Content::Events(curve, model.shown_events()),
+        ExportKind::Events => Content::Events(curve, model.path_events().to_vec()),
         ExportKind::Study => {
             let study = model.study.clone().filter(|study| study.done() == study.outcomes.len());
             let Some(study) = study else {

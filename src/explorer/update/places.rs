@@ -1,17 +1,20 @@
-//! Where the walker is sent: to a contact radius, an event, the least force.
+//! Where the walker is sent: to a contact radius, an event, the largest pull.
 
 use super::travel::travel_to;
 use super::walk::walk;
 use crate::explorer::effect::Effect;
 use crate::explorer::model::{Level, Model};
-use crate::explorer::view::EventSource;
 use crate::explorer::walk::{Action, ROOM};
-use pulloff_engine::quasistatic::Event;
+use pulloff_engine::problem::Begin;
 use pulloff_engine::report::number::{short, with_unit};
+use pulloff_engine::report::path::EventReport;
 use pulloff_engine::units::Quantity;
 
 /// Why the walker does not go to some events.
 const WITH_RINGS: &str = "that state has rings of contact, and the walker is on the curve of one disc";
+
+/// Radii of one limit point, found in two ways, are as near as this.
+const SAME: f64 = 1e-6;
 
 /// The walker goes to the state of this contact radius, in the user's units.
 pub(super) fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
@@ -31,91 +34,78 @@ pub(super) fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
     walk(model, Action::MoveTo(reduced))
 }
 
-/// The walker goes to the least force of the quasi-static path.
-pub(super) fn to_least_force(model: &mut Model) -> Vec<Effect> {
-    /// Radii of one limit point, found in two ways, are as near as this.
-    const SAME: f64 = 1e-6;
+/// The walker goes to A, the largest pull of the path.
+pub(super) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
     let Some(curve) = &model.curve else { return Vec::new() };
-    match &curve.unloading {
-        Ok(path) => {
-            let Some(least) = path.largest_pull() else { return Vec::new() };
-            let radius = least.contact_radius;
-            // Under a dead load it is where an event begins, and is reached as that.
-            let begins = |event: &Event| {
-                let before = event.before.as_ref().map(|before| before.contact_radius);
-                before.is_some_and(|before| (before - radius).abs() <= SAME * radius)
-            };
-            match path.events.iter().position(begins) {
-                Some(event) => {
-                    (model.events, model.event) = (EventSource::Curve, event);
-                    go_to_event(model)
-                }
-                None => walk(model, Action::MoveTo(radius)),
-            }
-        }
-        Err(why) => {
-            let text = format!("there is no path, and so no least force of it: {why}");
-            model.tell(Level::Error, text);
-            Vec::new()
-        }
+    let Some(path) = model.path() else {
+        let why = match (&curve.unloading, model.cycle.as_ref().map(|cycle| &cycle.report)) {
+            (_, Some(Err(why))) if model.preset.path.begin == Begin::Touch => why.to_string(),
+            (Err(why), _) => why.clone(),
+            _ => "it is being computed".to_owned(),
+        };
+        model.tell(Level::Error, format!("there is no path, and so no largest pull of it: {why}"));
+        return Vec::new();
+    };
+    let Some(pull) = &path.totals.largest_pull else { return Vec::new() };
+    let radius = pull.contact_radius;
+    // Under a dead load it is where an event begins, and is reached as that.
+    let begins = |event: &EventReport| {
+        event.before.as_ref().is_some_and(|before| (before.contact_radius - radius).abs() <= SAME * radius)
+    };
+    if let Some(event) = path.events.iter().position(begins) {
+        return select_event(model, event + 1);
     }
-}
-
-/// The event of a number, where the list has it.
-pub(super) fn select_event(model: &mut Model, number: usize) -> Vec<Effect> {
-    let count = model.shown_events().len();
-    if !(1..=count).contains(&number) {
-        model.tell(Level::Error, format!("there is no event {number}: the list has {count}"));
+    if pull.contacts.len() > 1 {
+        model.tell(Level::Info, WITH_RINGS);
         return Vec::new();
     }
-    model.event = number - 1;
+    let reduced = match &curve.unloading {
+        Ok(path) if model.preset.path.begin == Begin::Disc => path.largest_pull().map(|at| at.contact_radius),
+        _ => None,
+    };
+    let reduced = reduced.unwrap_or(radius / curve.case.units().length);
+    walk(model, Action::MoveTo(reduced))
+}
+
+/// The event of a number of the path.
+pub(super) fn select_event(model: &mut Model, number: usize) -> Vec<Effect> {
+    let count = model.path_events().len();
+    let Some(line) = model.log().place(number) else {
+        model.tell(Level::Error, format!("there is no event {number}: the path has {count}"));
+        return Vec::new();
+    };
+    model.event = line;
     go_to_event(model)
 }
 
-/// The walker goes to the limit point of the selected event.
+/// The walker goes to where the selected event begins.
 pub(super) fn go_to_event(model: &mut Model) -> Vec<Effect> {
-    if model.events == EventSource::Walked {
-        let events = model.walked_events();
-        let Some((node, _)) = events.get(model.event) else { return Vec::new() };
-        let Some(parent) = model.history.node(*node).and_then(|n| n.parent) else { return Vec::new() };
-        // The state before the jump, as it was walked.
-        return travel_to(model, parent);
-    }
-    if model.events == EventSource::Cycle {
-        return go_to_loop_event(model);
-    }
-    let Some(curve) = model.curve.clone() else { return Vec::new() };
-    let Ok(unloading) = &curve.unloading else { return Vec::new() };
-    let Some(event) = unloading.events.get(model.event) else {
+    let log = model.log();
+    let Some(entry) = log.entries.get(model.event) else {
         if !model.shown_inadmissible().is_empty() {
             model.tell(Level::Info, "no state to go to: the next crest would touch before");
         }
         return Vec::new();
     };
-    let Some(before) = event.before.as_ref().filter(|before| before.rings() == 0) else {
-        model.tell(Level::Info, WITH_RINGS);
+    let Some(curve) = model.curve.clone() else { return Vec::new() };
+    let before = entry.event.before.as_ref().filter(|before| matches!(before.contacts[..], [[0.0, _]]));
+    let (Some(number), Some(before)) = (entry.number, before) else {
+        // The state before the jump, as it was walked.
+        let parent = entry.node.and_then(|node| model.history.node(node)?.parent);
+        if let Some(parent) = parent {
+            return travel_to(model, parent);
+        }
+        let text = if entry.event.before.is_none() { "before it the bodies are apart" } else { WITH_RINGS };
+        model.tell(Level::Info, text);
         return Vec::new();
     };
-    let away = |s: f64| (s - before.contact_radius).abs();
-    let radius = |i: &usize| curve.limits[*i].contact_radius;
-    let nearest = (0..curve.limits.len()).min_by(|a, b| away(radius(a)).total_cmp(&away(radius(b))));
-    model.inward = true;
-    let event = model.event;
-    nearest.map_or_else(Vec::new, |limit| walk(model, Action::MoveToEvent { event, limit }))
-}
-
-/// The walker goes to the state before an event of the loop, where that is one disc.
-fn go_to_loop_event(model: &mut Model) -> Vec<Effect> {
-    let before = model.cycle.as_ref().and_then(|cycle| {
-        let event = cycle.report()?.events.get(model.event)?;
-        event.before.as_ref().map(|before| (before.contacts.clone(), before.contact_radius))
-    });
-    match before {
-        Some((contacts, radius)) if contacts.len() == 1 && contacts[0][0] == 0.0 => move_to(model, radius),
-        Some(_) => {
-            model.tell(Level::Info, WITH_RINGS);
-            Vec::new()
-        }
-        None => Vec::new(),
+    let radius = before.contact_radius / curve.case.units().length;
+    let away = |i: &usize| (curve.limits[*i].contact_radius - radius).abs();
+    let nearest = (0..curve.limits.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
+    let limit = nearest.filter(|limit| away(limit) <= SAME * radius);
+    model.inward = entry.event.direction == "unloading";
+    match limit {
+        Some(limit) => walk(model, Action::MoveToEvent { event: number - 1, limit }),
+        None => walk(model, Action::MoveTo(radius)),
     }
 }

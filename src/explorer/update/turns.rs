@@ -27,12 +27,11 @@ impl Turn {
             Command::Plain(
                 Id::Step
                 | Id::Run
-                | Id::NextLimit
-                | Id::PreviousLimit
+                | Id::NextEvent
                 | Id::Jump
                 | Id::Restart
                 | Id::MoveTo
-                | Id::LeastForce
+                | Id::LargestPull
                 | Id::SelectEvent
                 | Id::Control
                 | Id::Pin,

@@ -62,6 +62,29 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     vec![Effect::Walk(Box::new(Request { id, action, curve, from, at, control, inward, length, pace: None }))]
 }
 
+/// On to the next event of the path: what is pending happens, and where the path ends outward it turns round.
+pub(super) fn next_event(model: &mut Model) -> Vec<Effect> {
+    if model.can_jump() {
+        return walk(model, Action::Jump);
+    }
+    if !model.inward && model.is_at_outer_end() {
+        if model.preset.path.begin == Begin::Disc {
+            model.tell(
+                Level::Info,
+                format!(
+                    "the path begins here: {} turns round, {} goes on outward",
+                    Id::Reverse.named(),
+                    Id::Step.named()
+                ),
+            );
+            return Vec::new();
+        }
+        model.inward = true;
+    }
+    let end = (!model.inward).then(|| model.outer_end()).flatten();
+    walk(model, Action::ToEvent(end))
+}
+
 /// The same, at the pace.
 pub(super) fn run(model: &mut Model, action: Action) -> Vec<Effect> {
     let mut effects = walk(model, action);
@@ -180,7 +203,7 @@ pub(super) fn walked(
         Outcome::Stopped(reason) => {
             if is_unsolved {
                 mark_stale(model, id, &reason);
-                model.tell(Level::Failure, format!("{reason}; {} restarts", Id::Restart.named()));
+                model.tell(Level::Failure, format!("{reason}; {} starts again", Id::Restart.named()));
             } else {
                 model.tell(Level::Failure, reason);
             }

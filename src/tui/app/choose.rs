@@ -25,14 +25,14 @@ fn turned(key: KeyEvent, line: usize, count: usize) -> Option<usize> {
 }
 
 impl App {
-    /// Home, End and the page keys in the selected panel, where that has lines.
+    /// End and the page keys in the selected panel, where that has lines.
     pub(super) fn page_key(&mut self, key: KeyEvent) -> Option<Vec<Effect>> {
         let (panel, model) = (self.model.panel, &self.model);
         let (line, count) = match panel {
             Panel::Problem => (model.parameter, model.knobs().len()),
-            Panel::Events => (model.event, model.shown_events().len() + model.shown_inadmissible().len()),
+            Panel::Log => (model.event, model.log_lines()),
             Panel::Charts if model.view.is_table() => (reach::walk_line(model), model.history.path().len()),
-            Panel::Walker | Panel::Charts => return None,
+            Panel::Here | Panel::Result | Panel::Charts => return None,
         };
         let line = turned(key, line, count)?;
         Some(self.run(Command::Pick { panel, line: Some(line) }))

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | Problem | selects the value | turns it finely |
 //! | Charts | the walker goes to the state of the curve there | zooms about the pointer |
-//! | Events | selects; once more goes to the event | selects the one above or below |
+//! | Log | selects; once more goes to the event | selects the one above or below |
 //! | a list | selects; once more takes it | selects the one above or below |
 //!
 //! A place outside of the screen, or of what is drawn, does nothing. A question is answered by keys alone.
@@ -16,7 +16,7 @@ use crate::figure::{Subject, map, nearest, study};
 use crate::tui::layout::Regions;
 use crate::tui::overlay::Overlay;
 use crate::tui::terminal::{KeyCode, MouseEvent, MouseEventKind};
-use crate::tui::view::{charts, events, overlays, places, problem, states};
+use crate::tui::view::{cells, charts, log, overlays, places, problem, states};
 use ratatui::layout::{Position, Rect};
 
 /// A click goes to a state of the curve within so many character widths, a row counting twice.
@@ -90,18 +90,20 @@ impl App {
         let Some(regions) = places(self, self.screen) else { return Vec::new() };
         let inside = |area: Option<Rect>| area.filter(|area| area.contains(at));
         // An upper wall has the title of what is below it.
-        if let Some(area) = inside(regions.events) {
-            let line = events::line_at(&self.model, area, at.y);
-            if line == Some(self.model.event) && self.model.panel == Panel::Events {
+        if let Some(area) = inside(regions.log) {
+            let line = log::line_at(self, area, at.y);
+            if line == Some(self.model.event) && self.model.panel == Panel::Log {
                 return self.run(Id::Edit.into());
             }
-            return self.pick(Panel::Events, line);
+            return self.pick(Panel::Log, line);
         }
-        if inside(regions.walker).is_some() {
-            return self.pick(Panel::Walker, None);
+        for (panel, area) in [(Panel::Here, regions.here), (Panel::Result, regions.result)] {
+            if inside(area).is_some() {
+                return self.pick(panel, None);
+            }
         }
         if let Some(area) = inside(regions.problem) {
-            let line = problem::line_at(self, area, at.y);
+            let line = self.value_at(&regions, area, at);
             return self.pick(Panel::Problem, line);
         }
         if let Some(area) = table(&regions, at) {
@@ -123,14 +125,14 @@ impl App {
         let Some(regions) = places(self, self.screen) else { return Vec::new() };
         let inside = |area: Option<Rect>| area.filter(|area| area.contains(at));
         if let Some(area) = inside(regions.problem) {
-            let Some(line) = problem::line_at(self, area, at.y) else { return Vec::new() };
+            let Some(line) = self.value_at(&regions, area, at) else { return Vec::new() };
             let mut effects = self.pick(Panel::Problem, Some(line));
             effects.extend(self.run(if up { Id::More } else { Id::Less }.into()));
             return effects;
         }
-        if inside(regions.events).is_some() {
+        if inside(regions.log).is_some() {
             let line = if up { self.model.event.saturating_sub(1) } else { self.model.event + 1 };
-            return self.pick(Panel::Events, Some(line));
+            return self.pick(Panel::Log, Some(line));
         }
         if table(&regions, at).is_some() {
             let line = reach::walk_line(&self.model);
@@ -140,6 +142,11 @@ impl App {
             Some((view, Some((_, about)))) => self.run(Command::Zoom { view, closer: up, about }),
             _ => Vec::new(),
         }
+    }
+
+    /// The value at a place of Problem.
+    fn value_at(&self, regions: &Regions, area: Rect, at: Position) -> Option<usize> {
+        if regions.is_stacked { cells::value_at(self, area, at) } else { problem::line_at(self, area, at.y) }
     }
 
     /// The chart at a place of the screen, and if it is on the plot, the plot and the place in shares of the window.

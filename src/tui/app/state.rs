@@ -10,10 +10,13 @@ use crate::explorer::{Command, Effect, Id, Model, Overlay, Panel, Reply, answer,
 use crate::figure::Subject;
 use crate::store::{Listed, Listing, Loaded, Source};
 use crate::tui::keymap::Keymap;
+use crate::tui::layout::is_alone;
 use crate::tui::overlay::{
     Action, Choose, Confirm, Help, Item, LONGEST_LINE, Overlay as Over, Prompt, Purpose,
 };
 use crate::tui::theme::Theme;
+use crate::tui::view::help::ABOUT;
+use crate::tui::view::{cells, places};
 use crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
 use pulloff_engine::preset::Value;
 use pulloff_engine::preset::data;
@@ -133,6 +136,10 @@ impl App {
     /// The screen is so large, and has room for so many views.
     pub fn make_room(&mut self, screen: Rect, views: usize) -> Vec<Effect> {
         self.screen = screen;
+        let drawn = places(self, screen).map(|regions| regions.panels(is_alone(screen, self.enlarged)));
+        if drawn.is_some_and(|drawn| !drawn.contains(&self.model.panel)) {
+            self.model.panel = Panel::Charts;
+        }
         make_room(&mut self.model, views)
     }
 
@@ -313,10 +320,37 @@ impl App {
                 self.switch_mouse();
                 Vec::new()
             }
+            Id::About => {
+                self.overlay = Some(Over::Help(Help { page: ABOUT, ..Help::default() }));
+                Vec::new()
+            }
+            Id::NextPanel | Id::PreviousPanel => self.next_panel(id == Id::NextPanel),
+            Id::Up | Id::Down if self.model.panel == Panel::Problem => self.value_beside(id == Id::Down),
             Id::Edit if self.model.panel == Panel::Charts => self.go_to_cross_hair(),
             Id::Edit if self.model.panel == Panel::Problem => self.ask_value(),
             id => self.run(id.into()),
         }
+    }
+
+    /// The next panel that is on the screen.
+    fn next_panel(&mut self, forward: bool) -> Vec<Effect> {
+        let id = if forward { Id::NextPanel } else { Id::PreviousPanel };
+        let Some(regions) = places(self, self.screen) else { return self.run(id.into()) };
+        let panels = regions.panels(is_alone(self.screen, self.enlarged));
+        let here = panels.iter().position(|panel| *panel == self.model.panel);
+        let by = if forward { 1 } else { panels.len().saturating_sub(1) };
+        let next = here.map_or(0, |here| here + by) % panels.len().max(1);
+        panels.get(next).map_or_else(Vec::new, |panel| self.run(Command::Pick { panel: *panel, line: None }))
+    }
+
+    /// The value a line further down or up in Problem.
+    fn value_beside(&mut self, down: bool) -> Vec<Effect> {
+        let stacked = places(self, self.screen).filter(|regions| regions.is_stacked);
+        let Some(area) = stacked.and_then(|regions| regions.problem) else {
+            return self.run(if down { Id::Down } else { Id::Up }.into());
+        };
+        let line = Some(cells::value_beside(self, area.width.saturating_sub(2), down));
+        self.run(Command::Pick { panel: Panel::Problem, line })
     }
 
     /// The cross-hair, or where the walker stands in the window of the first view, or its middle.
@@ -472,8 +506,7 @@ impl App {
 fn is_repeated(id: Id) -> bool {
     matches!(
         id,
-        Id::NextLimit
-            | Id::PreviousLimit
+        Id::NextEvent
             | Id::Jump
             | Id::Less
             | Id::More

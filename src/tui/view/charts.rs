@@ -119,14 +119,10 @@ fn is_thin(subject: &Subject<'_>, area: Rect, chart: &Chart<'_>) -> bool {
 
 /// The mark of the selected event stands out, and has its number in the legend where the letter has none.
 fn select_event(model: &Model, chart: &mut Chart<'_>) {
-    if !model.events.is_curve() {
-        return;
-    }
-    let number = model.event + 1;
-    let count = model.shown_events().len();
+    let log = model.log();
+    let Some(number) = log.entries.get(model.event).and_then(|entry| entry.number) else { return };
     chart.selected = chart.figure.marks.iter().position(|mark| match mark.sign {
-        Sign::Event(other) => other == number,
-        Sign::LastContact => number == count,
+        Sign::Event(other) | Sign::LastContact(other) => other == number,
         _ => false,
     });
     if let Some(at) = chart.selected

@@ -1,11 +1,13 @@
 //! The first line: which preset, what is controlled, what to be careful about.
 
 use super::parts::fitted;
+use crate::explorer::pins::changes;
 use crate::explorer::{Axes, Model};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::{significant, with_unit};
+use pulloff_engine::text::greek;
 use pulloff_engine::units::Quantity;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -74,14 +76,20 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     if let Some(text) = warned(&app.keymap, &warnings, room) {
         spans.push(Span::styled(format!("  {text}"), theme.error()));
     } else {
-        // The title was given to other values.
-        let changed = if model.is_unsaved() && !model.preset.title.is_empty() { ", modified" } else { "" };
-        let title = theme.text(&model.preset.title);
-        let room = room.saturating_sub(changed.len());
-        let title: String = title.chars().take(room).collect();
-        spans.push(Span::styled(format!("  {title}{changed}"), theme.dim()));
+        let text = theme.whole_words(&theme.text(&said(model)), room);
+        spans.push(Span::styled(format!("  {text}"), theme.dim()));
     }
     frame.render_widget(Line::from(spans), area);
+}
+
+/// What there is to read of the preset, the first that there is: what was changed since it was read, what it says, its title.
+fn said(model: &Model) -> String {
+    let changes = changes(&model.saved, &model.preset);
+    if !changes.is_empty() {
+        return greek(&changes.join(", "));
+    }
+    let comment = model.comment.lines().next().filter(|line| !line.is_empty());
+    comment.unwrap_or(&model.preset.title).to_owned()
 }
 
 /// The first warning, as much of it as `room` holds, and the key that tells the rest.

@@ -1,7 +1,8 @@
-//! The help in three pages: how to read the screen, first steps, and every key, read from the one table of commands.
+//! The help in pages: how to read the screen, first steps, every key, read from the one table of commands, and what the preset says.
 
 use super::parts::panel;
 use crate::explorer::command::ROWS;
+use crate::explorer::pins::changes;
 use crate::explorer::{Model, View};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
@@ -15,8 +16,8 @@ use ratatui::widgets::{Clear, Paragraph};
 
 /// Commands in it are named as [`Id::named`](crate::explorer::Id::named) does.
 const FIRST_STEPS: &[&str] = &[
-    "The walker @ stands at the start of the path. \u{1}next-limit\u{1} runs to the first limit point: there the edge lets go.",
-    "\u{1}jump\u{1} takes the jump, and the energy lost is said. \u{1}next-limit\u{1} and \u{1}jump\u{1} again, down to the last contact; \u{1}undo\u{1} takes the last command back, whatever it was.",
+    "The walker @ stands at the start of the path. \u{1}next-event\u{1} runs to the first event: there the edge lets go.",
+    "\u{1}next-event\u{1} again lets it happen, and the energy lost is said; so on, down to the last contact. \u{1}step\u{1} follows the equilibrium instead, past limit points too. \u{1}undo\u{1} takes the last command back, whatever it was.",
     "Select A with the arrow keys and press \u{1}more\u{1} a few times: the curve follows. \u{1}edit\u{1} types a value, with its unit where the preset has units.",
     "\u{1}pin\u{1} keeps the curve to compare the next ones with; \u{1}control\u{1} holds the force, or a spring, instead of the displacement.",
     "\u{1}next-view\u{1} shows the pressure, the gap, the energy; \u{1}cross-hair\u{1} reads numbers off the chart.",
@@ -27,11 +28,11 @@ const FIRST_STEPS: &[&str] = &[
 const READING: &[&str] = &[
     "The curve holds every equilibrium of one contact disc: approach δ, force P (tension is negative) and contact \
      radius s. On its unstable parts (broken lines) the contact would not stay under the control chosen.",
-    "A number marks an event of the table: a limit point where the edge lets go and runs, at constant control, to the \
-     next stable part, and the energy between is lost. A dot is a limit point that is not on the quasi-static path.",
+    "A number marks an event of the log: there the edge lets go and runs, at constant control, to the next stable part, \
+     and the energy between is lost. A is the largest pull, B the farthest state. A dot is a limit point off the path.",
     "States that cannot be have the colour of a warning, or ! without colours: outside the disc the next crest would \
      touch. They stand behind the events. \
-     The real path has rings of contact there: its loop is drawn too, loading and unloading in colours of their own, and \u{1}events\u{1} lists it.",
+     The real path has rings of contact there: its loop is drawn too, loading and unloading in colours of their own; with begin = apart it is the path.",
     "Views follow each other with \u{1}next-view\u{1}: three of the curve, then the pressure in the disc, the gap \
      outside it and the potential over the radius at the walker's state, and the unloading with its losses shaded. \
      In the potential m and M are its stable and unstable states, B the barrier before the edge lets go; ^ marks the \
@@ -61,7 +62,8 @@ const SHORT: &[(&str, &str)] = &[
     ("dA/dδ", "how fast the area of contact grows with the approach along the curve"),
     ("c7", "on maps: the line of limit points at the seventh crest from the axis"),
     ("snap", "a jump of the edge, at constant control, before the bodies come apart"),
-    ("× last contact", "the limit point from which nothing stable is left: the bodies come apart"),
+    ("last contact", "the event from which nothing stable is left: the bodies come apart"),
+    ("A  B", "largest pull: where a dead load lets go; farthest: where fixed grips let go"),
     ("○ landing", "where a jump comes to rest"),
     ("touch", "a crest outside the disc meets the other body: a ring of contact begins"),
     (
@@ -76,7 +78,10 @@ const SHORT: &[(&str, &str)] = &[
 ];
 
 /// The pages by their names, in their order.
-pub const PAGES: [&str; 3] = ["how to read it", "first steps", "keys"];
+pub const PAGES: [&str; 4] = ["how to read it", "first steps", "keys", "this preset"];
+
+/// The page of what the preset says.
+pub const ABOUT: usize = 3;
 
 /// Where what a key does begins.
 const MEANING: usize = 20;
@@ -134,6 +139,7 @@ fn entries(app: &App, page: usize) -> Vec<HelpLine> {
     match page {
         0 => reading(app),
         1 => steps(app),
+        ABOUT => about(app),
         _ => keys(app),
     }
 }
@@ -175,6 +181,24 @@ fn steps(app: &App) -> Vec<HelpLine> {
     let mut entries = Vec::new();
     section(&mut entries, app.theme, "First steps");
     entries.extend(FIRST_STEPS.iter().map(|text| spelled(app, text)));
+    entries
+}
+
+/// What the preset says of itself, and what was changed since it was read.
+fn about(app: &App) -> Vec<HelpLine> {
+    let (theme, model) = (app.theme, &app.model);
+    let mut entries = Vec::new();
+    let line = |text: &str| HelpLine::new("  ", theme.text(text), Style::new());
+    section(&mut entries, theme, &theme.text(&model.preset.title));
+    entries.extend(model.comment.lines().map(line));
+    if model.comment.is_empty() {
+        entries.push(line("its file says nothing before the first key"));
+    }
+    let changes = changes(&model.saved, &model.preset);
+    if !changes.is_empty() {
+        section(&mut entries, theme, "Changed since");
+        entries.extend(changes.iter().map(|change| line(change)));
+    }
     entries
 }
 

@@ -1,21 +1,23 @@
 //! One file per screen region; each takes the app by shared reference and draws.
 
+pub mod cells;
 pub mod charts;
-pub mod events;
 pub mod header;
 pub mod help;
+pub mod here;
 pub mod legend;
+pub mod log;
 pub mod overlays;
 mod parts;
 pub mod problem;
+pub mod result;
 pub mod states;
 pub mod status;
-pub mod walker;
 
 use super::app::App;
-use super::layout::{Regions, SMALLEST, Wants, regions};
+use super::layout::{COLUMN, Regions, SMALLEST, Wants, regions};
 use super::overlay::Overlay;
-use crate::explorer::{EventSource, Panel};
+use crate::explorer::Panel;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -24,8 +26,6 @@ use parts::is_selected;
 
 /// Lines of inadmissible parts that get room of their own: they come late, and more would move the charts far.
 const PARTS: usize = 3;
-/// The inside of the left column on a large screen.
-const WIDE_SIDE: u16 = 35;
 
 /// Draws the whole screen, and says for how many views it has room.
 pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
@@ -55,10 +55,17 @@ pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
 fn draw_panels(frame: &mut Frame<'_>, app: &App, regions: &Regions, selected: bool) {
     let is_due = |panel| is_selected(app, panel) == selected;
     if let Some(area) = regions.problem.filter(|_| is_due(Panel::Problem)) {
-        problem::draw(frame, area, app);
+        if regions.is_stacked {
+            cells::draw(frame, area, app);
+        } else {
+            problem::draw(frame, area, app);
+        }
     }
-    if let Some(area) = regions.walker.filter(|_| is_due(Panel::Walker)) {
-        walker::draw(frame, area, app);
+    if let Some(area) = regions.here.filter(|_| is_due(Panel::Here)) {
+        here::draw(frame, area, app);
+    }
+    if let Some(area) = regions.result.filter(|_| is_due(Panel::Result)) {
+        result::draw(frame, area, app);
     }
     let pair = match &regions.charts[..] {
         [a, b, ..] if a.0.is_of_force() && b.0.is_of_force() => Some([a.0, b.0]),
@@ -72,19 +79,20 @@ fn draw_panels(frame: &mut Frame<'_>, app: &App, regions: &Regions, selected: bo
             charts::draw(frame, *area, app, *view, seat);
         }
     }
-    if let Some(area) = regions.events.filter(|_| is_due(Panel::Events)) {
-        events::draw(frame, area, app);
+    if let Some(area) = regions.log.filter(|_| is_due(Panel::Log)) {
+        log::draw(frame, area, app);
     }
 }
 
 /// Where the regions of a screen of this size are.
 pub fn places(app: &App, area: Rect) -> Option<Regions> {
     let model = &app.model;
-    let events = model.shown_events().len() + model.shown_inadmissible().len().min(PARTS);
-    let events = (model.events != EventSource::Folded).then_some(events);
-    let problem = problem::rows(app, WIDE_SIDE);
-    let whole = app.enlarged.then_some(model.panel);
-    regions(area, Wants { view: model.view, events, problem, whole })
+    let notes = model.curve.as_ref().map_or(0, |curve| curve.base.notes.len());
+    let bar = usize::from(model.path().is_some_and(|path| path.turn.is_some()));
+    let log = model.log().entries.len() + model.shown_inadmissible().len().min(PARTS) + notes + bar;
+    let problem = problem::rows(app, COLUMN);
+    let (panel, is_whole) = (model.panel, app.enlarged);
+    regions(area, Wants { view: model.view, log, problem, panel, is_whole })
 }
 
 #[cfg(test)]

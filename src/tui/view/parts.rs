@@ -27,18 +27,6 @@ pub(super) fn fitted(keymap: &Keymap, text: &str, more: &str, room: usize) -> St
     format!("{}{rest}", kept.trim_end())
 }
 
-/// As much of a line as there is room for, no word and no number cut: an ellipsis stands for the rest.
-pub(super) fn whole_words(theme: Theme, line: &str, room: usize) -> String {
-    if line.chars().count() <= room {
-        return line.to_owned();
-    }
-    let kept: String = line.chars().take(room.saturating_sub(1)).collect();
-    // What was cut in its middle goes.
-    let is_whole = line.chars().nth(kept.chars().count()).is_none_or(char::is_whitespace);
-    let end = if is_whole { kept.len() } else { kept.rfind(' ').unwrap_or(0) };
-    format!("{}{}", kept[..end].trim_end(), theme.glyph("…", "."))
-}
-
 /// `key value` with the key dim.
 pub(super) fn pair(theme: Theme, key: &str, value: &str) -> [Span<'static>; 2] {
     [Span::styled(theme.text(key), theme.dim()), Span::raw(theme.text(value))]

@@ -98,6 +98,80 @@ pub fn line_at(app: &App, area: Rect, row: u16) -> Option<usize> {
     (below < rows && line < parameters).then_some(line)
 }
 
+/// Columns of a cell; a long word or an error takes two.
+pub(super) const CELL: usize = 13;
+
+/// A value as cells show it.
+pub(super) struct Shown {
+    label: String,
+    text: String,
+    /// How many cells it takes.
+    pub(super) cells: usize,
+}
+
+impl Shown {
+    /// A value of so many characters, written as `text` says for the room there is.
+    fn new(label: String, width: usize, text: impl FnOnce(usize) -> String) -> Self {
+        // The mark before the label, and a blank behind it.
+        let taken = label.chars().count() + 2;
+        let cells = (taken + width).div_ceil(CELL).max(1);
+        Self { text: text(cells * CELL - taken), label, cells }
+    }
+
+    fn word(label: String, text: String) -> Self {
+        Self::new(label, text.chars().count(), |_| text)
+    }
+
+    /// Its cells, of which there is room for so many.
+    pub(super) fn spans(&self, theme: Theme, cells: usize, is_chosen: bool) -> Vec<Span<'static>> {
+        let room = (cells * CELL).saturating_sub(2 + self.label.chars().count());
+        let text = theme.whole_words(&self.text, room);
+        let rest = " ".repeat(room.saturating_sub(text.chars().count()));
+        if is_chosen {
+            let cell = format!(">{} {text}", self.label);
+            return vec![Span::styled(cell, theme.selection()), Span::raw(rest)];
+        }
+        vec![Span::styled(format!(" {} ", self.label), theme.dim()), Span::raw(text + &rest)]
+    }
+}
+
+/// The values, the groups that can be set, then those that cannot, as cells show them.
+pub(super) fn shown(app: &App) -> Vec<Shown> {
+    /// A turned number keeps its cell: room for this many characters, whatever it is now.
+    const NUMBER: usize = 5;
+    let (model, theme) = (&app.model, app.theme);
+    let units = &model.preset.units;
+    let values = model.knobs().into_iter().map(|(row, value)| {
+        let label = theme.symbols(&row.label);
+        let label = if is_free(&model.preset, &row.key) { format!("{label}?") } else { label };
+        let error = model.standard_error(&row.key).map(|error| row.shown(units, error).number.abs());
+        let number = |label, x, errors: &[String]| {
+            let short = fitted(theme, units, &row, x, (3, errors), 0).chars().count();
+            let unit = row.unit_in(units).map_or(0, |unit| unit.ascii().chars().count() + 1);
+            let shortest = errors.iter().map(|error| error.chars().count()).min().unwrap_or(0);
+            let width = short.max(NUMBER + unit) + shortest;
+            Shown::new(label, width, |room| fitted(theme, units, &row, x, (7, errors), room))
+        };
+        match value {
+            None => Shown::word(label, "auto".to_owned()),
+            Some(Value::Number(x)) => number(label, x, &errors(theme, error)),
+            Some(Value::Control(Control::Stiffness(k))) => number(format!("{label} k"), k, &[String::new()]),
+            Some(value) => Shown::word(label, theme.text(&value.to_string())),
+        }
+    });
+    let of = Groups::of(&model.preset.problem(), model.preset.range_of_action());
+    let others = [("λ²/AR", of.connectivity), ("α", of.johnson), ("μ", of.tabor)];
+    let others =
+        others.into_iter().filter_map(|(name, value)| Some(Shown::word(theme.text(name), short(value?, 4))));
+    values.chain(others).collect()
+}
+
+/// From which amplitude on the problem snaps, or by what wave it is resolved, in a few words.
+pub(super) fn standing(app: &App) -> Option<String> {
+    let lines = [onset(app.theme, &app.model), shortest_wave(app.theme, &app.model)];
+    lines.into_iter().flatten().next().map(|line| line.to_string().trim().to_owned())
+}
+
 /// The keys that turn the selected value, behind it, where they are as short as the usual ones.
 fn turning(keymap: &Keymap) -> String {
     let keys = [Id::Less, Id::More].map(|id| keymap.first(id));
@@ -116,6 +190,24 @@ fn errors(theme: Theme, error: Option<f64>) -> Vec<String> {
     [short(error, 2), short(up(error), 1)].map(|text| theme.text(&format!(" ±{text}"))).to_vec()
 }
 
+/// A number with its unit and its error, as many digits as there is room for, so that neither is cut.
+fn fitted(
+    theme: Theme,
+    units: &UnitSystem,
+    row: &Parameter,
+    x: f64,
+    (most, errors): (usize, &[String]),
+    room: usize,
+) -> String {
+    let shown = row.shown(units, x);
+    let text = |digits| shown.text(&short(shown.number, digits), theme.ascii);
+    let with = |error: &String| {
+        let texts = (3..=most).rev().map(|digits| text(digits) + error);
+        texts.into_iter().find(|text| text.chars().count() <= room)
+    };
+    errors.iter().find_map(with).unwrap_or_else(|| text(3))
+}
+
 fn knob_line(
     theme: Theme,
     units: &UnitSystem,
@@ -131,16 +223,7 @@ fn knob_line(
     let name = theme.symbols(&row.label);
     let label = format!("{mark}{:<9} ", if is_free { format!("{name}?") } else { name });
     let room = usize::from(width).saturating_sub(label.chars().count() + ends.chars().count());
-    // As many digits as there is room for, so that neither a unit nor an error is cut.
-    let shown = |x, most: usize, errors: &[String]| {
-        let shown = row.shown(units, x);
-        let text = |digits| shown.text(&short(shown.number, digits), theme.ascii);
-        let with = |error: &String| {
-            let texts = (3..=most).rev().map(|digits| text(digits) + error);
-            texts.into_iter().find(|text| text.chars().count() <= room)
-        };
-        errors.iter().find_map(with).unwrap_or_else(|| text(3))
-    };
+    let shown = |x, most: usize, errors: &[String]| fitted(theme, units, row, x, (most, errors), room);
     let text = match value {
         None => "auto".to_owned(),
         Some(Value::Number(x)) => shown(*x, 7, &errors(theme, error)),
@@ -210,7 +293,7 @@ fn onset(theme: Theme, model: &Model) -> Option<Line<'static>> {
         Control::Force => "P",
         Control::Stiffness(_) => "k",
     };
-    let text = format!("{} ({control})", short(model.snaps_from()?, 4));
+    let text = format!("{} ({control})", short(model.snaps_from()?, 3));
     Some(Line::from(pair(theme, " snaps from A/λ ", &text).to_vec()))
 }
 

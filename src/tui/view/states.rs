@@ -1,6 +1,6 @@
 //! The table of the states walked: what was done, a line each.
 
-use super::parts::{panel, whole_words};
+use super::parts::panel;
 use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::pins::changed;
 use crate::explorer::reach::{walk_line, why_not};
@@ -35,14 +35,14 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, selected: bool) {
     let rows = usize::from(inner.height.saturating_sub(1));
     let chosen = walk_line(model);
     let first = first(path.len(), chosen, rows);
-    let mut lines = vec![Line::styled(whole_words(theme, &theme.text(&head(model)), room), theme.dim())];
+    let mut lines = vec![Line::styled(theme.whole_words(&theme.text(&head(model)), room), theme.dim())];
     lines.extend(path.iter().enumerate().skip(first).take(rows).map(|(i, (_, node))| {
         let before = i.checked_sub(1).and_then(|before| path.get(before)).map(|(_, node)| *node);
         let here = if i + 1 == path.len() { " @" } else { "" };
         let mark = if i == chosen && selected { '>' } else { ' ' };
         let text = format!("{mark}{}{here}", row(model, node, before));
         let style = if i == chosen && selected { theme.selection() } else { Style::new() };
-        Line::styled(whole_words(theme, &theme.text(&text), room), style)
+        Line::styled(theme.whole_words(&theme.text(&text), room), style)
     }));
     frame.render_widget(Paragraph::new(lines), inner);
 }

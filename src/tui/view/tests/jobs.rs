@@ -6,12 +6,18 @@ use super::Screen;
 type Job = (&'static str, &'static str, &'static str, usize, &'static [&'static str]);
 
 const JOBS: &[Job] = &[
-    ("which crest lets go first, and what does it cost", "wavy-sphere", "", 0, &["8>7", "crest", "lost"]),
+    (
+        "which crest lets go first, and what does it cost",
+        "wavy-sphere",
+        "",
+        0,
+        &["1 snap", "8▸7", "1.217e-4"],
+    ),
     (
         "is A = 0.003 or 0.004 nearer to theory at the third snap",
         "wavy-sphere",
-        "\r0.003\rp\r0.004\r\t\t\t2j\r3T",
-        23,
+        "\r0.003\rp\r0.004\r:select-event 3\r3T",
+        34,
         &["at @: JKR 1971 ", ", 1 A 0.003 "],
     ),
     (
@@ -26,7 +32,7 @@ const JOBS: &[Job] = &[
         "wavy-sphere",
         "LVabove\r",
         8,
-        &["contact, s/λ", "least P -1.480 Pc (L)", "/Pc -1.480"],
+        &["contact, s/λ", "A -1.480 Pc", "/Pc -1.480"],
     ),
     ("how does the largest pull depend on A here", "wavy-sphere", "Q\r", 2, &["largest pull over A", "now"]),
     (
@@ -43,9 +49,9 @@ fn questions_take_few_keys_and_the_screen_answers_them() {
     for (question, preset, keys, most, said) in JOBS {
         let mut screen = Screen::new(preset);
         // Drawn before and after, as on a terminal: views ask for what they show.
-        screen.text(120, 40);
+        screen.text(300, 70);
         screen.keys(keys);
-        let text = screen.text(120, 70);
+        let text = screen.text(300, 70);
         for words in *said {
             assert!(text.contains(words), "{question}: {words} is missing\n{text}");
         }

@@ -13,41 +13,32 @@ fn bind(screen: &mut Screen, keys: &str) {
 #[test]
 fn sentences_name_the_keys_of_a_person() {
     let mut screen = Screen::new("wavy-sphere");
-    assert!(screen.text(100, 30).contains("n runs to a limit point, ? helps"));
+    assert!(screen.text(100, 30).contains("n runs to the first event, ? helps"));
     bind(
         &mut screen,
-        "next-limit = \"F2\"\nstep = \"F3\"\nundo = \"F4\"\njump = \"J\"\nhelp = \"F5\"\nrestart = \"F6\"\n\
-         events = \"F7\"\nsave-as = \"W\"\nwhole = \"F8\"\npin = \"F9\"\npins = []\nedit = \"F12\"\nless = \"(\"\nmore = \")\"\nslower = []\nfaster = []",
+        "next-event = \"F2\"\nstep = \"F3\"\nundo = \"F4\"\njump = \"J\"\nhelp = \"F5\"\nrestart = \"F6\"\n\
+         save-as = \"W\"\nwhole = \"F8\"\npin = \"F9\"\npins = []\nedit = \"F12\"\nless = \"(\"\nmore = \")\"\nslower = []\nfaster = []",
     );
     let says = |screen: &Screen, text: &str| {
         let shown = screen.text(120, 40);
         assert!(shown.contains(text), "{text}: {shown}");
         assert!(!shown.contains('\u{1}'), "{shown}");
     };
-    says(&screen, "F2 runs to a limit point, F5 helps");
+    says(&screen, "F2 runs to the first event, F5 helps");
     says(&screen, "A         0.0025 ( )");
-    says(&screen, "(F7: of the loop)");
-    screen.press(KeyCode::F(7));
-    says(&screen, "(F7: walked 0)");
-    screen.press(KeyCode::F(7));
-    says(&screen, "none yet: F2 runs to a limit point, J takes the jump");
     screen.keys("f");
     says(&screen, "that key does nothing here; F5 shows all keys");
     screen.press(KeyCode::F(2));
-    says(&screen, ": J jumps to");
-    says(&screen, "F3 goes on unstable");
+    says(&screen, ": F2 or J lets the edge snap to");
+    says(&screen, "F3 goes on, unstable");
     screen.keys("J");
-    says(&screen, "F2 runs to the next limit point, F4 undoes");
+    says(&screen, "F2 runs to the next event, F4 undoes");
     screen.press(KeyCode::F(9));
     says(&screen, ":pins lists the pins");
     screen.press(KeyCode::F(5));
     let help =
         (0..3).flat_map(|page| super::super::help::plain(&screen.app, page)).collect::<Vec<_>>().join("\n");
-    assert!(
-        help.contains("F2 runs to the first limit point")
-            && help.contains("J takes the jump")
-            && help.contains("press )")
-    );
+    assert!(help.contains("F2 runs to the first event") && help.contains("press )"));
     screen.keys("\x1b)q");
     says(&screen, "Esc stays, W");
     screen.keys("W");
@@ -58,9 +49,9 @@ fn sentences_name_the_keys_of_a_person() {
         screen.press(KeyCode::F(2));
         screen.keys("J");
     }
-    says(&screen, "F4 goes back, F6 restarts");
+    says(&screen, "F4 goes back, F6 starts again");
     screen.press(KeyCode::F(3));
-    says(&screen, "the bodies are apart: F4 goes back, F6 restarts");
+    says(&screen, "the bodies are apart: F4 goes back, F6 starts again");
 }
 
 #[test]

@@ -114,18 +114,24 @@ fn tab_pages_through_all_names_and_begins_again() {
 }
 
 #[test]
-fn a_title_says_when_it_was_given_to_other_values_and_a_chart_when_it_is_past_the_curve() {
+fn the_header_says_what_the_preset_says_and_what_was_changed_and_a_chart_when_it_is_past_the_curve() {
     let mut screen = Screen::new("wavy-sphere");
     let header = |screen: &mut Screen| screen.text(120, 40).lines().next().unwrap().to_owned();
-    assert!(!header(&mut screen).contains("modified"));
+    let says = "A sphere with waves on it, pulled off by fixed grips: the place to start.";
+    assert!(header(&mut screen).contains(says), "{}", header(&mut screen));
     screen.keys(":set gap.amplitude=0.003\r");
+    assert!(header(&mut screen).trim_end().ends_with("  A 0.0025 → 0.003"), "{}", header(&mut screen));
+    screen.keys(":set gap.amplitude=0.0025000001\r");
+    assert!(header(&mut screen).trim_end().ends_with("  A 0.0025 → 0.0025000001"), "{}", header(&mut screen));
+    // All that it says, and what was changed.
+    screen.keys("I");
+    let text = screen.text(120, 40);
     assert!(
-        header(&mut screen).trim_end().ends_with("from wave to wave, modified"),
-        "{}",
-        header(&mut screen)
+        text.contains("1.48 times that of the smooth sphere") && text.contains("Changed since"),
+        "{text}"
     );
-    screen.keys("u");
-    assert!(!header(&mut screen).contains("modified"));
+    screen.keys("\x1buu");
+    assert!(header(&mut screen).contains(says), "{}", header(&mut screen));
     screen.app.model.panel = crate::explorer::Panel::Charts;
     let past =
         |screen: &mut Screen| screen.text(120, 40).contains("past the end of the curve: f shows all of it");
@@ -236,12 +242,12 @@ fn the_help_names_commands_and_undo_takes_a_count() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("?");
     let shown = screen.text(100, 30);
-    assert!(shown.lines().next().unwrap().contains("Help 1 of 3: how to read it"), "{shown}");
+    assert!(shown.lines().next().unwrap().contains("Help 1 of 4: how to read it"), "{shown}");
     screen.keys("\t");
     assert!(screen.text(100, 30).lines().nth(1).unwrap().contains("First steps"));
     screen.press(KeyCode::BackTab);
     assert_eq!(screen.text(100, 30), shown);
-    for (keys, found) in [("/next-limit\r", "next-limit"), ("/double-step\r", "double-step")] {
+    for (keys, found) in [("/next-event\r", "next-event"), ("/double-step\r", "double-step")] {
         screen.keys(keys);
         let shown = screen.text(100, 30);
         assert!(!shown.contains("not found") && shown.contains(found), "{shown}");
@@ -267,7 +273,7 @@ fn figures_and_the_screen_are_exported_by_a_line() {
     let read = |name: &str| std::fs::read_to_string(path(name)).unwrap();
     assert!(read("a.svg").starts_with("<svg") && read("b.svg").contains("log"));
     assert_ne!(read("a.svg"), read("b.svg"));
-    assert!(read("c.txt").contains("Events on the curve"));
+    assert!(read("c.txt").contains("lost so far 0 of"));
     // Over what is there only when told.
     screen.keys(&format!(":export screen {}\r", path("c.txt")));
     assert!(screen.text(100, 30).contains("y replaces it"), "{}", screen.text(100, 30));

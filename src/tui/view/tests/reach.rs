@@ -43,15 +43,15 @@ fn a_click_selects_and_once_more_goes_there() {
     let at = place(&screen, " γ     ");
     click(&mut screen, at);
     assert_eq!(screen.app.model.selected_knob().unwrap().0.key, "material.work_of_adhesion");
-    let at = place(&screen, "Walker, step");
+    let at = place(&screen, "Here, step");
     click(&mut screen, at);
-    assert_eq!(screen.app.model.panel, Panel::Walker);
-    let at = place(&screen, " 2 snap");
+    assert_eq!(screen.app.model.panel, Panel::Here);
+    let at = place(&screen, "2 snap");
     click(&mut screen, at);
-    assert_eq!((screen.app.model.panel, screen.app.model.event), (Panel::Events, 1));
+    assert_eq!((screen.app.model.panel, screen.app.model.event), (Panel::Log, 1));
     assert_eq!(screen.app.model.history.current().unwrap().step, 0);
     click(&mut screen, at);
-    let event = &screen.app.model.shown_events()[1];
+    let event = &screen.app.model.path_events()[1];
     let node = screen.app.model.history.current().unwrap();
     let s = node.state.in_units(node.setting.units()).contact_radius;
     assert!((s - event.before.as_ref().unwrap().contact_radius).abs() < 1e-6 * s, "{s}");
@@ -69,13 +69,11 @@ fn a_click_selects_and_once_more_goes_there() {
 fn a_click_on_the_curve_takes_the_walker_there_and_so_does_the_cross_hair() {
     let mut screen = screen("wavy-sphere");
     screen.app.theme = PLAIN;
-    // The letter of the last contact stands on the curve, and in the legend above it.
-    let drawn = screen.text(SIZE.width, SIZE.height);
-    let is_it = |line: &&str| line.contains('X') && !line.contains("X last contact");
-    let line = drawn.lines().find(is_it).unwrap_or_else(|| unreachable!("no X in {drawn}"));
-    let at = place(&screen, line);
-    let along = line.chars().position(|c| c == 'X').unwrap();
-    let at = Position::new(u16::try_from(along).unwrap(), at.y);
+    // The number of the last contact stands beside the curve.
+    let drawn = screen.draw(SIZE.width, SIZE.height);
+    let marks = screen.app.theme.styles().mark.fg.unwrap();
+    let is_it = |at: &Position| drawn[*at].symbol() == "6" && drawn[*at].fg == marks;
+    let at = SIZE.positions().find(is_it).unwrap_or_else(|| unreachable!("no 6 on the screen"));
     click(&mut screen, at);
     let at_pull_off = screen.app.model.history.current().unwrap().state.contact_radius;
     let limits = screen.app.model.curve.clone().unwrap();
@@ -104,9 +102,9 @@ fn the_wheel_turns_zooms_and_scrolls() {
     let now = screen.app.model.preset.material.work_of_adhesion;
     assert!(now > before && now < 1.02 * before, "{now}");
     mouse(&mut screen, MouseEventKind::ScrollDown, at);
-    let events = place(&screen, " 2 snap");
+    let events = place(&screen, "2 snap");
     mouse(&mut screen, MouseEventKind::ScrollDown, events);
-    assert_eq!((screen.app.model.panel, screen.app.model.event), (Panel::Events, 1));
+    assert_eq!((screen.app.model.panel, screen.app.model.event), (Panel::Log, 1));
     for _ in 0..50 {
         mouse(&mut screen, MouseEventKind::ScrollDown, events);
     }
@@ -220,7 +218,7 @@ fn the_screen_is_exported_as_text() {
     assert_eq!(std::fs::read_to_string(&path).unwrap(), wanted);
     assert!(screen.text(120, 40).contains("y replaces it"));
     screen.keys("y");
-    assert!(std::fs::read_to_string(&path).unwrap().contains("Limit point 1/15"));
+    assert!(std::fs::read_to_string(&path).unwrap().contains("Event 1 of 6"));
     typed(&mut screen, folder.path().join("a.csv").to_str().unwrap());
     assert!(screen.text(120, 40).contains("must end in .txt"));
 }
@@ -305,7 +303,10 @@ fn the_states_walked_are_a_table_that_scrolls_and_leads_back() {
     }
     let path = screen.app.model.history.path().len();
     // To Charts, to the first line, two further, and there; then back.
-    screen.keys("\t\t").press(KeyCode::Home);
+    screen.keys("\t\t\t");
+    for _ in 0..20 {
+        screen.press(KeyCode::PageUp);
+    }
     assert_eq!(screen.app.model.walk_line, Some(0));
     screen.keys("jj\r");
     assert_eq!(screen.app.model.history.path().len(), 3);
@@ -326,7 +327,7 @@ fn differences_tell_curves_apart_that_are_closer_than_a_dot() {
     let text = screen.text(80, 24);
     assert!(text.contains("differences     - nothing to compare with: p pins"), "{text}");
     screen.keys("\x1bp:set gap.amplitude=0.0025000001\r:view differences\r");
-    let text = screen.text(120, 40);
+    let text = screen.text(200, 40);
     assert!(text.contains("ΔP/Pc over s/λ") && text.contains("at @: 1 A 0.0025 "), "{text}");
 }
 

@@ -1,8 +1,9 @@
-//! The state of the walker.
+//! The state on which the walker stands, and how it steps.
 
-use super::parts::{is_selected, pair, panel, whole_words};
+use super::parts::{is_selected, pair, panel};
 use crate::explorer::node::{Node, NodeKind};
-use crate::explorer::{Id, Model, Panel};
+use crate::explorer::{Id, Model, Panel, View};
+use crate::figure::{Axis, Scale};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
@@ -20,8 +21,8 @@ use ratatui::widgets::Paragraph;
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
     let node = model.history.current();
-    let title = node.map_or_else(|| "Walker".to_owned(), |node| format!("Walker, step {}", node.step));
-    let block = panel(theme, &title, is_selected(app, Panel::Walker));
+    let title = node.map_or_else(|| "Here".to_owned(), |node| format!("Here, step {}", node.step));
+    let block = panel(theme, &title, is_selected(app, Panel::Here));
     let inner = block.inner(area);
     frame.render_widget(block, area);
     let Some(node) = node else { return };
@@ -41,13 +42,94 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
+/// The state in one line: as many of its parts as there is room for, in the units of the charts.
+pub fn line(app: &App, room: usize) -> Line<'static> {
+    let (model, theme) = (&app.model, app.theme);
+    let (Some(node), Some(curve)) = (model.history.current(), model.curve.as_deref()) else {
+        return Line::default();
+    };
+    let scale = Scale::of(curve, model.axes);
+    let [length, force] = scale.axes(View::ForceApproach);
+    let [radius, _] = scale.axes(View::ForceRadius);
+    let state = node.state.in_units(node.setting.units());
+    let mut parts: Vec<Vec<Span<'static>>> = Vec::new();
+    let shown = |axis: &Axis, x: f64, digits| {
+        pair(theme, &format!("{} ", axis.symbol), &significant(x, digits)).to_vec()
+    };
+    parts.push(vec![Span::styled(format!("@ {}", node.step), theme.strong())]);
+    if matches!(node.kind, NodeKind::Stale(_)) || !model.is_on_curve(node) {
+        parts.push(vec![Span::styled("not of these values", theme.error())]);
+    }
+    if node.is_apart() {
+        parts.push(vec![Span::styled("apart, last contact", theme.strong())]);
+    }
+    parts.push(shown(&length, scale.length(state.approach), 4));
+    parts.push(shown(&force, scale.force(state.force), 4));
+    parts.push(shown(&radius, scale.radius(state.contact_radius), 3));
+    if !node.is_apart() {
+        let fault = inadmissible(theme, node).map(|line| line.to_string().trim().to_owned());
+        parts.extend(fault.map(|fault| vec![Span::styled(fault, theme.error())]));
+        let flags = stable(model, node).into_iter().flat_map(|[name, word]| {
+            let (word, is_bad) = match word {
+                "yes" => ("stable", false),
+                "no" => ("unstable", true),
+                word => (word, true),
+            };
+            let word = if is_bad { Span::styled(word, theme.error()) } else { Span::raw(word) };
+            [Span::styled(theme.text(&format!("{name} ")), theme.dim()), word, Span::raw(" ")]
+        });
+        parts.push(flags.collect());
+        let way = if model.inward { "inward" } else { "outward" };
+        parts.push(pair(theme, "step ", &format!("{} {way}", short(model.length, 3))).to_vec());
+    }
+    let mut spans = vec![Span::raw(" ")];
+    let mut used = 1;
+    for part in parts {
+        let width: usize = part.iter().map(Span::width).sum();
+        // A part that ends in a blank needs one less.
+        let ends = spans.last().is_some_and(|span| span.content.ends_with(' '));
+        let between = if used > 1 { 2 - usize::from(ends) } else { 0 };
+        if used + between + width > room {
+            break;
+        }
+        used += between + width;
+        spans.push(Span::raw(" ".repeat(between)));
+        spans.extend(part);
+    }
+    Line::from(spans)
+}
+
+/// Each control, and whether the state stays with it held.
+fn stable(model: &Model, node: &Node) -> Vec<[&'static str; 2]> {
+    let spring = model.control().filter(|control| matches!(control, Control::Stiffness(_)));
+    let word = |control| {
+        let name = match control {
+            Control::Displacement => "δ",
+            Control::Force => "P",
+            Control::Stiffness(_) => "k",
+        };
+        let is_stable = node.stability.under(control);
+        [
+            name,
+            if node.is_limit(control) {
+                "LIMIT"
+            } else if is_stable {
+                "yes"
+            } else {
+                "no"
+            },
+        ]
+    };
+    [Control::Displacement, Control::Force].into_iter().chain(spring).map(word).collect()
+}
+
 /// A line that fits, or as many of its pairs as do.
 fn fitting(theme: Theme, line: Line<'static>, room: usize) -> Option<Line<'static>> {
     if line.width() <= room {
         return Some(line);
     }
     let style = line.style;
-    let text = whole_words(theme, &line.to_string(), room);
+    let text = theme.whole_words(&line.to_string(), room);
     // A key without its value says nothing.
     (text.split_whitespace().count() > 1).then(|| Line::styled(text, style))
 }
@@ -62,10 +144,14 @@ fn apart(theme: Theme, keymap: &Keymap, node: &Node) -> Vec<Line<'static>> {
     let shown = |quantity, x| shown(theme, node, quantity, x, 5);
     vec![
         Line::styled(" the bodies are apart", theme.strong()),
-        Line::from(pair(theme, " pulled off at δ ", &shown(Quantity::Length, state.approach)).to_vec()),
+        Line::from(pair(theme, " last contact δ ", &shown(Quantity::Length, state.approach)).to_vec()),
         Line::from(pair(theme, "              P ", &shown(Quantity::Force, state.force)).to_vec()),
         Line::from(pair(theme, "              s ", &shown(Quantity::Length, state.contact_radius)).to_vec()),
-        Line::raw(format!(" {} goes back, {} restarts", keymap.first(Id::Undo), keymap.first(Id::Restart))),
+        Line::raw(format!(
+            " {} goes back, {} starts again",
+            keymap.first(Id::Undo),
+            keymap.first(Id::Restart)
+        )),
     ]
 }
 
@@ -84,24 +170,10 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
     if let Some(wave) = wave {
         radius.extend(pair(theme, "  s/λ ", &significant(s / wave, 4)));
     }
-    let stability = node.stability;
-    let mut stable = vec![Span::styled(" stable", theme.dim())];
-    let spring = model.control().filter(|control| matches!(control, Control::Stiffness(_)));
-    for control in [Control::Displacement, Control::Force].into_iter().chain(spring) {
-        let name = match control {
-            Control::Displacement => " δ",
-            Control::Force => " P",
-            Control::Stiffness(_) => " k",
-        };
-        let word = if node.is_limit(control) {
-            Span::styled("LIMIT", theme.error())
-        } else if stability.under(control) {
-            Span::raw("yes")
-        } else {
-            Span::styled("no", theme.error())
-        };
-        stable.push(Span::styled(theme.text(&format!("{name} ")), theme.dim()));
-        stable.push(word);
+    let mut flags = vec![Span::styled(" stable", theme.dim())];
+    for [name, word] in stable(model, node) {
+        let word = if word == "yes" { Span::raw(word) } else { Span::styled(word, theme.error()) };
+        flags.extend([Span::styled(theme.text(&format!("  {name} ")), theme.dim()), word]);
     }
     let way = if model.inward {
         theme.glyph("← inward", "< inward")
@@ -112,7 +184,7 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
         Line::from(pair(theme, " δ ", &shown(theme, node, Quantity::Length, state.approach, 5)).to_vec()),
         Line::from(force),
         Line::from(radius),
-        Line::from(stable),
+        Line::from(flags),
     ];
     lines.extend(inadmissible(theme, node));
     lines.extend(contacts(theme, node));

@@ -1,0 +1,196 @@
+//! What happens on the path, as one list: what is done, where the walker stands, what lies ahead.
+//!
+//! The path is the way of the device: down from the disc to begin with, or from apart to the turn and back. Its events have one number
+//! each, on charts, in the log, on the status line and in files. A jump that was walked by hand and is none of them has no number.
+
+use super::model::Model;
+use super::node::{Node, NodeKind};
+use pulloff_engine::problem::Begin;
+use pulloff_engine::report::PathReport;
+use pulloff_engine::report::path::{EventReport, StateReport};
+
+/// Radii of one state, found in two ways, are as near as this.
+const SAME: f64 = 1e-6;
+
+/// Whether an event has happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mark {
+    Done,
+    /// The walker stands where it begins.
+    Here,
+    Ahead,
+}
+
+/// One line of the log.
+#[derive(Debug, Clone)]
+pub struct Entry {
+    pub mark: Mark,
+    /// Its number on the path, from 1; none of what was walked off it.
+    pub number: Option<usize>,
+    pub event: EventReport,
+    /// The node of the walk that it made.
+    pub node: Option<usize>,
+}
+
+/// The events of the path and of the walk, in order.
+#[derive(Debug, Clone, Default)]
+pub struct Log {
+    pub entries: Vec<Entry>,
+}
+
+impl Log {
+    /// The energy lost so far, and whether a loss without bound is among it.
+    pub fn lost(&self) -> (f64, bool) {
+        let done = self.entries.iter().filter(|entry| entry.mark == Mark::Done);
+        done.fold((0.0, false), |(sum, unbounded), entry| match entry.event.dissipated {
+            Some(lost) => (sum + lost, unbounded),
+            None => (sum, true),
+        })
+    }
+
+    /// The place in the list of the event of this number.
+    pub fn place(&self, number: usize) -> Option<usize> {
+        self.entries.iter().position(|entry| entry.number == Some(number))
+    }
+
+    /// The event where the walker stands.
+    pub fn here(&self) -> Option<&Entry> {
+        self.entries.iter().find(|entry| entry.mark == Mark::Here)
+    }
+}
+
+fn is_near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME * a.abs().max(b.abs())
+}
+
+fn radius(state: Option<&StateReport>) -> Option<f64> {
+    state.map(|state| state.contact_radius)
+}
+
+/// Whether both begin and end in one state.
+fn is_same(a: &EventReport, b: &EventReport) -> bool {
+    let near = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => is_near(a, b),
+        (a, b) => a.is_none() && b.is_none(),
+    };
+    a.direction == b.direction
+        && near(radius(a.before.as_ref()), radius(b.before.as_ref()))
+        && near(radius(a.after.as_ref()), radius(b.after.as_ref()))
+}
+
+impl Model {
+    /// The path of the device from where it begins; it can be that of values before.
+    pub fn path(&self) -> Option<&PathReport> {
+        match self.preset.path.begin {
+            Begin::Touch => self.cycle.as_ref()?.report(),
+            Begin::Disc => self.curve.as_ref()?.report.as_ref(),
+        }
+    }
+
+    /// The events of the path.
+    pub fn path_events(&self) -> &[EventReport] {
+        self.path().map_or(&[], |path| &path.events)
+    }
+
+    /// How many lines the log has: its events, and the inadmissible parts of the curve behind them.
+    pub fn log_lines(&self) -> usize {
+        self.log().entries.len() + self.shown_inadmissible().len()
+    }
+
+    /// The log.
+    pub fn log(&self) -> Log {
+        let events = self.path_events();
+        let walk = self.history.path();
+        let first = walk.iter().rposition(|(_, node)| node.begins).unwrap_or(0);
+        let walk = &walk[first..];
+        let of_curve: Vec<&(usize, &Node)> = walk.iter().filter(|(_, node)| self.is_on_curve(node)).collect();
+        let mut done: Vec<Option<Option<usize>>> = vec![None; events.len()];
+        if let Some((_, node)) = of_curve.first().filter(|(_, node)| node.begins) {
+            done.iter_mut().take(self.passed_before(events, node)).for_each(|done| *done = Some(None));
+        }
+        // What was walked and is no event of the path stands behind the last one that was.
+        let mut strays: Vec<(usize, Entry)> = Vec::new();
+        let mut last = done.iter().rposition(Option::is_some).map_or(0, |at| at + 1);
+        for (number, event) in self.walked_events() {
+            if !of_curve.iter().any(|(of_curve, _)| *of_curve == number) {
+                continue;
+            }
+            match events.iter().position(|other| is_same(&event, other)) {
+                Some(at) => {
+                    done[at] = Some(Some(number));
+                    last = at + 1;
+                }
+                None => {
+                    strays.push((last, Entry { mark: Mark::Done, number: None, event, node: Some(number) }));
+                }
+            }
+        }
+        let here = self.walker().filter(|node| {
+            !node.is_apart()
+                && self
+                    .control()
+                    .is_some_and(|control| node.at(control) != pulloff_engine::quasistatic::walk::At::Nothing)
+        });
+        let stands = here.map(|node| node.state.in_units(node.setting.units()).contact_radius);
+        let direction = if self.inward { "unloading" } else { "loading" };
+        let at = events.iter().enumerate().position(|(at, event)| {
+            let begins = radius(event.before.as_ref()).zip(stands);
+            let is_ahead =
+                done[at].is_none() || matches!(here, Some(node) if !matches!(node.kind, NodeKind::Jump(_)));
+            is_ahead && event.direction == direction && begins.is_some_and(|(a, b)| is_near(a, b))
+        });
+        if let Some(turn) = events.iter().position(|event| event.kind == "turn") {
+            let reached = radius(events[turn].before.as_ref()).unwrap_or(f64::INFINITY);
+            let radius = |node: &Node| node.state.contact_radius * node.setting.units().length;
+            let is_reached = of_curve.iter().any(|(_, node)| radius(node) >= reached * (1.0 - SAME));
+            if self.inward && is_reached {
+                done[turn] = Some(None);
+            }
+        }
+        let mut entries = Vec::new();
+        let mut strays = strays.into_iter().peekable();
+        for (index, event) in events.iter().enumerate() {
+            while let Some((_, entry)) = strays.next_if(|(after, _)| *after <= index) {
+                entries.push(entry);
+            }
+            let mark = match (at == Some(index), done[index]) {
+                (true, _) => Mark::Here,
+                (false, Some(_)) => Mark::Done,
+                (false, None) => Mark::Ahead,
+            };
+            entries.push(Entry {
+                mark,
+                number: Some(index + 1),
+                event: event.clone(),
+                node: done[index].flatten(),
+            });
+        }
+        entries.extend(strays.map(|(_, entry)| entry));
+        Log { entries }
+    }
+
+    /// How many events of the path lie before a state with which a walk begins.
+    fn passed_before(&self, events: &[EventReport], node: &Node) -> usize {
+        let s = node.state.in_units(node.setting.units()).contact_radius;
+        let direction =
+            if self.inward || self.preset.path.begin == Begin::Disc { "unloading" } else { "loading" };
+        if let NodeKind::Start = node.kind {
+            let landed =
+                events.iter().position(|event| radius(event.after.as_ref()).is_some_and(|r| is_near(r, s)));
+            return landed.filter(|_| self.preset.path.begin == Begin::Touch).map_or(0, |at| at + 1);
+        }
+        let begins = |event: &EventReport| radius(event.before.as_ref());
+        let at = events
+            .iter()
+            .position(|event| event.direction == direction && begins(event).is_some_and(|r| is_near(r, s)));
+        at.unwrap_or_else(|| {
+            let is_behind = |event: &&EventReport| match (event.direction, direction) {
+                ("loading", "unloading") => true,
+                ("unloading", "unloading") => begins(event).is_some_and(|r| r > s),
+                ("loading", _) => radius(event.after.as_ref()).is_none_or(|r| r < s),
+                _ => false,
+            };
+            events.iter().take_while(is_behind).count()
+        })
+    }
+}

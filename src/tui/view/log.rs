@@ -1,0 +1,325 @@
+//! The log: what happens on the path, done, here and ahead, a line each; behind it the inadmissible parts of the curve.
+
+use super::parts::{is_selected, panel};
+use crate::explorer::log::{Entry, Log, Mark};
+use crate::explorer::{Axes, Inadmissible, Model, Panel, View};
+use crate::figure::{Axis, Scale};
+use crate::tui::app::App;
+use crate::tui::keymap::Keymap;
+use crate::tui::theme::Theme;
+use pulloff_engine::problem::{Begin, Control};
+use pulloff_engine::report::PathReport;
+use pulloff_engine::report::number::{fixed, loss, significant, with_unit};
+use pulloff_engine::report::path::{EventReport, StateReport};
+use pulloff_engine::units::{Quantity, UnitSystem};
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+use ratatui::text::Line;
+use ratatui::widgets::Paragraph;
+
+/// From this width on columns name their units.
+const UNITS: usize = 96;
+/// With so many lines inside there is room for the way of the control.
+const BAR_ROWS: u16 = 4;
+
+/// Draws the log.
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
+    let (model, theme) = (&app.model, app.theme);
+    let log = model.log();
+    let selected = is_selected(app, Panel::Log);
+    let head = title(model, theme, usize::from(area.width));
+    let room = usize::from(area.width).saturating_sub(head.chars().count() + 4);
+    let block = panel(theme, &head, selected)
+        .title_top(Line::styled(theme.text(&sums(model, &log, room)), theme.strong()).right_aligned());
+    let inner = block.inner(area);
+    frame.render_widget(block, area);
+    let room = usize::from(inner.width);
+    let bar = bar(model, theme, area);
+    let rows = usize::from(inner.height).saturating_sub(usize::from(bar.is_some()));
+    let mut lines: Vec<Line> = bar.into_iter().collect();
+    let parts = model.shown_inadmissible();
+    if log.entries.is_empty() && parts.is_empty() {
+        lines.push(Line::styled(
+            theme.whole_words(&theme.text(&empty(model, &app.keymap)), room),
+            theme.dim(),
+        ));
+        frame.render_widget(Paragraph::new(lines), inner);
+        return;
+    }
+    let count = log.entries.len() + parts.len();
+    let first = first(&log, model, count, rows);
+    let hidden = count.saturating_sub(first + rows);
+    let more = if hidden > 0 { format!(" +{hidden}") } else { String::new() };
+    let texts = table(model, theme, &log.entries, first, room.saturating_sub(1 + more.len()));
+    let units = &model.preset.units;
+    let texts = texts.into_iter().chain(parts.iter().map(|found| part(found, units, theme.ascii)));
+    let last = first + rows.min(count);
+    lines.extend(texts.enumerate().skip(first).take(rows).map(|(i, text)| {
+        let chosen = i == model.event && selected;
+        let mark = if chosen { '>' } else { ' ' };
+        let text = theme.whole_words(&theme.text(&format!("{mark}{text}")), room - more.len());
+        let width = room - more.len();
+        let text = if i + 1 == last { format!("{text:<width$}{more}") } else { text };
+        let style = match log.entries.get(i).map(|entry| entry.mark) {
+            _ if chosen => theme.selection(),
+            Some(Mark::Here) => theme.strong(),
+            Some(Mark::Ahead) | None => Style::new(),
+            Some(Mark::Done) => theme.dim(),
+        };
+        Line::styled(text.trim_end().to_owned(), style)
+    }));
+    let notes = model.curve.iter().flat_map(|curve| &curve.base.notes);
+    let note =
+        |text: &String| Line::styled(theme.whole_words(&theme.text(&format!(" {text}")), room), theme.dim());
+    lines.extend(notes.map(note));
+    frame.render_widget(Paragraph::new(lines), inner);
+}
+
+/// The first line shown: the selected one is seen, and where that is another panel's matter, the one that is next.
+fn first(log: &Log, model: &Model, count: usize, rows: usize) -> usize {
+    let next = || log.entries.iter().rposition(|entry| entry.mark == Mark::Done).map_or(0, |done| done + 1);
+    let here = log.entries.iter().position(|entry| entry.mark == Mark::Here);
+    let shown = if model.panel == Panel::Log { model.event } else { here.unwrap_or_else(next) };
+    // What is done just before stays in sight.
+    let above = if model.panel == Panel::Log { shown + 1 } else { shown + 2 };
+    above.saturating_sub(rows).min(count.saturating_sub(rows))
+}
+
+/// The line in this row of the screen, in the pane `area`.
+pub fn line_at(app: &App, area: Rect, row: u16) -> Option<usize> {
+    let model = &app.model;
+    let bar = u16::from(bar(model, app.theme, area).is_some());
+    let rows = usize::from(area.height.saturating_sub(2 + bar));
+    let log = model.log();
+    let count = log.entries.len() + model.shown_inadmissible().len();
+    let below = usize::from(row.checked_sub(area.y + 1 + bar)?);
+    let line = first(&log, model, count, rows) + below;
+    (below < rows && line < count).then_some(line)
+}
+
+/// An inadmissible part of the curve: no event, so it has no number.
+fn part(part: &Inadmissible, units: &UnitSystem, ascii: bool) -> String {
+    let wave = part.report.crest_wave.map_or_else(String::new, |wave| format!(" ({wave})"));
+    format!("! inadmissible {}{wave}", part.report.text(units, ascii))
+}
+
+/// What the marks mean, and whether all of it is of values before.
+fn title(model: &Model, theme: Theme, width: usize) -> String {
+    let is_old = model.preset.path.begin == Begin::Touch
+        && model.cycle.as_ref().is_some_and(|cycle| !cycle.is_of(&model.preset));
+    let old = if is_old { ", of the values before" } else { "" };
+    let marks = format!(
+        "Log{old} {} done {} here {} ahead",
+        mark(theme, Mark::Done),
+        mark(theme, Mark::Here),
+        mark(theme, Mark::Ahead)
+    );
+    if marks.chars().count() + 30 < width { marks } else { format!("Log{old}") }
+}
+
+fn mark(theme: Theme, mark: Mark) -> &'static str {
+    match mark {
+        Mark::Done => theme.glyph("✓", "x"),
+        Mark::Here => "@",
+        Mark::Ahead => theme.glyph("·", "."),
+    }
+}
+
+/// The largest pull, what was lost so far and what the path loses, as much of it as there is room for.
+fn sums(model: &Model, log: &Log, room: usize) -> String {
+    let Some(path) = model.path() else { return String::new() };
+    let units = &model.preset.units;
+    let energy = |lost: f64, unbounded: bool| {
+        let lost = units.shown(Quantity::Energy, lost).number;
+        let text = if lost == 0.0 { "0".to_owned() } else { loss(lost) };
+        format!("{text}{}", if unbounded { "+" } else { "" })
+    };
+    let (lost, unbounded) = log.lost();
+    let totals = &path.totals;
+    let all = totals.dissipated.unwrap_or(totals.dissipated_before_last_contact);
+    let unit = units.unit(Quantity::Energy).map_or_else(String::new, |unit| format!(" {unit}"));
+    let of = format!("{} of {}{unit}", energy(lost, unbounded), energy(all, totals.dissipated.is_none()));
+    let pull = totals.largest_pull.as_ref().map(|at| {
+        let critical = model.curve.as_ref().map_or(0.0, |curve| curve.base.critical_force);
+        if model.axes == Axes::Reduced && critical > 0.0 {
+            format!("A {} Pc  ", significant(at.force / critical, 4))
+        } else {
+            format!("A {}  ", with_unit(units, Quantity::Force, at.force, false, |x| significant(x, 4)))
+        }
+    });
+    let pull = pull.unwrap_or_default();
+    [format!("{pull}lost so far {of}"), format!("lost so far {of}"), format!("lost {of}")]
+        .into_iter()
+        .find(|text| text.chars().count() <= room)
+        .unwrap_or_default()
+}
+
+fn empty(model: &Model, keymap: &Keymap) -> String {
+    let why = match (&model.curve, model.preset.path.begin, &model.cycle) {
+        (None, ..) | (Some(_), Begin::Touch, None) => " computing the path".to_owned(),
+        (Some(_), Begin::Touch, Some(cycle)) => match &cycle.report {
+            Err(reason) => format!(" no path: {reason}"),
+            Ok(report) => format!(" nothing happens: {}", report.stop),
+        },
+        (Some(curve), Begin::Disc, _) => match (&curve.unloading, &curve.report) {
+            (Err(reason), _) => format!(" no path: {reason}"),
+            (Ok(_), report) => {
+                format!(" nothing happens: {}", report.as_ref().map_or("", |report| &report.stop))
+            }
+        },
+    };
+    keymap.spelled(&why)
+}
+
+/// The way of the control, its turn in the middle, with events and walker on it; nothing where a path does not turn, and in few rows.
+fn bar(model: &Model, theme: Theme, area: Rect) -> Option<Line<'static>> {
+    let path = model.path().filter(|path| path.turn.is_some())?;
+    let room = usize::from(area.width.checked_sub(4).filter(|_| area.height >= BAR_ROWS + 2)?);
+    let (first, turn) = (path.events.first()?, path.events.iter().find(|event| event.kind == "turn")?);
+    let last = path.events.last()?;
+    let lowest = first.control.min(last.control);
+    let span = turn.control - lowest;
+    let half = 0.5 * room.saturating_sub(1) as f64;
+    let place = |control: f64, down: bool| {
+        let share = ((control - lowest) / span).clamp(0.0, 1.0);
+        let at = if down { half * (2.0 - share) } else { half * share };
+        // Between 0 and the width of the screen.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let at = at.round() as usize;
+        at.min(room - 1)
+    };
+    let mut cells: Vec<char> = vec![if theme.ascii { '-' } else { '─' }; room];
+    for event in &path.events {
+        let digit = u32::try_from(event.number).ok().and_then(|number| char::from_digit(number, 10));
+        cells[place(event.control, event.direction == "unloading")] = digit.unwrap_or('v');
+    }
+    if let Some(node) = model.walker() {
+        let state = node.state.in_units(node.setting.units());
+        let control = model.preset.path.control.value(state.approach, state.force);
+        cells[place(control, model.inward)] = '@';
+    }
+    Some(Line::styled(format!(" {} ", cells.into_iter().collect::<String>()), theme.dim()))
+}
+
+/// A column: how soon it is left out, and whether its cells begin at its left.
+const COLUMNS: [(u8, bool); 9] = [
+    // Mark and number.
+    (0, true),
+    // What happened.
+    (3, true),
+    // δ, and after it.
+    (1, false),
+    (5, false),
+    // P, and after it.
+    (0, false),
+    (2, false),
+    // s, and after it.
+    (4, false),
+    (6, false),
+    // Crests and loss.
+    (0, true),
+];
+
+/// The lines of the entries, with as many columns as there is room for; the first line shown names what they are.
+fn table(model: &Model, theme: Theme, entries: &[Entry], named: usize, room: usize) -> Vec<String> {
+    let Some(curve) = model.curve.as_deref() else { return Vec::new() };
+    let scale = Scale::of(curve, model.axes);
+    let [length, force] = scale.axes(View::ForceApproach);
+    let [radius, _] = scale.axes(View::ForceRadius);
+    let is_held = model.control().is_some_and(|control| control == Control::Force);
+    let rows: Vec<[String; 9]> =
+        entries.iter().map(|entry| cells(entry, scale, &model.preset.units, theme, is_held)).collect();
+    // The charts say over what they are: a column has the letter alone, and where there is room its unit.
+    let letter = |axis: &Axis| {
+        let letter = axis.symbol.split('/').next().unwrap_or_default().to_owned();
+        let has_unit = room >= UNITS && !axis.shown.is_empty();
+        if has_unit { format!("{letter} ({})", axis.shown) } else { letter }
+    };
+    let heads =
+        ["", "", &letter(&length), "", &letter(&force), "", &letter(&radius), "", ""].map(str::to_owned);
+    let width = |at: usize| rows.iter().map(|row| row[at].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..COLUMNS.len()).map(width).collect();
+    let full = |at: usize| match (widths[at], heads[at].chars().count()) {
+        (0, _) => 0,
+        (width, 0) => width + 1,
+        (width, head) => width + head + 2,
+    };
+    let mut kept: Vec<usize> = (0..COLUMNS.len()).filter(|at| widths[*at] > 0).collect();
+    while kept.iter().map(|at| full(*at)).sum::<usize>() > room + 1 {
+        let worst = kept.iter().copied().max_by_key(|at| COLUMNS[*at].0);
+        let Some(worst) = worst.filter(|at| COLUMNS[*at].0 > 0) else { break };
+        kept.retain(|at| *at != worst);
+    }
+    let text = |(i, row): (usize, &[String; 9])| {
+        let cell = |at: &usize| {
+            let (text, width) = (&row[*at], widths[*at]);
+            let text = if COLUMNS[*at].1 { format!("{text:<width$}") } else { format!("{text:>width$}") };
+            match heads[*at].chars().count() {
+                0 => text,
+                head if i == named => {
+                    format!("{} {text}", heads[*at]).chars().take(head + 1 + width).collect()
+                }
+                head => format!("{:head$} {text}", ""),
+            }
+        };
+        kept.iter().map(cell).collect::<Vec<_>>().join(" ").trim_end().to_owned()
+    };
+    rows.iter().enumerate().map(text).collect()
+}
+
+/// The cells of an entry, in the units of the charts.
+fn cells(entry: &Entry, scale: Scale<'_>, units: &UnitSystem, theme: Theme, is_held: bool) -> [String; 9] {
+    let event = &entry.event;
+    let number = entry.number.map_or_else(String::new, |number| number.to_string());
+    let arrow = theme.glyph("▸", ">");
+    let changes = event.before != event.after;
+    let ends = |shown: &dyn Fn(&StateReport) -> String| {
+        let before = event.before.as_ref().or(event.after.as_ref()).map_or_else(String::new, shown);
+        let after = event.after.as_ref().filter(|_| changes && event.before.is_some()).map(shown);
+        (before, after.map_or_else(String::new, |after| format!("{arrow} {after}")))
+    };
+    let force = |at: &StateReport| {
+        let force = scale.force(at.force);
+        if scale.force.is_some() { fixed(force, 3) } else { significant(force, 4) }
+    };
+    let (delta, delta_after) = ends(&|at| significant(scale.length(at.approach), 4));
+    let (load, load_after) = ends(&force);
+    let (radius, radius_after) = ends(&|at| significant(scale.radius(at.contact_radius), 3));
+    let crest = |state: &Option<StateReport>| state.as_ref().and_then(|at| at.wave);
+    let crests = match (crest(&event.before), crest(&event.after)) {
+        (Some(before), Some(after)) if changes => format!("{before}{arrow}{after} "),
+        (Some(before), None) => format!("{before}{arrow}- "),
+        _ => String::new(),
+    };
+    let lost = match event.dissipated {
+        Some(0.0) => String::new(),
+        Some(lost) => loss(units.shown(Quantity::Energy, lost).number),
+        None => "no bound".to_owned(),
+    };
+    let fault = if event.admissible == Some(false) { " !" } else { "" };
+    // What is held does not change.
+    let (delta_after, load_after) =
+        if is_held { (delta_after, String::new()) } else { (String::new(), load_after) };
+    [
+        format!("{}{number}", mark(theme, entry.mark)),
+        event.kind.replace('-', " "),
+        delta,
+        delta_after,
+        load,
+        load_after,
+        radius,
+        radius_after,
+        format!("{crests}{lost}{fault}{}", if disagrees(event) { " ?" } else { "" }),
+    ]
+}
+
+/// Whether both computations of a loss are there and differ.
+fn disagrees(event: &EventReport) -> bool {
+    event.losses_agree() == Some(false)
+}
+
+/// How many events of each kind a path has, for [`super::result`].
+pub(super) fn snaps(path: &PathReport) -> usize {
+    path.events.iter().filter(|event| matches!(event.kind, "snap" | "snap-in")).count()
+}
