@@ -9,7 +9,7 @@
 use super::elliptic;
 use super::ground::{Ground, Under};
 use super::state::State;
-use crate::disc::outside;
+use crate::disc::{chebyshev, outside};
 use crate::elementary::{asin, sin};
 use crate::gap::Gap;
 use std::f64::consts::{FRAC_2_PI, PI};
@@ -44,8 +44,8 @@ pub struct Around<'a> {
     delta: f64,
     radii: Vec<f64>,
     y: Vec<f64>,
-    /// Nodes under the disc and the weights times X there, for radii beyond the first ring.
-    under: Option<(Under, Vec<f64>)>,
+    /// ∫ X/√(r² − a²) da over the disc for radii r beyond the inner edge of the first ring, as Σ x/√((r² − edge²) + below): [below, x].
+    under: Vec<[f64; 2]>,
 }
 
 impl<'a> Around<'a> {
@@ -54,17 +54,16 @@ impl<'a> Around<'a> {
         let y: Vec<f64> = state.y[0].iter().zip(&state.y[1]).map(|(a, b)| a + delta * b).collect();
         let radii: Vec<f64> = state.nodes.iter().flat_map(|nodes| nodes.radii.iter().copied()).collect();
         let (s, first) = (state.contacts.disc, state.contacts.rings.first());
-        let under = first.filter(|_| s > 0.0).and_then(|[edge, _]| {
-            let under = ground.under(s, *edge)?;
+        let under = first.filter(|_| s > 0.0).map_or_else(Vec::new, |[edge, _]| {
             let rings = |below: f64| -> f64 {
                 let terms = radii.iter().zip(&y);
                 terms.map(|(r, y)| y / ((r - edge).max(0.0) * (r + edge) + below).sqrt()).sum()
             };
-            let nodes = under.radius.iter().zip(&under.below).zip(&under.weight);
-            let x = nodes
-                .map(|((a, below), weight)| weight * (0.5 * (delta - ground.transform(*a)) - rings(*below)))
-                .collect();
-            Some((under, x))
+            let even = Under::even(s, *edge);
+            let nodes = even.below.iter().zip(&even.weight);
+            let smooth = nodes.map(|(below, weight)| [*below, weight * (0.5 * delta - rings(*below))]);
+            let gap = ground.sum_below(s, *edge).into_iter().map(|[below, weight]| [below, -0.5 * weight]);
+            smooth.chain(gap).collect()
         });
         Self { ground, state, delta, radii, y, under }
     }
@@ -80,23 +79,21 @@ impl<'a> Around<'a> {
         if s <= 0.0 {
             return self.ground.gap.jet(r).value - self.delta + rings;
         }
-        if let Some((under, x)) = self.under.as_ref().filter(|_| r > *edge) {
+        if r > *edge {
             let base = (r - edge) * (r + edge);
-            let disc: f64 = under.below.iter().zip(x).map(|(below, x)| x / (base + below).sqrt()).sum();
+            let disc: f64 = self.under.iter().map(|[below, x]| x / (base + below).sqrt()).sum();
             return self.ground.gap.jet(r).value - self.delta + rings + 2.0 * FRAC_2_PI * disc;
         }
         // Beside the disc its own sum is better conditioned than a difference of h and displacements.
-        let near = r.min(*edge);
-        let under = Under::even(s, near);
-        let base = (r - near) * (r + near);
+        let under = Under::even(s, r);
         let shaded: f64 = under
             .below
             .iter()
             .zip(&under.weight)
             .map(|(below, weight)| {
                 let terms = self.radii.iter().zip(&self.y);
-                let there: f64 = terms.map(|(r, y)| y / ((r - near) * (r + near) + below).sqrt()).sum();
-                weight * there / (base + below).sqrt()
+                let there: f64 = terms.map(|(x, y)| y / ((x - r) * (x + r) + below).sqrt()).sum();
+                weight * there / below.sqrt()
             })
             .sum();
         outside::gap_from(&self.ground.panels, s, self.delta, r) + rings - 2.0 * FRAC_2_PI * shaded
@@ -220,20 +217,11 @@ impl<'a> Around<'a> {
         let inside = corners.partition_point(|r| *r <= lo)..corners.partition_point(|r| *r < hi);
         let inner = corners.get(inside).unwrap_or_default();
         let borders: Vec<f64> = std::iter::once(lo).chain(inner.iter().copied()).chain([hi]).collect();
-        let parts = borders.windows(2).map(|pair| self.smooth_minimum([pair[0], pair[1]]));
+        let parts = borders.windows(2).map(|pair| {
+            let [radius, gap] = chebyshev::least(POINTS, [pair[0], pair[1]], |r| self.gap(r));
+            Crest { radius, gap }
+        });
         parts.min_by(|a, b| a.gap.total_cmp(&b.gap)).unwrap_or(Crest { radius: lo, gap: f64::NAN })
-    }
-
-    /// The same where no corner lies between.
-    fn smooth_minimum(&self, [lo, hi]: [f64; 2]) -> Crest {
-        let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
-        let series = crate::disc::chebyshev::Rule::of(POINTS).series(|x| self.gap(middle + half * x));
-        let slope = crate::disc::chebyshev::derivative(&series);
-        let roots = crate::disc::chebyshev::roots(&slope, 0.0);
-        let value = |x: f64| crate::disc::chebyshev::sum(&series, x);
-        let best = roots.into_iter().chain([-1.0, 1.0]).min_by(|a, b| value(*a).total_cmp(&value(*b)));
-        let x = best.unwrap_or(0.0);
-        Crest { radius: middle + half * x, gap: value(x) }
     }
 }
 

@@ -3,7 +3,7 @@
 //! Under the disc sums are taken in v, a = a₁ tanh v, with a₁ the inner edge of the first ring: 1/√(r² − a²) for r ≥ a₁ is then
 //! analytic for |Im v| < π/2 however near to the disc the ring begins.
 
-use crate::disc::{Panel, Panels, Table, TableError};
+use crate::disc::{Panel, Panels, Table, TableError, outside};
 use crate::elementary::{cbrt, cosh, ln, tanh};
 use crate::gap::{Form, Gap};
 use crate::progress::Progress;
@@ -260,11 +260,15 @@ impl Ground {
         after.checked_sub(1).map_or(0.0, |panel| self.panels.list()[panel].span.hi)
     }
 
-    /// Nodes for sums of the transform over the disc; none where it is not analytic under it.
-    pub fn under(&self, s: f64, edge: f64) -> Option<Under> {
+    /// ∫₀^s g/√(r² − a²) da for r ≥ `edge` > s as Σ w/√((r² − edge²) + below): [below, w].
+    pub fn sum_below(&self, s: f64, edge: f64) -> Vec<[f64; 2]> {
         // A sum with more nodes than there are at most would not be resolved.
-        let wavenumber = self.entire.filter(|k| k * edge < 400.0)?;
-        Some(Under::any(s, edge, wavenumber))
+        let Some(wavenumber) = self.entire.filter(|k| k * edge < 400.0) else {
+            return outside::sum_below(&self.panels, s, edge);
+        };
+        let under = Under::any(s, edge, wavenumber);
+        let nodes = under.radius.iter().zip(&under.below).zip(&under.weight);
+        nodes.map(|((a, below), weight)| [*below, weight * self.transform(*a)]).collect()
     }
 }
 

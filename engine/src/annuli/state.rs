@@ -8,7 +8,6 @@ use super::ground::{Ground, Under};
 use super::kernel::{self, Moved};
 use super::nodes::Nodes;
 use super::rule::MOST_POINTS;
-use crate::disc::outside;
 use crate::elementary::{atan2, cbrt, ln, log10};
 use crate::gap::Gap;
 use crate::progress::Unwatched;
@@ -399,39 +398,28 @@ impl Ground {
             vec![FRAC_PI_4; n]
         };
         let (mut values, mut slopes) = (vec![0.0; n], Vec::new());
-        let under = (s > 0.0).then(|| self.under(s, contacts.rings[0][0]));
-        if let Some(None) = under {
-            for (value, r) in values.iter_mut().zip(&points.r) {
-                *value = -FRAC_PI_4 * outside::gap_from_fine(&self.panels, s, 0.0, *r);
-            }
-            if rates {
-                slopes = points.r.iter().map(|r| -0.5 * outside::slope_from(&self.panels, s, *r)).collect();
-            }
-        } else {
-            self.gap.values(1.0, &points.r, &mut values);
-            for value in &mut values {
-                *value *= -FRAC_PI_4;
-            }
-            if rates {
-                slopes = vec![0.0; n];
-                let [mut second, mut third] = [vec![0.0; n], vec![0.0; n]];
-                self.gap.derivatives(1.0, &points.r, [&mut slopes, &mut second, &mut third]);
-                for slope in &mut slopes {
-                    *slope *= -FRAC_PI_4;
-                }
+        self.gap.values(1.0, &points.r, &mut values);
+        for value in &mut values {
+            *value *= -FRAC_PI_4;
+        }
+        if rates {
+            slopes = vec![0.0; n];
+            let [mut second, mut third] = [vec![0.0; n], vec![0.0; n]];
+            self.gap.derivatives(1.0, &points.r, [&mut slopes, &mut second, &mut third]);
+            for slope in &mut slopes {
+                *slope *= -FRAC_PI_4;
             }
         }
-        if let Some(Some(under)) = under {
-            for ((radius, below), weight) in under.radius.iter().zip(&under.below).zip(&under.weight) {
-                let factor = 0.5 * weight * self.transform(*radius);
-                let add = |(value, base): (&mut f64, &f64)| *value += factor / (base + below).sqrt();
-                values.iter_mut().zip(&points.base).for_each(add);
-                let add = |(slope, (base, r)): (&mut f64, (&f64, &f64))| {
-                    let square = base + below;
-                    *slope -= factor * r / (square * square.sqrt());
-                };
-                slopes.iter_mut().zip(points.base.iter().zip(&points.r)).for_each(add);
-            }
+        let under = if s > 0.0 { self.sum_below(s, contacts.rings[0][0]) } else { Vec::new() };
+        for [below, weight] in under {
+            let factor = 0.5 * weight;
+            let add = |(value, base): (&mut f64, &f64)| *value += factor / (base + below).sqrt();
+            values.iter_mut().zip(&points.base).for_each(add);
+            let add = |(slope, (base, r)): (&mut f64, (&f64, &f64))| {
+                let square = base + below;
+                *slope -= factor * r / (square * square.sqrt());
+            };
+            slopes.iter_mut().zip(points.base.iter().zip(&points.r)).for_each(add);
         }
         let shade_slopes: Vec<f64> = points
             .r

@@ -62,6 +62,13 @@ impl Rule {
         }
     }
 
+    /// The weight of node `j` in the sum over the nodes that, of any polynomial they resolve, is the sum with these `moments`: what it
+    /// makes of T_0, T_1, …
+    pub fn weight(&self, j: usize, moments: &[f64]) -> f64 {
+        let n = self.nodes.len();
+        self.columns[j * n..(j + 1) * n].iter().zip(moments).map(|(c, moment)| c * moment).sum()
+    }
+
     /// The series of `f` sampled at the nodes.
     pub fn series(&self, f: impl FnMut(f64) -> f64) -> Vec<f64> {
         let samples: Vec<f64> = self.nodes.iter().copied().map(f).collect();
@@ -199,6 +206,16 @@ pub fn chop(mut series: Vec<f64>, share: f64) -> Vec<f64> {
     let keep = series.iter().rposition(|c| c.abs() > share * largest).map_or(1, |k| k + 1);
     series.truncate(keep);
     series
+}
+
+/// Where a smooth function is least between two places, and its value there, by its series of `nodes` samples.
+pub fn least(nodes: usize, [lo, hi]: [f64; 2], f: impl Fn(f64) -> f64) -> [f64; 2] {
+    let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
+    let series = Rule::of(nodes).series(|x| f(middle + half * x));
+    let value = |x: f64| sum(&series, x);
+    let places = roots(&derivative(&series), 0.0).into_iter().chain([-1.0, 1.0]);
+    let x = places.min_by(|a, b| value(*a).total_cmp(&value(*b))).unwrap_or(0.0);
+    [middle + half * x, value(x)]
 }
 
 /// Parts into which an interval is divided until each has no root or is monotone.

@@ -383,7 +383,7 @@ mod tests {
             let ours = basis.gap_outside(&problem, s, delta, &radii);
             let panels = basis.table().up_to(11.0 * s).unwrap();
             for (r, ours) in radii.iter().zip(&ours) {
-                let exact = outside::gap_from_fine(&panels, s, delta, *r);
+                let exact = outside::gap_from(&panels, s, delta, *r);
                 let size = problem.gap.jet(*r).value + delta.abs();
                 assert!((ours - exact).abs() <= 1e-12 * size, "{shape:?} {r}: {ours} {exact}");
             }

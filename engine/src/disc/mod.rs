@@ -7,6 +7,7 @@
 //! | `spans` | the panels of a gap before there is a table on them |
 //! | [`blend`] | tables of mixtures of gaps |
 //! | [`sources`] | g of any gap, from samples of its slope |
+//! | [`clusters`] | sums over many panels, seen from far away |
 //! | [`waves`] | g of a paraboloid with waves |
 //! | [`cubic`] | g of a gap that is cubic between knots |
 //! | [`law`] | g of a power of r, in closed form |
@@ -23,6 +24,7 @@
 pub mod basis;
 pub mod blend;
 pub mod chebyshev;
+pub mod clusters;
 pub mod cubic;
 pub mod exact;
 pub mod law;

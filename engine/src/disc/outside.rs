@@ -16,6 +16,7 @@
 //! time only where g < δ. Where g stays above δ the bodies stay apart, and no gap needs to be computed.
 
 use super::chebyshev::{self, Rule};
+use super::clusters::Part;
 use super::panels::{Panel, Panels};
 use super::span::Place;
 use crate::elementary::{acosh, asin, asinh, cosh, pow, sin, sinh};
@@ -100,22 +101,10 @@ fn stretch_outside(
     r: f64,
     [lo, hi]: [f64; 2],
 ) -> f64 {
-    stretch_by(panels, index, panel, delta, r, [lo, hi], rule(r - hi, hi - lo))
-}
-
-/// The same by a rule.
-fn stretch_by(
-    panels: &Panels,
-    index: usize,
-    panel: &Panel,
-    delta: f64,
-    r: f64,
-    [lo, hi]: [f64; 2],
-    rule: &[[f64; 2]],
-) -> f64 {
     if hi <= lo {
         return 0.0;
     }
+    let rule = rule(r - hi, hi - lo);
     let [centre, half] = panel.span.line();
     let value =
         |v: f64| panels.value(Place { panel: index, x: ((v - centre) / half).clamp(-1.0, 1.0) }) - delta;
@@ -148,54 +137,49 @@ fn stretch_by(
     }
 }
 
-/// The same to the last digits of the table, with as many nodes on far panels as on near ones: for what is differentiated.
-pub fn gap_from_fine(panels: &Panels, s: f64, delta: f64, r: f64) -> f64 {
-    gap_by(panels, s, r, |i, ends| stretch_by(panels, i, &panels.list()[i], delta, r, ends, &RULES[0]))
-}
-
-/// d/dr ∫_s^r g/√(r² − a²) da at `r > s`; the panels must reach to `r`.
+/// What a sum over the disc of the radius `s` is made of, seen from any r ≥ `edge` > s:
 ///
 /// ```text
-/// g(s) s/(r √(r² − s²)) + ∫_s^r g'(a) (a/r)/√(r² − a²) da
+/// ∫₀^s g/√(r² − a²) da = Σ w/√((r² − edge²) + below),   below = edge² − a²
 /// ```
-pub fn slope_from(panels: &Panels, s: f64, r: f64) -> f64 {
+///
+/// as [below, w]. Whole panels far from the edge are taken together; towards it parts of panels are as wide as they are far from it.
+pub fn sum_below(panels: &Panels, s: f64, edge: f64) -> Vec<[f64; 2]> {
+    let mut nodes = Vec::new();
+    let mut add = |a: f64, weight: f64| nodes.push([(edge - a) * (edge + a), weight]);
     let at = panels.place(s);
-    let last = panels.place(r).panel;
-    let part = |i: usize| {
-        let span = panels.list()[i].span;
-        slope_outside(panels, i, r, [span.lo.max(s), span.hi.min(r)])
-    };
-    let edge = if s > 0.0 { panels.value(at) * s / (r * ((r - s) * (r + s)).sqrt()) } else { 0.0 };
-    edge + (at.panel..=last).map(part).sum::<f64>()
+    let moments = panels.moments();
+    moments.visit(at.panel, &|hi| edge - hi, &mut |part| match part {
+        Part::Far(cluster) => {
+            cluster.radii.iter().zip(&cluster.weights[0]).for_each(|(a, weight)| add(*a, *weight));
+        }
+        Part::Panel(index) => parts_below(panels, Place { panel: index, x: 1.0 }, edge, &mut add),
+    });
+    parts_below(panels, at, edge, &mut add);
+    nodes
 }
 
-/// ∫ g' (a/r)/√(r² − a²) da from `lo` to `hi` on one panel.
-fn slope_outside(panels: &Panels, index: usize, r: f64, [lo, hi]: [f64; 2]) -> f64 {
-    if hi <= lo {
-        return 0.0;
-    }
-    let span = panels.list()[index].span;
-    let rule = &RULES[0];
-    let over = |from: f64, to: f64, f: &dyn Fn(f64) -> f64| -> f64 {
-        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        half * rule.iter().map(|[x, weight]| weight * f(middle + half * x)).sum::<f64>()
+/// The sources of a panel up to a place of it.
+fn parts_below(panels: &Panels, end: Place, edge: f64, add: &mut dyn FnMut(f64, f64)) {
+    /// Parts, each half as wide as the one before.
+    const PARTS: usize = 60;
+    let span = panels.list()[end.panel].span;
+    let [centre, half] = span.line();
+    let singular = match span.variable {
+        Variable::Radius => edge,
+        Variable::Root { base } => (edge - base).sqrt(),
+        Variable::Fifth => pow(edge / span.hi, 0.2),
     };
-    let place = |a: f64| Place { panel: index, x: span.place(a) };
-    match span.variable {
-        Variable::Fifth | Variable::Radius => over(asin(lo / r), asin((hi / r).min(1.0)), &|psi| {
-            panels.values(place(r * sin(psi))).slope * sin(psi)
-        }),
-        Variable::Root { base } => {
-            let height = (r - base).sqrt();
-            let [centre, half] = span.line();
-            let angle = |a: f64| asin(((a - base).max(0.0).sqrt() / height).min(1.0));
-            over(angle(lo), angle(hi), &|psi| {
-                let y = height * sin(psi);
-                let a = base + y * y;
-                let x = ((y - centre) / half).clamp(-1.0, 1.0);
-                panels.slope_by_variable(Place { panel: index, x }) * (a / r) / (r + a).sqrt()
-            })
+    let singular = (singular - centre) / half;
+    let mut lo = -1.0;
+    for _ in 0..PARTS {
+        let hi = end.x.min(0.5 * (lo + singular));
+        if hi <= lo {
+            break;
         }
+        let sources = panels.sources(end.panel, [lo, hi]);
+        sources.radii.iter().zip(&sources.weights[0]).for_each(|(a, weight)| add(*a, *weight));
+        lo = hi;
     }
 }
 

@@ -1,7 +1,9 @@
 //! The panels of a table of g: on each, series of g, its slope, ∫₀ᵃ g and ∫₀ᵃ g², or a closed law.
 
 use super::chebyshev::{self, ROOT_NODES, Rule};
+use super::clusters::{Cluster, Clusters};
 use super::law::Law;
+use super::sources::GAUSS;
 use super::span::{Place, panel_of};
 use crate::gap::{panels::Span, panels::Variable};
 use std::sync::{Arc, OnceLock};
@@ -56,6 +58,7 @@ pub struct Panels {
     pub(super) law: Option<Law>,
     pub(super) smallest: f64,
     pub(super) digits: OnceLock<f64>,
+    pub(super) moments: OnceLock<Clusters<1>>,
 }
 
 impl Panel {
@@ -176,6 +179,25 @@ impl Panels {
             Some(law) => law.value(panel.span.radius(at.x)),
             None => chebyshev::sum(&panel.value, at.x),
         }
+    }
+
+    /// Sources of ∫ g f da between two places of a panel, seen from at least as far away as these are from each other.
+    pub fn sources(&self, panel: usize, [lo, hi]: [f64; 2]) -> Cluster<1> {
+        let (span, [_, half]) = (self.list[panel].span, self.list[panel].line);
+        let (middle, part) = (0.5 * (lo + hi), 0.5 * (hi - lo));
+        let places = GAUSS.map(|[x, weight]| (middle + part * x, part * half * weight));
+        let value = |(x, weight): (f64, f64)| weight * span.stretch(x) * self.value(Place { panel, x });
+        Cluster {
+            ends: [lo, hi].map(|x| span.radius(x)),
+            radii: places.map(|(x, _)| span.radius(x)),
+            weights: [places.map(value)],
+        }
+    }
+
+    /// The sources of all panels, made once.
+    pub fn moments(&self) -> &Clusters<1> {
+        let whole = |panel| self.sources(panel, [-1.0, 1.0]);
+        self.moments.get_or_init(|| Clusters::new((0..self.list.len()).map(whole).collect(), 0))
     }
 
     /// dg/da times the [weight](Panel::weight) of the panel.

@@ -7,10 +7,12 @@
 //!
 //! `J_q` is the jump of h' at the break q. Panels that end well below a are **far**: Gauss's rule in r, with samples that serve
 //! every a. The others, and that of a itself, are **near**: Gauss's rule in φ, r = a cos φ, in which the singularity is
-//! gone; there h' is the polynomial through its samples. Angles come from differences a − r that are exact on the panels
+//! gone; there h' is the polynomial through its samples. Of many panels those far away are taken together
+//! ([`clusters`](super::clusters)). Angles come from differences a − r that are exact on the panels
 //! right of a break.
 
 use super::chebyshev::Rule;
+use super::clusters::{Cluster, Clusters, Part};
 use super::span::panel_of;
 use crate::elementary::{atan2, cos};
 use crate::gap::Gap;
@@ -19,13 +21,15 @@ use crate::progress::Progress;
 use gauss_quad::GaussLegendre;
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
-use wide::f64x4;
 
 /// Samples of h' on a panel.
 pub const NODES: usize = 24;
 
 /// A panel is far from a when its distance is this share of its width: 24 nodes then leave 2.1⁻⁴⁸.
 const FAR: f64 = 0.15;
+
+/// From so many panels on those far away are taken together.
+const MANY: usize = 64;
 
 /// A jump of h' below this share of its size is rounding.
 const NO_JUMP: f64 = 1e-10;
@@ -46,16 +50,14 @@ struct Source {
     span: Span,
     /// The series of h' and h'' over the radius, from `lo` to `hi`; nothing on the innermost panel.
     series: [[f64; NODES]; 2],
-    /// Gauss's nodes in r.
-    radii: [f64; NODES],
-    /// Their weights times h' and times r h''.
-    weighted: [[f64; NODES]; 2],
 }
 
 /// The samples of a gap on its panels.
 #[derive(Debug, Clone)]
 pub struct Sources {
     parts: Vec<Source>,
+    /// Gauss's nodes in r on each, with their weights times h' and times r h''.
+    samples: Clusters<2>,
     /// The breaks at which h' jumps, with the jump.
     jumps: Vec<[f64; 2]>,
 }
@@ -73,7 +75,8 @@ fn slopes(gap: &dyn Gap, radii: &[f64; NODES]) -> [[f64; NODES]; 2] {
 }
 
 impl Source {
-    fn new(gap: &dyn Gap, span: Span) -> Self {
+    /// The panel, and its samples.
+    fn new(gap: &dyn Gap, span: Span) -> (Self, Cluster<2>) {
         let (centre, half) = (0.5 * (span.lo + span.hi), 0.5 * (span.hi - span.lo));
         let innermost = span.variable == Variable::Fifth;
         let mut series = [[0.0; NODES]; 2];
@@ -97,11 +100,11 @@ impl Source {
             series.each_ref().map(|series| sums(series, &places))
         };
         let [first, second] = weighted;
-        let weighted = [
+        let weights = [
             std::array::from_fn(|i| weights[i] * first[i]),
             std::array::from_fn(|i| weights[i] * radii[i] * second[i]),
         ];
-        Self { span, series, radii, weighted }
+        (Self { span, series }, Cluster { ends: [span.lo, span.hi], radii, weights })
     }
 }
 
@@ -159,7 +162,8 @@ impl Sources {
     /// said stop.
     pub fn new(gap: &dyn Gap, spans: &[Span], breaks: &[f64], progress: &dyn Progress) -> Option<Self> {
         let part = |span: &Span| (!progress.stop()).then(|| Source::new(gap, *span));
-        let parts = spans.iter().map(part).collect::<Option<_>>()?;
+        let (parts, samples) = spans.iter().map(part).collect::<Option<(Vec<_>, Vec<_>)>>()?;
+        let samples = Clusters::new(samples, MANY);
         let mut jumps = Vec::new();
         for &q in breaks {
             // A few units in the last place off: the break is known to the last bit, and on which side it lies is not.
@@ -170,7 +174,7 @@ impl Sources {
                 jumps.push([q, jump]);
             }
         }
-        Some(Self { parts, jumps })
+        Some(Self { parts, samples, jumps })
     }
 
     /// Whether h' jumps at `base`.
@@ -185,18 +189,25 @@ impl Sources {
         let a = target.a;
         let last = panel_of(&self.parts, |part| &part.span, a);
         let [mut first, mut second] = [0.0; 2];
-        for (i, part) in self.parts[..=last].iter().enumerate() {
-            let Span { lo, hi, .. } = part.span;
-            let [one, two] = if i < last && target.minus(hi) >= FAR * (hi - lo) {
-                far(part, a)
-            } else if part.span.variable == Variable::Fifth {
-                innermost(gap, &target, hi)
-            } else {
-                near(part, &target)
+        let mut add = |part: Part<'_, 2>| {
+            let [one, two] = match part {
+                Part::Far(cluster) => cluster.sums(a),
+                Part::Panel(i) => {
+                    let Span { lo, hi, variable } = self.parts[i].span;
+                    if i < last && target.minus(hi) >= FAR * (hi - lo) {
+                        self.samples.panel(i).sums(a)
+                    } else if variable == Variable::Fifth {
+                        innermost(gap, &target, hi)
+                    } else {
+                        near(&self.parts[i], &target)
+                    }
+                }
             };
             first += one;
             second += two;
-        }
+        };
+        self.samples.visit(last, &|hi| target.minus(hi), &mut add);
+        add(Part::Panel(last));
         let mut slope = first + second;
         let mut own = 0.0;
         let base = if let Variable::Root { base } = span.variable { base } else { f64::NAN };
@@ -212,22 +223,7 @@ impl Sources {
     }
 }
 
-/// ∫ h'/√(a² − r²) and ∫ r h''/√(a² − r²) over a far panel.
-fn far(part: &Source, a: f64) -> [f64; 2] {
-    let a = f64x4::splat(a);
-    let mut sums = [f64x4::ZERO; 2];
-    for i in (0..NODES).step_by(4) {
-        let four =
-            |values: &[f64; NODES]| f64x4::new([values[i], values[i + 1], values[i + 2], values[i + 3]]);
-        let r = four(&part.radii);
-        let kernel = f64x4::ONE / ((a - r) * (a + r)).sqrt();
-        sums[0] += kernel * four(&part.weighted[0]);
-        sums[1] += kernel * four(&part.weighted[1]);
-    }
-    sums.map(f64x4::reduce_add)
-}
-
-/// The same over a near panel, as far as a, by angles.
+/// ∫ h'/√(a² − r²) and ∫ r h''/√(a² − r²) over a near panel, as far as a, by angles.
 fn near(part: &Source, target: &Target) -> [f64; 2] {
     let Span { lo, hi, .. } = part.span;
     let from = if hi >= target.a { 0.0 } else { target.angle(hi) };

@@ -203,7 +203,8 @@ impl Table {
             _ => None,
         };
         let smallest = SMALLEST * FINER.powi(fineness) * reach;
-        let mut panels = Panels { list: Vec::new(), law, smallest, digits: OnceLock::new() };
+        let mut panels =
+            Panels { list: Vec::new(), law, smallest, digits: OnceLock::new(), moments: OnceLock::new() };
         self.fill(&mut panels, reach, progress)?;
         let panels = Arc::new(panels);
         lock().insert(stage, Arc::clone(&panels));

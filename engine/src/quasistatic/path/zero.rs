@@ -188,27 +188,27 @@ impl Course<'_, '_> {
         }
         let width = hi - lo;
         let range = [(lo - width).max(0.0), hi + width];
-        let least = |delta: f64, from: &Contacts| -> Option<(Held, Crest)> {
+        let least = |delta: f64, from: &Contacts| -> Option<(Held, [f64; 2])> {
             let held = self.balance.solve(from, delta).ok()?;
             let around = Around::new(self.balance.ground, &held.state, delta);
-            let least = least_pressure(&around, range);
+            let least = chebyshev::least(POINTS, range, |r| around.pressure(r));
             Some((held, least))
         };
-        let (start, first) = least(held.approach, &merged)?;
-        if first.gap >= 0.0 {
-            return Some((first.radius, start));
+        let (start, [radius, first]) = least(held.approach, &merged)?;
+        if first >= 0.0 {
+            return Some((radius, start));
         }
         // Outward until it presses there.
-        let (mut lo, mut f_lo) = (held.approach, first.gap);
+        let (mut lo, mut f_lo) = (held.approach, first);
         let mut step = 1e-4 * wave;
         let mut high = None;
         for _ in 0..40 {
-            let (next, p) = least(lo + step, &merged)?;
-            if p.gap >= 0.0 {
-                high = Some((lo + step, p.gap, next, p.radius));
+            let (next, [radius, p]) = least(lo + step, &merged)?;
+            if p >= 0.0 {
+                high = Some((lo + step, p, next, radius));
                 break;
             }
-            (lo, f_lo) = (lo + step, p.gap);
+            (lo, f_lo) = (lo + step, p);
             merged = next.state.contacts;
             step *= 1.5;
             if step > wave || before.is_some_and(|before| lo > before) {
@@ -225,17 +225,17 @@ impl Course<'_, '_> {
             if hi - lo <= 1e-15 * hi.abs().max(1e-3 * wave) {
                 break;
             }
-            let (next, p) = least(delta, &best.state.contacts)?;
+            let (next, [at, p]) = least(delta, &best.state.contacts)?;
             let moved = (delta - best.approach).abs();
-            (best, radius) = (next, p.radius);
-            if p.gap >= 0.0 {
-                (hi, f_hi) = (delta, p.gap);
+            (best, radius) = (next, at);
+            if p >= 0.0 {
+                (hi, f_hi) = (delta, p);
                 if side == 1 {
                     f_lo *= 0.5;
                 }
                 side = 1;
             } else {
-                (lo, f_lo) = (delta, p.gap);
+                (lo, f_lo) = (delta, p);
                 if side == -1 {
                     f_hi *= 0.5;
                 }
@@ -259,15 +259,4 @@ fn split_at(contacts: &mut Vec<[f64; 2]>, radius: f64) {
             contacts.insert(at, [lo, radius]);
         }
     }
-}
-
-/// The least pressure between two radii, in the place of the gap of a crest.
-fn least_pressure(around: &Around<'_>, [lo, hi]: [f64; 2]) -> Crest {
-    let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
-    let series = chebyshev::Rule::of(POINTS).series(|x| around.pressure(middle + half * x));
-    let roots = chebyshev::roots(&chebyshev::derivative(&series), 0.0);
-    let value = |x: f64| chebyshev::sum(&series, x);
-    let best = roots.into_iter().chain([-1.0, 1.0]).min_by(|a, b| value(*a).total_cmp(&value(*b)));
-    let x = best.unwrap_or(0.0);
-    Crest { radius: middle + half * x, gap: value(x) }
 }
