@@ -165,7 +165,8 @@ impl Factored {
     }
 }
 
-/// Minimizes from `start`, as long as `progress` answers yes before each round; `None` where there is nothing at the start.
+/// Minimizes from `start`. Once `progress` says stop, which it is asked before each round, the best so far is returned with
+/// [`Ending::Cancelled`]; `None` where there is nothing at the start.
 pub fn minimize<P: LeastSquares>(
     problem: &P,
     start: &[f64],

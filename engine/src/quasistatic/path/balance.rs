@@ -61,7 +61,7 @@ pub struct Held {
     pub force: f64,
     /// κ − √γ of every edge.
     pub excess: DVector<f64>,
-    /// J at held control, and ∂κ/∂c.
+    /// J = ∂κ/∂α at held control, edges × edges.
     pub jacobian: DMatrix<f64>,
     /// ∂κ/∂c.
     pub by_control: DVector<f64>,

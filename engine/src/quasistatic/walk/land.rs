@@ -102,16 +102,15 @@ impl Walk<'_> {
                 Err(PathError::State(AnnuliError::BeyondGap { .. })) => {
                     return Err(WalkFailure::NothingOutward);
                 }
-                Err(PathError::Cancelled) => return Err(WalkFailure::Stable),
                 Err(error) => return Err(WalkFailure::Edges(error.to_string())),
-                Ok(jumped) => return Ok(jumped),
+                Ok(jumped) => return jumped.ok_or(WalkFailure::Stable),
             }
         }
         Err(WalkFailure::NothingOutward)
     }
 
-    /// The same on a gap known so far; [`PathError::Cancelled`] where nothing runs.
-    fn jumped(&self, ground: Ground, from: &Point) -> Result<Jumped, PathError> {
+    /// The same on a gap known so far; `None` where nothing runs.
+    fn jumped(&self, ground: Ground, from: &Point) -> Result<Option<Jumped>, PathError> {
         let equilibrium = self.equilibrium();
         let scales = &equilibrium.scales;
         let lost = |control_value| PathError::Lost { control_value };
@@ -149,7 +148,7 @@ impl Walk<'_> {
                 (balance.kicked(&contacts, &null, sense), sense)
             }
             At::Nothing => {
-                let null = falling(&before).ok_or(PathError::Cancelled)?;
+                let Some(null) = falling(&before) else { return Ok(None) };
                 let sense = if self.inward { -1.0 } else { 1.0 };
                 (balance.kicked(&contacts, &null, sense), sense)
             }
@@ -185,7 +184,7 @@ impl Walk<'_> {
             after: new,
             passed: Vec::new(),
         };
-        Ok(Jumped { ground, held, event, passed })
+        Ok(Some(Jumped { ground, held, event, passed }))
     }
 
     /// The first touch of bodies that were apart and what it jumps to: where a walk begins that begins apart.
