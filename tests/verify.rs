@@ -203,7 +203,7 @@ fn the_program_writes_a_table_or_json_and_nothing_else() {
     assert_eq!((status, error.as_str()), (0, ""));
     let json: Value = serde_json::from_str(&text).unwrap();
     let keys = |value: &Value| -> Vec<String> { value.as_object().unwrap().keys().cloned().collect() };
-    assert_eq!(keys(&json), ["schema", "program_version", "passed", "total", "rows"]);
+    assert_eq!(keys(&json), ["schema", "document", "program_version", "passed", "total", "rows"]);
     assert_eq!((json["schema"].as_u64(), json["passed"].as_u64()), (Some(1), Some(6)));
     for row in json["rows"].as_array().unwrap() {
         let fields = ["group", "measure", "what", "ours", "exact", "other", "difference", "bound", "passes"];

@@ -6,8 +6,8 @@ use super::data::Foreign;
 use super::export::{Page, ends_in};
 use super::job::{Content, Done, Job};
 use super::journal::Beginning;
-use super::walk_table::{WALK_COLUMNS, WalkRow, changed_keys};
-use super::{data, script, study_table};
+use super::walk_table::changed_keys;
+use super::{data, script, study_table, walk_table};
 use crate::mend::Reason;
 use crate::print::Format;
 use crate::store::{Fingerprint, Overwrite, Source, Store, StoreError, WriteError, write_atomically};
@@ -15,9 +15,9 @@ use pulloff_engine::preset::changes::{changes, differences};
 use pulloff_engine::preset::{Invalid, Preset, Value, data as data_keys};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::report::path::{EventReport, events_table};
+use pulloff_engine::report::walk::{WALK_COLUMNS, WalkReport, WalkRow};
 use pulloff_engine::report::{Head, TraceReport, json, rows};
 use pulloff_engine::text::show_path;
-use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -175,19 +175,6 @@ pub fn target(path: &str) -> PathBuf {
     }
 }
 
-/// A document of the walk or of its events.
-#[derive(Debug, Serialize)]
-struct Walked<'a, R> {
-    #[serde(flatten)]
-    head: Head,
-    warnings: &'a [String],
-    notes: &'a [String],
-    #[serde(skip_serializing_if = "<[R]>::is_empty")]
-    points: &'a [R],
-    #[serde(skip_serializing_if = "<[EventReport]>::is_empty")]
-    events: &'a [EventReport],
-}
-
 /// A session as a script: opens the preset it began with, with the values that differ from its file, and follows its
 /// lines.
 fn script_text(store: &Store, start: &Beginning, lines: &[String]) -> Result<String, String> {
@@ -237,13 +224,13 @@ fn named(store: &Store, start: &Beginning) -> Result<(String, Vec<Assignment>), 
 
 /// The text of a document; of a script its lines alone.
 fn text(content: &Content, as_json: bool) -> Result<String, Box<dyn std::error::Error>> {
-    let walked = |curve: &CurveData, points: &[WalkRow], events: &[EventReport]| {
-        json(&Walked {
+    let walked = |curve: &CurveData, points: Vec<WalkRow>, events: &[EventReport]| {
+        json(&WalkReport {
             head: Head::new("walk", &curve.setting.preset, &curve.case),
-            warnings: &curve.base.warnings,
-            notes: &curve.base.notes,
+            warnings: curve.base.warnings.clone(),
+            notes: curve.base.notes.clone(),
             points,
-            events,
+            events: events.to_vec(),
         })
     };
     Ok(match content {
@@ -257,9 +244,9 @@ fn text(content: &Content, as_json: bool) -> Result<String, Box<dyn std::error::
         }
         Content::Walk(curve, walk) => {
             let changed = changed_keys(walk);
-            let points: Vec<WalkRow> = walk.iter().map(|node| WalkRow::new(node, &changed)).collect();
+            let points: Vec<WalkRow> = walk.iter().map(|node| walk_table::row(node, &changed)).collect();
             if as_json {
-                walked(curve, &points, &[])?
+                walked(curve, points, &[])?
             } else {
                 let columns = WALK_COLUMNS.iter().copied().chain(changed.iter().map(AsRef::as_ref));
                 rows::csv(&columns.collect::<Vec<_>>(), &points)?
@@ -267,7 +254,7 @@ fn text(content: &Content, as_json: bool) -> Result<String, Box<dyn std::error::
         }
         Content::Events(curve, events) => {
             if as_json {
-                walked(curve, &[], events)?
+                walked(curve, Vec::new(), events)?
             } else {
                 events_table(events)?.csv()?
             }

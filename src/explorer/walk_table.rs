@@ -5,67 +5,9 @@ use pulloff_engine::gap::{Gap, wave_index};
 use pulloff_engine::preset::{Key, Preset, Row};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::trace::StableReport;
-use serde::Serialize;
+use pulloff_engine::report::walk::WalkRow;
 use serde_json::Value;
-use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// One state of the walk as a row.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct WalkRow {
-    pub step: usize,
-    pub kind: &'static str,
-    pub control: String,
-    /// s.
-    pub contact_radius: f64,
-    /// δ.
-    pub approach: f64,
-    /// P.
-    pub force: f64,
-    /// U.
-    pub energy: f64,
-    pub wave: Option<u64>,
-    pub newton_iterations: usize,
-    pub stable: StableReport,
-    /// The energy lost in the jump that led here.
-    pub dissipated: Option<f64>,
-    pub dissipated_by_area: Option<f64>,
-    /// γ when it was solved: parameters may change during a walk.
-    pub work_of_adhesion: f64,
-    /// R when it was solved, where the gap has one.
-    pub radius_of_curvature: Option<f64>,
-    pub amplitude: Option<f64>,
-    /// λ when it was solved.
-    pub wavelength: Option<f64>,
-    /// Whether it is admissible; nothing once the bodies are apart.
-    pub admissible: Option<bool>,
-    /// The keys that changed during the walk, with their values here; null where the preset had none.
-    #[serde(flatten)]
-    pub changed: BTreeMap<String, Value>,
-}
-
-/// The columns of the walk as CSV; behind them stand the keys that changed during it.
-pub const WALK_COLUMNS: &[&str] = &[
-    "step",
-    "kind",
-    "control",
-    "contact_radius",
-    "approach",
-    "force",
-    "energy",
-    "wave",
-    "newton_iterations",
-    "stable_displacement",
-    "stable_force",
-    "stable_chosen",
-    "dissipated",
-    "dissipated_by_area",
-    "work_of_adhesion",
-    "radius_of_curvature",
-    "amplitude",
-    "wavelength",
-    "admissible",
-];
 
 /// The keys that changed during a walk, in that order; not the title and the display units.
 pub(super) fn changed_keys(walk: &[Node]) -> Vec<Key> {
@@ -89,43 +31,42 @@ pub(super) fn changed_keys(walk: &[Node]) -> Vec<Key> {
     keys
 }
 
-impl WalkRow {
-    pub(super) fn new(node: &Node, changed: &[Key]) -> Self {
-        let setting = &node.setting;
-        let state = node.state.in_units(setting.units());
-        let stability = node.stability;
-        let event = if let NodeKind::Jump(event) = &node.kind { Some(event) } else { None };
-        let energy = |x: f64| x * setting.units().energy;
-        let wave = setting.preset.gap.wave();
-        let apart = node.is_apart();
-        Self {
-            step: node.step,
-            kind: kind_name(&node.kind),
-            control: setting.shown_control(node.control).to_string(),
-            contact_radius: if apart { 0.0 } else { state.contact_radius },
-            approach: state.approach,
-            force: if apart { 0.0 } else { state.force },
-            energy: if apart { 0.0 } else { state.energy },
-            wave: if apart {
-                None
-            } else {
-                wave_index(node.state.contact_radius, setting.reduced.gap.wavelength())
-            },
-            newton_iterations: node.point.rounds,
-            stable: StableReport {
-                displacement: stability.under(Control::Displacement),
-                force: stability.under(Control::Force),
-                chosen: stability.under(node.control),
-            },
-            dissipated: event.and_then(|e| e.dissipated).map(energy),
-            dissipated_by_area: event.and_then(|e| e.dissipated_by_area).map(energy),
-            work_of_adhesion: setting.preset.material.work_of_adhesion,
-            radius_of_curvature: setting.preset.gap.radius_of_curvature(),
-            amplitude: wave.map(|(a, _)| a),
-            wavelength: wave.map(|(_, l)| l),
-            admissible: Some(node.admissibility.holds).filter(|_| !apart),
-            changed: changed.iter().map(|key| (key.to_string(), value_of(&setting.preset, key))).collect(),
-        }
+/// One state of the walk as a row.
+pub(super) fn row(node: &Node, changed: &[Key]) -> WalkRow {
+    let setting = &node.setting;
+    let state = node.state.in_units(setting.units());
+    let stability = node.stability;
+    let event = if let NodeKind::Jump(event) = &node.kind { Some(event) } else { None };
+    let energy = |x: f64| x * setting.units().energy;
+    let wave = setting.preset.gap.wave();
+    let apart = node.is_apart();
+    WalkRow {
+        step: node.step,
+        kind: kind_name(&node.kind),
+        control: setting.shown_control(node.control).to_string(),
+        contact_radius: if apart { 0.0 } else { state.contact_radius },
+        approach: state.approach,
+        force: if apart { 0.0 } else { state.force },
+        energy: if apart { 0.0 } else { state.energy },
+        wave: if apart {
+            None
+        } else {
+            wave_index(node.state.contact_radius, setting.reduced.gap.wavelength())
+        },
+        newton_iterations: node.point.rounds,
+        stable: StableReport {
+            displacement: stability.under(Control::Displacement),
+            force: stability.under(Control::Force),
+            chosen: stability.under(node.control),
+        },
+        dissipated: event.and_then(|e| e.dissipated).map(energy),
+        dissipated_by_area: event.and_then(|e| e.dissipated_by_area).map(energy),
+        work_of_adhesion: setting.preset.material.work_of_adhesion,
+        radius_of_curvature: setting.preset.gap.radius_of_curvature(),
+        amplitude: wave.map(|(a, _)| a),
+        wavelength: wave.map(|(_, l)| l),
+        admissible: Some(node.admissibility.holds).filter(|_| !apart),
+        changed: changed.iter().map(|key| (key.to_string(), value_of(&setting.preset, key))).collect(),
     }
 }
 

@@ -1,5 +1,9 @@
 //! A home of its own in which the program runs, so that nothing of the machine's user is seen or touched.
 #![allow(dead_code, reason = "each test file uses a part of it")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+
+#[path = "schema.rs"]
+mod schema;
 
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
@@ -44,7 +48,9 @@ impl Home {
     }
 
     pub fn text(&self, name: &str) -> String {
-        fs::read_to_string(self.path(name)).expect("a file of text")
+        let text = fs::read_to_string(self.path(name)).expect("a file of text");
+        schema::check(&text);
+        text
     }
 
     /// The program with nothing on standard input and no other variable than these.
@@ -129,9 +135,12 @@ impl Home {
 impl Ended {
     /// Of a program that ended by itself.
     pub fn of(output: Output) -> Self {
+        let out = String::from_utf8(output.stdout).expect("UTF-8");
+        // Whatever document a command writes is of its schema.
+        schema::check(&out);
         Self {
             status: output.status.code().expect("no signal"),
-            out: String::from_utf8(output.stdout).expect("UTF-8"),
+            out,
             err: String::from_utf8(output.stderr).expect("UTF-8"),
         }
     }

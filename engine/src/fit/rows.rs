@@ -6,6 +6,7 @@ use serde::Serialize;
 
 /// How many rows of one branch there are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct BranchRows {
     /// Those in contact, which are fitted.
     pub contact: usize,
@@ -19,6 +20,7 @@ pub struct BranchRows {
 
 /// How many rows there are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Rows {
     /// Of the approach.
     pub approach: BranchRows,

@@ -42,6 +42,7 @@ pub struct Residual {
 
 /// What was known of a value before, with an error.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Given {
     /// Its dotted key.
     pub key: String,

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 /// What a fit comes to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// Nothing speaks against the model: values and errors may be believed.
@@ -54,6 +55,7 @@ impl Verdict {
 
 /// What speaks against a fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Reason {
     /// What was tested, one word for each test.
     pub kind: &'static str,

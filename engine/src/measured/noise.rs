@@ -12,6 +12,7 @@ pub(super) const END_ROWS: usize = 5;
 
 /// Where a standard deviation is from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Origin {
     /// A person gave it.

@@ -9,6 +9,7 @@ use std::str::FromStr;
 /// A device of stiffness k moves its far end by Δ and feels P = k(Δ − δ), so it prescribes
 /// Δ = δ + P/k; k → ∞ is displacement control, k → 0 is force control.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Control {
     /// The approach δ is prescribed (fixed grips).

@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 
 /// Dimensionless groups of a problem; those of the wave, of R and of z₀ are `None` where there is none.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Groups {
     /// A/λ.
     pub amplitude_over_wavelength: Option<f64>,

@@ -16,9 +16,12 @@ use std::fmt::Write;
 
 /// A fit, in base units: SI, or those of a reduced problem.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FitReport {
-    /// The version of the document.
+    /// The version of all documents.
     pub schema: u32,
+    /// Which document it is.
+    pub document: &'static str,
     /// The file of the points.
     pub file: String,
     /// What it comes to: whether the values and their errors may be believed.
@@ -85,6 +88,7 @@ pub struct FitReport {
 
 /// One fitted value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ParameterReport {
     /// Its dotted key.
     pub key: String,
@@ -117,6 +121,7 @@ pub struct ParameterReport {
 
 /// A start that was run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct StartReport {
     /// The mean distance of the points at its end, in σ.
     pub distance: f64,
@@ -169,6 +174,7 @@ impl FitReport {
         let measured = if fit.noise.sigma[2] > 0.0 && fit.abscissa != Abscissa::Radius { 3 } else { 2 };
         Self {
             schema: super::SCHEMA,
+            document: "fit",
             file: file.to_owned(),
             verdict: fit.verdict,
             reasons: fit.reasons.clone(),

@@ -36,6 +36,7 @@ impl Ordinate {
 
 /// A point of a line, in the user's units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct RowReport {
     /// The number of its line, from 1; a cusp, swallowtail or landing on a line has the number of that line where it is known.
     pub line: Option<usize>,
@@ -63,6 +64,7 @@ pub const COLUMNS: &[&str] =
 
 /// One axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct AxisReport {
     /// The key, the group, `compliance`, or `control`, `approach`, `force`.
     pub key: String,
@@ -91,6 +93,7 @@ impl AxisReport {
 
 /// The number of snaps over a grid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CountsReport {
     /// The numbers of the columns; null for infinity.
     pub x: Vec<Option<f64>>,
@@ -102,6 +105,7 @@ pub struct CountsReport {
 
 /// Where snaps begin.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct OnsetReport {
     /// The smallest A/λ at which the preset snaps, with its own adhesion, device and start.
     pub amplitude_over_wavelength: f64,
@@ -111,6 +115,7 @@ pub struct OnsetReport {
 
 /// A map or fold curves.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct MapReport {
     /// What it begins with.
     #[serde(flatten)]

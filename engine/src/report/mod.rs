@@ -12,6 +12,8 @@
 //! | [`fit`] | a fit to a measured curve as a document, a table and text |
 //! | [`residuals`] | its points row by row |
 //! | [`verify`] | our numbers against theory as a document |
+//! | [`walk`] | the states of a walk by hand as a document |
+//! | `schema` | the JSON schemas of all of them, made and held by its test |
 //! | [`rows`] | nested rows as CSV |
 //! | [`path_table`] | a path as text for a terminal |
 //! | [`table`] | cells in columns, a verification as text for a terminal |
@@ -28,10 +30,13 @@ pub mod path_table;
 pub mod problem;
 pub mod residuals;
 pub mod rows;
+#[cfg(test)]
+mod schema;
 pub mod stability;
 pub mod table;
 pub mod trace;
 pub mod verify;
+pub mod walk;
 
 pub use crate::units::number;
 pub use fit::FitReport;

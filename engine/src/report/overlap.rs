@@ -8,6 +8,7 @@ use serde::Serialize;
 
 /// Neighbouring states that are not admissible.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct OverlapReport {
     /// The largest contact radius.
     pub from_contact_radius: f64,

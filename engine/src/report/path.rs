@@ -19,6 +19,7 @@ use serde::Serialize;
 
 /// What happens on the way of a device.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PathReport {
     /// What it begins with.
     #[serde(flatten)]
@@ -50,6 +51,7 @@ pub struct PathReport {
 
 /// Where a path turned round.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TurnReport {
     /// `approach`, `force`, `contact_radius` or `control`.
     pub of: &'static str,
@@ -61,6 +63,7 @@ pub struct TurnReport {
 
 /// A state of a path.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct StateReport {
     /// δ.
     pub approach: f64,
@@ -84,6 +87,7 @@ pub struct StateReport {
 
 /// A state of a path and where on it it lies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PathStateReport {
     /// The stable stretch between two jumps, counted from 0.
     pub piece: usize,
@@ -98,6 +102,7 @@ pub struct PathStateReport {
 
 /// One event of a path.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct EventReport {
     /// Its number on the path, from 1.
     pub number: usize,
@@ -125,6 +130,7 @@ pub struct EventReport {
 
 /// What a jump passed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PassedReport {
     /// `touch`, `merge` or `vanish`.
     pub kind: &'static str,
@@ -134,6 +140,7 @@ pub struct PassedReport {
 
 /// The sums of a path; null where a dead load leaves no bound, or what was not asked for.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TotalsReport {
     /// The state of the smallest force: its force is negative where the bodies stick.
     pub largest_pull: Option<StateReport>,

@@ -12,6 +12,7 @@ use serde_json::{Map, Value};
 
 /// The units of every number of a document; null where numbers are in reduced units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct UnitsReport {
     /// `reduced` or `SI`.
     pub system: &'static str,
@@ -52,6 +53,7 @@ impl UnitsReport {
 
 /// What every document begins with.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Head {
     /// The version of all documents.
     pub schema: u32,
@@ -80,6 +82,7 @@ impl Head {
 
 /// The problem of a document.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ProblemReport {
     /// Every key of the preset with its value, defaults filled in.
     pub preset: Map<String, Value>,

@@ -13,6 +13,7 @@ use serde::Serialize;
 /// The work of adhesion at which a state is a limit point, an energy per area; null where the law is not known: on the
 /// innermost part of the table, which holds no limit point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CriticalReport {
     /// Under fixed grips.
     pub displacement: Option<f64>,
@@ -24,6 +25,7 @@ pub struct CriticalReport {
 
 /// A contact radius.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct RowReport {
     /// `sample`; `minimum` or `maximum` of the law under the device of the preset, a cusp, where a pair of limit points is born;
     /// `corner`, where h'' jumps.
@@ -40,6 +42,7 @@ pub const COLUMNS: &[&str] =
 
 /// The law of stability of one disc between the end and the start of a preset.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct StabilityReport {
     /// What it begins with.
     #[serde(flatten)]

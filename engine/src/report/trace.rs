@@ -17,6 +17,7 @@ use serde::Serialize;
 
 /// The equilibrium curve with its limit points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TraceReport {
     /// What it begins with.
     #[serde(flatten)]
@@ -44,6 +45,7 @@ pub struct TraceReport {
 
 /// One point of the curve.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PointReport {
     /// Its number, from 0.
     pub step: usize,
@@ -74,6 +76,7 @@ pub struct PointReport {
 
 /// The exact solution at the contact radius of a point.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ExactReport {
     /// δ.
     pub approach: f64,
@@ -134,6 +137,7 @@ impl ExactReport {
 
 /// Stability under each control.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct StableReport {
     /// When the approach is held.
     pub displacement: bool,
@@ -145,6 +149,7 @@ pub struct StableReport {
 
 /// One limit point.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LimitReport {
     /// The control that turns there.
     pub control: Control,

@@ -7,9 +7,12 @@ use serde::Serialize;
 
 /// A verification: one row per number.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct VerifyReport {
-    /// The version of the document.
+    /// The version of all documents.
     pub schema: u32,
+    /// Which document it is.
+    pub document: &'static str,
     /// The version of the program.
     pub program_version: &'static str,
     /// How many rows pass.
@@ -22,6 +25,7 @@ pub struct VerifyReport {
 
 /// One number against theory, or against another of ours.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct RowReport {
     /// What is compared, with the basis.
     pub group: String,
@@ -67,6 +71,7 @@ impl VerifyReport {
             .collect();
         Self {
             schema: SCHEMA,
+            document: "verify",
             program_version: env!("CARGO_PKG_VERSION"),
             passed: rows.iter().filter(|row| row.passes).count(),
             total: rows.len(),

@@ -10,7 +10,7 @@ use crate::store::Loaded;
 use crate::store::atomic::folder_of;
 use pulloff_engine::fit::{Fit, Options, Verdict};
 use pulloff_engine::preset::{Value, data, write};
-use pulloff_engine::report::{FitReport, json, residuals};
+use pulloff_engine::report::{FitReport, SCHEMA, json, residuals};
 use pulloff_engine::text::show_path;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -94,7 +94,7 @@ impl<'a> Done<'a> {
         sinks.report.write(match (sinks.format, reports.as_slice()) {
             (Format::Json, [report]) if !many => json(report)?,
             (Format::Json, reports) => {
-                json(&serde_json::json!({ "schema": 1, "fits": reports, "summary": summary }))?
+                json(&serde_json::json!({ "schema": SCHEMA, "document": "fits", "fits": reports, "summary": summary }))?
             }
             (Format::Csv, reports) => table::csv(&reports.iter().map(FitReport::row).collect::<Vec<_>>())?,
             (Format::Table, reports) => {
