@@ -424,3 +424,63 @@ impl Course<'_, '_> {
         self.record.jump(kind, [old, new], radius, by_area, passed);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gap::Gap;
+    use crate::gap::shapes::{Harmonic, Harmonics};
+    use crate::progress::Unwatched;
+
+    /// The loop of a gap, with discs on the exact panels or step by step as any contact.
+    fn looped(ground: &Ground, gamma: f64, control: Control, turn: Turn, on_lane: bool) -> Path {
+        let setting = Setting::new(control);
+        let lane = on_lane.then(|| Lane::new(ground, gamma, control));
+        let balance = balance(ground, gamma, &setting, lane.as_ref(), &Unwatched);
+        let record = Record::new(&setting, Direction::Loading, &Unwatched);
+        let course =
+            Course { balance: &balance, setting: &setting, turn: Some(turn), end: 0.0, record, steps: 0 };
+        course.whole(turn).unwrap()
+    }
+
+    fn agree(numbers: std::ops::Range<u64>) {
+        for number in numbers {
+            let mut random = fastrand::Rng::with_seed(number);
+            let mut even = |lo: f64, hi: f64| lo + (hi - lo) * random.f64();
+            let wavelength = even(0.05, 0.15);
+            let amplitude = wavelength * wavelength / even(1.0, 9.0);
+            let phase = even(-0.5, 0.5);
+            let gamma = 1e-4 * 30.0_f64.powf(even(0.0, 1.0));
+            let control = [Control::Displacement, Control::Force, Control::Stiffness(0.3)]
+                [usize::try_from(number % 3).unwrap()];
+            let turn = Turn::Approach(even(0.01, 0.06));
+            let gap: Arc<dyn Gap> =
+                Arc::new(Harmonics::new(1.0, vec![Harmonic { amplitude, wavelength, phase }]).unwrap());
+            let ground = Ground::of(gap, 1.0).unwrap();
+            let [on, off] = [true, false].map(|lane| looped(&ground, gamma, control, turn, lane));
+            let kinds = |path: &Path| path.events.iter().map(|event| event.kind).collect::<Vec<_>>();
+            assert_eq!(kinds(&on), kinds(&off), "{number}");
+            for (a, b) in on.events.iter().zip(&off.events) {
+                let edges = |state: &Option<PathState>| state.as_ref().map(|state| state.contacts.concat());
+                for (x, y) in [(&a.before, &b.before), (&a.after, &b.after)] {
+                    let (x, y) = (edges(x).unwrap_or_default(), edges(y).unwrap_or_default());
+                    let near = |(x, y): (&f64, &f64)| (x - y).abs() < 1e-6 * wavelength;
+                    assert!(x.len() == y.len() && x.iter().zip(&y).all(near), "{number}: {a:?} {b:?}");
+                }
+                let [x, y] = [a, b].map(|event| event.dissipated.unwrap_or(0.0));
+                assert!((x - y).abs() <= 1e-7 * x.abs() + 1e-16, "{number}: {a:?} {b:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_disc_step_by_step_does_what_it_does_on_its_panels() {
+        agree(0..12);
+    }
+
+    #[test]
+    #[ignore = "a minute"]
+    fn a_hundred_and_twenty_discs_step_by_step_do_what_they_do_on_their_panels() {
+        agree(0..120);
+    }
+}

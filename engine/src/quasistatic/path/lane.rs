@@ -59,21 +59,30 @@ impl Lane {
 
     /// The radius to which a disc of the radius `s`, in equilibrium or not, runs at the control value `c`: outward the least one from
     /// there on that is stable, inward the largest. `None` where there is none.
+    ///
+    /// An edge that is not in equilibrium runs as it is pulled, whatever `run` says: one that has come a hair too far on the way goes
+    /// back, and not on to a state that nothing drives it to.
     pub fn landing(&self, s: f64, c: f64, run: Run) -> Option<f64> {
         let value = self.weighted(c);
         let at = self.monotone.stretch_of(s);
         let stretch = self.monotone.stretches.get(at)?;
         let here = self.monotone.value(&self.solution.at(self.solution.place(s)?));
         let slack = ROUNDING * value.abs();
+        let pulled = match here - value {
+            by if by < -slack => Run::Outward,
+            by if by > slack => Run::Inward,
+            _ => run,
+        };
         let lands_here = stretch.rising
-            && match run {
-                Run::Outward => here <= value + slack && stretch.values[1] >= value - slack,
-                Run::Inward => here >= value - slack && stretch.values[0] <= value + slack,
+            && match pulled {
+                Run::Outward => stretch.values[1] >= value - slack,
+                Run::Inward => stretch.values[0] <= value + slack,
             };
         let place = if lands_here {
             self.monotone.solve(&*self.solution, stretch, value)
         } else {
-            jump::run(&*self.solution, &self.monotone, at, value, run).ok().flatten()?.place
+            let to = |run| jump::run(&*self.solution, &self.monotone, at, value, run).ok().flatten();
+            to(pulled).or_else(|| to(run))?.place
         };
         Some(self.solution.at(place).contact_radius)
     }
