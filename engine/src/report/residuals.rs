@@ -10,6 +10,7 @@ pub const HEADER: &str = "row,line,segment,part,x,force,residual,outlier";
 
 /// One row of a file beside the fit, in base units: SI, or those of a reduced problem.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ResidualRow {
     /// Its number among the rows that are read, from 1.
     pub row: usize,
