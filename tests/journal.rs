@@ -80,6 +80,7 @@ impl Late {
                 | Effect::Map(_)
                 | Effect::Distances(_)
                 | Effect::Study(_)
+                | Effect::StopStudy(_)
                 | Effect::Pace(_) => continue,
             }
             self.pending.push_back(effect);

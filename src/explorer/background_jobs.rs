@@ -13,6 +13,8 @@ pub enum BackgroundJob {
     Check,
     /// A fit is running and has come so far, in per cent.
     Fit(u8),
+    /// Other random surfaces are computed for the study on the screen.
+    Surfaces,
     /// The profile of the walker's state is computed; it is short and cannot be cancelled.
     Inside,
 }
@@ -29,6 +31,8 @@ impl BackgroundJob {
             Some(Self::Fit(fitting.percent))
         } else if pins > 0 {
             Some(Self::Pins(pins))
+        } else if surfaces_of(model).is_some() {
+            Some(Self::Surfaces)
         } else if matches!(model.checking, Some(Checking::Asked(_))) && !model.is_computing() {
             Some(Self::Check)
         } else {
@@ -45,9 +49,19 @@ impl BackgroundJob {
             Self::Fit(percent) => {
                 format!("fitting, {percent} %; {} takes the best so far", Id::Cancel.named())
             }
+            Self::Surfaces => {
+                format!("computing other surfaces; {} keeps those there are", Id::Cancel.named())
+            }
             Self::Inside => "computing the state".to_owned(),
         }
     }
+}
+
+/// The study that is on the screen while other surfaces are computed for it.
+fn surfaces_of(model: &Model) -> Option<u64> {
+    let study = model.study.as_ref().filter(|study| study.done() == study.outcomes.len())?;
+    let is_wanted = model.study_wanted.as_ref().is_some_and(|wanted| wanted.id == study.wish.id);
+    (is_wanted && !study.is_whole()).then_some(study.wish.id)
 }
 
 /// Cancels the job under way, if it can be cancelled.
@@ -58,6 +72,13 @@ pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
             let curves = if count == 1 { "the pinned curve" } else { "the pinned curves" };
             model.tell(Level::Info, format!("cancelled: {curves} on the way will not be shown"));
             vec![Effect::StopPins]
+        }
+        (Some(BackgroundJob::Surfaces), _) => {
+            let Some(id) = surfaces_of(model) else { return Vec::new() };
+            // What is there is that of the preset: nothing asks for it again.
+            model.study_wanted = None;
+            model.tell(Level::Info, "the study keeps the surfaces that are there");
+            vec![Effect::StopStudy(id)]
         }
         (Some(BackgroundJob::Check), Some(Checking::Asked(id))) => {
             model.checking = Some(Checking::GivenUp);

@@ -86,6 +86,7 @@ impl Inline {
             }
             Effect::StopWalk(_)
             | Effect::StopCurve(_)
+            | Effect::StopStudy(_)
             | Effect::StopFit(_)
             | Effect::StopPins
             | Effect::Pace(_) => None,
@@ -141,6 +142,7 @@ pub struct Workers {
     distances: Arc<Slot<Box<FitWish>>>,
     fits_stopped: Arc<AtomicU64>,
     studies: Arc<Slot<Box<StudyWish>>>,
+    studies_stopped: Arc<AtomicU64>,
     walks: Sender<Box<Request>>,
     files: Sender<Box<Job>>,
     pins: Sender<(u64, usize, Box<Preset>)>,
@@ -199,7 +201,7 @@ impl Workers {
         reply: impl Fn(Reply) + Send + Clone + 'static,
     ) -> Result<Self, std::io::Error> {
         let (curve, profile, loops, maps) = (Slot::empty(), Slot::empty(), Slot::empty(), Slot::empty());
-        let studies = Slot::empty();
+        let (studies, studies_stopped) = (Slot::empty(), Arc::new(AtomicU64::new(0)));
         let (walking, given_up) = (Arc::new(Watch::default()), Arc::new(AtomicU64::new(0)));
         let (walks, requests) = channel();
         let (files, jobs) = channel();
@@ -219,8 +221,8 @@ impl Workers {
         thread::Builder::new().name("fit".to_owned()).spawn(move || fit_lane(&slot, &stop, &send))?;
         let (slot, send) = (Arc::clone(&distances), reply.clone());
         thread::Builder::new().name("distances".to_owned()).spawn(move || distance_lane(&slot, &send))?;
-        let (slot, send) = (Arc::clone(&studies), reply.clone());
-        thread::Builder::new().name("study".to_owned()).spawn(move || study_lane(&slot, &send))?;
+        let (slot, stop, send) = (Arc::clone(&studies), Arc::clone(&studies_stopped), reply.clone());
+        thread::Builder::new().name("study".to_owned()).spawn(move || study_lane(&slot, &stop, &send))?;
         let (times, send) = (Arc::clone(&pins_given_up), reply.clone());
         thread::Builder::new().name("pins".to_owned()).spawn(move || {
             while let Ok((asked, number, preset)) = pinnings.recv() {
@@ -247,6 +249,7 @@ impl Workers {
             distances,
             fits_stopped,
             studies,
+            studies_stopped,
             walks,
             files,
             pins,
@@ -277,6 +280,7 @@ impl Workers {
             Effect::StopFit(id) => drop(self.fits_stopped.fetch_max(id, Ordering::AcqRel)),
             Effect::Distances(wish) => self.distances.put(wish),
             Effect::Study(wish) => self.studies.put(wish),
+            Effect::StopStudy(id) => drop(self.studies_stopped.fetch_max(id, Ordering::AcqRel)),
             Effect::Walk(request) => {
                 if let Some(pace) = request.pace {
                     self.walking.set(pace);
@@ -401,10 +405,10 @@ fn distance_lane(slot: &Slot<Box<FitWish>>, reply: &dyn Fn(Reply)) {
     }
 }
 
-fn study_lane(slot: &Slot<Box<StudyWish>>, reply: &dyn Fn(Reply)) {
+fn study_lane(slot: &Slot<Box<StudyWish>>, stopped: &AtomicU64, reply: &dyn Fn(Reply)) {
     loop {
         let wish = slot.take();
-        let stop = || slot.waiting.load(Ordering::Acquire);
+        let stop = || slot.waiting.load(Ordering::Acquire) || stopped.load(Ordering::Acquire) >= wish.id;
         let mut told = |data| reply(Reply::Study(Arc::new(data)));
         if let Some(found) = wish.run(threads(), &stop, &mut told) {
             reply(Reply::Study(Arc::new(found)));

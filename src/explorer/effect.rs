@@ -36,6 +36,8 @@ pub enum Effect {
     Distances(Box<FitWish>),
     /// Compute a study; an older one is given up.
     Study(Box<StudyWish>),
+    /// End the study of this number; what is done of it stays.
+    StopStudy(u64),
     /// Compute the inside of a state; an older one still waiting is forgotten.
     Profile(Box<Ask>),
     Walk(Box<Request>),

@@ -1,7 +1,9 @@
 //! A quantity of the sweep's list over the range of one value, computed in the background while it is looked at.
 //!
-//! The value of the preset is one of those computed. Turning it within the range moves its mark and asks for nothing.
+//! The value of the preset is one of those computed. Turning it within the range moves its mark and asks for nothing. Where the
+//! surface is one of many, drawn with a seed, others follow it one by one.
 
+use pulloff_engine::gap::shapes::split_mix::SplitMix64;
 use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{Key, Preset, Row, Value};
 use pulloff_engine::problem::Control;
@@ -25,6 +27,12 @@ const PACE: Duration = Duration::from_millis(100);
 
 /// The key of the stiffness of the loading device.
 const STIFFNESS: &str = "path.control.stiffness";
+
+/// The key of the seed of a random surface.
+const SEED: &str = "gap.seed";
+
+/// Surfaces computed beside the preset's own: the median is then known to a fifth of their standard deviation.
+const OTHERS: usize = 40;
 
 /// What became of one value.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,6 +62,8 @@ pub struct StudyData {
     pub wish: StudyWish,
     /// What became of each value.
     pub outcomes: Vec<Outcome>,
+    /// What other surfaces give at each value, one after the other; no number where there is none.
+    pub others: Vec<Vec<f64>>,
 }
 
 /// The key that is varied and its values, ascending, that of the preset among them.
@@ -134,10 +144,29 @@ pub fn threads() -> usize {
 }
 
 impl StudyWish {
-    /// What becomes of the value at `index`; `None` when `progress` said stop.
-    fn outcome(&self, index: usize, progress: &dyn Progress) -> Option<Outcome> {
-        let missing = |fault: Fault| Outcome::Missing(fault.to_string());
+    /// How many other surfaces there are to be.
+    pub fn others(&self) -> usize {
+        let is_one_of_many = self.key != SEED && self.preset.get(SEED).is_some();
+        if is_one_of_many { OTHERS } else { 0 }
+    }
+
+    /// The preset with the surface of this number, 0 that of its own.
+    fn with_surface(&self, number: usize) -> Preset {
         let mut preset = self.preset.clone();
+        if let (1.., Some(Value::Integer(seed))) = (number, preset.get(SEED)) {
+            let bits = SplitMix64::row(seed.unsigned_abs(), number as u64).bits();
+            // 53 bits: a seed that a table of numbers in double precision keeps.
+            let drawn = i64::try_from(bits >> 11).unwrap_or_default();
+            // Any seed is one.
+            let _ = preset.set(SEED, drawn.into());
+        }
+        preset
+    }
+
+    /// What becomes of the value at `index` on the surface of this number; `None` when `progress` said stop.
+    fn outcome(&self, surface: usize, index: usize, progress: &dyn Progress) -> Option<Outcome> {
+        let missing = |fault: Fault| Outcome::Missing(fault.to_string());
+        let mut preset = self.with_surface(surface);
         let value = self.values.get(index).cloned()?;
         if let Err(invalid) = preset.set(&self.key, value) {
             return Some(missing(Fault::of_value(&invalid)));
@@ -163,7 +192,9 @@ impl StudyWish {
         told: &mut dyn FnMut(StudyData),
     ) -> Option<StudyData> {
         let count = self.values.len();
-        let mut data = StudyData { wish: self.clone(), outcomes: vec![Outcome::Waits; count] };
+        let outcomes = vec![Outcome::Waits; count];
+        let mut data = StudyData { wish: self.clone(), outcomes, others: vec![Vec::new(); count] };
+        let all = count * (1 + self.others());
         let next = AtomicUsize::new(0);
         let (send, done) = channel();
         thread::scope(|scope| {
@@ -171,13 +202,15 @@ impl StudyWish {
                 let (send, next) = (send.clone(), &next);
                 scope.spawn(move || {
                     loop {
-                        let index = next.fetch_add(1, Ordering::Relaxed);
-                        if index >= count || progress.stop() {
+                        let next = next.fetch_add(1, Ordering::Relaxed);
+                        if next >= all || progress.stop() {
                             break;
                         }
-                        let Some(outcome) = self.outcome(index, progress) else { break };
+                        // All values of a surface before the next one: they share its table.
+                        let (surface, index) = (next / count, next % count);
+                        let Some(outcome) = self.outcome(surface, index, progress) else { break };
                         // Fails only when nobody waits for it any more.
-                        let _ = send.send((index, outcome));
+                        let _ = send.send((surface, index, outcome));
                     }
                 });
             }
@@ -185,7 +218,8 @@ impl StudyWish {
             let mut due = Instant::now() + PACE;
             loop {
                 match done.recv_timeout(due.saturating_duration_since(Instant::now())) {
-                    Ok((index, outcome)) => data.outcomes[index] = outcome,
+                    Ok((0, index, outcome)) => data.outcomes[index] = outcome,
+                    Ok((surface, index, outcome)) => data.came(surface, index, &outcome),
                     Err(RecvTimeoutError::Timeout) => {
                         told(data.clone());
                         due = Instant::now() + PACE;
@@ -194,11 +228,36 @@ impl StudyWish {
                 }
             }
         });
-        (!progress.stop()).then_some(data).filter(|data| data.done() == count)
+        (!progress.stop()).then_some(data).filter(StudyData::is_whole)
     }
 }
 
 impl StudyData {
+    /// Takes what another surface gives at the value at `index`.
+    fn came(&mut self, surface: usize, index: usize, outcome: &Outcome) {
+        let found = &mut self.others[index];
+        if found.len() < surface {
+            found.resize(surface, f64::NAN);
+        }
+        found[surface - 1] = match outcome {
+            Outcome::Found(Cell::Number(x)) => *x,
+            // Exact for every count.
+            #[expect(clippy::cast_precision_loss)]
+            Outcome::Found(Cell::Count(n)) => *n as f64,
+            Outcome::Waits | Outcome::Missing(_) => f64::NAN,
+        };
+    }
+
+    /// How many other surfaces are computed at every value.
+    pub fn surfaces(&self) -> usize {
+        self.others.iter().map(Vec::len).min().unwrap_or(0)
+    }
+
+    /// Whether nothing of it is still to be computed.
+    pub fn is_whole(&self) -> bool {
+        self.done() == self.outcomes.len() && self.surfaces() == self.wish.others()
+    }
+
     /// How many values are done.
     pub fn done(&self) -> usize {
         self.outcomes.iter().filter(|outcome| **outcome != Outcome::Waits).count()
@@ -296,6 +355,7 @@ mod tests {
         assert_eq!(x.to_bits(), 0.0025_f64.to_bits());
         assert_eq!(one.outcomes[at], Outcome::Found(own.cells[0].unwrap()));
         assert!(wish.run(2, &|| true, &mut |_| {}).is_none());
+        assert_eq!((one.surfaces(), wish.others()), (0, 0));
         // Its value may move within the range, and nothing else.
         let mut moved = preset.clone();
         moved.set(&key, 0.003.into()).unwrap();
@@ -305,5 +365,35 @@ mod tests {
         moved = preset;
         moved.set(&key, 0.0051.into()).unwrap();
         assert!(!one.is_of(&moved, &key, column));
+    }
+
+    #[test]
+    fn a_random_surface_is_studied_beside_others() {
+        let mut preset = read("random-waves", shipped::find("random-waves").unwrap().text).unwrap();
+        for (key, text) in [("gap.count", "4"), ("path.start_contact_radius", "0.45")] {
+            preset.assign(key, text).unwrap();
+        }
+        let values = [0.003, 0.004, 0.006].map(Value::from).to_vec();
+        let column = Column::named("enhancement").unwrap();
+        let key = Key::Borrowed("material.work_of_adhesion");
+        let wish = StudyWish { id: 1, preset: preset.clone(), key, column, values };
+        let [one, three] = [1, 3].map(|threads| wish.run(threads, &Unwatched, &mut |_| {}).unwrap());
+        let bits =
+            |data: &StudyData| -> Vec<u64> { data.others.iter().flatten().map(|x| x.to_bits()).collect() };
+        assert!(bits(&one) == bits(&three) && one.outcomes == three.outcomes);
+        assert!(one.is_whole() && one.surfaces() == OTHERS);
+        assert!(one.others[1].windows(2).all(|pair| pair[0].to_bits() != pair[1].to_bits()));
+        let figure = crate::figure::study::of(&one, &preset);
+        assert_eq!(figure.areas.len(), 2);
+        let median = figure.lines.iter().find(|line| line.name.starts_with("median")).unwrap();
+        let mut sorted = one.others[1].clone();
+        sorted.sort_by(f64::total_cmp);
+        assert!((median.points[1].1 - 0.5 * (sorted[19] + sorted[20])).abs() < 1e-15);
+        assert!(figure.areas.iter().all(|area| {
+            area.outline.iter().all(|(_, y)| (figure.bounds.y[0]..=figure.bounds.y[1]).contains(y))
+        }));
+        // Of its own seed there is one surface for each value.
+        let of_seed = StudyWish { key: Key::Borrowed(SEED), ..wish };
+        assert_eq!(of_seed.others(), 0);
     }
 }

@@ -1,14 +1,18 @@
 //! A quantity over the range of one value, the value of the preset marked.
 
 use super::bounds::Bounds;
-use super::parts::{Axis, Figure, Line, Mark, Role, Run, Sign};
+use super::parts::{Area, Axis, Figure, Line, Mark, Meaning, Role, Run, Sign};
 use super::subject::Subject;
 use crate::explorer::studies::{Outcome, StudyData, number};
 use pulloff_engine::preset::{Preset, Row};
 use pulloff_engine::report::number::{significant, with_unit};
+use pulloff_engine::sweep::ensemble::quantiles;
 use pulloff_engine::sweep::quantity::Under;
 use pulloff_engine::sweep::{Cell, Column};
 use pulloff_engine::units::Quantity;
+
+/// Of fewer other surfaces there are no quantiles to be drawn.
+const FEWEST: usize = 5;
 
 /// The quantity in words: its name, and the control where it is not the preset's own.
 fn words(column: Column) -> String {
@@ -77,11 +81,15 @@ pub fn of(data: &StudyData, preset: &Preset) -> Figure {
             figure.lines.push(Line::new(Role::Body, words(wish.column), drawn(points)));
         }
     }
+    let bands = bands(&mut figure, data, &places, |y| match data.wish.column.quantity.unit {
+        _ if is_counted => y,
+        quantity => units.shown(quantity, y).number,
+    });
     let found = places.iter().filter_map(|(x, y)| Some((*x, (*y)?)));
     let ends = [places.first(), places.last()].into_iter().flatten();
     let found: Vec<(f64, f64)> = found.collect();
     let level = found.first().map_or(0.0, |(_, y)| *y);
-    figure.bounds = Bounds::of(found.iter().copied().chain(ends.map(|(x, _)| (*x, level))));
+    figure.bounds = Bounds::of(found.iter().copied().chain(ends.map(|(x, _)| (*x, level))).chain(bands));
     if let Some(x) = preset.get(&wish.key).and_then(|value| number(&value)).map(shown) {
         let ends = figure.bounds.y.map(|y| (x, y));
         figure.lines.insert(0, Line::new(Role::Level, "now", ends.to_vec()));
@@ -98,6 +106,43 @@ pub fn of(data: &StudyData, preset: &Preset) -> Figure {
         figure.notes.push(format!("{missing} without a value: the cross-hair says why"));
     }
     figure
+}
+
+/// Where the other surfaces are: areas in which nine tenths and half of them are, and their median. All corners of the areas.
+fn bands(
+    figure: &mut Figure,
+    data: &StudyData,
+    places: &[(f64, Option<f64>)],
+    shown: impl Fn(f64) -> f64,
+) -> Vec<(f64, f64)> {
+    let surfaces = data.surfaces();
+    if surfaces < FEWEST {
+        return Vec::new();
+    }
+    let all: Vec<(f64, Option<[f64; 5]>)> = places
+        .iter()
+        .zip(&data.others)
+        // Those that are whole: at every value the same ones.
+        .map(|((x, _), others)| (*x, quantiles(&others[..surfaces]).map(|all| all.map(&shown))))
+        .collect();
+    let mut corners = Vec::new();
+    for part in all.split(|(_, at)| at.is_none()).filter(|part| part.len() > 1) {
+        let line = |of: usize| part.iter().filter_map(move |(x, at)| Some((*x, (*at)?[of])));
+        for (meaning, [lower, upper]) in [(Meaning::Most, [0, 4]), (Meaning::Half, [1, 3])] {
+            let outline: Vec<(f64, f64)> = line(lower).chain(line(upper).rev()).collect();
+            corners.extend(outline.iter().copied());
+            figure.areas.push(Area { meaning, outline, lost: None });
+        }
+        figure.lines.push(Line::new(Role::Smooth, "median of other surfaces", line(2).collect()));
+    }
+    let of = data.wish.others();
+    let note = if surfaces < of {
+        format!("{surfaces} of {of} other surfaces")
+    } else {
+        format!("{of} other surfaces")
+    };
+    figure.notes.push(note);
+    corners
 }
 
 /// Steps between counts, half way between the values: between them a count is no line.

@@ -59,8 +59,7 @@ impl Statistics {
         let count = sorted.len();
         let mean = (count > 0).then(|| sorted.iter().sum::<f64>() / count as f64)?;
         let [mean_error, median_error] = bootstrap(&sorted, random).map(|error| error.filter(|_| count > 1));
-        let counts = vec![1; count];
-        let quantiles = SHARES.map(|share| quantile(&sorted, &counts, share));
+        let quantiles = of_sorted(&sorted);
         Some(Self { mean, deviation: deviation(&sorted), quantiles, mean_error, median_error, count })
     }
 
@@ -84,6 +83,18 @@ pub fn at_points(values: &[f64], points: usize, seed: u64) -> Vec<Option<Statist
         Statistics::of(values.iter().copied().skip(point).step_by(points.max(1)), &mut random)
     };
     (0..points).map(at).collect()
+}
+
+/// The quantiles of the finite ones of `values` at 5, 25, 50, 75 and 95 %; none where there is none.
+pub fn quantiles(values: &[f64]) -> Option<[f64; 5]> {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    (!sorted.is_empty()).then(|| of_sorted(&sorted))
+}
+
+fn of_sorted(sorted: &[f64]) -> [f64; 5] {
+    let counts = vec![1; sorted.len()];
+    SHARES.map(|share| quantile(sorted, &counts, share))
 }
 
 /// √(Σ (x − mean)²/(n − 1)); none of fewer than two.
