@@ -6,12 +6,9 @@
 mod home;
 
 use home::{Ended, Home};
-use rustix::process::{Pid, Signal, kill_process};
+use rustix::process::Signal;
 use serde_json::Value;
 use std::collections::BTreeSet;
-use std::os::unix::process::ExitStatusExt;
-use std::process::Stdio;
-use std::time::Duration;
 
 fn keys(value: &Value) -> BTreeSet<&str> {
     value.as_object().unwrap().keys().map(String::as_str).collect()
@@ -285,12 +282,8 @@ fn a_signal_ends_it_and_leaves_no_file() {
         "-o",
         "loop.json",
     ];
-    let child = home.command(&long).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    std::thread::sleep(Duration::from_millis(300));
-    kill_process(Pid::from_child(&child), Signal::INT).unwrap();
-    let output = child.wait_with_output().unwrap();
-    let ended = output.status.signal() == Some(2) || output.status.code() == Some(130);
-    assert!(ended, "{:?} {}", output.status, String::from_utf8_lossy(&output.stderr));
+    let ended = home.stopped(&long, Signal::INT);
+    assert_eq!(ended.status, 130, "{}", ended.err);
     assert!(!home.path("loop.json").exists());
     let left = std::fs::read_dir(home.folder()).unwrap().count();
     assert!(left <= 1, "{left} files left");
