@@ -78,6 +78,11 @@
     )
 )]
 
+/// The page of the package, whose code is run with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;
+
 #[doc(hidden)]
 pub mod annuli;
 #[doc(hidden)]

@@ -14,6 +14,17 @@ const CLEAR: f64 = 20.0;
 
 /// Fits the free keys of `preset` to its own measured curve, as [`fit`] does.
 ///
+/// ```
+/// use pulloff_engine::fit::{Options, Verdict, fit_own};
+/// use pulloff_engine::{Unwatched, preset};
+///
+/// let lens = preset::read_shipped("lens").ok_or("no such preset")?;
+/// let free = lens.data.free().map(str::to_owned).collect();
+/// let fit = fit_own(&lens, &Options { free, ..Options::default() }, &Unwatched)?;
+/// assert_eq!(fit.verdict, Verdict::Describes);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`FitError`].
 pub fn fit_own(preset: &Preset, options: &Options, progress: &dyn Progress) -> Result<Fit, FitError> {

@@ -55,7 +55,7 @@ pub mod write;
 pub use invalid::Invalid;
 pub use measured::Files;
 pub use model::{BasisSpec, Material, PathSpec, Preset};
-pub use read::{Mistake, Origin, ReadError, read, read_in, read_with};
+pub use read::{Mistake, Origin, ReadError, read, read_in, read_shipped, read_with};
 pub use rows::parameter;
 pub use schema::{Key, PARAMETERS, Parameter, Row};
 pub use value::Value;

@@ -36,6 +36,12 @@ pub fn read(name: &str, text: &str) -> Result<Preset, ReadError> {
     read_with(name, text, &[] as &[&str])
 }
 
+/// The preset of this name that comes with the program, with its data.
+pub fn read_shipped(name: &str) -> Option<Preset> {
+    let found = super::shipped::find(name)?;
+    read_in(Files::SHIPPED, None, name, found.text, &[] as &[&str]).ok()
+}
+
 /// Reads a preset and lays `KEY=VALUE` assignments over it, in order.
 ///
 /// # Errors

@@ -157,6 +157,17 @@ pub enum MapError {
 impl MapReport {
     /// The map of `preset` over `x` and `y`; with `cells` columns and rows of counts where both are numbers.
     ///
+    /// ```
+    /// use pulloff_engine::report::map::{MapReport, Ordinate};
+    /// use pulloff_engine::{Unwatched, preset, stability::Axis};
+    ///
+    /// let wavy = preset::read_shipped("fig-9").ok_or("no such preset")?;
+    /// let amplitudes = Axis::new("gap.amplitude", [1e-4, 4e-3], false, 1.0)?;
+    /// let folds = MapReport::compute(&wavy, amplitudes, &Ordinate::Control, [0, 0], &Unwatched)?;
+    /// assert!(folds.rows.iter().any(|row| row.kind == "cusp"), "where a pair of limit points is born");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`MapError`].
     pub fn compute(

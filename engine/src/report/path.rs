@@ -267,6 +267,15 @@ pub const LOSS_AGREEMENT: f64 = 1e-6;
 impl PathReport {
     /// Unloads `preset` from its start.
     ///
+    /// ```
+    /// use pulloff_engine::{Extent, PathReport, Unwatched, preset};
+    ///
+    /// let wavy = preset::read_shipped("fig-9").ok_or("no such preset")?;
+    /// let unloading = PathReport::unload(&wavy, Extent::default(), &Unwatched)?;
+    /// assert_eq!(unloading.events.len(), 8, "seven jumps from wave to wave, and the last contact");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`CaseError`] when it cannot be computed, and when `progress` said stop.
     pub fn unload(preset: &Preset, extent: Extent, progress: &dyn Progress) -> Result<Self, CaseError> {
@@ -284,6 +293,15 @@ impl PathReport {
     }
 
     /// The loop of `preset`, turned round at `turn`, in the units of the preset, in place of what that says.
+    ///
+    /// ```
+    /// use pulloff_engine::{Extent, PathReport, Unwatched, preset};
+    ///
+    /// let wavy = preset::read_shipped("fig-9-cycle").ok_or("no such preset")?;
+    /// let whole = PathReport::cycle(&wavy, None, Extent::default(), &Unwatched)?;
+    /// assert!(whole.totals.dissipated.is_some_and(|lost| lost > 0.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// As [`unload`](Self::unload).

@@ -60,6 +60,17 @@ pub struct StabilityReport {
 impl StabilityReport {
     /// The law of `preset` at `samples` radii of equal distance, at least 2, and at its cusps and corners.
     ///
+    /// ```
+    /// use pulloff_engine::report::StabilityReport;
+    /// use pulloff_engine::{Unwatched, preset};
+    ///
+    /// let wavy = preset::read_shipped("fig-9").ok_or("no such preset")?;
+    /// let law = StabilityReport::compute(&wavy, 200, &Unwatched)?;
+    /// let is_unstable = |critical: Option<f64>| critical.is_some_and(|critical| critical < law.work_of_adhesion);
+    /// assert!(law.rows.iter().any(|row| is_unstable(row.critical.displacement)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`CaseError`] when the preset cannot be made ready, or `progress` said stop.
     pub fn compute(preset: &Preset, samples: usize, progress: &dyn Progress) -> Result<Self, CaseError> {

@@ -199,6 +199,17 @@ fn start_note(preset: &Preset, case: &Case, start: &PointReport) -> Option<Strin
 impl TraceReport {
     /// Traces `preset` by arc length and reports it.
     ///
+    /// ```
+    /// use pulloff_engine::{TraceReport, preset};
+    ///
+    /// let wavy = preset::read_shipped("fig-9").ok_or("no such preset")?;
+    /// let curve = TraceReport::compute(&wavy)?;
+    /// let critical = 1.5 * std::f64::consts::PI * wavy.material.work_of_adhesion;
+    /// let least = curve.curve_min_force.ok_or("no force")?;
+    /// assert!((least / critical + 1.48).abs() < 0.01);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`CaseError`] when it cannot be computed.
     pub fn compute(preset: &Preset) -> Result<Self, CaseError> {

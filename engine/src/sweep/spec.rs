@@ -170,6 +170,17 @@ impl Spec {
     }
 
     /// The quantities of a row; `None` when `progress` said stop. Whatever goes wrong is a fault of the row.
+    ///
+    /// ```
+    /// use pulloff_engine::{Unwatched, preset, sweep::Spec};
+    ///
+    /// let text = "preset = 'fig-9'\nquantities = ['snaps']\n[[axis]]\nkey = 'gap.amplitude'\nvalues = [1e-4, 2.5e-3]";
+    /// let presets = |name: &str, _: &[&str]| preset::read_shipped(name).ok_or("no such preset".to_owned());
+    /// let spec = Spec::read(&presets, "spec", text)?;
+    /// let snaps: Vec<_> = (0..spec.rows).filter_map(|row| spec.measure(row, &Unwatched)?.cells[0]).collect();
+    /// assert_eq!(snaps.iter().map(ToString::to_string).collect::<Vec<_>>(), ["1", "7"]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn measure(&self, row: u64, progress: &dyn Progress) -> Option<Measured> {
         match self.problem(row) {

@@ -39,6 +39,14 @@ pub use settings::{Settings, VerifyError};
 ///
 /// A number that could not be computed is a row that fails, not an error.
 ///
+/// ```
+/// use pulloff_engine::{VerifyReport, verify};
+///
+/// let report = VerifyReport::new(&[verify::smooth::group()?], None);
+/// assert_eq!(report.passed, report.total, "{}", report.verdict());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`VerifyError`] when a basis of `settings` cannot be made.
 pub fn verify(settings: &Settings) -> Result<Vec<Group>, VerifyError> {
