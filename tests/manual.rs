@@ -434,7 +434,9 @@ fn files_of(room: &Path) -> Vec<PathBuf> {
     }
     let is_code = |path: &Path| {
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        !name.starts_with("tests") && name != "examples.rs" && (path.is_dir() || name.ends_with(".rs"))
+        !name.starts_with("tests")
+            && name != "examples.rs"
+            && (path.is_dir() || path.extension().is_some_and(|ending| ending == "rs"))
     };
     let entries = fs::read_dir(room).expect("a room").map(|entry| entry.expect("an entry").path());
     entries.filter(|path| is_code(path)).flat_map(|path| files_of(&path)).collect()

@@ -1,4 +1,4 @@
-//! The pull-off of a smooth sphere under three devices, beside -P_c.
+//! The pull-off of a smooth sphere under three devices, in units of the critical force.
 
 use pulloff_engine::{Control, Extent, PathReport, Unwatched, preset};
 use std::error::Error;
