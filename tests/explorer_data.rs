@@ -195,6 +195,33 @@ fn a_fit_changes_the_free_keys_as_one_command_and_says_their_errors() {
     assert!((0.4..1.1).contains(&typical(&mut session)));
 }
 
+/// The baseline that a fit has left, or a person has set, is no knowledge beside the rows apart: each fit finds it anew, with an error.
+#[test]
+fn a_second_fit_finds_the_baseline_anew() {
+    let mut session = Session::new("lens");
+    let free = |session: &Session| session.model.preset.data.free.clone();
+    let asked = free(&session);
+    assert!(!asked.contains(data::BASELINE));
+    let value = |session: &Session, key: &str| session.model.preset.get(key).unwrap().as_number().unwrap();
+    let keys = [data::BASELINE, data::OFFSET, "material.effective_modulus", "material.work_of_adhesion"];
+    session.does(Id::Fit);
+    let first = keys.map(|key| (value(&session, key), session.model.standard_error(key).unwrap()));
+    for wrong in ["4 uN", "60 uN"] {
+        session.set(data::BASELINE, wrong);
+        assert!(keys.iter().all(|key| session.model.standard_error(key).is_none()), "{wrong}");
+        session.does(Id::Fit);
+        assert!(session.status().starts_with("fitted: χ² "), "{}", session.status());
+        for (key, (before, error)) in keys.iter().zip(first) {
+            let (found, now) = (value(&session, key), session.model.standard_error(key).unwrap());
+            assert!(
+                (found - before).abs() < 0.01 * error && (now / error - 1.0).abs() < 0.01,
+                "{key}: {found} {before}"
+            );
+        }
+        assert_eq!(free(&session), asked, "what is free stays what a person says");
+    }
+}
+
 #[test]
 fn free_keys_are_marked_in_the_panel_and_what_is_not_determined_is_not_taken() {
     let mut session = Session::new("lens");

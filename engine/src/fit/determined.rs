@@ -1,21 +1,24 @@
 //! What the points determine: covariance, condition, and the direction in which they say nothing.
 //!
 //! ```text
-//! C = H⁻¹ (f JᵀVRVJ + K) H⁻¹,    H = JᵀΦJ + K,    f = κ² [Σψ²/(n − p)]/[ΣV²/n] / (φ/mean Φ)²,    κ = 1 + (p/n) (1 − φ)/φ
+//! C = H⁻¹ (JᵀVRVJ + K) H⁻¹,    H = JᵀΦJ + K
 //! Φ_i = E ψ'(r_i) = erf(t/√2),    V_i² = E ψ(r_i)² = s_i² [erf(t/√2) − √(2/π) t exp(−t²/2) + t² erfc(t/√2)],    t = c/s_i
 //! ```
 //!
-//! ψ is Huber's, linear up to c; φ is the share of the residuals up to there, `s_i` the standard deviation of the residual i, which goes with
-//! the slope of the curve. R is the correlation of the noise of the rows, 1 for white noise, and K the weights of what is known before. Where
-//! all `s_i` are one and K is none this is P. J. Huber, *Robust Statistics* (1981), eq. (7.6.6); where they differ, H. White, Econometrica 48,
-//! 817 (1980), with variances that are known but for a factor. The condition is that of J with columns of length 1: beyond
+//! ψ is Huber's, linear up to c; `s_i` is the standard deviation of the residual i, which goes with the slope of the curve, by the mean of
+//! squares that count up to 2.5 of them: P. J. Huber, Ann. Math. Stat. 35, 73 (1964), proposal 2. R is the correlation of the noise of the
+//! rows, 1 for white noise, and K the weights of what is known before. Where all `s_i` are one and K is none this is P. J. Huber, *Robust
+//! Statistics* (1981), section 7.6; where they differ, H. White, Econometrica 48, 817 (1980), with variances that are known but for two
+//! factors. The condition is that of J with columns of length 1: beyond
 //! [`LARGEST_CONDITION`] no errors are told.
 
+use super::degrees::{Made, degrees};
 use super::least_squares::Evaluated;
 use super::options::letter;
 use super::problem::{Parameter, Prior, Problem};
-use super::scatter::Correlation;
-use super::solve::{HUBER, Solved};
+use super::scatter::{Correlation, Scatter, variance};
+use super::solve::{HUBER, LEAST_SCALE, Solved};
+use super::spread::{LEAST_LEFT, Spread};
 use crate::elementary::{exp, exp_m1, ln};
 use crate::preset::Preset;
 use crate::units::number::{said, significant};
@@ -38,6 +41,8 @@ pub struct Determined {
     pub condition: f64,
     /// The standard errors of u; `None` where the condition is too large.
     pub errors: Option<DVector<f64>>,
+    /// The degrees of freedom of their squares, where they are determined.
+    pub degrees: Option<DVector<f64>>,
     /// The correlations.
     pub correlations: Option<DMatrix<f64>>,
     /// (JᵀJ)⁻¹, where they are determined.
@@ -48,19 +53,20 @@ pub struct Determined {
     pub direction: Option<String>,
 }
 
-/// What the fit `solved` of `problem` determines, its noise correlated from row to row as `correlation` says.
-pub fn determined(problem: &Problem, solved: &Solved, correlation: &Correlation, robust: bool) -> Determined {
-    let (at, u, scale) = (&solved.minimum.at, &solved.minimum.parameters[..], solved.scale);
+/// What the fit `solved` of `problem` determines, its noise correlated from row to row as `scatter` says.
+pub fn determined(problem: &Problem, solved: &Solved, scatter: &Scatter, robust: bool) -> Determined {
+    let (at, u) = (&solved.minimum.at, &solved.minimum.parameters[..]);
     let none = Determined {
         condition: f64::INFINITY,
         errors: None,
+        degrees: None,
         correlations: None,
         inner: None,
         shares: Vec::new(),
         direction: None,
     };
     let p = u.len();
-    let factor = variance(&problem.real(&at.residuals), scale, problem.taken(), robust);
+    let factor = level(&problem.real(&at.residuals), problem.taken(), robust);
     // What is known before counts as points do.
     let known = problem.of_priors() * factor.sqrt();
     let rows = at.jacobian.nrows();
@@ -94,10 +100,12 @@ pub fn determined(problem: &Problem, solved: &Solved, correlation: &Correlation,
         let sum: f64 = (0..p).map(|k| v[(k, i)] * v[(k, j)] / svd.singular_values[k].powi(2)).sum();
         sum / (lengths[i] * lengths[j])
     });
-    let (points, bread) = sandwich(problem, solved, correlation, robust);
+    let Sandwich { points, bread, noisy, spread } =
+        sandwich(problem, solved, &inner, &scatter.correlation, robust);
     let known = problem.of_priors();
     let known = known.tr_mul(&known);
     let Some(bread) = (bread + &known).try_inverse() else { return none };
+    let of_points = (&bread * &points * &bread).diagonal();
     let mut whole = &bread * (points + &known) * &bread;
     // The level of a force in steps is not known better than they are, however many rows stand at it.
     let level = &inner * at.jacobian.tr_mul(&rounding(problem, at.residuals.len()));
@@ -108,10 +116,20 @@ pub fn determined(problem: &Problem, solved: &Solved, correlation: &Correlation,
     };
     let shares = problem.priors.iter().map(|prior| (0..p).map(|j| share(prior, j)).collect()).collect();
     let errors = DVector::from_iterator(p, (0..p).map(|j| whole[(j, j)].sqrt()));
+    let made = Made {
+        bread: &bread,
+        noisy: &noisy,
+        jacobian: &at.jacobian,
+        points: &of_points,
+        whole: &whole.diagonal(),
+        rows: problem.real(&at.residuals).len(),
+    };
+    let degrees = degrees(problem, &made, &spread, scatter, robust);
     let correlations = DMatrix::from_fn(p, p, |i, j| whole[(i, j)] / (whole[(i, i)] * whole[(j, j)]).sqrt());
     Determined {
         condition,
         errors: Some(errors),
+        degrees: Some(degrees),
         correlations: Some(correlations),
         inner: Some(inner),
         shares,
@@ -132,15 +150,27 @@ fn rounding(problem: &Problem, rows: usize) -> DVector<f64> {
     DVector::from_fn(rows, |i, _| if problem.data[i / per].free && i.is_multiple_of(per) { off } else { 0.0 })
 }
 
-/// `f JᵀVRVJ` and `JᵀΦJ`.
+/// What the covariance is made of.
+struct Sandwich {
+    /// `JᵀVRVJ`.
+    points: DMatrix<f64>,
+    /// `JᵀΦJ`.
+    bread: DMatrix<f64>,
+    /// VJ.
+    noisy: DMatrix<f64>,
+    spread: Spread,
+}
+
 fn sandwich(
     problem: &Problem,
     solved: &Solved,
+    inner: &DMatrix<f64>,
     correlation: &Correlation,
     robust: bool,
-) -> (DMatrix<f64>, DMatrix<f64>) {
+) -> Sandwich {
     let at = &solved.minimum.at;
-    let spread = problem.spread(solved);
+    let leverage = at.jacobian.row_iter().map(|row| (row * inner).dot(&row));
+    let spread = problem.spread(solved, &DVector::from_iterator(at.residuals.len(), leverage));
     let limit = if robust { HUBER * solved.scale } else { f64::INFINITY };
     // Φ and V.
     let of_row = |s: &f64| {
@@ -152,7 +182,7 @@ fn sandwich(
         let tail = t * t * libm::erfc(t * FRAC_1_SQRT_2) - (2.0 / PI).sqrt() * t * exp(-0.5 * t * t);
         [inside, s * (inside + tail).sqrt()]
     };
-    let of_rows: Vec<[f64; 2]> = spread.iter().map(of_row).collect();
+    let of_rows: Vec<[f64; 2]> = spread.of_rows.iter().map(of_row).collect();
     let scaled = |by: &dyn Fn(&[f64; 2]) -> f64| {
         let mut jacobian = at.jacobian.clone();
         for (mut row, of_row) in jacobian.row_iter_mut().zip(&of_rows) {
@@ -163,17 +193,33 @@ fn sandwich(
     let noisy = scaled(&|[_, v]| *v);
     let points =
         if correlation.share > 0.0 { together(problem, &noisy, correlation) } else { noisy.tr_mul(&noisy) };
-    let mean = |of: &dyn Fn(&[f64; 2]) -> f64| {
-        let real = problem.real(&DVector::from_iterator(of_rows.len(), of_rows.iter().map(of)));
-        real.iter().sum::<f64>() / real.len() as f64
+    // A fit takes more of noise that hangs together: tr (JᵀJ)⁻¹JᵀRJ of n rows, p of white noise.
+    let taken_more = if correlation.share > 0.0 {
+        let n = problem.real(&at.residuals).len() as f64;
+        let of = |crossed: DMatrix<f64>| (inner * crossed).trace();
+        let white = n - of(at.jacobian.tr_mul(&at.jacobian));
+        white / (n - of(together(problem, &at.jacobian, correlation))).max(LEAST_LEFT * n)
+    } else {
+        1.0
     };
-    let expected = mean(&|[_, v]| v * v) / mean(&|[inside, _]| *inside).powi(2);
-    let found = variance(&problem.real(&at.residuals), solved.scale, problem.taken(), robust);
-    (points * (found / expected), at.jacobian.tr_mul(&scaled(&|[inside, _]| *inside)))
+    // Without an end of what counts the squares of all rows do.
+    let level = if robust {
+        1.0
+    } else {
+        let of_rows = problem.real(&spread.of_rows);
+        let mean = of_rows.iter().map(|s| s * s).sum::<f64>() / of_rows.len() as f64;
+        level(&problem.real(&at.residuals), problem.taken(), robust) / mean
+    };
+    let bread = at.jacobian.tr_mul(&scaled(&|[inside, _]| *inside));
+    Sandwich { points: points * (level * taken_more), bread, noisy, spread }
 }
 
 /// `JᵀRJ`: the rows of a branch in the order of measurement, those in contact and those apart.
-fn together(problem: &Problem, jacobian: &DMatrix<f64>, correlation: &Correlation) -> DMatrix<f64> {
+pub(super) fn together(
+    problem: &Problem,
+    jacobian: &DMatrix<f64>,
+    correlation: &Correlation,
+) -> DMatrix<f64> {
     let (per, p) = (problem.per_point(), jacobian.ncols());
     let mut crossed = DMatrix::zeros(p, p);
     for branch in 0..problem.branches() {
@@ -197,18 +243,12 @@ fn together(problem: &Problem, jacobian: &DMatrix<f64>, correlation: &Correlatio
     jacobian.tr_mul(jacobian) + correlation.share * (&crossed + crossed.transpose())
 }
 
-/// What (JᵀJ)⁻¹ is multiplied by.
-fn variance(residuals: &[f64], scale: f64, p: usize, robust: bool) -> f64 {
+/// The variance of the residuals, of which the parameters take `p`.
+fn level(residuals: &[f64], p: usize, robust: bool) -> f64 {
     let n = residuals.len() as f64;
-    let free = (n - p as f64).max(1.0);
-    if !robust {
-        return residuals.iter().map(|r| r * r).sum::<f64>() / free;
-    }
-    let psi: f64 = residuals.iter().map(|r| (r / scale).clamp(-HUBER, HUBER).powi(2)).sum();
-    let inside = residuals.iter().filter(|r| r.abs() <= HUBER * scale).count() as f64 / n;
-    let inside = inside.max(1.0 / n);
-    let kappa = 1.0 + p as f64 / n * (1.0 - inside) / inside;
-    kappa * kappa * scale * scale * (psi / free) / (inside * inside)
+    let squares = residuals.iter().map(|r| r * r).sum::<f64>() / n;
+    let found = if robust { variance(residuals).unwrap_or(squares) } else { squares };
+    found.max(LEAST_SCALE * LEAST_SCALE) * n / (n - p as f64).max(1.0)
 }
 
 /// `R +10 %, E* -4.7 %, γ -9.1 % together move the curve by less than its noise: fix one of them (only γ·R and E*·√R)`.

@@ -15,6 +15,8 @@ pub struct Fitted {
     pub value: f64,
     /// Its standard error; `None` where it is not determined.
     pub standard_error: Option<f64>,
+    /// The degrees of freedom of the square of that error; `None` where it is not determined.
+    pub degrees: Option<f64>,
     /// The 95 % interval by Student's t; `None` where it is not determined.
     pub interval: Option<[f64; 2]>,
     /// Where the fit started.

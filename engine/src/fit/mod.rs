@@ -15,6 +15,7 @@
 //! | [`start`] | where a fit starts |
 //! | [`solve`] | one fit with its own scale of the noise |
 //! | [`determined`] | covariance, condition, the direction in words |
+//! | `degrees` | how well the errors are known |
 //! | [`intervals`] | profile intervals and the block bootstrap |
 //! | [`scatter`] | the noise of the rows as neighbours show it |
 //! | `spread` | how that noise goes with the slope of the curve |
@@ -30,6 +31,7 @@
 //! pull-off passes a point, and its intervals then hold the truth in 8 % of trials.
 
 pub mod chance;
+mod degrees;
 pub mod derivatives;
 pub mod determined;
 mod directed;

@@ -73,7 +73,7 @@ pub struct Fit {
     pub chi_squared: f64,
     /// Σr²/n of the points in contact, and of those apart.
     pub chi_squared_of: [Option<f64>; 2],
-    /// Of the errors: rows that count on their own, less the values.
+    /// The degrees of freedom of the error that is known worst.
     pub degrees: f64,
     /// The noise of the rows as neighbours show it.
     pub scatter: Scatter,
@@ -185,15 +185,15 @@ pub(super) fn fit_branches(
     }
     let u = &solved.minimum.parameters;
     let scatter = problem.scatter(&solved);
-    let what = determined(&problem, &solved, &scatter.correlation, options.robust);
+    let what = determined(&problem, &solved, &scatter, options.robust);
     let priors = given(&problem, &what.shares, &mut notes);
     let real = problem.real(&solved.minimum.at.residuals);
-    let mut degrees = (real.len() as f64 / scatter.correlation.rows() - problem.taken() as f64).max(1.0);
-    // Of two variances that neighbours tell, one may decide a value; each is known by some half of the rows.
-    if least.is_some_and(|[least_x, _]| least_x.is_finite()) {
-        degrees = degrees.min(0.5 * scatter.degrees);
-    }
-    let mut fitted = values(&problem, u, what.errors.as_ref(), degrees);
+    let rows = real.len() as f64 / scatter.correlation.rows();
+    let degrees = match &what.degrees {
+        Some(degrees) => degrees.min(),
+        None => (rows - problem.taken() as f64).max(1.0),
+    };
+    let mut fitted = values(&problem, u, what.errors.as_ref().zip(what.degrees.as_ref()));
     let bootstrapped = match &what.errors {
         Some(errors) => {
             let wanted = Options { bootstrap: options.bootstrap.or(of_few(degrees)), ..options.clone() };
@@ -384,17 +384,20 @@ fn intervals(
     Some([count, block(&first)])
 }
 
-/// The values with their errors, which have so many degrees of freedom.
-fn values(problem: &Problem, u: &[f64], errors: Option<&DVector<f64>>, degrees: f64) -> Vec<Fitted> {
+/// The values with their errors, and the degrees of freedom of these.
+fn values(problem: &Problem, u: &[f64], known: Option<(&DVector<f64>, &DVector<f64>)>) -> Vec<Fitted> {
     /// The share of truths outside of an interval.
     const OUTSIDE: f64 = 0.05;
-    let t = t_of(OUTSIDE, degrees);
     let of = |(j, parameter): (usize, &Parameter)| {
         let value = parameter.value(u[j]);
-        let standard_error = errors.map(|errors| errors[j] * parameter.slope(value).abs());
-        let interval = errors.map(|errors| [-t, t].map(|t| parameter.value(u[j] + t * errors[j])));
+        let standard_error = known.map(|(errors, _)| errors[j] * parameter.slope(value).abs());
+        let degrees = known.map(|(_, degrees)| degrees[j]);
+        let interval = known.map(|(errors, degrees)| {
+            let t = t_of(OUTSIDE, degrees[j]);
+            [-t, t].map(|t| parameter.value(u[j] + t * errors[j]))
+        });
         let (key, start) = (parameter.key(), parameter.start);
-        Fitted { key, value, standard_error, interval, start, profile: None, bootstrap: None }
+        Fitted { key, value, standard_error, degrees, interval, start, profile: None, bootstrap: None }
     };
     problem.parameters.iter().enumerate().map(of).collect()
 }

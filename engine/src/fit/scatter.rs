@@ -255,14 +255,21 @@ fn correlation(series: &[Vec<f64>]) -> Correlation {
         found = if told.len() < 2 {
             Correlation { share: 1.0, decay: first.clamp(0.0, least) }
         } else {
-            let count = told.len() as f64;
+            // The correlation of rows farther apart is known worse.
+            let count: f64 = told.iter().map(|(lag, _)| 1.0 / lag).sum();
             let [mean_x, mean_y] =
-                told.iter().fold([0.0; 2], |[x, y], (lag, r)| [x + lag / count, y + ln(*r) / count]);
+                told.iter().fold([0.0; 2], |[x, y], (lag, r)| [x + 1.0 / count, y + ln(*r) / lag / count]);
             let [xx, xy] = told.iter().fold([0.0; 2], |[xx, xy], (lag, r)| {
-                [xx + (lag - mean_x).powi(2), xy + (lag - mean_x) * (ln(*r) - mean_y)]
+                let off = lag - mean_x;
+                [xx + off * off / lag, xy + off * (ln(*r) - mean_y) / lag]
             });
             let decay = exp((xy / xx).min(0.0)).min(least);
-            Correlation { share: (first / decay).min(1.0), decay }
+            // No more than all of the noise hangs together: then its decay is the correlation of neighbours.
+            if first < decay {
+                Correlation { share: first / decay, decay }
+            } else {
+                Correlation { share: 1.0, decay: first.min(least) }
+            }
         };
     }
     if found.decay > 0.0 { found } else { none }

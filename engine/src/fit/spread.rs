@@ -1,25 +1,37 @@
 //! How the noise of a residual goes with the slope of the curve: that of x matters where it is steep, that of P where it is level.
 //!
 //! ```text
-//! var r_i = a n_x² + b n_P²,     n the normal of the curve in σ,     (a, b) by the largest likelihood
+//! var r_i = (1 − h_i) (a n_x² + b n_P²),     n the normal of the curve in σ,     (a, b) by the largest likelihood
+//! h_i = J_i (JᵀJ + K)⁻¹ J_iᵀ                 what the fit takes of a row
 //! ```
 //!
-//! Both are 1 where σ of x and of P are what they are said to be. The least σ of x is no noise: a is 0 there, and the residuals of a steep
-//! curve are smaller than those of rows apart.
+//! Where few rows decide a value the fit takes most of them: J. G. `MacKinnon` and H. White, J. Econometrics 29, 305 (1985). a and b are 1
+//! where σ of x and of P are what they are said to be. The least σ of x is no noise: a is 0 there, and the residuals of a steep curve are
+//! smaller than those of rows apart.
 
 use super::distance::Nearest;
 use super::problem::Problem;
-use super::scatter::{CLIPPED, LEFT, Row};
-use super::solve::Solved;
+use super::scatter::{CLIPPED, LEFT, Row, variance};
+use super::solve::{LEAST_SCALE, Solved};
 use crate::measured::branches::median;
 use nalgebra::DVector;
 
+/// What a fit leaves of the variance of a row is at least this share: less says nothing of it.
+pub(super) const LEAST_LEFT: f64 = 0.1;
 /// Fewer rows say nothing of two variances.
 const FEWEST: usize = 20;
 
 /// `n_x²` and `n_P²` of a foot; of a row apart, whose residual is that of P, none and all.
 fn normal(foot: Option<&Nearest>) -> [f64; 2] {
     foot.map_or([0.0, 1.0], |foot| [0, 1].map(|k| foot.normals[0][k].powi(2)))
+}
+
+/// How the noise of the residuals is spread over the rows.
+pub(super) struct Spread {
+    /// The standard deviation of each residual in σ.
+    pub of_rows: DVector<f64>,
+    /// `n_x²` and `n_P²` of each, where the variances of x and of P are told by the residuals.
+    pub components: Option<Vec<[f64; 2]>>,
 }
 
 impl Problem {
@@ -46,19 +58,25 @@ impl Problem {
         components(&rows).map(|found| found.map(f64::sqrt))
     }
 
-    /// The standard deviation of each residual in σ; 1 where there are too few rows, or two residuals of each.
-    pub(super) fn spread(&self, solved: &Solved) -> DVector<f64> {
+    /// The spread of the residuals, of which the fit has taken the shares `leverage`: one of all rows where there are too few, or two
+    /// residuals of each.
+    pub(super) fn spread(&self, solved: &Solved, leverage: &DVector<f64>) -> Spread {
         let residuals = &solved.minimum.at.residuals;
+        let whole = residuals.zip_map(leverage, |r, h| r / (1.0 - h).max(LEAST_LEFT).sqrt());
         let of = || {
             let normals = self.normals(solved).filter(|_| self.per_point() == 1)?;
             let rows: Vec<([f64; 2], f64)> =
-                normals.iter().zip(residuals).map(|(normal, r)| (*normal, r * r)).collect();
+                normals.iter().zip(&whole).map(|(normal, r)| (*normal, r * r)).collect();
             let [of_x, of_p] = components(&rows)?;
             let variances = normals.iter().map(|normal| of_x * normal[0] + of_p * normal[1]);
             let spread = DVector::from_iterator(residuals.len(), variances.map(f64::sqrt));
-            spread.iter().all(|s| *s > 0.0).then_some(spread)
+            let is_known = spread.iter().all(|s| *s > LEAST_SCALE);
+            is_known.then_some(Spread { of_rows: spread, components: Some(normals) })
         };
-        of().unwrap_or_else(|| DVector::repeat(residuals.len(), 1.0))
+        of().unwrap_or_else(|| {
+            let of_all = variance(&self.real(&whole)).unwrap_or(1.0).sqrt().max(LEAST_SCALE);
+            Spread { of_rows: DVector::repeat(residuals.len(), of_all), components: None }
+        })
     }
 }
 

@@ -44,7 +44,7 @@ pub struct FitReport {
     pub noise_of_neighbours: Option<f64>,
     /// How many rows of the noise count as one: 1 for white noise.
     pub rows_that_count_as_one: f64,
-    /// The degrees of freedom of the errors.
+    /// The degrees of freedom of the error that is known worst.
     pub degrees_of_freedom: f64,
     /// The rows of the file by branch and part.
     pub rows: Rows,
@@ -96,6 +96,8 @@ pub struct ParameterReport {
     pub value: f64,
     /// Its standard error; `None` where it is not determined.
     pub standard_error: Option<f64>,
+    /// The degrees of freedom of the square of the error; `None` where it is not determined.
+    pub degrees_of_freedom: Option<f64>,
     /// Whether the error may be believed: only where the model describes the points.
     pub error_holds: bool,
     /// The 95 % interval by Student's t.
@@ -144,6 +146,7 @@ impl FitReport {
                     key: fitted.key.clone(),
                     value: fitted.value,
                     standard_error: fitted.standard_error,
+                    degrees_of_freedom: fitted.degrees,
                     error_holds: fit.verdict == Verdict::Describes && fitted.standard_error.is_some(),
                     interval: fitted.interval,
                     start: fitted.start,
@@ -287,10 +290,11 @@ impl FitReport {
                 format!("{} .. {}", number(parameter.quantity, lo), number(parameter.quantity, hi))
             };
             let key = &parameter.key;
-            if let Some(found) =
-                parameter.interval.filter(|_| parameter.error_holds && self.degrees_of_freedom < FEW_DEGREES)
+            let known = parameter.interval.zip(parameter.degrees_of_freedom);
+            if let Some((found, degrees)) =
+                known.filter(|(_, degrees)| parameter.error_holds && *degrees < FEW_DEGREES)
             {
-                let degrees = short(self.degrees_of_freedom, 3);
+                let degrees = short(degrees, 3);
                 let _ = writeln!(
                     text,
                     "{key}: 95 % by Student's t with {degrees} degrees of freedom {}",

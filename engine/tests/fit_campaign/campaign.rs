@@ -37,6 +37,8 @@ struct Counted {
     doubted: usize,
     /// Trusted intervals, and those that hold the truth.
     intervals: [usize; 2],
+    /// The same of each key.
+    by_key: BTreeMap<&'static str, [usize; 2]>,
     failures: Vec<String>,
 }
 
@@ -49,9 +51,16 @@ fn count(kind: &Kind, numbers: Range<u64>) -> Counted {
         let off = outcome.off();
         if outcome.is_trusted() {
             counted.trusted += 1;
-            let inside: Vec<bool> = outcome.found.iter().filter_map(|found| found.inside).collect();
-            counted.intervals[0] += inside.len();
-            counted.intervals[1] += inside.iter().filter(|inside| **inside).count();
+            for (key, inside) in outcome.found.iter().filter_map(|found| Some((found.key, found.inside?))) {
+                for of in [counted.by_key.entry(key).or_default(), &mut counted.intervals] {
+                    of[0] += 1;
+                    of[1] += usize::from(inside);
+                }
+            }
+            let outside: Vec<_> = outcome.found.iter().filter(|found| found.inside == Some(false)).collect();
+            if !outside.is_empty() && std::env::var("PULLOFF_SAID").is_ok() {
+                println!("  {}: outside: {outside:?} {:?}", outcome.number, outcome.said.last());
+            }
             if off > WRONG {
                 counted.wrong += 1;
                 counted.failures.push(format!("{} {}: trusted, off by {off:.1}", kind.name, outcome.number));
@@ -78,16 +87,22 @@ fn count(kind: &Kind, numbers: Range<u64>) -> Counted {
             }
         }
     }
-    let held = counted.intervals[1] as f64 / counted.intervals[0].max(1) as f64;
+    let held = |[all, inside]: [usize; 2]| 100.0 * inside as f64 / all.max(1) as f64;
+    let by_key: Vec<String> = counted
+        .by_key
+        .iter()
+        .map(|(key, of)| format!("{} {:.1}", key.rsplit('.').next().unwrap(), held(*of)))
+        .collect();
     println!(
-        "{}: {} of {} sets trusted ({:.1} % flagged); {:.1} % of {} intervals hold the truth; {} trusted and wrong; {} right and doubted; \
-         reasons {reasons:?}",
+        "{}: {} of {} sets trusted ({:.1} % flagged); {:.1} % of {} intervals hold the truth ({}); {} trusted and wrong; {} right and \
+         doubted; reasons {reasons:?}",
         kind.name,
         counted.trusted,
         counted.sets,
         100.0 * (1.0 - counted.trusted as f64 / counted.sets as f64),
-        100.0 * held,
+        held(counted.intervals),
         counted.intervals[0],
+        by_key.join(", "),
         counted.wrong,
         counted.doubted,
     );

@@ -17,6 +17,8 @@ pub enum Way {
 pub struct Sample {
     /// Which way the device goes.
     pub way: Way,
+    /// When it is taken, in seconds; of a quasi-static device in steps.
+    pub time: f64,
     /// The way of its far end, δ + P/k.
     pub position: f64,
     /// What the body does; P and s are 0 where the bodies are apart.
@@ -73,7 +75,7 @@ impl Device {
                 }
                 between(cell, position)
             };
-            samples.push(Sample { way: Way::In, position, state });
+            samples.push(Sample { way: Way::In, time: samples.len() as f64, position, state });
         }
         // Inward: the first state that is no farther than the device is.
         let mut cell = positions.len() - 1;
@@ -84,7 +86,7 @@ impl Device {
             }
             let state =
                 if position < off || cell == 0 { apart(position) } else { between(cell - 1, position) };
-            samples.push(Sample { way: Way::Out, position, state });
+            samples.push(Sample { way: Way::Out, time: samples.len() as f64, position, state });
         }
         samples
     }
@@ -152,7 +154,8 @@ impl Peel {
             if s < last * self.begin {
                 break;
             }
-            whole.push(Sample { way: Way::Out, position, state: self.state(s, position) });
+            let state = self.state(s, position);
+            whole.push(Sample { way: Way::Out, time: whole.len() as f64 * time, position, state });
         }
         (0..rows).map(|i| whole[i * (whole.len() - 1) / (rows - 1)]).collect()
     }

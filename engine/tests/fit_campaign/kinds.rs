@@ -45,9 +45,11 @@ pub const MEASURED: [Kind; 11] = [
 ];
 
 /// What no sphere with adhesion at its edge alone is, or no instrument should do: right, or said.
-pub const DOUBTFUL: [Kind; 34] = [
-    Kind { name: "Gent-Schultz P(s), 29 rows", is_model: false, make: |random| peeled(random, 29) },
-    Kind { name: "Gent-Schultz P(s), 38 rows", is_model: false, make: |random| peeled(random, 38) },
+pub const DOUBTFUL: [Kind; 36] = [
+    Kind { name: "Gent-Schultz P(s), 29 rows", is_model: false, make: |random| peeled(random, 29, false) },
+    Kind { name: "Gent-Schultz P(s), 38 rows", is_model: false, make: |random| peeled(random, 38, false) },
+    Kind { name: "Gent-Schultz P(s), with times", is_model: false, make: |random| peeled(random, 38, true) },
+    Kind { name: "P(s), with times", is_model: true, make: radii_with_times },
     Kind { name: "force noise 0.1 P_c", is_model: true, make: loud },
     Kind { name: "ends at the last contact", is_model: true, make: cut_at_contact },
     Kind { name: "retraction alone, ends at the last contact", is_model: true, make: cut_retraction },
@@ -289,6 +291,17 @@ fn of_radius(random: &mut Random) -> Made {
     ball.made(&record, "\"displacement\"")
 }
 
+/// Samples at times of their own, more of them where it pleases a person.
+fn radii_with_times(random: &mut Random) -> Made {
+    let ball = Ball::draw(random);
+    let share = random.even(0.2, 0.8);
+    let mut record = radii(&ball, 160, random);
+    let middle = record.x.len() / 2;
+    record = record.kept(|i| i % 2 == 0 || (i < middle) == (share < 0.5));
+    record.has_times = true;
+    ball.made(&record, "\"displacement\"")
+}
+
 fn radii_with_outliers(random: &mut Random) -> Made {
     let ball = Ball::draw(random);
     let record = radii(&ball, 80, random).with_outliers(0.03, 0.3 * ball.critical(), random);
@@ -328,7 +341,7 @@ fn digitized(ball: &Ball, filled: f64, random: &mut Random) -> Made {
     made
 }
 
-fn peeled(random: &mut Random, rows: usize) -> Made {
+fn peeled(random: &mut Random, rows: usize, has_times: bool) -> Made {
     let mut ball = Ball::draw(random);
     ball.most *= 1.2;
     let exponent = random.even(0.4, 0.6);
@@ -344,7 +357,8 @@ fn peeled(random: &mut Random, rows: usize) -> Made {
         begin: ball.most,
     };
     let sigma = random.scale(0.003, 0.01) * ball.critical();
-    let record = Record::of(&peel.samples(rows, 0.35), Seen::Radius).noisy(sigma, random);
+    let mut record = Record::of(&peel.samples(rows, 0.35), Seen::Radius).noisy(sigma, random);
+    record.has_times = has_times;
     let blur = 0.002 * ball.most;
     ball.made(&record.changed(|_, s, force| [s + blur * random.normal(), force]), "\"displacement\"")
 }

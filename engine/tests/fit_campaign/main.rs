@@ -10,8 +10,9 @@
 //! cargo test --release -p pulloff-engine --test fit_campaign -- --ignored --nocapture
 //! ```
 //!
-//! `PULLOFF_CAMPAIGN=17..18` before that line runs those numbers alone, `PULLOFF_KIND=tilt` one kind, and `PULLOFF_FINDINGS=FOLDER` keeps
-//! the curves that are judged wrongly, each with the command that fits it.
+//! `PULLOFF_CAMPAIGN=17..18` before that line runs those numbers alone, `PULLOFF_KIND=tilt` one kind, `PULLOFF_FINDINGS=FOLDER` keeps
+//! the curves that are judged wrongly, each with the command that fits it, and `PULLOFF_SAID=1` prints what fits say that are doubted or
+//! whose interval does not hold the truth.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small counts")]

@@ -43,6 +43,10 @@ pub struct Record {
     pub x: Vec<f64>,
     pub force: Vec<f64>,
     pub ways: Vec<Way>,
+    /// When each row was taken.
+    times: Vec<f64>,
+    /// Whether a column says it.
+    pub has_times: bool,
     /// Whether a column says which way the device goes.
     pub names_ways: bool,
 }
@@ -59,6 +63,8 @@ impl Record {
             x: x.collect(),
             force: samples.iter().map(|sample| sample.state.force).collect(),
             ways: samples.iter().map(|sample| sample.way).collect(),
+            times: samples.iter().map(|sample| sample.time).collect(),
+            has_times: false,
             names_ways: true,
         }
     }
@@ -74,6 +80,7 @@ impl Record {
             x: rows.iter().map(|i| self.x[*i]).collect(),
             force: rows.iter().map(|i| self.force[*i]).collect(),
             ways: rows.iter().map(|i| self.ways[*i]).collect(),
+            times: rows.iter().map(|i| self.times[*i]).collect(),
             ..*self
         }
     }
@@ -94,6 +101,7 @@ impl Record {
         self.x.extend(&other.x);
         self.force.extend(&other.force);
         self.ways.extend(&other.ways);
+        self.times.extend(&other.times);
         self
     }
 
@@ -143,14 +151,19 @@ impl Record {
             Seen::Position => "position [m]",
             Seen::Radius => "contact radius [m]",
         });
-        text.push_str(if self.names_ways { ",force [N],segment\n" } else { ",force [N]\n" });
-        for ((x, force), way) in self.x.iter().zip(&self.force).zip(&self.ways) {
-            let way = match way {
-                _ if !self.names_ways => "",
-                Way::In => ",approach",
-                Way::Out => ",retraction",
-            };
-            writeln!(text, "{x:.9e},{force:.9e}{way}").unwrap();
+        text.push_str(",force [N]");
+        text.push_str(if self.has_times { ",time [ms]" } else { "" });
+        text.push_str(if self.names_ways { ",segment\n" } else { "\n" });
+        for (i, (x, force)) in self.x.iter().zip(&self.force).enumerate() {
+            write!(text, "{x:.9e},{force:.9e}").unwrap();
+            if self.has_times {
+                write!(text, ",{:.9e}", 1e3 * self.times[i]).unwrap();
+            }
+            text.push_str(match self.ways[i] {
+                _ if !self.names_ways => "\n",
+                Way::In => ",approach\n",
+                Way::Out => ",retraction\n",
+            });
         }
         text
     }

@@ -58,7 +58,10 @@ pub fn preset(made: &Made) -> Preset {
 }
 
 pub fn options(free: &[&str]) -> Options {
-    Options { free: free.iter().map(|key| (*key).to_owned()).collect(), ..Options::default() }
+    /// The bootstrap of few rows is not judged here: these are its fewest fits.
+    const FEWEST: (usize, u64) = (10, 1);
+    let free = free.iter().map(|key| (*key).to_owned()).collect();
+    Options { free, bootstrap: Some(FEWEST), ..Options::default() }
 }
 
 /// The fit of a made curve.
