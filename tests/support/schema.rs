@@ -54,7 +54,7 @@ fn fault(root: &Value, schema: &Value, value: &Value, at: &str) -> Option<String
             .as_f64()
             .filter(|x| *x > rule.as_f64().unwrap())
             .map(|x| format!("{at}: {x} is above {rule}")),
-        "anyOf" => each(rule).into_iter().min_by_key(|fault| fault.is_some()).flatten(),
+        "anyOf" => each(rule).into_iter().min_by_key(Option::is_some).flatten(),
         "oneOf" => {
             let faults = each(rule);
             let right = faults.iter().filter(|fault| fault.is_none()).count();

@@ -63,7 +63,7 @@ impl Rule {
     }
 
     /// The weight of node `j` in the sum over the nodes that, of any polynomial they resolve, is the sum with these `moments`: what it
-    /// makes of T_0, T_1, …
+    /// makes of the polynomials of Chebyshev, the constant first.
     pub fn weight(&self, j: usize, moments: &[f64]) -> f64 {
         let n = self.nodes.len();
         self.columns[j * n..(j + 1) * n].iter().zip(moments).map(|(c, moment)| c * moment).sum()

@@ -5,8 +5,13 @@
 //! ```
 //!
 //! Neighbouring panels are taken together, two, four, eight and so on. From a place at least as far away as they are wide their
-//! sources are as good as [`NODES`] at Chebyshev nodes R_m with the weights W_m = Σ w ℓ_m(r), ℓ_m the polynomial that is one at R_m
-//! and nothing at the others: the kernel is its own polynomial there to (3 + √8)⁻²⁴. A sum over N panels takes some log N of them.
+//! sources are as good as [`NODES`] at Chebyshev nodes, where the weight at a node is that of its cardinal polynomial,
+//!
+//! ```text
+//! W_m = Σ w ℓ_m(r),   ℓ_m = 1 at node m and 0 at the others,
+//! ```
+//!
+//! for the kernel is its own polynomial there to (3 + √8)⁻²⁴. A sum over N panels takes some log N of them.
 //!
 //! L. Greengard and V. Rokhlin, J. Comput. Phys. 73, 325 (1987), doi:10.1016/0021-9991(87)90140-9, for the tree.
 
