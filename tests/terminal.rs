@@ -86,8 +86,8 @@ fn keys_and_pastes_arrive_and_a_paste_is_never_a_command() {
     let mut pty = start(80, 24);
     pty.keys("l");
     pty.wait_for(|screen| selects(screen, "λ"), "the next knob");
-    pty.keys("\x1b[A");
-    pty.wait_for(|screen| selects(screen, "E*"), "the knob above");
+    pty.keys("\x1b[D");
+    pty.wait_for(|screen| selects(screen, "A"), "the knob before");
     // Outside a prompt a paste does nothing; inside it is text up to its first line end.
     pty.paste("q\rq\x1b[31m");
     pty.keys("\r");
