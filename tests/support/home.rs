@@ -2,8 +2,7 @@
 #![allow(dead_code, reason = "each test file uses a part of it")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
-#[path = "schema.rs"]
-mod schema;
+use super::schema;
 
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;

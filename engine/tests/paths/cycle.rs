@@ -1,0 +1,602 @@
+//! Whole loops against those of another program, and what holds for every loop.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+#![allow(
+    clippy::disallowed_methods,
+    reason = "tests judge by functions that share nothing with what they judge"
+)]
+
+use crate::support::{Numbers, numbers, random_gap, reference, wavy};
+use pulloff_engine::Case;
+use pulloff_engine::annuli::{Around, Contacts, Ground};
+use pulloff_engine::disc::Table;
+use pulloff_engine::gap::{Gap, Shape};
+use pulloff_engine::gap::{formula::FormulaParameter, formula::TypedGap};
+use pulloff_engine::preset::{self, shipped};
+use pulloff_engine::problem::Turn;
+use pulloff_engine::problem::{ContactKind, Control};
+use pulloff_engine::progress::Unwatched;
+use pulloff_engine::quasistatic::path::{
+    Balance, Direction, EVEN, EventKind, Losses, Path, PathError, PathState, Setting, Warning, WhyNot, cycle,
+    cycle_on,
+};
+use serde_json::Value;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+fn looped(gap: Arc<dyn Gap>, gamma: f64, control: Control, turn: Turn, losses: Losses) -> Path {
+    let table = Arc::new(Table::new(gap, 0.3, &Unwatched).unwrap());
+    let setting = Setting { losses, ..Setting::new(control) };
+    cycle(&table, gamma, turn, &setting, &Unwatched).unwrap()
+}
+
+/// Holds the events of a loop to a reference, `tolerance` of each range; losses to `losses` of themselves.
+fn agrees(found: &Path, reference: &Value, tolerance: f64, losses: f64) {
+    let events = reference["events"].as_array().unwrap();
+    let name = |kind: EventKind| kind.name().replace("first-touch", "first touch");
+    let kinds: Vec<String> = found.events.iter().map(|event| name(event.kind)).collect();
+    let expected: Vec<&str> = events.iter().map(|event| event["kind"].as_str().unwrap()).collect();
+    assert_eq!(kinds, expected);
+    let states: Vec<_> = events
+        .iter()
+        .flat_map(|event| [&event["before"], &event["after"]])
+        .filter(|state| !state.is_null())
+        .map(numbers)
+        .collect();
+    let range = |of: &dyn Fn(&Numbers) -> f64| {
+        let (lo, hi) = states
+            .iter()
+            .map(of)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi): (f64, f64), x| (lo.min(x), hi.max(x)));
+        hi - lo
+    };
+    let (approach, force) = (range(&|state| state.0), range(&|state| state.1));
+    let radius = range(&|state| state.2.last().map_or(0.0, |last| last[1]));
+    let mut worst = [0.0_f64; 4];
+    for (event, expected) in found.events.iter().zip(events) {
+        for (state, expected) in [(&event.before, &expected["before"]), (&event.after, &expected["after"])] {
+            let Some(state) = state else {
+                assert!(expected.is_null());
+                continue;
+            };
+            let (delta, p, contacts) = numbers(expected);
+            worst[0] = worst[0].max((state.approach - delta).abs() / approach);
+            worst[1] = worst[1].max((state.force - p).abs() / force);
+            assert_eq!(state.contacts.len(), contacts.len());
+            for (ours, theirs) in state.contacts.iter().flatten().zip(contacts.iter().flatten()) {
+                worst[2] = worst[2].max((ours - theirs).abs() / radius);
+            }
+        }
+        let lost = expected["lost"].as_f64().unwrap();
+        let error = (event.dissipated.unwrap() - lost).abs();
+        worst[3] = worst[3].max(if lost == 0.0 { error } else { error / lost });
+    }
+    println!(
+        "worst: approach {:.1e} force {:.1e} edges {:.1e} losses {:.1e}",
+        worst[0], worst[1], worst[2], worst[3]
+    );
+    assert!(worst[..3].iter().all(|error| *error < tolerance) && worst[3] < losses, "{worst:?}");
+    let sum = reference["checks"]["sum_of_losses"].as_f64().unwrap();
+    assert!((found.totals.dissipated.unwrap() / sum - 1.0).abs() < losses);
+    let by_work = found.totals.work_of_loading.unwrap() + found.totals.work_of_unloading.unwrap();
+    assert!((by_work / sum - 1.0).abs() < losses);
+}
+
+#[test]
+fn the_loop_of_figure_9_is_that_of_another_program() {
+    let turn = Turn::Control(0.14);
+    let found = looped(wavy(0.0025, 0.05), 0.025 / TAU, Control::Displacement, turn, Losses::Twice);
+    agrees(&found, &reference("fig9-cycle"), 1e-9, 1e-8);
+    assert!(found.totals.balance.unwrap() < 1e-8 && found.warnings.is_empty(), "{:?}", found.totals);
+}
+
+#[test]
+fn weak_adhesion_takes_the_rings_of_another_program() {
+    let turn = Turn::Approach(0.14);
+    let found = looped(wavy(0.0025, 0.05), 1e-4, Control::Displacement, turn, Losses::Twice);
+    agrees(&found, &reference("fig9-weak"), 1e-9, 1e-8);
+    assert!(found.totals.balance.unwrap() < 1e-8 && found.warnings.is_empty(), "{:?}", found.totals);
+    let rings = found.states.iter().map(|state: &PathState| state.contacts.len()).max();
+    assert_eq!(rings, Some(2));
+}
+
+#[test]
+fn an_unloading_from_inside_an_overlap_starts_with_what_loading_comes_to() {
+    let text = shipped::find("fig-9-weak").unwrap().text;
+    let mut preset = preset::read("fig-9-weak", text).unwrap();
+    let mut inside = 0;
+    for number in 1..=60 {
+        preset.set_all([("path.start_contact_radius", (0.003 * f64::from(number)).into())]).unwrap();
+        let case = Case::new(&preset).unwrap();
+        let setting = Setting { losses: Losses::Once, ..Setting::new(Control::Displacement) };
+        let found = case.unload(&case.curve(&Unwatched).unwrap(), &setting, &Unwatched).unwrap();
+        let overlaps = found.asked.is_some_and(|asked| matches!(asked.why, WhyNot::Overlaps(_)));
+        if !overlaps {
+            continue;
+        }
+        inside += 1;
+        let first = found.start().unwrap();
+        let whole = case.cycle(Some(Turn::Control(first.approach)), &setting, &Unwatched).unwrap();
+        let turned = whole.events.iter().find(|event| event.kind == EventKind::Turn).unwrap();
+        let turned = turned.before.as_ref().unwrap();
+        assert_eq!(first.contacts.len(), turned.contacts.len(), "{number}");
+        for (a, b) in first.contacts.iter().flatten().zip(turned.contacts.iter().flatten()) {
+            assert!((a - b).abs() < 1e-9, "{number}: {:?} {:?}", first.contacts, turned.contacts);
+        }
+        assert!((first.force - turned.force).abs() < 1e-10, "{number}");
+    }
+    assert!(inside >= 10, "{inside}");
+}
+
+#[test]
+fn figure_8_touches_once_and_snaps_once() {
+    let gamma = 0.05 / TAU;
+    let found = looped(wavy(0.001, 0.1), gamma, Control::Displacement, Turn::Approach(0.25), Losses::Twice);
+    let kinds: Vec<EventKind> = found.events.iter().map(|event| event.kind).collect();
+    assert_eq!(kinds, [EventKind::FirstTouch, EventKind::Turn, EventKind::Snap, EventKind::LastContact]);
+    let landed = found.events[0].after.as_ref().unwrap();
+    assert!(
+        (landed.contact_radius - 0.373_502_9).abs() < 1e-7 && (landed.force + 0.035_632_181_2).abs() < 1e-10
+    );
+    assert!((found.events[0].dissipated.unwrap() / 1.976_571_4e-3 - 1.0).abs() < 1e-7);
+    let reference = reference("fig8");
+    let unloading = reference["control"]["displacement"]["unloading"].as_array().or_else(|| {
+        let controls = reference["controls"].as_array()?;
+        controls.iter().find(|of| of["control"] == "displacement")?["unloading"].as_array()
+    });
+    if let Some(events) = unloading {
+        for (event, expected) in found.events[2..].iter().zip(events) {
+            let number = |keys: [&str; 2]| expected[keys[0]][keys[1]].as_f64().or(expected[keys[0]].as_f64());
+            if let Some(s) = number(["before", "s"]) {
+                assert!((event.before.as_ref().unwrap().contact_radius - s).abs() < 1e-11);
+            }
+        }
+    }
+}
+
+#[test]
+fn without_adhesion_the_loop_is_that_of_the_table() {
+    let found = looped(wavy(0.0025, 0.05), 0.0, Control::Displacement, Turn::Approach(0.1), Losses::Twice);
+    let expected = [
+        ("touch", 0.048_792_8, 0.001_283_086_94, 0.000_009_797_7, 0.005_795_5),
+        ("touch", 0.098_054_6, 0.006_747_625_40, 0.000_537_020_6, 0.010_248_1),
+        ("touch", 0.147_522_7, 0.017_055_500_40, 0.002_552_256_4, 0.013_855_6),
+        ("touch", 0.197_099_4, 0.032_358_291_69, 0.007_090_533_8, 0.017_336_6),
+        ("touch", 0.246_742_0, 0.052_700_045_61, 0.015_189_096_2, 0.021_657_0),
+        ("merge", 0.026_302_5, 0.063_172_127_64, 0.020_299_472_4, 0.071_637_5),
+        ("merge", 0.075_502_0, 0.069_930_361_28, 0.023_701_383_3, 0.120_577_4),
+        ("touch", 0.296_428_9, 0.078_094_923_22, 0.027_880_887_1, 0.123_522_3),
+        ("merge", 0.125_386_6, 0.079_783_254_20, 0.028_848_303_5, 0.169_422_3),
+        ("merge", 0.175_369_5, 0.095_343_532_88, 0.038_109_438_6, 0.218_373_5),
+    ];
+    let up: Vec<_> = found.events.iter().take_while(|event| event.kind != EventKind::Turn).skip(1).collect();
+    assert_eq!(up.len(), expected.len());
+    for (event, (kind, radius, delta, force, disc)) in up.iter().zip(expected) {
+        assert_eq!(event.kind.name(), kind);
+        let after = event.after.as_ref().unwrap();
+        assert!((event.radius.unwrap() - radius).abs() < 2e-7, "{radius}");
+        assert!((after.approach - delta).abs() < 1e-10 * 0.1 + 5e-12, "{kind} {delta} {}", after.approach);
+        assert!((after.force - force).abs() < 6e-11, "{kind} {delta}");
+        assert!((after.contacts[0][1] - disc).abs() < 6e-8, "{kind} {delta}");
+    }
+    let turn = &found.events[up.len() + 1];
+    let at = turn.after.as_ref().unwrap();
+    assert!((at.force - 0.040_940_284_4).abs() < 6e-11 && (at.energy - 1.612_489_038e-3).abs() < 6e-13);
+    // The way back.
+    let down: Vec<_> = found.events[up.len() + 2..].iter().map(|event| event.kind.name()).collect();
+    let mirrored: Vec<_> = up
+        .iter()
+        .rev()
+        .map(|event| if event.kind == EventKind::Merge { "split" } else { "vanish" })
+        .chain(["last-contact"])
+        .collect();
+    assert_eq!(down, mirrored);
+}
+
+/// What holds for every loop.
+fn check(found: &Path, name: &str, identity: f64) {
+    for event in &found.events {
+        if let Some(lost) = event.dissipated {
+            assert!(lost >= 0.0, "{name}: {event:?}");
+        }
+    }
+    assert_eq!(found.events.last().map(|event| event.kind), Some(EventKind::LastContact), "{name}");
+    if let Some(balance) = found.totals.balance {
+        println!("{name}: balance {balance:.1e}, {} events, {:?}", found.events.len(), found.warnings);
+        assert!(balance < identity, "{name}: {balance}");
+    }
+}
+
+#[test]
+fn very_weak_adhesion_has_three_rings() {
+    let found = looped(wavy(0.0025, 0.05), 1e-5, Control::Displacement, Turn::Approach(0.06), Losses::Once);
+    let most = found.states.iter().map(|state| state.contacts.len()).max().unwrap();
+    assert_eq!(most, 4);
+    check(&found, "1e-5", 1e-7);
+}
+
+#[test]
+fn forces_and_springs_close_their_loops() {
+    for (control, gamma) in [
+        (Control::Force, 1e-4),
+        (Control::Stiffness(0.15), 1e-4),
+        (Control::Force, 0.025 / TAU),
+        (Control::Stiffness(0.15), 0.025 / TAU),
+        (Control::Stiffness(100.0), 1e-4),
+    ] {
+        let found = looped(wavy(0.0025, 0.05), gamma, control, Turn::Approach(0.1), Losses::Twice);
+        check(&found, &format!("{control} {gamma}"), 1e-7);
+        for event in &found.events {
+            if let (Some(a), Some(b)) = (event.dissipated, event.dissipated_by_area) {
+                assert!((a - b).abs() <= 1e-7 * a, "{control} {:?} {a} {b}", event.kind);
+            }
+        }
+        assert_eq!(found.totals.dissipated.is_none(), control == Control::Force);
+    }
+}
+
+fn random_loop(number: u64, losses: Losses) -> Result<(Path, String), String> {
+    let mut random = fastrand::Rng::with_seed(number);
+    let (gap, name) = random_gap(&mut random);
+    let gamma = 1e-5 * 500.0_f64.powf(random.f64());
+    let control =
+        [Control::Displacement, Control::Force, Control::Stiffness(0.03 * 100.0_f64.powf(random.f64()))]
+            [random.usize(0..3)];
+    let approach = 0.01 + 0.07 * random.f64();
+    let name = format!("{number}: {name} γ {gamma:e} {control} to {approach}");
+    let table = Arc::new(Table::new(gap, 0.3, &Unwatched).unwrap());
+    let setting = Setting { losses, ..Setting::new(control) };
+    let started = std::time::Instant::now();
+    let found = cycle(&table, gamma, Turn::Approach(approach), &setting, &Unwatched)
+        .map_err(|error| format!("{name}: {error}"))?;
+    println!("{:.0} ms", started.elapsed().as_secs_f64() * 1e3);
+    Ok((found, name))
+}
+
+fn random_loops(numbers: std::ops::Range<u64>, losses: Losses) {
+    let mut failures = Vec::new();
+    for number in numbers {
+        match random_loop(number, losses) {
+            Ok((found, name)) => {
+                let gains =
+                    found.events.iter().any(|event| event.dissipated.is_some_and(|lost| lost < -1e-18));
+                let off = found.totals.balance.is_some_and(|balance| balance.is_nan() || balance > 1e-7);
+                let lines = found.warnings.iter().any(|warning| matches!(warning, Warning::Area { .. }));
+                let apart = found.events.last().map(|event| event.kind) == Some(EventKind::LastContact);
+                if gains || off || lines || !apart {
+                    failures.push(format!("{name}: gains {gains} {:?} {:?}", found.totals, found.warnings));
+                }
+            }
+            Err(error) => failures.push(error),
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn some_random_loops_close() {
+    random_loops(0..8, Losses::Twice);
+}
+
+#[test]
+#[ignore = "a minute"]
+fn sixty_random_loops_close() {
+    let count = std::env::var("LOOPS").ok().and_then(|count| count.parse().ok()).unwrap_or(60);
+    let first = std::env::var("FIRST").ok().and_then(|count| count.parse().ok()).unwrap_or(0);
+    random_loops(first..first + count, Losses::Twice);
+}
+
+#[test]
+fn mobilities_decide_nothing_that_lasts() {
+    let gap = wavy(0.0025, 0.05);
+    let ground = Ground::of(gap, 0.7).unwrap();
+    let run = |mobility: &(dyn Fn(f64) -> f64 + Sync)| {
+        let turn = Turn::Approach(0.04);
+        let setting = Setting { losses: Losses::Once, mobility, ..Setting::new(Control::Displacement) };
+        cycle_on(&ground, 1e-4, turn, &setting, &Unwatched).unwrap()
+    };
+    let even = run(EVEN);
+    for seed in 0..3_u64 {
+        // Two decades, by radius.
+        let spread = run(&|r| 10.0_f64.powf((1e4 * r + f64::from(u8::try_from(seed).unwrap())).sin()));
+        assert_eq!(spread.events.len(), even.events.len());
+        for (a, b) in spread.events.iter().zip(&even.events) {
+            let (Some(a), Some(b)) = (&a.after, &b.after) else { continue };
+            assert_eq!(a.contacts.len(), b.contacts.len());
+            for (a, b) in a.contacts.iter().flatten().zip(b.contacts.iter().flatten()) {
+                assert!((a - b).abs() < 1e-12, "{a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn bad_turns_are_refused_with_the_number_that_would_do() {
+    let ground = Ground::of(wavy(0.0025, 0.05), 0.7).unwrap();
+    let fails = |gamma: f64, control: Control, turn: Turn| {
+        let setting = Setting { losses: Losses::Once, ..Setting::new(control) };
+        cycle_on(&ground, gamma, turn, &setting, &Unwatched).unwrap_err()
+    };
+    let before = fails(1e-4, Control::Displacement, Turn::Control(-0.01));
+    assert_eq!(before, PathError::TurnBeforeTouch { turn: -0.01, touch: 0.0 });
+    assert_eq!(fails(0.0, Control::Force, Turn::Force(-0.1)), PathError::NoTension { load: -0.1 });
+    let beyond = fails(1e-4, Control::Displacement, Turn::Radius(2.0));
+    assert!(matches!(beyond, PathError::RadiusBeyondGap { radius: 2.0, .. }));
+    assert!(matches!(fails(1e-4, Control::Force, Turn::Approach(f64::NAN)), PathError::BadTurn(_)));
+    let never = fails(1e-4, Control::Displacement, Turn::Force(50.0));
+    assert!(matches!(never, PathError::BeyondGap { .. }), "{never:?}");
+    let setting = Setting { losses: Losses::Once, ..Setting::new(Control::Force) };
+    assert_eq!(
+        cycle_on(&ground, 1e-4, Turn::Force(0.01), &setting, &|| true).unwrap_err(),
+        PathError::Cancelled
+    );
+}
+
+#[test]
+#[ignore = "times, of which nothing is asserted"]
+fn times() {
+    use pulloff_engine::annuli::Wanted;
+    let ground = Ground::of(wavy(0.0025, 0.05), 0.7).unwrap();
+    let slope = |s: f64| ground.slope(s);
+    for rings in [
+        vec![],
+        vec![[0.0327, 0.0625]],
+        vec![[0.0338, 0.0626], [0.087, 0.109]],
+        vec![[0.0386, 0.0612], [0.0901, 0.1079], [0.14, 0.155]],
+    ] {
+        let contacts = Contacts { disc: 0.0185, rings };
+        let points = pulloff_engine::annuli::points(&ground, &contacts);
+        for wanted in [Wanted::Values, Wanted::Rates] {
+            let best = (0..200)
+                .map(|_| {
+                    let started = std::time::Instant::now();
+                    let state = ground.state_with(&contacts, &points, wanted).unwrap();
+                    if wanted == Wanted::Rates {
+                        std::hint::black_box(state.jacobian(0.006, slope(0.0185)));
+                    }
+                    std::hint::black_box(state);
+                    started.elapsed().as_secs_f64()
+                })
+                .fold(f64::INFINITY, f64::min);
+            println!("{points:?} {wanted:?} {:.1} us", 1e6 * best);
+        }
+    }
+    for (gamma, turn) in [(0.025 / TAU, 0.14), (1e-4, 0.14), (1e-5, 0.06), (0.0, 0.1)] {
+        for losses in [Losses::Once, Losses::Twice] {
+            let best = (0..5)
+                .map(|_| {
+                    let started = std::time::Instant::now();
+                    let found = looped(
+                        wavy(0.0025, 0.05),
+                        gamma,
+                        Control::Displacement,
+                        Turn::Approach(turn),
+                        losses,
+                    );
+                    std::hint::black_box(found);
+                    started.elapsed().as_secs_f64()
+                })
+                .fold(f64::INFINITY, f64::min);
+            println!("{gamma:e} {losses:?} {:.1} ms", 1e3 * best);
+        }
+    }
+}
+
+#[test]
+fn without_adhesion_solving_afresh_finds_the_same() {
+    for number in 0..10_u64 {
+        let mut random = fastrand::Rng::with_seed(number);
+        let (gap, name) = random_gap(&mut random);
+        let approach = 0.02 + 0.03 * random.f64();
+        let ground = Ground::of(Arc::clone(&gap), 0.7).unwrap();
+        let control = [Control::Displacement, Control::Force, Control::Stiffness(0.3)][random.usize(0..3)];
+        let setting = Setting { losses: Losses::Once, ..Setting::new(control) };
+        let found = match cycle_on(&ground, 0.0, Turn::Approach(approach), &setting, &Unwatched) {
+            Ok(found) => found,
+            Err(error) => panic!("{number} {name}: {error}"),
+        };
+        is_the_one_solution(&ground, &found, &format!("{number} {name}"));
+    }
+}
+
+/// Contact, pressed everywhere, gaps open everywhere else: without adhesion that is one solution alone.
+fn is_the_one_solution(ground: &Ground, found: &Path, name: &str) {
+    let balance = Balance {
+        ground,
+        work_of_adhesion: 0.0,
+        control: Control::Displacement,
+        contact: ContactKind::Rings,
+        progress: &Unwatched,
+        lane: None,
+    };
+    let back: Vec<_> = found.states.iter().filter(|state| state.direction == Direction::Unloading).collect();
+    for k in 0..20 {
+        let state = back[k * (back.len() - 1) / 19];
+        let disc = state.contacts.first().filter(|first| first[0] <= 0.0).map_or(0.0, |first| first[1]);
+        let rings = state.contacts.iter().copied().filter(|ring| ring[0] > 0.0).collect();
+        let held = balance.solve(&Contacts { disc, rings }, state.approach).unwrap();
+        assert!((held.force - state.force).abs() < 1e-12, "{name}");
+        let around = Around::new(ground, &held.state, held.approach);
+        for [lo, hi] in held.state.contacts.intervals() {
+            for i in 1..40 {
+                let r = lo + (hi - lo) * f64::from(i) / 40.0;
+                assert!(around.pressure(r) > -1e-8, "{name} {r} {}", around.pressure(r));
+            }
+        }
+        assert!(balance.least_gap(&held).is_none_or(|crest| crest.gap > -1e-10), "{name}");
+    }
+}
+
+#[test]
+fn without_adhesion_corners_are_passed() {
+    for (broken, approach) in
+        [("0.05*max(r-0.1,0)", 0.02), ("3*max(r-0.06,0)^2", 0.02), ("0.02*max(r-0.07,0)", 0.012)]
+    {
+        let text = format!("r^2/2+0.0025*(1-cos(2*pi*r/0.05))+{broken}");
+        let gap = TypedGap::new(&text, Vec::<FormulaParameter>::new(), Some(0.6)).unwrap();
+        let ground = Ground::of(Arc::new(Shape::Formula(Arc::new(gap))), 0.5).unwrap();
+        let turn = Turn::Approach(approach);
+        let setting = Setting { losses: Losses::Once, ..Setting::new(Control::Displacement) };
+        let found = cycle_on(&ground, 0.0, turn, &setting, &Unwatched)
+            .unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert!(found.events.iter().any(|event| event.kind == EventKind::Touch), "{text}");
+        is_the_one_solution(&ground, &found, &text);
+    }
+}
+
+/// Loops of ten measured profiles: waves in rows of λ/20 with noise, the figures printed.
+#[test]
+#[ignore = "figures, to be read"]
+fn loops_of_measured_profiles() {
+    use pulloff_engine::gap::shapes::profile::{Profile, Smoothing};
+    for number in 0..10_u32 {
+        let mut random = fastrand::Rng::with_seed(u64::from(number));
+        let wavelength = 0.05 + 0.005 * f64::from(number);
+        let amplitude = wavelength * wavelength / (1.0 + 0.5 * f64::from(number));
+        let noise = [0.0, 2e-6, 2e-5][usize::try_from(number % 3).unwrap()];
+        let gamma = [1e-4, 1e-3][usize::try_from(number % 2).unwrap()];
+        let radii: Vec<f64> = (0..240).map(|k| f64::from(k) * wavelength / 20.0).collect();
+        let rows: Vec<f64> = radii
+            .iter()
+            .map(|r| {
+                let wave = amplitude * (1.0 - (TAU * r / wavelength).cos());
+                0.5 * r * r + wave + noise * (random.f64() - 0.5)
+            })
+            .collect();
+        let gap: Arc<dyn Gap> = Arc::new(Profile::new(&radii, &rows, Smoothing::None).unwrap());
+        let table = Arc::new(Table::new(gap, 0.3, &Unwatched).unwrap());
+        let turn = Turn::Approach(0.02);
+        let setting = Setting::new(Control::Displacement);
+        let started = std::time::Instant::now();
+        let found = cycle(&table, gamma, turn, &setting, &Unwatched);
+        let seconds = started.elapsed().as_secs_f64();
+        match found {
+            Ok(found) => {
+                let gains =
+                    found.events.iter().filter(|event| event.dissipated.is_some_and(|lost| lost < 0.0));
+                println!(
+                    "{number}: λ {wavelength:.3} A {amplitude:.1e} noise {noise:.0e} γ {gamma:.0e}: {} events, {} gain, balance {:.1e} of {:.2e}, {:?}, {seconds:.1} s",
+                    found.events.len(),
+                    gains.count(),
+                    found.totals.balance.unwrap_or(f64::NAN),
+                    found.totals.dissipated.unwrap_or(f64::NAN),
+                    found.warnings
+                );
+            }
+            Err(error) => println!("{number}: {error}, {seconds:.1} s"),
+        }
+    }
+}
+
+#[test]
+fn a_wave_with_a_corner_is_that_of_another_program() {
+    let text = "r^2/2+0.0025*(1-cos(2*pi*r/0.05))+0.05*max(r-0.1,0)";
+    let none: Vec<FormulaParameter> = Vec::new();
+    let gap: Arc<dyn Gap> = Arc::new(Shape::Formula(Arc::new(TypedGap::new(text, none, Some(0.6)).unwrap())));
+    let table = Arc::new(Table::new(gap, 0.4, &Unwatched).unwrap());
+    let ground = Ground::new(table, 0.4, &Unwatched).unwrap();
+    let setting = Setting::new(Control::Displacement);
+    let found = cycle_on(&ground, 1e-4, Turn::Approach(0.03), &setting, &Unwatched).unwrap();
+    println!("{:?} {:?}", found.totals, found.warnings);
+    assert!(found.totals.balance.unwrap() < 1e-6);
+    // Within r < 0.1 this gap is that of the smooth wave, and so is the second touch; the other program took its least gap from a
+    // series across the corner, and let it touch a little early: its landing there is held at its own control value.
+    let mut expected = reference("corner-cycle");
+    let smooth = reference("fig9-weak");
+    let [ours, theirs] = [&found.events[2], &found.events[2]].map(|event| event.before.as_ref().unwrap());
+    let (delta, p, contacts) = numbers(&smooth["events"][2]["before"]);
+    assert!((ours.approach - delta).abs() < 1e-13 && (theirs.force - p).abs() < 1e-13);
+    for (ours, theirs) in ours.contacts.iter().flatten().zip(contacts.iter().flatten()) {
+        assert!((ours - theirs).abs() < 1e-12);
+    }
+    let balance = Balance {
+        ground: &ground,
+        work_of_adhesion: 1e-4,
+        control: Control::Displacement,
+        contact: ContactKind::Rings,
+        progress: &Unwatched,
+        lane: None,
+    };
+    let solved = |state: &Value| {
+        let (delta, force, contacts) = numbers(state);
+        let contacts = Contacts { disc: contacts[0][1], rings: contacts[1..].to_vec() };
+        (balance.solve(&contacts, delta).unwrap(), force, contacts)
+    };
+    let (early, _, _) = solved(&expected["events"][2]["before"]);
+    assert!(balance.least_gap(&early).unwrap().gap > 1e-7);
+    let (landed, force, contacts) = solved(&expected["events"][2]["after"]);
+    assert!((landed.force - force).abs() < 1e-11, "{} {force}", landed.force);
+    for (ours, theirs) in landed.state.contacts.edges().iter().zip(contacts.edges()) {
+        assert!((ours.radius - theirs.radius).abs() < 1e-9);
+    }
+    let events = expected["events"].as_array_mut().unwrap();
+    events.remove(2);
+    let mut rest = found.clone();
+    let touch = rest.events.remove(2);
+    let sum: f64 = events.iter().map(|event| event["lost"].as_f64().unwrap()).sum();
+    expected["checks"]["sum_of_losses"] = sum.into();
+    rest.totals.work_of_loading = rest.totals.work_of_loading.map(|work| work - touch.dissipated.unwrap());
+    rest.totals.dissipated = rest.totals.dissipated.map(|all| all - touch.dissipated.unwrap());
+    agrees(&rest, &expected, 1e-8, 1e-8);
+}
+
+/// Waves with one corner or kink, or two far enough apart.
+fn broken_loop(number: u64) -> Result<(Path, String), String> {
+    let mut random = fastrand::Rng::with_seed(number);
+    let between = |random: &mut fastrand::Rng, lo: f64, hi: f64| lo * (hi / lo).powf(random.f64());
+    let wavelength = between(&mut random, 0.05, 0.12);
+    let amplitude = wavelength * wavelength / between(&mut random, 1.0, 8.0);
+    let at = between(&mut random, 0.06, 0.18);
+    let (rise, bend) = (between(&mut random, 0.01, 0.1), between(&mut random, 0.5, 5.0));
+    let broken = match random.usize(0..3) {
+        0 => format!("{rise}*max(r-{at}, 0)"),
+        1 => format!("{bend}*max(r-{at}, 0)^2"),
+        _ => format!("{rise}*max(r-{at}, 0)+{bend}*max(r-{}, 0)^2", at + 0.05),
+    };
+    let text = format!("r^2/2+{amplitude}*(1-cos(2*pi*r/{wavelength}))+{broken}");
+    let gamma = 1e-5 * 500.0_f64.powf(random.f64());
+    let control = [Control::Displacement, Control::Force, Control::Stiffness(0.3)][random.usize(0..3)];
+    let approach = 0.01 + 0.04 * random.f64();
+    let name = format!("{number}: {text} γ {gamma:e} {control} to {approach}");
+    let none: Vec<FormulaParameter> = Vec::new();
+    let gap: Arc<dyn Gap> =
+        Arc::new(Shape::Formula(Arc::new(TypedGap::new(&text, none, Some(0.6)).unwrap())));
+    let table = Arc::new(Table::new(gap, 0.5, &Unwatched).unwrap());
+    let ground = Ground::new(table, 0.7, &Unwatched).unwrap();
+    let setting = Setting::new(control);
+    let found = cycle_on(&ground, gamma, Turn::Approach(approach), &setting, &Unwatched)
+        .map_err(|error| format!("{name}: {error}"))?;
+    Ok((found, name))
+}
+
+/// All close within 1e-6 of their losses, but for some that say so themselves; these are returned.
+fn broken_loops(numbers: std::ops::Range<u64>) -> Vec<u64> {
+    let (mut failures, mut warned) = (Vec::new(), Vec::new());
+    for number in numbers {
+        match broken_loop(number) {
+            Ok((found, name)) => {
+                let gains =
+                    found.events.iter().any(|event| event.dissipated.is_some_and(|lost| lost < -1e-15));
+                let balance = found.totals.balance.unwrap();
+                println!("{number} {balance:.1e} {:?}", found.warnings);
+                let said = found.warnings.iter().any(|warning| matches!(warning, Warning::Balance { .. }));
+                if said {
+                    warned.push(number);
+                }
+                if gains || said == (balance < 1e-6) || balance > 1e-3 {
+                    failures.push(format!("{name}: gains {gains} {:?}", found.totals));
+                }
+            }
+            Err(error) => failures.push(error),
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    warned
+}
+
+#[test]
+#[ignore = "a minute"]
+fn twenty_loops_with_corners_and_kinks_close() {
+    let warned = broken_loops(0..20);
+    assert!(warned.len() <= 1, "{warned:?}");
+}

@@ -1,0 +1,11 @@
+//! Curves, paths, maps and the law of stability, held to tables of another program and to invariants.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod campaign;
+mod cycle;
+mod elements;
+mod maps;
+mod stability;
+mod walk;

@@ -1,0 +1,334 @@
+//! A walk by hand through rings: to the next limit point or touch, let it run, turn round.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+#![allow(
+    clippy::disallowed_methods,
+    reason = "tests judge by functions that share nothing with what they judge"
+)]
+
+use crate::support::{random_gap, wavy};
+use pulloff_engine::disc::{Exact, Table};
+use pulloff_engine::gap::formula::TypedGap;
+use pulloff_engine::gap::{Gap, Shape};
+use pulloff_engine::problem::Turn;
+use pulloff_engine::problem::{ContactKind, Control, Problem, Reduced};
+use pulloff_engine::progress::Unwatched;
+use pulloff_engine::quasistatic::path::{EventKind, Losses, Path, Setting, cycle};
+use pulloff_engine::quasistatic::walk::{Arrival, At, Reached, Walk, WalkEnd, edges};
+use pulloff_engine::quasistatic::{Curve, Point};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+const STEPS: usize = 5000;
+
+fn reduced(gap: Arc<dyn Gap>, gamma: f64) -> Reduced {
+    let shape = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0, wavelength: 0.05 };
+    let problem = Problem { effective_modulus: 1.0, work_of_adhesion: gamma, shape }.reduced();
+    Reduced { gap, ..problem }
+}
+
+fn curve(gap: Arc<dyn Gap>, gamma: f64, end: f64) -> Curve {
+    let problem = reduced(gap, gamma);
+    let basis = Arc::new(Exact::of(&problem, end).unwrap());
+    Curve::of(problem, basis, end, 0.002).unwrap()
+}
+
+/// A walker that makes its way by keys.
+struct Walker<'a> {
+    curve: &'a Curve,
+    control: Control,
+    at: Option<(Point, At)>,
+    inward: bool,
+    range: [f64; 2],
+}
+
+impl Walker<'_> {
+    fn asked(
+        &mut self,
+        what: impl Fn(&Walk<'_>, &mut dyn FnMut(Reached) -> bool) -> WalkEnd,
+    ) -> (WalkEnd, Vec<Reached>) {
+        let walk = Walk {
+            curve: self.curve,
+            range: self.range,
+            control: self.control,
+            from: self.at.as_ref().map(|(point, _)| point),
+            at: self.at.as_ref().map_or(At::Nothing, |(_, at)| *at),
+            inward: self.inward,
+            length: 0.02,
+        };
+        let mut made = Vec::new();
+        let end = what(&walk, &mut |reached| {
+            made.push(reached);
+            true
+        });
+        if let Some(last) = made.last() {
+            let at = match last.arrival {
+                Arrival::Limit(_) => At::Limit,
+                Arrival::Touch(radius) if self.at.is_some() => At::Touch(radius),
+                _ => At::Nothing,
+            };
+            self.at = Some((last.point.clone(), at));
+        }
+        (end, made)
+    }
+
+    fn contacts(&self) -> Vec<[f64; 2]> {
+        let (point, _) = self.at.as_ref().unwrap();
+        edges::contacts(&self.curve.equilibrium.scales, point).intervals()
+    }
+}
+
+fn near(ours: &[[f64; 2]], theirs: &[[f64; 2]]) -> f64 {
+    assert_eq!(ours.len(), theirs.len(), "{ours:?} {theirs:?}");
+    ours.iter().flatten().zip(theirs.iter().flatten()).fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()))
+}
+
+/// Walks the loop by n and x; the largest differences of edges, δ and P, and of losses as a share.
+fn walks(curve: &Curve, control: Control, found: &Path) -> [f64; 4] {
+    let mut walker = Walker { curve, control, at: None, inward: false, range: [curve.outermost(), 0.0] };
+    let (end, made) = walker.asked(|walk, emit| walk.first_touch(emit));
+    assert_eq!(end, WalkEnd::Done);
+    assert_eq!(made.len(), 1);
+    let mut worst =
+        [near(&walker.contacts(), &found.events[0].after.as_ref().unwrap().contacts), 0.0, 0.0, 0.0];
+    for event in &found.events[1..] {
+        if event.kind == EventKind::Turn {
+            walker.inward = true;
+            continue;
+        }
+        let (end, made) = walker.asked(|walk, emit| walk.steps(STEPS, true, emit));
+        let touches = event.kind == EventKind::Touch;
+        assert_eq!(
+            end,
+            if touches { WalkEnd::AtTouch } else { WalkEnd::AtLimit },
+            "{event:?} {:?}",
+            made.last()
+        );
+        let before = event.before.as_ref().unwrap();
+        worst[0] = worst[0].max(near(&walker.contacts(), &before.contacts));
+        let state = made.last().unwrap().state;
+        worst[1] = worst[1].max((state.approach - before.approach).abs());
+        worst[2] = worst[2].max((state.force - before.force).abs());
+        let (end, made) = walker.asked(|walk, emit| walk.jump(emit));
+        assert_eq!(end, WalkEnd::Done, "{event:?}");
+        let Arrival::Jump(jump) = &made[0].arrival else { panic!("{:?}", made[0].arrival) };
+        assert_eq!(jump.after.is_some(), event.after.is_some());
+        if let Some(after) = &event.after {
+            worst[0] = worst[0].max(near(&walker.contacts(), &after.contacts));
+            worst[1] = worst[1].max((made[0].state.approach - after.approach).abs());
+            worst[2] = worst[2].max((made[0].state.force - after.force).abs());
+            assert!(made[0].stability.under(control), "{event:?}");
+        }
+        if let (Some(ours), Some(theirs)) = (jump.dissipated, event.dissipated) {
+            worst[3] = worst[3].max((ours / theirs - 1.0).abs());
+        }
+    }
+    worst
+}
+
+fn looped(gap: &Arc<dyn Gap>, gamma: f64, control: Control, turn: Turn) -> Path {
+    let table = Arc::new(Table::new(Arc::clone(gap), 0.3, &Unwatched).unwrap());
+    let setting = Setting { losses: Losses::Once, ..Setting::new(control) };
+    cycle(&table, gamma, turn, &setting, &pulloff_engine::progress::Unwatched).unwrap()
+}
+
+/// Holds a walk to the events of another program, through the loop, which is held to them.
+fn reproduces(gamma: f64, reference: &str) {
+    let gap = wavy(0.0025, 0.05);
+    let found = looped(&gap, gamma, Control::Displacement, Turn::Approach(0.14));
+    let expected = crate::support::reference(reference);
+    let expected: Vec<_> = expected["events"].as_array().unwrap().iter().collect();
+    assert_eq!(found.events.len(), expected.len());
+    let curve = curve(gap, gamma, 0.6);
+    let worst = walks(&curve, Control::Displacement, &found);
+    println!("{worst:?}");
+    assert!(worst[..3].iter().all(|error| *error < 1e-10) && worst[3] < 1e-8, "{worst:?}");
+    // The last jump of loading, by the other program's own numbers.
+    let jumps = |event: &&serde_json::Value| event["kind"] == "touch" || event["kind"] == "snap-in";
+    let last = expected.iter().rposition(jumps).unwrap();
+    let (delta, force, contacts) = crate::support::numbers(&expected[last]["before"]);
+    let before = found.events[last].before.as_ref().unwrap();
+    assert!((before.approach - delta).abs() < 1e-10 && (before.force - force).abs() < 1e-10);
+    assert!(near(&before.contacts, &contacts) < 1e-10);
+}
+
+#[test]
+fn by_hand_the_loop_of_figure_9_is_walked() {
+    reproduces(0.025 / TAU, "fig9-cycle");
+}
+
+#[test]
+fn by_hand_the_rings_of_weak_adhesion_are_walked() {
+    reproduces(1e-4, "fig9-weak");
+}
+
+/// The eigenvalues of the J of each control at a walked state say what its slopes say.
+#[test]
+fn stability_is_that_of_the_eigenvalues() {
+    use pulloff_engine::annuli::Ground;
+    use pulloff_engine::quasistatic::path::Balance;
+    let gamma = 1e-4;
+    let curve = curve(wavy(0.0025, 0.05), gamma, 0.4);
+    let ground = Ground::of(wavy(0.0025, 0.05), 0.7).unwrap();
+    let range = [0.4, 0.0];
+    let mut walker = Walker { curve: &curve, control: Control::Displacement, at: None, inward: false, range };
+    walker.asked(|walk, emit| walk.first_touch(emit));
+    let (mut seen, mut unstable, mut ends) = (0, 0, Vec::new());
+    for _ in 0..40 {
+        let (end, made) = walker.asked(|walk, emit| walk.steps(STEPS, true, emit));
+        for reached in made.iter().filter(|reached| edges::has_rings(&reached.point)) {
+            let contacts = edges::contacts(&curve.equilibrium.scales, &reached.point);
+            for control in [Control::Displacement, Control::Stiffness(0.2), Control::Force] {
+                let balance = Balance {
+                    ground: &ground,
+                    work_of_adhesion: gamma,
+                    contact: ContactKind::Rings,
+                    control,
+                    progress: &Unwatched,
+                    lane: None,
+                };
+                let points = pulloff_engine::annuli::points(&ground, &contacts);
+                let value = control.value(reached.state.approach, reached.state.force);
+                let held = balance.held(&contacts, &points, value).unwrap();
+                assert!(held.excess.amax() < 1e-8 * gamma.sqrt());
+                let lowest = Balance::least_eigenvalue(&held);
+                if lowest.abs() > 1e-4 * held.jacobian.amax() {
+                    assert_eq!(
+                        reached.stability.under(control),
+                        lowest > 0.0,
+                        "{control} {lowest} {reached:?}"
+                    );
+                    seen += 1;
+                    unstable += usize::from(lowest < 0.0);
+                }
+            }
+        }
+        match end {
+            // Let it run once in a while, else go on along the branch, which then is unstable.
+            WalkEnd::AtTouch => {
+                walker.asked(|walk, emit| walk.jump(emit));
+            }
+            WalkEnd::AtLimit => {}
+            end => {
+                ends.push(end);
+                break;
+            }
+        }
+    }
+    println!("{seen} states, {unstable} unstable, {ends:?}");
+    assert!(seen > 100 && unstable > 10, "{seen} {unstable}");
+    assert!(matches!(ends[0], WalkEnd::EdgesMeet(_) | WalkEnd::Vanishes(_)), "{ends:?}");
+}
+
+#[test]
+fn past_a_touch_states_without_the_ring_are_not_admissible() {
+    let curve = curve(wavy(0.0025, 0.05), 1e-4, 0.4);
+    let mut walker =
+        Walker { curve: &curve, control: Control::Displacement, at: None, inward: false, range: [0.4, 0.0] };
+    walker.asked(|walk, emit| walk.first_touch(emit));
+    loop {
+        let (end, made) = walker.asked(|walk, emit| walk.steps(STEPS, true, emit));
+        let last = made.last().unwrap();
+        if end == WalkEnd::AtTouch {
+            let Arrival::Touch(radius) = last.arrival else { panic!("{last:?}") };
+            assert!(
+                radius > last.state.contact_radius && last.admissibility.nearest.unwrap().gap.abs() < 1e-12
+            );
+            break;
+        }
+        assert_eq!(end, WalkEnd::AtLimit);
+        walker.asked(|walk, emit| walk.jump(emit));
+    }
+    let (end, made) = walker.asked(|walk, emit| walk.steps(3, false, emit));
+    assert_eq!(end, WalkEnd::Done);
+    for reached in &made {
+        assert!(!edges::has_rings(&reached.point) && !reached.admissibility.holds, "{reached:?}");
+        assert!(reached.admissibility.overlapping().is_some());
+    }
+    // Back at the touch and turned round nothing is missed: the gap opens.
+    walker.inward = true;
+    let (_, made) = walker.asked(|walk, emit| walk.steps(12, false, emit));
+    assert!(made.last().unwrap().admissibility.holds);
+}
+
+#[test]
+fn the_edges_follow_a_changed_problem_or_say_that_they_do_not() {
+    let curve_at = |gamma: f64| curve(wavy(0.0025, 0.05), gamma, 0.4);
+    let old = curve_at(1e-4);
+    let mut walker =
+        Walker { curve: &old, control: Control::Displacement, at: None, inward: false, range: [0.4, 0.0] };
+    walker.asked(|walk, emit| walk.first_touch(emit));
+    while walker.contacts().len() < 2 {
+        walker.asked(|walk, emit| walk.steps(STEPS, true, emit));
+        walker.asked(|walk, emit| walk.jump(emit));
+    }
+    let (contacts, point) = (walker.contacts(), walker.at.clone().unwrap().0);
+    let rings = edges::contacts(&old.equilibrium.scales, &point);
+    let delta = edges::device(&old.equilibrium.scales, &point)[0];
+    for (gamma, follows) in [(1.02e-4, true), (4e-3, false)] {
+        let new = curve_at(gamma);
+        let mut walker = Walker {
+            curve: &new,
+            ..Walker {
+                curve: &new,
+                control: Control::Displacement,
+                at: None,
+                inward: false,
+                range: [0.4, 0.0],
+            }
+        };
+        let (end, made) = walker.asked(|walk, emit| walk.solve_rings(delta, &rings, emit));
+        assert_eq!(end == WalkEnd::Done, follows, "{end:?}");
+        if follows {
+            assert!((made[0].state.approach - delta).abs() < 1e-15);
+            let moved = near(&walker.contacts(), &contacts);
+            assert!(moved > 1e-6 && moved < 2e-3, "{moved}");
+        }
+    }
+}
+
+#[test]
+fn corners_of_the_gap_are_passed_by_hand() {
+    let text = "r^2/2+0.0025*(1-cos(2*pi*r/0.05))+0.05*max(r-0.1,0)";
+    let gap = Shape::Formula(Arc::new(TypedGap::new(text, Vec::new(), Some(0.6)).unwrap()));
+    let gap: Arc<dyn Gap> = Arc::new(gap);
+    let found = looped(&gap, 1e-4, Control::Displacement, Turn::Approach(0.03));
+    let worst = walks(&curve(gap, 1e-4, 0.3), Control::Displacement, &found);
+    println!("{worst:?}");
+    assert!(worst[..3].iter().all(|error| *error < 1e-9) && worst[3] < 1e-7, "{worst:?}");
+}
+
+fn random(numbers: std::ops::Range<u64>) {
+    let mut failures = Vec::new();
+    for number in numbers {
+        let mut random = fastrand::Rng::with_seed(number);
+        let (gap, name) = random_gap(&mut random);
+        let gamma = 1e-5 * 500.0_f64.powf(random.f64());
+        let control =
+            [Control::Displacement, Control::Force, Control::Stiffness(0.03 * 100.0_f64.powf(random.f64()))]
+                [random.usize(0..3)];
+        let turn = Turn::Approach(0.01 + 0.07 * random.f64());
+        let found = looped(&gap, gamma, control, turn);
+        let reach = found.states.iter().map(|state| state.contact_radius).fold(0.0, f64::max);
+        let curve = curve(gap, gamma, 1.1 * reach);
+        let name = format!("{number}: {name} γ {gamma:e} {control} to {turn:?}");
+        println!("{name}");
+        let worst = walks(&curve, control, &found);
+        println!("{worst:?}");
+        if worst[0] > 1e-8 || worst[3] > 1e-6 {
+            failures.push(format!("{name}: {worst:?}"));
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn some_random_loops_are_walked() {
+    random(0..4);
+}
+
+#[test]
+#[ignore = "a minute"]
+fn more_random_loops_are_walked() {
+    random(4..40);
+}

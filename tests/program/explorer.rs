@@ -1,0 +1,756 @@
+//! The explorer without a terminal: commands in, model out, every effect done inline.
+
+use crate::support::session::Session;
+use pulloff::explorer::data::Folder;
+use pulloff::explorer::export::ExportKind;
+use pulloff::explorer::log::Mark;
+use pulloff::explorer::model::{Level, Question};
+use pulloff::explorer::{Axes, Command, Effect, Id, NodeKind, Overlay, Panel, Reply, View, answer, update};
+use pulloff::store::{Overwrite, Source, save_file};
+use pulloff_engine::quasistatic::EventKind;
+
+/// The folder whose profiles are offered.
+fn listed_folder(session: &mut Session) -> Folder {
+    let Some(Question::File(_, folder)) = session.model.question.take() else {
+        unreachable!("no folder is offered")
+    };
+    *folder
+}
+
+#[test]
+fn the_walk_meets_the_events_of_the_curve() {
+    let mut session = Session::new("wavy-sphere");
+    let curve = session.model.curve.clone().unwrap();
+    let events = curve.unloading.as_ref().unwrap().events.clone();
+    assert_eq!(events.len(), 6);
+    for expected in &events {
+        session.does(Id::NextEvent);
+        assert!((session.radius() / expected.before.as_ref().unwrap().contact_radius - 1.0).abs() < 1e-9);
+        assert!(session.model.can_jump());
+        session.does(Id::Jump);
+        let NodeKind::Jump(event) = session.kind() else { panic!("{:?}", session.kind()) };
+        assert_eq!(event.kind, expected.kind);
+        assert!((event.dissipated.unwrap() / expected.dissipated.unwrap() - 1.0).abs() < 1e-8);
+        if let (Some(ours), Some(theirs)) = (&event.after, &expected.after) {
+            assert!((ours.contact_radius / theirs.contact_radius - 1.0).abs() < 1e-9);
+        }
+    }
+    assert_eq!(session.model.walked_events().len(), 6);
+    assert_eq!(session.model.walked_events()[5].1.kind, "last-contact");
+    // Apart: nothing to walk, but nothing is lost either.
+    session.does(Id::Step);
+    assert!(session.status().contains("apart"));
+    session.does(Id::Undo).does(Id::Step);
+    assert_eq!(session.kind(), NodeKind::Step);
+}
+
+#[test]
+fn the_next_event_again_and_again_detaches_and_ticks_the_log() {
+    for (preset, assignments) in [
+        ("wavy-sphere", &[][..]),
+        ("wavy-sphere", &["path.control=force"][..]),
+        ("fig-3-jkr", &[][..]),
+        ("fig-8", &[][..]),
+    ] {
+        let mut session = Session::with(preset, assignments);
+        let count = session.model.path_events().len();
+        for _ in 0..2 * count {
+            session.does(Id::NextEvent);
+        }
+        let log = session.model.log();
+        assert!(session.model.history.current().unwrap().is_apart(), "{preset}: {}", session.status());
+        assert!(log.entries.iter().all(|entry| entry.mark == Mark::Done), "{preset}: {log:?}");
+        // What is lost by hand is what the path loses.
+        let (lost, unbounded) = log.lost();
+        let totals = session.model.path().unwrap().totals.clone();
+        let all = totals.dissipated.unwrap_or(totals.dissipated_before_last_contact);
+        assert_eq!(unbounded, totals.dissipated.is_none());
+        assert!((lost - all).abs() <= 1e-12 * all, "{preset}: {lost} {all}");
+        // Anew, nothing of it has happened.
+        session.does(Id::Restart);
+        assert!(session.model.log().entries.iter().all(|entry| entry.mark == Mark::Ahead));
+    }
+}
+
+#[test]
+fn a_step_past_a_limit_point_says_so_and_the_next_event_goes_on_from_there() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::NextEvent);
+    assert!(session.status().starts_with("Event 1 of 6: next-event or jump"), "{}", session.status());
+    session.all(&[Id::Step, Id::Step]);
+    assert!(session.status().starts_with("Off the path, unstable"), "{}", session.status());
+    session.does(Id::NextEvent);
+    assert!(matches!(session.kind(), NodeKind::Jump(_)));
+    // What happened off the path has no number.
+    let log = session.model.log();
+    assert!(log.entries.iter().any(|entry| entry.number.is_none() && entry.mark == Mark::Done), "{log:?}");
+    assert_eq!(log.entries.iter().filter_map(|entry| entry.number).collect::<Vec<_>>(), [1, 2, 3, 4, 5, 6]);
+    for _ in 0..14 {
+        session.does(Id::NextEvent);
+    }
+    assert!(session.model.history.current().unwrap().is_apart(), "{}", session.status());
+}
+
+#[test]
+fn outward_the_next_event_ends_where_the_path_does() {
+    let mut session = Session::new("wavy-sphere");
+    let start = session.radius();
+    session.does(Command::Steps(3)).does(Id::Reverse).does(Id::NextEvent);
+    assert!((session.radius() - start).abs() <= 1e-12 * start, "{} {start}", session.radius());
+    assert!(session.status().starts_with("Here the path begins"), "{}", session.status());
+    let nodes = session.model.history.len();
+    session.does(Id::NextEvent);
+    assert_eq!(session.model.history.len(), nodes);
+    assert!(session.status().contains("reverse turns round"), "{}", session.status());
+    // A step goes on, and a script says all of it again.
+    session.does(Id::Step);
+    assert!(session.radius() > start);
+    assert!(
+        session.model.script().unwrap().contains(&"next-event".to_owned()),
+        "{:?}",
+        session.model.script()
+    );
+}
+
+#[test]
+fn from_apart_the_path_goes_up_to_its_turn_and_back() {
+    let mut session = Session::with("wavy-sphere", &["path.begin=touch"]);
+    let events = session.model.path_events().to_vec();
+    let turn = events.iter().position(|event| event.kind == "turn").unwrap();
+    assert!(turn > 0 && events.len() > turn + 1, "{events:?}");
+    assert_eq!(session.model.log().entries[0].mark, Mark::Done, "the first touch");
+    for _ in 0..4 * events.len() {
+        session.does(Id::NextEvent);
+        if session.model.history.current().unwrap().is_apart() {
+            break;
+        }
+    }
+    let log = session.model.log();
+    assert!(session.model.history.current().unwrap().is_apart(), "{}", session.status());
+    assert!(log.entries.iter().all(|entry| entry.mark == Mark::Done), "{log:#?}");
+    assert!(log.entries.iter().all(|entry| entry.number.is_some()), "{log:#?}");
+}
+
+#[test]
+fn outward_the_edge_jumps_on_loading() {
+    let mut session = Session::new("wavy-sphere");
+    // Down to the third stable piece, then back up: the maximum there is left outward.
+    session.all(&[Id::NextEvent, Id::Jump, Id::NextEvent, Id::Jump, Id::Reverse, Id::NextEvent]);
+    let before = session.radius();
+    session.does(Id::Jump);
+    let NodeKind::Jump(event) = session.kind() else { panic!() };
+    assert_eq!(event.kind, EventKind::SnapIn);
+    assert!(session.radius() > before);
+    assert!(event.dissipated.unwrap() > 0.0);
+    let node = session.model.history.current().unwrap();
+    assert!(node.stability.under(session.model.control().unwrap()));
+}
+
+#[test]
+fn steps_stop_at_a_limit_point_and_go_on_along_the_unstable_branch() {
+    let mut session = Session::new("wavy-sphere");
+    for _ in 0..200 {
+        session.does(Id::Step);
+        if session.kind() == NodeKind::Limit {
+            break;
+        }
+    }
+    let control = session.model.control().unwrap();
+    assert_eq!(session.kind(), NodeKind::Limit);
+    session.does(Id::Step).does(Id::Step);
+    assert_eq!(session.kind(), NodeKind::Step);
+    assert!(!session.model.history.current().unwrap().stability.under(control));
+    assert!(session.status().starts_with("Off the path, unstable"));
+    // From an unstable state the edge runs as well, the way it is walked.
+    session.does(Id::Jump);
+    let NodeKind::Jump(event) = session.kind() else { panic!() };
+    assert!(event.dissipated.unwrap() > 0.0);
+}
+
+#[test]
+fn a_count_is_so_many_steps_and_the_length_is_the_longest_step() {
+    let mut session = Session::new("fig-3-jkr");
+    session.does(Id::Halve).does(Id::Halve);
+    let length = session.model.length;
+    session.does(Command::Steps(5));
+    let path = session.model.history.path();
+    assert_eq!(path.len(), 6);
+    for (_, node) in &path[1..] {
+        assert!(node.point.length <= length * (1.0 + 1e-9), "{} {length}", node.point.length);
+    }
+}
+
+#[test]
+fn undo_moves_a_cursor_a_step_after_it_makes_a_branch_and_nothing_is_erased() {
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[Id::Step, Id::Step, Id::Step]);
+    let first = session.radius();
+    session.all(&[Id::Undo, Id::Undo]).does(Id::Reverse).does(Id::Step);
+    assert!(session.radius() > first);
+    assert_eq!(session.model.history.nodes().len(), 5);
+    session.all(&[Id::Undo, Id::Redo]);
+    assert_eq!(session.model.history.cursor(), Some(4));
+    // The step, the way, and the first step.
+    session.all(&[Id::Undo, Id::Undo, Id::Undo, Id::Undo]);
+    assert!(session.status().contains("nothing to undo"));
+}
+
+#[test]
+fn a_knob_moves_curve_log_and_walker_and_undo_brings_the_value_back() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::NextEvent).does(Id::Jump);
+    let before = session.model.history.current().unwrap().state;
+    let events = session.model.path_events().to_vec();
+    session.does(Id::MuchMore);
+    assert!(session.model.is_unsaved());
+    assert_eq!(session.kind(), NodeKind::Solved);
+    let after = session.model.history.current().unwrap().state;
+    // Solved again at its control value: the same approach, another force.
+    assert!((after.approach - before.approach).abs() < 1e-9);
+    assert!((after.force / before.force - 1.0).abs() > 1e-3);
+    assert_ne!(session.model.path_events()[0].before, events[0].before);
+    // Turned further it is another command.
+    session.does(Id::More).does(Id::Undo);
+    assert_eq!(session.model.history.current().unwrap().state, after);
+    session.does(Id::Undo);
+    assert!(!session.model.is_unsaved());
+    assert_eq!(session.model.history.current().unwrap().state, before);
+    assert_eq!(session.model.path_events()[0], events[0]);
+}
+
+#[test]
+fn undo_before_the_answer_takes_the_value_back() {
+    let mut session = Session::new("wavy-sphere");
+    // The curve is asked for but has not come when undo is pressed.
+    let late = update(&mut session.model, Id::MuchMore.into());
+    let effects = update(&mut session.model, Id::Undo.into());
+    assert!(!session.model.is_unsaved());
+    session.driver.settle(&mut session.model, late);
+    session.driver.settle(&mut session.model, effects);
+    assert_eq!(session.model.path_events().len(), 6);
+    assert!(session.model.walker().is_some());
+    assert!(!session.model.is_computing());
+}
+
+#[test]
+fn a_state_that_cannot_be_solved_stays_with_the_reason() {
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[Id::NextEvent, Id::Jump, Id::NextEvent, Id::Jump, Id::NextEvent, Id::Jump]);
+    let before = session.radius();
+    // Without adhesion no contact exists at this negative approach.
+    session.set("material.work_of_adhesion", "0");
+    assert!(matches!(session.kind(), NodeKind::Stale(_)), "{:?}", session.kind());
+    assert!((session.radius() / before - 1.0).abs() < 1e-15);
+    session.does(Id::Step);
+    assert!(session.status().contains("restart starts again"), "{}", session.status());
+    session.does(Id::Restart).does(Id::Step);
+    assert_eq!(session.kind(), NodeKind::Step);
+}
+
+#[test]
+fn values_out_of_range_are_refused_with_the_reason() {
+    let mut session = Session::new("wavy-sphere");
+    let preset = session.model.preset.clone();
+    for (key, text) in [
+        ("gap.amplitude", "-1"),
+        ("gap.amplitude", "many"),
+        ("basis.rings", "3"),
+        ("gap.wavelength", "0"),
+        ("material.effective_modulus", "nan"),
+        ("path.control", "load"),
+        ("path.end_contact_radius", "0.5"),
+    ] {
+        session.set(key, text);
+        let (level, reason) = session.model.status();
+        assert_eq!(level, Level::Error, "{key}={text}");
+        assert!(reason.contains(key) || reason.contains("path."), "{reason}");
+        assert_eq!(session.model.preset, preset);
+    }
+}
+
+#[test]
+fn the_control_can_change_in_mid_walk() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Command::Steps(4));
+    let nodes = session.model.history.nodes().len();
+    session.does(Id::Control);
+    // The state stays the same state; only its stability is judged anew.
+    assert_eq!(session.model.history.nodes().len(), nodes);
+    assert_eq!(session.model.path_events().last().unwrap().dissipated, None);
+    session.does(Id::NextEvent);
+    assert!(session.status().starts_with("Event 1 of"), "{}", session.status());
+    session.does(Id::Jump);
+    let NodeKind::Jump(event) = session.kind() else { panic!() };
+    assert!((event.before.as_ref().unwrap().force - event.after.as_ref().unwrap().force).abs() < 1e-12);
+    session.does(Id::Control).does(Id::Control);
+    assert!(!session.model.is_unsaved());
+}
+
+#[test]
+fn selecting_an_event_moves_the_walker_to_its_limit_point() {
+    let mut session = Session::new("wavy-sphere");
+    session.model.panel = Panel::Log;
+    session.all(&[Id::Down, Id::Down, Id::Edit]);
+    let event = &session.model.path_events()[2];
+    assert!((session.radius() / event.before.as_ref().unwrap().contact_radius - 1.0).abs() < 1e-9);
+    assert!(session.status().contains("snap to crest 5"), "{}", session.status());
+    assert!(!session.model.is_unsaved());
+    // Done, it is ticked, and one goes back to it.
+    session.all(&[Id::Jump, Id::NextEvent]);
+    let marks: Vec<Mark> = session.model.log().entries.iter().map(|entry| entry.mark).collect();
+    assert_eq!(marks, [Mark::Done, Mark::Done, Mark::Done, Mark::Here, Mark::Ahead, Mark::Ahead]);
+    session.does(Id::Edit);
+    assert_eq!(session.kind(), NodeKind::Limit);
+    assert!(
+        (session.radius()
+            / session.model.curve.as_ref().unwrap().report.as_ref().unwrap().events[2]
+                .before
+                .as_ref()
+                .unwrap()
+                .contact_radius
+            - 1.0)
+            .abs()
+            < 1e-9
+    );
+}
+
+#[test]
+fn presets_are_saved_opened_and_never_replaced_unasked() {
+    let mut session = Session::new("wavy-sphere");
+    session.set("gap.amplitude", "0.003");
+    session.does(Id::Save);
+    assert!(session.status().contains("read-only"));
+    for bad in ["", "Trace", "trace", "fig-9", "a/b", "x.toml"] {
+        session.does(Command::SaveAs { name: bad.to_owned(), replace: false, with_data: false });
+        assert_eq!(session.model.status().0, Level::Error, "{bad}");
+        assert!(session.model.is_unsaved());
+    }
+    session.does(Command::SaveAs { name: "lab-3".to_owned(), replace: false, with_data: false });
+    assert!(!session.model.is_unsaved());
+    assert!(matches!(&session.model.source, Source::User { name, .. } if name == "lab-3"));
+    session.set("gap.amplitude", "0.004").does(Id::Save);
+    assert!(!session.model.is_unsaved(), "{}", session.status());
+    session.does(Command::Open("wavy-sphere".to_owned()));
+    assert_eq!(session.model.history.nodes().len(), 1);
+    session.does(Command::SaveAs { name: "lab-3".to_owned(), replace: false, with_data: false });
+    assert!(session.model.question.take().is_some());
+    session.does(Command::Open("lab-3".to_owned()));
+    assert_eq!(session.model.preset.gap.wave(), Some((0.004, 0.05)));
+    // Changed behind our back: asked before it is replaced.
+    let path = session.folder.path().join("presets/lab-3.toml");
+    let text = std::fs::read_to_string(&path).unwrap().replace("0.004", "0.0045");
+    std::fs::write(&path, &text).unwrap();
+    session.set("gap.amplitude", "0.005").does(Id::Save);
+    assert!(session.model.is_unsaved());
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+    session.does(Command::SaveAnyway);
+    assert!(!session.model.is_unsaved());
+}
+
+#[test]
+fn a_walker_that_was_stable_stays_so_when_a_value_changes() {
+    let set = |session: &mut Session, amplitude: &str| {
+        session.does(Command::Assign(vec![("gap.amplitude".into(), amplitude.into())]));
+    };
+    // The smooth sphere is a way off the waves: the state nearest to it is not a stable one.
+    let mut session = Session::new("wavy-sphere");
+    set(&mut session, "0");
+    set(&mut session, "0.003");
+    let node = session.model.history.current().unwrap();
+    assert!(node.stability.under(node.control), "{}", session.status());
+    let direct = {
+        let mut session = Session::new("wavy-sphere");
+        set(&mut session, "0.003");
+        session.model.history.current().unwrap().state.contact_radius
+    };
+    assert!((node.state.contact_radius - direct).abs() < 1e-9 * direct);
+    // Where its part of the curve is still there, nothing is said; where a limit point has passed it, that is.
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[Id::NextEvent, Id::Reverse]).does(Command::Steps(1));
+    set(&mut session, "0.00251");
+    assert!(!session.status().contains("next stable one"), "{}", session.status());
+    set(&mut session, "0.004");
+    assert!(session.status().contains("on the next stable one, s "), "{}", session.status());
+    // From an unstable state its own branch is followed.
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[Id::NextEvent, Id::Step]);
+    set(&mut session, "0.00251");
+    let node = session.model.history.current().unwrap();
+    assert!(!node.stability.under(node.control), "{}", session.status());
+}
+
+#[test]
+fn the_least_force_is_one_key_away_under_every_control() {
+    for control in ["displacement", "force"] {
+        let mut session = Session::new("wavy-sphere");
+        session.set("path.control", control).does(Id::LargestPull);
+        let model = &session.model;
+        let least = model
+            .curve
+            .as_ref()
+            .unwrap()
+            .report
+            .as_ref()
+            .unwrap()
+            .totals
+            .largest_pull
+            .as_ref()
+            .unwrap()
+            .force;
+        let node = model.history.current().unwrap();
+        let force = node.state.force * node.setting.units().force;
+        assert!((force - least).abs() < 1e-9 * least.abs(), "{control}: {force} {least}");
+        assert_eq!(node.is_limit(node.control), control == "force", "{}", session.status());
+        // It is a place like any other: the script says it.
+        let place = if control == "force" { "select-event" } else { "move-to" };
+        assert!(model.script().unwrap().last().unwrap().starts_with(place), "{:?}", model.script());
+        session.does(Id::Undo);
+        let node = session.model.history.current().unwrap();
+        assert!((node.state.force * node.setting.units().force - least).abs() > 1e-3 * least.abs());
+    }
+}
+
+#[test]
+fn exports_hold_what_is_on_the_screen_and_never_replace_a_file_unasked() {
+    let mut session = Session::new("fig-8");
+    session.all(&[Id::NextEvent, Id::Jump]);
+    for what in [ExportKind::Curve, ExportKind::Walk, ExportKind::Events] {
+        for ending in ["csv", "json"] {
+            let path = session.folder.path().join(format!("{}.{ending}", what.name()));
+            let shown = path.to_str().unwrap().to_owned();
+            session.does(Command::Export { what, path: format!("{shown}.txt"), replace: false });
+            assert!(session.status().contains("must end in"), "{}", session.status());
+            session.does(Command::Export { what, path: shown.clone(), replace: false });
+            assert!(session.status().contains("exported"), "{}", session.status());
+            let text = std::fs::read_to_string(&path).unwrap();
+            if ending == "json" {
+                let document: serde_json::Value = serde_json::from_str(&text).unwrap();
+                assert_eq!(document["schema"], 1);
+                assert!(document["problem"]["critical_force"].as_f64().unwrap() > 0.0);
+            } else {
+                let rows = csv::Reader::from_reader(text.as_bytes()).into_records().count();
+                let expected = match what {
+                    ExportKind::Curve => session.model.curve.as_ref().unwrap().points.len(),
+                    ExportKind::Walk => session.model.history.path().len(),
+                    ExportKind::Events | ExportKind::Script | ExportKind::Study => 2,
+                };
+                assert_eq!(rows, expected, "{what:?}");
+            }
+            session.does(Command::Export { what, path: shown, replace: false });
+            assert!(session.model.question.take().is_some());
+        }
+    }
+}
+
+#[test]
+fn walking_selecting_and_views_are_not_unsaved_changes() {
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[
+        Id::Step,
+        Id::NextEvent,
+        Id::Jump,
+        Id::Undo,
+        Id::Redo,
+        Id::Restart,
+        Id::Reverse,
+        Id::Halve,
+        Id::Double,
+        Id::Axes,
+        Id::NextView,
+        Id::PreviousView,
+        Id::ZoomIn,
+        Id::ZoomOut,
+        Id::CrossHair,
+        Id::Right,
+        Id::Whole,
+        Id::Pin,
+        Id::NextPanel,
+        Id::Down,
+        Id::Up,
+        Id::PreviousPanel,
+    ]);
+    assert!(!session.model.is_unsaved());
+    assert_eq!(session.model.axes, Axes::Raw);
+}
+
+#[test]
+fn a_restart_begins_a_walk_of_its_own() {
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[Id::NextEvent, Id::Jump, Id::NextEvent, Id::Jump]);
+    assert_eq!(session.model.walked_events().len(), 2);
+    session.all(&[Id::Restart, Id::NextEvent, Id::Jump]);
+    assert_eq!(session.model.walked_events().len(), 1);
+    // Nothing is erased: the walk before is an undo away.
+    session.all(&[Id::Restart, Id::Undo]);
+    assert_eq!(session.model.walked_events().len(), 1);
+}
+
+#[test]
+fn from_an_unstable_start_the_edge_runs_outward_as_in_an_unloading() {
+    let mut session = Session::new("wavy-sphere");
+    session.set("path.start_contact_radius", "0.385").does(Id::Restart);
+    assert!(session.status().contains("next-event lets the edge run outward"), "{}", session.status());
+    session.does(Id::Jump);
+    let start = session.model.curve.as_ref().unwrap().unloading.clone().unwrap();
+    let start = start.start().unwrap();
+    assert!((session.radius() / start.contact_radius - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_problem_without_adhesion_or_waves_can_be_walked() {
+    let mut session = Session::new("fig-1-hertz");
+    session.does(Command::Steps(10));
+    assert_eq!(session.kind(), NodeKind::Step);
+    session.does(Id::NextEvent);
+    assert!(session.status().contains("end contact radius"), "{}", session.status());
+    session.does(Id::MuchMore).does(Id::Control).does(Id::Control);
+    assert!(session.model.curve_error.is_none());
+}
+
+#[test]
+fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events() {
+    let mut session = Session::new("wavy-sphere");
+    assert!(session.model.curve.as_ref().unwrap().is_checked());
+    assert!(session.model.shown_inadmissible().is_empty());
+    let events = session.model.path_events().to_vec();
+    assert!(events.iter().all(|event| event.admissible != Some(false)));
+
+    let effects = update(
+        &mut session.model,
+        Command::Set { key: "material.work_of_adhesion".into(), text: "1e-4".to_owned() },
+    );
+    // While a newer curve is on its way nothing is asked about the old one.
+    let [Effect::Curve(_)] = effects.as_slice() else { panic!("{effects:?}") };
+    let curve = session.driver.run(effects[0].clone()).unwrap();
+    let effects = answer(&mut session.model, curve);
+    // The curve is on the screen first.
+    assert!(!session.model.curve.as_ref().unwrap().is_checked() && !session.model.is_computing());
+    let (check, walk): (Vec<_>, Vec<_>) =
+        effects.into_iter().partition(|effect| matches!(effect, Effect::Check(_)));
+    session.driver.settle(&mut session.model, walk);
+    assert!(!session.model.curve.as_ref().unwrap().is_checked());
+    // A curve that is wanted meanwhile makes the answer void, and giving it up has it asked again.
+    let late = session.driver.run(check[0].clone()).unwrap();
+    update(&mut session.model, Command::Set { key: "gap.amplitude".into(), text: "0.003".to_owned() });
+    answer(&mut session.model, late);
+    assert!(!session.model.curve.as_ref().unwrap().is_checked());
+    let effects = update(&mut session.model, Id::Cancel.into());
+    assert!(effects.iter().any(|effect| matches!(effect, Effect::Check(_))), "{effects:?}");
+    session.driver.settle(&mut session.model, effects);
+    session.does(Id::Undo);
+
+    let parts = session.model.shown_inadmissible().to_vec();
+    assert!(parts.len() > 3, "{parts:?}");
+    let mut last = f64::INFINITY;
+    for part in &parts {
+        let (from, to) = (part.report.from_contact_radius, part.report.to_contact_radius);
+        assert!(to < from && from < last && part.report.crest_radius.unwrap() > from, "{part:?}");
+        let ends = [part.places[0], *part.places.last().unwrap()].map(|[_, _, s]| s);
+        assert!((ends[0] / from - 1.0).abs() < 1e-12 && (ends[1] / to - 1.0).abs() < 1e-12);
+        last = to;
+    }
+    // A path with rings passes no such state.
+    assert!(session.model.path_events().iter().all(|event| event.admissible.is_none()));
+    session.set("path.contact", "one-disc");
+    assert!(session.model.path_events().iter().all(|event| event.admissible.is_some()));
+    session.does(Id::Undo);
+
+    // The log goes on to them, but they are no place to go to.
+    session.model.panel = Panel::Log;
+    let count = session.model.path_events().len();
+    for _ in 0..50 {
+        session.does(Id::Down);
+    }
+    assert_eq!(session.model.event, count + parts.len() - 1);
+    let before = session.radius();
+    session.does(Id::Edit);
+    assert!(session.status().contains("crest would touch"), "{}", session.status());
+    assert!((session.radius() - before).abs() < f64::EPSILON);
+    // Another control keeps what is known of the curve.
+    session.does(Id::Control);
+    assert_eq!(session.model.shown_inadmissible(), parts);
+    // Where the walker is told so, the curve is drawn so.
+    let part = parts[0].report;
+    let mut told = [0, 0];
+    session.does(Id::Restart).does(Id::Halve).does(Id::Halve);
+    for _ in 0..150 {
+        session.does(Id::Step);
+        let node = session.model.walker().unwrap();
+        let inside = (part.to_contact_radius..=part.from_contact_radius).contains(&node.state.contact_radius);
+        if inside || node.state.contact_radius > part.from_contact_radius {
+            assert_eq!(node.admissibility.holds, !inside);
+            told[usize::from(inside)] += 1;
+        }
+    }
+    assert!(told[0] > 0 && told[1] > 0, "{told:?}");
+}
+
+#[test]
+fn pins_and_views_go_on_in_another_preset() {
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[Id::Pin, Id::NextView]).does(Command::Overlay(Overlay::Exact));
+    session.set("gap.amplitude", "0.002").does(Id::Pin);
+    session.does(Command::Open("fig-8".to_owned()));
+    assert_eq!((session.model.view, session.model.overlays.exact), (View::ForceRadius, true));
+    let pins = session.model.pins.all();
+    assert_eq!(pins.iter().map(|pin| pin.number).collect::<Vec<_>>(), [1, 2]);
+    assert!(pins[1].name(&session.model.preset).contains("A 0.002"));
+    session.does(Id::Pin).does(Id::Pin);
+    assert!(session.status().contains("pinned already, as 3"), "{}", session.status());
+    session.does(Command::Unpin(Some(2))).does(Command::Unpin(Some(2)));
+    assert!(session.status().contains("no curve is pinned under that number"));
+}
+
+#[test]
+fn the_inside_of_a_state_is_computed_only_where_a_view_shows_it_and_follows_the_walker() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::Step);
+    assert!(session.model.profile.is_none());
+    session.all(&[Id::NextView, Id::NextView, Id::NextView]);
+    assert_eq!(session.model.view, View::Pressure);
+    let shown = |session: &Session| session.model.shown_profile().unwrap().profile.contact_radius.to_bits();
+    assert_eq!(shown(&session), session.radius().to_bits());
+    session.does(Command::Steps(3));
+    assert_eq!(shown(&session), session.radius().to_bits());
+    // Asked for once: nothing has changed.
+    assert!(update(&mut session.model, Id::Reverse.into()).len() == 1);
+    assert!(update(&mut session.model, Id::Axes.into()).is_empty());
+    // Late answers of older states do not replace newer ones.
+    let newest = session.model.profile.clone().unwrap();
+    session.all(&[Id::Undo, Id::Undo]);
+    let back = shown(&session);
+    assert_ne!(back, newest.profile.contact_radius.to_bits());
+    answer(&mut session.model, Reply::Profile(newest));
+    assert_eq!(shown(&session), back);
+}
+
+#[test]
+fn zoom_and_cross_hair_have_their_limits() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::Whole);
+    assert!(session.status().contains("the whole chart is shown"));
+    session.does(Id::CrossHair);
+    assert_eq!(session.model.panel, Panel::Charts);
+    for _ in 0..100 {
+        session.does(Id::Left);
+    }
+    // At the edge it takes the window along.
+    assert_eq!(session.model.cross.map(|(x, _)| x), Some(0.0));
+    assert!(session.model.window(View::ForceApproach).x[0] < -0.5);
+    for _ in 0..40 {
+        session.does(Id::ZoomIn);
+    }
+    assert!(session.status().contains("no closer"), "{}", session.status());
+    session.does(Id::Whole).does(Id::Cancel);
+    assert!(session.model.cross.is_none() && session.model.window(View::ForceApproach).is_whole());
+}
+
+#[test]
+fn a_formula_is_tried_while_it_is_typed_and_can_be_taken_back() {
+    let mut session = Session::new("formula");
+    session.set("gap.parameters.lambda", "0.06");
+    let before = session.model.preset.clone();
+    let tries = |session: &mut Session, text: &str| {
+        session.does(Command::Try { key: "gap.formula".into(), text: text.to_owned() });
+    };
+    let value = |session: &Session, name: &str| session.model.preset.get(&format!("gap.parameters.{name}"));
+    // Halfway through a name: the new one has the value of the one it begins, which is gone; the others are as they were.
+    tries(&mut session, "r^2/(2*R) + A*(1 - cos(2*pi*r/lam))");
+    assert_eq!((value(&session, "lam"), value(&session, "lambda")), (Some(0.06.into()), None));
+    assert_eq!(value(&session, "A"), before.get("gap.parameters.A"));
+    assert_eq!(session.model.curve.clone().unwrap().setting.preset, session.model.preset);
+    // A name misspelt is said, and begins with the value of the one it resembles.
+    tries(&mut session, "r^2/(2*R) + A*(1 - cos(2*pi*r/lamda))");
+    assert_eq!(value(&session, "lamda"), Some(0.06.into()));
+    let status = session.status().clone();
+    assert!(status.contains("new parameter lamda = 0.06; did you mean lambda?"), "{status}");
+    // The whole name again: its value is the one from before.
+    tries(&mut session, "r^2/(2*R) + A*(1 - cos(2*pi*r/lambda)) + 0*B");
+    assert_eq!((value(&session, "lambda"), value(&session, "B")), (Some(0.06.into()), Some(1.0.into())));
+    // No formula: nothing changes.
+    let tried = session.model.preset.clone();
+    tries(&mut session, "r^2/(2*R");
+    assert!(session.status().contains("column 9"), "{}", session.status());
+    assert_eq!(session.model.preset, tried);
+    session.does(Command::TakeBack);
+    assert_eq!(session.model.preset, before);
+    assert!(session.model.untried.is_none() && !session.model.is_computing());
+    assert_eq!(session.model.curve.clone().unwrap().setting.preset, before);
+    tries(&mut session, "r^2/(2*R)");
+    session.set("gap.formula", "r^2/(2*R) + 0*lambda");
+    assert_eq!(value(&session, "lambda"), Some(0.06.into()));
+    assert!(session.model.untried.is_none());
+}
+
+#[test]
+fn another_shape_keeps_what_both_know() {
+    let mut session = Session::new("wavy-sphere");
+    session.set("gap.amplitude", "0.003").set("gap.wavelength", "0.07").set("gap.radius_of_curvature", "1.1");
+    let value = |session: &Session, key: &str| session.model.preset.get(key);
+    session.set("gap.shape", "harmonics");
+    assert_eq!(value(&session, "gap.radius_of_curvature"), Some(1.1.into()));
+    assert_eq!(value(&session, "gap.waves.1.amplitude"), Some(0.003.into()));
+    assert_eq!(value(&session, "gap.waves.1.wavelength"), Some(0.07.into()));
+    session.set("gap.shape", "wavy-sphere").set("gap.amplitude", "0.003").set("gap.shape", "formula");
+    assert_eq!(value(&session, "gap.parameters.A"), Some(0.003.into()));
+    assert_eq!(value(&session, "gap.parameters.R"), Some(1.1.into()));
+}
+
+#[test]
+fn a_gap_of_other_lengths_is_told_of() {
+    let told = |shape: &str, preset: &str| {
+        let mut session = Session::new(preset);
+        session.set("gap.shape", shape);
+        let (_, said) = session.model.message.clone().unwrap_or((Level::Info, String::new()));
+        said.contains("lengths are counted otherwise here").then_some(said)
+    };
+    let said = told("profile", "wavy-sphere").unwrap();
+    assert!(said.contains("that before had 1: E*, γ and the path keep their numbers"), "{said}");
+    // Gaps of one length, and metres in both.
+    assert_eq!([told("sphere", "wavy-sphere"), told("sphere", "fig-9-si")], [None, None]);
+}
+
+fn browse(folder: Option<std::path::PathBuf>) -> Command {
+    Command::Browse { key: "gap.file".into(), folder }
+}
+
+#[test]
+fn a_profile_is_found_in_a_folder_read_and_saved_with_its_preset() {
+    let mut session = Session::new("profile");
+    let folder = session.folder.path().canonicalize().unwrap();
+    let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let rows = |radii: &[f64]| -> String {
+        radii.iter().map(|r| format!("{r}, {}\n", r * r / 2000.0)).collect::<Vec<_>>().concat()
+    };
+    let mut radii: Vec<f64> = (0..100).map(|i| 4.0 * f64::from(i)).collect();
+    std::fs::write(path("good.csv"), rows(&radii)).unwrap();
+    radii.swap(3, 7);
+    std::fs::write(path("mixed.txt"), rows(&radii)).unwrap();
+    std::fs::write(path("bad.csv"), rows(&radii) + "400.0, much\n").unwrap();
+    session.does(browse(Some(folder.clone())));
+    let listed = listed_folder(&mut session);
+    assert_eq!(listed.files, ["bad.csv", "good.csv", "mixed.txt"]);
+    let (before, curve) = (session.model.preset.clone(), session.model.curve.clone().unwrap());
+    session.set("gap.file", &listed.name_of("bad.csv"));
+    assert!(session.status().contains("line 101: the gap \"much\" is no number"), "{}", session.status());
+    assert_eq!(session.model.preset, before);
+    assert_eq!(session.model.curve.as_ref().unwrap().setting.preset, curve.setting.preset);
+    session.set("gap.file", &listed.name_of("mixed.txt"));
+    assert!(session.status().contains("have been sorted"), "{}", session.status());
+    session.set("gap.file", &listed.name_of("good.csv"));
+    assert!(session.status().contains("good.csv: 100 rows"), "{}", session.status());
+    assert_eq!(session.model.curve.clone().unwrap().setting.preset, session.model.preset);
+    // Saved beside the data, the preset names it by its path from there.
+    let target = folder.join("mine.toml");
+    save_file(&target, &session.model.preset, None, Overwrite::Never).unwrap();
+    assert!(std::fs::read_to_string(&target).unwrap().contains("file = \"good.csv\""));
+    // With its data elsewhere: the preset of the session names the copy.
+    session.does(Command::SaveAs { name: "scan".to_owned(), replace: false, with_data: true });
+    assert!(session.status().contains("saved as scan"), "{}", session.status());
+    assert!(!session.model.is_unsaved() && folder.join("presets/good.csv").is_file());
+    assert_eq!(session.model.preset.get("gap.file").unwrap().to_string(), "good.csv");
+    session.does(browse(None));
+    assert_eq!(listed_folder(&mut session).path, folder.join("presets"));
+    session.does(browse(Some(folder.join("gone"))));
+    assert!(session.status().contains("cannot be listed"), "{}", session.status());
+}

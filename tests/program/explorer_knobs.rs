@@ -1,0 +1,216 @@
+//! The explorer without a terminal: groups as knobs, whole commands undone, commands that wait for a curve, what is said of
+//! long work and in units.
+
+use crate::support::session::Session;
+use pulloff::explorer::model::Level;
+use pulloff::explorer::{Command, Effect, Id, NodeKind, Panel, Reply, Stage, answer, update};
+use pulloff_engine::preset::Value;
+use pulloff_engine::problem::Control;
+
+fn number(session: &Session, key: &str) -> f64 {
+    let value = session.model.preset.get(key);
+    value.and_then(|value| if let Value::Number(x) = value { Some(x) } else { None }).expect("a number")
+}
+
+/// Selects a knob that is not the first, as the arrows do.
+fn select(session: &mut Session, key: &str) {
+    session.model.panel = Panel::Problem;
+    let at = session.model.knobs().iter().position(|(row, _)| row.key == key).expect("a knob");
+    session.model.parameter = at - 1;
+    session.does(Id::Down);
+}
+
+#[test]
+fn a_group_is_turned_typed_and_taken_back_like_a_parameter() {
+    let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
+    let mut session = Session::new("wavy-sphere");
+    let before = session.model.preset.clone();
+    select(&mut session, "groups.amplitude_over_wavelength");
+    assert_eq!(session.status(), "turning it changes A, λ held");
+    session.does(Id::MuchMore);
+    assert_eq!(session.status(), "changed: A 0.00275; λ held");
+    assert!(near(number(&session, "gap.amplitude"), 0.00275));
+    assert!(near(number(&session, "gap.wavelength"), 0.05));
+    assert_eq!(session.model.curve.clone().unwrap().setting.preset, session.model.preset);
+    session.does(Id::Undo);
+    assert_eq!(session.model.preset, before);
+
+    select(&mut session, "groups.wavelength_over_radius");
+    session.set("groups.wavelength_over_radius", "1/25");
+    assert_eq!(session.status(), "changed: A 0.002, λ 0.04; R and A/λ held");
+    assert!(near(number(&session, "groups.amplitude_over_wavelength"), 0.05));
+    session.does(Id::Undo);
+    assert_eq!(session.model.preset, before);
+
+    select(&mut session, "groups.adhesion");
+    session.does(Id::More);
+    assert!(near(number(&session, "groups.adhesion"), 0.02525));
+    session.set("groups.adhesion", "1 mN");
+    assert_eq!(session.model.status().0, Level::Error);
+    assert!(near(number(&session, "groups.adhesion"), 0.02525));
+    // A gap without them has no such knobs.
+    let cone = Session::new("cone");
+    assert!(cone.model.knobs().iter().all(|(row, _)| !row.key.starts_with("groups.")));
+}
+
+#[test]
+fn in_si_what_a_group_changed_and_a_pin_have_units() {
+    let mut session = Session::new("fig-9-si");
+    session.does(Id::Pin);
+    select(&mut session, "groups.amplitude_over_wavelength");
+    session.does(Id::MuchMore);
+    assert_eq!(session.status(), "changed: A 13.75 µm; λ held");
+    assert_eq!(session.model.pins.all()[0].name(&session.model.preset), "A 12.5 µm");
+    // Beyond the pull-off force of 28 mN.
+    session.set("path.start_force", "-40 mN");
+    let (level, text) = session.model.status();
+    assert_eq!(level, Level::Error);
+    assert!(text.contains("no contact has the force -40000 uN; the smallest"), "{text}");
+    assert_eq!(text.matches(" uN").count(), 2, "{text}");
+}
+
+#[test]
+fn a_whole_command_is_undone_at_once() {
+    let mut session = Session::new("wavy-sphere");
+    let cursor = |session: &Session| session.model.history.cursor().unwrap();
+    session.does(Command::Steps(7));
+    assert_eq!(session.model.history.current().unwrap().step, 7);
+    session.does(Id::Undo);
+    assert_eq!((cursor(&session), session.kind()), (0, NodeKind::Start));
+    session.does(Id::Undo);
+    assert!(session.status().contains("nothing to undo"));
+    // Each command of its own.
+    session.does(Id::NextEvent);
+    let limit = cursor(&session);
+    session.does(Id::Jump).does(Command::Steps(3)).does(Id::Undo);
+    assert!(matches!(session.kind(), NodeKind::Jump(_)));
+    session.does(Id::Undo);
+    assert_eq!(cursor(&session), limit);
+    session.does(Id::Undo);
+    assert_eq!(cursor(&session), 0);
+    // Nothing is erased: forward again, state by state.
+    session.all(&[Id::Redo, Id::Redo, Id::Redo]);
+    assert_eq!(session.model.history.current().unwrap().kind, NodeKind::Step);
+    session.does(Command::Travel { id: Id::Undo, count: 3, states: true });
+    assert!(matches!(session.kind(), NodeKind::Jump(_)));
+    // That was a command too.
+    session.does(Command::Travel { id: Id::Undo, count: 3, states: false });
+    assert_eq!(cursor(&session), limit);
+    // Values typed since are taken back first.
+    let before = session.model.preset.clone();
+    let set = Command::Set { key: "gap.amplitude".into(), text: "0.003".to_owned() };
+    drop(update(&mut session.model, set));
+    let effects = update(&mut session.model, Id::Undo.into());
+    session.driver.settle(&mut session.model, effects);
+    assert_eq!(session.model.preset, before);
+}
+
+#[test]
+fn how_far_a_curve_is_belongs_to_the_newest_one() {
+    let mut session = Session::new("wavy-sphere");
+    let set = Command::Set { key: "gap.amplitude".into(), text: "0.003".to_owned() };
+    let effects = update(&mut session.model, set);
+    let id = session.model.curve_wanted;
+    let far = |id| Reply::Stage { id, stage: Stage::Curve(70) };
+    assert!(answer(&mut session.model, far(id - 1)).is_empty());
+    assert_eq!(session.model.stage, None);
+    answer(&mut session.model, far(id));
+    assert!(session.status().ends_with("point 70; cancel gives up"), "{}", session.status());
+    session.driver.settle(&mut session.model, effects);
+    // Late, as from a thread: it is no longer computed.
+    answer(&mut session.model, far(id));
+    assert!(!session.model.is_computing() && !session.status().contains("point 70"));
+}
+
+#[test]
+fn a_walk_counts_its_states_and_a_pause_is_no_error() {
+    let mut session = Session::new("wavy-sphere");
+    let effects = update(&mut session.model, Command::Steps(9));
+    let Some(Effect::Walk(request)) = effects.first() else { panic!("{effects:?}") };
+    let mut made = Vec::new();
+    let outcome = pulloff::explorer::walk::walk(request, &mut |state| {
+        made.push(state);
+        made.len() < 4
+    });
+    let (id, count) = (request.id, made.len());
+    assert_eq!(count, 4);
+    answer(&mut session.model, Reply::Walked { id, made, outcome: None });
+    assert_eq!(session.status(), "walking, 4 of 9 states; cancel stops");
+    answer(&mut session.model, Reply::Walked { id, made: Vec::new(), outcome: Some(outcome) });
+    let (level, text) = session.model.status();
+    assert_eq!(level, Level::Info);
+    assert!(text.starts_with("paused"), "{text}");
+}
+
+#[test]
+fn what_is_typed_behind_a_change_of_values_is_done_with_the_new_ones() {
+    let mut session = Session::new("wavy-sphere");
+    session.all(&[Id::NextEvent, Id::Jump]);
+    let steps = session.model.history.len();
+    // All in one burst, before any of it is done.
+    let set = Command::Set { key: "gap.amplitude".into(), text: "0.0023".to_owned() };
+    let effects = update(&mut session.model, set);
+    for id in [Id::NextEvent, Id::Jump, Id::Reverse, Id::Step, Id::Reverse, Id::NextEvent] {
+        assert!(update(&mut session.model, id.into()).is_empty());
+    }
+    assert_eq!((session.model.history.len(), session.model.queue.len()), (steps, 6));
+    assert!(session.status().contains("new values, 6 commands wait for it"), "{}", session.status());
+    session.driver.settle(&mut session.model, effects);
+    let node = session.model.history.current().unwrap();
+    assert!(node.is_limit(Control::Displacement) && session.model.is_on_curve(node) && session.model.inward);
+    let mut one_by_one = Session::new("wavy-sphere");
+    one_by_one.all(&[Id::NextEvent, Id::Jump]).set("gap.amplitude", "0.0023");
+    one_by_one.all(&[Id::NextEvent, Id::Jump, Id::Reverse, Id::Step, Id::Reverse, Id::NextEvent]);
+    assert_eq!(session.model.journal.lines(), one_by_one.model.journal.lines());
+    assert_eq!(node.state, one_by_one.model.history.current().unwrap().state);
+}
+
+#[test]
+fn nothing_is_walked_on_a_curve_of_other_values() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::NextEvent);
+    let steps = session.model.history.len();
+    let set = |text: &str| Command::Set { key: "gap.amplitude".into(), text: text.to_owned() };
+    // Given up, with a step that waited for it.
+    drop(update(&mut session.model, set("0.0023")));
+    drop(update(&mut session.model, Id::Step.into()));
+    drop(update(&mut session.model, Id::Cancel.into()));
+    assert!(session.model.queue.is_empty());
+    assert_eq!(session.model.script().unwrap(), ["next-event"], "nothing was done with these values");
+    for id in [Id::Step, Id::NextEvent, Id::Run] {
+        session.does(id);
+        assert_eq!(session.model.history.len(), steps, "{id:?}");
+        assert!(session.status().contains("the curve shown is of the values before"), "{}", session.status());
+    }
+    session.does(Id::Undo).does(Id::Step);
+    assert_eq!(session.model.history.len(), steps + 1);
+    // Computed after all.
+    drop(update(&mut session.model, set("0.0023")));
+    drop(update(&mut session.model, Id::Cancel.into()));
+    session.does(Id::Restart);
+    assert!(session.model.shows_its_curve());
+    // A second change waits for what waits for the first.
+    let steps = session.model.history.len();
+    let effects = update(&mut session.model, set("0.0024"));
+    drop(update(&mut session.model, Id::Step.into()));
+    assert!(update(&mut session.model, set("0.0025")).is_empty());
+    session.driver.settle(&mut session.model, effects);
+    assert!(session.model.shows_its_curve() && session.model.queue.is_empty());
+    // Solved again, a step, solved again.
+    assert_eq!(session.model.history.len(), steps + 3);
+}
+
+#[test]
+fn the_walker_is_not_sent_further_than_a_walk_may_lead() {
+    let mut session = Session::new("wavy-sphere");
+    let start = session.radius();
+    session.does(Command::MoveTo(2.9 * start));
+    assert!((session.radius() / (2.9 * start) - 1.0).abs() < 1e-9);
+    session.does(Command::MoveTo(3.1 * start));
+    assert!((session.radius() / (2.9 * start) - 1.0).abs() < 1e-9);
+    assert!(
+        session.status().contains("1.271 is out of range: it must be at most 1.23"),
+        "{}",
+        session.status()
+    );
+}

@@ -1,0 +1,452 @@
+//! `pulloff fit`: its document, its table, its statuses, and what it refuses.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+
+use crate::support::home::Home;
+use rustix::process::Signal;
+use serde_json::Value;
+use std::fs;
+
+const LENS: &str = include_str!("../../presets/data/lens.csv");
+const FREE: [&str; 2] = ["--free", "E*,gamma,data.offset"];
+
+#[test]
+fn the_truth_of_the_shipped_curve_is_found_and_written() {
+    let home = Home::new();
+    let ended = home.run(
+        &[
+            &[
+                "fit",
+                "shipped:lens.csv",
+                "lens",
+                "--format=json",
+                "-o",
+                "fitted.toml",
+                "--residuals",
+                "r.csv",
+            ],
+            &FREE[..],
+        ]
+        .concat(),
+    );
+    assert_eq!((ended.status, ended.err.as_str()), (0, ""));
+    let document: Value = serde_json::from_str(&ended.out).unwrap();
+    assert_eq!((document["schema"].as_u64(), document["verdict"].as_str()), (Some(1), Some("describes")));
+    assert!(document["reasons"].as_array().unwrap().is_empty());
+    let truth = [
+        ("material.effective_modulus", 1e6, "Pa"),
+        ("material.work_of_adhesion", 0.05, "J/m^2"),
+        ("data.offset", 12.3e-6, "m"),
+        ("data.baseline", 4e-6, "N"),
+    ];
+    for (found, (key, value, unit)) in document["parameters"].as_array().unwrap().iter().zip(truth) {
+        assert_eq!((found["key"].as_str(), found["unit"].as_str()), (Some(key), Some(unit)));
+        let (at, error) = (found["value"].as_f64().unwrap(), found["standard_error"].as_f64().unwrap());
+        assert!((at - value).abs() < 4.0 * error && error < 0.05 * value, "{key}: {at} +- {error}");
+    }
+    let rows = &document["rows"];
+    assert_eq!(rows["approach"], serde_json::json!({"contact": 191, "free": 159, "jump": 0, "dropped": 0}));
+    assert_eq!(counted(rows, "contact") + counted(rows, "free"), 700);
+    let residuals = home.text("r.csv");
+    assert!(residuals.starts_with("row,line,segment,part,"), "{residuals}");
+    assert_eq!(residuals.matches(",retraction,free,").count(), counted(&rows["retraction"], "free"));
+    // Each row is that of its line, in JSON as in CSV.
+    let beside = document["residuals"].as_array().unwrap();
+    assert_eq!(beside.len(), 700);
+    let lines: Vec<&str> = LENS.lines().collect();
+    for (row, csv) in beside.iter().zip(residuals.lines().skip(1)) {
+        let line = usize::try_from(row["line"].as_u64().unwrap()).unwrap();
+        let [x, force] = ["x", "force"].map(|key| row[key].as_f64().unwrap());
+        let cells: Vec<&str> = lines[line - 1].split(", ").collect();
+        let told = [
+            format!("{:.3}", 1e6 * x),
+            format!("{:.1}", 1e6 * force),
+            row["segment"].as_str().unwrap().to_owned(),
+        ];
+        assert_eq!(cells, told, "{row}");
+        let [part, off] = [&row["part"], &row["residual"]];
+        assert!(
+            csv.starts_with(&format!("{},{line},{},{},", row["row"], told[2], part.as_str().unwrap())),
+            "{csv}"
+        );
+        assert!(csv.contains(&format!(",{off},")), "{row} {csv}");
+        assert!(row["outlier"] == true || off.as_f64().unwrap().abs() < 6.0, "{row}");
+    }
+    let outliers = beside.iter().filter(|row| row["outlier"] == true).count();
+    assert_eq!(document["outliers"].as_u64(), Some(outliers as u64));
+    assert_eq!(document["correlations"].as_array().unwrap().len(), 4);
+    assert_eq!(home.text("r.csv").lines().count(), 701);
+    // The fitted preset is a preset, and fits as it is.
+    assert!(home.text("fitted.toml").contains("stiffness"));
+    let again = home.run(&["fit", "shipped:lens.csv", "fitted.toml", "--no-scan", FREE[0], FREE[1]]);
+    assert_eq!(again.status, 0, "{}", again.err);
+}
+
+/// The rows of this part, of one branch or of both.
+fn counted(rows: &Value, part: &str) -> usize {
+    let of = |rows: &Value| usize::try_from(rows[part].as_u64().unwrap()).unwrap();
+    if rows[part].is_u64() { of(rows) } else { of(&rows["approach"]) + of(&rows["retraction"]) }
+}
+
+#[test]
+fn rows_are_mended_by_hand_and_counted() {
+    let home = Home::new();
+    let fit = |more: &[&str]| {
+        let ended = home.run(&[&["fit", "lens", "--format=json", "--accept"], more].concat());
+        assert_eq!(ended.status, 0, "{more:?}: {}", ended.err);
+        serde_json::from_str::<Value>(&ended.out).unwrap()
+    };
+    // Rows between the jump of the approach and the part that is named are neither in contact nor apart.
+    let named = fit(&["--free-part", "x=..9um"]);
+    let (approach, rows) = (&named["rows"]["approach"], &named["rows"]);
+    assert_eq!([counted(approach, "contact"), counted(approach, "free")], [191, 102]);
+    assert_eq!(counted(approach, "dropped") + counted(approach, "jump"), 57, "{rows}");
+    assert_eq!(named["verdict"], "describes");
+    assert_eq!(fit(&["--set", "data.free_part=x=..9um"])["rows"], *rows);
+    let retraction = fit(&["--segment", "retraction", "--free-part", "x=..9um"]);
+    assert_eq!(retraction["rows"]["approach"]["dropped"], 350);
+    let none = fit(&["--free-part", "none", "--segment=retraction", "--range", "x=10um.."]);
+    assert_eq!(counted(&none["rows"], "free"), 0);
+    let notes = none["notes"].to_string();
+    assert!(notes.contains("there is no free part: the baseline is held"), "{notes}");
+    let skipped = fit(&["--skip", "50", "--signs", "x=+,f=+"]);
+    assert_eq!(skipped["rows"]["approach"]["dropped"], 50);
+    assert_eq!(skipped["rows"]["retraction"], fit(&[])["rows"]["retraction"]);
+    // What is written has it.
+    let ended =
+        home.run(&["fit", "lens", "--skip=50", "--signs=x=+,force=+", "--free-part=x=..9um", "-o", "f.toml"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let written = home.text("f.toml");
+    for line in ["skip = 50", "signs = \"x=+,force=+\"", "free_part = \"x=..9um\""] {
+        assert!(written.contains(line), "{written}");
+    }
+    assert!(ended.out.contains("rows        contact  free  jump  dropped"), "{}", ended.out);
+    for (arguments, expected) in [
+        (["--free-part", "9um"], "--free-part: \"9um\": expected x=LO..HI, or none"),
+        (["--free-part", "x=9um..2um"], "--free-part: \"x=9um..2um\": the range is empty"),
+        (["--free-part", "x=1N..2N"], "--free-part: "),
+        (["--free-part", "x=1m..2m"], "no row lies in the free part"),
+        (["--signs", "x=-"], "--signs: \"x=-\": expected the signs of both columns, as x=-,force=+"),
+        (["--skip", "697"], "only 3 rows are left after the range, the segment and the rows to skip"),
+        (["--skip", "-1"], "--skip"),
+        (["--range", "y=1..2"], "--range: \"y=1..2\": expected x=LO..HI or force=LO..HI"),
+    ] {
+        for command in
+            ["fit", "plot"].iter().filter(|command| **command == "fit" || arguments[0] != "--range")
+        {
+            let ended = home.run(&[&[*command, "lens"], &arguments[..]].concat());
+            assert!(
+                ended.status == 2 && ended.err.contains(expected),
+                "{arguments:?}: {} {}",
+                ended.status,
+                ended.err
+            );
+        }
+    }
+    let ended =
+        home.run(&["plot", "lens", "--free-part=x=..9um", "--view=residuals", "-o", "o.svg", "--data"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let data = home.text("o.csv");
+    assert_eq!(data.matches("\nmeasured approach,").count(), 191);
+    assert_eq!(data.matches("\"measured approach, apart\",").count(), 102);
+}
+
+#[test]
+fn what_is_not_determined_has_a_status_of_its_own() {
+    let home = Home::new();
+    let ended =
+        home.run(&["fit", "shipped:lens.csv", "lens", "--free", "R,E*,gamma,data.offset", "--format=json"]);
+    assert_eq!(ended.status, 3, "{}", ended.err);
+    let document: Value = serde_json::from_str(&ended.out).unwrap();
+    assert!(document["direction"].as_str().unwrap().starts_with("R +10 %, E* −4.7 %, γ −9.1 % together"));
+    assert!(document["parameters"][0]["standard_error"].is_null());
+}
+
+#[test]
+fn a_model_that_does_not_describe_the_points_has_a_status_of_its_own() {
+    let home = Home::new();
+    let wrong = [
+        &["fit", "shipped:lens.csv", "lens", "--format=json", "--set", "path.control.stiffness=300 N/m"],
+        &FREE[..],
+    ]
+    .concat();
+    let ended = home.run(&wrong);
+    assert_eq!(ended.status, 4, "{}", ended.err);
+    let document: Value = serde_json::from_str(&ended.out).unwrap();
+    assert_eq!(document["verdict"].as_str(), Some("does-not-describe"));
+    assert_eq!(document["parameters"][0]["error_holds"].as_bool(), Some(false));
+    let reason = &document["reasons"][0];
+    assert!(reason["kind"].is_string() && reason["value"].is_number(), "{reason}");
+    assert!(ended.err.contains(reason["sentence"].as_str().unwrap()), "{}", ended.err);
+    let accepted = home.run(&[&wrong[..], &["--accept"]].concat());
+    assert_eq!((accepted.status, &accepted.out), (0, &ended.out));
+}
+
+#[test]
+fn a_table_goes_on_where_it_ended() {
+    let home = Home::new();
+    let (good, bad) = (home.file("a.csv", LENS), home.file("b.csv", &LENS.replace("retraction", "back")));
+    let arguments = [&["fit", &good, &bad, "lens", "--table", "t.csv"], &FREE[..]].concat();
+    let ended = home.run(&arguments);
+    assert!(ended.status == 2 && ended.err.contains("the segment \"back\" is not known"), "{}", ended.err);
+    let first = home.text("t.csv");
+    assert!(first.lines().count() == 3 && first.contains("a.csv,describes,"), "{first}");
+    // The bad one, mended, is fitted; the good one is passed over.
+    home.file("b.csv", LENS);
+    let ended = home.run(&arguments);
+    assert!(ended.status == 0 && ended.err.contains("a.csv: is in the table already"), "{}", ended.err);
+    let second = home.text("t.csv");
+    assert_eq!((second.lines().count(), second.matches(",describes,").count()), (3, 2), "{second}");
+}
+
+/// A pattern names what earlier fits wrote too: the command may be run twice in one folder.
+#[test]
+fn what_fits_wrote_is_not_fitted() {
+    let home = Home::new();
+    let free = [FREE[0], FREE[1], "--no-scan"];
+    home.file("a.csv", LENS);
+    home.file("b.csv", LENS);
+    let alone = [&["fit", "a.csv", "lens", "--residuals", "rest.csv"], &free[..]].concat();
+    assert_eq!(home.run(&alone).status, 0);
+    let all = ["fit", "a.csv", "b.csv", "rest.csv", "results.csv", "lens", "--table", "results.csv"];
+    let first = home.run(&[&all[..3], &all[5..], &free].concat());
+    assert_eq!(first.status, 0, "{}", first.err);
+    let table = home.text("results.csv");
+    let again = home.run(&[&all[..], &free].concat());
+    assert_eq!(again.status, 0, "{}", again.err);
+    assert_eq!(home.text("results.csv"), table);
+    for said in [
+        "note: rest.csv: is the residuals of a fit, not a measured curve; it is left out",
+        "note: results.csv: is a table of fits, not a measured curve; it is left out",
+        "note: a.csv: is in the table already: describes",
+    ] {
+        assert!(again.err.contains(said), "{}", again.err);
+    }
+    // Alone they are refused, and a measured curve is no table.
+    home.refused(
+        &[&["fit", "rest.csv", "lens"], &free[..]].concat(),
+        &["rest.csv: is the residuals of a fit"],
+    );
+    home.refused(
+        &[&["fit", "a.csv", "b.csv", "lens", "--table", "b.csv"], &free[..]].concat(),
+        &["--table", "b.csv: is the file of the points"],
+    );
+    assert_eq!(home.text("b.csv"), LENS);
+}
+
+/// What was cut off is in no table, and a rerun computes it.
+#[test]
+fn a_table_has_no_row_that_was_cut_off() {
+    let home = Home::new();
+    home.file("a.csv", LENS);
+    home.file("b.csv", LENS);
+    // The second takes far longer than it takes to stop it.
+    let common = ["lens", "--table", "t.csv", FREE[0], FREE[1], "--no-scan"];
+    let bootstrap = ["--bootstrap", "100000"];
+    let first = [&["fit", "a.csv"], &common[..]].concat();
+    assert_eq!(home.run(&first).status, 0);
+    let before = home.text("t.csv");
+    let arguments = [&["fit", "a.csv", "b.csv"], &common[..], &bootstrap].concat();
+    let ended = home.stopped(&arguments, Signal::INT);
+    assert_eq!(ended.status, 130, "{}", ended.err);
+    assert!(ended.err.contains("the same command goes on from there"), "{}", ended.err);
+    assert_eq!(home.text("t.csv"), before);
+    // Alone and without a table the best values are written, and it says so.
+    let ended =
+        home.stopped(&[&["fit", "b.csv", "lens", FREE[0], FREE[1]], &bootstrap[..]].concat(), Signal::TERM);
+    assert_eq!(ended.status, 143, "{}", ended.err);
+    assert!(ended.err.contains("pulloff: stopped: "), "{}", ended.err);
+    let ended = home.run(&[&["fit", "a.csv", "b.csv"], &common[..]].concat());
+    assert!(ended.status == 0 && ended.err.contains("a.csv: is in the table already"), "{}", ended.err);
+    assert_eq!(home.text("t.csv").matches(",describes,").count(), 2);
+}
+
+/// A rerun of a table ends as its worst row does.
+#[test]
+fn a_rerun_says_how_good_the_rows_are_that_it_passes_over() {
+    let home = Home::new();
+    home.file("a.csv", LENS);
+    let arguments =
+        ["fit", "a.csv", "lens", "--free", "R,E*,gamma,data.offset", "--no-scan", "--table", "t.csv"];
+    for _ in 0..2 {
+        assert_eq!(home.run(&arguments).status, 3);
+    }
+}
+
+/// However many threads there are, the files come in order, and the end sums them up.
+#[test]
+fn many_files_are_summed_up_in_their_order_on_any_number_of_threads() {
+    let home = Home::new();
+    let files: Vec<String> = (0..5).map(|i| format!("{i}.csv")).collect();
+    for file in &files {
+        home.file(file, LENS);
+    }
+    home.file("2.csv", "x,force\n1,2\n");
+    let files: Vec<&str> = files.iter().map(String::as_str).collect();
+    let with =
+        |more: &[&str]| home.run(&[&["fit"], &files[..], &["lens", "--no-scan"], &FREE, more].concat());
+    let [one, four] = ["--jobs=1", "--jobs=4"].map(|jobs| with(&[jobs, "--format=json"]));
+    assert_eq!((one.status, four.status), (2, 2), "{}", one.err);
+    assert!(one.out == four.out && one.err == four.err);
+    let json: serde_json::Value = serde_json::from_str(&one.out).unwrap();
+    let names: Vec<&str> =
+        json["fits"].as_array().unwrap().iter().map(|fit| fit["file"].as_str().unwrap()).collect();
+    assert_eq!(names, ["0.csv", "1.csv", "3.csv", "4.csv"]);
+    let value = &json["fits"][0]["parameters"][0];
+    let summed = &json["summary"]["values"][0];
+    assert_eq!((&summed["key"], &summed["count"]), (&value["key"], &serde_json::json!(4)));
+    // Four times the same.
+    let [mean, of_one] = [&summed["mean"], &value["value"]].map(|number| number.as_f64().unwrap());
+    assert!(
+        (mean / of_one - 1.0).abs() < 1e-12 && summed["standard_deviation"].as_f64().unwrap() < 1e-9 * mean
+    );
+    // With a table what cannot be fitted is in it, and in the list.
+    let said = with(&["--table", "t.csv"]).out;
+    assert!(said.contains("4 of 5 files are described by the model"), "{said}");
+    assert!(said.contains("material.effective_modulus: mean ") && said.contains("\n  2.csv: "), "{said}");
+}
+
+/// What is known with an error is in the errors, by the option as by the key.
+#[test]
+fn an_error_of_what_is_given_is_in_those_of_the_values() {
+    let home = Home::new();
+    let fit = |more: &[&str]| {
+        let ran = home.run(&[&["fit", "lens", "--no-scan", "--format=json"], &FREE[..], more].concat());
+        assert_eq!(ran.status, 0, "{}", ran.err);
+        let json: serde_json::Value = serde_json::from_str(&ran.out).unwrap();
+        json
+    };
+    let error = |json: &serde_json::Value| json["parameters"][0]["standard_error"].as_f64().unwrap();
+    let held = fit(&[]);
+    let known = fit(&["--uncertain", "R=3%"]);
+    assert!(error(&known) > 1.2 * error(&held), "{known}");
+    assert_eq!(known["priors"][0]["key"], "gap.radius_of_curvature");
+    assert_eq!(held["priors"], serde_json::json!([]));
+    let by_key = fit(&["--set", "data.uncertain=gap.radius_of_curvature=3%"]);
+    assert_eq!(known["parameters"], by_key["parameters"]);
+    let refused = |given: &str, said: &[&str]| {
+        home.refused(&[&["fit", "lens", "--no-scan"], &FREE[..], &["--uncertain", given]].concat(), said);
+    };
+    refused(
+        "gap.radius_of_curvatre=3%",
+        &["data.uncertain", "gap.radius_of_curvatre=3%", "did you mean gap.radius_of_curvature"],
+    );
+    refused("R=0%", &["data.uncertain", "above 0"]);
+    refused("R", &["expected KEY=ERROR"]);
+}
+
+/// The columns are said of the file that is given, whatever the preset's own file has.
+#[test]
+fn columns_are_judged_by_the_file_that_is_given() {
+    let home = Home::new();
+    let free = [FREE[0], FREE[1], "--no-scan"];
+    // The same curve with columns of other names behind five others.
+    let wide: String = LENS
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .enumerate()
+        .map(|(at, line)| {
+            let line =
+                if at == 0 { "i,j,k,l,m,way,pull,branch".to_owned() } else { format!("0,0,0,0,0,{line}") };
+            line + "\n"
+        })
+        .collect();
+    let wide = home.file("wide.csv", &wide);
+    home.file("mine.toml", &home.quiet(&["presets", "show", "lens"]).replace("shipped:lens.csv", "mine.csv"));
+    home.file("mine.csv", LENS);
+    let columns = "position=way [um],force=pull [uN],segment=branch";
+    for columns in [columns, "position=6 [um],force=7 [uN],segment=8"] {
+        for preset in ["lens", "mine.toml"] {
+            let fitted = home.run(&[&["fit", &wide, preset, "--columns", columns], &free[..]].concat());
+            assert_eq!(fitted.status, 0, "{preset} {columns}: {}", fitted.err);
+            let drawn = home.run(&[
+                "plot",
+                preset,
+                "--measured",
+                &wide,
+                "--columns",
+                columns,
+                "-o",
+                "x.svg",
+                "--data",
+            ]);
+            assert_eq!(drawn.status, 0, "{preset} {columns}: {}", drawn.err);
+            fs::remove_file(home.path("x.svg")).unwrap();
+            fs::remove_file(home.path("x.csv")).unwrap();
+        }
+    }
+    // What is wrong is said of the right file, or of the option.
+    let wrong = |columns: &str, said: &[&str]| {
+        home.refused(&[&["fit", &wide, "lens", "--columns", columns], &free[..]].concat(), said);
+        home.refused(&["plot", "lens", "--measured", &wide, "--columns", columns], said);
+    };
+    wrong("x=9,force=7", &["wide.csv", "no column 9"]);
+    wrong("way=6", &["--columns", "way"]);
+    // Of the preset's own curve, where no other is given.
+    home.refused(
+        &[&["fit", "lens", "--columns", "x=9,force=2"], &free[..]].concat(),
+        &["lens.csv", "no column 9"],
+    );
+}
+
+/// The list of what is free goes with the fitted values.
+#[test]
+fn a_fitted_preset_keeps_what_was_free() {
+    let home = Home::new();
+    let fit = ["fit", "lens", "--free", "E*, gamma,data.offset", "--no-scan", "-o", "fitted.toml"];
+    assert_eq!(home.run(&fit).status, 0);
+    assert!(
+        home.text("fitted.toml").contains("free = \"E*,gamma,data.offset\""),
+        "{}",
+        home.text("fitted.toml")
+    );
+    let again = home.run(&["fit", "fitted.toml", "--no-scan"]);
+    assert_eq!(again.status, 0, "{}", again.err);
+    assert_eq!(again.out.matches("material.").count(), 2, "{}", again.out);
+}
+
+#[test]
+fn what_a_person_can_mend_is_said_with_status_2() {
+    let home = Home::new();
+    let path = home.file("a.csv", LENS);
+    for (arguments, expected) in [
+        (
+            vec!["fit", &path, "lens", "--free", "material.effectiv_modulus"],
+            "did you mean material.effective_modulus?",
+        ),
+        (vec!["fit", "fig-9", FREE[0], FREE[1]], "a preset that names one in data.file"),
+        (vec!["fit", "none.csv", "lens", FREE[0], FREE[1]], "none.csv"),
+        (
+            vec!["fit", &path, "fig-9", FREE[0], FREE[1]],
+            "has a unit, um, and the problem is in reduced units",
+        ),
+        (vec!["fit", &path, "lens", FREE[0], FREE[1], "--range", "x=3..1"], "is empty"),
+        (vec!["fit", &path, "lens", FREE[0], FREE[1], "--columns", "x=9,force=2"], "no column 9"),
+        (vec!["fit", "shipped:none", "lens", FREE[0], FREE[1]], "there is shipped:lens.csv"),
+        (vec!["fit", &path, "lens", FREE[0], FREE[1], "--poisson", "0.7"], "from -1 to 0.5"),
+    ] {
+        let ended = home.run(&arguments);
+        assert!(
+            ended.status == 2 && ended.err.contains(expected),
+            "{arguments:?}: {} {}",
+            ended.status,
+            ended.err
+        );
+    }
+}
+
+#[test]
+fn measured_points_lie_behind_a_curve() {
+    let home = Home::new();
+    let path = home.file("a.csv", LENS);
+    let ended =
+        home.run(&["plot", "lens", "--measured", &path, "--offset", "12.3um", "-o", "o.svg", "--data"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let data = home.text("o.csv");
+    assert!(
+        data.matches("measured approach").count() == 350
+            && data.matches("measured retraction").count() == 350
+    );
+    let ended = home.run(&["plot", "lens", "--measured", &path, "--view", "force-radius"]);
+    assert!(ended.status == 2 && ended.err.contains("has not the columns of force-radius"), "{}", ended.err);
+}

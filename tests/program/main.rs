@@ -1,0 +1,43 @@
+//! The tests of the program, and of the parts of it that people see. One binary, for each is linked with all of it.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod book;
+mod cli;
+mod cli_input;
+mod completions;
+mod corners;
+mod cycle;
+mod device;
+mod explorer;
+mod explorer_data;
+mod explorer_fit;
+mod explorer_knobs;
+mod explorer_map;
+mod explorer_rings;
+mod explorer_screen;
+mod fit;
+mod gallery;
+mod hostile_outputs;
+mod hostile_values;
+mod journal;
+mod jumps;
+mod manual;
+mod map;
+mod messages;
+mod output_rule;
+mod outputs;
+mod plot;
+mod release;
+mod run;
+mod session;
+mod ssh;
+mod statuses;
+mod sweep;
+mod sweep_cluster;
+mod sweep_ensemble;
+mod sweep_fit;
+mod terminal;
+mod undo;
+mod verify;

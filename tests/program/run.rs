@@ -1,0 +1,273 @@
+//! `pulloff run`: scripts of the explorer's commands, without a terminal.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+
+use crate::support::home::{Ended, Home};
+use std::fs;
+use std::io::Write;
+use std::os::unix::fs::symlink;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+/// A home, and the folder in it in which scripts run.
+struct Scripts(Home);
+
+impl Scripts {
+    fn new() -> Self {
+        let home = Home::new();
+        fs::create_dir(home.path("here")).unwrap();
+        Self(home)
+    }
+
+    fn at(&self, name: &str) -> PathBuf {
+        self.0.path(name)
+    }
+
+    /// Runs `script` from standard input.
+    fn run(&self, script: &str, arguments: &[&str]) -> Ended {
+        let mut command = self.0.command(&[&["run", "-"], arguments].concat());
+        command.current_dir(self.at("here"));
+        let mut child =
+            command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        // A script that is refused may not be read to its end.
+        let _ = child.stdin.take().unwrap().write_all(script.as_bytes());
+        Ended::of(child.wait_with_output().unwrap())
+    }
+
+    /// A run that succeeds without a word.
+    fn quiet(&self, script: &str, arguments: &[&str]) {
+        let ended = self.run(script, arguments);
+        assert_eq!((ended.status, ended.err.as_str()), (0, ""), "{script}");
+    }
+
+    /// A run that fails with this status and says this.
+    fn fails(&self, script: &str, arguments: &[&str], status: i32, said: &str) {
+        let ended = self.run(script, arguments);
+        assert_eq!((ended.status, ended.out.as_str()), (status, ""), "{script}: {}", ended.err);
+        assert!(ended.err.contains(said), "{script}: {}", ended.err);
+    }
+}
+
+#[test]
+fn a_script_walks_and_exports_and_its_session_walks_again() {
+    let home = Scripts::new();
+    let script = "# the first instability\nopen wavy-sphere gap.amplitude=0.003\nstep 3\nrun-to instability\njump\n\
+                  set gap.amplitude=0.0025\ncontrol force\nselect-event 2\nundo\nnext-event\n\
+                  export walk walk.csv\nexport script again.pulloff\npin\npins all\nexport curve curve.json\n";
+    home.quiet(script, &[]);
+    let walk = fs::read(home.at("here/walk.csv")).unwrap();
+    assert!(String::from_utf8_lossy(&walk).lines().count() > 5);
+    let again = fs::read_to_string(home.at("here/again.pulloff")).unwrap();
+    assert!(again.contains("\nopen wavy-sphere gap.amplitude=0.003\nstep 3\nrun\njump\n"), "{again}");
+    home.quiet(&format!("{again}export walk again.csv\nexport script third.pulloff\n"), &[]);
+    assert_eq!(fs::read(home.at("here/again.csv")).unwrap(), walk);
+    assert_eq!(fs::read_to_string(home.at("here/third.pulloff")).unwrap(), again);
+    let curve: serde_json::Value =
+        serde_json::from_slice(&fs::read(home.at("here/curve.json")).unwrap()).unwrap();
+    assert!(curve["points"].as_array().unwrap().len() > 100);
+}
+
+#[test]
+fn a_script_in_si_takes_units_and_bare_si_numbers() {
+    let home = Scripts::new();
+    let set = "set material.work_of_adhesion=\"20 mJ/m^2\"\nset material.work_of_adhesion=0.03\n";
+    home.quiet(&format!("open fig-9-si\n{set}step\nexport script a.pulloff"), &[]);
+    let lines = fs::read_to_string(home.at("here/a.pulloff")).unwrap();
+    assert!(
+        lines.contains("set material.work_of_adhesion=0.02\nset material.work_of_adhesion=0.03\nstep 1\n"),
+        "{lines}"
+    );
+}
+
+#[test]
+fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
+    let home = Scripts::new();
+    let preset = ["--preset", "wavy-sphere", "--set", "path.end_contact_radius=0.39"];
+    home.fails("step\n\njump\nexport walk w.csv", &preset, 2, "standard input:3: jump: the state is stable");
+    assert!(!home.at("here/w.csv").exists());
+    // The end of the path, twice, and then a line that may fail.
+    home.quiet("next-event\nnext-event\ntry jump\ntry open none\nquit\nundo\nundo\nundo\nundo", &preset);
+    for (script, said) in [
+        ("set gap.amplitude=-1", "1: set gap.amplitude=-1: gap.amplitude = -1.0 is out of range"),
+        ("select-event 9", "there is no event 9: the path has"),
+        ("open wavy", "no preset is called \"wavy\""),
+        ("set gap.shape=profile gap.file=none.csv", "none.csv"),
+    ] {
+        home.fails(script, &[], 2, said);
+    }
+    for (script, said) in [
+        ("step\nstepp", "standard input:2:1: no command is called \"stepp\"; did you mean step?"),
+        ("zoom-in", "zoom-in only changes what a screen shows"),
+        // Before anything is walked.
+        ("step 500\nexport walk w.txt", "standard input:2:13: the file must end in .csv or .json"),
+        ("export script w.csv", "1:15: the file must end in .pulloff or .txt"),
+    ] {
+        home.fails(script, &[], 2, said);
+    }
+    home.fails("open cone", &preset, 2, "--preset, --set and --control would be lost");
+    home.fails("step", &["--preset", "none"], 2, "no preset is called");
+    home.fails(&"#\n".repeat(600_000), &[], 2, "more than the 1048576 bytes");
+    let output = home.run("step 2\nnext-event\n", &["--verbose"]);
+    assert!(output.err.starts_with("1: step 2: Stable under"), "{}", output.err);
+    assert_eq!(output.err.lines().count(), 2);
+}
+
+#[test]
+fn a_walk_records_every_key_that_changed_during_it() {
+    let home = Scripts::new();
+    let script = "step\nset material.effective_modulus=\"25 kPa\"\nstep\nset path.start_contact_radius=\"400 um\"\n\
+                  control force\nset gap.shape=sphere\nexport walk w.csv\nexport walk w.json\n";
+    home.quiet(script, &["--preset", "fig-9-si"]);
+    let text = fs::read_to_string(home.at("here/w.csv")).unwrap();
+    let mut lines = csv::Reader::from_reader(text.as_bytes());
+    let names: Vec<String> = lines.headers().unwrap().iter().map(str::to_owned).collect();
+    let known = names.iter().position(|name| name == "admissible").unwrap();
+    assert_eq!(
+        names[known + 1..],
+        [
+            "material.effective_modulus",
+            "gap.shape",
+            "gap.amplitude",
+            "gap.wavelength",
+            "path.control",
+            "path.start_contact_radius"
+        ]
+    );
+    let rows: Vec<csv::StringRecord> = lines.records().map(|row| row.unwrap()).collect();
+    let cell = |row: &csv::StringRecord, name: &str| {
+        row[names.iter().position(|known| known == name).unwrap()].to_owned()
+    };
+    let number = |row: &csv::StringRecord, name: &str| cell(row, name).parse::<f64>().unwrap();
+    let (first, last) = (&rows[0], &rows[rows.len() - 1]);
+    // In the units of the preset's numbers: SI.
+    let modulus = |row| cell(row, "material.effective_modulus");
+    assert_ne!(modulus(first), "25000.0");
+    assert_eq!([modulus(&rows[2]), modulus(last)], ["25000.0", "25000.0"]);
+    assert_eq!(cell(last, "path.start_contact_radius"), "0.0004");
+    assert_eq!(
+        (cell(first, "path.control"), cell(last, "path.control")),
+        ("displacement".into(), "force".into())
+    );
+    // What the preset no longer has is empty, and what did not change has no column of its own.
+    assert!(number(first, "gap.amplitude") > 0.0 && cell(last, "gap.amplitude").is_empty());
+    assert_eq!(cell(last, "gap.shape"), "sphere");
+    let json: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(home.at("here/w.json")).unwrap()).unwrap();
+    let points = json["points"].as_array().unwrap();
+    assert_eq!(points.len(), rows.len());
+    assert_eq!(points[0]["material.effective_modulus"].as_f64(), modulus(first).parse().ok());
+    assert!(points[points.len() - 1]["gap.amplitude"].is_null());
+    // Nothing changed: the columns are as ever.
+    home.quiet("step\nexport walk plain.csv\n", &["--preset", "fig-9-si"]);
+    let plain = fs::read_to_string(home.at("here/plain.csv")).unwrap();
+    assert!(plain.lines().next().unwrap().ends_with(",admissible"), "{plain}");
+}
+
+#[test]
+fn a_script_writes_below_the_current_folder_and_replaces_nothing_unless_told() {
+    let home = Scripts::new();
+    let here = home.at("here");
+    fs::create_dir_all(here.join("sub")).unwrap();
+    fs::create_dir(home.at("there")).unwrap();
+    symlink(home.at("there"), here.join("link")).unwrap();
+    symlink(home.at("there/target.csv"), here.join("file.csv")).unwrap();
+    symlink(here.join("sub"), home.at("back")).unwrap();
+    let absolute = here.join("sub/absolute.csv");
+    for inside in
+        ["a.csv", "sub/b.csv", "sub/../c.csv", "../here/d.csv", "../back/e.csv", absolute.to_str().unwrap()]
+    {
+        home.quiet(&format!("export walk {inside}"), &[]);
+    }
+    let outside = home.at("there/x.csv");
+    for path in ["../x.csv", "link/x.csv", "file.csv", "../there/x.csv", "~/x.csv", outside.to_str().unwrap()]
+    {
+        home.fails(&format!("export walk {path}"), &[], 2, "is not below the current folder");
+    }
+    assert_eq!(fs::read_dir(home.at("there")).unwrap().count(), 0);
+    home.fails("export walk none/x.csv", &[], 2, "No such file");
+    home.quiet("export walk link/x.csv\nexport walk ../y.csv", &["--anywhere"]);
+    assert!(outside.exists() && home.at("y.csv").exists());
+    // Replacing.
+    fs::write(here.join("a.csv"), "mine").unwrap();
+    home.fails("export walk a.csv", &[], 2, "a.csv: exists already; --overwrite replaces it");
+    home.fails("export walk a.csv replace", &[], 2, "--overwrite replaces it");
+    assert_eq!(fs::read(here.join("a.csv")).unwrap(), b"mine");
+    home.quiet("export walk a.csv\nexport walk a.csv replace", &["--overwrite"]);
+    assert_ne!(fs::read(here.join("a.csv")).unwrap(), b"mine");
+    // Presets: by name to their folder; a file only where it may be replaced.
+    home.quiet("set gap.amplitude=0.003\nsave-as mine", &[]);
+    home.fails("save-as mine", &[], 2, "a preset called mine exists");
+    home.fails("open mine\nset gap.amplitude=0.004\nsave", &[], 2, "only with --overwrite");
+    home.quiet("open mine\nset gap.amplitude=0.004\nsave", &["--overwrite"]);
+    let mine = home.at("config/pulloff/presets/mine.toml");
+    assert!(fs::read_to_string(&mine).unwrap().contains("amplitude = 0.004"));
+    fs::copy(&mine, home.at("there/p.toml")).unwrap();
+    home.fails("open ../there/p.toml\nset gap.amplitude=0.0041\nsave", &["--overwrite"], 2, "is not below");
+}
+
+const SUBCOMMANDS: [&str; 7] = ["trace", "unload", "verify", "run", "presets", "completions", "man"];
+
+#[test]
+fn the_completions_of_every_shell_ask_the_program() {
+    let home = Home::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let text = home.quiet(&["completions", shell]);
+        assert!(text.contains("pulloff") && text.contains("COMPLETE"), "{shell}: {text}");
+    }
+    let path = home.path("pulloff.bash");
+    fs::write(&path, home.quiet(&["completions", "bash"])).unwrap();
+    // Where there is a bash, it finds no fault in it.
+    if let Ok(checked) = Command::new("bash").arg("-n").arg(&path).output() {
+        assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
+    }
+}
+
+#[test]
+fn the_manual_page_has_every_subcommand_and_every_command_with_its_keys() {
+    let home = Home::new();
+    let page = home.quiet(&["man"]);
+    assert!(page.contains(".TH pulloff 1"), "{page}");
+    for name in SUBCOMMANDS {
+        let heading = format!(".SH \"PULLOFF {}\"", name.to_uppercase());
+        assert!(page.contains(&heading), "no {heading} in\n{page}");
+    }
+    for text in
+        ["overwrite", "\\fBnext\\-event\\fR", "\\fBset\\fR [KEY=VALUE ...]", "write curve, walk or events"]
+    {
+        assert!(page.contains(text), "no {text} in\n{page}");
+    }
+    assert!(page.contains("\\fBstep\\fR [number of steps] (Space)"), "{page}");
+    fs::create_dir_all(home.path("config/pulloff")).unwrap();
+    fs::write(home.path("config/pulloff/config.toml"), "[keys]\nstep = \"F4\"").unwrap();
+    assert!(home.quiet(&["man"]).contains("[number of steps] (F4)"));
+}
+
+#[test]
+fn a_script_draws_what_is_seen() {
+    let home = Scripts::new();
+    let script = "step 5\nexport figure curve.svg\nexport figure cycle.png cycle\nexport figure in.svg pressure\n\
+                  export figure law.svg stability\nexport screen screen.txt\n";
+    home.quiet(script, &[]);
+    let drawn = |name: &str| fs::read_to_string(home.at("here").join(name)).unwrap();
+    let axes = |name: &str| {
+        let text = drawn(name);
+        let document = roxmltree::Document::parse(&text).unwrap();
+        document.descendants().filter_map(|node| node.text().map(str::to_owned)).collect::<Vec<_>>().join("|")
+    };
+    assert!(
+        axes("curve.svg").contains("δ/R") && axes("curve.svg").contains("state"),
+        "{}",
+        axes("curve.svg")
+    );
+    assert!(axes("in.svg").contains("p/E*") && axes("law.svg").contains("s/λ"));
+    assert_eq!(fs::read(home.at("here/cycle.png")).unwrap()[1..4], *b"PNG");
+    // The screen of 100x30, with the walk in it.
+    let screen = drawn("screen.txt");
+    assert_eq!(screen.lines().count(), 30);
+    assert!(screen.lines().all(|line| line.chars().count() <= 100) && screen.contains("@ 5 "), "{screen}");
+    // Nothing is replaced unasked; what cannot be drawn says why.
+    home.fails("export screen screen.txt\n", &[], 2, "exists");
+    home.fails("export figure walk.svg walk\n", &[], 2, "export walk writes it");
+    home.fails("export figure far.svg residuals\n", &[], 2, "no measured curve");
+    home.fails("export figure curve.txt\n", &[], 2, "must end in");
+}
