@@ -78,6 +78,17 @@ impl Mend for CaseError {
     }
 }
 
+impl Mend for pulloff_engine::report::pull::PullError {
+    /// A law and a rate are values.
+    fn can_be_mended(&self) -> bool {
+        match self {
+            Self::Case(error) => error.can_be_mended(),
+            Self::NoLaw { .. } | Self::NoRate => true,
+            Self::Rate { .. } => false,
+        }
+    }
+}
+
 impl Mend for pulloff_engine::report::map::MapError {
     /// An axis is a value.
     fn can_be_mended(&self) -> bool {

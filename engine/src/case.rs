@@ -11,16 +11,22 @@ use crate::gap::function::Scaled;
 use crate::gap::panels::Refused;
 use crate::gap::{Gap, Shape};
 use crate::preset::{BasisSpec, Material, Preset};
+use crate::problem::cohesion::TABOR_OVER_MAUGIS;
 use crate::problem::groups::LARGE_TABOR;
-use crate::problem::{ContactKind, Control, Groups, Problem, Reduced, Start, Turn, Units};
+use crate::problem::{
+    Adhesion, Cohesion, ContactKind, Control, Groups, Problem, Reduced, Start, Turn, Units,
+};
 use crate::progress::{Progress, Unwatched};
 use crate::quasistatic::admissible::{Judge, falls};
-use crate::quasistatic::path::{Losses, Path, PathError, Setting, cycle, unload};
+use crate::quasistatic::path::{
+    Losses, Path, PathError, Setting, Zones, cycle, cycle_in_zone, start_in_zone, unload, unload_in_zone,
+};
 use crate::quasistatic::start::StartError;
 use crate::quasistatic::start::contact_radius;
 use crate::quasistatic::{Curve, CurveStop, Detail};
 use crate::ritz::{Rings, RingsError};
 use crate::theory::jkr::Jkr;
+use crate::theory::maugis::Maugis;
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::sync::{Arc, Mutex};
@@ -51,8 +57,14 @@ pub struct Case {
     pub end: f64,
     /// Where a loop turns round, reduced; none leaves it to the start.
     pub turn: Option<Turn>,
+    /// Whether a closing edge gains less than the work of adhesion.
+    pub has_dead_band: bool,
     /// Tabor's μ, where it is known.
     pub tabor: Option<f64>,
+    /// The tension and the range of adhesion that has one, reduced; only paths and the trace know it.
+    pub cohesion: Option<Cohesion>,
+    /// How the adhesion is stated.
+    pub adhesion: Adhesion,
     /// How numbers are shown to the user.
     pub shown: UnitSystem,
 }
@@ -92,6 +104,15 @@ pub enum CaseError {
         /// How numbers are shown.
         shown: Box<UnitSystem>,
     },
+    /// Adhesion with a range, in what knows none.
+    #[error(
+        "material.adhesion = \"{word}\": only trace, unload, cycle and sweeps of them compute adhesion with a range; \
+         \"short-range\" is computed everywhere"
+    )]
+    HasRange {
+        /// Its word.
+        word: &'static str,
+    },
     /// There is no path.
     #[error("{}", words_of_path(error, *.control, shown))]
     Path {
@@ -119,8 +140,20 @@ impl Case {
     /// The same for a basis that takes long: `progress` is told the share of it that is built, and may stop it.
     ///
     /// # Errors
-    /// As [`Case::new`], and [`CaseError::Cancelled`] when `progress` said stop.
+    /// As [`Case::new`], and [`CaseError::Cancelled`] when `progress` said stop. [`CaseError::HasRange`] where the adhesion has a range:
+    /// who asks for a case expects the states of short-range adhesion.
     pub fn prepare(preset: &Preset, progress: &dyn Progress) -> Result<Self, CaseError> {
+        if preset.cohesion().is_some() {
+            return Err(CaseError::HasRange { word: preset.material.adhesion.name() });
+        }
+        Self::with_range(preset, progress)
+    }
+
+    /// The same for what knows adhesion with a range, where [`Case::cohesion`] is not to be overlooked.
+    ///
+    /// # Errors
+    /// As [`Case::prepare`].
+    pub fn with_range(preset: &Preset, progress: &dyn Progress) -> Result<Self, CaseError> {
         let problem = preset.problem();
         let reduced = preset.reduced();
         let units = reduced.units;
@@ -141,8 +174,15 @@ impl Case {
             }
             BasisSpec::Exact => Arc::new(Exact::new(Arc::clone(&table), reach)),
         };
-        let start = contact_radius(&reduced, &*basis, wanted, progress)
-            .map_err(|e| CaseError::Start { error: e.in_units(&units), shown: Box::new(shown.clone()) })?;
+        let cohesion = preset.cohesion().map(|law| law.reduced_by(units.length, units.pressure));
+        let start = match cohesion {
+            Some(law) => start_in_zone(&table, law, wanted, progress)
+                .map_err(|error| refused_path(error, Control::Displacement, &units, &shown))?,
+            None => contact_radius(&reduced, &*basis, wanted, progress).map_err(|e| CaseError::Start {
+                error: e.in_units(&units),
+                shown: Box::new(shown.clone()),
+            })?,
+        };
         if preset.basis == BasisSpec::Exact {
             // From here on the start decides how far it reaches, however it was given.
             basis = Arc::new(Exact::new(Arc::clone(&table), start));
@@ -153,8 +193,10 @@ impl Case {
             return Err(CaseError::EndOutsideStart { end, start, shown: Box::new(shown) });
         }
         let control = preset.path.control.in_units(units.stiffness);
-        let tabor = Groups::of(&problem, preset.range_of_action()).tabor;
+        let tabor = Groups::of(&problem, preset.range_of_action(), preset.cohesion()).tabor;
         let turn = preset.path.turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, control));
+        let closing = preset.edge.closing_work_of_adhesion;
+        let has_dead_band = closing.is_some_and(|closing| closing < preset.material.work_of_adhesion);
         let (contact, has_elements) = (preset.path.contact, preset.basis != BasisSpec::Exact);
         Ok(Self {
             problem,
@@ -167,7 +209,10 @@ impl Case {
             start,
             end,
             turn,
+            has_dead_band,
             tabor,
+            cohesion,
+            adhesion: preset.material.adhesion,
             shown,
         })
     }
@@ -230,6 +275,10 @@ impl Case {
         detail: Detail,
         progress: &dyn Progress,
     ) -> Result<Curve, CaseError> {
+        if self.cohesion.is_some() {
+            // Its states are on no curve of short-range adhesion.
+            return Err(CaseError::HasRange { word: self.adhesion.name() });
+        }
         let (basis, table) = (Arc::clone(&self.basis), Arc::clone(&self.table));
         let curve = Curve::new(self.reduced.clone(), basis, table, ends, detail, progress);
         if progress.stop() {
@@ -299,19 +348,43 @@ impl Case {
         progress: &dyn Progress,
     ) -> Result<Path, CaseError> {
         let turn = turn.or(self.turn).unwrap_or(Turn::Radius(self.start));
+        if let Some(law) = self.cohesion {
+            return cycle_in_zone(&self.table, law, turn, setting, progress)
+                .map_err(|error| self.no_path(error, setting.control));
+        }
         cycle(&self.table, self.reduced.work_of_adhesion, turn, setting, progress)
             .map_err(|error| self.no_path(error, setting.control))
     }
 
-    fn no_path(&self, error: PathError, control: Control) -> CaseError {
-        match error {
-            PathError::Cancelled => CaseError::Cancelled,
-            error => CaseError::Path {
-                error: Box::new(error.in_units(control, self.units())),
-                control: self.shown_control(control),
-                shown: Box::new(self.shown.clone()),
-            },
-        }
+    /// The unloading from the start with adhesion that has a range, reduced; `None` of short-range adhesion, which has a curve to
+    /// [`unload`](Self::unload) along.
+    ///
+    /// # Errors
+    /// As [`Case::unload`].
+    pub fn unload_in_zone(
+        &self,
+        setting: &Setting<'_>,
+        progress: &dyn Progress,
+    ) -> Result<Option<Path>, CaseError> {
+        let Some(law) = self.cohesion else { return Ok(None) };
+        // Zones hold on below the smallest contact: the way down ends apart.
+        unload_in_zone(&self.table, law, self.start, setting, progress)
+            .map(Some)
+            .map_err(|error| self.no_path(error, setting.control))
+    }
+
+    /// The equilibria of adhesion with a range as far out as the start.
+    ///
+    /// # Errors
+    /// [`CaseError::Path`] where the start has none, [`CaseError::Cancelled`] when `progress` said stop.
+    pub fn zones(&self, progress: &dyn Progress) -> Result<Zones, CaseError> {
+        let law = self.cohesion.unwrap_or(Cohesion { strength: f64::NAN, range: f64::NAN });
+        Zones::up_to(&self.table, law, self.start, progress)
+            .map_err(|error| self.no_path(error, self.control))
+    }
+
+    pub(crate) fn no_path(&self, error: PathError, control: Control) -> CaseError {
+        refused_path(error, control, self.units(), &self.shown)
     }
 
     /// What is to be said where the events of an unloading of averaged rows depend on how finely they are averaged: with cells
@@ -361,13 +434,32 @@ impl Case {
     /// The same where no basis is asked.
     pub fn warnings_of_problem(&self) -> Vec<String> {
         let mut warnings = self.problem.shape.notes(&self.shown);
-        if let Some(tabor) = self.tabor.filter(|tabor| *tabor < LARGE_TABOR) {
+        if let Some(tabor) = self.tabor.filter(|tabor| self.cohesion.is_none() && *tabor < LARGE_TABOR) {
             warnings.push(format!(
                 "Tabor's mu = {tabor:.2} is below {LARGE_TABOR}: the adhesion reaches beyond the edge, and the JKR limit \
-                 of this method does not hold"
+                 of this method does not hold{}",
+                self.change_with_range(tabor)
             ));
         }
+        if self.has_dead_band {
+            warnings.push(
+                "material.closing_work_of_adhesion counts in pulls at a rate alone: everywhere else a closing edge gains \
+                 the whole work of adhesion"
+                    .to_owned(),
+            );
+        }
         warnings
+    }
+
+    /// By how much the range of the adhesion changes the largest pull, and which key computes it.
+    fn change_with_range(&self, tabor: f64) -> String {
+        let Problem { effective_modulus, work_of_adhesion, ref shape } = self.problem;
+        let Some(radius) = shape.radius_of_curvature() else { return String::new() };
+        let sphere = Maugis::of(tabor / TABOR_OVER_MAUGIS, work_of_adhesion / (effective_modulus * radius));
+        let change = 100.0 * (sphere.largest_pull() / 1.5 - 1.0);
+        format!(
+            ": of the smooth sphere it makes the largest pull {change:.1} % larger; material.adhesion = \"dugdale\" computes it"
+        )
     }
 
     /// What else is worth knowing, for a largest contact of radius `largest` (reduced).
@@ -447,6 +539,17 @@ fn refusal(error: TableError, length: f64, shown: &UnitSystem) -> CaseError {
             let error = TableError::TooFine(Refused { radius, largest, ..refused });
             CaseError::Table { error, shown: Box::new(shown.clone()) }
         }
+    }
+}
+
+fn refused_path(error: PathError, control: Control, units: &Units, shown: &UnitSystem) -> CaseError {
+    match error {
+        PathError::Cancelled => CaseError::Cancelled,
+        error => CaseError::Path {
+            error: Box::new(error.in_units(control, units)),
+            control: control.in_units(1.0 / units.stiffness),
+            shown: Box::new(shown.clone()),
+        },
     }
 }
 

@@ -17,10 +17,11 @@
 //! A wavy sphere pulled off at given approach: its edge jumps seven times from wave to wave before it lets go.
 //!
 //! ```
-//! use pulloff_engine::{Extent, Material, PathReport, Preset, Shape, Start, Unwatched};
+//! use pulloff_engine::{Adhesion, Extent, Material, PathReport, Preset, Shape, Start, Unwatched};
 //!
 //! let gap = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 };
-//! let material = Material { effective_modulus: 1.0, work_of_adhesion: 0.025 / std::f64::consts::TAU, range_of_action: None };
+//! let (work_of_adhesion, adhesion) = (0.025 / std::f64::consts::TAU, Adhesion::ShortRange);
+//! let material = Material { effective_modulus: 1.0, work_of_adhesion, range_of_action: None, adhesion };
 //! let preset = Preset::new(material, gap, Start::ContactRadius(0.5));
 //!
 //! let unloading = PathReport::unload(&preset, Extent::default(), &Unwatched)?;
@@ -61,6 +62,7 @@
 //! | `disc` | one disc of contact, exactly: the table of g and what is read from it |
 //! | `ritz` | the paper's method: ring elements, Kalker's functional, Newton-Raphson |
 //! | `annuli` | the state of a disc and any number of rings of contact |
+//! | `zone` | adhesion with a range: one disc of contact in one zone |
 //! | `theory` | closed forms that share nothing with the above: Hertz, JKR, Guduru, Kesari-Lew; the judges |
 //! | `quasistatic` | the curve, devices, stability, jumps, losses, unloading, admissibility |
 //! | `preset`, `case` | the table of keys, reading and writing presets; a preset made ready |
@@ -113,6 +115,8 @@ pub mod progress;
 #[doc(hidden)]
 pub mod quasistatic;
 #[doc(hidden)]
+pub mod rate;
+#[doc(hidden)]
 pub mod report;
 #[doc(hidden)]
 pub mod ritz;
@@ -128,6 +132,8 @@ pub mod theory;
 pub mod units;
 #[doc(hidden)]
 pub mod verify;
+#[doc(hidden)]
+pub mod zone;
 
 pub use case::{Case, CaseError};
 pub use gap::formula::{Formula, FormulaParameter, TypedGap};
@@ -136,7 +142,7 @@ pub use gap::{Gap, Jet, Shape};
 pub use preset::{
     BasisSpec, Files, Invalid, Material, Mistake, PathSpec, Preset, ReadError, read, read_in, read_with,
 };
-pub use problem::{Control, Groups, Problem, Start, Units};
+pub use problem::{Adhesion, Cohesion, Control, Groups, Problem, Start, Stated, Units};
 pub use progress::Unwatched;
 pub use quasistatic::{
     Admissibility, Curve, CurveStop, Detail, Event, EventKind, Landscape, Limit, Losses, Path, PathState,

@@ -41,11 +41,12 @@ from .errors import (
     NotDetermined,
     OutputError,
     PresetError,
+    PullError,
     SpecError,
     StartError,
     UnstableStart,
 )
-from .results import Fit, Map, Path, Stability, Sweep, Trace
+from .results import Fit, Map, Path, Pull, Stability, Sweep, Trace
 
 __version__ = _engine.__version__
 
@@ -70,10 +71,12 @@ __all__ = [
     "OutputError",
     "Path",
     "PresetError",
+    "PullError",
     "PresetText",
     "Problem",
     "Quantity",
     "SpecError",
+    "Pull",
     "Stability",
     "StartError",
     "Sweep",

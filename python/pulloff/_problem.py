@@ -11,8 +11,8 @@ from . import _engine
 from ._gap import column, plain, sampled
 from ._points import Range, draws_of, free_part_of, points_of, range_of, skip_of
 from ._progress import Progress, told
-from .errors import ComputationError, DataError, MapError, NotConverged, NotDetermined, PresetError
-from .results import Fit, Map, Path, Stability, Trace
+from .errors import ComputationError, DataError, MapError, NotConverged, NotDetermined, PresetError, PullError
+from .results import Fit, Map, Path, Pull, Stability, Trace
 
 if TYPE_CHECKING:
     import numpy as np
@@ -334,6 +334,38 @@ class Problem:
         problem = _following(problem, one_disc)
         with told(progress, "cycle") as tell:
             return Path(problem.cycle(to_control, areas, tell))
+
+    def pull(
+        self,
+        rate: Union[float, Sequence[float], None] = None,
+        *,
+        control: Optional[Control] = None,
+        hold_force: Union[float, Sequence[float]] = (),
+        progress: Progress = None,
+    ) -> Pull:
+        """Pulls of one disc whose edge has a speed; ``edge.exponent`` must be set.
+
+        Parameters
+        ----------
+        rate : float or sequence of float, optional
+            The rate of what is controlled, above 0, in SI or reduced units: a speed, or a force in a time. Without it the problem's
+            ``path.steps`` or ``path.rate`` says what is done.
+        control : {"displacement", "force"} or float, optional
+            As of :meth:`unload`.
+        hold_force : float or sequence of float
+            Dead loads, negative for a pull; ``failures`` of the result says how long each is borne.
+        """
+        rates = [float(x) for x in np.atleast_1d([] if rate is None else rate)]
+        loads = [float(x) for x in np.atleast_1d(hold_force)]
+        for value in rates:
+            if not 0 < value < float("inf"):
+                raise PullError(f"rate = {value} is out of range: it must be above 0")
+        for value in loads:
+            if not np.isfinite(value):
+                raise PullError(f"hold_force = {value} is no number")
+        problem = self._under(control)
+        with told(progress, "pull") as tell:
+            return Pull(problem.pull(rates, loads, tell))
 
     def stability(
         self, control: Optional[Control] = None, *, samples: int = 1501, progress: Progress = None

@@ -90,6 +90,10 @@ class MapError(ComputationError, ValueError):
     """There is no map over these axes."""
 
 
+class PullError(ComputationError, ValueError):
+    """There is no pull at a rate: no law of the edge, no rate, or an edge that cannot be followed."""
+
+
 class DataError(Error, ValueError):
     """Measured points, or what is asked of them, that are refused."""
 

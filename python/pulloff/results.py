@@ -80,7 +80,7 @@ class Path(Result):
     number: Counts
     """The number of the event on the path, from 1."""
     kind: Texts
-    """``first-touch``, ``touch``, ``merge``, ``snap-in``, ``snap``, ``last-contact``, ``split``, ``vanish`` or ``turn``."""
+    """``jump-in``, ``first-touch``, ``touch``, ``merge``, ``snap-in``, ``snap``, ``last-contact``, ``snap-off``, ``split``, ``vanish`` or ``turn``."""
     direction: Texts
     """``loading`` or ``unloading``."""
     control: Floats
@@ -136,7 +136,8 @@ class Path(Result):
     @property
     def states(self) -> Table:
         """The stable states in order; each column has the shape (states,). ``contacts`` is a list of [inner, outer] for each
-        state, from the axis outward; a disc is [0, s]."""
+        state, from the axis outward; a disc is [0, s]. Adhesion with a range has ``zone_radius``, the outer edge of the zone of
+        tension, too."""
         states = self._said()["states"]
         arrays: Dict[str, Any] = {}
         for name in ("piece", "direction", "control", "approach", "force", "contact_radius", "held_stiffness", "area", "energy"):
@@ -144,6 +145,8 @@ class Path(Result):
             arrays[name] = np.array(values, dtype=object if name == "direction" else None)
         contacts = np.empty(len(states), dtype=object)
         contacts[:] = [state["contacts"] for state in states]
+        if any("zone_radius" in state for state in states):
+            arrays["zone_radius"] = np.array([state.get("zone_radius", np.nan) for state in states])
         return Table({**arrays, "contacts": contacts})
 
     def _title(self) -> str:
@@ -169,6 +172,50 @@ class Path(Result):
         ):
             ax.plot([x, to_x], [y, to_y], color="gray", linewidth=0.8)
         ax.legend()
+        return ax
+
+
+class Pull(Result):
+    """Pulls at a rate, a row for each; each column has the shape (rates,). Where no rate was asked for but dead loads, the columns are
+    ``force`` and ``time``."""
+
+    rate: Floats
+    """The rate of the control; NaN where ``path.steps`` says what is done."""
+    peak_time: Floats
+    peak_contact_radius: Floats
+    peak_approach: Floats
+    peak_force: Floats
+    """The smallest force on the way."""
+    tension_peaks: Counts
+    snaps: Counts
+    last_contact_time: Floats
+    """The time at which the bodies come apart; NaN where they do not."""
+    last_contact_control: Floats
+    dissipated: Floats
+    """What the edge dissipates, an energy; NaN where a dead load falls without end."""
+    top_edge_speed: Floats
+    balance: Floats
+    """What is missing in the balance of work and energy, over the work."""
+
+    @property
+    def runs(self) -> List[Dict[str, Any]]:
+        """The pulls with their snaps and tension peaks, as in the document."""
+        return list(self._said()["runs"])
+
+    @property
+    def failures(self) -> List[Dict[str, Any]]:
+        """Dead loads with the time for which each is borne; ``None`` where an equilibrium bears it."""
+        return list(self._said()["failures"])
+
+    def _title(self) -> str:
+        return f"{len(self.runs)} pulls, {len(self.failures)} dead loads"
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the largest pull over the rate, and returns the axes of matplotlib."""
+        ax = self._axes(ax)
+        ax.loglog(self.rate, -self.peak_force, ".-")
+        ax.set_xlabel("rate")
+        ax.set_ylabel(self._unit("force", "largest pull −P"))
         return ax
 
 

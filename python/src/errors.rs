@@ -4,6 +4,7 @@ use pulloff_engine::CaseError;
 use pulloff_engine::preset::{Invalid, Mistake, Origin, ReadError};
 use pulloff_engine::quasistatic::path::PathError;
 use pulloff_engine::report::map::MapError;
+use pulloff_engine::report::pull::PullError;
 use pulloff_engine::sweep::SpecError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -124,7 +125,7 @@ pub fn of_case(py: Python<'_>, error: &CaseError) -> PyErr {
         CaseError::Path { error, .. } if matches!(**error, PathError::UnstableStart { .. }) => {
             "UnstableStart"
         }
-        CaseError::Path { .. } => "NoPath",
+        CaseError::Path { .. } | CaseError::HasRange { .. } => "NoPath",
         CaseError::Cancelled => "Cancelled",
     };
     plain(py, name, &error.to_string())
@@ -136,6 +137,16 @@ pub fn of_map(py: Python<'_>, error: &MapError) -> PyErr {
         MapError::Case(error) => of_case(py, error),
         MapError::Cancelled => plain(py, "Cancelled", &error.to_string()),
         MapError::Family(_) => plain(py, "MapError", &error.to_string()),
+    }
+}
+
+/// A pull that cannot be made.
+pub fn of_pull(py: Python<'_>, error: &PullError) -> PyErr {
+    match error {
+        PullError::Case(error) => of_case(py, error),
+        PullError::NoLaw { .. } | PullError::NoRate | PullError::Rate { .. } => {
+            plain(py, "PullError", &error.to_string())
+        }
     }
 }
 

@@ -23,7 +23,8 @@ use pulloff_engine::progress::Progress;
 use pulloff_engine::quasistatic::Losses;
 use pulloff_engine::report::map::Ordinate;
 use pulloff_engine::report::path::Extent;
-use pulloff_engine::report::{MapReport, PathReport, StabilityReport, TraceReport};
+use pulloff_engine::report::pull::Asked;
+use pulloff_engine::report::{MapReport, PathReport, PullReport, StabilityReport, TraceReport};
 use pulloff_engine::stability::{Axis, COMPLIANCE};
 use pulloff_engine::text::{closest, quote, show_path};
 use pulloff_engine::theory;
@@ -299,6 +300,19 @@ impl Problem {
         let turn = to_control.map(Turn::Control);
         let made = long(py, progress, |progress| PathReport::cycle(&self.preset, turn, extent, progress))?;
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
+    }
+
+    /// Pulls at rates, and times to failure under dead loads.
+    fn pull(
+        &self,
+        py: Python<'_>,
+        rates: Vec<f64>,
+        loads: Vec<f64>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Document> {
+        let asked = Asked { rates, loads };
+        let made = long(py, progress, |progress| PullReport::compute(&self.preset, &asked, progress))?;
+        made.map(Document::new).map_err(|error| errors::of_pull(py, &error))
     }
 
     /// The law of stability over the contact radius.

@@ -12,6 +12,7 @@ use crate::sweep::merge::MergeError;
 use crate::sweep::spec::LoadError;
 use pulloff_engine::case::CaseError;
 use pulloff_engine::report::map::MapError;
+use pulloff_engine::report::pull::PullError;
 use pulloff_engine::report::rows::RowsError;
 use std::io;
 use std::process::ExitCode;
@@ -121,6 +122,9 @@ pub enum Failure {
     /// The problem could not be computed.
     #[error(transparent)]
     Case(#[from] CaseError),
+    /// There is no pull at a rate.
+    #[error(transparent)]
+    Pull(#[from] PullError),
     /// A comparison could not be made.
     #[error(transparent)]
     Verify(#[from] pulloff_engine::verify::VerifyError),
@@ -267,6 +271,7 @@ impl Failure {
             (
                 Some(signal),
                 Self::Case(CaseError::Cancelled)
+                | Self::Pull(PullError::Case(CaseError::Cancelled))
                 | Self::Lines(MapError::Cancelled | MapError::Case(CaseError::Cancelled)),
             ) => Self::Interrupted { signal, text: "stopped: nothing was written".to_owned() },
             _ => self,
@@ -278,6 +283,7 @@ impl Failure {
             Self::Preset(error) => error.can_be_mended(),
             Self::Session(error) => error.can_be_mended(),
             Self::Case(error) => error.can_be_mended(),
+            Self::Pull(error) => error.can_be_mended(),
             Self::File(error) => error.can_be_mended(),
             Self::Points(error) => error.can_be_mended(),
             Self::Write(error) => error.can_be_mended(),

@@ -20,6 +20,7 @@ mod path;
 mod plot;
 mod presets;
 mod problem;
+mod pull;
 mod run;
 mod sessions;
 mod sweep;
@@ -66,6 +67,8 @@ enum Command {
     Unload(path::UnloadArguments),
     /// Load from the first touch to a turn and back until the bodies are apart, with rings of contact
     Cycle(path::CycleArguments),
+    /// Pull one disc at a rate, with an edge that has a speed
+    Pull(pull::Arguments),
     /// Find where snaps begin: lines in two numbers of a preset, or its limit points over one
     Map(map::Arguments),
     /// Fit values of a preset to measured curves
@@ -120,6 +123,7 @@ pub fn run() -> ExitCode {
         Some(Command::Trace(arguments)) => trace::run(arguments),
         Some(Command::Unload(arguments)) => path::unload(arguments),
         Some(Command::Cycle(arguments)) => path::cycle(arguments),
+        Some(Command::Pull(arguments)) => pull::run(arguments),
         Some(Command::Map(arguments)) => map::run(arguments),
         Some(Command::Fit(arguments)) => fit::run(arguments),
         Some(Command::Plot(arguments)) => plot::run(arguments),

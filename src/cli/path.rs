@@ -13,7 +13,7 @@ use pulloff_engine::preset::schema::TURN_KEYS;
 use pulloff_engine::problem::{ContactKind, Control, Turn};
 use pulloff_engine::progress::Progress;
 use pulloff_engine::quasistatic::{Losses, PathStop};
-use pulloff_engine::report::path::{COLUMNS, Extent, STATE_COLUMNS};
+use pulloff_engine::report::path::{COLUMNS, Extent, STATE_COLUMNS, STATE_ZONE_COLUMNS, ZONE_COLUMNS};
 use pulloff_engine::report::{PathReport, columns, json, path_table, table};
 use std::process::ExitCode;
 
@@ -161,11 +161,13 @@ impl Opened {
             (Format::Table, Rows::Events) => path_table::path(report),
             (Format::Table, Rows::States) => table::rows(&report.states_table()?),
             (Format::Csv, rows) => {
-                let (columns, table) = match rows {
-                    Rows::Events => (COLUMNS, report.table()?),
-                    Rows::States => (STATE_COLUMNS, report.states_table()?),
+                let (columns, of_zone, table) = match rows {
+                    Rows::Events => (COLUMNS, ZONE_COLUMNS, report.table()?),
+                    Rows::States => (STATE_COLUMNS, STATE_ZONE_COLUMNS, report.states_table()?),
                 };
-                console.note(columns::units(columns, report.control, units).as_deref());
+                let has_zone = report.states.iter().any(|at| at.state.zone_radius.is_some());
+                let columns = if has_zone { [columns, of_zone].concat() } else { columns.to_vec() };
+                console.note(columns::units(&columns, report.control, units).as_deref());
                 table.csv()?
             }
             (Format::Json, _) => json(report)?,

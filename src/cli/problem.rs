@@ -11,10 +11,11 @@ use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
 /// The names of the subcommands, which no preset can have.
-pub(super) const SUBCOMMANDS: [&str; 15] = [
+pub(super) const SUBCOMMANDS: [&str; 16] = [
     "trace",
     "unload",
     "cycle",
+    "pull",
     "map",
     "fit",
     "plot",

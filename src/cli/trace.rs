@@ -8,7 +8,7 @@ use super::problem::Problem;
 use super::watch::Stop;
 use clap::Args;
 use pulloff_engine::quasistatic::CurveStop;
-use pulloff_engine::report::trace::{COLUMNS, EXACT_COLUMNS};
+use pulloff_engine::report::trace::{COLUMNS, EXACT_COLUMNS, OUT_OF_RANGE, ZONE_COLUMNS};
 use pulloff_engine::report::{TraceReport, columns, json, table};
 use pulloff_engine::theory::Exact;
 use std::process::ExitCode;
@@ -44,7 +44,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if format != Format::Json {
         let exact = if arguments.theory { EXACT_COLUMNS } else { &[] };
         let preset = &loaded.preset;
-        let units = columns::units(&[COLUMNS, exact].concat(), preset.path.control, &preset.units);
+        let zone: &[&str] = if preset.cohesion().is_some() { ZONE_COLUMNS } else { &[] };
+        let units = columns::units(&[COLUMNS, exact, zone].concat(), preset.path.control, &preset.units);
         console.note(units.as_deref());
     }
     let text = match format {
@@ -53,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         Format::Json => json(&report)?,
     };
     sink.write(text)?;
-    if report.stop == CurveStop::End.to_string() {
+    if [&CurveStop::End.to_string(), OUT_OF_RANGE].contains(&report.stop.as_str()) {
         return console.end();
     }
     Err(Failure::Incomplete(format!(

@@ -107,7 +107,7 @@ impl ProblemCurve {
             start: start.as_ref().map(|point| curve.equilibrium.admissibility(point, progress)),
             inadmissible: None,
             theory: Theory::of(&case, &curve, progress).ok_or(CaseError::Cancelled)?,
-            groups: Groups::of(&case.problem, preset.range_of_action()),
+            groups: Groups::of(&case.problem, preset.range_of_action(), preset.cohesion()),
             digits: case.basis.trusted_digits(&case.reduced, case.start),
             stiffness: start.as_ref().map(|point| curve.equilibrium.state_and_stiffness(point).1),
             critical_force: case.critical_force().unwrap_or(0.0),

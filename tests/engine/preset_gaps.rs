@@ -114,7 +114,8 @@ fn figure_9_as_a_formula_is_figure_9() {
 fn without_a_radius_nothing_is_said_of_a_smooth_sphere() {
     let case = Case::new(&preset("cone", &[])).unwrap();
     assert!(case.smooth().is_none() && case.critical_force().is_none());
-    let groups = serde_json::to_value(pulloff_engine::problem::Groups::of(&case.problem, None)).unwrap();
+    let groups =
+        serde_json::to_value(pulloff_engine::problem::Groups::of(&case.problem, None, None)).unwrap();
     assert!(groups.as_object().unwrap().values().all(serde_json::Value::is_null));
     // Reduced by the contact radius at the start.
     assert!((case.start - 1.0).abs() < 1e-12);

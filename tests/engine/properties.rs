@@ -9,7 +9,7 @@ use pulloff_engine::case::Case;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::data::DataSpec;
 use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
-use pulloff_engine::problem::{Begin, ContactKind, Control, Start};
+use pulloff_engine::problem::{Adhesion, Begin, ContactKind, Control, Start};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::report::path::{EventReport, Extent, StateReport};
 use pulloff_engine::report::{PathReport, TraceReport, json};
@@ -52,12 +52,14 @@ fn draw(random: &mut fastrand::Rng, wild: bool) -> Preset {
     Preset {
         title: String::new(),
         data: DataSpec::default(),
+        edge: pulloff_engine::preset::EdgeSpec::default(),
         files: pulloff::store::FILES,
         units: pulloff_engine::units::UnitSystem::Reduced,
         material: Material {
             effective_modulus: modulus,
             work_of_adhesion: gamma * modulus * radius,
             range_of_action: None,
+            adhesion: Adhesion::ShortRange,
         },
         gap: shape,
         basis: BasisSpec::Rings {
@@ -321,9 +323,15 @@ fn wavy(gamma: f64, amplitude: f64, wavelength: f64, control: Control, start: f6
     Preset {
         title: String::new(),
         data: DataSpec::default(),
+        edge: pulloff_engine::preset::EdgeSpec::default(),
         files: pulloff::store::FILES,
         units: pulloff_engine::units::UnitSystem::Reduced,
-        material: Material { effective_modulus: 1.0, work_of_adhesion: gamma, range_of_action: None },
+        material: Material {
+            effective_modulus: 1.0,
+            work_of_adhesion: gamma,
+            range_of_action: None,
+            adhesion: Adhesion::ShortRange,
+        },
         gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
         basis: BasisSpec::Rings { rings: 100, grading: Grading::Uniform },
         path: PathSpec {

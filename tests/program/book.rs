@@ -112,7 +112,11 @@ fn around(part: &str) -> String {
                       [path]\ncontrol = { stiffness = \"500 N/m\" }\n";
     const DATA: &str = "[data]\nfile = \"curve.csv\"\nfree = \"E*\"\n";
     match part {
-        _ if part.contains("[material]") => part.to_owned(),
+        _ if part.contains("[material]") && part.contains("[gap]") => part.to_owned(),
+        _ if part.contains("surface_tension") => {
+            format!("units = \"SI\"\n{part}\n[gap]\nshape = \"sphere\"\nradius_of_curvature = \"1 um\"\n")
+        }
+        _ if part.contains("[material]") => format!("{part}\n{SPHERE}"),
         _ if part.contains("[[gap.waves]]") => format!("{MATERIAL}{WAVES}{part}"),
         _ if part.contains("[gap]") => format!("{MATERIAL}{part}"),
         _ if part.contains("[data]") => format!("{SI}{part}"),

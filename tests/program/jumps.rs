@@ -8,7 +8,7 @@ use pulloff::explorer::{CurveData, NodeKind, Staged};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::data::DataSpec;
 use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
-use pulloff_engine::problem::{Begin, Control, Start};
+use pulloff_engine::problem::{Adhesion, Begin, Control, Start};
 use pulloff_engine::quasistatic::Turn;
 use pulloff_engine::quasistatic::walk::At;
 use std::sync::Arc;
@@ -19,9 +19,15 @@ fn preset(amplitude: f64, wavelength: f64, work_of_adhesion: f64, control: Contr
     Preset {
         title: String::new(),
         data: DataSpec::default(),
+        edge: pulloff_engine::preset::EdgeSpec::default(),
         files: pulloff::store::FILES,
         units: pulloff_engine::units::UnitSystem::Reduced,
-        material: Material { effective_modulus: 1.0, work_of_adhesion, range_of_action: None },
+        material: Material {
+            effective_modulus: 1.0,
+            work_of_adhesion,
+            range_of_action: None,
+            adhesion: Adhesion::ShortRange,
+        },
         gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
         basis: BasisSpec::Exact,
         path: PathSpec {

@@ -29,6 +29,7 @@ mod messages;
 mod output_rule;
 mod outputs;
 mod plot;
+mod pull;
 mod release;
 mod run;
 mod session;

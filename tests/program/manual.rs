@@ -127,11 +127,12 @@ fn screen() -> String {
 const SHARED: [&str; 7] = ["set", "control", "output", "format", "overwrite", "quiet", "strict"];
 
 /// The options of [`SHARED`] that each command has; this is what they are to be.
-const MATRIX: [(&str, &str); 21] = [
+const MATRIX: [(&str, &str); 22] = [
     ("pulloff", "set control"),
     ("trace", "set control output format overwrite quiet strict"),
     ("unload", "set control output format overwrite quiet strict"),
     ("cycle", "set control output format overwrite quiet strict"),
+    ("pull", "set control output format overwrite quiet strict"),
     ("map", "set control output format overwrite quiet strict"),
     ("fit", "set control output format overwrite quiet strict"),
     // A figure has a format of its own, by its ending.

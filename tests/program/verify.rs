@@ -53,6 +53,7 @@ fn the_groups_are_these() {
     Fig. 9 under displacement control, 200 rings
     Fig. 9 under force control, 200 rings
     Fig. 9 under stiffness=0.15 control, 200 rings
+    Adhesion with a range: a sphere against Maugis
     Fig. 9, the law of stability, exact
     Rigid flat annulus, force over 2E*δb
     Fig. 9: the loop up to δ = 0.14

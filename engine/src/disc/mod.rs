@@ -14,7 +14,7 @@
 //! | [`basis`] | what the program asks of a way to compute a disc |
 //! | [`exact`] | the basis that reads the table |
 //! | [`solution`] | the equilibria over all radii, from the table |
-//! | [`sampled`] | the same from a basis that is asked radius by radius |
+//! | [`sampled`] | the same from what is asked radius by radius |
 //! | [`outside`] | the gap around a disc and the pressure under it |
 //! | [`span`] | places on a panel |
 //! | [`chebyshev`] | series, their integrals and their roots |
@@ -41,7 +41,7 @@ pub mod waves;
 pub use basis::{Basis, Evaluation, Order};
 pub use exact::Exact;
 pub use panels::{Panel, Panels, Values};
-pub use solution::{ExactSolution, Local, Solution};
+pub use solution::{Edges, ExactSolution, Local, Solution};
 pub use span::Place;
 pub use spans::TableError;
 pub use table::Table;

@@ -20,7 +20,7 @@ use super::clusters::Part;
 use super::panels::{Panel, Panels};
 use super::span::Place;
 use crate::elementary::{acosh, asin, asinh, cosh, pow, sin, sinh};
-use crate::gap::panels::Variable;
+use crate::gap::panels::{Span, Variable};
 use crate::progress::Progress;
 use gauss_quad::GaussLegendre;
 use std::f64::consts::{FRAC_1_PI, FRAC_2_PI};
@@ -30,6 +30,9 @@ use std::sync::LazyLock;
 /// Nodes on a panel near r, on one at least as far as it is wide, and on one at least [`VERY_FAR`] times as far.
 const NODES: [usize; 3] = [32, 14, 8];
 const VERY_FAR: f64 = 6.0;
+
+/// A part of a panel of at most this share takes the nodes of a panel that is far.
+const SMALL: f64 = 0.2;
 
 /// Stretches of panels integrated over in one search at most: those of fifty crests and more, some hundredths of a second.
 const MOST_WORK: usize = 1000;
@@ -69,8 +72,13 @@ pub fn gap_from(panels: &Panels, s: f64, delta: f64, r: f64) -> f64 {
     gap_by(panels, s, r, |i, ends| stretch_outside(panels, i, &panels.list()[i], delta, r, ends))
 }
 
-/// The sum over the panels between s and r of what `stretch` makes of each, and of its ends there.
+/// The sum over the panels between s and r of what `stretch` makes of each, and of its ends there, times 2/π.
 fn gap_by(panels: &Panels, s: f64, r: f64, stretch: impl Fn(usize, [f64; 2]) -> f64) -> f64 {
+    FRAC_2_PI * over_panels(panels, s, r, stretch)
+}
+
+/// The sum over the panels between s and r of what `stretch` makes of each, and of its ends there.
+fn over_panels(panels: &Panels, s: f64, r: f64, stretch: impl Fn(usize, [f64; 2]) -> f64) -> f64 {
     if r <= s {
         return 0.0;
     }
@@ -79,7 +87,23 @@ fn gap_by(panels: &Panels, s: f64, r: f64, stretch: impl Fn(usize, [f64; 2]) -> 
         let span = panels.list()[i].span;
         stretch(i, [span.lo.max(s), span.hi.min(r)])
     };
-    FRAC_2_PI * (first..=last).map(part).sum::<f64>()
+    (first..=last).map(part).sum::<f64>()
+}
+
+/// ∫_s^r f/√(r² − a²) da of a function asked at places of the panels, which must reach to `r`: to the last digits of the table where
+/// f is as smooth on every panel as g is.
+pub fn sum_from(panels: &Panels, s: f64, r: f64, f: &dyn Fn(Place) -> f64) -> f64 {
+    over_panels(panels, s, r, |i, ends| {
+        let span = panels.list()[i].span;
+        // A small part of a panel is nearly a line.
+        let small = ends[1] - ends[0] <= SMALL * (span.hi - span.lo) && span.variable != Variable::Fifth;
+        sum_by(span, i, r, ends, &RULES[usize::from(small)], f)
+    })
+}
+
+/// ∫_s^r g' (a/r)/√(r² − a²) da; the panels must reach to `r`.
+pub fn rise_from(panels: &Panels, s: f64, r: f64) -> f64 {
+    over_panels(panels, s, r, |i, ends| slope_outside(panels, i, r, ends))
 }
 
 /// The same far from the edge, where `gap` is h(r); the panels must reach to `s` alone.
@@ -105,16 +129,30 @@ fn stretch_outside(
         return 0.0;
     }
     let rule = rule(r - hi, hi - lo);
-    let [centre, half] = panel.span.line();
-    let value =
-        |v: f64| panels.value(Place { panel: index, x: ((v - centre) / half).clamp(-1.0, 1.0) }) - delta;
+    sum_by(panel.span, index, r, [lo, hi], rule, &|place| panels.value(place) - delta)
+}
+
+/// ∫ f/√(r² − a²) da from `lo` to `hi` on one panel by a rule.
+fn sum_by(
+    span: Span,
+    index: usize,
+    r: f64,
+    [lo, hi]: [f64; 2],
+    rule: &[[f64; 2]],
+    f: &dyn Fn(Place) -> f64,
+) -> f64 {
+    if hi <= lo {
+        return 0.0;
+    }
+    let [centre, half] = span.line();
+    let value = |v: f64| f(Place { panel: index, x: ((v - centre) / half).clamp(-1.0, 1.0) });
     let over = |from: f64, to: f64, f: &dyn Fn(f64) -> f64| -> f64 {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         half * rule.iter().map(|[x, weight]| weight * f(middle + half * x)).sum::<f64>()
     };
-    match panel.span.variable {
+    match span.variable {
         Variable::Fifth if r - hi >= hi => {
-            let end = panel.span.hi;
+            let end = span.hi;
             let at = |a: f64| pow(a / end, 0.2);
             over(at(lo), at(hi), &|u| {
                 let a = end * u.powi(5);
@@ -122,7 +160,7 @@ fn stretch_outside(
             })
         }
         Variable::Fifth => {
-            let end = panel.span.hi;
+            let end = span.hi;
             over(asin(lo / r), asin((hi / r).min(1.0)), &|psi| value(pow(r * sin(psi) / end, 0.2)))
         }
         Variable::Radius => over(asin(lo / r), asin((hi / r).min(1.0)), &|psi| value(r * sin(psi))),
@@ -157,6 +195,36 @@ pub fn sum_below(panels: &Panels, s: f64, edge: f64) -> Vec<[f64; 2]> {
     });
     parts_below(panels, at, edge, &mut add);
     nodes
+}
+
+/// ∫ g' (a/r)/√(r² − a²) da from `lo` to `hi` on one panel.
+fn slope_outside(panels: &Panels, index: usize, r: f64, [lo, hi]: [f64; 2]) -> f64 {
+    if hi <= lo {
+        return 0.0;
+    }
+    let span = panels.list()[index].span;
+    let rule = &RULES[0];
+    let over = |from: f64, to: f64, f: &dyn Fn(f64) -> f64| -> f64 {
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        half * rule.iter().map(|[x, weight]| weight * f(middle + half * x)).sum::<f64>()
+    };
+    let place = |a: f64| Place { panel: index, x: span.place(a) };
+    match span.variable {
+        Variable::Fifth | Variable::Radius => over(asin(lo / r), asin((hi / r).min(1.0)), &|psi| {
+            panels.values(place(r * sin(psi))).slope * sin(psi)
+        }),
+        Variable::Root { base } => {
+            let height = (r - base).sqrt();
+            let [centre, half] = span.line();
+            let angle = |a: f64| asin(((a - base).max(0.0).sqrt() / height).min(1.0));
+            over(angle(lo), angle(hi), &|psi| {
+                let y = height * sin(psi);
+                let a = base + y * y;
+                let x = ((y - centre) / half).clamp(-1.0, 1.0);
+                panels.slope_by_variable(Place { panel: index, x }) * (a / r) / (r + a).sqrt()
+            })
+        }
+    }
 }
 
 /// The sources of a panel up to a place of it.

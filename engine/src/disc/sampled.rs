@@ -1,31 +1,24 @@
-//! The equilibria of a basis that is asked radius by radius, as series on panels.
+//! The equilibria of what is asked radius by radius, as series on panels: of a basis, or of a zone by its outer edge.
 //!
-//! With u = √s as the variable, in which δ and P of an adhesive disc are smooth down to the axis. Each panel takes
+//! Of a basis with u = √s as the variable, in which δ and P of an adhesive disc are smooth down to the axis. Each panel takes
 //! `NODES` equilibria and is halved while its series do not end. A stretch without equilibria, as rings have where they
 //! are too coarse for the gap, is a hole.
 
-use super::basis::{Basis, Order};
+use super::basis::{Basis, Evaluation, Order};
 use super::chebyshev::{self, Rule};
-use super::solution::{Local, Solution};
+use super::solution::{Edges, Local, Solution};
 use super::span::Place;
 use crate::gap::Gap;
 use crate::gap::{panels::Span, panels::Variable};
 use crate::problem::{Control, Reduced};
 use crate::progress::Progress;
+use std::sync::Arc;
 
 /// Equilibria on a panel.
 const NODES: usize = 20;
 
-/// The last coefficients of δ and P, relative to the largest, at which a panel is fine enough: below what rings are good for
-/// by many digits.
-const TAIL: f64 = 1e-9;
-
-/// Halvings of a panel, and so the ends of a hole to a thousandth of half a wave.
-const HALVINGS: usize = 9;
-
-/// Halvings of a panel without a hole: where the gap is not smooth a series ends no sooner on a narrower one, for each ring that
-/// passes a corner leaves one in δ(s).
-const FOR_SERIES: usize = 4;
+/// A share of a zone in contact that is none.
+const NO_CONTACT: f64 = 1e-12;
 
 /// A panel is at most so many times as far out at its outer end as at its inner.
 const RATIO: f64 = 4.0;
@@ -33,17 +26,51 @@ const RATIO: f64 = 4.0;
 /// Panels at the start at most.
 const PANELS: f64 = 2000.0;
 
-/// One panel: the series of δ, P, dδ/du, dP/du and U.
-#[derive(Debug)]
-struct Panel {
-    span: Span,
-    series: [Vec<f64>; 5],
+/// How fine panels are.
+#[derive(Debug, Clone, Copy)]
+pub struct Fineness {
+    /// The last coefficients of δ and P, relative to the largest, at which a panel is fine enough.
+    pub tail: f64,
+    /// Halvings of a panel without a hole.
+    pub halvings: usize,
+    /// Halvings of any panel: the ends of a hole are known so well.
+    pub of_holes: usize,
+    /// What they may be after all halvings: a panel with more is a hole, for the equilibria jump on it.
+    pub loose: f64,
 }
 
-/// The equilibria of a basis, in panels.
+/// Of ring elements: below what they are good for by many digits. Where the gap is not smooth a series ends no sooner on a narrower
+/// panel, for each ring that passes a corner leaves one in δ(s). The ends of a hole are known to a thousandth of half a wave.
+const OF_RINGS: Fineness = Fineness { tail: 1e-9, halvings: 4, of_holes: 9, loose: f64::INFINITY };
+
+/// One equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// dδ/da and dP/da, a the radius it was asked for.
+    pub slopes: [f64; 2],
+    /// U.
+    pub energy: f64,
+    /// Of a zone that ends at the radius it was asked for the share 1 − (s/c)² of it that is free of contact.
+    pub free: f64,
+}
+
+/// One panel: the series of δ, P, dδ/dv, dP/dv, U, and of the free share of a zone.
 #[derive(Debug)]
+pub struct Panel {
+    span: Span,
+    series: [Vec<f64>; 6],
+}
+
+/// Equilibria in panels.
+#[derive(Debug, Default)]
 pub struct Sampled {
-    panels: Vec<Panel>,
+    panels: Vec<Arc<Panel>>,
+    /// Of zones: where contact in them begins or ends.
+    touches: Option<Vec<Place>>,
 }
 
 impl Sampled {
@@ -68,26 +95,58 @@ impl Sampled {
         }
         borders.reverse();
         let mut panels = Vec::new();
+        let source = |radii: &[f64]| {
+            let found = basis.equilibria(problem, radii, Order::Slopes, progress);
+            let sample = |at: &Evaluation| Sample {
+                approach: at.approach,
+                force: at.force,
+                slopes: at.slopes(),
+                energy: at.energy,
+                free: 0.0,
+            };
+            found.iter().map(sample).collect()
+        };
         for pair in borders.windows(2) {
-            panel(basis, problem, [pair[0], pair[1]], HALVINGS, progress, &mut panels)?;
+            let span = Span { lo: pair[0], hi: pair[1], variable: Variable::Root { base: 0.0 } };
+            resolve(&source, span, OF_RINGS, progress, &mut panels)?;
         }
-        (!panels.is_empty()).then_some(Self { panels })
+        (!panels.is_empty()).then_some(Self { panels, touches: None })
+    }
+
+    /// Zones in panels that ascend; contact in them begins or ends at the radii `touches`, which are borders of panels.
+    pub fn of_zones(panels: Vec<Arc<Panel>>, touches: &[f64]) -> Self {
+        let mut zones = Self { panels, touches: None };
+        zones.touches = Some(touches.iter().filter_map(|radius| zones.place(*radius)).collect());
+        zones
     }
 }
 
-/// Adds the panels from `lo` to `hi`; `None` when `progress` said stop.
+/// What is asked for the equilibria at radii: as many of them as there are, up to the first radius that has none.
+type Source<'a> = dyn Fn(&[f64]) -> Vec<Sample> + 'a;
+
+/// Adds panels on which what `source` gives on `span` is resolved; `None` when `progress` said stop.
+pub fn resolve(
+    source: &Source<'_>,
+    span: Span,
+    fineness: Fineness,
+    progress: &dyn Progress,
+    panels: &mut Vec<Arc<Panel>>,
+) -> Option<()> {
+    panel(source, span, fineness, 0, progress, panels)
+}
+
+/// Adds the panels of a span; `None` when `progress` said stop.
 fn panel(
-    basis: &dyn Basis,
-    problem: &Reduced,
-    [lo, hi]: [f64; 2],
+    source: &Source<'_>,
+    span: Span,
+    fineness: Fineness,
     depth: usize,
     progress: &dyn Progress,
-    panels: &mut Vec<Panel>,
+    panels: &mut Vec<Arc<Panel>>,
 ) -> Option<()> {
-    let span = Span { lo, hi, variable: Variable::Root { base: 0.0 } };
     let rule = Rule::of(NODES);
     let radii: Vec<f64> = rule.nodes.iter().map(|x| span.radius(*x)).collect();
-    let found = basis.equilibria(problem, &radii, Order::Slopes, progress);
+    let found = source(&radii);
     if found.len() < NODES && progress.stop() {
         return None;
     }
@@ -105,26 +164,30 @@ fn panel(
             series: [
                 series(&|j| found[j].approach),
                 series(&|j| found[j].force),
-                series(&|j| found[j].slopes()[0] * stretch(j)),
-                series(&|j| found[j].slopes()[1] * stretch(j)),
+                series(&|j| found[j].slopes[0] * stretch(j)),
+                series(&|j| found[j].slopes[1] * stretch(j)),
                 series(&|j| found[j].energy),
+                series(&|j| found[j].free),
             ],
         };
-        let ends = made.series[..4].iter().all(|series| {
-            let largest = |part: &[f64]| part.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
-            largest(&series[NODES - 3..]) <= TAIL * largest(series)
-        });
-        if ends || depth <= HALVINGS - FOR_SERIES {
-            panels.push(made);
+        let ends = |tail: f64| {
+            made.series[..4].iter().all(|series| {
+                let largest = |part: &[f64]| part.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+                tail.is_infinite() || largest(&series[NODES - 3..]) <= tail * largest(series)
+            })
+        };
+        let is_last = depth >= fineness.halvings;
+        if ends(fineness.tail) || is_last && ends(fineness.loose) {
+            panels.push(Arc::new(made));
             return Some(());
         }
     }
-    if depth == 0 {
+    if depth >= fineness.of_holes {
         return Some(());
     }
-    let middle = 0.25 * (lo.sqrt() + hi.sqrt()).powi(2);
-    panel(basis, problem, [lo, middle], depth - 1, progress, panels)?;
-    panel(basis, problem, [middle, hi], depth - 1, progress, panels)
+    let middle = span.radius(0.0);
+    panel(source, Span { hi: middle, ..span }, fineness, depth + 1, progress, panels)?;
+    panel(source, Span { lo: middle, ..span }, fineness, depth + 1, progress, panels)
 }
 
 impl Solution for Sampled {
@@ -143,7 +206,7 @@ impl Solution for Sampled {
     }
 
     fn at(&self, place: Place) -> Local {
-        let Panel { span, series } = &self.panels[place.panel];
+        let Panel { span, series } = &*self.panels[place.panel];
         let sum = |k: usize| chebyshev::sum(&series[k], place.x);
         Local {
             contact_radius: span.radius(place.x),
@@ -158,8 +221,25 @@ impl Solution for Sampled {
         chebyshev::sum(&self.panels[place.panel].series[4], place.x)
     }
 
+    fn edges(&self, place: Place) -> Edges {
+        let Panel { span, series } = &*self.panels[place.panel];
+        let radius = span.radius(place.x);
+        if self.touches.is_none() {
+            return Edges { contact_radius: radius, zone: None };
+        }
+        let free = chebyshev::sum(&series[5], place.x);
+        // Where there is no contact the series is 1 to rounding.
+        let share = (1.0 - free).max(0.0);
+        let contact_radius = if share <= NO_CONTACT { 0.0 } else { radius * share.sqrt() };
+        Edges { contact_radius, zone: Some(radius) }
+    }
+
+    fn touches(&self) -> &[Place] {
+        self.touches.as_deref().unwrap_or_default()
+    }
+
     fn tendency(&self, panel: usize, control: Control) -> (Vec<f64>, f64) {
-        let [.., delta, force, _] = &self.panels[panel].series;
+        let [_, _, delta, force, ..] = &self.panels[panel].series;
         let (of_delta, of_force) = control.weights();
         let series: Vec<f64> =
             delta.iter().zip(force).map(|(delta, force)| of_delta * delta + of_force * force).collect();

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// One equilibrium with the slopes of the curve by the variable v of its panel, finite everywhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Local {
-    /// s.
+    /// s, or the outer edge of a zone: what runs along the curve.
     pub contact_radius: f64,
     /// δ.
     pub approach: f64,
@@ -23,7 +23,17 @@ pub struct Local {
     pub stretch: f64,
 }
 
-/// The equilibria of one disc, one for each radius, in panels that ascend.
+/// The edges of one equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edges {
+    /// s, 0 where the bodies are held without contact.
+    pub contact_radius: f64,
+    /// c, the outer edge of the zone in which adhesion with a range acts; `None` where it acts at the edge of contact alone.
+    pub zone: Option<f64>,
+}
+
+/// The equilibria of one disc, one for each radius, in panels that ascend. The radius is that of the contact, or of the zone in which
+/// adhesion with a range acts.
 pub trait Solution: Debug + Send + Sync {
     /// The number of panels.
     fn len(&self) -> usize;
@@ -49,6 +59,16 @@ pub trait Solution: Debug + Send + Sync {
 
     /// U at a place.
     fn energy(&self, place: Place) -> f64;
+
+    /// The edges at a place.
+    fn edges(&self, place: Place) -> Edges {
+        Edges { contact_radius: self.at(place).contact_radius, zone: None }
+    }
+
+    /// The places at which contact in a zone begins or ends.
+    fn touches(&self) -> &[Place] {
+        &[]
+    }
 
     /// On a panel, the series of a positive multiple of the slope of the controlled quantity by s; with the size of its terms, of
     /// which its rounding is a share.

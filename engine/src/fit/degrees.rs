@@ -38,6 +38,9 @@ pub(super) struct Made<'a> {
     pub rows: usize,
 }
 
+/// With so many degrees of freedom Student's t is the normal distribution to eight digits: a value that is known beforehand has more.
+const NORMAL: f64 = 1e8;
+
 /// The degrees of freedom of the variance of each value.
 pub(super) fn degrees(
     problem: &Problem,
@@ -81,7 +84,7 @@ pub(super) fn degrees(
         };
         let of_points = of_level * of_squares + slopes[j];
         let share = made.points[j] / made.whole[j];
-        (2.0 / (share * share * of_points)).max(1.0)
+        (2.0 / (share * share * of_points)).clamp(1.0, NORMAL)
     };
     DVector::from_iterator(p, (0..p).map(of_value))
 }

@@ -112,7 +112,7 @@ fn of_clipped(preset: &Preset, clipped: Clipped) -> Reason {
 
 /// Adhesion that reaches beyond the edge.
 fn of_range(preset: &Preset) -> Option<Reason> {
-    let tabor = Groups::of(&preset.problem(), preset.range_of_action()).tabor?;
+    let tabor = Groups::of(&preset.problem(), preset.range_of_action(), preset.cohesion()).tabor?;
     let sentence = format!(
         "Tabor's mu = {tabor:.2} is below {LARGE_TABOR}: the adhesion reaches beyond the edge, and the JKR limit of this method \
          does not hold"

@@ -67,6 +67,12 @@ pub enum FitError {
         /// Why not.
         why: String,
     },
+    /// Adhesion with a range.
+    #[error("material.adhesion = \"{word}\" is not fitted: only \"short-range\" is")]
+    HasRange {
+        /// Its word.
+        word: &'static str,
+    },
     /// The points give no branches.
     #[error(transparent)]
     Branches(#[from] BranchError),

@@ -12,7 +12,7 @@ use super::shape;
 use super::values::Values;
 use crate::gap::Gap;
 use crate::problem::Turn;
-use crate::problem::{Begin, ContactKind, Start};
+use crate::problem::{Adhesion, Begin, ContactKind, Start};
 use crate::units::Quantity;
 
 /// The preset these values make.
@@ -33,7 +33,8 @@ pub fn build(values: &Values, files: Files) -> Result<Preset, Vec<Invalid>> {
         }
         those
     };
-    let (starts, turns) = (given_of(START_KEYS, "starts"), given_of(TURN_KEYS, "turns round"));
+    let (starts, turns) =
+        (given_of(START_KEYS, "where the path starts"), given_of(TURN_KEYS, "where the path turns round"));
     let gap = given.shape(starts.first().copied());
     let start = match starts.first() {
         Some(&key) if key == START_KEYS[1] => Start::Approach(given.number(key)),
@@ -53,15 +54,18 @@ pub fn build(values: &Values, files: Files) -> Result<Preset, Vec<Invalid>> {
         }
     });
     let mut control = given.control("path.control");
+    let edge = given.edge();
     let data = given.data(&mut control, gap.radius_of_curvature());
+    let (adhesion, work_of_adhesion) = given.adhesion();
     let (end, range) = ("path.end_contact_radius", "material.range_of_action");
     let preset = Preset {
         title: given.text("title"),
         units,
         material: Material {
             effective_modulus: given.number("material.effective_modulus"),
-            work_of_adhesion: given.number("material.work_of_adhesion"),
+            work_of_adhesion,
             range_of_action: values.contains_key(range).then(|| given.number(range)),
+            adhesion,
         },
         gap,
         basis: given.basis(),
@@ -77,6 +81,7 @@ pub fn build(values: &Values, files: Files) -> Result<Preset, Vec<Invalid>> {
             },
             turn,
         },
+        edge,
         data,
         files,
     };
@@ -104,6 +109,20 @@ fn across(preset: &Preset) -> Vec<Invalid> {
     let mut faults = Vec::new();
     let length = |x| shown(&preset.units, Quantity::Length, x);
     faults.extend(shape::falls_throughout(preset));
+    faults.extend(preset.edge.faults(preset));
+    let Material { adhesion, work_of_adhesion, .. } = preset.material;
+    if adhesion != Adhesion::ShortRange && preset.cohesion().is_none() {
+        let needs = if work_of_adhesion > 0.0 {
+            "material.cohesive_strength, material.cohesive_range or material.range_of_action"
+        } else {
+            "a material.work_of_adhesion above 0"
+        };
+        faults.push(Invalid::Rangeless { word: adhesion.name(), needs });
+    }
+    if adhesion != Adhesion::ShortRange && preset.basis != BasisSpec::Exact {
+        let needs = "basis.kind = \"exact\": ring elements know no range";
+        faults.push(Invalid::Rangeless { word: adhesion.name(), needs });
+    }
     let end = preset.path.end_contact_radius;
     let start = match preset.path.start {
         Start::ContactRadius(s) => Some(s),

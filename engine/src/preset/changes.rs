@@ -7,7 +7,7 @@ use super::value::Value;
 use crate::units::UnitSystem;
 
 /// Keys that come first, since they decide which others there are.
-const FIRST: [&str; 5] = [CHOOSERS[2], CHOOSERS[0], CHOOSERS[1], "gap.formula", "gap.file"];
+const FIRST: [&str; 6] = [CHOOSERS[2], CHOOSERS[0], CHOOSERS[1], CHOOSERS[3], "gap.formula", "gap.file"];
 
 /// The assignments that make `to` of `from`, in an order in which each is valid; `None` where there are none, as for an
 /// optional key that would have to be forgotten. Numbers keep every digit.

@@ -10,7 +10,8 @@ use crate::gap::{
     shapes::RandomWaves, shapes::Smoothing,
 };
 use crate::preset::data::DataSpec;
-use crate::problem::{Begin, ContactKind, Control, Start};
+use crate::preset::edge::EdgeSpec;
+use crate::problem::{Adhesion, Begin, ContactKind, Control, Start};
 use crate::ritz::Grading;
 use crate::units::UnitSystem;
 use proptest::prelude::*;
@@ -21,7 +22,12 @@ pub fn wavy() -> Preset {
     Preset {
         title: "a wave".to_owned(),
         units: UnitSystem::Reduced,
-        material: Material { effective_modulus: 1.0, work_of_adhesion: 0.004, range_of_action: None },
+        material: Material {
+            effective_modulus: 1.0,
+            work_of_adhesion: 0.004,
+            range_of_action: None,
+            adhesion: Adhesion::ShortRange,
+        },
         gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 },
         basis: BasisSpec::Rings { rings: 200, grading: Grading::Uniform },
         path: PathSpec {
@@ -32,6 +38,7 @@ pub fn wavy() -> Preset {
             contact: ContactKind::Rings,
             turn: None,
         },
+        edge: EdgeSpec::default(),
         data: DataSpec::default(),
         files: FILES,
     }
@@ -72,7 +79,12 @@ pub fn any_preset() -> impl Strategy<Value = Preset> {
             Preset {
                 title,
                 units: UnitSystem::Reduced,
-                material: Material { effective_modulus: e, work_of_adhesion: gamma, range_of_action: None },
+                material: Material {
+                    effective_modulus: e,
+                    work_of_adhesion: gamma,
+                    range_of_action: None,
+                    adhesion: Adhesion::ShortRange,
+                },
                 gap,
                 basis,
                 path: PathSpec {
@@ -83,6 +95,7 @@ pub fn any_preset() -> impl Strategy<Value = Preset> {
                     contact: ContactKind::Rings,
                     turn: None,
                 },
+                edge: EdgeSpec::default(),
                 data: DataSpec::default(),
                 files: FILES,
             }

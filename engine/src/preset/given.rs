@@ -5,10 +5,13 @@ use super::measured::Files;
 use super::model::BasisSpec;
 use super::resolve::{quantity, told};
 use super::rows::parameter;
-use super::schema::{Applies, CHOOSERS, EXACT, Fallback, PARAMETERS, Parameter, table_of};
+use super::schema::{
+    ADHESION, Applies, CHOOSERS, EXACT, Fallback, LIQUID_KEYS, PARAMETERS, Parameter, RANGE_KEYS,
+    WORK_OF_ADHESION, table_of,
+};
 use super::value::Value;
 use super::values::{Values, chosen};
-use crate::problem::Control;
+use crate::problem::{Adhesion, Cohesion, Control, Stated};
 use crate::ritz::Grading;
 use crate::units::UnitSystem;
 
@@ -46,6 +49,7 @@ impl Given<'_> {
                     ("gap.shape", "harmonics" | "random-waves") => ("gap", format!("one of {word}")),
                     ("gap.shape", "exact-sphere") => ("gap", format!("an {word}")),
                     ("gap.shape", _) => ("gap", format!("a {word}")),
+                    (ADHESION, _) => ("adhesion", word),
                     _ => ("basis", word),
                 };
                 self.faults.push(Invalid::OtherChoice { key: row.key.clone(), belongs, what, chosen });
@@ -67,6 +71,31 @@ impl Given<'_> {
                 },
             },
         }
+    }
+
+    /// How the bodies adhere, and γ.
+    pub(super) fn adhesion(&mut self) -> (Adhesion, f64) {
+        let word = chosen(self.values, ADHESION).unwrap_or_default();
+        if word == Adhesion::NAMES[2] {
+            let [surface_tension, kelvin_radius, contact_angle] = LIQUID_KEYS.map(|key| self.number(key));
+            let liquid = Adhesion::Capillary { surface_tension, kelvin_radius, contact_angle };
+            return (liquid, liquid.cohesion(f64::NAN, None).map_or(f64::NAN, Cohesion::work));
+        }
+        let gamma = self.number(WORK_OF_ADHESION);
+        if word != Adhesion::NAMES[1] {
+            return (Adhesion::ShortRange, gamma);
+        }
+        let given: Vec<&str> = RANGE_KEYS.into_iter().filter(|key| self.values.contains_key(*key)).collect();
+        if let [first, second] = given[..] {
+            let does = "how far the adhesion reaches";
+            self.faults.push(Invalid::Rivals { first: first.into(), second: second.into(), does });
+        }
+        let stated = match given.first() {
+            Some(key) if *key == RANGE_KEYS[0] => Stated::Strength(self.number(key)),
+            Some(key) => Stated::Range(self.number(key)),
+            None => Stated::Action,
+        };
+        (Adhesion::Dugdale(stated), gamma)
     }
 
     /// The checked value of a key, or its default; else it is missing.
@@ -141,7 +170,8 @@ fn required(table: &str) -> Vec<&'static str> {
     PARAMETERS
         .iter()
         .filter(|row| row.table() == Some(table))
-        .filter(|row| row.fallback == Fallback::Required && row.applies == Applies::Always)
+        .filter(|row| row.fallback == Fallback::Required)
+        .filter(|row| row.applies == Applies::Always || row.key == WORK_OF_ADHESION)
         .map(Parameter::name)
         .collect()
 }

@@ -48,7 +48,7 @@ pub fn row(key: &str) -> Option<&'static Parameter> {
 /// The value of a group where the gap has what it takes.
 #[must_use]
 pub fn get(preset: &Preset, key: &str) -> Option<Value> {
-    let groups = Groups::of(&preset.problem(), preset.range_of_action());
+    let groups = Groups::of(&preset.problem(), preset.range_of_action(), preset.cohesion());
     let wavy = preset.gap.wave().is_some();
     match key {
         "groups.amplitude_over_wavelength" => groups.amplitude_over_wavelength.filter(|_| wavy),

@@ -1,6 +1,6 @@
 //! What can be wrong with a key or a value, in one line each.
 
-use super::schema::{FORMAT, Key, RADIUS_OVER_CURVATURE};
+use super::schema::{ADHESION, FORMAT, Key, RADIUS_OVER_CURVATURE};
 use crate::ritz::Grading;
 use crate::units::ValueError;
 use thiserror::Error;
@@ -134,14 +134,22 @@ pub enum Invalid {
         key: Key,
     },
     /// More than one start, or more than one turn.
-    #[error("{second} and {first} both say where the path {does}: give exactly one")]
+    #[error("{second} and {first} both say {does}: give exactly one")]
     Rivals {
         /// One of them.
         first: Key,
         /// Another.
         second: Key,
-        /// `starts` or `turns round`.
+        /// What they say, as `where the path starts`.
         does: &'static str,
+    },
+    /// A range of nothing, or of no known length.
+    #[error("material.adhesion = \"{word}\" needs {needs}")]
+    Rangeless {
+        /// Its word.
+        word: &'static str,
+        /// What it needs, in words.
+        needs: &'static str,
     },
     /// A path that would end at or beyond its start.
     #[error("{key} = {end} is not below path.start_contact_radius = {start}")]
@@ -240,6 +248,7 @@ impl Invalid {
             | Self::Unused { key, .. }
             | Self::Beyond { key, .. }
             | Self::Wide { key, .. } => Some(key),
+            Self::Rangeless { .. } => Some(ADHESION),
             Self::Format { .. } => Some("format"),
             Self::UnknownKey { .. }
             | Self::UnknownGroup { .. }

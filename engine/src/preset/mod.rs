@@ -17,6 +17,7 @@
 //! | `shape` | the values of `[gap]` → the gap's shape, and back |
 //! | [`read`](mod@read) | TOML text and `--set` assignments → preset, each mistake with its line |
 //! | [`write`](mod@write) | preset → TOML text |
+//! | [`edge`] | how an edge moves: the table `[edge]`, rates and parts of a test |
 //! | [`edit`] | a preset laid over the text it was read from, comments and order kept |
 //! | [`changes`] | what turns one preset into another, as assignments |
 //! | [`manual`] | the key table as text for the manual |
@@ -31,6 +32,7 @@ mod attached;
 pub mod build;
 pub mod changes;
 pub mod data;
+pub mod edge;
 pub mod edit;
 #[cfg(test)]
 mod examples;
@@ -52,6 +54,7 @@ pub mod value;
 pub mod values;
 pub mod write;
 
+pub use edge::EdgeSpec;
 pub use invalid::Invalid;
 pub use measured::Files;
 pub use model::{BasisSpec, Material, PathSpec, Preset};

@@ -13,12 +13,13 @@ pub use keys::is_of_units;
 pub(super) use keys::unknown_key;
 
 use super::data::DataSpec;
+use super::edge::EdgeSpec;
 use super::measured::{self, Files};
 use super::schema::{END_OVER_START, START_KEYS, TURN_KEYS};
 use crate::gap::Shape;
 use crate::gap::shapes::Measured;
 use crate::problem::Turn;
-use crate::problem::{Begin, ContactKind, Control, Problem, Reduced, Start};
+use crate::problem::{Adhesion, Begin, Cohesion, ContactKind, Control, Problem, Reduced, Start};
 use crate::ritz::Grading;
 use crate::units::UnitSystem;
 use std::path::Path;
@@ -39,6 +40,8 @@ pub struct Preset {
     pub basis: BasisSpec,
     /// Where to start, what to control, where to end.
     pub path: PathSpec,
+    /// How an edge moves, and at which rate it is pulled.
+    pub edge: EdgeSpec,
     /// A measured curve beside it.
     pub data: DataSpec,
     /// Where the rows of another profile would come from.
@@ -54,6 +57,8 @@ pub struct Material {
     pub work_of_adhesion: f64,
     /// z₀, the range of action of the adhesion, a length; `None` leaves it to [`Preset::range_of_action`].
     pub range_of_action: Option<f64>,
+    /// How the adhesion acts across the gap.
+    pub adhesion: Adhesion,
 }
 
 /// z₀ in metres where an SI preset does not give it: a few atoms.
@@ -131,6 +136,7 @@ impl Preset {
                 contact: ContactKind::Rings,
                 turn: None,
             },
+            edge: EdgeSpec::default(),
             data: DataSpec::default(),
             files: Files::NONE,
         }
@@ -162,6 +168,12 @@ impl Preset {
     pub fn range_of_action(&self) -> Option<f64> {
         let usual = matches!(self.units, UnitSystem::Si(_)).then_some(RANGE_OF_ACTION);
         self.material.range_of_action.or(usual)
+    }
+
+    /// The tension and the range of the adhesion, where it has a range.
+    #[must_use]
+    pub fn cohesion(&self) -> Option<Cohesion> {
+        self.material.adhesion.cohesion(self.material.work_of_adhesion, self.range_of_action())
     }
 
     /// The contact radius at which the path ends, given that it starts at `start_contact_radius`:

@@ -1,5 +1,6 @@
 //! The units of a preset, and its texts with units as numbers in them.
 
+use super::edge;
 use super::family::is_parameter;
 use super::invalid::Invalid;
 use super::rows::parameter;
@@ -72,6 +73,10 @@ pub(super) fn in_units(values: &Values, units: &UnitSystem, key: &Key, text: &st
 pub(super) fn quantity(values: &Values, key: &str) -> Option<Quantity> {
     match key {
         "path.control" => Some(Quantity::ForcePerLength),
+        edge::RATE => Some(edge::rate_quantity(matches!(
+            values.get("path.control"),
+            Some(control) if *control == Control::Force.into() || *control == "force".into()
+        ))),
         COEFFICIENT => of_coefficient(exponent(values)?),
         _ => parameter(key).map(|row| row.quantity),
     }

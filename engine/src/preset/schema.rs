@@ -137,8 +137,17 @@ pub struct Parameter {
 
 /// The key of the coefficient of a power law, whose dimension follows from the exponent.
 pub const COEFFICIENT: &str = "gap.coefficient";
+/// The key that says how the adhesion acts.
+pub const ADHESION: &str = "material.adhesion";
+/// The key of the work of adhesion.
+pub const WORK_OF_ADHESION: &str = "material.work_of_adhesion";
+/// The two ways to say how far a constant tension reaches; a preset has at most one.
+pub const RANGE_KEYS: [&str; 2] = ["material.cohesive_strength", "material.cohesive_range"];
+/// The keys of a liquid bridge.
+pub const LIQUID_KEYS: [&str; 3] =
+    ["material.surface_tension", "material.kelvin_radius", "material.contact_angle"];
 /// The keys whose word decides which other keys apply.
-pub const CHOOSERS: [&str; 3] = ["gap.shape", "basis.kind", "units"];
+pub const CHOOSERS: [&str; 4] = ["gap.shape", "basis.kind", "units", ADHESION];
 /// The words of the key `units`.
 pub const SYSTEMS: [&str; 2] = ["reduced", "SI"];
 /// The keys of the units in which an SI preset is shown, each with its quantity.
@@ -154,7 +163,10 @@ pub const DISPLAY: [(&str, Quantity); 6] = [
 /// The keys that say the same thing as this one in other ways, itself among them: of them a preset keeps the last one given.
 #[must_use]
 pub fn rivals(key: &str) -> &'static [&'static str] {
-    [&START_KEYS, &TURN_KEYS].into_iter().find(|keys| keys.contains(&key)).map_or(&[], |keys| &keys[..])
+    [&START_KEYS[..], &TURN_KEYS, &RANGE_KEYS]
+        .into_iter()
+        .find(|keys| keys.contains(&key))
+        .unwrap_or_default()
 }
 
 /// The table that a dotted key stands in, if any.

@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn they_are_the_cases_of_the_paper() {
-        let adhesion = |name| Groups::of(&load(name).problem(), None).adhesion.unwrap();
+        let adhesion = |name| Groups::of(&load(name).problem(), None, None).adhesion.unwrap();
         for (name, expected) in [
             ("fig-1-hertz", 0.0),
             ("fig-3-jkr", 0.05),

@@ -4,18 +4,24 @@
 //! |---|---|
 //! | [`reduced`] | E*, γ and a gap; reduced units E* = 1, lengths by the gap's own |
 //! | [`groups`] | the dimensionless groups people quote |
+//! | [`cohesion`] | adhesion with a range |
 //! | [`control`] | what the loading device prescribes |
+//! | [`programme`] | what a test does with the control, part by part |
 //! | [`start`] | how the start of a path is given |
 //! | [`turn`] | where a path turns round, which contacts it follows |
 
+pub mod cohesion;
 pub mod control;
 pub mod groups;
+pub mod programme;
 pub mod reduced;
 pub mod start;
 pub mod turn;
 
+pub use cohesion::{Adhesion, Cohesion, Stated};
 pub use control::Control;
 pub use groups::Groups;
+pub use programme::Part;
 pub use reduced::{Problem, Reduced, Units};
 pub use start::{Begin, Start};
 pub use turn::{ContactKind, Turn};

@@ -124,7 +124,7 @@ pub enum Detail {
 
 /// The places of a curve's states from the radius `from` inward to `to`: every panel of the solution with as many, the
 /// borders at which it has a corner from both sides.
-pub(super) fn places(solution: &dyn Solution, from: f64, to: f64, detail: Detail) -> Vec<Place> {
+pub fn places(solution: &dyn Solution, from: f64, to: f64, detail: Detail) -> Vec<Place> {
     let [first, last] = [from, to].map(|s| solution.place(s));
     let Some(first) = first else { return Vec::new() };
     let last = last.map_or(0, |place| place.panel);

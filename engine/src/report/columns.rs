@@ -8,12 +8,17 @@ use crate::units::{Quantity, UnitSystem};
 
 /// What a column of numbers measures; `None` for pure numbers, words and verdicts.
 fn quantity(column: &str, control: Control) -> Option<Quantity> {
-    let of_state = ["before_", "after_", "exact_"].iter().find_map(|prefix| column.strip_prefix(prefix));
+    let of_state = ["before_", "after_", "exact_", "peak_", "last_contact_"]
+        .iter()
+        .find_map(|prefix| column.strip_prefix(prefix));
     match of_state.unwrap_or(column) {
-        "contact_radius" | "approach" | "area_slope" | "radius" | "inner_radius" | "outer_radius" => {
-            Some(Quantity::Length)
-        }
+        "contact_radius" | "zone_radius" | "approach" | "area_slope" | "radius" | "inner_radius"
+        | "outer_radius" => Some(Quantity::Length),
         "force" => Some(Quantity::Force),
+        "time" => Some(Quantity::Time),
+        "energy_release_rate" => Some(Quantity::EnergyPerArea),
+        "rate" if control == Control::Force => Some(Quantity::ForceRate),
+        "rate" | "speed" | "top_edge_speed" => Some(Quantity::Speed),
         "energy" | "dissipated" | "dissipated_by_area" => Some(Quantity::Energy),
         "contact_stiffness" | "tangent_stiffness" | "held_stiffness" => Some(Quantity::ForcePerLength),
 

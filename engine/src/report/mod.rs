@@ -7,6 +7,7 @@
 //! | [`overlap`] | the states that are not admissible, as part of a document |
 //! | [`trace`] | the equilibrium curve as a document |
 //! | [`path`] | an unloading, or a loop of loading and unloading, as a document |
+//! | [`pull`] | pulls at a rate, and times to failure, as a document |
 //! | [`map`] | maps of two numbers, and limit points over one, as a document |
 //! | [`stability`] | the law of stability over the contact radius as a document |
 //! | [`fit`] | a fit to a measured curve as a document, a table and text |
@@ -28,6 +29,7 @@ pub mod overlap;
 pub mod path;
 pub mod path_table;
 pub mod problem;
+pub mod pull;
 pub mod residuals;
 pub mod rows;
 #[cfg(test)]
@@ -44,6 +46,7 @@ pub use map::MapReport;
 pub use overlap::OverlapReport;
 pub use path::PathReport;
 pub use problem::{Head, ProblemReport};
+pub use pull::PullReport;
 pub use stability::StabilityReport;
 pub use trace::TraceReport;
 pub use verify::VerifyReport;

@@ -7,6 +7,7 @@ use super::rows::{RowsError, Table};
 use crate::case::{Case, CaseError};
 use crate::gap::{Gap, wave_index};
 use crate::preset::{BasisSpec, Preset};
+use crate::problem::cohesion::TABOR_OVER_MAUGIS;
 use crate::problem::{ContactKind, Control, Reduced, Turn, Units};
 use crate::progress::{Part, Progress};
 use crate::quasistatic::overlap::passed;
@@ -69,8 +70,11 @@ pub struct StateReport {
     pub approach: f64,
     /// P.
     pub force: f64,
-    /// The outermost edge.
+    /// The outermost edge; 0 where a zone alone holds the bodies.
     pub contact_radius: f64,
+    /// The outer edge of the zone in which adhesion with a range acts; else nothing is written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub zone_radius: Option<f64>,
     /// The crest of the outermost edge; none for a gap without waves.
     pub wave: Option<u64>,
     /// Every contact as [inner, outer], from the axis outward; a disc is [0, s].
@@ -106,7 +110,7 @@ pub struct PathStateReport {
 pub struct EventReport {
     /// Its number on the path, from 1.
     pub number: usize,
-    /// `first-touch`, `touch`, `merge`, `snap-in`, `snap`, `last-contact`, `split`, `vanish` or `turn`.
+    /// `jump-in`, `first-touch`, `touch`, `merge`, `snap-in`, `snap`, `last-contact`, `snap-off`, `split`, `vanish` or `turn`.
     pub kind: &'static str,
     /// `loading` or `unloading`.
     pub direction: &'static str,
@@ -185,6 +189,8 @@ struct EventRow {
     dissipated: Option<f64>,
     dissipated_by_area: Option<f64>,
     admissible: Option<bool>,
+    before_zone_radius: Option<f64>,
+    after_zone_radius: Option<f64>,
 }
 
 /// One contact of one state, as a row of CSV.
@@ -200,8 +206,9 @@ struct ContactRow {
     area: f64,
     held_stiffness: f64,
     contact: usize,
-    inner_radius: f64,
-    outer_radius: f64,
+    inner_radius: Option<f64>,
+    outer_radius: Option<f64>,
+    zone_radius: Option<f64>,
 }
 
 /// The columns of the events as CSV; they never change, new ones come after them.
@@ -246,6 +253,12 @@ pub const STATE_COLUMNS: &[&str] = &[
     "outer_radius",
 ];
 
+/// The column behind [`STATE_COLUMNS`] where the adhesion has a range; a state without contact then has one row, without radii.
+pub const STATE_ZONE_COLUMNS: &[&str] = &["zone_radius"];
+
+/// The columns behind [`COLUMNS`] where the adhesion has a range.
+pub const ZONE_COLUMNS: &[&str] = &["before_zone_radius", "after_zone_radius"];
+
 /// How much of a path is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Extent {
@@ -279,9 +292,12 @@ impl PathReport {
     /// # Errors
     /// [`CaseError`] when it cannot be computed, and when `progress` said stop.
     pub fn unload(preset: &Preset, extent: Extent, progress: &dyn Progress) -> Result<Self, CaseError> {
-        let case = Case::prepare(preset, &Part::new(progress, [0.0, 0.5]))?;
-        let curve = case.curve_in(Detail::Drawn, &Part::new(progress, [0.5, 0.7]))?;
+        let case = Case::with_range(preset, &Part::new(progress, [0.0, 0.5]))?;
         let setting = Setting { losses: extent.losses, ..case.setting_of_unloading() };
+        if let Some(path) = case.unload_in_zone(&setting, &Part::new(progress, [0.5, 1.0]))? {
+            return Ok(Self::new(preset, &case, &path));
+        }
+        let curve = case.curve_in(Detail::Drawn, &Part::new(progress, [0.5, 0.7]))?;
         let path = case.unload(&curve, &setting, &Part::new(progress, [0.7, 0.8]))?;
         let mut report = Self::new(preset, &case, &path);
         if extent.admissibility {
@@ -311,13 +327,13 @@ impl PathReport {
         extent: Extent,
         progress: &dyn Progress,
     ) -> Result<Self, CaseError> {
-        let case = Case::prepare(preset, &Part::new(progress, [0.0, 0.1]))?;
+        let case = Case::with_range(preset, &Part::new(progress, [0.0, 0.1]))?;
         let units = case.units();
         let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, case.control));
         let setting = Setting { losses: extent.losses, ..case.setting() };
         let path = case.cycle(turn, &setting, &Part::new(progress, [0.1, 0.9]))?;
         let report = Self::new(preset, &case, &path);
-        if !extent.admissibility || setting.contact == ContactKind::Rings {
+        if !extent.admissibility || setting.contact == ContactKind::Rings || case.cohesion.is_some() {
             return Ok(report);
         }
         let largest = path.states.iter().map(|state| state.contact_radius).fold(case.start, f64::max);
@@ -331,9 +347,12 @@ impl PathReport {
         let (units, shown, problem) = (case.units(), &case.shown, &case.reduced);
         let is_loop = path.turn.is_some();
         let begins = path.start().map_or(0.0, |start| start.contact_radius).max(case.start);
-        let mut warnings = if is_loop { case.warnings_of_problem() } else { case.warnings(begins) };
+        let in_zone = case.cohesion.is_some();
+        let mut warnings =
+            if is_loop || in_zone { case.warnings_of_problem() } else { case.warnings(begins) };
         warnings.extend(path.warnings.iter().map(|w| w.words(path.control, units, shown)));
-        let mut notes = if is_loop { problem_notes(case) } else { case.notes(begins) };
+        let mut notes = if is_loop || in_zone { problem_notes(case) } else { case.notes(begins) };
+        notes.extend(note_of_range(preset, case));
         if is_loop && matches!(preset.basis, BasisSpec::Rings { .. }) {
             notes.push(
                 "a loop is followed by exact states, without ring elements, whatever the basis".to_owned(),
@@ -411,7 +430,10 @@ impl PathReport {
             .iter()
             .enumerate()
             .flat_map(|(number, at)| {
-                at.state.contacts.iter().enumerate().map(move |(contact, edges)| ContactRow {
+                // A zone without contact has a row, too.
+                let contacts = &at.state.contacts;
+                let rows = contacts.len().max(usize::from(at.state.zone_radius.is_some()));
+                (0..rows).map(move |contact| ContactRow {
                     state: number,
                     piece: at.piece,
                     direction: at.direction,
@@ -422,12 +444,16 @@ impl PathReport {
                     area: at.state.area,
                     held_stiffness: at.state.held_stiffness,
                     contact,
-                    inner_radius: edges[0],
-                    outer_radius: edges[1],
+                    inner_radius: contacts.get(contact).map(|edges| edges[0]),
+                    outer_radius: contacts.get(contact).map(|edges| edges[1]),
+                    zone_radius: at.state.zone_radius,
                 })
             })
             .collect();
-        Table::of(STATE_COLUMNS, &rows)
+        if rows.iter().all(|row| row.zone_radius.is_none()) {
+            return Table::of(STATE_COLUMNS, &rows);
+        }
+        Table::of(&[STATE_COLUMNS, STATE_ZONE_COLUMNS].concat(), &rows)
     }
 }
 
@@ -447,6 +473,7 @@ pub fn events_table(events: &[EventReport]) -> Result<Table, RowsError> {
             energy: state.energy,
         })
     };
+    let zone = |state: &Option<StateReport>| state.as_ref().and_then(|state| state.zone_radius);
     let row = |event: &EventReport| EventRow {
         number: event.number,
         kind: event.kind,
@@ -458,12 +485,36 @@ pub fn events_table(events: &[EventReport]) -> Result<Table, RowsError> {
         dissipated: event.dissipated,
         dissipated_by_area: event.dissipated_by_area,
         admissible: event.admissible,
+        before_zone_radius: zone(&event.before),
+        after_zone_radius: zone(&event.after),
     };
-    Table::of(COLUMNS, &events.iter().map(row).collect::<Vec<_>>())
+    let rows: Vec<EventRow> = events.iter().map(row).collect();
+    if rows.iter().all(|row| row.before_zone_radius.or(row.after_zone_radius).is_none()) {
+        return Table::of(COLUMNS, &rows);
+    }
+    Table::of(&[COLUMNS, ZONE_COLUMNS].concat(), &rows)
 }
 
 fn problem_notes(case: &Case) -> Vec<String> {
     case.problem.shape.remarks(&case.shown)
+}
+
+/// What the range of the adhesion is, where it has one.
+pub(super) fn note_of_range(preset: &Preset, case: &Case) -> Option<String> {
+    let law = preset.cohesion()?;
+    let said = |quantity, x| with_unit(&case.shown, quantity, x, true, |x| significant(x, 6));
+    let groups = case.problem.shape.radius_of_curvature().map(|radius| {
+        let maugis = law.maugis(radius, case.problem.effective_modulus);
+        let tabor = TABOR_OVER_MAUGIS * maugis;
+        format!("; Maugis' lambda_M = {}, Tabor's mu = {}", significant(maugis, 4), significant(tabor, 4))
+    });
+    Some(format!(
+        "the adhesion has a range: a tension of {} where the bodies are nearer than {}{}; every state is one disc of contact in one \
+         zone of tension",
+        said(Quantity::Stress, law.strength),
+        said(Quantity::Length, law.range),
+        groups.unwrap_or_default()
+    ))
 }
 
 /// Why a path does not start from the state asked for.
@@ -522,6 +573,7 @@ impl StateReport {
             approach: state.approach * length,
             force: state.force * force,
             contact_radius: state.contact_radius * length,
+            zone_radius: state.zone.map(|edge| edge * length),
             wave: wave_index(state.contact_radius, problem.gap.wavelength()),
             contacts: state.contacts.iter().map(|edges| edges.map(|r| r * length)).collect(),
             stable: state.stable,

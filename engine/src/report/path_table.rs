@@ -4,6 +4,7 @@ use super::number::{loss, significant};
 use super::path::{EventReport, PathReport, StateReport};
 use super::table::{aligned, ascii_unit, control, head, ratio};
 use crate::problem::Control;
+use crate::quasistatic::EventKind;
 use crate::units::{Quantity, UnitSystem};
 use std::fmt::Write;
 
@@ -39,7 +40,7 @@ fn opening(report: &PathReport) -> String {
             "start: delta {}  P {}  contact {}",
             shown(Quantity::Length, start.approach),
             shown(Quantity::Force, start.force),
-            in_contact(units, &start.contacts, 6)
+            held(units, start, 6)
         );
     }
     for note in report.start_note.iter().chain(&report.notes) {
@@ -86,7 +87,7 @@ fn row(units: &UnitSystem, event: &EventReport) -> Vec<String> {
         state.as_ref().map_or_else(dash, |state| shown(quantity, number(state)))
     };
     let contacts = |state: &Option<StateReport>| {
-        state.as_ref().map_or_else(|| "apart".to_owned(), |state| contacts(units, &state.contacts))
+        state.as_ref().map_or_else(|| "apart".to_owned(), |state| held(units, state, 5))
     };
     let (before, after) = (&event.before, &event.after);
     // Where nothing jumps there is one state.
@@ -124,6 +125,14 @@ fn row(units: &UnitSystem, event: &EventReport) -> Vec<String> {
 #[must_use]
 pub fn contacts(units: &UnitSystem, contacts: &[[f64; 2]]) -> String {
     in_contact(units, contacts, 5)
+}
+
+/// The contacts of a state, with the outer edge of its zone: `0.11480 (zone 0.12130)`, `none (zone 0.02130)`.
+fn held(units: &UnitSystem, state: &StateReport, digits: usize) -> String {
+    let contacts = in_contact(units, &state.contacts, digits);
+    let Some(edge) = state.zone_radius else { return contacts };
+    let contacts = if state.contacts.is_empty() { "none".to_owned() } else { contacts };
+    format!("{contacts} (zone {})", significant(units.shown(Quantity::Length, edge).number, digits))
 }
 
 fn in_contact(units: &UnitSystem, contacts: &[[f64; 2]], digits: usize) -> String {
@@ -169,13 +178,15 @@ fn outcome(report: &PathReport) -> String {
     }
     let energy = |x| ascii_unit(units, Quantity::Energy, x, loss);
     let before = totals.dissipated_before_last_contact;
+    let has_zone = report.events.iter().any(|event| event.kind == EventKind::SnapOff.name());
+    let last = if has_zone { "the snap-off" } else { "the last contact" };
     let _ = match totals.dissipated {
         Some(lost) => {
-            writeln!(text, "energy lost: {}, of it {} before the last contact", energy(lost), energy(before))
+            writeln!(text, "energy lost: {}, of it {} before {last}", energy(lost), energy(before))
         }
         None => writeln!(
             text,
-            "energy lost before the last contact: {}; under a dead load the last contact loses without bound: the bodies fall \
+            "energy lost before {last}: {}; under a dead load {last} loses without bound: the bodies fall \
              apart for ever",
             energy(before)
         ),

@@ -28,6 +28,12 @@ pub struct UnitsReport {
     pub energy: Option<&'static str>,
     /// Of stiffnesses.
     pub force_per_length: Option<&'static str>,
+    /// Of speeds and rates of lengths.
+    pub speed: Option<&'static str>,
+    /// Of rates of forces.
+    pub force_rate: Option<&'static str>,
+    /// Of times.
+    pub time: Option<&'static str>,
     /// The units in which a person sees them.
     #[serde(skip)]
     pub shown: UnitSystem,
@@ -46,6 +52,9 @@ impl UnitsReport {
             energy_per_area: unit(Quantity::EnergyPerArea),
             energy: unit(Quantity::Energy),
             force_per_length: unit(Quantity::ForcePerLength),
+            speed: unit(Quantity::Speed),
+            force_rate: unit(Quantity::ForceRate),
+            time: unit(Quantity::Time),
             shown: system.clone(),
         }
     }
@@ -103,7 +112,7 @@ impl ProblemReport {
             preset: document(preset),
             start_contact_radius: case.start * case.units().length,
             end_contact_radius: case.end * case.units().length,
-            groups: Groups::of(&case.problem, preset.range_of_action()),
+            groups: Groups::of(&case.problem, preset.range_of_action(), preset.cohesion()),
             critical_force: case.smooth().map(|jkr| jkr.pull_off_force()),
         }
     }

@@ -3,7 +3,9 @@
 //! `UPDATE_DOCS=1 cargo test -p pulloff-engine --lib schema` writes them anew.
 
 use super::walk::WalkReport;
-use super::{FitReport, MapReport, PathReport, SCHEMA, StabilityReport, TraceReport, VerifyReport};
+use super::{
+    FitReport, MapReport, PathReport, PullReport, SCHEMA, StabilityReport, TraceReport, VerifyReport,
+};
 use schemars::generate::SchemaSettings;
 use schemars::transform::{RecursiveTransform, Transform};
 use schemars::{JsonSchema, Schema};
@@ -41,6 +43,7 @@ fn schemas_are_those_of_the_documents() {
     let schemas = [
         ("trace", text::<TraceReport>("trace")),
         ("path", text::<PathReport>("path")),
+        ("pull", text::<PullReport>("pull")),
         ("map", text::<MapReport>("map")),
         ("stability", text::<StabilityReport>("stability")),
         ("walk", text::<WalkReport>("walk")),

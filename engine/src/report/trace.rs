@@ -2,18 +2,24 @@
 
 use super::number::{significant, with_unit};
 use super::overlap::{self, OverlapReport};
+use super::path::note_of_range;
 use super::problem::Head;
 use super::problem::control_name;
 use super::rows::{RowsError, Table};
 use crate::case::{Case, CaseError};
+use crate::disc::{Edges, Place};
+use crate::gap::{Gap, wave_index};
 use crate::preset::Preset;
 use crate::problem::Control;
 use crate::progress::{Part, Progress, Unwatched};
+use crate::quasistatic::curve::places;
 use crate::quasistatic::overlap::overlaps;
-use crate::quasistatic::{Curve, CurveStop, Equilibrium, Overlap, Point, State, Stiffness};
+use crate::quasistatic::path::Zones;
+use crate::quasistatic::{Curve, CurveStop, Detail, Equilibrium, Monotone, Overlap, Point, State, Stiffness};
 use crate::theory::{self, Exact};
 use crate::units::Quantity;
 use serde::Serialize;
+use std::f64::consts::TAU;
 
 /// The equilibrium curve with its limit points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -51,6 +57,9 @@ pub struct PointReport {
     pub step: usize,
     /// s.
     pub contact_radius: f64,
+    /// The outer edge of the zone in which adhesion with a range acts; else nothing is written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub zone_radius: Option<f64>,
     /// δ.
     pub approach: f64,
     /// P.
@@ -105,6 +114,7 @@ impl PointReport {
         Self {
             step,
             contact_radius: state.contact_radius,
+            zone_radius: None,
             approach: state.approach,
             force: state.force,
             energy: state.energy,
@@ -118,6 +128,37 @@ impl PointReport {
             tangent_stiffness: finite(stiffness.tangent),
             area_slope: finite(stiffness.area_slope),
             admissible: !overlapping.iter().any(|overlap| overlap.contains(s)),
+            exact: None,
+        }
+    }
+}
+
+impl PointReport {
+    /// The state of a zone at a place.
+    fn in_zone(case: &Case, zones: &Zones, step: usize, place: Place) -> Self {
+        let units = case.units();
+        let at = zones.solution.at(place);
+        let Edges { contact_radius, zone } = zones.solution.edges(place);
+        let stability = at.stability();
+        let finite = |x: f64| Some(x).filter(|x| x.is_finite());
+        let area = TAU * contact_radius * zones.contact_slope(place) / stability.approach;
+        Self {
+            step,
+            contact_radius: contact_radius * units.length,
+            zone_radius: zone.map(|edge| edge * units.length),
+            approach: at.approach * units.length,
+            force: at.force * units.force,
+            energy: zones.solution.energy(place) * units.energy,
+            newton_iterations: 0,
+            stable: StableReport {
+                displacement: stability.under(Control::Displacement),
+                force: stability.under(Control::Force),
+                chosen: stability.under(case.control),
+            },
+            contact_stiffness: 2.0 * contact_radius * units.stiffness,
+            tangent_stiffness: finite(stability.force / stability.approach * units.stiffness),
+            area_slope: finite(area * units.length),
+            admissible: true,
             exact: None,
         }
     }
@@ -155,6 +196,9 @@ pub struct LimitReport {
     pub control: Control,
     /// s.
     pub contact_radius: f64,
+    /// The outer edge of the zone in which adhesion with a range acts; else nothing is written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub zone_radius: Option<f64>,
     /// δ.
     pub approach: f64,
     /// P.
@@ -183,6 +227,15 @@ pub const COLUMNS: &[&str] = &[
 /// The columns of the exact solution, behind [`COLUMNS`] where it was asked for.
 pub const EXACT_COLUMNS: &[&str] =
     &["exact_approach", "exact_force", "exact_energy", "exact_relative_difference"];
+
+/// The edge of the smallest zone that is traced, as a share of that of the largest.
+const SMALLEST: f64 = 1e-4;
+
+/// Why the trace of adhesion with a range ends where nothing cuts it short.
+pub const OUT_OF_RANGE: &str = "the zone has shrunk to nothing: the bodies are out of range";
+
+/// The column behind them where the adhesion has a range.
+pub const ZONE_COLUMNS: &[&str] = &["zone_radius"];
 
 /// Why an unloading does not begin where the curve does.
 fn start_note(preset: &Preset, case: &Case, start: &PointReport) -> Option<String> {
@@ -221,15 +274,88 @@ impl TraceReport {
     /// # Errors
     /// As [`TraceReport::compute`], and [`CaseError::Cancelled`] when `progress` said stop.
     pub fn compute_while(preset: &Preset, progress: &dyn Progress) -> Result<Self, CaseError> {
-        let case = Case::prepare(preset, &Part::new(progress, [0.0, 0.4]))?;
+        let case = Case::with_range(preset, &Part::new(progress, [0.0, 0.4]))?;
+        if case.cohesion.is_some() {
+            return Self::in_zone(preset, &case, &Part::new(progress, [0.4, 1.0]));
+        }
         let curve = case.curve(&Part::new(progress, [0.4, 0.6]))?;
         let (branch, stop) = case.trace_while(&curve, &Part::new(progress, [0.6, 0.8]))?;
         Self::new(preset, &case, &curve, &branch.points, stop, &Part::new(progress, [0.8, 1.0]))
     }
 
+    /// The document of the equilibria of adhesion with a range, from the start to where the zone has shrunk to nothing, or to the
+    /// first state that is not one disc in one zone.
+    fn in_zone(preset: &Preset, case: &Case, progress: &dyn Progress) -> Result<Self, CaseError> {
+        let units = case.units();
+        let zones = case.zones(progress)?;
+        let solution = &*zones.solution;
+        let start = solution.at(zones.start).contact_radius;
+        let radius = |place| solution.at(place).contact_radius;
+        let mut points: Vec<PointReport> = Vec::new();
+        let mut fault = None;
+        for place in places(solution, start, SMALLEST * start, Detail::Drawn) {
+            fault = zones.fault(place, progress).map_err(|error| case.no_path(error, case.control))?;
+            if fault.is_some() {
+                break;
+            }
+            points.push(PointReport::in_zone(case, &zones, points.len(), place));
+        }
+        if let (Some(error), true) = (&fault, points.is_empty()) {
+            return Err(case.no_path(error.clone(), case.control));
+        }
+        let least = points.last().and_then(|point| point.zone_radius).map_or(0.0, |edge| edge / units.length);
+        let limit_points: Vec<LimitReport> = case
+            .controls()
+            .into_iter()
+            .flat_map(|control| {
+                let limits = Monotone::of(solution, control).limits;
+                limits.into_iter().rev().filter(|limit| (least..=start).contains(&radius(limit.place)))
+            })
+            .map(|limit| {
+                let edges = solution.edges(limit.place);
+                LimitReport {
+                    control: case.shown_control(limit.control),
+                    contact_radius: edges.contact_radius * units.length,
+                    zone_radius: edges.zone.map(|edge| edge * units.length),
+                    approach: limit.approach * units.length,
+                    force: limit.force * units.force,
+                    wave: wave_index(edges.contact_radius, case.reduced.gap.wavelength()),
+                }
+            })
+            .collect();
+        let smallest = |of: fn((f64, f64)) -> f64| {
+            let points = points.iter().map(|p| (p.approach, p.force));
+            let limits = limit_points.iter().map(|p| (p.approach, p.force));
+            points.chain(limits).map(of).min_by(f64::total_cmp)
+        };
+        let stop = fault.map_or_else(
+            || OUT_OF_RANGE.to_owned(),
+            |error| error.in_units(case.control, units).words(case.control, &preset.units),
+        );
+        Ok(Self {
+            head: Head::new("trace", preset, case),
+            warnings: case.warnings_of_problem(),
+            notes: note_of_range(preset, case).into_iter().collect(),
+            start_note: points.first().and_then(|start| start_note(preset, case, start)),
+            stop,
+            curve_min_force: smallest(|(_, force)| force),
+            curve_min_approach: smallest(|(approach, _)| approach),
+            limit_points,
+            inadmissible: Vec::new(),
+            points,
+        })
+    }
+
     /// The same document with `exact`, the solution of the same problem in the user's units, beside each point.
     #[must_use]
     pub fn beside(mut self, exact: &Exact) -> Self {
+        if self.points.iter().any(|point| point.zone_radius.is_some()) {
+            self.warnings.push(
+                "the exact solutions are those of short-range adhesion: of adhesion with a range none stands beside the points"
+                    .to_owned(),
+            );
+            return self;
+        }
         let radii: Vec<f64> = self.points.iter().map(|point| point.contact_radius).collect();
         let mut unresolved = 0;
         for (point, exact) in self.points.iter_mut().zip(exact.curve(&radii)) {
@@ -278,6 +404,7 @@ impl TraceReport {
             .map(|limit| LimitReport {
                 control: case.shown_control(limit.control),
                 contact_radius: limit.contact_radius * units.length,
+                zone_radius: None,
                 approach: limit.approach * units.length,
                 force: limit.force * units.force,
                 wave: equilibrium.wave(limit.contact_radius),
@@ -311,10 +438,11 @@ impl TraceReport {
     /// # Errors
     /// As [`Table::of`].
     pub fn table(&self) -> Result<Table, RowsError> {
-        if self.points.iter().all(|point| point.exact.is_none()) {
-            return Table::of(COLUMNS, &self.points);
-        }
-        Table::of(&[COLUMNS, EXACT_COLUMNS].concat(), &self.points)
+        let exact: &[&str] =
+            if self.points.iter().all(|point| point.exact.is_none()) { &[] } else { EXACT_COLUMNS };
+        let zone: &[&str] =
+            if self.points.iter().all(|point| point.zone_radius.is_none()) { &[] } else { ZONE_COLUMNS };
+        Table::of(&[COLUMNS, exact, zone].concat(), &self.points)
     }
 
     /// The points as CSV.
@@ -332,7 +460,7 @@ mod tests {
     use crate::progress::until;
     use crate::report::PathReport;
     use crate::report::path::Extent;
-    use crate::{Material, Shape, Start};
+    use crate::{Adhesion, Material, Shape, Start};
     use std::cell::Cell;
 
     /// A document that asks whether it is still wanted.
@@ -341,7 +469,12 @@ mod tests {
     #[test]
     fn a_document_that_is_no_longer_wanted_is_cancelled_at_every_question() {
         let gap = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 };
-        let material = Material { effective_modulus: 1.0, work_of_adhesion: 0.004, range_of_action: None };
+        let material = Material {
+            effective_modulus: 1.0,
+            work_of_adhesion: 0.004,
+            range_of_action: None,
+            adhesion: Adhesion::ShortRange,
+        };
         let preset = Preset::new(material, gap, Start::ContactRadius(0.3));
         let trace = |progress: &dyn Progress| TraceReport::compute_while(&preset, progress).err();
         let of = Extent::default();

@@ -4,6 +4,7 @@ use crate::case::CaseError;
 use crate::fit::FitError;
 use crate::preset::Invalid;
 use crate::quasistatic::path::PathError;
+use crate::report::pull::PullError;
 use crate::text::sanitize;
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -21,7 +22,7 @@ pub struct Fault {
 }
 
 /// All reasons.
-pub const REASONS: [&str; 11] = [
+pub const REASONS: [&str; 13] = [
     "refused value",
     "no basis",
     "no start",
@@ -33,6 +34,8 @@ pub const REASONS: [&str; 11] = [
     "row limit",
     "no fit",
     "members",
+    "no pull",
+    "range",
 ];
 
 impl Fault {
@@ -55,8 +58,18 @@ impl Fault {
             CaseError::Path { error, .. } if matches!(**error, PathError::UnstableStart { .. }) => REASONS[3],
             CaseError::Path { .. } => REASONS[7],
             CaseError::Cancelled => REASONS[4],
+            CaseError::HasRange { .. } => REASONS[12],
         };
         Self::new(reason, &error.to_string())
+    }
+
+    /// A pull that cannot be made.
+    #[must_use]
+    pub fn of_pull(error: &PullError) -> Self {
+        match error {
+            PullError::Case(error) => Self::of_case(error),
+            error => Self::new(REASONS[11], &error.to_string()),
+        }
     }
 
     /// A measured curve that cannot be fitted.

@@ -11,6 +11,8 @@ use crate::progress::Progress;
 use crate::quasistatic::Detail;
 use crate::quasistatic::overlap::passed;
 use crate::quasistatic::path::{Losses, PathStop, Setting};
+use crate::report::PullReport;
+use crate::report::pull::{Asked, RunReport};
 use crate::units::Quantity as Unit;
 
 /// The quantities of a preset.
@@ -30,6 +32,7 @@ struct Work<'a> {
     line: Option<Result<CurveMinima, Fault>>,
     paths: Vec<(Control, ContactKind, Result<OnPath, Fault>)>,
     loops: Vec<(Control, Result<OnPath, Fault>)>,
+    pull: Option<Result<RunReport, Fault>>,
     fitting: Option<Result<Fitting, Fault>>,
     progress: &'a dyn Progress,
 }
@@ -38,7 +41,8 @@ struct Work<'a> {
 pub fn measure(preset: &Preset, wanted: &[Column], progress: &dyn Progress) -> Option<Measured> {
     let ground = PresetValues::new(preset);
     let (paths, loops) = (Vec::new(), Vec::new());
-    let mut work = Work { preset, ground, start: None, line: None, paths, loops, fitting: None, progress };
+    let mut work =
+        Work { preset, ground, start: None, line: None, paths, loops, pull: None, fitting: None, progress };
     let mut measured = Measured { cells: Vec::with_capacity(wanted.len()), fault: None };
     for column in wanted {
         let cell = work.cell(column).unwrap_or_else(|fault| {
@@ -85,6 +89,7 @@ impl Work<'_> {
                 let control = self.reduced(column.under.control(own))?;
                 self.whole(control).map(of)
             }
+            Stage::Pull(of) => self.pull().map(of),
             Stage::Fit(of) => self.fitting().map(of),
         }
     }
@@ -96,7 +101,7 @@ impl Work<'_> {
 
     fn start(&mut self) -> Result<&StartState, Fault> {
         let made = self.start.get_or_insert_with(|| {
-            let case = Case::prepare(self.preset, self.progress).map_err(|e| Fault::of_case(&e))?;
+            let case = Case::with_range(self.preset, self.progress).map_err(|e| Fault::of_case(&e))?;
             Ok(StartState { case })
         });
         made.as_ref().map_err(Clone::clone)
@@ -123,15 +128,22 @@ impl Work<'_> {
         let contact = contact.unwrap_or(own.contact);
         let known = self.paths.iter().position(|(of, with, _)| (*of, *with) == (control, contact));
         let at = known.unwrap_or_else(|| {
-            let made = self.line().map(|_| ()).and_then(|()| {
-                let (Some(Ok(start)), Some(Ok(line))) = (&self.start, &self.line) else {
-                    return Err(Fault::incomplete("no curve"));
-                };
-                let (losses, detail) = (Losses::Once, Detail::Borders);
-                let setting = Setting { control, contact, losses, detail, ..own };
-                let path = start.case.unload(&line.curve, &setting, self.progress);
-                Ok(OnPath { path: path.map_err(|e| Fault::of_case(&e))? })
+            let (losses, detail) = (Losses::Once, Detail::Borders);
+            let setting = Setting { control, contact, losses, detail, ..own };
+            let progress = self.progress;
+            let in_zone = self.start().and_then(|start| {
+                start.case.unload_in_zone(&setting, progress).map_err(|error| Fault::of_case(&error))
             });
+            let made = match in_zone.transpose() {
+                Some(found) => found.map(|path| OnPath { path }),
+                None => self.line().map(|_| ()).and_then(|()| {
+                    let (Some(Ok(start)), Some(Ok(line))) = (&self.start, &self.line) else {
+                        return Err(Fault::incomplete("no curve"));
+                    };
+                    let path = start.case.unload(&line.curve, &setting, self.progress);
+                    Ok(OnPath { path: path.map_err(|e| Fault::of_case(&e))? })
+                }),
+            };
             self.paths.push((control, contact, made));
             self.paths.len() - 1
         });
@@ -154,6 +166,16 @@ impl Work<'_> {
         self.loops[at].1.as_ref().map_err(Clone::clone)
     }
 
+    fn pull(&mut self) -> Result<&RunReport, Fault> {
+        let made = self.pull.get_or_insert_with(|| {
+            let asked = Asked::default();
+            let report =
+                PullReport::compute(self.preset, &asked, self.progress).map_err(|e| Fault::of_pull(&e))?;
+            report.runs.into_iter().next().ok_or_else(|| Fault::incomplete("no pull"))
+        });
+        made.as_ref().map_err(Clone::clone)
+    }
+
     fn fitting(&mut self) -> Result<&Fitting, Fault> {
         let made = self.fitting.get_or_insert_with(|| Fitting::new(self.preset, self.progress));
         made.as_ref().map_err(Clone::clone)
@@ -170,10 +192,10 @@ impl Work<'_> {
         Ok((whole > 0.0).then(|| Cell::Number(lost / whole)))
     }
 
-    /// A cell in the user's units: what comes of the preset alone, or of a fit, is in them already.
+    /// A cell in the user's units: what comes of the preset alone, or of a report, is in them already.
     fn shown(&self, cell: Cell, quantity: &Quantity) -> Cell {
         let (Cell::Number(x), Some(Ok(start)), false) =
-            (cell, &self.start, matches!(quantity.of, Stage::Preset(_) | Stage::Fit(_)))
+            (cell, &self.start, matches!(quantity.of, Stage::Preset(_) | Stage::Pull(_) | Stage::Fit(_)))
         else {
             return cell;
         };

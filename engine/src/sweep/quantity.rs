@@ -3,6 +3,7 @@
 use super::fault::Fault;
 use super::stage::{Cell, CurveMinima, Fitting, OnPath, PresetValues};
 use crate::problem::Control;
+use crate::report::pull::RunReport;
 use crate::text::{closest, quote};
 use crate::units::Quantity as Unit;
 
@@ -33,6 +34,8 @@ pub(super) enum Stage {
     Passed,
     /// The whole loop of loading and unloading, by energies alone.
     Loop(fn(&OnPath) -> Option<Cell>),
+    /// The pull at `path.rate`, or by `path.steps`.
+    Pull(fn(&RunReport) -> Option<Cell>),
     /// The fit to the measured curve of the preset.
     Fit(fn(&Fitting) -> Option<Cell>),
 }
@@ -59,9 +62,14 @@ quantities! {
     "snap_loss" "" Energy "energy lost in all of them": Stage::Unloading(|path| Some(path.snap_loss()));
     "last_contact_loss" "" Energy "energy lost at the last contact; none under a dead load":
         Stage::Unloading(OnPath::last_contact_loss);
+    "snap_off_approach" "δ" Length "approach at which the zone of adhesion with a range ends; none of short-range adhesion":
+        Stage::Unloading(|path| path.snap_off(|state| state.approach));
     "inadmissible_share" "" Number "share of the unloading of one disc, by contact radius, on which the next crest would already touch":
         Stage::Passed;
     "cycle_loss" "" Energy "energy lost in the loop of loading and unloading; none under a dead load": Stage::Loop(OnPath::loss);
+    "jump_in_force" "P" Force "force after the jump into the zone of adhesion with a range; none of short-range adhesion":
+        Stage::Loop(|whole| whole.jump_in(|state| state.force));
+    "jump_in_approach" "δ" Length "approach after that jump": Stage::Loop(|whole| whole.jump_in(|state| state.approach));
     "first_touch_force" "P" Force "force after the jump into contact at the first touch":
         Stage::Loop(|whole| whole.first_touch(|state| state.force));
     "first_touch_radius" "s" Length "outermost edge of the contact after that jump":
@@ -72,6 +80,16 @@ quantities! {
         Stage::Loop(|whole| Some(whole.rings_at_most()));
     "contact_share" "" Number "contact area at the turn over that of the circle in its outermost edge":
         Stage::Loop(OnPath::contact_share);
+    "peak_force" "P" Force "smallest force of the pull at path.rate, or by path.steps":
+        Stage::Pull(|run| Some(Cell::Number(run.peak.force)));
+    "last_contact_time" "t" Time "time of that pull at which the bodies come apart":
+        Stage::Pull(|run| run.last_contact.map(|last| Cell::Number(last.time)));
+    "dissipated" "" Energy "what the edge dissipates in that pull; none under a dead load":
+        Stage::Pull(|run| run.dissipated.map(Cell::Number));
+    "tension_peaks" "" Number "least forces of that pull with a fall and a rise of more than 1 % of P_c":
+        Stage::Pull(|run| Some(Cell::Count(run.tension_peaks.len())));
+    "top_edge_speed" "v" Speed "largest speed of the edge in the snaps of that pull":
+        Stage::Pull(|run| Some(Cell::Number(run.top_edge_speed)));
     "limit_points" "" Number "limit points of the control on the curve": Stage::Limits;
     "start_contact_radius" "s" Length "contact radius at the start, the largest of the curve":
         Stage::Start(|start| Some(start.contact_radius()));

@@ -162,8 +162,23 @@ impl OnPath {
     }
 
     pub(super) fn first_touch(&self, of: fn(&PathState) -> f64) -> Option<Cell> {
-        let after = self.event(EventKind::FirstTouch)?.after.as_ref()?;
+        // Bodies that jump in may touch in the same jump.
+        let touches = |event: &&Event| {
+            let lands = event.after.as_ref().is_some_and(|state| !state.contacts.is_empty());
+            event.kind == EventKind::FirstTouch || event.kind == EventKind::JumpIn && lands
+        };
+        let after = self.path.events.iter().find(touches)?.after.as_ref()?;
         Some(Cell::Number(of(after)))
+    }
+
+    pub(super) fn jump_in(&self, of: fn(&PathState) -> f64) -> Option<Cell> {
+        let after = self.event(EventKind::JumpIn)?.after.as_ref()?;
+        Some(Cell::Number(of(after)))
+    }
+
+    pub(super) fn snap_off(&self, of: fn(&PathState) -> f64) -> Option<Cell> {
+        let before = self.event(EventKind::SnapOff)?.before.as_ref()?;
+        Some(Cell::Number(of(before)))
     }
 
     pub(super) fn touches(&self) -> Cell {
@@ -184,7 +199,7 @@ impl OnPath {
 impl PresetValues {
     pub(super) fn new(preset: &Preset) -> Self {
         let problem = preset.problem();
-        let groups = Groups::of(&problem, preset.range_of_action());
+        let groups = Groups::of(&problem, preset.range_of_action(), preset.cohesion());
         Self { problem, groups }
     }
 

@@ -16,6 +16,7 @@
 //! | [`struve`] | the functions H₀, H₁ of that closed form |
 //! | [`kesari_lew`] | the wavy sphere of many small waves: envelope and pull-off |
 //! | [`worst_phase`] | waves of unknown phases: bounds of the pull-off |
+//! | [`maugis`] | a sphere whose adhesion has a range, in closed form |
 //! | [`onset`] | the smallest waves on which a crest can snap at all |
 //! | [`exact`] | the best of these for a problem |
 //! | [`unloading`] | the quasi-static path of an exact disc: limit points, landings, losses |
@@ -31,6 +32,7 @@ pub mod harmonics;
 pub mod hertz;
 pub mod jkr;
 pub mod kesari_lew;
+pub mod maugis;
 pub mod onset;
 pub mod power_law;
 pub mod quadrature;

@@ -31,6 +31,12 @@ pub enum Quantity {
     ForcePerLength,
     /// A length to the power −k, k from 1 to [`Quantity::DEEPEST`], as the coefficient of a power law: m⁻ᵏ.
     InverseLength(u8),
+    /// The speed of an edge, the rate of an approach: m/s.
+    Speed,
+    /// The rate of a force: N/s.
+    ForceRate,
+    /// s.
+    Time,
     /// A ratio, an angle or a count.
     Number,
 }
@@ -69,6 +75,8 @@ impl Dimension {
             (-3, 0, 0) => "an inverse volume",
             (0, 1, 0) => "a mass",
             (0, 0, 1) => "a time",
+            (1, 0, -1) => "a speed",
+            (1, 1, -3) => "a rate of a force",
             (1, 1, -2) => "a force",
             (-1, 1, -2) => "a stress",
             (2, 1, -2) => "an energy",
@@ -112,13 +120,16 @@ impl Quantity {
     pub const DEEPEST: u8 = 9;
 
     /// All of them.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 19] = [
         Self::Length,
         Self::Force,
         Self::Stress,
         Self::EnergyPerArea,
         Self::Energy,
         Self::ForcePerLength,
+        Self::Speed,
+        Self::ForceRate,
+        Self::Time,
         Self::Number,
         Self::InverseLength(1),
         Self::InverseLength(2),
@@ -145,6 +156,9 @@ impl Quantity {
             Self::Stress => Dimension::new(-1, 1, -2),
             Self::EnergyPerArea | Self::ForcePerLength => Dimension::new(0, 1, -2),
             Self::Energy => Dimension::new(2, 1, -2),
+            Self::Speed => Dimension::new(1, 0, -1),
+            Self::ForceRate => Dimension::new(1, 1, -3),
+            Self::Time => Dimension::new(0, 0, 1),
             Self::InverseLength(k) => Dimension::new(-i32::from(k), 0, 0),
             Self::Number => Dimension::NONE,
         }
@@ -159,6 +173,9 @@ impl Quantity {
             Self::EnergyPerArea => "an energy per area",
             Self::Energy => "an energy",
             Self::ForcePerLength => "a force per length",
+            Self::Speed => "a speed",
+            Self::ForceRate => "a rate of a force",
+            Self::Time => "a time",
             Self::InverseLength(1) => "an inverse length",
             Self::InverseLength(2) => "an inverse area",
             Self::InverseLength(3) => "an inverse volume",
@@ -176,6 +193,9 @@ impl Quantity {
             Self::EnergyPerArea => Some("J/m^2"),
             Self::Energy => Some("J"),
             Self::ForcePerLength => Some("N/m"),
+            Self::Speed => Some("m/s"),
+            Self::ForceRate => Some("N/s"),
+            Self::Time => Some("s"),
             Self::InverseLength(k) => INVERSE_METRES.get(usize::from(k)).copied(),
             Self::Number => None,
         }
@@ -191,6 +211,9 @@ impl Quantity {
             Self::EnergyPerArea => Some("mJ/m^2"),
             Self::Energy => Some("pJ"),
             Self::ForcePerLength => Some("N/m"),
+            Self::Speed => Some("um/s"),
+            Self::ForceRate => Some("uN/s"),
+            Self::Time => Some("s"),
             Self::Number => None,
         }
     }

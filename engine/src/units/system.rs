@@ -1,13 +1,14 @@
 //! Reduced or SI: how a quantity is typed and shown.
 
 use super::dimension::Quantity;
-use super::table::{JOULE, KILO, METRE, MICRO, MILLI, NEWTON, NONE, Named, PASCAL, PICO, Prefix};
+use super::table::{JOULE, KILO, METRE, MICRO, MILLI, NEWTON, NONE, Named, PASCAL, PICO, Prefix, SECOND};
 use super::unit::{Factor, Unit};
 use super::value::ValueError;
 use std::fmt;
 
 /// The units in which a problem is typed and shown.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a preset has one, and an error boxes it")]
 pub enum UnitSystem {
     /// Pure numbers: E* and R are what a person makes them.
     Reduced,
@@ -24,6 +25,10 @@ pub struct DisplayUnits {
     energy_per_area: Unit,
     energy: Unit,
     force_per_length: Unit,
+    time: Unit,
+    /// The length and the force in a second.
+    speed: Unit,
+    force_rate: Unit,
     /// The powers −1, −2, … of the length.
     inverse_lengths: Vec<Unit>,
 }
@@ -33,11 +38,14 @@ impl Default for DisplayUnits {
     fn default() -> Self {
         let factor = |prefix: &'static Prefix, unit: &'static Named, power| Factor { prefix, unit, power };
         let one = |prefix, unit| Unit::of(vec![factor(prefix, unit, 1)]);
-        let length = one(&MICRO, &METRE);
+        let (length, force) = (one(&MICRO, &METRE), one(&MICRO, &NEWTON));
         Self {
+            time: one(&NONE, &SECOND),
+            speed: length.per_second(),
+            force_rate: force.per_second(),
             inverse_lengths: inverses(&length),
             length,
-            force: one(&MICRO, &NEWTON),
+            force,
             stress: one(&KILO, &PASCAL),
             energy_per_area: Unit::of(vec![factor(&MILLI, &JOULE, 1), factor(&NONE, &METRE, -2)]),
             energy: one(&PICO, &JOULE),
@@ -61,13 +69,16 @@ impl DisplayUnits {
             Quantity::EnergyPerArea => &self.energy_per_area,
             Quantity::Energy => &self.energy,
             Quantity::ForcePerLength => &self.force_per_length,
+            Quantity::Speed => &self.speed,
+            Quantity::ForceRate => &self.force_rate,
+            Quantity::Time => &self.time,
             Quantity::InverseLength(k) => return self.inverse_lengths.get(usize::from(k).checked_sub(1)?),
             Quantity::Number => return None,
         })
     }
 
-    /// The same units but for `quantity`, which is shown in the unit of this name; a pure number stays without, and the
-    /// inverse powers of a length follow the length.
+    /// The same units but for `quantity`, which is shown in the unit of this name; a pure number stays without, the
+    /// inverse powers of a length and speeds follow the length, rates of a force the force.
     ///
     /// # Errors
     /// A text that is no unit, or one of another dimension.
@@ -80,13 +91,20 @@ impl DisplayUnits {
         match quantity {
             Quantity::Length => {
                 self.inverse_lengths = inverses(&unit);
+                self.speed = unit.per_second();
                 self.length = unit;
             }
-            Quantity::Force => self.force = unit,
+            Quantity::Force => {
+                self.force_rate = unit.per_second();
+                self.force = unit;
+            }
             Quantity::Stress => self.stress = unit,
             Quantity::EnergyPerArea => self.energy_per_area = unit,
             Quantity::Energy => self.energy = unit,
             Quantity::ForcePerLength => self.force_per_length = unit,
+            Quantity::Time => self.time = unit,
+            Quantity::Speed => self.speed = unit,
+            Quantity::ForceRate => self.force_rate = unit,
             Quantity::InverseLength(_) | Quantity::Number => {}
         }
         Ok(self)

@@ -58,7 +58,8 @@ pub static PASCAL: Named = named("Pa", STRESS, 0);
 pub static JOULE: Named = named("J", ENERGY, 0);
 
 static GRAM: Named = named("g", Dimension::new(0, 1, 0), -3);
-static SECOND: Named = named("s", Dimension::new(0, 0, 1), 0);
+/// The second.
+pub static SECOND: Named = named("s", Dimension::new(0, 0, 1), 0);
 static ELECTRONVOLT: Named = Named { mantissa: 1.602_176_634, ..named("eV", ENERGY, -19) };
 // The second character is the ångström sign, which looks the same.
 static ANGSTROM: Named =

@@ -6,7 +6,7 @@
 //! ```
 
 use super::dimension::Dimension;
-use super::table::{JOULE, Named, Prefix, lookup};
+use super::table::{JOULE, NONE, Named, Prefix, SECOND, lookup};
 use crate::expression::Place;
 use crate::expression::error::NAME;
 use crate::expression::error::piece;
@@ -143,6 +143,12 @@ impl Unit {
     pub(super) fn to_power(&self, power: i32) -> Self {
         let raised = |factor: &Factor| Factor { power: factor.power * power, ..*factor };
         Self { factors: self.factors.iter().map(raised).collect() }
+    }
+
+    /// It in a second.
+    pub(super) fn per_second(&self) -> Self {
+        let second = Factor { prefix: &NONE, unit: &SECOND, power: -1 };
+        Self { factors: self.factors.iter().copied().chain([second]).collect() }
     }
 
     /// Its dimension.
@@ -292,7 +298,8 @@ mod tests {
             ("1/m", 1.0, "an inverse length", "m⁻¹", "m^-1"),
             (" 1 / mm^2", 1e6, "an inverse area", "mm⁻²", "mm^-2"),
             ("/um/mm", 1e9, "an inverse area", "µm⁻¹/mm", "um^-1/mm"),
-            ("m/s", 1.0, "of dimension m s^-1", "m/s", "m/s"),
+            ("m/s", 1.0, "a speed", "m/s", "m/s"),
+            ("m s^-2", 1.0, "of dimension m s^-2", "m/s²", "m/s^2"),
             ("deg", std::f64::consts::PI / 180.0, "a pure number", "°", "deg"),
         ] {
             let unit = Unit::parse(text, 0).unwrap();

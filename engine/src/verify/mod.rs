@@ -16,6 +16,7 @@
 //! | [`unloading`] | every limit point, landing and loss of Fig. 9 under three controls |
 //! | [`stability`] | the law of stability and its cusps on Fig. 9 |
 //! | [`loops`] | a rigid annulus, and the whole loop with and without rings |
+//! | [`range`] | the sphere whose adhesion has a range |
 //! | [`balance`] | the work of the device against what is stored and lost |
 //!
 //! All problems have E* = R = 1, so reduced and user's units are the same.
@@ -26,6 +27,7 @@ pub mod convergence;
 pub mod figures;
 pub mod loops;
 pub mod newton;
+pub mod range;
 pub mod row;
 pub mod settings;
 pub mod smooth;
@@ -66,6 +68,7 @@ pub fn verify(settings: &Settings) -> Result<Vec<Group>, VerifyError> {
             own.push(ours);
         }
     }
+    groups.push(range::group());
     groups.push(stability::group(&cases::fig_9())?);
     let loops = loops::groups()?;
     let is_own = |group: &Group| group.rows.iter().any(|row| row.other.is_some());

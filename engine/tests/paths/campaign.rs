@@ -78,6 +78,8 @@ fn letter(kind: EventKind) -> char {
         EventKind::Split => 'P',
         EventKind::Vanish => 'V',
         EventKind::Turn => 'R',
+        EventKind::JumpIn => 'J',
+        EventKind::SnapOff => 'O',
     }
 }
 

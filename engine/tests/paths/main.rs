@@ -7,5 +7,6 @@ mod campaign;
 mod cycle;
 mod elements;
 mod maps;
+mod range;
 mod stability;
 mod walk;

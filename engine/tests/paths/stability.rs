@@ -7,7 +7,7 @@ use pulloff_engine::stability::count::EXACTLY;
 use pulloff_engine::stability::law::{adhesion_of, root_of};
 use pulloff_engine::stability::{Axis, Cause, Family, Onset, even};
 use pulloff_engine::theory::onset;
-use pulloff_engine::{Control, Material, Preset, Shape, Start};
+use pulloff_engine::{Adhesion, Control, Material, Preset, Shape, Start};
 use serde_json::Value;
 use std::f64::consts::TAU;
 
@@ -25,8 +25,12 @@ fn waves(control: Control, start: f64, amplitude_over_wavelength: f64, adhesion:
         amplitude: 0.05 * amplitude_over_wavelength,
         wavelength: 0.05,
     };
-    let material =
-        Material { effective_modulus: 1.0, work_of_adhesion: adhesion / TAU, range_of_action: None };
+    let material = Material {
+        effective_modulus: 1.0,
+        work_of_adhesion: adhesion / TAU,
+        range_of_action: None,
+        adhesion: Adhesion::ShortRange,
+    };
     let mut preset = Preset::new(material, gap, Start::ContactRadius(start));
     preset.path.control = control;
     preset
@@ -297,7 +301,12 @@ fn on_both_sides_of_a_cusp_the_limit_points_differ_by_two() {
             2 => Control::Force,
             _ => Control::Stiffness(random(0.05, 3.0)),
         };
-        let material = Material { effective_modulus: 1.0, work_of_adhesion: 1e-3, range_of_action: None };
+        let material = Material {
+            effective_modulus: 1.0,
+            work_of_adhesion: 1e-3,
+            range_of_action: None,
+            adhesion: Adhesion::ShortRange,
+        };
         let mut preset = Preset::new(material, gap, Start::ContactRadius(0.4));
         preset.path.control = device;
         let count = |adhesion: f64| {

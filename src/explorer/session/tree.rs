@@ -115,6 +115,7 @@ impl LeapEnd {
     fn back(self, direction: Direction) -> PathState {
         let State { contact_radius, approach, force, energy } = state_in(self.state);
         PathState {
+            zone: None,
             contact_radius,
             approach,
             force,

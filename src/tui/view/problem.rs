@@ -159,7 +159,7 @@ pub(super) fn shown(app: &App) -> Vec<Shown> {
             Some(value) => Shown::word(label, theme.text(&value.to_string())),
         }
     });
-    let of = Groups::of(&model.preset.problem(), model.preset.range_of_action());
+    let of = Groups::of(&model.preset.problem(), model.preset.range_of_action(), model.preset.cohesion());
     let others = [("λ²/AR", of.connectivity), ("α", of.johnson), ("μ", of.tabor)];
     let others =
         others.into_iter().filter_map(|(name, value)| Some(Shown::word(theme.text(name), short(value?, 4))));
@@ -249,7 +249,7 @@ fn group_lines(
     width: u16,
 ) -> Vec<Line<'static>> {
     let (model, theme) = (&app.model, app.theme);
-    let of = Groups::of(&model.preset.problem(), model.preset.range_of_action());
+    let of = Groups::of(&model.preset.problem(), model.preset.range_of_action(), model.preset.cohesion());
     let mut items: Vec<(String, f64, bool)> = settable
         .iter()
         .filter_map(|(row, value)| match value {

@@ -118,7 +118,7 @@ pub(super) fn of_range(
     let [n, t] = score(problem, solved, scatter, inner?, &z, None)?;
     let preset = problem.preset_at(u, Segment::Retraction)?;
     let reach = preset.material.work_of_adhesion * n.max(0.0).sqrt();
-    let tabor = Groups::of(&preset.problem(), Some(reach / OF_EQUILIBRIUM)).tabor?;
+    let tabor = Groups::of(&preset.problem(), Some(reach / OF_EQUILIBRIUM), None).tabor?;
     (n > 0.0 && 0.5 * beyond_t(t, scatter.degrees) < FALSE_ALARM).then(|| {
         let sentence = format!(
             "adhesion with a range describes the points better than one at the edge alone: it acts up to a separation near {}, Tabor's mu \

@@ -2,16 +2,19 @@
 
 use super::{BasisSpec, Preset, start_key, turn_key};
 use crate::measured::asked::signs_text;
-use crate::preset::data;
 use crate::preset::family;
 use crate::preset::groups;
 use crate::preset::invalid::Invalid;
 use crate::preset::rows::parameter;
-use crate::preset::schema::{CHOOSERS, DISPLAY, EXACT, FORMAT, PARAMETERS, Parameter, Row, SYSTEMS};
+use crate::preset::schema::{
+    ADHESION, Applies, CHOOSERS, DISPLAY, EXACT, FORMAT, LIQUID_KEYS, PARAMETERS, Parameter, RANGE_KEYS, Row,
+    SYSTEMS, WORK_OF_ADHESION,
+};
 use crate::preset::shape;
 use crate::preset::value::Value;
 use crate::preset::values::Values;
-use crate::problem::Control;
+use crate::preset::{data, edge};
+use crate::problem::{Adhesion, Control, Stated};
 use crate::text::closest_key;
 use crate::text::quote;
 use crate::units::UnitSystem;
@@ -21,7 +24,7 @@ impl Preset {
     /// to follow from others.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<Value> {
-        let Self { title, units, material, gap, basis, path, data, files: _ } = self;
+        let Self { title, units, material, gap, basis, path, edge, data, files: _ } = self;
         Some(match key {
             "format" => FORMAT.into(),
             "title" => title.as_str().into(),
@@ -35,8 +38,19 @@ impl Preset {
                 units.unit(*quantity)?.ascii().as_str().into()
             }
             "material.effective_modulus" => material.effective_modulus.into(),
-            "material.work_of_adhesion" => material.work_of_adhesion.into(),
+            // Of a liquid bridge it follows from the liquid.
+            "material.work_of_adhesion" => match material.adhesion {
+                Adhesion::Capillary { .. } => return None,
+                _ => material.work_of_adhesion.into(),
+            },
             "material.range_of_action" => material.range_of_action?.into(),
+            key if edge::KEYS.contains(&key) => return edge.get(key),
+            // Short-range is what a preset has when it says nothing.
+            ADHESION => match material.adhesion {
+                Adhesion::ShortRange => return None,
+                other => other.name().into(),
+            },
+            key if adhesion_keys().contains(&key) => adhesion_value(material.adhesion, key)?.into(),
             key if key.starts_with("gap.") => return shape::get(gap, key),
             "basis.kind" => match basis {
                 BasisSpec::Rings { .. } => "rings".into(),
@@ -85,7 +99,8 @@ impl Preset {
         let after = PARAMETERS.iter().rposition(|row| row.table() == Some("gap")).map_or(0, |last| last + 1);
         let (before, rest) = PARAMETERS.split_at(after);
         let own = shape::rows(&self.gap).into_iter().map(Row::Owned);
-        before.iter().map(|row| shape::own(&self.gap, row)).chain(own).chain(rest.iter().map(Row::Borrowed))
+        let rest = rest.iter().map(|row| edge::own(self.path.control, row));
+        before.iter().map(|row| shape::own(&self.gap, row)).chain(own).chain(rest)
     }
 
     /// The row of a key: with the range and the quantity that this preset gives it, where it does.
@@ -98,15 +113,27 @@ impl Preset {
     }
 
     /// The rows that are turned and typed on a screen: all but the format, the units, the ranges of parameters, the waves after the
-    /// first [`WAVE_KNOBS`](family::WAVE_KNOBS), and which contacts are followed, which is set by its key: the others fill 40 rows.
+    /// first [`WAVE_KNOBS`](family::WAVE_KNOBS), and which contacts are followed and how an edge moves, which are set by their keys: the
+    /// others fill 40 rows. What is said of an edge is among them.
     pub fn knobs(&self) -> impl Iterator<Item = Row> {
         self.rows().filter(|row| {
             row.key != "format"
                 && row.key != "path.contact"
+                && (!edge::KEYS.contains(&&*row.key) || self.edge.get(&row.key).is_some())
                 && !is_of_units(&row.key)
                 && !shape::is_range(&row.key)
                 && family::has_knob(&row.key)
+                && self.has_adhesion_knob(row)
         })
+    }
+
+    /// Whether a row is no key of adhesion with a range, or one of the adhesion that there is.
+    fn has_adhesion_knob(&self, row: &Row) -> bool {
+        let adhesion = self.material.adhesion;
+        let is_own =
+            row.key == ADHESION || matches!(row.applies, Applies::With { key, .. } if key == ADHESION);
+        let has_range = adhesion != Adhesion::ShortRange;
+        !is_own || row.fits(ADHESION, adhesion.name()) && (has_range || row.key == WORK_OF_ADHESION)
     }
 
     /// The rows that have a value in this preset, in the order of [`rows`](Self::rows), with their values.
@@ -129,6 +156,25 @@ impl Preset {
             .filter(|(row, _)| !row.is_part())
             .map(|(row, v)| (row.key.clone(), v))
             .collect()
+    }
+}
+
+/// The keys of adhesion with a range but for its word.
+fn adhesion_keys() -> [&'static str; 5] {
+    let ([strength, range], [tension, radius, angle]) = (RANGE_KEYS, LIQUID_KEYS);
+    [strength, range, tension, radius, angle]
+}
+
+/// What an adhesion says of one of them.
+fn adhesion_value(adhesion: Adhesion, key: &str) -> Option<f64> {
+    match adhesion {
+        Adhesion::Dugdale(Stated::Strength(x)) => (key == RANGE_KEYS[0]).then_some(x),
+        Adhesion::Dugdale(Stated::Range(x)) => (key == RANGE_KEYS[1]).then_some(x),
+        Adhesion::Capillary { surface_tension, kelvin_radius, contact_angle } => {
+            let at = LIQUID_KEYS.iter().position(|known| *known == key)?;
+            Some([surface_tension, kelvin_radius, contact_angle][at])
+        }
+        Adhesion::ShortRange | Adhesion::Dugdale(Stated::Action) => None,
     }
 }
 

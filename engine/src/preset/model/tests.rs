@@ -3,9 +3,10 @@
 use super::*;
 use crate::gap::{shapes::ExactSphere, shapes::PowerLaw, shapes::RandomWaves};
 use crate::measured::Source;
+use crate::preset::edge::EdgeSpec;
 use crate::preset::examples::{any_gap, wavy};
 use crate::preset::rows::parameter;
-use crate::preset::schema::{Applies, FORMAT, Fallback, Kind, PARAMETERS};
+use crate::preset::schema::{ADHESION, Applies, FORMAT, Fallback, Kind, LIQUID_KEYS, PARAMETERS};
 use crate::preset::value::Value;
 
 /// A value for a key that it does not have in [`wavy`].
@@ -46,6 +47,9 @@ fn another(key: &str) -> Value {
         "data.signs" => "x=-,force=+".into(),
         "data.skip" => 2.into(),
         "data.settings" => "preset".into(),
+        "material.closing_work_of_adhesion" => 0.002.into(),
+        "path.steps" => "to 0.1 at 0.01; hold 2; apart at 1e-3".into(),
+        "material.adhesion" => "dugdale".into(),
         _ => Value::Number(0.75),
     }
 }
@@ -63,7 +67,14 @@ const FIELDS: &[&str] = &[
     "units",
     "material.effective_modulus",
     "material.work_of_adhesion",
+    "material.closing_work_of_adhesion",
     "material.range_of_action",
+    "material.adhesion",
+    "material.cohesive_strength",
+    "material.cohesive_range",
+    "material.surface_tension",
+    "material.kelvin_radius",
+    "material.contact_angle",
     "gap.shape",
     "gap.radius_of_curvature",
     "gap.amplitude",
@@ -83,6 +94,12 @@ const FIELDS: &[&str] = &[
     "basis.kind",
     "basis.rings",
     "basis.grading",
+    "edge.reference_speed",
+    "edge.exponent",
+    "edge.closing_speed",
+    "edge.closing_exponent",
+    "edge.highest_ratio",
+    "edge.relaxation_time",
     "path.control",
     "path.control.stiffness",
     "path.start_contact_radius",
@@ -91,6 +108,8 @@ const FIELDS: &[&str] = &[
     "path.end_contact_radius",
     "path.begin",
     "path.contact",
+    "path.rate",
+    "path.steps",
     "path.turn_approach",
     "path.turn_force",
     "path.turn_contact_radius",
@@ -117,7 +136,18 @@ const FIELDS: &[&str] = &[
 #[test]
 fn the_table_is_total() {
     // Taken apart without `..`: a new field stops this test from compiling until it has a row below.
-    let Preset { title: _, units: _, material, gap, basis, path, data, files: _ } = wavy();
+    let Preset { title: _, units: _, material, gap, basis, path, edge, data, files: _ } = wavy();
+    let EdgeSpec {
+        closing_work_of_adhesion: _,
+        reference_speed: _,
+        exponent: _,
+        closing_speed: _,
+        closing_exponent: _,
+        highest_ratio: _,
+        relaxation_time: _,
+        rate: _,
+        steps: _,
+    } = edge;
     let DataSpec {
         source: _,
         columns: _,
@@ -133,7 +163,7 @@ fn the_table_is_total() {
         turned: _,
         skip: _,
     } = data;
-    let Material { effective_modulus: _, work_of_adhesion: _, range_of_action: _ } = material;
+    let Material { effective_modulus: _, work_of_adhesion: _, range_of_action: _, adhesion: _ } = material;
     match basis {
         BasisSpec::Rings { rings: _, grading: _ } | BasisSpec::Exact => {}
     }
@@ -172,6 +202,17 @@ fn the_table_is_total() {
         }
         if row.fits("units", "SI") && !row.fits("units", "reduced") {
             preset.set("units", "SI".into()).unwrap();
+        }
+        // Ring elements know no range.
+        if row.key == ADHESION || matches!(row.applies, Applies::With { key: ADHESION, .. }) {
+            preset.set("basis.kind", "exact".into()).unwrap();
+        }
+        if let Applies::With { key: ADHESION, words: ["capillary"] } = row.applies {
+            let liquid =
+                [(ADHESION, "capillary".into()), (LIQUID_KEYS[0], 0.5.into()), (LIQUID_KEYS[1], 0.1.into())];
+            preset.set_all(liquid).unwrap();
+        } else {
+            preset.set("material.range_of_action", 0.1.into()).unwrap();
         }
         preset.set(&row.key, value.clone()).unwrap();
         assert_eq!(preset.get(&row.key), Some(value), "{}", row.key);

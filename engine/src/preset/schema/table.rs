@@ -1,16 +1,22 @@
 //! The rows of the table of parameters.
 
 use super::{
-    Applies, CHOOSERS, COEFFICIENT, DISPLAY, EXACT, FORMAT, Fallback, Kind, NONE, Parameter, START_KEYS,
-    SYSTEMS, TURN_KEYS,
+    ADHESION, Applies, CHOOSERS, COEFFICIENT, DISPLAY, EXACT, FORMAT, Fallback, Kind, LIQUID_KEYS, NONE,
+    Parameter, RANGE_KEYS, START_KEYS, SYSTEMS, TURN_KEYS, WORK_OF_ADHESION,
 };
-use crate::preset::data;
-use crate::problem::{Begin, ContactKind};
+use crate::preset::{data, edge};
+use crate::problem::{Adhesion, Begin, ContactKind};
 use crate::units::Quantity;
 use std::borrow::Cow::Borrowed;
 
+/// The dimension of speeds.
+const SPEED: (&str, Quantity) = ("length / time", Quantity::Speed);
+
 /// Where a loop turns when no key says it.
 const TURN: &str = "at the contact radius at which the unloading starts";
+
+/// How far a tension reaches when no key says it.
+const RANGE: &str = "h_c = 0.97 z0, and gamma/h_c";
 
 /// The row of a pure number, a count, a text or a choice: required, in every preset.
 pub(in crate::preset) const fn row(
@@ -100,19 +106,65 @@ pub static PARAMETERS: &[Parameter] = &[
         ("stress", Quantity::Stress),
     ),
     measured(
-        "material.work_of_adhesion",
+        WORK_OF_ADHESION,
         "gamma",
         "work of adhesion: twice a face's surface energy",
         Kind::NonNegative,
         ("stress x length", Quantity::EnergyPerArea),
-    ),
+    )
+    .only(Applies::With { key: ADHESION, words: &[Adhesion::NAMES[0], Adhesion::NAMES[1]] }),
+    measured(
+        edge::CLOSING_ADHESION,
+        "gamma_a",
+        "work of adhesion that a closing edge gains, at most that which an opening one costs",
+        Kind::Positive,
+        ("stress x length", Quantity::EnergyPerArea),
+    )
+    .or(Fallback::Described("the work of adhesion")),
     length(
         "material.range_of_action",
         "z0",
-        "range of action of the adhesion, for Tabor's number alone",
+        "range of action of the adhesion, for Tabor's number, and for the range of a tension where nothing else says it",
         Kind::Positive,
     )
     .or(Fallback::Described("0.3 nm in SI; in reduced units none, and no Tabor number")),
+    row(
+        ADHESION,
+        "adhesion",
+        "short-range: at the edge of contact; dugdale: a constant tension within a range; capillary: a liquid bridge",
+        Kind::Choice(&Adhesion::NAMES),
+    )
+    .or(Fallback::Text(Adhesion::NAMES[0])),
+    measured(
+        RANGE_KEYS[0],
+        "sigma0",
+        "tension between the bodies within the range gamma/sigma0 of the adhesion",
+        Kind::Positive,
+        ("stress", Quantity::Stress),
+    )
+    .or(Fallback::Described(RANGE))
+    .only(Applies::With { key: ADHESION, words: &[Adhesion::NAMES[1]] }),
+    length(RANGE_KEYS[1], "h_c", "range of a constant tension gamma/h_c between the bodies", Kind::Positive)
+        .or(Fallback::Described(RANGE))
+        .only(Applies::With { key: ADHESION, words: &[Adhesion::NAMES[1]] }),
+    measured(
+        LIQUID_KEYS[0],
+        "gamma_L",
+        "surface tension of the liquid; the work of adhesion is 2 gamma_L cos theta",
+        Kind::Positive,
+        ("stress x length", Quantity::EnergyPerArea),
+    )
+    .only(Applies::With { key: ADHESION, words: &[Adhesion::NAMES[2]] }),
+    length(LIQUID_KEYS[1], "r_K", "Kelvin radius: that of the meniscus at the humidity there is", Kind::Positive)
+        .only(Applies::With { key: ADHESION, words: &[Adhesion::NAMES[2]] }),
+    row(
+        LIQUID_KEYS[2],
+        "theta",
+        "angle at which the liquid meets the bodies, in degrees",
+        Kind::Between { min: 0.0, max: 89.9 },
+    )
+    .or(Fallback::Number(0.0))
+    .only(Applies::With { key: ADHESION, words: &[Adhesion::NAMES[2]] }),
     row(
         "gap.shape",
         "gap",
@@ -205,6 +257,45 @@ pub static PARAMETERS: &[Parameter] = &[
     )
     .or(Fallback::Text("uniform"))
     .of_basis(&["rings"]),
+    measured(
+        edge::REFERENCE_SPEED,
+        "v0",
+        "speed v0 at which an opening edge costs twice the work of adhesion",
+        Kind::Positive,
+        SPEED,
+    )
+    .or(Fallback::Described("1 in reduced units; none in SI, and no pull at a rate")),
+    row(
+        edge::EXPONENT,
+        "n edge",
+        "exponent n of the law G = gamma (1 + (v/v0)^n) of an opening edge",
+        Kind::Between { min: 0.05, max: 2.0 },
+    )
+    .or(Fallback::Described("none: the edge has no speed of its own, and every path is quasi-static")),
+    measured(edge::CLOSING_SPEED, "v_a", "the same speed of a closing edge", Kind::Positive, SPEED)
+        .or(Fallback::Described("that of an opening edge")),
+    row(
+        edge::CLOSING_EXPONENT,
+        "m edge",
+        "exponent m of a closing edge, G = gamma_a/(1 + (v/v_a)^m)",
+        Kind::Between { min: 0.05, max: 2.0 },
+    )
+    .or(Fallback::Described("that of an opening edge")),
+    row(
+        edge::HIGHEST_RATIO,
+        "G/gamma max",
+        "largest G/gamma that the bodies can have, the ratio of their moduli; beyond it a pull warns",
+        Kind::Positive,
+    )
+    .or(Fallback::Described("none: no bound is known")),
+    measured(
+        edge::RELAXATION_TIME,
+        "tau",
+        "longest relaxation time of the bodies; a pull warns where they would not be relaxed",
+        Kind::Positive,
+        ("time", Quantity::Time),
+    )
+    .or(Fallback::Described("none: the bodies are taken as relaxed")),
     row("path.control", "control", "what the loading device prescribes", Kind::Control)
         .or(Fallback::Text("displacement")),
     measured(
@@ -244,6 +335,21 @@ pub static PARAMETERS: &[Parameter] = &[
         Kind::Choice(&ContactKind::NAMES),
     )
     .or(Fallback::Text(ContactKind::NAMES[0])),
+    measured(
+        edge::RATE,
+        "rate",
+        "rate at which a pull moves what is controlled, until the bodies are apart",
+        Kind::Positive,
+        ("length / time", Quantity::Speed),
+    )
+    .or(Fallback::Described("none: it is to be slow")),
+    row(
+        edge::STEPS,
+        "steps",
+        "what a pull does instead, one after the other: to 0.1 mm at 1 um/s; hold 60 s; apart at 10 um/s",
+        Kind::Text { max_chars: 500 },
+    )
+    .or(Fallback::Text("")),
     length(
         TURN_KEYS[0],
         "delta turn",

@@ -22,6 +22,7 @@ fn keys_and_labels_are_unique_ascii_and_grouped() {
             "material",
             "gap",
             "basis",
+            "edge",
             "path",
             "path.control",
             "data",

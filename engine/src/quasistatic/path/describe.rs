@@ -1,6 +1,6 @@
 //! Errors and warnings of a path in the user's units and in words.
 
-use super::error::{PathError, Warning};
+use super::error::{PathError, Warning, beyond_zone};
 use crate::annuli::{AnnuliError, ContactsError};
 use crate::problem::{Control, Units};
 use crate::units::number::said;
@@ -50,6 +50,13 @@ impl PathError {
                 Self::RadiusBeyondGap { radius: radius * length, known: known * length }
             }
             Self::TooMany { error, approach } => Self::TooMany { error, approach: approach * length },
+            Self::BeyondZone { kind, radius, approach, force } => Self::BeyondZone {
+                kind,
+                radius: radius * length,
+                approach: approach * length,
+                force: force * units.force,
+            },
+            Self::Unseen { radius } => Self::Unseen { radius: radius * length },
             Self::NeverTouches { searched } => Self::NeverTouches { searched: searched * length },
             Self::State(error) => Self::State(error.in_lengths(length)),
             Self::NoLanding { control_value, steps } => {
@@ -115,6 +122,13 @@ impl PathError {
             Self::TooMany { ref error, approach } => {
                 format!("{error}, at the approach {}: turn before", length(approach))
             }
+            Self::BeyondZone { kind, radius, approach, force: load } => format!(
+                "at the approach {} and the force {} {}",
+                length(approach),
+                force(load),
+                beyond_zone(kind, &length(radius))
+            ),
+            Self::Unseen { radius } => format!("what lies up to r = {} is not known", length(radius)),
             Self::NeverTouches { searched } => {
                 format!("the gap has no least value up to r = {}: the bodies never touch", length(searched))
             }

@@ -3,6 +3,7 @@
 use crate::annuli::AnnuliError;
 use crate::disc::TableError;
 use crate::problem::Control;
+use crate::zone::FaultKind;
 
 /// Why there is no path. All numbers are in reduced units.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -68,6 +69,24 @@ pub enum PathError {
     /// The turn is no number, or is none of this kind.
     #[error("a turn at {0} is none")]
     BadTurn(f64),
+    /// A state of adhesion with a range is not one disc in one zone.
+    #[error("at the approach {approach} and the force {force} {}", beyond_zone(*kind, &radius.to_string()))]
+    BeyondZone {
+        /// What else there is; `None` where one disc in one zone has no equilibrium.
+        kind: Option<FaultKind>,
+        /// Where, a length: the edge of the zone where it has no equilibrium.
+        radius: f64,
+        /// δ.
+        approach: f64,
+        /// P.
+        force: f64,
+    },
+    /// The table ends before what may come within range.
+    #[error("what lies up to r = {radius} is not known")]
+    Unseen {
+        /// How far it must be known, a length.
+        radius: f64,
+    },
     /// A state could not be computed.
     #[error(transparent)]
     State(#[from] AnnuliError),
@@ -99,6 +118,18 @@ pub enum PathError {
     /// It was no longer wanted.
     #[error("cancelled")]
     Cancelled,
+}
+
+/// What ends a path of one disc in one zone.
+pub(super) fn beyond_zone(kind: Option<FaultKind>, radius: &str) -> String {
+    let what = kind.map_or_else(
+        || format!("no zone that ends at r = {radius} or a little beyond holds one disc of contact"),
+        |kind| kind.words(radius),
+    );
+    format!(
+        "{what}: adhesion with a range is computed for one disc of contact in one zone alone; a larger \
+         material.cohesive_strength, or less of a gap, keeps it so"
+    )
 }
 
 impl From<TableError> for PathError {

@@ -1,7 +1,7 @@
 //! What happens on a path, and its states.
 
 use super::balance::Held;
-use crate::disc::{Local, Place, Solution};
+use crate::disc::{Edges, Local, Place, Solution};
 use crate::problem::Control;
 use crate::quasistatic::State;
 use crate::quasistatic::energy::{self, Losses};
@@ -37,8 +37,10 @@ impl Direction {
 /// One state of a path, in reduced units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathState {
-    /// The outermost edge, a length.
+    /// The outermost edge of contact, a length; 0 where a zone holds the bodies without contact.
     pub contact_radius: f64,
+    /// c, the outer edge of the zone of adhesion with a range, a length; `None` of adhesion without one.
+    pub zone: Option<f64>,
     /// δ, a length.
     pub approach: f64,
     /// P, a force.
@@ -67,6 +69,7 @@ impl PathState {
         let contacts = &held.state.contacts;
         Self {
             contact_radius: contacts.outermost(),
+            zone: None,
             approach: held.approach,
             force: held.force,
             energy: held.state.energy(held.approach, gamma),
@@ -82,13 +85,15 @@ impl PathState {
 
     /// The state of one disc at a place of its equilibria, under a device.
     pub fn of_disc(solution: &dyn Solution, place: Place, control: Control, direction: Direction) -> Self {
-        let Local { contact_radius: s, approach, force, .. } = solution.at(place);
+        let Local { approach, force, .. } = solution.at(place);
+        let Edges { contact_radius: s, zone } = solution.edges(place);
         Self {
             contact_radius: s,
+            zone,
             approach,
             force,
             energy: solution.energy(place),
-            contacts: vec![[0.0, s]],
+            contacts: if s > 0.0 || zone.is_none() { vec![[0.0, s]] } else { Vec::new() },
             contact_area: PI * s * s,
             held_stiffness: 2.0 * s,
             stable: true,
@@ -127,7 +132,9 @@ impl PathState {
 /// What happened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EventKind {
-    /// The bodies, apart before, touch and jump into contact.
+    /// The bodies, out of range of each other before, come within range and jump into a zone.
+    JumpIn,
+    /// The bodies, without contact before, touch and jump into contact; in a zone they may touch without a jump.
     FirstTouch,
     /// A crest outside the contacts touches; with adhesion edges run then.
     Touch,
@@ -137,8 +144,10 @@ pub enum EventKind {
     SnapIn,
     /// Edges run inward from a limit point of the control.
     Snap,
-    /// The bodies come apart.
+    /// The contact ends: the bodies come apart, or a zone alone holds them.
     LastContact,
+    /// The zone ends, with its contact where it has one: the bodies come apart.
+    SnapOff,
     /// One contact becomes two without a jump.
     Split,
     /// A contact shrinks to nothing without a jump.
@@ -149,13 +158,15 @@ pub enum EventKind {
 
 impl EventKind {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
+        Self::JumpIn,
         Self::FirstTouch,
         Self::Touch,
         Self::Merge,
         Self::SnapIn,
         Self::Snap,
         Self::LastContact,
+        Self::SnapOff,
         Self::Split,
         Self::Vanish,
         Self::Turn,
@@ -164,12 +175,14 @@ impl EventKind {
     /// Its name in results.
     pub fn name(self) -> &'static str {
         match self {
+            Self::JumpIn => "jump-in",
             Self::FirstTouch => "first-touch",
             Self::Touch => "touch",
             Self::Merge => "merge",
             Self::SnapIn => "snap-in",
             Self::Snap => "snap",
             Self::LastContact => "last-contact",
+            Self::SnapOff => "snap-off",
             Self::Split => "split",
             Self::Vanish => "vanish",
             Self::Turn => "turn",
@@ -178,7 +191,7 @@ impl EventKind {
 
     /// Whether it begins at a limit point of the control, from which edges run.
     pub fn begins_at_limit(self) -> bool {
-        matches!(self, Self::SnapIn | Self::Snap | Self::LastContact)
+        matches!(self, Self::SnapIn | Self::Snap | Self::LastContact | Self::SnapOff)
     }
 }
 
@@ -237,6 +250,12 @@ pub struct Event {
 }
 
 impl Event {
+    /// Whether the bodies, held by contact or a zone before, are apart after it.
+    #[must_use]
+    pub fn separates(&self) -> bool {
+        matches!(self.kind, EventKind::LastContact | EventKind::SnapOff) && self.after.is_none()
+    }
+
     /// The jump of one disc at a limit point, at a held control, to where its edge lands; the last contact where it lands nowhere.
     pub fn of_disc(
         solution: &dyn Solution,
@@ -251,7 +270,14 @@ impl Event {
         let (old, after) = (PathState { stable: false, ..state(before) }, landing.map(state));
         Self {
             kind: match (&after, outward) {
+                (None, _) if old.zone.is_some() => EventKind::SnapOff,
                 (None, _) => EventKind::LastContact,
+                (Some(after), true) if old.contacts.is_empty() && !after.contacts.is_empty() => {
+                    EventKind::FirstTouch
+                }
+                (Some(after), false) if after.contacts.is_empty() && !old.contacts.is_empty() => {
+                    EventKind::LastContact
+                }
                 (Some(_), true) => EventKind::SnapIn,
                 (Some(_), false) => EventKind::Snap,
             },

@@ -39,7 +39,8 @@ impl Lane {
         Self::on(&curve.solution, control, &|of| curve.monotone(of))
     }
 
-    fn on(
+    /// Those of a solution, with its stretches by control.
+    pub(super) fn on(
         solution: &Arc<dyn Solution>,
         control: Control,
         monotone: &dyn Fn(Control) -> Arc<Monotone>,
@@ -103,10 +104,33 @@ impl Lane {
         energy::area(&*self.solution, control, from, None)
     }
 
+    /// The first place between two on a stable stretch of zones at which contact has the radius `s`; `None` where it has not.
+    fn reaches(&self, s: f64, [from, to]: [Place; 2]) -> Option<Place> {
+        /// Halvings of the edge of the zone.
+        const HALVINGS: usize = 60;
+        let contact = |place: Place| self.solution.edges(place).contact_radius;
+        if contact(from) >= s {
+            return Some(from);
+        }
+        if contact(to) < s {
+            return None;
+        }
+        let [mut lo, mut hi] = [from, to].map(|place| self.solution.at(place).contact_radius);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (lo + hi);
+            let reached = self.solution.place(middle).is_none_or(|place| contact(place) >= s);
+            if reached { hi = middle } else { lo = middle }
+        }
+        self.solution.place(hi)
+    }
+
     /// The first place between two on a stable stretch at which `turn` is reached; `None` where it is not.
     pub fn turns(&self, turn: Turn, [from, to]: [Place; 2]) -> Option<Place> {
         let [inner, outer] = [from, to].map(|place| self.solution.at(place).contact_radius);
         let measure = match turn {
+            Turn::Radius(radius) if self.solution.edges(from).zone.is_some() => {
+                return self.reaches(radius, [from, to]);
+            }
             Turn::Radius(radius) => {
                 return (radius <= outer).then(|| self.solution.place(radius.max(inner)).unwrap_or(to));
             }

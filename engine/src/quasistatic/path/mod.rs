@@ -27,6 +27,7 @@
 //! | `unload` | the way down from a disc |
 //! | `follow` | the stable stretches between events |
 //! | `area` | losses a second time |
+//! | [`zone`] | paths of adhesion with a range |
 //! | `zero` | the loop without adhesion |
 
 mod area;
@@ -44,6 +45,7 @@ mod record;
 pub mod setting;
 mod unload;
 mod zero;
+pub mod zone;
 
 pub use super::energy::Losses;
 pub use balance::{Balance, Held, NotFound};
@@ -55,3 +57,4 @@ pub use lane::Lane;
 pub use point::{Point, Step};
 pub use setting::{Asked, Path, PathStop, Setting, Totals, TurnReached, WhyNot};
 pub use unload::unload;
+pub use zone::{Zones, cycle_in_zone, start_in_zone, unload_in_zone};

@@ -21,6 +21,9 @@ const AGREE: f64 = 1e-6;
 /// Digits below which a path warns.
 const DIGITS: f64 = 9.0;
 
+/// The smallest radius of a state that is not asked for, as a share of the largest.
+const SMALLEST: f64 = 1e-6;
+
 /// States of one disc between two questions.
 const TOGETHER: usize = 256;
 
@@ -78,14 +81,34 @@ impl<'a> Record<'a> {
     ///
     /// # Errors
     /// [`PathError::Cancelled`].
-    pub fn along(&mut self, lane: &Lane, [from, to]: [Place; 2]) -> Result<(), PathError> {
+    pub fn along(&mut self, lane: &Lane, [mut from, to]: [Place; 2]) -> Result<(), PathError> {
+        let radius = |place: Place| lane.solution.at(place).contact_radius;
+        let is_inward = radius(to) < radius(from);
+        let (lo, hi) = (radius(from).min(radius(to)), radius(from).max(radius(to)));
+        let mut touches = lane.solution.touches().to_vec();
+        touches.retain(|place| lo < radius(*place) && radius(*place) < hi);
+        if is_inward {
+            touches.reverse();
+        }
+        for at in touches {
+            self.along_smooth(lane, [from, at])?;
+            let state = self.disc(lane, at);
+            let kind = if is_inward { EventKind::LastContact } else { EventKind::FirstTouch };
+            self.continuous(kind, Some(0.0), [Some(state.clone()), Some(state)]);
+            from = at;
+        }
+        self.along_smooth(lane, [from, to])
+    }
+
+    /// The same where contact neither begins nor ends in between.
+    fn along_smooth(&mut self, lane: &Lane, [from, to]: [Place; 2]) -> Result<(), PathError> {
         let solution = &*lane.solution;
         let order = |place: Place| (place.panel, place.x);
         let is_inward = order(to) <= order(from);
         let (inner, outer) = if is_inward { (to, from) } else { (from, to) };
         let [lo, hi] = [inner, outer].map(|place| solution.at(place).contact_radius);
         // The smallest force of a path is that of a state of it.
-        let mut between: Vec<(f64, Place)> = places(solution, hi, lo, self.detail)
+        let mut between: Vec<(f64, Place)> = places(solution, hi, lo.max(SMALLEST * hi), self.detail)
             .into_iter()
             .chain(lane.extremes.iter().copied())
             .map(|place| (solution.at(place).contact_radius, place))
@@ -216,7 +239,7 @@ impl<'a> Record<'a> {
         stop: PathStop,
     ) -> Path {
         let control = self.control;
-        let ends_apart = self.events.last().is_some_and(|event| event.kind == EventKind::LastContact);
+        let ends_apart = self.events.last().is_some_and(Event::separates);
         let before = &self.events[..self.events.len() - usize::from(ends_apart)];
         let before_last: f64 = before.iter().filter_map(|event| event.dissipated).fold(0.0, |a, b| a + b);
         let total = self.lost();

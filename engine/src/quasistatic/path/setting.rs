@@ -178,9 +178,21 @@ impl Path {
         self.states.iter().min_by(|a, b| a.approach.total_cmp(&b.approach))
     }
 
-    /// How the bodies came apart.
+    /// How the contact ended: with it the bodies came apart, or a zone alone held them on.
     pub fn last_contact(&self) -> Option<&Event> {
-        self.events.last().filter(|event| event.kind == EventKind::LastContact)
+        let held = |state: &Option<PathState>| state.as_ref().is_some_and(|state| !state.contacts.is_empty());
+        let ends = |event: &&Event| match event.kind {
+            EventKind::LastContact => true,
+            EventKind::SnapOff => held(&event.before),
+            _ => false,
+        };
+        let last = self.events.iter().rev().find(ends)?;
+        self.separation().is_some().then_some(last)
+    }
+
+    /// How the bodies came apart.
+    pub fn separation(&self) -> Option<&Event> {
+        self.events.last().filter(|event| event.separates())
     }
 
     /// The losses that are defined.

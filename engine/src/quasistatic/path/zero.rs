@@ -32,6 +32,7 @@ impl Course<'_, '_> {
     pub(super) fn without_adhesion(mut self, crest: Crest, turn: Turn) -> Result<Path, PathError> {
         let apart = PathState {
             contact_radius: crest.radius,
+            zone: None,
             approach: crest.gap,
             force: 0.0,
             energy: 0.0,

@@ -1,0 +1,96 @@
+//! How long a disc bears a dead load: no equation of motion is needed, for the force is held.
+//!
+//! ```text
+//! t = ∫₀^{s₀} ds/v(s)      v = v₀ (G/γ − 1)^{1/n}      G at the radius s under the force P
+//! ```
+//!
+//! Where an equilibrium bears the load the edge stops there, and the bodies never come apart. With n = 1/2 and more this is Barquins'
+//! time to failure.
+
+use super::caps::Folds;
+use super::equation::{Edge, Held};
+use super::error::RateError;
+use super::law::Motion;
+use crate::disc::Panels;
+use crate::problem::Control;
+use crate::quasistatic::monotone::Turn;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// The relative error of the time.
+const TOLERANCE: f64 = 1e-10;
+/// Halvings of an interval, and intervals in all: a bottleneck is as narrow as the load is near to being borne.
+const DEEPEST: u32 = 60;
+const INTERVALS: usize = 200_000;
+/// The edge is gone at this share of the radius at which it starts; it passes the rest in no time.
+const GONE: f64 = 1e-9;
+
+/// The time, in units of the length over v₀, until the bodies are apart, from the radius `start` under the dead load `force`, a negative
+/// one for a pull; `None` where an equilibrium bears it. Reduced units.
+///
+/// # Errors
+/// [`RateError::NoAdhesion`]; [`RateError::Lost`] where the load is so nearly borne that the time cannot be resolved.
+pub fn time_to_failure(
+    panels: &Arc<Panels>,
+    edge: &Edge,
+    start: f64,
+    force: f64,
+) -> Result<Option<f64>, RateError> {
+    if edge.opening <= 0.0 {
+        return Err(RateError::NoAdhesion);
+    }
+    let folds = Folds::new(panels, edge, Motion::Opening, Control::Force);
+    let inside = folds.list.iter().map(|fold| fold.limit).filter(|limit| limit.contact_radius < start);
+    let least = inside.clone().filter(|limit| limit.turn == Turn::Minimum).map(|limit| limit.force);
+    let borne = least.fold(Held::equilibrium(panels, Control::Force, edge.opening, start).min(0.0), f64::min);
+    if force >= borne {
+        return Ok(None);
+    }
+    let branch = edge.law.of(Motion::Opening);
+    let slowness = |s: f64| {
+        let held = Held::new(panels, Control::Force, s, force);
+        let root = (TAU * edge.opening * s).sqrt();
+        1.0 / branch.speed((held.opening - root) * (held.opening + root) / (root * root))[0]
+    };
+    let mut borders: Vec<f64> =
+        [GONE * start, start].into_iter().chain(inside.map(|limit| limit.contact_radius)).collect();
+    borders.sort_by(f64::total_cmp);
+    let mut sum = 0.0;
+    for pair in borders.windows(2) {
+        sum += integral(&slowness, [pair[0], pair[1]]).ok_or(RateError::Lost { contact_radius: pair[0] })?;
+    }
+    Ok(Some(sum))
+}
+
+/// ∫f over an interval by Simpson's rule, halved until it settles.
+fn integral(f: &dyn Fn(f64) -> f64, [from, to]: [f64; 2]) -> Option<f64> {
+    /// An interval: its ends and its middle with the values there, and how often it was halved.
+    struct Part([f64; 3], [f64; 3], u32);
+    let part = |a: f64, b: f64, fa: f64, fb: f64, depth| {
+        let middle = f64::midpoint(a, b);
+        Part([a, middle, b], [fa, f(middle), fb], depth)
+    };
+    let simpson = |Part([a, _, b], [fa, fm, fb], _): &Part| (b - a) / 6.0 * (fa + 4.0 * fm + fb);
+    let mut open = vec![part(from, to, f(from), f(to), 0)];
+    let mut sum = 0.0;
+    let mut seen = 0;
+    // What is summed so far and what is still open tell the size of the whole.
+    let mut size = simpson(&open[0]).abs();
+    while let Some(whole) = open.pop() {
+        seen += 1;
+        let Part([a, middle, b], [fa, fm, fb], depth) = whole;
+        let halves = [part(a, middle, fa, fm, depth + 1), part(middle, b, fm, fb, depth + 1)];
+        let (coarse, fine) = (simpson(&whole), simpson(&halves[0]) + simpson(&halves[1]));
+        if !fine.is_finite() || seen > INTERVALS {
+            return None;
+        }
+        size = size.max(sum + fine.abs());
+        let share = TOLERANCE * size * ((b - a) / (to - from)).sqrt();
+        if depth > 4 && (fine - coarse).abs() <= 15.0 * share || depth >= DEEPEST {
+            sum += fine + (fine - coarse) / 15.0;
+        } else {
+            open.extend(halves);
+        }
+    }
+    Some(sum)
+}

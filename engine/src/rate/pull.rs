@@ -1,0 +1,367 @@
+//! A pull: a programme of ramps and holds, carried out on one disc.
+//!
+//! At every moment the edge opens (G > γ), rests (`γ_a` ≤ G ≤ γ) or closes (G < `γ_a`). While it rests δ and P move along the straight
+//! line dP/dδ = 2E*s. What the device does is on every way
+//!
+//! ```text
+//! ∫ (dΠ/dc) dc = ΔΠ + γ (area lost) − γ_a (area gained) + dissipated,      Π: elastic, of bodies and device
+//! ```
+//!
+//! of which the left side and the dissipation are sums over the steps, and the others are read from the table: the balance.
+
+use super::caps::{Caps, Folds};
+use super::equation::{Edge, Equation, Held};
+use super::error::RateError;
+use super::law::Motion;
+use super::record::{Least, Moment, Record};
+use super::settings::Settings;
+use super::snaps::{Snap, snaps};
+use super::stretch::{End, Stretch};
+use crate::disc::{Panels, Table, TableError};
+use crate::problem::{Control, Part};
+use crate::progress::Progress;
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// A drive below this is that of equilibrium.
+const EQUILIBRIUM: f64 = 1e-11;
+/// Changes between opening, rest and closing within one part of a programme.
+const CHANGES: usize = 1000;
+/// A time this near to the end of a part, of its duration, is the end.
+const OVER: f64 = 1e-13;
+/// How far beyond the start the table may have to go, as so many factors of [`WIDER`].
+const WIDENINGS: usize = 60;
+const WIDER: f64 = 1.3;
+
+/// What is pulled.
+#[derive(Debug)]
+pub struct Puller<'a> {
+    /// The gap.
+    pub table: &'a Table,
+    /// The device.
+    pub control: Control,
+    /// The law and both works of adhesion.
+    pub edge: Edge,
+    /// The contact radius at the start, in equilibrium under the work of adhesion that a closing edge gains.
+    pub start: f64,
+    /// The length of the gap's structure, where it is known.
+    pub wave: Option<f64>,
+    /// A least force counts as a peak of tension where the force rises by more than this after it; none means 1 % of the largest pull.
+    pub rise: Option<f64>,
+    /// The integrator.
+    pub settings: Settings,
+}
+
+/// A pull, in reduced units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pull {
+    /// The first moment.
+    pub start: Moment,
+    /// The moment at which the edge first opens; `None` where it never does.
+    pub pinned_until: Option<Moment>,
+    /// The least force on the way.
+    pub peak: Moment,
+    /// The least forces before which the force falls, and after which it rises, by more than the rise asked for.
+    pub tension_peaks: Vec<Moment>,
+    /// The snaps, in order.
+    pub snaps: Vec<Snap>,
+    /// The moment at which the bodies are apart; `None` where the programme ends before.
+    pub last_contact: Option<Moment>,
+    /// All that the edge dissipated; `None` where a dead load falls for ever.
+    pub dissipated: Option<f64>,
+    /// What is missing in the balance of work and energy, over the work.
+    pub balance: f64,
+    /// Moments in order.
+    pub moments: Vec<Moment>,
+    /// Where the edge closed: the largest contact it closed to, with its approach.
+    pub closed_to: Option<[f64; 2]>,
+    /// How far G still was from equilibrium at the end of each hold, as |G/γ − 1|.
+    pub holds: Vec<f64>,
+    /// Steps of the integrator.
+    pub steps: usize,
+}
+
+/// The state of a pull that goes on.
+struct Going<'a> {
+    puller: &'a Puller<'a>,
+    panels: Arc<Panels>,
+    folds: [Option<Folds>; 2],
+    record: Record,
+    snaps: Vec<Snap>,
+    s: f64,
+    t: f64,
+    c: f64,
+    /// γ (area lost) − `γ_a` (area gained).
+    adhesion: f64,
+    pinned_until: Option<Moment>,
+    closed_to: Option<[f64; 2]>,
+    is_apart: bool,
+}
+
+/// The way of the control in one part.
+#[derive(Clone, Copy)]
+struct Way {
+    rate: f64,
+    until: Option<f64>,
+    duration: f64,
+}
+
+impl Puller<'_> {
+    /// Carries out a programme.
+    ///
+    /// # Errors
+    /// [`RateError`].
+    pub fn pull(&self, programme: &[Part], progress: &dyn Progress) -> Result<Pull, RateError> {
+        if self.edge.closing <= 0.0 {
+            return Err(RateError::NoAdhesion);
+        }
+        let panels = self.panels(programme, progress)?;
+        let s = self.start;
+        let c = Held::equilibrium(&panels, self.control, self.edge.closing, s);
+        let mut going = Going {
+            puller: self,
+            panels,
+            folds: [None, None],
+            record: Record::default(),
+            snaps: Vec::new(),
+            s,
+            t: 0.0,
+            c,
+            adhesion: 0.0,
+            pinned_until: None,
+            closed_to: None,
+            is_apart: false,
+        };
+        let start = going.resting(0.0);
+        let elastic = Held::new(&going.panels, self.control, s, c).potential(&going.panels, self.control);
+        going.record.add(start, 0.0);
+        let mut holds = Vec::new();
+        for part in programme {
+            going.part(*part, progress)?;
+            if going.is_apart {
+                break;
+            }
+            if let Part::Hold { .. } = part {
+                let held = Held::new(&going.panels, self.control, going.s, going.c);
+                let ratio = held.energy_release_rate() / self.edge.opening;
+                let below = (self.edge.closing / self.edge.opening - ratio).max(0.0);
+                holds.push((ratio - 1.0).max(below));
+            }
+        }
+        Ok(going.finished(start, elastic, holds))
+    }
+
+    /// The table as far as the contact can grow.
+    fn panels(&self, programme: &[Part], progress: &dyn Progress) -> Result<Arc<Panels>, RateError> {
+        let up_to = |reach: f64| {
+            self.table.up_to_while(reach, 0, progress).map_err(|error| match error {
+                TableError::Cancelled => RateError::Cancelled,
+                TableError::TooFine(refused) => RateError::Beyond { radius: refused.radius },
+            })
+        };
+        let highest = programme.iter().filter_map(|part| match part {
+            Part::Ramp { to, .. } => Some(*to),
+            Part::Apart { .. } | Part::Hold { .. } => None,
+        });
+        let highest = highest.fold(f64::NEG_INFINITY, f64::max);
+        let mut reach = self.start;
+        for _ in 0..WIDENINGS {
+            let panels = up_to(reach)?;
+            if Held::equilibrium(&panels, self.control, self.edge.closing, reach) >= highest {
+                return Ok(panels);
+            }
+            let end = self.table.end();
+            if reach >= end {
+                return Err(RateError::Beyond { radius: end });
+            }
+            reach = (WIDER * reach).min(end);
+        }
+        Err(RateError::Beyond { radius: reach })
+    }
+}
+
+impl Going<'_> {
+    fn held(&self) -> Held {
+        Held::new(&self.panels, self.puller.control, self.s, self.c)
+    }
+
+    /// The moment here, with an edge at rest.
+    fn resting(&self, dissipated: f64) -> Moment {
+        let held = self.held();
+        Moment {
+            time: self.t,
+            control: self.c,
+            contact_radius: self.s,
+            approach: held.approach,
+            force: held.force,
+            speed: 0.0,
+            energy_release_rate: held.energy_release_rate(),
+            dissipated,
+        }
+    }
+
+    fn part(&mut self, part: Part, progress: &dyn Progress) -> Result<(), RateError> {
+        let way = match part {
+            Part::Ramp { to, rate } => {
+                let duration = (to - self.c).abs() / rate;
+                Way { rate: rate.copysign(to - self.c), until: Some(self.t + duration), duration }
+            }
+            Part::Apart { rate } => Way { rate: -rate, until: None, duration: 0.0 },
+            Part::Hold { time } => Way { rate: 0.0, until: Some(self.t + time), duration: time },
+        };
+        for _ in 0..CHANGES {
+            if self.is_apart || way.until.is_some_and(|until| until - self.t <= OVER * way.duration) {
+                return Ok(());
+            }
+            match self.motion(way) {
+                Some(motion) => self.moves(motion, way, progress)?,
+                None => self.rests(way),
+            }
+        }
+        Err(RateError::Lost { contact_radius: self.s })
+    }
+
+    /// Which way the edge goes; `None` where it rests.
+    fn motion(&self, way: Way) -> Option<Motion> {
+        let Edge { opening, closing, .. } = self.puller.edge;
+        let offered = self.held().opening;
+        let over = |gamma: f64| {
+            let root = (TAU * gamma * self.s).sqrt();
+            (offered - root) * (offered + root) / (root * root)
+        };
+        let (opens, closes) = (over(opening), -over(closing));
+        let begins = |drive: f64, towards: bool| drive > EQUILIBRIUM || drive.abs() <= EQUILIBRIUM && towards;
+        if begins(opens, way.rate < 0.0) {
+            Some(Motion::Opening)
+        } else if begins(closes, way.rate > 0.0) {
+            Some(Motion::Closing)
+        } else {
+            None
+        }
+    }
+
+    fn moves(&mut self, motion: Motion, way: Way, progress: &dyn Progress) -> Result<(), RateError> {
+        let Puller { control, edge, wave, settings, .. } = self.puller;
+        let slot = usize::from(motion == Motion::Closing);
+        let panels = Arc::clone(&self.panels);
+        let folds = self.folds[slot].get_or_insert_with(|| Folds::new(&panels, edge, motion, *control));
+        let left = way.until.map_or(0.0, |until| until - self.t);
+        let equation =
+            Equation::new(&panels, *control, edge, motion, [self.s, self.t, self.c], way.rate, left);
+        let caps = Caps::new(&panels, folds, way.rate, equation.branch.exponent, *wave, *settings);
+        let level = way.rate.abs() / folds.slope(&panels, edge.adhesion(motion), self.s);
+        let rests = way.rate * motion.sense() <= 0.0 && (motion == Motion::Closing || way.rate >= 0.0);
+        let stretch = Stretch { equation: &equation, caps: &caps, settings, until: way.until, rests };
+        if motion == Motion::Opening && self.pinned_until.is_none() {
+            self.pinned_until = Some(self.resting(self.record.dissipated));
+        }
+        let first = self.record.moments.len();
+        let (at, end) = stretch.follow(&mut self.record, progress)?;
+        let level = if level > 0.0 { level } else { f64::MIN_POSITIVE };
+        self.snaps.extend(snaps(&self.record.moments[first..], level, end == End::Apart));
+        let s = at.held.contact_radius;
+        self.adhesion += edge.adhesion(motion) * PI * (self.s - s) * (self.s + s);
+        if motion == Motion::Closing && self.closed_to.is_none_or(|[largest, _]| s > largest) {
+            self.closed_to = Some([s, at.held.approach]);
+        }
+        (self.s, self.t, self.c) = (s, at.time, at.control);
+        if let (End::Time, Some(until)) = (end, way.until) {
+            self.t = until;
+        }
+        self.is_apart = end == End::Apart;
+        Ok(())
+    }
+
+    /// The control moves, and the edge does not: to where it begins to, or to the end of the part.
+    fn rests(&mut self, way: Way) {
+        let Edge { opening, closing, .. } = self.puller.edge;
+        let control = self.puller.control;
+        let before = self.held();
+        let energy = before.potential(&self.panels, control);
+        let gamma = if way.rate < 0.0 { opening } else { closing };
+        let begins = Held::equilibrium(&self.panels, control, gamma, self.s);
+        let waits = if way.rate == 0.0 { f64::INFINITY } else { ((begins - self.c) / way.rate).max(0.0) };
+        let left = way.until.map_or(f64::INFINITY, |until| until - self.t);
+        let force_rate = 2.0 * self.s * before.by_control * way.rate;
+        self.record.add(self.resting(self.record.dissipated), force_rate);
+        if waits <= left {
+            (self.t, self.c) = (self.t + waits, begins);
+        } else {
+            (self.t, self.c) = (self.t + left, self.c + way.rate * left);
+        }
+        let done = self.held().potential(&self.panels, control) - energy;
+        self.record.work += done;
+        self.record.work_size += done.abs();
+        self.record.add(self.resting(self.record.dissipated), force_rate);
+    }
+
+    fn finished(mut self, start: Moment, elastic: f64, holds: Vec<f64>) -> Pull {
+        let control = self.puller.control;
+        let last = self.held();
+        let stored = last.potential(&self.panels, control);
+        let missing = self.record.work - (stored - elastic) - self.adhesion - self.record.dissipated;
+        let balance = missing.abs() / self.record.work_size.max(f64::MIN_POSITIVE);
+        let mut dissipated = Some(self.record.dissipated);
+        let mut last_contact = None;
+        if self.is_apart {
+            // The rest at held control: all that is stored, less what it costs to part the rest of the area.
+            let rest = stored - self.puller.edge.opening * PI * self.s * self.s;
+            dissipated = (control != Control::Force).then_some(self.record.dissipated + rest);
+            let before = self.record.moments.last().copied().unwrap_or(start);
+            let n = self.puller.edge.law.exponent;
+            // The speed grows as s^{−1/n}, under a dead load still faster.
+            let time = before.time + self.s / before.speed.abs() * n / (n + 1.0);
+            let apart = Moment {
+                time,
+                contact_radius: 0.0,
+                force: if control == Control::Force { before.force } else { 0.0 },
+                dissipated: dissipated.unwrap_or(before.dissipated),
+                ..before
+            };
+            last_contact = Some(apart);
+            if control != Control::Force {
+                self.record.add(apart, 0.0);
+            }
+        }
+        let least = |a: Moment, b: &Moment| if b.force < a.force { *b } else { a };
+        let peak = self.record.moments.iter().fold(start, least);
+        let peak = self.record.least.iter().map(|least| &least.at).fold(peak, least);
+        Pull {
+            start,
+            pinned_until: self.pinned_until,
+            peak,
+            tension_peaks: peaks(&self.record.least, self.puller.rise.unwrap_or(0.01 * peak.force.abs())),
+            snaps: self.snaps,
+            last_contact,
+            dissipated,
+            balance,
+            moments: self.record.moments,
+            closed_to: self.closed_to,
+            holds,
+            steps: self.record.steps,
+        }
+    }
+}
+
+/// The least forces with a fall of more than `rise` before and a rise of more than that after: a dip that is shallower on either side is
+/// part of its neighbour.
+fn peaks(least: &[Least], rise: f64) -> Vec<Moment> {
+    let mut found = Vec::new();
+    let mut candidate: Option<Moment> = None;
+    let mut highest = f64::INFINITY;
+    for Least { at, then } in least {
+        candidate = match candidate {
+            None if highest - at.force <= rise => {
+                highest = highest.max(*then);
+                continue;
+            }
+            Some(known) if known.force < at.force => Some(known),
+            _ => Some(*at),
+        };
+        if let Some(lowest) = candidate.filter(|lowest| then - lowest.force > rise) {
+            found.push(lowest);
+            (candidate, highest) = (None, *then);
+        }
+    }
+    found
+}

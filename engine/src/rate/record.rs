@@ -1,0 +1,117 @@
+//! What is kept of a pull: its moments, sums and least forces.
+
+use super::equation::At;
+use super::law::Motion;
+use super::radau::{NODES, STAGES};
+use super::step::Step;
+use super::stretch::landed;
+
+/// One moment of a pull, in reduced units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moment {
+    /// t, in units of the length over v₀.
+    pub time: f64,
+    /// c: δ, P or Δ.
+    pub control: f64,
+    /// s.
+    pub contact_radius: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// −ds/dt, in units of v₀: positive where the edge opens.
+    pub speed: f64,
+    /// G.
+    pub energy_release_rate: f64,
+    /// What the edge has dissipated so far.
+    pub dissipated: f64,
+}
+
+/// A least force of a pull, and what the force rises to before the next one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Least {
+    /// Where it is.
+    pub at: Moment,
+    /// The largest force after it.
+    pub then: f64,
+}
+
+/// What is kept on the way.
+#[derive(Debug, Clone, Default)]
+pub struct Record {
+    pub moments: Vec<Moment>,
+    pub least: Vec<Least>,
+    pub dissipated: f64,
+    pub work: f64,
+    /// The sum of the sizes of its parts.
+    pub work_size: f64,
+    /// Steps of the integrator.
+    pub steps: usize,
+    motion: Option<Motion>,
+    force_rate: f64,
+}
+
+impl Record {
+    /// A moment of a moving edge, when `dissipated` is lost.
+    fn moment(&self, at: &At, dissipated: f64) -> Moment {
+        let sense = self.motion.map_or(0.0, Motion::sense);
+        Moment {
+            time: at.time,
+            control: at.control,
+            contact_radius: at.held.contact_radius,
+            approach: at.held.approach,
+            force: at.held.force,
+            speed: -sense * at.speed,
+            energy_release_rate: at.held.energy_release_rate(),
+            dissipated,
+        }
+    }
+
+    /// Adds a moment; `force_rate` is dP/dt from it on.
+    pub fn add(&mut self, moment: Moment, force_rate: f64) {
+        if self.force_rate < 0.0 && force_rate >= 0.0 {
+            self.least.push(Least { at: moment, then: moment.force });
+        }
+        self.force_rate = force_rate;
+        self.risen(moment.force);
+        self.moments.push(moment);
+    }
+
+    fn risen(&mut self, force: f64) {
+        if let Some(least) = self.least.last_mut() {
+            least.then = least.then.max(force);
+        }
+    }
+
+    /// Begins a stretch of a motion.
+    pub fn began(&mut self, motion: Motion, at: &At) {
+        self.motion = Some(motion);
+        self.add(self.moment(at, self.dissipated), at.force_rate);
+    }
+
+    /// Adds a step from `start`; `again` solves it with another length.
+    pub fn step(&mut self, start: &At, step: &Step, again: &dyn Fn(f64) -> Option<Step>) {
+        self.steps += 1;
+        let (lost, done) = (step.sums(|at| at.dissipation), step.sums(|at| at.work));
+        let mut before = (0.0, start.force_rate);
+        for (i, node) in step.nodes.iter().enumerate() {
+            if before.1 < 0.0 && node.force_rate >= 0.0 {
+                let longest = if i + 1 == STAGES { Some(*step) } else { again(step.length * NODES[i]) };
+                let rate: &dyn Fn(&At) -> f64 = &|at| at.force_rate;
+                let bracket = [step.length * before.0, step.length * NODES[i]];
+                let found = longest.and_then(|longest| landed(again, bracket, before.1, &longest, rate));
+                let at = found.map_or(*node, |found| *found.end());
+                let lost = found.map_or(lost[i], |found| found.sums(|at| at.dissipation)[STAGES - 1]);
+                let at = self.moment(&at, self.dissipated + lost);
+                self.least.push(Least { at, then: at.force });
+            }
+            before = (NODES[i], node.force_rate);
+            self.force_rate = node.force_rate;
+            self.risen(node.held.force);
+            self.moments.push(self.moment(node, self.dissipated + lost[i]));
+        }
+        self.dissipated += lost[STAGES - 1];
+        self.work += done[STAGES - 1];
+        self.work_size += done[STAGES - 1].abs();
+    }
+}

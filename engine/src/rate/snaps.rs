@@ -1,0 +1,87 @@
+//! The snaps of a pull: stretches in which the edge is ten times as fast as at its slowest since the last one.
+
+use super::record::Moment;
+use crate::elementary::ln;
+
+/// A snap is this many times as fast.
+const FASTER: f64 = 10.0;
+
+/// A stretch of the pull in which the edge ran.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Snap {
+    /// s where it began.
+    pub from: f64,
+    /// s where it ended.
+    pub to: f64,
+    /// The largest speed of the edge in it, in units of v₀.
+    pub top_speed: f64,
+    /// What it dissipated.
+    pub dissipated: f64,
+}
+
+/// A place between two moments: s, and what is dissipated.
+type Mark = [f64; 2];
+
+/// A snap that has begun.
+struct Run {
+    from: Mark,
+    top: f64,
+    /// The slowest moment after the top.
+    low: Moment,
+}
+
+/// The snaps among the moments of one stretch, whose edge would go at the speed `level` at its beginning if it followed the equilibria.
+/// The one in which the bodies come apart is none.
+pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool) -> Vec<Snap> {
+    let mut found = Vec::new();
+    let (mut least, mut is_settled) = (level, false);
+    let mut run: Option<Run> = None;
+    for pair in moments.windows(2) {
+        let [a, b] = [&pair[0], &pair[1]];
+        let speed = b.speed.abs();
+        let Some(running) = &mut run else {
+            if speed > FASTER * least {
+                run = Some(Run { from: crossing(a, b, FASTER * least), top: speed, low: *b });
+                continue;
+            }
+            // The edge is slow at first because it starts from rest.
+            is_settled |= speed >= level || speed < a.speed.abs();
+            least = if is_settled { least.min(speed) } else { least };
+            continue;
+        };
+        if speed > running.top {
+            (running.top, running.low) = (speed, *b);
+        }
+        if speed < running.low.speed.abs() {
+            running.low = *b;
+        }
+        let low = running.low.speed.abs();
+        if speed <= FASTER * least {
+            found.push(running.ended(crossing(a, b, FASTER * least)));
+            (run, least, is_settled) = (None, speed, true);
+        } else if FASTER * low < running.top && speed > FASTER * low {
+            found.push(running.ended([running.low.contact_radius, running.low.dissipated]));
+            least = low;
+            run = Some(Run { from: crossing(a, b, FASTER * low), top: speed, low: *b });
+        }
+    }
+    if let (Some(running), Some(last)) = (run.filter(|_| !ends_apart), moments.last()) {
+        found.push(running.ended([last.contact_radius, last.dissipated]));
+    }
+    found
+}
+
+impl Run {
+    fn ended(&self, to: Mark) -> Snap {
+        Snap { from: self.from[0], to: to[0], top_speed: self.top, dissipated: to[1] - self.from[1] }
+    }
+}
+
+/// Where between two moments the speed is `speed`.
+fn crossing(a: &Moment, b: &Moment, speed: f64) -> Mark {
+    let [from, to, at] = [a.speed.abs(), b.speed.abs(), speed].map(|v| ln(v.max(f64::MIN_POSITIVE)));
+    let share = (at - from) / (to - from);
+    let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 1.0 };
+    let between = |a: f64, b: f64| a + share * (b - a);
+    [between(a.contact_radius, b.contact_radius), between(a.dissipated, b.dissipated)]
+}

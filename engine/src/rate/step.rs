@@ -1,0 +1,116 @@
+//! One implicit step of the equation of motion.
+//!
+//! The unknowns of a stage are `p_i` = φ, by full Newton iteration. As a function of y, φ is a sigmoid as narrow as the speed is low: where
+//! it is steep against the step, its inverse, which is nearly a line, is solved in its place,
+//!
+//! ```text
+//! p − φ(ξ, y) = 0    or    drive(ξ, y) − drive of the speed of p = 0
+//! ```
+
+use super::equation::{At, Equation};
+use super::radau::{ERROR_WEIGHTS, NODES, REAL_EIGENVALUE, STAGES, WEIGHTS, dot};
+use super::settings::Settings;
+use nalgebra::{SMatrix, SVector};
+
+/// A step that was solved.
+#[derive(Debug, Clone, Copy)]
+pub struct Step {
+    /// ξ at its beginning.
+    pub from: f64,
+    /// h.
+    pub length: f64,
+    /// The stages: p.
+    pub slopes: [f64; STAGES],
+    /// Their moments; the last one is the end of the step.
+    pub nodes: [At; STAGES],
+    /// y at the end.
+    pub y: f64,
+    /// The estimated error of y.
+    pub error: f64,
+}
+
+impl Step {
+    /// The moment at its end.
+    pub fn end(&self) -> &At {
+        &self.nodes[STAGES - 1]
+    }
+
+    /// What is summed over the step up to each stage.
+    pub fn sums(&self, density: fn(&At) -> f64) -> [f64; STAGES] {
+        let values = self.nodes.each_ref().map(density);
+        WEIGHTS.map(|row| self.length * dot(&row, &values))
+    }
+}
+
+/// φ stays this share of the way from where it was to a bound that Newton's method would pass.
+const TOWARDS_BOUND: f64 = 0.1;
+
+/// Solves a step of the length `h` from ξ and y, where the moment is `start`; `guess` are the stages expected. `None` where Newton's
+/// method finds nothing.
+pub fn solve(
+    equation: &Equation<'_>,
+    [xi, y]: [f64; 2],
+    start: &At,
+    h: f64,
+    guess: [f64; STAGES],
+    settings: &Settings,
+) -> Option<Step> {
+    let mut p = guess;
+    for _ in 0..settings.newton {
+        let ways: [f64; STAGES] = std::array::from_fn(|i| y + h * dot(&WEIGHTS[i], &p));
+        let mut nodes = [*start; STAGES];
+        for (i, node) in nodes.iter_mut().enumerate() {
+            *node = equation.at(xi + NODES[i] * h, ways[i])?;
+        }
+        let mut matrix = SMatrix::<f64, STAGES, STAGES>::zeros();
+        let mut right = SVector::<f64, STAGES>::zeros();
+        let mut inverse = [false; STAGES];
+        for (i, node) in nodes.iter().enumerate() {
+            let steepness = (h * WEIGHTS[i][i] * node.phi_by_y).abs();
+            inverse[i] = steepness.is_nan() || steepness >= 1.0;
+            let (by_y, own) = if inverse[i] {
+                let [drive, slope] = equation.drive_of(p[i]);
+                right[i] = node.drive - drive;
+                (node.drive_by_y, -slope)
+            } else {
+                right[i] = p[i] - node.phi;
+                (-node.phi_by_y, 1.0)
+            };
+            for (j, weight) in WEIGHTS[i].iter().enumerate() {
+                matrix[(i, j)] = h * weight * by_y;
+            }
+            matrix[(i, i)] += own;
+        }
+        let change = matrix.lu().solve(&right)?;
+        let mut size = 0.0_f64;
+        for (i, p) in p.iter_mut().enumerate() {
+            let mut next = *p - change[i];
+            if next.is_nan() {
+                return None;
+            }
+            if next.abs() >= 1.0 {
+                next = (1.0 - TOWARDS_BOUND * (1.0 - p.abs())).copysign(next);
+            }
+            if inverse[i] && *p > 0.0 && next <= 0.0 && nodes[i].drive > 0.0 {
+                next = TOWARDS_BOUND * *p;
+            }
+            size = size.max((next - *p).abs());
+            *p = next;
+        }
+        if h * size <= settings.converged * settings.tolerance {
+            let along = REAL_EIGENVALUE * start.phi + dot(&ERROR_WEIGHTS, &p);
+            let damped = 1.0 - h * REAL_EIGENVALUE * start.phi_by_y;
+            // An estimate that grows where the edge runs away by itself would be none.
+            let error = if damped.is_finite() { h * along / damped.abs().max(1.0) } else { 0.0 };
+            return Some(Step {
+                from: xi,
+                length: h,
+                slopes: p,
+                nodes,
+                y: y + h * dot(&WEIGHTS[STAGES - 1], &p),
+                error,
+            });
+        }
+    }
+    None
+}

@@ -1,0 +1,189 @@
+//! One stretch of a pull, on which an edge goes one way: step by step to where it rests, the control stops or the bodies are apart.
+//!
+//! What ends a step (the end of a ramp, a rest, a break of the gap) and the least forces are found by solving the step again with
+//! another length; the polynomial of a step is not asked.
+
+use super::caps::Caps;
+use super::equation::{At, Equation};
+use super::error::RateError;
+use super::law::Motion;
+use super::radau::{NODES, STAGES, interpolated};
+use super::record::Record;
+use super::settings::Settings;
+use super::step::{self, Step};
+use crate::progress::Progress;
+
+/// Why a stretch ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// The time is over.
+    Time,
+    /// The edge rests.
+    Rest,
+    /// The bodies are apart.
+    Apart,
+}
+
+/// Solutions of one step by which its end is brought to a place.
+const LANDED: usize = 60;
+/// It is there at this share of the step.
+const THERE: f64 = 1e-14;
+/// The safety of the next step, and by which factors it changes at most.
+const SAFETY: f64 = 0.9;
+const CHANGE: [f64; 2] = [0.2, 4.0];
+/// A step that Newton's method did not find is tried again with this share of it.
+const AGAIN: f64 = 0.4;
+/// The first step, in units of ξ.
+const FIRST: f64 = 1e-4;
+/// Steps below this share of ξ do not move it.
+const LEAST: f64 = 1e-15;
+/// An edge slower than this, as φ, may be expected to stay so for a step of the cap over it.
+const SLOW: f64 = 1e-3;
+/// Steps between two questions whether to go on.
+const ASKED: usize = 64;
+
+/// One stretch.
+pub struct Stretch<'a> {
+    pub equation: &'a Equation<'a>,
+    pub caps: &'a Caps<'a>,
+    pub settings: &'a Settings,
+    /// The time at which it ends; none for a ramp that goes on until the bodies are apart.
+    pub until: Option<f64>,
+    /// Whether the control turns the edge round, which then comes to rest.
+    pub rests: bool,
+}
+
+/// Where the integration is.
+struct Here {
+    xi: f64,
+    y: f64,
+    at: At,
+}
+
+impl Stretch<'_> {
+    /// Follows the edge and records it.
+    pub fn follow(&self, record: &mut Record, progress: &dyn Progress) -> Result<(At, End), RateError> {
+        let begin =
+            self.equation.at(0.0, 0.0).ok_or(RateError::Lost { contact_radius: self.equation.radius })?;
+        let mut here = Here { xi: 0.0, y: 0.0, at: begin };
+        record.began(self.equation.motion, &here.at);
+        let mut h = FIRST;
+        let mut last: Option<Step> = None;
+        for count in 0..self.settings.steps {
+            if count % ASKED == 0 && progress.stop() {
+                return Err(RateError::Cancelled);
+            }
+            let rest = 1.0 - here.y;
+            if self.equation.motion == Motion::Opening {
+                if rest <= self.settings.gone {
+                    return Ok((here.at, End::Apart));
+                }
+                h = h.min(self.settings.of_rest * rest);
+            }
+            let s = here.at.held.contact_radius;
+            let cap = self.caps.at(s) / self.equation.radius;
+            h = h.min(cap / here.at.phi.abs().max(SLOW));
+            if h < LEAST * here.xi.max(1e-3) {
+                return Err(RateError::Lost { contact_radius: s });
+            }
+            let Some(step) = self.step(&here, h, last.as_ref()) else {
+                h *= AGAIN;
+                continue;
+            };
+            let error = step.error.abs() / self.settings.tolerance;
+            let factor =
+                if error > 0.0 { SAFETY * crate::elementary::pow(error, -1.0 / 6.0) } else { CHANGE[1] };
+            let advance = (step.y - here.y).abs();
+            if error > 1.0 || advance > cap {
+                let shorter = if advance > cap { SAFETY * cap / advance } else { 1.0 };
+                h *= factor.min(shorter).clamp(CHANGE[0], SAFETY);
+                continue;
+            }
+            let (step, end) = self.cut(&here, &step)?;
+            record.step(&here.at, &step, &|h| self.step(&here, h, Some(&step)));
+            here = Here { xi: here.xi + step.length, y: step.y, at: *step.end() };
+            if let Some(end) = end {
+                return Ok((here.at, end));
+            }
+            // A step that was cut says nothing of the next one.
+            h *= if step.length < h { 1.0 } else { factor.clamp(CHANGE[0], CHANGE[1]) };
+            last = Some(step);
+        }
+        Err(RateError::TooManySteps {
+            steps: self.settings.steps,
+            contact_radius: here.at.held.contact_radius,
+        })
+    }
+
+    /// The step of the length `h` from here, with what the step before expects of it.
+    fn step(&self, here: &Here, h: f64, last: Option<&Step>) -> Option<Step> {
+        let guess = match last {
+            Some(last) => {
+                let ahead = |c: f64| (here.xi - last.from + c * h) / last.length;
+                NODES.map(|c| interpolated(&last.slopes, ahead(c)).clamp(0.0, 0.999))
+            }
+            None => [here.at.phi; STAGES],
+        };
+        step::solve(self.equation, [here.xi, here.y], &here.at, h, guess, self.settings)
+    }
+
+    /// The step as far as the first of what ends it.
+    fn cut(&self, here: &Here, step: &Step) -> Result<(Step, Option<End>), RateError> {
+        let at_break = self.caps.next_break(self.equation.motion, here.at.held.contact_radius);
+        let sense = self.equation.motion.sense();
+        let past_break = |at: &At| at_break.map_or(-1.0, |s| sense * (at.held.contact_radius - s));
+        let past_time = |at: &At| self.until.map_or(-1.0, |until| at.time - until);
+        let past_rest = |at: &At| if self.rests { -at.drive } else { -1.0 };
+        let mut first = (*step, None);
+        let ends = [None, Some(End::Time), Some(End::Rest)];
+        let pasts: [&dyn Fn(&At) -> f64; 3] = [&past_break, &past_time, &past_rest];
+        for (past, end) in pasts.into_iter().zip(ends) {
+            if past(first.0.end()) >= 0.0 {
+                let landed = landed(
+                    &|h| self.step(here, h, Some(step)),
+                    [0.0, first.0.length],
+                    past(&here.at),
+                    &first.0,
+                    past,
+                );
+                first = (landed.ok_or(RateError::Lost { contact_radius: here.at.held.contact_radius })?, end);
+            }
+        }
+        Ok(first)
+    }
+}
+
+/// The step that ends where `of` vanishes, by its length in `[from, to]`; `before` is its value at the shorter, `longest` the step at the
+/// longer one.
+pub fn landed(
+    step: &dyn Fn(f64) -> Option<Step>,
+    [mut from, mut to]: [f64; 2],
+    mut before: f64,
+    longest: &Step,
+    of: &dyn Fn(&At) -> f64,
+) -> Option<Step> {
+    let mut after = of(longest.end());
+    let mut found = *longest;
+    let mut side = 0;
+    for _ in 0..LANDED {
+        if after == 0.0 || (to - from) <= THERE * to {
+            break;
+        }
+        // False position; the end that stays counts half each time (Illinois).
+        let share = before / (before - after);
+        let share = if share.is_finite() { share.clamp(1e-3, 1.0 - 1e-3) } else { 0.5 };
+        let h = from + share * (to - from);
+        let tried = step(h)?;
+        let value = of(tried.end());
+        if value == 0.0 || (value > 0.0) == (after > 0.0) {
+            (to, after, found) = (h, value, tried);
+            before *= if side > 0 { 0.5 } else { 1.0 };
+            side = 1;
+        } else {
+            (from, before) = (h, value);
+            after *= if side < 0 { 0.5 } else { 1.0 };
+            side = -1;
+        }
+    }
+    Some(found)
+}

@@ -1,0 +1,156 @@
+//! Pulls of the wavy sphere, against numbers of two programs that share nothing with this one.
+
+use super::law::EdgeLaw;
+use super::pull::{Pull, Puller};
+use super::{Edge, Settings};
+use crate::disc::Table;
+use crate::gap::Shape;
+use crate::problem::{Control, Part, Problem};
+use crate::progress::Unwatched;
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+const GAMMA: f64 = 0.025 / TAU;
+
+fn table(shape: Shape) -> Table {
+    let problem = Problem { effective_modulus: 1.0, work_of_adhesion: GAMMA, shape }.reduced();
+    Table::new(Arc::clone(&problem.gap), 0.5, &Unwatched).unwrap()
+}
+
+fn wavy() -> Table {
+    table(Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 })
+}
+
+fn puller(table: &Table, exponent: f64, control: Control) -> Puller<'_> {
+    let edge = Edge { law: EdgeLaw::symmetric(exponent), opening: GAMMA, closing: GAMMA };
+    let rise = 0.01 * 1.5 * PI * GAMMA;
+    Puller {
+        table,
+        control,
+        edge,
+        start: 0.5,
+        wave: table.gap().feature_length(),
+        rise: Some(rise),
+        settings: Settings::default(),
+    }
+}
+
+fn pulled(table: &Table, exponent: f64, rate: f64) -> Pull {
+    puller(table, exponent, Control::Displacement).pull(&[Part::Apart { rate }], &Unwatched).unwrap()
+}
+
+#[test]
+fn the_peak_of_the_wavy_sphere_at_a_rate() {
+    let table = wavy();
+    for (exponent, ratios, counts) in [
+        (0.25, [1.63458, 1.91279, 2.69884, 5.04156], [8, 7, 6, 5]),
+        (0.5, [1.50139, 1.64877, 2.72997, 10.0747], [8, 7, 6, 2]),
+        (1.0, [1.48012, 1.51014, 2.95867, 24.1854], [8, 8, 3, 1]),
+    ] {
+        for (k, rate) in [1e-4, 1e-2, 1.0, 100.0].into_iter().enumerate() {
+            let pull = pulled(&table, exponent, rate);
+            let ratio = -pull.peak.force / (1.5 * PI * GAMMA);
+            assert!((ratio / ratios[k] - 1.0).abs() < 5e-6, "{exponent} {rate}: {ratio}");
+            assert_eq!(pull.tension_peaks.len(), counts[k], "{exponent} {rate}");
+            assert!(pull.balance < 1e-9);
+        }
+    }
+}
+
+/// The sum of the losses of the quasi-static unloading of the wavy sphere from s = 0.5, and the exponent with which a pull comes near.
+#[test]
+fn what_a_slow_pull_dissipates_is_what_the_jumps_lose() {
+    const LOSSES: f64 = 1.052_852_894_6e-3;
+    let table = wavy();
+    for exponent in [0.5, 1.0] {
+        let lost = |rate| pulled(&table, exponent, rate).dissipated.unwrap() - LOSSES;
+        let (slow, slower) = (lost(1e-6), lost(1e-7));
+        assert!(slower > 0.0 && slower < slow);
+        let slope = (slow / slower).log10();
+        let law = 2.0 * exponent / (2.0 + exponent);
+        assert!((slope / law - 1.0).abs() < 0.04, "{exponent}: {slope} {law}");
+    }
+}
+
+/// The control at the last contact is late by `K_n` d, d of the law of a limit point; `K_1` is the first zero of Airy's function.
+#[test]
+fn the_last_contact_of_a_slow_pull_is_late_by_the_law() {
+    let table = wavy();
+    for (exponent, factor) in [(1.0, 2.33811), (0.5, 1.63416), (0.25, 1.36916)] {
+        let rate = 1e-8;
+        let puller = puller(&table, exponent, Control::Displacement);
+        let panels = table.up_to(0.5).unwrap();
+        let folds = super::caps::Folds::new(
+            &panels,
+            &puller.edge,
+            super::law::Motion::Opening,
+            Control::Displacement,
+        );
+        let last = folds.list.iter().min_by(|a, b| a.limit.approach.total_cmp(&b.limit.approach)).unwrap();
+        let pull = pulled(&table, exponent, rate);
+        let late = last.limit.approach - pull.last_contact.unwrap().control;
+        let law = factor * last.delay(rate, exponent);
+        assert!((late / law - 1.0).abs() < 0.02, "{exponent}: {late} {law}");
+    }
+}
+
+/// Where the edge runs it forgets how it was loaded, and only the ratio of the two speeds counts.
+#[test]
+fn the_start_is_forgotten() {
+    let table = wavy();
+    let from = |start| {
+        let puller = Puller { start, ..puller(&table, 0.5, Control::Displacement) };
+        puller.pull(&[Part::Apart { rate: 1e-2 }], &Unwatched).unwrap()
+    };
+    let (a, b) = (from(0.5), from(0.4905));
+    let [a, b] = [a, b].map(|pull| (pull.peak.force, pull.last_contact.unwrap().control));
+    assert!((a.0 / b.0 - 1.0).abs() < 1e-9 && (a.1 / b.1 - 1.0).abs() < 1e-9, "{a:?} {b:?}");
+}
+
+/// Springs from soft to stiff, holds, reloading and a dead band: the balance of work and energy closes, and the parts are kept.
+#[test]
+fn programmes_close_their_balance() {
+    let table = wavy();
+    for control in
+        [Control::Displacement, Control::Stiffness(1e-3), Control::Stiffness(0.15), Control::Stiffness(1e3)]
+    {
+        for closing in [1.0, 0.5] {
+            let edge = Edge { law: EdgeLaw::symmetric(0.5), opening: GAMMA, closing: closing * GAMMA };
+            let puller = Puller { edge, start: 0.3, ..puller(&table, 0.5, control) };
+            let panels = table.up_to(0.5).unwrap();
+            let to = super::equation::Held::equilibrium(&panels, control, edge.closing, 0.37);
+            let parts = [Part::Ramp { to, rate: 0.01 }, Part::Hold { time: 3.0 }, Part::Apart { rate: 0.02 }];
+            let pull = puller.pull(&parts, &Unwatched).unwrap();
+            assert!(pull.balance < 1e-9, "{control:?} {closing}: {}", pull.balance);
+            assert!(pull.last_contact.is_some() && pull.holds.len() == 1);
+            assert!(pull.closed_to.unwrap()[0] > 0.3);
+        }
+    }
+}
+
+/// Barquins' time to failure: near the largest load that is borne it grows as the law of a limit point says.
+#[test]
+fn a_dead_load_is_borne_as_long_as_the_law_says() {
+    let table = table(Shape::Sphere { radius_of_curvature: 1.0 });
+    let start = 0.45;
+    let panels = table.up_to(start).unwrap();
+    let critical = 1.5 * PI * GAMMA;
+    let s = (9.0 * PI * GAMMA / 8.0).cbrt();
+    for (exponent, beta, near, ratios) in
+        [(0.5, 0.5 * PI, [1e-4, 0.1], [1.0000, 0.962]), (1.0, PI, [1e-4, 0.1], [0.993, 0.79])]
+    {
+        let edge = Edge { law: EdgeLaw::symmetric(exponent), opening: GAMMA, closing: GAMMA };
+        let borne = super::failure::time_to_failure(&panels, &edge, start, -0.999 * critical).unwrap();
+        assert_eq!(borne, None);
+        for (over, ratio) in near.into_iter().zip(ratios) {
+            let force = -critical * (1.0 + over);
+            let time = super::failure::time_to_failure(&panels, &edge, start, force).unwrap().unwrap();
+            // P'' of the sphere at its least force, and T_c = 2sT.
+            let bend = 8.0 * s - 0.75 * (8.0 * PI * GAMMA / s).sqrt();
+            let unit = 2.0 * s * (TAU * GAMMA * s).sqrt();
+            let scale = (2.0 / bend).sqrt() * (unit / 2.0).powf(1.0 / exponent);
+            let law = beta * scale * (over * critical).powf(0.5 - 1.0 / exponent);
+            assert!((time / law / ratio - 1.0).abs() < 0.01, "{exponent} {over}: {} {ratio}", time / law);
+        }
+    }
+}

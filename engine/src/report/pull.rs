@@ -1,0 +1,602 @@
+//! Pulls at a rate, and times to failure under dead loads, as a document.
+
+use super::number::{loss, significant};
+use super::problem::Head;
+use super::rows::{RowsError, Table};
+use super::table::{aligned, ascii_unit, control, head, ratio};
+use crate::case::{Case, CaseError};
+use crate::preset::{Preset, edge};
+use crate::problem::{Control, Part};
+use crate::progress::{self, Progress};
+use crate::quasistatic::admissible::Judge;
+use crate::rate::failure::time_to_failure;
+use crate::rate::{Edge, EdgeLaw, Moment, Pull, Puller, RateError, Settings};
+use crate::units::{Quantity, UnitSystem};
+use serde::Serialize;
+use std::fmt::Write;
+
+/// A least force counts as a peak of tension where the force rises after it by more than this share of `P_c`, or of the largest pull
+/// where the gap has no R.
+const RISE: f64 = 0.01;
+/// Bodies count as relaxed where they move, in a relaxation time, by less than this share of their approach at the last contact.
+const RELAXED: f64 = 0.1;
+
+/// Why there is no pull.
+#[derive(Debug, thiserror::Error)]
+pub enum PullError {
+    /// The preset could not be made ready.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// Nothing says how fast an edge is.
+    #[error(
+        "{key} is not set: an edge has a speed where edge.exponent and edge.reference_speed are given (in reduced units the speed is 1 if it is not)"
+    )]
+    NoLaw {
+        /// The key.
+        key: &'static str,
+    },
+    /// Nothing says how fast the device is.
+    #[error("no rate is given: set path.rate or path.steps, or give rates")]
+    NoRate,
+    /// The edge could not be followed.
+    #[error("{}", error.words(shown))]
+    Rate {
+        /// Why, in the user's units.
+        error: RateError,
+        /// How numbers are shown.
+        shown: Box<UnitSystem>,
+    },
+}
+
+/// A moment of a pull.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct MomentReport {
+    /// t, from the start of the pull.
+    pub time: f64,
+    /// s.
+    pub contact_radius: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+}
+
+/// A stretch in which the edge exceeds ten times its least speed since the last one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SnapReport {
+    /// s where it begins.
+    pub from: f64,
+    /// s where it ends.
+    pub to: f64,
+    /// The largest speed of the edge in it.
+    pub top_speed: f64,
+    /// The energy dissipated in it.
+    pub dissipated: f64,
+}
+
+/// When the bodies are apart.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct LastContactReport {
+    /// t.
+    pub time: f64,
+    /// δ, P, or Δ = δ + P/k.
+    pub control: f64,
+}
+
+/// One pull.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct RunReport {
+    /// The rate of the control; null where `path.steps` says what is done.
+    pub rate: Option<f64>,
+    /// The first moment.
+    pub start: MomentReport,
+    /// When the edge first opens; null where it never does.
+    pub pinned_until: Option<MomentReport>,
+    /// The least force on the way.
+    pub peak: MomentReport,
+    /// The least forces after which the force rises by more than 1 % of `P_c`.
+    pub tension_peaks: Vec<MomentReport>,
+    /// The snaps but the one in which the bodies come apart, in order.
+    pub snaps: Vec<SnapReport>,
+    /// Null where the parts of the pull end before.
+    pub last_contact: Option<LastContactReport>,
+    /// What the edge dissipates in all; null where a dead load falls without end.
+    pub dissipated: Option<f64>,
+    /// The largest speed of the edge before the last contact, while a snap or at a peak.
+    pub top_edge_speed: f64,
+    /// What is missing between the work and elastic energy, adhesion and dissipation, over the work.
+    pub balance: f64,
+    /// Every moment that the integrator kept.
+    #[serde(skip)]
+    pub moments: Vec<MomentRow>,
+}
+
+/// How long a dead load is borne.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct FailureReport {
+    /// P, negative for a pull.
+    pub force: f64,
+    /// t until the bodies are apart; null where an equilibrium bears it.
+    pub time: Option<f64>,
+}
+
+/// A moment as a row of CSV.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MomentRow {
+    rate: Option<f64>,
+    time: f64,
+    control: f64,
+    contact_radius: f64,
+    approach: f64,
+    force: f64,
+    speed: f64,
+    energy_release_rate: f64,
+    dissipated: f64,
+}
+
+/// A run as a row of CSV.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct RunRow {
+    rate: Option<f64>,
+    peak: MomentReport,
+    tension_peaks: usize,
+    snaps: usize,
+    last_contact: Option<LastContactReport>,
+    dissipated: Option<f64>,
+    top_edge_speed: f64,
+    balance: f64,
+}
+
+/// The columns of the runs as CSV; they never change, new ones come after them.
+pub const COLUMNS: &[&str] = &[
+    "rate",
+    "peak_time",
+    "peak_contact_radius",
+    "peak_approach",
+    "peak_force",
+    "tension_peaks",
+    "snaps",
+    "last_contact_time",
+    "last_contact_control",
+    "dissipated",
+    "top_edge_speed",
+    "balance",
+];
+
+/// The columns of the moments.
+pub const MOMENT_COLUMNS: &[&str] = &[
+    "rate",
+    "time",
+    "control",
+    "contact_radius",
+    "approach",
+    "force",
+    "speed",
+    "energy_release_rate",
+    "dissipated",
+];
+
+/// The columns of the times to failure.
+pub const FAILURE_COLUMNS: &[&str] = &["force", "time"];
+
+/// Pulls of one disc whose edge has a speed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct PullReport {
+    /// What it begins with.
+    #[serde(flatten)]
+    pub head: Head,
+    /// What to be careful about.
+    pub warnings: Vec<String>,
+    /// What is moved at a rate.
+    pub control: Control,
+    /// The pulls, in the order asked for.
+    pub runs: Vec<RunReport>,
+    /// The dead loads, in the order asked for.
+    pub failures: Vec<FailureReport>,
+}
+
+/// What is asked for.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Asked {
+    /// Rates of the control, in the units of the preset's numbers; none means what the preset says.
+    pub rates: Vec<f64>,
+    /// Dead loads whose time to failure is wanted. With these and without rates nothing is pulled.
+    pub loads: Vec<f64>,
+}
+
+/// What turns the numbers of a pull into those of a preset.
+struct Factors {
+    length: f64,
+    force: f64,
+    energy: f64,
+    adhesion: f64,
+    control: f64,
+    speed: f64,
+}
+
+impl Factors {
+    fn time(&self) -> f64 {
+        self.length / self.speed
+    }
+
+    fn moment(&self, moment: &Moment) -> MomentReport {
+        MomentReport {
+            time: moment.time * self.time(),
+            contact_radius: moment.contact_radius * self.length,
+            approach: moment.approach * self.length,
+            force: moment.force * self.force,
+        }
+    }
+
+    fn row(&self, rate: Option<f64>, moment: &Moment) -> MomentRow {
+        let MomentReport { time, contact_radius, approach, force } = self.moment(moment);
+        MomentRow {
+            rate,
+            time,
+            control: moment.control * self.control,
+            contact_radius,
+            approach,
+            force,
+            speed: moment.speed * self.speed,
+            energy_release_rate: moment.energy_release_rate * self.adhesion,
+            dissipated: moment.dissipated * self.energy,
+        }
+    }
+
+    fn run(&self, rate: Option<f64>, pull: &Pull) -> RunReport {
+        RunReport {
+            rate,
+            start: self.moment(&pull.start),
+            pinned_until: pull.pinned_until.as_ref().map(|moment| self.moment(moment)),
+            peak: self.moment(&pull.peak),
+            tension_peaks: pull.tension_peaks.iter().map(|moment| self.moment(moment)).collect(),
+            snaps: pull
+                .snaps
+                .iter()
+                .map(|snap| SnapReport {
+                    from: snap.from * self.length,
+                    to: snap.to * self.length,
+                    top_speed: snap.top_speed * self.speed,
+                    dissipated: snap.dissipated * self.energy,
+                })
+                .collect(),
+            last_contact: pull.last_contact.as_ref().map(|moment| LastContactReport {
+                time: moment.time * self.time(),
+                control: moment.control * self.control,
+            }),
+            dissipated: pull.dissipated.map(|energy| energy * self.energy),
+            top_edge_speed: top_speed(pull) * self.speed,
+            balance: pull.balance,
+            moments: pull.moments.iter().map(|moment| self.row(rate, moment)).collect(),
+        }
+    }
+}
+
+/// The largest speed of the edge in a snap, or else at the least force.
+fn top_speed(pull: &Pull) -> f64 {
+    pull.snaps.iter().map(|snap| snap.top_speed).fold(pull.peak.speed.abs(), f64::max)
+}
+
+impl PullReport {
+    /// What `asked` says of `preset`; `progress` is told the share that is done, and may stop it.
+    ///
+    /// # Errors
+    /// [`PullError`].
+    pub fn compute(preset: &Preset, asked: &Asked, progress: &dyn Progress) -> Result<Self, PullError> {
+        let case = Case::prepare(preset, progress)?;
+        let (law, speed) = law(preset)?;
+        let units = *case.units();
+        let opening = case.reduced.work_of_adhesion;
+        let closing =
+            preset.edge.closing_work_of_adhesion.map_or(opening, |gamma| gamma / units.work_of_adhesion);
+        let edge = Edge { law, opening, closing };
+        let is_force = case.control == Control::Force;
+        let factors = Factors {
+            length: units.length,
+            force: units.force,
+            energy: units.energy,
+            adhesion: units.work_of_adhesion,
+            control: if is_force { units.force } else { units.length },
+            speed,
+        };
+        let puller = Puller {
+            table: &case.table,
+            control: case.control,
+            edge,
+            start: case.start,
+            wave: case.reduced.gap.feature_length(),
+            rise: case.critical_force().map(|force| RISE * force / units.force),
+            settings: Settings::default(),
+        };
+        let refused = |error: RateError| match error {
+            RateError::Cancelled => PullError::Case(CaseError::Cancelled),
+            error => PullError::Rate { error: error.in_units(&units), shown: Box::new(case.shown.clone()) },
+        };
+        let programmes = programmes(preset, asked)?;
+        let mut warnings = Case { has_dead_band: false, ..case.clone() }.warnings_of_problem();
+        let mut runs = Vec::new();
+        let count = programmes.len().max(1) as f64;
+        for (k, (rate, parts)) in programmes.iter().enumerate() {
+            let parts: Vec<Part> =
+                parts.iter().map(|part| part.in_units(1.0 / factors.control, 1.0 / factors.time())).collect();
+            let part = progress::Part::new(progress, [k as f64 / count, (k + 1) as f64 / count]);
+            let pull = puller.pull(&parts, &part).map_err(refused)?;
+            warnings.extend(limits(preset, &case, &factors, rate.as_ref(), &pull, progress));
+            runs.push(factors.run(*rate, &pull));
+        }
+        let mut failures = Vec::new();
+        if !asked.loads.is_empty() {
+            let panels = case.panels(progress)?;
+            for &force in &asked.loads {
+                let time =
+                    time_to_failure(&panels, &edge, case.start, force / units.force).map_err(refused)?;
+                failures.push(FailureReport { force, time: time.map(|time| time * factors.time()) });
+            }
+        }
+        warnings.dedup();
+        Ok(Self {
+            head: Head::new("pull", preset, &case),
+            warnings,
+            control: preset.path.control,
+            runs,
+            failures,
+        })
+    }
+
+    /// The runs under the names of their columns; the times to failure where nothing was pulled.
+    ///
+    /// # Errors
+    /// As [`Table::of`].
+    pub fn table(&self) -> Result<Table, RowsError> {
+        if self.runs.is_empty() {
+            return Table::of(FAILURE_COLUMNS, &self.failures);
+        }
+        let row = |run: &RunReport| RunRow {
+            rate: run.rate,
+            peak: run.peak,
+            tension_peaks: run.tension_peaks.len(),
+            snaps: run.snaps.len(),
+            last_contact: run.last_contact,
+            dissipated: run.dissipated,
+            top_edge_speed: run.top_edge_speed,
+            balance: run.balance,
+        };
+        Table::of(COLUMNS, &self.runs.iter().map(row).collect::<Vec<_>>())
+    }
+
+    /// The moments of all runs.
+    ///
+    /// # Errors
+    /// As [`Table::of`].
+    pub fn moments(&self) -> Result<Table, RowsError> {
+        let rows: Vec<MomentRow> = self.runs.iter().flat_map(|run| run.moments.iter().copied()).collect();
+        Table::of(MOMENT_COLUMNS, &rows)
+    }
+
+    /// Everything as lines of text.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let units = &self.head.units.shown;
+        let mut text = format!("control: {}\n", control(units, self.control));
+        match &self.runs[..] {
+            [] => {}
+            [run] => text.push_str(&self.one(run)),
+            runs => text.push_str(&self.several(runs)),
+        }
+        for failure in &self.failures {
+            let force = shown(units, Quantity::Force, failure.force);
+            let line = match failure.time {
+                Some(time) => {
+                    format!("a dead load of {force} is borne for {}", shown(units, Quantity::Time, time))
+                }
+                None => format!("a dead load of {force} is borne for ever"),
+            };
+            let _ = writeln!(text, "{line}");
+        }
+        text
+    }
+
+    fn one(&self, run: &RunReport) -> String {
+        let units = &self.head.units.shown;
+        let at = |moment: &MomentReport| {
+            format!(
+                "t {}  contact {}  delta {}  P {}{}",
+                shown(units, Quantity::Time, moment.time),
+                shown(units, Quantity::Length, moment.contact_radius),
+                shown(units, Quantity::Length, moment.approach),
+                shown(units, Quantity::Force, moment.force),
+                self.over_critical(moment.force),
+            )
+        };
+        let mut text = String::new();
+        let mut line = |name: &str, value: &str| {
+            let _ = writeln!(text, "{name:<13} {value}");
+        };
+        if let Some(rate) = run.rate {
+            line("rate", &shown(units, self.rate_quantity(), rate));
+        }
+        line("start", &at(&run.start));
+        line("pinned until", &run.pinned_until.as_ref().map_or("the end".to_owned(), &at));
+        for snap in &run.snaps {
+            let value = format!(
+                "contact {} > {}  top speed {}  dissipated {}",
+                shown(units, Quantity::Length, snap.from),
+                shown(units, Quantity::Length, snap.to),
+                shown(units, Quantity::Speed, snap.top_speed),
+                energy(units, snap.dissipated),
+            );
+            line("snap", &value);
+        }
+        for peak in &run.tension_peaks {
+            line("tension peak", &at(peak));
+        }
+        line("largest pull", &at(&run.peak));
+        let last = run.last_contact.map_or("not reached".to_owned(), |last| {
+            let quantity = if self.control == Control::Force { Quantity::Force } else { Quantity::Length };
+            format!(
+                "t {}  control {}",
+                shown(units, Quantity::Time, last.time),
+                shown(units, quantity, last.control)
+            )
+        });
+        line("last contact", &last);
+        line(
+            "dissipated",
+            &run.dissipated.map_or("no bound: the dead load falls".to_owned(), |lost| energy(units, lost)),
+        );
+        line("balance", &format!("{:.1e} of the work", run.balance));
+        text
+    }
+
+    fn several(&self, runs: &[RunReport]) -> String {
+        let units = &self.head.units.shown;
+        let number = |quantity, x: f64| significant(units.shown(quantity, x).number, 6);
+        let mut rows = vec![vec![
+            head(units, "rate", self.rate_quantity()),
+            head(units, "P", Quantity::Force),
+            "P/Pc".to_owned(),
+            "peaks".to_owned(),
+            "snaps".to_owned(),
+            head(units, "top speed", Quantity::Speed),
+            head(units, "apart at", Quantity::Time),
+            head(units, "dissipated", Quantity::Energy),
+            "balance".to_owned(),
+        ]];
+        let dash = || "-".to_owned();
+        let critical = self.head.problem.critical_force;
+        rows.extend(runs.iter().map(|run| {
+            vec![
+                run.rate.map_or_else(dash, |rate| number(self.rate_quantity(), rate)),
+                number(Quantity::Force, run.peak.force),
+                ratio(run.peak.force, critical),
+                run.tension_peaks.len().to_string(),
+                run.snaps.len().to_string(),
+                number(Quantity::Speed, run.top_edge_speed),
+                run.last_contact.map_or_else(dash, |last| number(Quantity::Time, last.time)),
+                run.dissipated.map_or_else(dash, |lost| number(Quantity::Energy, lost)),
+                format!("{:.0e}", run.balance),
+            ]
+        }));
+        aligned(&rows, 0)
+    }
+
+    fn rate_quantity(&self) -> Quantity {
+        if self.control == Control::Force { Quantity::ForceRate } else { Quantity::Speed }
+    }
+
+    fn over_critical(&self, force: f64) -> String {
+        let critical = self.head.problem.critical_force.filter(|critical| *critical > 0.0);
+        critical.map_or_else(String::new, |critical| format!("  P/Pc {}", significant(force / critical, 6)))
+    }
+}
+
+fn shown(units: &UnitSystem, quantity: Quantity, x: f64) -> String {
+    ascii_unit(units, quantity, x, |x| significant(x, 6))
+}
+
+fn energy(units: &UnitSystem, x: f64) -> String {
+    ascii_unit(units, Quantity::Energy, x, loss)
+}
+
+/// The law of the edge of a preset, and v₀ in its units.
+fn law(preset: &Preset) -> Result<(EdgeLaw, f64), PullError> {
+    let spec = &preset.edge;
+    let exponent = spec.exponent.ok_or(PullError::NoLaw { key: edge::EXPONENT })?;
+    let unit = (preset.units == UnitSystem::Reduced).then_some(1.0);
+    let speed = spec.reference_speed.or(unit).ok_or(PullError::NoLaw { key: edge::REFERENCE_SPEED })?;
+    let law = EdgeLaw {
+        exponent,
+        closing_speed: spec.closing_speed.map_or(1.0, |closing| closing / speed),
+        closing_exponent: spec.closing_exponent.unwrap_or(exponent),
+    };
+    Ok((law, speed))
+}
+
+/// What is done in a run, with its rate where it has one alone.
+type Programme = (Option<f64>, Vec<Part>);
+
+/// What is done in each run, in the preset's units.
+fn programmes(preset: &Preset, asked: &Asked) -> Result<Vec<Programme>, PullError> {
+    if !asked.rates.is_empty() {
+        return Ok(asked.rates.iter().map(|&rate| (Some(rate), vec![Part::Apart { rate }])).collect());
+    }
+    if !asked.loads.is_empty() {
+        return Ok(Vec::new());
+    }
+    // A preset whose steps cannot be read is refused when it is made.
+    let steps = preset.steps().unwrap_or_default();
+    if steps.is_empty() {
+        return Err(PullError::NoRate);
+    }
+    let rate = preset.edge.rate.filter(|_| preset.edge.steps.trim().is_empty());
+    Ok(vec![(rate, steps)])
+}
+
+/// Where a pull leaves what the law is good for.
+fn limits(
+    preset: &Preset,
+    case: &Case,
+    factors: &Factors,
+    rate: Option<&f64>,
+    pull: &Pull,
+    progress: &dyn Progress,
+) -> Vec<String> {
+    let spec = &preset.edge;
+    let at = rate.map_or_else(String::new, |rate| {
+        let quantity = if case.control == Control::Force { Quantity::ForceRate } else { Quantity::Speed };
+        format!("at the rate {}: ", shown(&case.shown, quantity, *rate))
+    });
+    let mut warnings = Vec::new();
+    let ratio = pull.moments.iter().filter(|moment| moment.contact_radius > 0.0);
+    // Towards the last contact G grows without bound whatever the rate: what matters is what the edge passes before.
+    let before_end = ratio.filter(|moment| moment.contact_radius >= pull.peak.contact_radius);
+    let highest = before_end
+        .map(|moment| moment.energy_release_rate / case.reduced.work_of_adhesion)
+        .fold(0.0, f64::max);
+    if let Some(bound) = spec.highest_ratio.filter(|bound| highest > *bound) {
+        warnings.push(format!(
+            "{at}G/gamma reaches {} before the largest pull is over, above edge.highest_ratio = {bound}: the law of the edge has no such values",
+            significant(highest, 4)
+        ));
+    }
+    if let Some(tau) = spec.relaxation_time {
+        let tau = tau / factors.time();
+        let way = pull.last_contact.map_or(pull.peak.control, |last| last.control).abs();
+        let rate = rate.map(|rate| rate / factors.control * factors.time());
+        if let Some(rate) = rate.filter(|rate| rate * tau > RELAXED * way) {
+            warnings.push(format!(
+                "{at}in edge.relaxation_time the control goes {} of its value at the last contact; above {RELAXED} the bodies are not relaxed, and the force is larger than this",
+                significant(rate * tau / way, 3)
+            ));
+        }
+        let length = case.reduced.gap.feature_length().unwrap_or(f64::INFINITY);
+        for snap in &pull.snaps {
+            let (zone, room) = (snap.top_speed * tau, length.min(snap.to.max(f64::MIN_POSITIVE)));
+            if zone > room {
+                warnings.push(format!(
+                    "{at}in the snap from {} the edge goes {} times min(s, wavelength) in edge.relaxation_time: its zone of dissipation does not fit there",
+                    shown(&case.shown, Quantity::Length, snap.from * factors.length),
+                    significant(zone / room, 3)
+                ));
+                break;
+            }
+        }
+    }
+    if let Some([s, delta]) = pull.closed_to {
+        let judge = Judge::new(&case.reduced, &case.table);
+        if let Some(crest) = judge.verdict(s, delta, progress).overlapping() {
+            warnings.push(format!(
+                "{at}while the edge closes to {}, the bodies would touch ahead of it, at {}: a pull follows one disc",
+                shown(&case.shown, Quantity::Length, s * factors.length),
+                shown(&case.shown, Quantity::Length, crest.radius * factors.length)
+            ));
+        }
+    }
+    warnings
+}

@@ -1,0 +1,182 @@
+//! The bodies around a zone, and whether one disc in one zone is all of the state.
+//!
+//! ```text
+//! r > s   gap(r) = (2/π)∫_s^r (g(a) − δ)/√(r² − a²) da − (4σ₀/π) Q(r),     Q(r) = ∫_s^{min(r, c)} √((c² − a²)/(r² − a²)) da
+//! r < s   p(r)   = (1/π)∫_r^s g'/√(a² − r²) da − 2σ₀(½ − arcsin √((s² − r²)/(c² − r²))/π)
+//! ```
+//!
+//! A state is whole where the gap is positive in the zone and below `h_c`, not below `h_c` beyond it, and p ≥ −σ₀ in the contact. Along a
+//! stable stretch δ and c grow together, and with them the gap falls everywhere outside the contact and the pressure grows everywhere
+//! inside, for the increment of a tension that pulls at the edge and of an approach is a pressure; what the edge s reaches it finds
+//! closed, what c reaches it finds at `h_c`. So the stretch is whole where at its outer end nothing touches in the zone or comes within
+//! range beyond it, and at its inner end nothing opens in the zone or under the contact.
+
+use super::state::Zone;
+use crate::annuli::Ground;
+use crate::annuli::ground::gauss;
+use crate::disc::outside;
+use crate::elementary::{acos, asin, sin};
+use crate::problem::Cohesion;
+use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
+
+/// What a gap may be off, as a share of `h_c`, and a pressure as a share of σ₀.
+const ROUNDING: f64 = 1e-9;
+
+/// Radii in a zone and per wave in it at which the gap is looked at, and at most.
+const IN_ZONE: f64 = 24.0;
+const PER_WAVE: f64 = 16.0;
+const MOST: f64 = 4000.0;
+
+/// What a displacement beyond the zone may be more than at its edge.
+const FARTHER: f64 = 1.2;
+
+/// What is not one disc in one zone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FaultKind {
+    /// Beyond the zone the bodies are within range.
+    SecondZone,
+    /// In the zone they touch.
+    Touches,
+    /// In the zone they are out of range.
+    Opens,
+    /// Under the contact the tension is more than there can be.
+    Torn,
+}
+
+/// Where a state is not one disc in one zone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fault {
+    /// What is there.
+    pub kind: FaultKind,
+    /// Where, a length.
+    pub radius: f64,
+}
+
+/// Which faults are looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ends {
+    /// Those that appear first at the outer end of a stable stretch.
+    Outer,
+    /// Those at its inner end.
+    Inner,
+    /// All.
+    Both,
+}
+
+/// A state by its numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ZoneAt {
+    /// c.
+    pub edge: f64,
+    /// s.
+    pub contact_radius: f64,
+    /// δ.
+    pub approach: f64,
+}
+
+impl Zone {
+    /// ∫_s^{min(r, c)} √((c² − a²)/(r² − a²)) da.
+    fn pull(at: ZoneAt, r: f64) -> f64 {
+        let (c, s) = (at.edge, at.contact_radius);
+        if r <= s {
+            return 0.0;
+        }
+        let inner = r.min(c);
+        // a = inner sin(π/2 − χ): beside the edge the integrand changes within χ = d/c.
+        let square = (c - r) * (c + r);
+        let end = acos((s / inner).min(1.0));
+        let of = |chi: f64| {
+            let sine = inner * sin(chi);
+            if r < c { (square + sine * sine).sqrt() } else { sine * sine / (sine * sine - square).sqrt() }
+        };
+        let mut near = (square.abs().sqrt() / c).max(1e-12 * end);
+        let (mut from, mut sum) = (0.0, 0.0);
+        while from < end {
+            let to = if near >= 0.7 * end { end } else { near };
+            let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+            sum += half * gauss(16).iter().map(|[x, weight]| weight * of(middle + half * x)).sum::<f64>();
+            (from, near) = (to, 3.0 * to);
+        }
+        sum
+    }
+
+    /// The gap at `r ≥ s`; the table must reach there.
+    pub fn gap_at(&self, at: ZoneAt, r: f64) -> f64 {
+        let ring = 4.0 * FRAC_1_PI * self.cohesion.strength * Self::pull(at, r);
+        outside::gap_from(&self.panels, at.contact_radius, at.approach, r) - ring
+    }
+
+    /// The pressure at a radius, compression positive: −σ₀ in the free part of the zone, none beyond it.
+    pub fn pressure_at(&self, at: ZoneAt, r: f64) -> f64 {
+        let Cohesion { strength, .. } = self.cohesion;
+        let (c, s) = (at.edge, at.contact_radius);
+        if r >= c {
+            return 0.0;
+        }
+        if r >= s {
+            return -strength;
+        }
+        let panels = &*self.panels;
+        let value = panels.value(panels.place(s));
+        let share = (((s - r) * (s + r)) / ((c - r) * (c + r))).sqrt();
+        outside::pressure(panels, s, value, r) - 2.0 * strength * (0.5 - asin(share.min(1.0)) / PI)
+    }
+
+    /// The first fault of a state on the gap of `ground`, of those asked for.
+    pub fn fault(&self, ground: &Ground, at: ZoneAt, ends: Ends) -> Option<Fault> {
+        let Cohesion { strength, range } = self.cohesion;
+        let (c, s) = (at.edge, at.contact_radius);
+        let (outer, inner) = (ends != Ends::Inner, ends != Ends::Outer);
+        let count = (IN_ZONE + PER_WAVE * ground.lengths_between([s, c])).min(MOST).ceil();
+        let places = std::iter::successors(Some(0.5), |k| Some(k + 1.0)).take_while(|k| *k < count);
+        for k in places {
+            // Closer together towards both edges; without contact the axis itself is looked at.
+            let sine = sin(FRAC_PI_2 * (k - 0.5 * f64::from(u8::from(s <= 0.0))) / count);
+            let radius = s + (c - s) * sine * sine;
+            let gap = self.gap_at(at, radius);
+            if outer && gap < -ROUNDING * range {
+                return Some(Fault { kind: FaultKind::Touches, radius });
+            }
+            if inner && gap > range * (1.0 + ROUNDING) {
+                return Some(Fault { kind: FaultKind::Opens, radius });
+            }
+        }
+        if outer && let Some(radius) = self.second_zone(ground, at) {
+            return Some(Fault { kind: FaultKind::SecondZone, radius });
+        }
+        if !inner || s <= 0.0 {
+            return None;
+        }
+        let count = (IN_ZONE + PER_WAVE * ground.lengths_between([0.0, s])).min(MOST).ceil();
+        let places = std::iter::successors(Some(0.5), |k| Some(k + 1.0)).take_while(|k| *k < count);
+        places
+            .map(|k| s * k / count)
+            .find(|r| self.pressure_at(at, *r) < -strength * (1.0 + ROUNDING))
+            .map(|radius| Fault { kind: FaultKind::Torn, radius })
+    }
+
+    /// A radius beyond the zone at which the bodies are within range.
+    ///
+    /// The displacement θ has one sign at the rim and the other inside, so that beyond the zone it is nowhere much lower than at its
+    /// edge, and only crests of the gap that are lower than the edge can be within range.
+    fn second_zone(&self, ground: &Ground, at: ZoneAt) -> Option<f64> {
+        let Cohesion { range, .. } = self.cohesion;
+        let c = at.edge;
+        let height = |r: f64| self.gap.jet(r).value;
+        let raised = (range + at.approach - height(c)).min(0.0);
+        let low = at.approach + range - FARTHER * raised;
+        let end = ground.reach();
+        let mut candidates: Vec<f64> =
+            ground.samples().into_iter().chain(ground.breaks.iter().copied()).collect();
+        candidates.retain(|r| *r > c * (1.0 + ROUNDING) && *r < end && height(*r) < low);
+        candidates.into_iter().find(|r| self.gap_at(at, *r) < range * (1.0 - ROUNDING))
+    }
+
+    /// How far the gap must be known for a state: beyond it nothing can come within range.
+    pub fn sees(&self, ground: &Ground, at: ZoneAt) -> f64 {
+        let low = at.approach
+            + self.cohesion.range
+            + FARTHER * (self.gap.jet(at.edge).value - at.approach - self.cohesion.range).max(0.0);
+        ground.can_touch_up_to(low).max(at.edge)
+    }
+}

@@ -1,0 +1,248 @@
+//! The equilibria of one disc in one zone over all outer edges, in panels, grown outward when asked.
+//!
+//! Borders of panels lie where contact in the zone begins or ends, at the corners of the gap, and where the edge of contact passes one.
+//! Beyond the first touch s grows like √(c − c₀), and the variable of the panels is √(c − c₀).
+
+use super::around::ZoneAt;
+use super::state::{Zone, ZoneState};
+use crate::annuli::Ground;
+use crate::disc::chebyshev::{self, Rule};
+use crate::disc::sampled::{Fineness, Panel, Sample, Sampled, resolve};
+use crate::disc::{Solution, Table, TableError};
+use crate::elementary::cbrt;
+use crate::gap::panels::{Span, Variable};
+use crate::problem::Cohesion;
+use crate::progress::Progress;
+use std::sync::Arc;
+
+/// Of series that are read to eleven digits; where δ(c) jumps from one root to another there is no disc in one zone between them.
+const FINENESS: Fineness = Fineness { tail: 1e-11, halvings: 13, of_holes: 14, loose: 1e-5 };
+
+/// A panel is at most so many times as far out at its outer end as at its inner.
+const RATIO: f64 = 3.0;
+
+/// The width of a panel before it is halved, as a share of the length in which the gap changes there.
+const SHARE_OF_LENGTH: f64 = 0.25;
+
+/// Nodes at which the touch is looked for on a panel.
+const NODES: usize = 32;
+
+/// The share of a radius within which a root is that of a border.
+const AT_BORDER: f64 = 1e-9;
+
+/// Halvings of an edge.
+const HALVINGS: usize = 60;
+
+/// Panels at most.
+const MOST: usize = 20_000;
+
+/// How far beyond the zone the table goes at first.
+const BEYOND: f64 = 1.3;
+
+/// The equilibria of one gap and tension, as far out as they have been asked for.
+#[derive(Debug)]
+pub struct Equilibria {
+    /// The gap with its table.
+    pub ground: Ground,
+    /// What is solved.
+    pub zone: Zone,
+    panels: Vec<Arc<Panel>>,
+    touches: Vec<f64>,
+    /// The panels reach up to here, a length.
+    at: f64,
+    /// Where the contact that there is began.
+    base: Option<f64>,
+}
+
+impl Equilibria {
+    /// None yet.
+    ///
+    /// # Errors
+    /// [`TableError`].
+    pub fn new(
+        table: &Arc<Table>,
+        cohesion: Cohesion,
+        reach: f64,
+        progress: &dyn Progress,
+    ) -> Result<Self, TableError> {
+        let ground = Ground::new(Arc::clone(table), BEYOND * reach, progress)?;
+        let zone = Zone { gap: Arc::clone(&ground.gap), panels: Arc::clone(&ground.panels), cohesion };
+        Ok(Self { ground, zone, panels: Vec::new(), touches: Vec::new(), at: 0.0, base: None })
+    }
+
+    /// What has been found so far.
+    #[must_use]
+    pub fn solution(&self) -> Arc<dyn Solution> {
+        Arc::new(Sampled::of_zones(self.panels.clone(), &self.touches))
+    }
+
+    /// How far out they have been looked for, a length.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        self.at
+    }
+
+    /// Whether the gap is known no further out.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.at >= self.end() || self.panels.len() > MOST
+    }
+
+    /// The largest edge there can be.
+    fn end(&self) -> f64 {
+        0.995 * self.ground.table.end()
+    }
+
+    /// Makes the table of the gap reach as far as `radius`, or to where the gap ends; whether it reaches further than before.
+    ///
+    /// # Errors
+    /// [`TableError`].
+    pub fn look(&mut self, radius: f64, progress: &dyn Progress) -> Result<bool, TableError> {
+        let known = self.ground.reach();
+        if radius <= known || known >= self.ground.table.end() * (1.0 - 1e-9) {
+            return Ok(false);
+        }
+        self.ground = Ground::new(Arc::clone(&self.ground.table), radius.max(1.5 * known), progress)?;
+        self.zone.panels = Arc::clone(&self.ground.panels);
+        Ok(true)
+    }
+
+    /// Adds panels until `enough` says of the last state that it lies far enough out, or the gap ends.
+    ///
+    /// # Errors
+    /// [`TableError`].
+    pub fn grow(
+        &mut self,
+        enough: &dyn Fn(&ZoneState) -> bool,
+        progress: &dyn Progress,
+    ) -> Result<(), TableError> {
+        while !self.is_whole() {
+            self.next(progress)?;
+            if self.zone.state(self.at, None).is_some_and(|state| enough(&state)) {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Where the first panel ends: some way inside the first touch.
+    fn first(&self) -> f64 {
+        /// The share of the first touch.
+        const SHARE: f64 = 0.25;
+        let mut c = self.ground.reach();
+        let mut found = c;
+        for _ in 0..4 * HALVINGS {
+            c *= 0.7;
+            if self.zone.excess(c) > 0.0 {
+                found = c;
+            }
+        }
+        SHARE * found
+    }
+
+    /// One step outward.
+    fn next(&mut self, progress: &dyn Progress) -> Result<(), TableError> {
+        let lo = self.at;
+        let mut hi = if lo > 0.0 {
+            (RATIO * lo).min(lo + SHARE_OF_LENGTH * self.ground.length_at(lo))
+        } else {
+            self.first()
+        };
+        let end = self.end();
+        if hi > end * (1.0 - AT_BORDER) {
+            hi = end;
+        }
+        self.look(BEYOND * hi, progress)?;
+        if let Some(stop) = self.ground.stops().iter().find(|stop| **stop > lo * (1.0 + AT_BORDER)) {
+            hi = hi.min(*stop);
+        }
+        // The slope by c itself has a sign at the axis.
+        let variable = self.base.map_or(Variable::Radius, |base| Variable::Root { base });
+        let span = Span { lo, hi, variable };
+        // Where contact begins or ends.
+        let excess = Rule::of(NODES).series(|x| self.zone.excess(span.radius(x)));
+        let size: f64 = excess.iter().map(|c| c.abs()).sum();
+        let roots = chebyshev::roots(&excess, f64::EPSILON * size);
+        let inside = (lo + AT_BORDER * hi)..(hi - AT_BORDER * hi);
+        let cut = roots.into_iter().map(|x| span.radius(x)).find(|c| inside.contains(c));
+        let touch = cut.map(|c| self.touch(c, [lo, hi]));
+        let mut hi = touch.unwrap_or(hi);
+        let contact = self.zone.excess(Span { hi, ..span }.radius(0.0)) > 0.0;
+        if contact && let Some(corner) = self.corner([lo, hi]) {
+            hi = corner;
+        }
+        let span = Span { hi, ..span };
+        let zone = &self.zone;
+        let source = |radii: &[f64]| samples(zone, radii, progress);
+        resolve(&source, span, FINENESS, progress, &mut self.panels).ok_or(TableError::Cancelled)?;
+        self.at = hi;
+        if touch == Some(hi) {
+            self.touches.push(hi);
+            self.base = (!contact).then_some(hi);
+        }
+        Ok(())
+    }
+
+    /// The root of the excess near `c`, to rounding.
+    fn touch(&self, mut c: f64, [lo, hi]: [f64; 2]) -> f64 {
+        for _ in 0..4 {
+            let step = 1e-6 * (hi - lo);
+            let slope = (self.zone.excess(c + step) - self.zone.excess(c - step)) / (2.0 * step);
+            let next = c - self.zone.excess(c) / slope;
+            if !(next > lo && next < hi) {
+                break;
+            }
+            c = next;
+        }
+        c
+    }
+
+    /// The first edge between two at which the contact ends on a corner of the gap.
+    fn corner(&self, [lo, hi]: [f64; 2]) -> Option<f64> {
+        let radius = |c: f64| self.zone.state(c, None).map(|state| state.contact_radius);
+        let begin = self.base.filter(|base| *base >= lo).map_or_else(|| radius(lo), |_| Some(0.0))?;
+        let end = radius(hi)?;
+        let (least, most) = (begin.min(end), begin.max(end));
+        let margin = 1e-7 * self.ground.wave;
+        let mut between = self
+            .ground
+            .stops()
+            .iter()
+            .copied()
+            .filter(|stop| *stop > least + margin && *stop < most - margin);
+        let corner = if end > begin { between.next() } else { between.next_back() }?;
+        let (mut near, mut far) = (lo, hi);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (near + far);
+            let passed = (radius(middle)? > corner) == (end > begin);
+            if passed { far = middle } else { near = middle }
+        }
+        (far < hi).then_some(far)
+    }
+}
+
+/// The states at edges, up to the first that is none.
+fn samples(zone: &Zone, edges: &[f64], progress: &dyn Progress) -> Vec<Sample> {
+    let mut near = None;
+    let mut found = Vec::with_capacity(edges.len());
+    for edge in edges {
+        let state = if progress.stop() { None } else { zone.state(*edge, near) };
+        let Some(ZoneState { approach, force, slopes, energy, free, .. }) = state else { break };
+        near = (free < 1.0).then_some(free);
+        found.push(Sample { approach, force, slopes, energy, free });
+    }
+    found
+}
+
+impl From<ZoneState> for ZoneAt {
+    fn from(state: ZoneState) -> Self {
+        Self { edge: state.edge, contact_radius: state.contact_radius, approach: state.approach }
+    }
+}
+
+/// About how far a zone with contact of the radius `s` reaches, for R = 1: where a path begins to look.
+#[must_use]
+pub fn about(cohesion: Cohesion, s: f64) -> f64 {
+    let wide = (2.0 * cohesion.range).sqrt().min(cbrt(cohesion.work()) + cohesion.range / cohesion.strength);
+    s + wide
+}

@@ -1,0 +1,123 @@
+//! `pulloff pull`: one disc pulled at a rate, and how long it bears dead loads.
+
+use super::Failure;
+use super::console::Messages;
+use super::format::{Format, FormatArgument};
+use super::output::Destination;
+use super::problem::Problem;
+use super::watch::Stop;
+use clap::{Args, ValueEnum};
+use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::edge::RATE;
+use pulloff_engine::report::pull::{Asked, COLUMNS, FAILURE_COLUMNS, MOMENT_COLUMNS};
+use pulloff_engine::report::{PullReport, columns, json, table};
+use pulloff_engine::text::quote;
+use std::process::ExitCode;
+
+/// The key whose number a dead load is read as.
+const FORCE: &str = "path.start_force";
+
+/// Rates in one range at most.
+const RATES: usize = 10_000;
+
+/// The arguments of `pulloff pull`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    problem: Problem,
+    /// Pull at this rate of what is controlled until the bodies are apart (repeatable; instead of path.rate and path.steps);
+    /// log:FROM..TO:COUNT for rates of equal factors
+    #[arg(long, value_name = "RATE")]
+    rate: Vec<String>,
+    /// How long this dead load is borne, a negative force for a pull (repeatable)
+    #[arg(long, value_name = "FORCE", allow_hyphen_values = true)]
+    hold_force: Vec<String>,
+    /// What the rows of a table or of CSV are; JSON has the runs
+    #[arg(long, value_enum, default_value_t = Rows::Runs)]
+    rows: Rows,
+    #[command(flatten)]
+    format: FormatArgument,
+    #[command(flatten)]
+    destination: Destination,
+    #[command(flatten)]
+    messages: Messages,
+}
+
+/// What a row is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Rows {
+    /// The pulls, or the dead loads where nothing is pulled
+    Runs,
+    /// Every moment of every pull
+    Moments,
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let console = arguments.messages.open();
+    let format = arguments.format.of(arguments.destination.path(), Format::Table)?;
+    let loaded = arguments.problem.load(&console)?;
+    let preset = &loaded.preset;
+    let sink = arguments.destination.sink(arguments.problem.inputs(&loaded))?;
+    let mut asked = Asked::default();
+    for text in &arguments.rate {
+        asked.rates.extend(rates(preset, text)?);
+    }
+    for text in &arguments.hold_force {
+        asked.loads.push(number(preset, "--hold-force", FORCE, text)?);
+    }
+    if arguments.rows == Rows::Moments && asked.rates.is_empty() && !asked.loads.is_empty() {
+        return Err(Failure::Usage("--rows moments: a dead load has no moments; give --rate too".to_owned()));
+    }
+    let stop = Stop::catch()?;
+    let report = PullReport::compute(preset, &asked, &console.bar(Some(&stop)))?;
+    console.warn(&report.warnings);
+    if format == Format::Csv {
+        let columns = match (arguments.rows, report.runs.is_empty()) {
+            (Rows::Moments, _) => MOMENT_COLUMNS,
+            (Rows::Runs, true) => FAILURE_COLUMNS,
+            (Rows::Runs, false) => COLUMNS,
+        };
+        console.note(columns::units(columns, preset.path.control, &preset.units).as_deref());
+    }
+    let rows = || if arguments.rows == Rows::Moments { report.moments() } else { report.table() };
+    sink.write(match format {
+        Format::Table if arguments.rows == Rows::Runs => report.text(),
+        Format::Table => table::rows(&rows()?),
+        Format::Csv => rows()?.csv()?,
+        Format::Json => json(&report)?,
+    })?;
+    console.end()
+}
+
+/// The rates of one `--rate`.
+fn rates(preset: &Preset, text: &str) -> Result<Vec<f64>, Failure> {
+    let one = |text: &str| {
+        let rate = number(preset, "--rate", RATE, text)?;
+        let usable = rate > 0.0 && rate.is_finite();
+        usable.then_some(rate).ok_or_else(|| wrong(text, "a rate is above 0"))
+    };
+    let Some(range) = text.strip_prefix("log:") else { return Ok(vec![one(text)?]) };
+    let expected = "expected log:FROM..TO:COUNT, as in log:1e-6..1e2:100";
+    let (ends, count) = range.rsplit_once(':').ok_or_else(|| wrong(text, expected))?;
+    let (from, to) = ends.split_once("..").ok_or_else(|| wrong(text, expected))?;
+    let count: usize = count.trim().parse().map_err(|_| wrong(text, expected))?;
+    if !(2..=RATES).contains(&count) {
+        return Err(wrong(text, &format!("the count is a whole number from 2 to {RATES}")));
+    }
+    let (from, to) = (one(from)?, one(to)?);
+    let factor = pulloff_engine::elementary::ln(to / from);
+    let share = |k: usize| k as f64 / (count - 1) as f64;
+    Ok((0..count)
+        .map(|k| if k + 1 == count { to } else { from * pulloff_engine::elementary::exp(factor * share(k)) })
+        .collect())
+}
+
+/// A number as the key `key` takes it.
+fn number(preset: &Preset, option: &str, key: &str, text: &str) -> Result<f64, Failure> {
+    let row = preset.row(key).ok_or_else(|| wrong(text, "the preset has no such number"))?;
+    preset.number(&row, text).map_err(|invalid| Failure::Usage(format!("{option}: {invalid}")))
+}
+
+fn wrong(text: &str, why: &str) -> Failure {
+    Failure::Usage(format!("--rate: {}: {why}", quote(text)))
+}

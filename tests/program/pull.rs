@@ -1,0 +1,118 @@
+//! `pulloff pull`: pulls at a rate and dead loads, from the command line.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
+
+use crate::support::schema;
+use assert_cmd::Command;
+use serde_json::Value;
+
+fn pulloff(arguments: &[&str]) -> assert_cmd::assert::Assert {
+    Command::cargo_bin("pulloff").unwrap().arg("pull").args(arguments).assert()
+}
+
+fn document(arguments: &[&str]) -> Value {
+    let output = pulloff(&[arguments, &["--format", "json"]].concat()).success();
+    let text = String::from_utf8(output.get_output().stdout.clone()).unwrap();
+    schema::check(&text);
+    serde_json::from_str(&text).unwrap()
+}
+
+/// The wavy sphere from the radius of the known numbers.
+const WAVY: [&str; 5] =
+    ["wavy-sphere", "--set", "edge.exponent=0.5", "--set", "path.start_contact_radius=0.5"];
+
+#[test]
+fn the_document_has_what_its_contract_says() {
+    let found = document(&[&WAVY[..], &["--rate", "0.01", "--rate", "1"]].concat());
+    assert_eq!(found["document"], "pull");
+    let critical = found["problem"]["critical_force"].as_f64().unwrap();
+    let runs = found["runs"].as_array().unwrap();
+    for (run, (rate, peak, count)) in runs.iter().zip([(0.01, 1.64877, 7), (1.0, 2.72997, 6)]) {
+        assert_eq!(run["rate"].as_f64(), Some(rate));
+        let force = run["peak"]["force"].as_f64().unwrap();
+        assert!((-force / critical / peak - 1.0).abs() < 1e-5, "{force}");
+        assert_eq!(run["tension_peaks"].as_array().unwrap().len(), count);
+        for moment in [&run["start"], &run["pinned_until"], &run["peak"], &run["tension_peaks"][0]] {
+            for key in ["time", "contact_radius", "approach", "force"] {
+                assert!(moment[key].is_number(), "{key}");
+            }
+        }
+        for key in ["from", "to", "top_speed", "dissipated"] {
+            assert!(run["snaps"][0][key].is_number(), "{key}");
+        }
+        assert!(run["last_contact"]["time"].is_number() && run["last_contact"]["control"].is_number());
+        assert!(run["dissipated"].as_f64().unwrap() > 0.0 && run["balance"].as_f64().unwrap() < 1e-9);
+    }
+    assert_eq!(found["failures"], Value::Array(Vec::new()));
+}
+
+#[test]
+fn a_dead_load_falls_without_end_or_is_borne() {
+    let force = ["--control", "force", "--rate", "1e-3"];
+    let found = document(&[&WAVY[..], &force].concat());
+    assert_eq!(found["runs"][0]["dissipated"], Value::Null);
+    let loads = ["--hold-force=-0.02", "--hold-force=-0.03"];
+    let found = document(&[&WAVY[..], &loads].concat());
+    assert_eq!(found["runs"], Value::Array(Vec::new()));
+    assert_eq!(found["failures"][0]["time"], Value::Null);
+    assert!(found["failures"][1]["time"].as_f64().unwrap() > 0.0);
+}
+
+/// Twice both speeds is the same in half the time.
+#[test]
+fn only_the_ratio_of_the_speeds_counts() {
+    let one = document(&[&WAVY[..], &["--rate", "0.01"]].concat());
+    let two = document(&[&WAVY[..], &["--set", "edge.reference_speed=2", "--rate", "0.02"]].concat());
+    let of = |found: &Value, key: &str| found["runs"][0]["peak"][key].as_f64().unwrap();
+    assert!((of(&one, "force") / of(&two, "force") - 1.0).abs() < 1e-15);
+    assert!((of(&one, "time") / of(&two, "time") / 2.0 - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn ranges_steps_and_rows() {
+    let output = pulloff(&[&WAVY[..], &["--rate", "log:1e-3..1e1:5", "--format", "csv"]].concat()).success();
+    let text = String::from_utf8(output.get_output().stdout.clone()).unwrap();
+    assert_eq!(text.lines().count(), 6);
+    assert!(text.lines().nth(5).unwrap().starts_with("10"), "{text}");
+    let steps = ["--set", "path.steps=to 0.12 at 0.01; hold 5; apart at 0.02"];
+    let found = document(&[&WAVY[..], &steps].concat());
+    assert_eq!(found["runs"][0]["rate"], Value::Null);
+    assert!(found["runs"][0]["last_contact"].is_object());
+    let moments = pulloff(&[&WAVY[..], &["--rate", "1", "--rows", "moments", "--format", "csv"]].concat());
+    let text = String::from_utf8(moments.success().get_output().stdout.clone()).unwrap();
+    assert!(
+        text.starts_with(
+            "rate,time,control,contact_radius,approach,force,speed,energy_release_rate,dissipated"
+        )
+    );
+    assert!(text.lines().count() > 100);
+}
+
+#[test]
+fn what_cannot_be_says_what_could() {
+    for (arguments, said) in [
+        (vec!["wavy-sphere", "--rate", "1"], "edge.exponent"),
+        (vec!["wavy-sphere", "--set", "edge.exponent=0.5"], "no rate"),
+        (vec!["wavy-sphere", "--set", "edge.exponent=0.5", "--rate", "0"], "--rate"),
+        (vec!["wavy-sphere", "--set", "edge.exponent=0.5", "--rate", "log:1..2"], "log:FROM..TO:COUNT"),
+        (vec!["wavy-sphere", "--set", "edge.exponent=9"], "edge.exponent"),
+        (vec!["wavy-sphere", "--set", "path.steps=jump"], "to VALUE at RATE"),
+        (vec!["fig-9-si", "--set", "edge.exponent=0.5", "--rate", "1 um/s"], "edge.reference_speed"),
+        (vec!["wavy-sphere", "--set", "material.closing_work_of_adhesion=1"], "out of range"),
+    ] {
+        let output = pulloff(&arguments).failure().code(2);
+        let text = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+        assert!(text.contains(said), "{arguments:?}: {text}");
+    }
+}
+
+/// Elsewhere a dead band is not followed, and that is said.
+#[test]
+fn a_dead_band_is_told_of_where_it_does_not_count() {
+    let set = ["wavy-sphere", "--set", "material.closing_work_of_adhesion=0.002"];
+    for command in ["unload", "cycle", "trace"] {
+        let output = Command::cargo_bin("pulloff").unwrap().arg(command).args(set).assert().success();
+        let text = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+        assert!(text.contains("material.closing_work_of_adhesion"), "{command}: {text}");
+    }
+}
