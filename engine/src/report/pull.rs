@@ -3,7 +3,7 @@
 use super::number::{loss, significant};
 use super::problem::Head;
 use super::rows::{RowsError, Table};
-use super::table::{aligned, ascii_unit, control, head, ratio};
+use super::table::{aligned, ascii_unit, control, head};
 use crate::case::{Case, CaseError};
 use crate::preset::{Preset, edge};
 use crate::problem::{Control, Part};
@@ -469,12 +469,12 @@ impl PullReport {
             "balance".to_owned(),
         ]];
         let dash = || "-".to_owned();
-        let critical = self.head.problem.critical_force;
+        let critical = self.head.problem.critical_force.filter(|critical| *critical > 0.0);
         rows.extend(runs.iter().map(|run| {
             vec![
                 run.rate.map_or_else(dash, |rate| number(self.rate_quantity(), rate)),
                 number(Quantity::Force, run.peak.force),
-                ratio(run.peak.force, critical),
+                critical.map_or_else(dash, |critical| significant(run.peak.force / critical, 6)),
                 run.tension_peaks.len().to_string(),
                 run.snaps.len().to_string(),
                 number(Quantity::Speed, run.top_edge_speed),
