@@ -16,8 +16,10 @@
 //! L. Greengard and V. Rokhlin, J. Comput. Phys. 73, 325 (1987), doi:10.1016/0021-9991(87)90140-9, for the tree.
 
 use super::chebyshev::Rule;
-use super::sources::NODES;
 use wide::f64x4;
+
+/// Samples of h' on a panel.
+pub const NODES: usize = 24;
 
 /// Clusters are used from this distance on, in their widths.
 const FAR: f64 = 1.0;

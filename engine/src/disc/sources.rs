@@ -12,7 +12,7 @@
 //! right of a break.
 
 use super::chebyshev::Rule;
-use super::clusters::{Cluster, Clusters, Part};
+use super::clusters::{Cluster, Clusters, NODES, Part};
 use super::span::panel_of;
 use crate::elementary::{atan2, cos};
 use crate::gap::Gap;
@@ -21,9 +21,6 @@ use crate::progress::Progress;
 use gauss_quad::GaussLegendre;
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
-
-/// Samples of h' on a panel.
-pub const NODES: usize = 24;
 
 /// A panel is far from a when its distance is this share of its width: 24 nodes then leave 2.1⁻⁴⁸.
 const FAR: f64 = 0.15;

@@ -13,9 +13,10 @@
 
 use super::blend::Blend;
 use super::chebyshev::Rule;
+use super::clusters::NODES;
 use super::law::Law;
 use super::panels::{Panel, Panels};
-use super::sources::{self, Sources};
+use super::sources::Sources;
 use super::spans::{TableError, graded};
 use super::{cubic, outside, waves};
 use crate::elementary::{exp2, log2, log10};
@@ -256,12 +257,12 @@ impl Table {
                 };
                 let sampled =
                     Sources::new(&*self.gap, &spans, &breaks, progress).ok_or(TableError::Cancelled)?;
-                let rule = Rule::of(sources::NODES);
+                let rule = Rule::of(NODES);
                 for span in spans {
                     if progress.stop() {
                         return Err(TableError::Cancelled);
                     }
-                    let [mut value, mut slope] = [[0.0; sources::NODES]; 2];
+                    let [mut value, mut slope] = [[0.0; NODES]; 2];
                     for (j, x) in rule.nodes.iter().enumerate() {
                         [value[j], slope[j]] = sampled.transform(&*self.gap, &span, *x);
                     }
@@ -416,7 +417,7 @@ mod tests {
             .map(|(from, to)| {
                 let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
                 let node = |[x, weight]: &[f64; 2]| half * weight * f(a * (middle + half * x).sin());
-                sources::GAUSS.iter().map(node).sum::<f64>()
+                crate::disc::sources::GAUSS.iter().map(node).sum::<f64>()
             })
             .sum()
     }

@@ -12,9 +12,8 @@
 //! ½ var min(z², c²)/(mean of z² up to c)² = ½ · 1.6815/0.8999² = 1.04. Squares of noise that is correlated as a ρᵏ are correlated as its
 //! square, and ρ itself is known to var ρ = (1 − ρ²)/m by the m rows apart: M. S. Bartlett, J. R. Stat. Soc. Suppl. 8, 27 (1946).
 
-use super::determined::together;
 use super::problem::Problem;
-use super::scatter::{Correlation, Scatter};
+use super::scatter::{Correlation, Scatter, together};
 use super::spread::Spread;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 

@@ -16,7 +16,7 @@ use super::degrees::{Made, degrees};
 use super::least_squares::Evaluated;
 use super::options::letter;
 use super::problem::{Parameter, Prior, Problem};
-use super::scatter::{Correlation, Scatter, variance};
+use super::scatter::{Correlation, Scatter, together, variance};
 use super::solve::{HUBER, LEAST_SCALE, Solved};
 use super::spread::{LEAST_LEFT, Spread};
 use crate::elementary::{exp, exp_m1, ln};
@@ -212,35 +212,6 @@ fn sandwich(
     };
     let bread = at.jacobian.tr_mul(&scaled(&|[inside, _]| *inside));
     Sandwich { points: points * (level * taken_more), bread, noisy, spread }
-}
-
-/// `JᵀRJ`: the rows of a branch in the order of measurement, those in contact and those apart.
-pub(super) fn together(
-    problem: &Problem,
-    jacobian: &DMatrix<f64>,
-    correlation: &Correlation,
-) -> DMatrix<f64> {
-    let (per, p) = (problem.per_point(), jacobian.ncols());
-    let mut crossed = DMatrix::zeros(p, p);
-    for branch in 0..problem.branches() {
-        let of = problem.data.iter().enumerate().filter(|(_, datum)| datum.branch == branch);
-        let mut rows: Vec<(usize, usize)> = of.map(|(index, datum)| (datum.point.at, index)).collect();
-        rows.sort_unstable();
-        for part in 0..per {
-            // Σ ρ^(i − k) J_k over the rows before.
-            let mut before = DVector::<f64>::zeros(p);
-            let mut last = None;
-            for (row, index) in &rows {
-                let way = last.map_or(0, |last: usize| row - last);
-                last = Some(*row);
-                before *= exp(way as f64 * ln(correlation.decay));
-                let of_row = jacobian.row(per * index + part).transpose();
-                crossed += &of_row * before.transpose();
-                before += of_row;
-            }
-        }
-    }
-    jacobian.tr_mul(jacobian) + correlation.share * (&crossed + crossed.transpose())
 }
 
 /// The variance of the residuals, of which the parameters take `p`.

@@ -16,6 +16,7 @@ use super::solve::Solved;
 use crate::elementary::{exp, ln};
 use crate::measured::Abscissa;
 use crate::measured::branches::median;
+use nalgebra::{DMatrix, DVector};
 
 /// Rows farther off than so many times the scale of all are outliers, and left out.
 const OUTLIER: f64 = 4.0;
@@ -273,6 +274,35 @@ fn correlation(series: &[Vec<f64>]) -> Correlation {
         };
     }
     if found.decay > 0.0 { found } else { none }
+}
+
+/// `JᵀRJ`: the rows of a branch in the order of measurement, those in contact and those apart.
+pub(super) fn together(
+    problem: &Problem,
+    jacobian: &DMatrix<f64>,
+    correlation: &Correlation,
+) -> DMatrix<f64> {
+    let (per, p) = (problem.per_point(), jacobian.ncols());
+    let mut crossed = DMatrix::zeros(p, p);
+    for branch in 0..problem.branches() {
+        let of = problem.data.iter().enumerate().filter(|(_, datum)| datum.branch == branch);
+        let mut rows: Vec<(usize, usize)> = of.map(|(index, datum)| (datum.point.at, index)).collect();
+        rows.sort_unstable();
+        for part in 0..per {
+            // Σ ρ^(i − k) J_k over the rows before.
+            let mut before = DVector::<f64>::zeros(p);
+            let mut last = None;
+            for (row, index) in &rows {
+                let way = last.map_or(0, |last: usize| row - last);
+                last = Some(*row);
+                before *= exp(way as f64 * ln(correlation.decay));
+                let of_row = jacobian.row(per * index + part).transpose();
+                crossed += &of_row * before.transpose();
+                before += of_row;
+            }
+        }
+    }
+    jacobian.tr_mul(jacobian) + correlation.share * (&crossed + crossed.transpose())
 }
 
 #[cfg(test)]
