@@ -4,8 +4,7 @@
 //! t = ∫₀^{s₀} ds/v(s)      v = v₀ (G/γ − 1)^{1/n}      G at the radius s under the force P
 //! ```
 //!
-//! Where an equilibrium bears the load the edge stops there, and the bodies never come apart. With n = 1/2 and more this is Barquins'
-//! time to failure.
+//! Where an equilibrium bears the load the edge stops there, and the bodies never come apart.
 
 use super::caps::Folds;
 use super::equation::{Edge, Held};

@@ -1,11 +1,12 @@
 //! Pulls at a rate, and times to failure under dead loads, as a document.
 
+use super::map::EXACT;
 use super::number::{loss, significant};
 use super::problem::Head;
 use super::rows::{RowsError, Table};
 use super::table::{aligned, ascii_unit, control, head};
 use crate::case::{Case, CaseError};
-use crate::preset::{Preset, edge};
+use crate::preset::{BasisSpec, Preset, edge};
 use crate::problem::{Control, Part};
 use crate::progress::{self, Progress};
 use crate::quasistatic::admissible::Judge;
@@ -320,6 +321,9 @@ impl PullReport {
         };
         let programmes = programmes(preset, asked)?;
         let mut warnings = Case { has_dead_band: false, ..case.clone() }.warnings_of_problem();
+        if preset.basis != BasisSpec::Exact {
+            warnings.push(EXACT.to_owned());
+        }
         let mut runs = Vec::new();
         let count = programmes.len().max(1) as f64;
         for (k, (rate, parts)) in programmes.iter().enumerate() {
