@@ -3,7 +3,7 @@
 use super::balance::{Balance, Held, keeps_widths, moved};
 use crate::annuli::{Contacts, Resolution, points};
 use crate::problem::Control;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, LU};
 use std::f64::consts::PI;
 
 /// Newton's steps of one correction at most.
@@ -56,6 +56,8 @@ pub struct Step<'a, 'b> {
     from: &'a Point,
     points: Resolution,
     row: DVector<f64>,
+    /// The second derivative by the length at the start, as the step before left it.
+    bend: Option<DVector<f64>>,
 }
 
 impl Balance<'_> {
@@ -83,16 +85,20 @@ impl Balance<'_> {
 
     /// dδ and dP along the tangent of a point, in the units of the arc length.
     pub(super) fn slopes(&self, point: &Point) -> [f64; 2] {
-        let Held { state, excess, .. } = &point.held;
+        self.changes(&point.held, &point.tangent, &point.scales)
+    }
+
+    /// dδ and dP of edges and a control, in equilibrium or not, that change by `change` in the units of the arc length.
+    fn changes(&self, Held { state, excess, .. }: &Held, change: &DVector<f64>, scales: &Scales) -> [f64; 2] {
         let root = self.work_of_adhesion.sqrt();
         let by_edges: f64 = (state.contacts.edges().iter().enumerate())
             .map(|(i, edge)| {
-                let rate = point.tangent[i] * point.scales.edges[i];
-                4.0 * PI * edge.radius * (excess[i] + root) * state.intensity[i][1] * rate
+                let change = change[i] * scales.edges[i];
+                4.0 * PI * edge.radius * (excess[i] + root) * state.intensity[i][1] * change
             })
             .sum();
         let held = state.force[1];
-        let by_control = point.along_control() * point.scales.control;
+        let by_control = change[change.len() - 1] * scales.control;
         let approach = match self.control {
             Control::Displacement => by_control,
             Control::Force => (by_control - by_edges) / held,
@@ -146,7 +152,13 @@ impl<'a, 'b> Step<'a, 'b> {
     /// Steps from `from`.
     pub fn new(balance: &'a Balance<'b>, from: &'a Point) -> Self {
         let row = from.tangent.clone();
-        Self { balance, from, points: points(balance.ground, from.contacts()), row }
+        Self { balance, from, points: points(balance.ground, from.contacts()), row, bend: None }
+    }
+
+    /// The same where the curve is known to bend so.
+    #[must_use]
+    pub fn bent(self, bend: Option<DVector<f64>>) -> Self {
+        Self { bend, ..self }
     }
 
     /// Steps measured by the way of one edge, in waves, on the side to which it goes along the tangent: close to a corner of the gap
@@ -154,7 +166,7 @@ impl<'a, 'b> Step<'a, 'b> {
     pub fn of_edge(balance: &'a Balance<'b>, from: &'a Point, edge: usize) -> Self {
         let mut row = DVector::zeros(from.tangent.len());
         row[edge] = if from.tangent[edge] < 0.0 { -1.0 } else { 1.0 };
-        Self { balance, from, points: points(balance.ground, from.contacts()), row }
+        Self { balance, from, points: points(balance.ground, from.contacts()), row, bend: None }
     }
 
     /// The unit of the control in its length.
@@ -186,22 +198,11 @@ impl<'a, 'b> Step<'a, 'b> {
 
     /// The same with a last step of Newton's method of `converged` at most.
     pub fn within(&self, length: f64, guess: &DVector<f64>, converged: f64) -> Option<(Point, DVector<f64>)> {
-        let (balance, from) = (self.balance, self.from);
-        let n = from.held.excess.len();
-        let scales = &from.scales;
+        let n = self.from.held.excess.len();
         let mut offset = guess.clone();
         let mut last = f64::INFINITY;
         for _ in 0..ITERATIONS {
-            let contacts = moved(from.contacts(), &offset.rows(0, n).component_mul(&scales.edges));
-            if !keeps_widths(from.contacts(), &contacts, 0.5 * LEFT) {
-                return None;
-            }
-            let value = from.held.control_value + scales.control * offset[n];
-            let held = balance.held(&contacts, &self.points, value).ok()?;
-            let mut right = DVector::zeros(n + 1);
-            right.rows_mut(0, n).copy_from(&-&held.excess);
-            right[n] = length - self.row.dot(&offset);
-            let lu = Balance::bordered(&held, &self.row, scales).lu();
+            let (held, lu, right) = self.equations(&offset, length)?;
             let step = lu.solve(&right)?;
             let size = step.amax();
             if !size.is_finite() {
@@ -212,7 +213,7 @@ impl<'a, 'b> Step<'a, 'b> {
                 unit[n] = 1.0;
                 let rate = lu.solve(&unit)?;
                 let tangent = &rate / rate.norm();
-                return Some((Point { held, tangent, scales: scales.clone() }, rate));
+                return Some((Point { held, tangent, scales: self.from.scales.clone() }, rate));
             }
             if size > 2.0 * last.max(1e-3) {
                 return None;
@@ -223,10 +224,103 @@ impl<'a, 'b> Step<'a, 'b> {
         None
     }
 
-    /// The point at the distance `length`, from the tangent; `None` where the step is too long for its rules.
+    /// The point at the distance `length`, from the tangent and the bend; `None` where the step is too long for its rules.
     pub fn taken(&self, length: f64) -> Option<Point> {
-        let (point, _) = self.to(length, &self.line(length))?;
+        let line = self.line(length);
+        let guess = self.bend.as_ref().map(|bend| &line + bend * (0.5 * length * length));
+        let bent = guess.and_then(|guess| self.to(length, &guess));
+        let (point, _) = bent.or_else(|| self.to(length, &line))?;
         self.allowed(&point).then_some(point)
+    }
+
+    /// A point of the step as the start of the next one, and how the curve bends there: as the cubic with the tangents of both ends.
+    pub fn left_at(&self, length: f64, end: Point) -> (Point, Option<DVector<f64>>) {
+        let (offset, [before, after]) = (self.offset(&end), [self.line(1.0), self.rate_of(&end)]);
+        let bend = ((before * 2.0 + &after * 4.0) - offset * (6.0 / length)) / length;
+        let scales = end.scales.clone();
+        let next = end.rescaled(self.balance);
+        let n = scales.edges.len();
+        let rescaled = |x: &DVector<f64>| {
+            DVector::from_fn(n + 1, |i, _| match i < n {
+                true => x[i] * scales.edges[i] / next.scales.edges[i],
+                false => x[i] * scales.control / next.scales.control,
+            })
+        };
+        // By the length along the new tangent.
+        let (speed, bend) = (rescaled(&after).norm(), rescaled(&bend));
+        let across = (&bend - &next.tangent * next.tangent.dot(&bend)) / (speed * speed);
+        let known = across.iter().all(|x| x.is_finite()).then_some(across);
+        (next, known)
+    }
+
+    /// The step up to `end`, at the distance `length`, as a polynomial in the length, through states that are added until one lies on it
+    /// to `near`: the offsets in the units of the arc length, and dΠ/dc, which is P or, for `by_force`, −δ.
+    pub fn way(&self, length: f64, end: &Point, by_force: bool, near: f64) -> Option<Way> {
+        /// Where states are added, as shares of the step.
+        const ADDED: [f64; 7] = [0.5, 0.2, 0.8, 0.35, 0.65, 0.1, 0.9];
+        let balance = self.balance;
+        let with = |x: DVector<f64>, last: f64| {
+            let n = x.len();
+            x.insert_row(n, last)
+        };
+        let slope = |[approach, force]: [f64; 2]| if by_force { -approach } else { force };
+        let ends =
+            [(DVector::zeros(self.row.len()), self.from), (self.offset(end), end)].map(|(x, point)| {
+                let value = slope([point.held.approach, point.held.force]);
+                let rate = slope(balance.slopes(point)) / point.tangent.dot(&self.row);
+                [with(x, value), with(self.rate_of(point), rate)]
+            });
+        let mut way = Way::between(length, ends);
+        for share in ADDED {
+            let guess = way.at(length * share).0;
+            let (x, value, off) = self.near(length * share, guess.rows(0, self.row.len()).into_owned())?;
+            way.through(length * share, with(x, slope(value)));
+            if off <= near {
+                break;
+            }
+        }
+        Some(way)
+    }
+
+    /// The offset of the point at the distance `length` to second order in what `guess` is off, with its δ and P and the size of that.
+    fn near(&self, length: f64, mut guess: DVector<f64>) -> Option<(DVector<f64>, [f64; 2], f64)> {
+        /// What a guess may be off for one correction.
+        const ONCE: f64 = 3e-5;
+        let scales = &self.from.scales;
+        let mut off = None;
+        for _ in 0..ITERATIONS {
+            let (held, lu, right) = self.equations(&guess, length)?;
+            let step = lu.solve(&right).filter(|step| step.iter().all(|x| x.is_finite()))?;
+            let size = step.amax();
+            let off = *off.get_or_insert(size);
+            if size <= ONCE {
+                let [approach, force] = self.balance.changes(&held, &step, scales);
+                return Some((guess + step, [held.approach + approach, held.force + force], off));
+            }
+            guess += step;
+        }
+        None
+    }
+
+    /// The edges at an offset from the start, with the equations of a correction there: the point at the distance `length`.
+    fn equations(
+        &self,
+        offset: &DVector<f64>,
+        length: f64,
+    ) -> Option<(Held, LU<f64, Dyn, Dyn>, DVector<f64>)> {
+        let (balance, from) = (self.balance, self.from);
+        let (n, scales) = (from.held.excess.len(), &from.scales);
+        let contacts = moved(from.contacts(), &offset.rows(0, n).component_mul(&scales.edges));
+        if !keeps_widths(from.contacts(), &contacts, 0.5 * LEFT) {
+            return None;
+        }
+        let value = from.held.control_value + scales.control * offset[n];
+        let held = balance.held(&contacts, &self.points, value).ok()?;
+        let mut right = DVector::zeros(n + 1);
+        right.rows_mut(0, n).copy_from(&-&held.excess);
+        right[n] = length - self.row.dot(offset);
+        let lu = Balance::bordered(&held, &self.row, scales).lu();
+        Some((held, lu, right))
     }
 
     fn allowed(&self, point: &Point) -> bool {
@@ -306,5 +400,42 @@ impl<'a, 'b> Step<'a, 'b> {
             }
         }
         Some(best)
+    }
+}
+
+/// A way as a polynomial in Newton's form: what is known of it at each node in turn.
+pub struct Way {
+    nodes: Vec<f64>,
+    coefficients: Vec<DVector<f64>>,
+}
+
+impl Way {
+    /// The cubic from 0 to `length` with value and rate at both ends.
+    fn between(length: f64, [[start, rate], [end, last]]: [[DVector<f64>; 2]; 2]) -> Self {
+        let chord = (end - &start) / length;
+        let second = (&chord - &rate) / length;
+        let third = (last - chord * 2.0 + &rate) / (length * length);
+        Self { nodes: vec![0.0, 0.0, length, length], coefficients: vec![start, rate, second, third] }
+    }
+
+    /// Adds the value at one more place.
+    fn through(&mut self, x: f64, value: DVector<f64>) {
+        let left = self.nodes.iter().fold(value - self.at(x).0, |left, node| left / (x - node));
+        self.nodes.push(x);
+        self.coefficients.push(left);
+    }
+
+    /// The value at a place, and the derivative.
+    pub fn at(&self, x: f64) -> (DVector<f64>, DVector<f64>) {
+        let zero = DVector::zeros(self.coefficients[0].len());
+        let terms = self.coefficients.iter().zip(&self.nodes).rev();
+        terms.fold((zero.clone(), zero), |(value, rate), (coefficient, node)| {
+            (&value * (x - node) + coefficient, rate * (x - node) + value)
+        })
+    }
+
+    /// The nodes by which a product of two of its components is integrated exactly.
+    pub fn degree(&self) -> usize {
+        self.nodes.len()
     }
 }
