@@ -4,32 +4,24 @@
 //! the program's own tests, benches and fuzz targets and by the Python package alone, and change freely. `ARCHITECTURE.md` draws
 //! the house.
 
+#![allow(missing_docs, reason = "nobody builds on these rooms but what stands in this repository")]
+
 #[cfg(feature = "program")]
-#[doc(hidden)]
 pub mod cli;
 #[cfg(feature = "program")]
-#[doc(hidden)]
 pub mod config;
 #[cfg(feature = "program")]
-#[doc(hidden)]
 pub mod explorer;
 #[cfg(feature = "program")]
 mod fault;
 #[cfg(feature = "program")]
-#[doc(hidden)]
 pub mod figure;
-#[doc(hidden)]
 pub mod mend;
 #[cfg(feature = "program")]
-#[doc(hidden)]
 pub mod plot;
 #[cfg(feature = "program")]
-#[doc(hidden)]
 pub mod print;
-#[doc(hidden)]
 pub mod store;
-#[doc(hidden)]
 pub mod sweep;
 #[cfg(feature = "program")]
-#[doc(hidden)]
 pub mod tui;

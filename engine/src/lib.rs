@@ -41,35 +41,40 @@
 //! | follow the curve | [`Case::curve`], [`Curve`], [`Case::trace`] |
 //! | unload, or press and unload | [`Case::unload`], [`Case::cycle`], [`Path`], [`Event`] |
 //! | look inside one state | [`Profile`], [`Landscape`], [`Admissibility`] |
-//! | have it as JSON, CSV or a table | [`TraceReport`], [`PathReport`], [`VerifyReport`], [`json`] |
+//! | know where snaps begin | [`StabilityReport`], [`MapReport`] |
+//! | pull at a rate | [`PullReport`] |
+//! | fit a measured curve | [`FitReport`] |
+//! | compute many problems | [`sweep::Spec`] |
+//! | have it as JSON, CSV or a table | [`TraceReport`], [`PathReport`], [`VerifyReport`] and the others, [`json`] |
 //!
 //! Nothing here reads a disk, a clock or the environment: texts of presets and rows of measured profiles come from the
 //! caller ([`Files`]).
 //!
 //! # How it is built
 //!
-//! The rooms below stand on each other from the first to the last: none knows of a later one. They are reached by the
-//! program `pulloff` and may change at any time; what is listed above is what stays.
+//! The rooms below stand on each other from the first to the last: none knows of a later one. The names at the root of the crate
+//! are what stays, as `public-items.txt` lists them; what is in a room only may change with any version.
 //!
 //! | room | what lives there |
 //! |---|---|
-//! | `elementary` | sin, exp, ln and such, the same on every machine |
-//! | `text`, `units`, `expression` | quoting foreign text, dimensions and units, the one grammar of formulas and values |
-//! | `cells` | tables of text from instruments |
-//! | `gap` | r → (h, h', h'', …), its breaks, panels on which it is resolved; one file per shape |
-//! | `problem` | E*, γ, the gap, the loading device, the start; reduced units, dimensionless groups |
-//! | `continuation` | arc-length continuation and the location of limit points for any system |
-//! | `disc` | one disc of contact, exactly: the table of g and what is read from it |
-//! | `ritz` | the paper's method: ring elements, Kalker's functional, Newton-Raphson |
-//! | `annuli` | the state of a disc and any number of rings of contact |
-//! | `zone` | adhesion with a range: one disc of contact in one zone |
-//! | `theory` | closed forms that share nothing with the above: Hertz, JKR, Guduru, Kesari-Lew; the judges |
-//! | `quasistatic` | the curve, devices, stability, jumps, losses, unloading, admissibility |
-//! | `preset`, `case` | the table of keys, reading and writing presets; a preset made ready |
-//! | `stability` | the law of stability, limit points in two parameters, counts of snaps |
-//! | `measured`, `fit` | measured curves, and the values of a preset that they give |
-//! | `report`, `verify` | the one serializable form of results; our numbers against theory |
-//! | `sweep` | one preset over many values of its keys, row by row |
+//! | [`elementary`] | sin, exp, ln and such, the same on every machine |
+//! | [`text`], [`units`], [`expression`] | quoting foreign text, dimensions and units, the one grammar of formulas and values |
+//! | [`cells`] | tables of text from instruments |
+//! | [`gap`] | r → (h, h', h'', …), its breaks, panels on which it is resolved; one file per shape |
+//! | [`problem`] | E*, γ, the gap, the loading device, the start; reduced units, dimensionless groups |
+//! | [`continuation`] | arc-length continuation and the location of limit points for any system |
+//! | [`disc`] | one disc of contact, exactly: the table of g and what is read from it |
+//! | [`ritz`] | the paper's method: ring elements, Kalker's functional, Newton-Raphson |
+//! | [`annuli`] | the state of a disc and any number of rings of contact |
+//! | [`zone`] | adhesion with a range: one disc of contact in one zone |
+//! | [`rate`] | one disc whose edge has a speed: pulls, times to failure |
+//! | [`theory`] | closed forms that share nothing with the above: Hertz, JKR, Guduru, Kesari-Lew; the judges |
+//! | [`quasistatic`] | the curve, devices, stability, jumps, losses, unloading, admissibility |
+//! | [`preset`], [`case`] | the table of keys, reading and writing presets; a preset made ready |
+//! | [`stability`] | the law of stability, limit points in two parameters, counts of snaps |
+//! | [`measured`], [`fit`] | measured curves, and the values of a preset that they give |
+//! | [`report`], [`verify`] | the one serializable form of results; our numbers against theory |
+//! | [`sweep`] | one preset over many values of its keys, row by row |
 //! | [`progress`] | who watches a long computation, and may end it |
 
 #![cfg_attr(
@@ -85,54 +90,31 @@
 #[doc = include_str!("../README.md")]
 pub struct Readme;
 
-#[doc(hidden)]
 pub mod annuli;
-#[doc(hidden)]
 pub mod case;
-#[doc(hidden)]
 pub mod cells;
-#[doc(hidden)]
 pub mod continuation;
-#[doc(hidden)]
 pub mod disc;
-#[doc(hidden)]
 pub mod elementary;
-#[doc(hidden)]
 pub mod expression;
-#[doc(hidden)]
 pub mod fit;
 #[cfg(test)]
 mod fixtures;
-#[doc(hidden)]
 pub mod gap;
-#[doc(hidden)]
 pub mod measured;
-#[doc(hidden)]
 pub mod preset;
-#[doc(hidden)]
 pub mod problem;
 pub mod progress;
-#[doc(hidden)]
 pub mod quasistatic;
-#[doc(hidden)]
 pub mod rate;
-#[doc(hidden)]
 pub mod report;
-#[doc(hidden)]
 pub mod ritz;
-#[doc(hidden)]
 pub mod stability;
-#[doc(hidden)]
 pub mod sweep;
-#[doc(hidden)]
 pub mod text;
-#[doc(hidden)]
 pub mod theory;
-#[doc(hidden)]
 pub mod units;
-#[doc(hidden)]
 pub mod verify;
-#[doc(hidden)]
 pub mod zone;
 
 pub use case::{Case, CaseError};
@@ -143,12 +125,15 @@ pub use preset::{
     BasisSpec, Files, Invalid, Material, Mistake, PathSpec, Preset, ReadError, read, read_in, read_with,
 };
 pub use problem::{Adhesion, Cohesion, Control, Groups, Problem, Start, Stated, Units};
-pub use progress::Unwatched;
+pub use progress::{Progress, Unwatched};
 pub use quasistatic::{
     Admissibility, Curve, CurveStop, Detail, Event, EventKind, Landscape, Limit, Losses, Path, PathState,
     PathStop, Profile, Stability, State, Turn,
 };
 pub use report::path::Extent;
-pub use report::{PathReport, SCHEMA, TraceReport, VerifyReport, json};
+pub use report::{
+    FitReport, MapReport, OverlapReport, PathReport, PullReport, SCHEMA, StabilityReport, TraceReport,
+    VerifyReport, json,
+};
 pub use ritz::Grading;
 pub use units::UnitSystem;

@@ -499,6 +499,38 @@ fn the_tables_of_rooms_say_what_each_room_uses() {
     }
 }
 
+/// The names at the root of the engine, modules and what they export, ascending.
+fn public_items() -> Vec<String> {
+    let source = text("engine/src/lib.rs");
+    let mut names: Vec<String> = source
+        .lines()
+        .filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'))
+        .map(|name| format!("mod {name}"))
+        .collect();
+    for exported in source.split("\npub use ").skip(1).filter_map(|rest| rest.split(';').next()) {
+        let (_, listed) = exported.rsplit_once("::").unwrap_or(("", exported));
+        let all = exported.split_once('{').map_or(listed, |(_, all)| all.trim_end_matches('}'));
+        names.extend(all.split(',').map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned));
+    }
+    names.sort();
+    names
+}
+
+#[test]
+fn the_public_items_of_the_engine_are_those_of_the_list() {
+    const FILE: &str = "engine/public-items.txt";
+    const MOST: usize = 250;
+    let names = public_items();
+    assert!(names.len() > 60 && names.len() <= MOST, "{} names, at most {MOST}", names.len());
+    let list = names.iter().fold(String::new(), |list, name| list + name + "\n");
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        fs::write(root().join(FILE), &list).unwrap();
+    }
+    assert_eq!(text(FILE), list, "UPDATE_DOCS=1 cargo test --test program manual:: writes {FILE}");
+    let source = text("engine/src/lib.rs") + &text("src/lib.rs");
+    assert!(!source.contains("doc(hidden)"), "what is public is documented");
+}
+
 /// Each test binary is linked with the whole program, so there are few, and every file is in one of them.
 #[test]
 fn the_tests_are_few_binaries_and_each_file_is_in_one() {

@@ -60,7 +60,9 @@ impl Fold {
 /// The limit points of one motion, ascending.
 #[derive(Debug, Clone)]
 pub struct Folds {
+    /// The limit points, from the axis outward.
     pub list: Vec<Fold>,
+    /// Where the control is monotone.
     pub monotone: Monotone,
 }
 

@@ -142,16 +142,23 @@ pub struct At {
 /// The equation of motion of one stretch.
 #[derive(Debug, Clone, Copy)]
 pub struct Equation<'a> {
+    /// The gap, as its table has it.
     pub panels: &'a Panels,
+    /// The device.
     pub control: Control,
+    /// Whether the edge opens or closes.
     pub motion: Motion,
+    /// What the control does.
     pub branch: Branch,
     /// γ or `γ_a`.
     pub adhesion: f64,
     /// s₀, t₀, c₀ and ċ.
     pub radius: f64,
+    /// t where it begins, in units of the length over v₀.
     pub time: f64,
+    /// c there.
     pub value: f64,
+    /// dc/dt.
     pub rate: f64,
     /// `L_t`; `L_s` is s₀.
     pub unit_of_time: f64,

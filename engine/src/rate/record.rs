@@ -39,9 +39,13 @@ pub struct Least {
 /// What is kept on the way.
 #[derive(Debug, Clone, Default)]
 pub struct Record {
+    /// The moments, in order.
     pub moments: Vec<Moment>,
+    /// The least forces.
     pub least: Vec<Least>,
+    /// What the edge has dissipated, over E* times the unit of length cubed.
     pub dissipated: f64,
+    /// The work of the device, in the same unit.
     pub work: f64,
     /// The sum of the sizes of its parts.
     pub work_size: f64,

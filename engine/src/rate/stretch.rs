@@ -44,8 +44,11 @@ const ASKED: usize = 64;
 
 /// One stretch.
 pub struct Stretch<'a> {
+    /// The equation of motion.
     pub equation: &'a Equation<'a>,
+    /// The limit points, at which steps are capped.
     pub caps: &'a Caps<'a>,
+    /// Tolerance and bounds.
     pub settings: &'a Settings,
     /// The time at which it ends; none for a ramp that goes on until the bodies are apart.
     pub until: Option<f64>,

@@ -18,26 +18,40 @@ use toml::de::DeValue;
 pub struct SweepAxis {
     /// A dotted key that [`Preset::set`] takes.
     pub key: String,
+    /// The values.
     pub points: Points,
 }
 
 /// The values of an axis; every number is in the units of the preset: SI, or reduced.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Points {
+    /// As they are listed.
     Values(Vec<Value>),
+    /// By equal differences.
     Linear {
+        /// The first.
         from: f64,
+        /// The last.
         to: f64,
+        /// How many.
         count: u64,
     },
+    /// Whole numbers by equal differences.
     Whole {
+        /// The first.
         from: i64,
+        /// The difference.
         step: i64,
+        /// How many.
         count: u64,
     },
+    /// By equal factors.
     Logarithmic {
+        /// The first, positive.
         from: f64,
+        /// The last, positive.
         to: f64,
+        /// How many.
         count: u64,
     },
     /// Drawn at random, one for each row.
@@ -47,10 +61,15 @@ pub enum Points {
 /// From what values are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Distribution {
+    /// Between two ends, each value as likely.
     Uniform([f64; 2]),
+    /// Between two positive ends, each logarithm as likely.
     LogUniform([f64; 2]),
+    /// Gauss's.
     Normal {
+        /// Its mean.
         mean: f64,
+        /// Its standard deviation, not negative.
         deviation: f64,
     },
     /// Whole numbers, each as likely, both ends included.

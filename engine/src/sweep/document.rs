@@ -10,6 +10,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{origin}: {what}")]
 pub struct SpecError {
+    /// Where it stands.
     pub origin: Origin,
     /// What, safe to show.
     pub what: String,
@@ -18,7 +19,9 @@ pub struct SpecError {
 /// The text of a file with its name.
 #[derive(Debug, Clone, Copy)]
 pub struct SpecText<'a> {
+    /// Its name, as it is shown.
     pub name: &'a str,
+    /// TOML.
     pub text: &'a str,
 }
 
@@ -36,12 +39,18 @@ pub struct Section<'a> {
 #[derive(Debug, Clone)]
 pub struct Entry<'a> {
     document: SpecText<'a>,
+    /// Its dotted name.
     pub name: String,
+    /// Its value.
     pub value: &'a DeValue<'a>,
     at: usize,
 }
 
 impl<'a> SpecText<'a> {
+    /// The document.
+    ///
+    /// # Errors
+    /// [`SpecError`] with the line where it is no TOML.
     pub fn parse(self) -> Result<DeTable<'a>, SpecError> {
         match DeTable::parse(self.text) {
             Ok(table) => Ok(table.into_inner()),
@@ -57,6 +66,7 @@ impl<'a> SpecText<'a> {
         SpecError { origin, what }
     }
 
+    /// The document as a table of itself.
     pub fn section(self, table: &'a DeTable<'a>) -> Section<'a> {
         Section { document: self, name: String::new(), table, at: 0 }
     }
@@ -84,23 +94,30 @@ impl<'a> Section<'a> {
         if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
     }
 
+    /// The value of a key; `None` where the table has no such key.
     pub fn get(&self, key: &str) -> Option<Entry<'a>> {
         let (found, value) = self.table.iter().find(|(name, _)| name.get_ref() == key)?;
         let at = found.span().start;
         Some(Entry { document: self.document, name: self.full(key), value: value.get_ref(), at })
     }
 
+    /// The same of a key that must be there.
+    ///
+    /// # Errors
+    /// [`SpecError`], which says what is `allowed`.
     pub fn need(&self, key: &str, allowed: &str) -> Result<Entry<'a>, SpecError> {
         self.get(key)
             .ok_or_else(|| self.fault(&format!("{} is missing: it must be {allowed}", self.full(key))))
     }
 
+    /// An error that names this place.
     pub fn fault(&self, what: &str) -> SpecError {
         self.document.fault(self.at, what.to_owned())
     }
 }
 
 impl<'a> Entry<'a> {
+    /// An error that names this place.
     pub fn fault(&self, what: &str) -> SpecError {
         self.document.fault(self.at, what.to_owned())
     }
@@ -109,10 +126,18 @@ impl<'a> Entry<'a> {
         self.fault(&format!("{} must be {allowed}, not {}", self.name, found(self.value)))
     }
 
+    /// The value as a text.
+    ///
+    /// # Errors
+    /// [`SpecError`], which says what is `allowed`.
     pub fn text(&self, allowed: &str) -> Result<&'a str, SpecError> {
         self.value.as_str().ok_or_else(|| self.wrong(allowed))
     }
 
+    /// The value as an array, its entries in order.
+    ///
+    /// # Errors
+    /// [`SpecError`], which says what is `allowed`.
     pub fn array(&self, allowed: &str) -> Result<Vec<Entry<'a>>, SpecError> {
         let array: &DeArray<'_> = self.value.as_array().ok_or_else(|| self.wrong(allowed))?;
         let entry = |value: &'a toml::Spanned<DeValue<'a>>| Entry {
@@ -124,11 +149,19 @@ impl<'a> Entry<'a> {
         Ok(array.iter().map(entry).collect())
     }
 
+    /// The value as an array of two.
+    ///
+    /// # Errors
+    /// [`SpecError`] where it has another length.
     pub fn pair(&self) -> Result<[Entry<'a>; 2], SpecError> {
         let allowed = "two values, [from, to]";
         <[Entry<'a>; 2]>::try_from(self.array(allowed)?).map_err(|_| self.wrong(allowed))
     }
 
+    /// The value as a table.
+    ///
+    /// # Errors
+    /// [`SpecError`], which says what is `allowed`.
     pub fn section(&self, allowed: &str) -> Result<Section<'a>, SpecError> {
         let table = self.value.as_table().ok_or_else(|| self.wrong(allowed))?;
         Ok(Section { document: self.document, name: self.name.clone(), table, at: self.at })

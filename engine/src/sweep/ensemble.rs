@@ -41,13 +41,17 @@ pub const STATISTICS: [(&str, &str); 10] = [
 /// One quantity over the members that have it, at least one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
+    /// The mean.
     pub mean: f64,
-    /// None of one member alone, as are the errors.
+    /// The standard deviation. None of one member alone, as are the errors.
     pub deviation: Option<f64>,
     /// At 5, 25, 50, 75 and 95 %.
     pub quantiles: [f64; 5],
+    /// The standard error of the mean, by the bootstrap.
     pub mean_error: Option<f64>,
+    /// That of the median.
     pub median_error: Option<f64>,
+    /// Members that have a value.
     pub count: usize,
 }
 

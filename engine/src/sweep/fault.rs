@@ -17,6 +17,7 @@ const LONGEST: usize = 300;
 /// What went wrong in a row: one of a few reasons, and the whole in words. On one line and safe to show.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
+    /// One of [`REASONS`].
     pub reason: &'static str,
     text: String,
 }

@@ -14,7 +14,9 @@ pub struct Quantity {
     pub name: &'static str,
     /// What it is called in formulas; empty where it has no such name.
     pub symbol: &'static str,
+    /// What it is measured in.
     pub unit: Unit,
+    /// One line for tables.
     pub meaning: &'static str,
     pub(super) of: Stage,
 }
@@ -164,7 +166,9 @@ pub const USUAL: [&str; 6] =
 pub enum Under {
     /// That of the preset, `path.control`.
     Own,
+    /// Fixed grips.
     Displacement,
+    /// A dead load.
     Force,
 }
 
@@ -187,6 +191,7 @@ impl Under {
 /// A quantity as it is wanted: a column of the results.
 #[derive(Debug, Clone, Copy)]
 pub struct Column {
+    /// The quantity.
     pub quantity: &'static Quantity,
     /// Under which control, where that matters.
     pub under: Under,

@@ -23,6 +23,7 @@ use std::fmt;
 pub enum Cell {
     /// A number; in the user's units once it is in a row.
     Number(f64),
+    /// How many of something.
     Count(usize),
 }
 
