@@ -4,7 +4,11 @@
 //! the program's own tests, benches and fuzz targets and by the Python package alone, and change freely. `ARCHITECTURE.md` draws
 //! the house.
 
-#![allow(missing_docs, reason = "nobody builds on these rooms but what stands in this repository")]
+#![allow(
+    missing_docs,
+    clippy::missing_errors_doc,
+    reason = "nobody builds on these rooms but what stands in this repository"
+)]
 
 #[cfg(feature = "program")]
 pub mod cli;

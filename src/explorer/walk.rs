@@ -88,7 +88,7 @@ pub struct Request {
     pub pace: Option<f64>,
 }
 
-/// One new state; the fields are as in [`Node`](super::node::Node).
+/// One new state; the fields are as in [`Node`].
 #[derive(Debug, Clone)]
 pub struct Made {
     pub kind: NodeKind,

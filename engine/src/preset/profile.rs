@@ -12,7 +12,7 @@
 //! the first row serves as one if it has two cells and both name a unit. Rows may come in any order; a row that is there twice counts once. Every
 //! other fault is reported with its line, the first [`FAULTS_SHOWN`] of them; a file with faults gives no profile.
 //!
-//! The cells are taken apart as those of any table of an instrument: [`cells`](crate::cells).
+//! The cells are taken apart as those of any table of an instrument: [`cells`].
 
 use crate::cells::{
     self, CellFault, Head, LineFault, Separator, heads, is_header, is_unprintable, number, remark,

@@ -65,6 +65,9 @@ struct Here {
 
 impl Stretch<'_> {
     /// Follows the edge and records it.
+    ///
+    /// # Errors
+    /// [`RateError`].
     pub fn follow(&self, record: &mut Record, progress: &dyn Progress) -> Result<(At, End), RateError> {
         let begin =
             self.equation.at(0.0, 0.0).ok_or(RateError::Lost { contact_radius: self.equation.radius })?;

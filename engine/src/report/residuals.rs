@@ -5,7 +5,7 @@ use crate::fit::run::{Fit, Residual};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// The header of [`csv`].
+/// The header of [`csv()`].
 pub const HEADER: &str = "row,line,segment,part,x,force,residual,outlier";
 
 /// One row of a file beside the fit, in base units: SI, or those of a reduced problem.

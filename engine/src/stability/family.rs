@@ -446,6 +446,9 @@ impl Family {
     }
 
     /// The member at these shares: its adhesion and device, and its preset where some number asks for it.
+    ///
+    /// # Errors
+    /// [`FamilyError`] where the values are refused.
     pub fn member(&self, at: At<'_>) -> Result<Member<'_>, FamilyError> {
         let value = |k: usize| self.axes[k].value(at[k]);
         let (mut source, made) = if self.roles.contains(&Role::Other) {

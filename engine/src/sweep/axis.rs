@@ -83,6 +83,9 @@ const DISTRIBUTIONS: [&str; 4] = ["uniform", "log-uniform", "normal", "integers"
 
 impl SweepAxis {
     /// Reads `[[axis]]`; `preset` checks its values. With `fixed` no axis changes which keys the preset has.
+    ///
+    /// # Errors
+    /// [`SpecError`] with the line.
     pub fn read(section: &Section<'_>, preset: &Preset, fixed: bool) -> Result<Self, SpecError> {
         section.only(&["key", "values", "linear", "logarithmic", "distribution"])?;
         let wanted = "a key of the preset, such as \"gap.amplitude\"";
@@ -106,6 +109,9 @@ impl SweepAxis {
     }
 
     /// Reads an axis of the [`canonical`](Self::canonical) form; its values were checked before.
+    ///
+    /// # Errors
+    /// [`SpecError`] where it has another form.
     pub fn of_canonical(section: &Section<'_>) -> Result<Self, SpecError> {
         let entry = section.need("key", "a key")?;
         let key = entry.text("a key")?;

@@ -74,6 +74,9 @@ impl<'a> SpecText<'a> {
 
 impl<'a> Section<'a> {
     /// Refuses every key that is none of `keys`.
+    ///
+    /// # Errors
+    /// [`SpecError`] that names the key, and the one that may have been meant.
     pub fn only(&self, keys: &[&str]) -> Result<(), SpecError> {
         for (key, _) in self.table {
             let name: &str = key.get_ref();
@@ -168,6 +171,9 @@ impl<'a> Entry<'a> {
     }
 
     /// A whole number of `range`.
+    ///
+    /// # Errors
+    /// [`SpecError`] where it is no whole number in the range.
     pub fn count(&self, range: RangeInclusive<u64>) -> Result<u64, SpecError> {
         let allowed = format!("a whole number from {} to {}", range.start(), range.end());
         let DeValue::Integer(n) = self.value else { return Err(self.wrong(&allowed)) };

@@ -228,6 +228,9 @@ fn renamed(name: &str) -> Option<String> {
 
 impl Column {
     /// The column of a name.
+    ///
+    /// # Errors
+    /// What is wrong with the name, and the one that may have been meant.
     pub fn named(name: &str) -> Result<Self, String> {
         let all = || QUANTITIES.iter().flat_map(Quantity::columns);
         all().find(|column| column.name() == name).ok_or_else(|| {

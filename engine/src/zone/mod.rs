@@ -1,6 +1,6 @@
 //! Adhesion with a range: one disc of contact in one zone, on which a constant tension acts (Dugdale).
 //!
-//! The tension σ₀ acts wherever the bodies are nearer to each other than h_c = γ/σ₀. One number runs along the equilibria: the outer
+//! The tension σ₀ acts wherever the bodies are nearer to each other than `h_c` = γ/σ₀. One number runs along the equilibria: the outer
 //! edge c of the zone, from the far field (c = 0) over zones without contact to contact of the radius s < c.
 //!
 //! | file | what lives there |

@@ -50,6 +50,9 @@ impl Point {
     }
 }
 
+/// The equations of a correction, factored.
+type Factored = LU<f64, Dyn, Dyn>;
+
 /// A step from a point: its points on the rings are held. Its length is measured along the tangent, or along one edge.
 pub struct Step<'a, 'b> {
     balance: &'a Balance<'b>,
@@ -241,9 +244,9 @@ impl<'a, 'b> Step<'a, 'b> {
         let next = end.rescaled(self.balance);
         let n = scales.edges.len();
         let rescaled = |x: &DVector<f64>| {
-            DVector::from_fn(n + 1, |i, _| match i < n {
-                true => x[i] * scales.edges[i] / next.scales.edges[i],
-                false => x[i] * scales.control / next.scales.control,
+            DVector::from_fn(n + 1, |i, _| match (scales.edges.get(i), next.scales.edges.get(i)) {
+                (Some(before), Some(after)) => x[i] * before / after,
+                _ => x[i] * scales.control / next.scales.control,
             })
         };
         // By the length along the new tangent.
@@ -303,11 +306,7 @@ impl<'a, 'b> Step<'a, 'b> {
     }
 
     /// The edges at an offset from the start, with the equations of a correction there: the point at the distance `length`.
-    fn equations(
-        &self,
-        offset: &DVector<f64>,
-        length: f64,
-    ) -> Option<(Held, LU<f64, Dyn, Dyn>, DVector<f64>)> {
+    fn equations(&self, offset: &DVector<f64>, length: f64) -> Option<(Held, Factored, DVector<f64>)> {
         let (balance, from) = (self.balance, self.from);
         let (n, scales) = (from.held.excess.len(), &from.scales);
         let contacts = moved(from.contacts(), &offset.rows(0, n).component_mul(&scales.edges));
