@@ -57,8 +57,8 @@ pub struct Case {
     pub end: f64,
     /// Where a loop turns round, reduced; none leaves it to the start.
     pub turn: Option<Turn>,
-    /// Whether a closing edge gains less than the work of adhesion.
-    pub has_dead_band: bool,
+    /// What a closing edge gains where that is less than the work of adhesion, reduced; the edge at the start is one that closed.
+    pub closing: Option<f64>,
     /// Tabor's μ, where it is known.
     pub tabor: Option<f64>,
     /// The tension and the range of adhesion that has one, reduced; only paths and the trace know it.
@@ -175,13 +175,19 @@ impl Case {
             BasisSpec::Exact => Arc::new(Exact::new(Arc::clone(&table), reach)),
         };
         let cohesion = preset.cohesion().map(|law| law.reduced_by(units.length, units.pressure));
+        let closing = preset.edge.closing_work_of_adhesion.map(|gamma| gamma / units.work_of_adhesion);
+        let closing = closing.filter(|closing| *closing < reduced.work_of_adhesion);
         let start = match cohesion {
             Some(law) => start_in_zone(&table, law, wanted, progress)
                 .map_err(|error| refused_path(error, Control::Displacement, &units, &shown))?,
-            None => contact_radius(&reduced, &*basis, wanted, progress).map_err(|e| CaseError::Start {
-                error: e.in_units(&units),
-                shown: Box::new(shown.clone()),
-            })?,
+            None => {
+                let work_of_adhesion = closing.unwrap_or(reduced.work_of_adhesion);
+                let grown = Reduced { work_of_adhesion, ..reduced.clone() };
+                contact_radius(&grown, &*basis, wanted, progress).map_err(|e| CaseError::Start {
+                    error: e.in_units(&units),
+                    shown: Box::new(shown.clone()),
+                })?
+            }
         };
         if preset.basis == BasisSpec::Exact {
             // From here on the start decides how far it reaches, however it was given.
@@ -195,8 +201,6 @@ impl Case {
         let control = preset.path.control.in_units(units.stiffness);
         let tabor = Groups::of(&problem, preset.range_of_action(), preset.cohesion()).tabor;
         let turn = preset.path.turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, control));
-        let closing = preset.edge.closing_work_of_adhesion;
-        let has_dead_band = closing.is_some_and(|closing| closing < preset.material.work_of_adhesion);
         let (contact, has_elements) = (preset.path.contact, preset.basis != BasisSpec::Exact);
         Ok(Self {
             problem,
@@ -209,7 +213,7 @@ impl Case {
             start,
             end,
             turn,
-            has_dead_band,
+            closing,
             tabor,
             cohesion,
             adhesion: preset.material.adhesion,
@@ -313,7 +317,7 @@ impl Case {
 
     /// What a path is asked for: the device and the contacts of the preset, losses twice, states to draw.
     pub fn setting(&self) -> Setting<'static> {
-        Setting { contact: self.contact, ..Setting::new(self.control) }
+        Setting { contact: self.contact, closing: self.closing, ..Setting::new(self.control) }
     }
 
     /// The same for an unloading, which ring elements follow as one disc.
@@ -441,14 +445,17 @@ impl Case {
                 self.change_with_range(tabor)
             ));
         }
-        if self.has_dead_band {
-            warnings.push(
-                "material.closing_work_of_adhesion counts in pulls at a rate alone: everywhere else a closing edge gains \
-                 the whole work of adhesion"
-                    .to_owned(),
-            );
-        }
         warnings
+    }
+
+    /// What is to be said of states that know no dead band, where there is one.
+    pub fn warning_of_dead_band(&self) -> Option<String> {
+        self.closing?;
+        Some(
+            "these are states of an opening edge: a closing one gains only material.closing_work_of_adhesion, and rests \
+             in between; unload, cycle, pull and sweeps of them compute that"
+                .to_owned(),
+        )
     }
 
     /// By how much the range of the adhesion changes the largest pull, and which key computes it.

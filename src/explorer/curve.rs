@@ -111,7 +111,11 @@ impl ProblemCurve {
             digits: case.basis.trusted_digits(&case.reduced, case.start),
             stiffness: start.as_ref().map(|point| curve.equilibrium.state_and_stiffness(point).1),
             critical_force: case.critical_force().unwrap_or(0.0),
-            warnings: case.warnings(curve.outermost()),
+            warnings: case
+                .warnings(curve.outermost())
+                .into_iter()
+                .chain(case.warning_of_dead_band())
+                .collect(),
             notes: case.notes(curve.outermost()),
             curve,
             case,

@@ -40,6 +40,7 @@ impl Setting {
 
 /// Whether two presets have the same curve: everything but the title and the control is equal.
 pub(super) fn same_curve(a: &Preset, b: &Preset) -> bool {
-    (a.material, &a.gap, a.basis, a.path.start, a.path.end_contact_radius)
-        == (b.material, &b.gap, b.basis, b.path.start, b.path.end_contact_radius)
+    let closing = |preset: &Preset| preset.edge.closing_work_of_adhesion;
+    (a.material, closing(a), &a.gap, a.basis, a.path.start, a.path.end_contact_radius)
+        == (b.material, closing(b), &b.gap, b.basis, b.path.start, b.path.end_contact_radius)
 }

@@ -13,7 +13,7 @@ use super::walk::{apart, events_before, quantities};
 use crate::explorer::curve::CurvePoint;
 use crate::explorer::{CurveData, View};
 use pulloff_engine::problem::{Control, Units};
-use pulloff_engine::quasistatic::{Event, PathState, State};
+use pulloff_engine::quasistatic::{Event, EventKind, PathState, State};
 use pulloff_engine::report::number::{loss, with_unit};
 use pulloff_engine::units::Quantity;
 
@@ -36,17 +36,23 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     };
     figure.lines.push(Line::new(Role::Unstable, "passed by", points));
     let path = OnCurve { curve: subject.curve, scale, units: *subject.curve.case.units() };
+    let jumps: Vec<&Event> = unloading.events.iter().filter(|event| event.kind != EventKind::Depin).collect();
     for stretch in unloading.states.chunk_by(|a, b| a.piece == b.piece) {
         let [Some(first), Some(last)] = [stretch.first(), stretch.last()] else { continue };
         let is_disc = stretch.iter().all(|state| state.rings() == 0);
         let points = if is_disc {
-            path.between(&first.state(), Some(&last.state()))
+            // A held edge moves along a straight line.
+            let held = |state: &&PathState| state.contact_radius.to_bits() == first.contact_radius.to_bits();
+            let free = stretch.iter().take_while(held).last().unwrap_or(first);
+            let before = (free != first).then(|| path.shown(&first.state()));
+            before.into_iter().chain(path.between(&free.state(), Some(&last.state()))).collect()
         } else {
             stretch.iter().map(|state| path.shown(&state.state())).collect()
         };
         figure.lines.push(Line::new(Role::Stable, "path", points));
-        let leaves = |event: &&Event| event.before.as_ref().is_some_and(|before| before.piece == first.piece);
-        for event in unloading.events.iter().filter(leaves) {
+        let leaves =
+            |event: &&&Event| event.before.as_ref().is_some_and(|before| before.piece == first.piece);
+        for event in jumps.iter().filter(leaves) {
             path.jump(unloading.control, event, &mut figure);
         }
     }
@@ -56,7 +62,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     inadmissible(subject, scale, VIEW, &mut figure);
     figure.marks.extend(events_before(subject, scale, VIEW));
     let lost: f64 = figure.areas.iter().filter_map(|area| area.lost).sum();
-    let bounded = figure.areas.len() == unloading.events.len();
+    let bounded = figure.areas.len() == jumps.len();
     if !unloading.events.is_empty() {
         let all = if bounded { "" } else { " and the fall" };
         figure

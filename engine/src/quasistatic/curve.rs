@@ -205,6 +205,14 @@ impl Curve {
         Self::new(problem, basis, Arc::new(table), [from, to], Detail::Drawn, &Unwatched)
     }
 
+    /// The same curve under another work of adhesion, with the states between panels; `None` as [`Curve::new`].
+    pub fn under(&self, work_of_adhesion: f64, progress: &dyn Progress) -> Option<Self> {
+        let Equilibrium { problem, basis, table, .. } = &self.equilibrium;
+        let problem = Reduced { work_of_adhesion, ..problem.clone() };
+        let (basis, table) = (Arc::clone(basis), Arc::clone(table));
+        Self::new(problem, basis, table, [self.outermost(), self.innermost()], Detail::Borders, progress)
+    }
+
     /// The largest contact radius of the curve.
     pub fn outermost(&self) -> f64 {
         self.samples.first().map_or(0.0, |at| at.contact_radius)

@@ -10,7 +10,7 @@ use crate::disc::{Place, Solution};
 const AT_LIMIT: f64 = 3e-8;
 
 /// An end this near to a landing is the landing.
-const AT_END: f64 = 1e-12;
+pub const AT_END: f64 = 1e-12;
 
 /// The edge running from a limit point.
 #[derive(Debug, Clone, Copy, PartialEq)]

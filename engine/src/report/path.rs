@@ -85,7 +85,7 @@ pub struct StateReport {
     pub held_stiffness: f64,
     /// The area in contact.
     pub area: f64,
-    /// U: the elastic energy less γ times the contact area.
+    /// U: the elastic energy less γ times the contact area; on the way up less what that gained in closing.
     pub energy: f64,
 }
 
@@ -110,13 +110,13 @@ pub struct PathStateReport {
 pub struct EventReport {
     /// Its number on the path, from 1.
     pub number: usize,
-    /// `jump-in`, `first-touch`, `touch`, `merge`, `snap-in`, `snap`, `last-contact`, `snap-off`, `split`, `vanish` or `turn`.
+    /// `jump-in`, `first-touch`, `touch`, `merge`, `snap-in`, `snap`, `last-contact`, `snap-off`, `split`, `vanish`, `turn` or `depin`.
     pub kind: &'static str,
     /// `loading` or `unloading`.
     pub direction: &'static str,
     /// δ, P, or Δ = δ + P/k at which it happens.
     pub control: f64,
-    /// Where a crest touched, contacts merged or split or one vanished.
+    /// Where a crest touched, contacts merged or split, one vanished, or an edge that was held began to move.
     pub radius: Option<f64>,
     /// The state before; null while the bodies are apart.
     pub before: Option<StateReport>,
@@ -162,6 +162,19 @@ pub struct TotalsReport {
     pub work_of_loading: Option<f64>,
     /// The same on the way down.
     pub work_of_unloading: Option<f64>,
+    /// What closed and gained less than it costs to open, of a loop with `material.closing_work_of_adhesion`; else nothing is written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dead_band: Option<DeadBandReport>,
+}
+
+/// What a loop loses besides its jumps: with `dissipated` the work of the loop, loading and unloading.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct DeadBandReport {
+    /// The area that closed, all of which opened again.
+    pub area: f64,
+    /// The work of adhesion less what closing gained of it, times the area.
+    pub dissipated: f64,
 }
 
 /// A state in a row of events.
@@ -622,8 +635,10 @@ impl TotalsReport {
             dissipated_before_last_contact,
             work_of_loading,
             work_of_unloading,
+            dead_band,
             ..
         } = path.totals;
+        let length = problem.units.length;
         let energy = |x: f64| x * problem.units.energy;
         let state = |state: &PathState| StateReport::new(problem, state);
         Self {
@@ -635,6 +650,8 @@ impl TotalsReport {
             dissipated_before_last_contact: energy(dissipated_before_last_contact),
             work_of_loading: work_of_loading.map(energy),
             work_of_unloading: work_of_unloading.map(energy),
+            dead_band: dead_band
+                .map(|of| DeadBandReport { area: of.area * length * length, dissipated: energy(of.lost) }),
         }
     }
 }

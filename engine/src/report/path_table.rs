@@ -191,6 +191,17 @@ fn outcome(report: &PathReport) -> String {
             energy(before)
         ),
     };
+    if let Some(band) = totals.dead_band {
+        let length = units.shown(Quantity::Length, 1.0);
+        let area = length.text(&significant(band.area * length.number * length.number, 7), true);
+        let square = if length.unit.is_some() { "^2" } else { "" };
+        let lost = energy(band.dissipated);
+        let _ =
+            writeln!(text, "energy lost in the dead band: {lost}, on the area {area}{square} that closed");
+        if let Some((up, down)) = totals.work_of_loading.zip(totals.work_of_unloading) {
+            let _ = writeln!(text, "work of the loop: {}", energy(up + down));
+        }
+    }
     let _ = writeln!(text, "end: {}", report.stop);
     text
 }

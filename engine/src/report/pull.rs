@@ -294,8 +294,7 @@ impl PullReport {
         let (law, speed) = law(preset)?;
         let units = *case.units();
         let opening = case.reduced.work_of_adhesion;
-        let closing =
-            preset.edge.closing_work_of_adhesion.map_or(opening, |gamma| gamma / units.work_of_adhesion);
+        let closing = case.closing.unwrap_or(opening);
         let edge = Edge { law, opening, closing };
         let is_force = case.control == Control::Force;
         let factors = Factors {
@@ -320,7 +319,7 @@ impl PullReport {
             error => PullError::Rate { error: error.in_units(&units), shown: Box::new(case.shown.clone()) },
         };
         let programmes = programmes(preset, asked)?;
-        let mut warnings = Case { has_dead_band: false, ..case.clone() }.warnings_of_problem();
+        let mut warnings = case.warnings_of_problem();
         if preset.basis != BasisSpec::Exact {
             warnings.push(EXACT.to_owned());
         }

@@ -420,6 +420,7 @@ impl TraceReport {
             warnings: case
                 .warnings(curve.outermost())
                 .into_iter()
+                .chain(case.warning_of_dead_band())
                 .chain(overlap::warning("the curve", &inadmissible, &preset.units))
                 .collect(),
             notes: case.notes(curve.outermost()),

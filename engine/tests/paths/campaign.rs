@@ -80,6 +80,7 @@ fn letter(kind: EventKind) -> char {
         EventKind::Turn => 'R',
         EventKind::JumpIn => 'J',
         EventKind::SnapOff => 'O',
+        EventKind::Depin => 'D',
     }
 }
 

@@ -408,6 +408,7 @@ fn is_the_one_solution(ground: &Ground, found: &Path, name: &str) {
         contact: ContactKind::Rings,
         progress: &Unwatched,
         lane: None,
+        pinned: None,
     };
     let back: Vec<_> = found.states.iter().filter(|state| state.direction == Direction::Unloading).collect();
     for k in 0..20 {
@@ -516,6 +517,7 @@ fn a_wave_with_a_corner_is_that_of_another_program() {
         contact: ContactKind::Rings,
         progress: &Unwatched,
         lane: None,
+        pinned: None,
     };
     let solved = |state: &Value| {
         let (delta, force, contacts) = numbers(state);

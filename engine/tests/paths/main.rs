@@ -5,6 +5,7 @@ mod support;
 
 mod campaign;
 mod cycle;
+mod dead_band;
 mod elements;
 mod maps;
 mod range;

@@ -186,6 +186,7 @@ fn stability_is_that_of_the_eigenvalues() {
                     control,
                     progress: &Unwatched,
                     lane: None,
+                    pinned: None,
                 };
                 let points = pulloff_engine::annuli::points(&ground, &contacts);
                 let value = control.value(reached.state.approach, reached.state.force);

@@ -15,6 +15,7 @@ use crate::disc::outside;
 use crate::problem::{ContactKind, Control};
 use crate::progress::Progress;
 use nalgebra::{DMatrix, DVector};
+use std::cell::RefCell;
 use std::f64::consts::{PI, TAU};
 
 /// Newton's steps at most, from edges that are near.
@@ -46,6 +47,8 @@ pub struct Balance<'a> {
     pub progress: &'a dyn Progress,
     /// The equilibria of one disc alone, where they are known: edges run on them at once.
     pub lane: Option<&'a Lane>,
+    /// The radii of edges that are held as long as their G is below γ, where those that closed gained less.
+    pub pinned: Option<&'a RefCell<Vec<f64>>>,
 }
 
 /// Edges at a control value, in equilibrium or not.
@@ -109,7 +112,72 @@ impl Balance<'_> {
         let by_control =
             DVector::from_iterator(edges.len(), state.intensity.iter().map(|[_, slope]| slope * by_value));
         let force = p0 + p1 * delta;
-        Ok(Held { state, control_value: value, approach: delta, force, excess, jacobian, by_control })
+        let mut held =
+            Held { state, control_value: value, approach: delta, force, excess, jacobian, by_control };
+        self.pin(&mut held);
+        Ok(held)
+    }
+
+    /// Whether an edge at this radius is held.
+    pub fn is_pinned(&self, radius: f64) -> bool {
+        self.pinned.is_some_and(|pinned| pinned.borrow().iter().any(|held| is_same(*held, radius)))
+    }
+
+    /// Nothing is asked of edges that are held, and nothing moves them.
+    fn pin(&self, held: &mut Held) {
+        if self.pinned.is_none() {
+            return;
+        }
+        let size = held.jacobian.amax();
+        for (i, edge) in held.state.contacts.edges().iter().enumerate() {
+            if self.is_pinned(edge.radius) {
+                held.jacobian.row_mut(i).fill(0.0);
+                held.jacobian[(i, i)] = size;
+                (held.excess[i], held.by_control[i]) = (0.0, 0.0);
+            }
+        }
+    }
+
+    /// The held edge that is nearest to moving: its radius, and κ − √γ there.
+    pub fn nearest_to_moving(&self, held: &Held) -> Option<(f64, f64)> {
+        self.pinned?;
+        let root = self.work_of_adhesion.sqrt();
+        let edges = held.state.contacts.edges().into_iter().zip(held.state.intensities(held.approach));
+        let pinned = edges.filter(|(edge, _)| self.is_pinned(edge.radius));
+        pinned.map(|(edge, kappa)| (edge.radius, kappa - root)).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Lets go of the edge at this radius.
+    pub fn let_go(&self, radius: f64) {
+        if let Some(pinned) = self.pinned {
+            pinned.borrow_mut().retain(|held| !is_same(*held, radius));
+        }
+    }
+
+    /// Lets go of the held edges that would move; whether there are any.
+    pub fn lets_go(&self, held: &Held) -> bool {
+        let before = self.nearest_to_moving(held).filter(|(_, excess)| *excess > 0.0);
+        if let Some((radius, _)) = before {
+            self.let_go(radius);
+        }
+        before.is_some()
+    }
+
+    /// The way in which edges that are not stable begin to run, by the sign of none: of the least eigenvalue of J.
+    pub fn softest(held: &Held) -> DVector<f64> {
+        /// Multiplications with the matrix.
+        const TIMES: usize = 300;
+        let size = held.jacobian.amax();
+        let mut way = DVector::from_element(held.excess.len(), 1.0);
+        for _ in 0..TIMES {
+            let next = &way * size - &held.jacobian * &way;
+            let norm = next.amax();
+            if norm == 0.0 || !norm.is_finite() {
+                break;
+            }
+            way = next / norm;
+        }
+        way
     }
 
     /// δ at the control value, f and ∂δ/∂c.
@@ -221,6 +289,12 @@ impl Balance<'_> {
         let around = Around::new(self.ground, &held.state, held.approach);
         around.crests(to).into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap))
     }
+}
+
+/// Whether two numbers are those of one radius.
+fn is_same(a: f64, b: f64) -> bool {
+    const SHARE: f64 = 1e-10;
+    (a - b).abs() <= SHARE * b
 }
 
 /// The contacts with every α changed.

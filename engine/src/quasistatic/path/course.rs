@@ -6,13 +6,14 @@ use super::event::{Direction, EventKind, Passed, PassedKind, PathState};
 use super::lane::Lane;
 use super::record::Record;
 use super::setting::{Path, PathStop, Setting, TurnReached, measure};
-use crate::annuli::{AnnuliError, Contacts, ContactsError, Crest, Ground};
+use crate::annuli::{AnnuliError, Contacts, ContactsError, Crest, Ground, points};
 use crate::disc::Table;
 use crate::gap::Form;
 use crate::problem::{ContactKind, Control, Turn};
 use crate::progress::Progress;
 use crate::quasistatic::energy::Losses;
 use nalgebra::DVector;
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// What ends a stretch of stable states.
@@ -23,6 +24,8 @@ pub(super) enum End {
     Fold(usize),
     Touch(Crest),
     Turn,
+    /// G of a held edge has come to γ.
+    Free,
 }
 
 /// A path of any contacts while it runs.
@@ -127,10 +130,11 @@ pub fn cycle_on(
     if !turn.value().is_finite() {
         return Err(PathError::BadTurn(turn.value()));
     }
-    let lane = lane(ground, gamma, setting.control);
-    let balance = balance(ground, gamma, setting, lane.as_ref(), progress);
+    let growing = setting.closing_below(gamma).unwrap_or(gamma);
+    let lane = lane(ground, growing, setting.control);
+    let balance = balance(ground, growing, setting, lane.as_ref(), progress);
     let record = Record::new(setting, Direction::Loading, progress);
-    Course { balance: &balance, setting, turn: Some(turn), end: 0.0, record, steps: 0 }.whole(turn)
+    Course { balance: &balance, setting, turn: Some(turn), end: 0.0, record, steps: 0 }.whole(turn, gamma)
 }
 
 /// The equilibria of one disc that adheres.
@@ -148,7 +152,8 @@ pub(super) fn balance<'a>(
 ) -> Balance<'a> {
     // Without adhesion all controls rise together, and the approach is the one that is stepped.
     let control = if gamma > 0.0 { setting.control } else { Control::Displacement };
-    Balance { ground, work_of_adhesion: gamma, control, contact: setting.contact, progress, lane }
+    let (contact, pinned) = (setting.contact, None);
+    Balance { ground, work_of_adhesion: gamma, control, contact, progress, lane, pinned }
 }
 
 /// The place of the least gap; the axis where it is one of several. `None` where there is none, or `progress` said stop.
@@ -274,7 +279,7 @@ impl Course<'_, '_> {
         Ok((crest, first))
     }
 
-    fn whole(mut self, turn: Turn) -> Result<Path, PathError> {
+    fn whole(mut self, turn: Turn, gamma: f64) -> Result<Path, PathError> {
         let (balance, setting) = (self.balance, self.setting);
         let (crest, first) = self.first_crest(turn)?;
         if balance.work_of_adhesion == 0.0 {
@@ -288,9 +293,37 @@ impl Course<'_, '_> {
             _ => at_turn.potential(setting.control),
         };
         let work_of_loading = self.record.lost().map(|lost| potential + lost);
-        self.record.turned(at_turn);
-        let stop = self.unloaded(held)?;
-        Ok(self.record.finished(None, Some(TurnReached { asked: turn, reached }), work_of_loading, stop))
+        let more = gamma - balance.work_of_adhesion;
+        self.record.turned(at_turn, (more > 0.0).then_some(more));
+        let turn = Some(TurnReached { asked: turn, reached });
+        self.down(held, gamma, &|record, stop| record.finished(None, turn, work_of_loading, stop))
+    }
+
+    /// The way down at the work of adhesion `gamma` of contacts that are recorded; what gained less in closing is held until G has
+    /// come to γ at its edge.
+    pub(super) fn down(
+        mut self,
+        held: Held,
+        gamma: f64,
+        finished: &dyn Fn(Record<'_>, PathStop) -> Path,
+    ) -> Result<Path, PathError> {
+        if gamma <= self.balance.work_of_adhesion {
+            let stop = self.unloaded(held)?;
+            return Ok(finished(self.record, stop));
+        }
+        let Balance { ground, progress, .. } = *self.balance;
+        let lane = lane(ground, gamma, self.setting.control);
+        let edges = held.state.contacts.edges().iter().map(|edge| edge.radius).collect();
+        let pinned = RefCell::new(edges);
+        let balance = Balance {
+            pinned: Some(&pinned),
+            ..balance(ground, gamma, self.setting, lane.as_ref(), progress)
+        };
+        let contacts = held.state.contacts;
+        let held = balance.held(&contacts, &points(ground, &contacts), held.control_value)?;
+        let mut course = Course { balance: &balance, ..self };
+        let stop = course.unloaded(held)?;
+        Ok(finished(course.record, stop))
     }
 
     /// From the first touch at a crest to the turn.
@@ -300,6 +333,7 @@ impl Course<'_, '_> {
             let (end, next) = self.way_up(&held)?;
             held = match end {
                 End::Turn => return Ok(next),
+                End::Free => None,
                 End::Limit(null) => {
                     let start = self.balance.kicked(&next.state.contacts, &null, 1.0);
                     self.jump(EventKind::SnapIn, &next, start, None)?
@@ -324,14 +358,27 @@ impl Course<'_, '_> {
     pub(super) fn unloaded(&mut self, mut held: Held) -> Result<PathStop, PathError> {
         let balance = self.balance;
         loop {
-            if let Some(lane) = balance.lane_of(&held.state.contacts)
-                && let Some(stop) = self.descend(lane, &held)?
-            {
-                return Ok(stop);
+            let contacts = &held.state.contacts;
+            if let Some(lane) = balance.lane_of(contacts) {
+                if balance.is_pinned(contacts.disc) {
+                    return self.record.released(lane, contacts.disc, self.end);
+                }
+                if let Some(stop) = self.descend(lane, &held)? {
+                    return Ok(stop);
+                }
             }
-            let (end, next) = self.stretch(&held)?;
-            let End::Limit(null) = end else {
-                return Err(PathError::Lost { control_value: next.control_value });
+            let (end, mut next) = self.stretch(&held)?;
+            let null = match end {
+                End::Limit(null) => null,
+                End::Free => {
+                    next = self.let_go(&next)?;
+                    if Balance::least_eigenvalue(&next) > 0.0 {
+                        held = next;
+                        continue;
+                    }
+                    Balance::softest(&next)
+                }
+                _ => return Err(PathError::Lost { control_value: next.control_value }),
             };
             let start = balance.kicked(&next.state.contacts, &null, -1.0);
             match self.jump(EventKind::Snap, &next, start, None)? {
@@ -339,6 +386,18 @@ impl Course<'_, '_> {
                 None => return Ok(PathStop::Apart),
             }
         }
+    }
+
+    /// The edges where a held one begins to move, which it may from here on.
+    fn let_go(&mut self, at: &Held) -> Result<Held, PathError> {
+        let balance = self.balance;
+        let lost = PathError::Lost { control_value: at.control_value };
+        let (radius, _) = balance.nearest_to_moving(at).ok_or(lost)?;
+        let state = self.state(at);
+        self.record.depinned(radius, &state);
+        balance.let_go(radius);
+        let contacts = &at.state.contacts;
+        Ok(balance.held(contacts, &points(balance.ground, contacts), at.control_value)?)
     }
 
     /// The loss of a jump by area, where it is asked for.
@@ -440,7 +499,7 @@ mod tests {
         let record = Record::new(&setting, Direction::Loading, &Unwatched);
         let course =
             Course { balance: &balance, setting: &setting, turn: Some(turn), end: 0.0, record, steps: 0 };
-        course.whole(turn).unwrap()
+        course.whole(turn, gamma).unwrap()
     }
 
     fn agree(numbers: std::ops::Range<u64>) {

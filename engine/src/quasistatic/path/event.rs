@@ -45,7 +45,7 @@ pub struct PathState {
     pub approach: f64,
     /// P, a force.
     pub force: f64,
-    /// U, an energy: elastic, less γ times the contact area.
+    /// U, an energy: elastic, less γ times the contact area; on the way up less what that gained in closing.
     pub energy: f64,
     /// Contacts as [inner, outer], lengths, from the axis outward; a disc is [0, s].
     pub contacts: Vec<[f64; 2]>,
@@ -154,11 +154,13 @@ pub enum EventKind {
     Vanish,
     /// The control turns round.
     Turn,
+    /// An edge that was held since the control turned round begins to move: its G has come to γ.
+    Depin,
 }
 
 impl EventKind {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::JumpIn,
         Self::FirstTouch,
         Self::Touch,
@@ -170,6 +172,7 @@ impl EventKind {
         Self::Split,
         Self::Vanish,
         Self::Turn,
+        Self::Depin,
     ];
 
     /// Its name in results.
@@ -186,6 +189,7 @@ impl EventKind {
             Self::Split => "split",
             Self::Vanish => "vanish",
             Self::Turn => "turn",
+            Self::Depin => "depin",
         }
     }
 
@@ -235,7 +239,7 @@ pub struct Event {
     pub direction: Direction,
     /// c: δ, P or Δ.
     pub control_value: f64,
-    /// Where a crest touched, contacts merged or split or one vanished, a length.
+    /// Where a crest touched, contacts merged or split, one vanished, or an edge began to move, a length.
     pub radius: Option<f64>,
     /// The state before; `None` while the bodies were apart.
     pub before: Option<PathState>,

@@ -64,8 +64,8 @@ impl Course<'_, '_> {
                 }
                 continue;
             };
-            if self.crosses(&point, &next) {
-                // Faster than its tangent said: shorter steps see it coming.
+            if self.crosses(&point, &next) || self.goes_back(&next) {
+                // Faster than its tangent said, or on other equilibria: shorter steps see it coming.
                 length *= 0.5;
                 if length < SHORTEST {
                     return Err(self.stopped(&point.held));
@@ -106,6 +106,14 @@ impl Course<'_, '_> {
         found.into_iter().map(|(_, point)| point).collect()
     }
 
+    /// Whether an edge goes against the control: of stable edges that adhere none does, for they ease each other.
+    fn goes_back(&self, at: &Point) -> bool {
+        /// A part of the tangent that is nothing.
+        const NOTHING: f64 = 1e-9;
+        let sense = self.record.direction.sense();
+        at.tangent.rows(0, at.held.excess.len()).iter().any(|part| part * sense < -NOTHING)
+    }
+
     /// Whether an edge meets a corner of the gap between two points, one that it has not just left.
     fn crosses(&self, from: &Point, to: &Point) -> bool {
         let margin = 1e-7 * self.balance.ground.wave;
@@ -127,7 +135,8 @@ impl Course<'_, '_> {
         let ground = self.balance.ground;
         let (wave, corners) = (ground.wave, ground.stops());
         let edges = point.contacts().edges();
-        let ahead = edges.iter().enumerate().filter_map(|(i, edge)| {
+        let moving = edges.iter().enumerate().filter(|(_, edge)| !self.balance.is_pinned(edge.radius));
+        let ahead = moving.filter_map(|(i, edge)| {
             let speed = point.tangent[i];
             let outward = edge.sign * speed > 0.0;
             let margin = LEFT * wave;
@@ -265,6 +274,15 @@ impl Course<'_, '_> {
             end = Some(End::Limit(next.tangent.rows(0, edges).into_owned()));
         }
         if self.record.direction == Direction::Unloading {
+            let mut over = |point: &Point| self.balance.nearest_to_moving(&point.held).map(|(_, over)| over);
+            if over(&next).is_some_and(|over| over > 0.0) {
+                let at_start = over(from).ok_or_else(lost)?;
+                if at_start >= 0.0 {
+                    return Ok((0.0, from.clone(), Some(End::Free)));
+                }
+                (length, next) = step.located((length, &next), at_start, &mut over).ok_or_else(lost)?;
+                end = Some(End::Free);
+            }
             return Ok((length, next, end));
         }
         let crest;

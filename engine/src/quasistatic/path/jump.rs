@@ -106,6 +106,12 @@ impl Balance<'_> {
             }
             if let Some(lane) = self.lane_of(&contacts) {
                 let run = if sense > 0.0 { Run::Outward } else { Run::Inward };
+                if self.is_pinned(contacts.disc) {
+                    let held = self.held(&contacts, &points(self.ground, &contacts), value)?;
+                    if !self.lets_go(&held) {
+                        return Ok(Some(held));
+                    }
+                }
                 let Some(held) = self.disc_run(lane, &contacts, value, run)? else { return Ok(None) };
                 let touched = if sense > 0.0 { self.touched(&held, value, passed)? } else { None };
                 let Some(touched) = touched else { return Ok(Some(held)) };
@@ -113,6 +119,9 @@ impl Balance<'_> {
                 continue;
             }
             let held = self.held(&contacts, &points(self.ground, &contacts), value)?;
+            if sense < 0.0 && self.lets_go(&held) {
+                continue;
+            }
             let lowest = Self::least_eigenvalue(&held);
             if lowest > 0.0 {
                 let newton = held.jacobian.clone().lu().solve(&-&held.excess);

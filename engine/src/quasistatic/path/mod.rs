@@ -55,6 +55,6 @@ pub use event::{Direction, Event, EventKind, Passed, PassedKind, PathState};
 pub use jump::{EVEN, Mobility};
 pub use lane::Lane;
 pub use point::{Point, Step};
-pub use setting::{Asked, Path, PathStop, Setting, Totals, TurnReached, WhyNot};
+pub use setting::{Asked, DeadBand, Path, PathStop, Setting, Totals, TurnReached, WhyNot};
 pub use unload::unload;
 pub use zone::{Zones, cycle_in_zone, start_in_zone, unload_in_zone};

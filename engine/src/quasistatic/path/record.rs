@@ -3,14 +3,14 @@
 use super::error::{PathError, Warning};
 use super::event::{Direction, Event, EventKind, Passed, PathState};
 use super::lane::Lane;
-use super::setting::{Asked, Path, PathStop, Setting, Totals, TurnReached};
+use super::setting::{Asked, DeadBand, Path, PathStop, Setting, Totals, TurnReached};
 use crate::disc::Place;
 use crate::problem::{ContactKind, Control};
 use crate::progress::Progress;
 use crate::quasistatic::curve::{CurveStop, Detail, places};
-use crate::quasistatic::descent::{Descent, descend};
+use crate::quasistatic::descent::{AT_END, Descent, descend, stable_start};
 use crate::quasistatic::energy::{self, Losses};
-use crate::quasistatic::jump::Landing;
+use crate::quasistatic::jump::{self, Landing, Run};
 
 /// What the balance of a path may leave of its losses.
 const BALANCED: f64 = 1e-6;
@@ -44,6 +44,8 @@ pub(super) struct Record<'a> {
     pub digits: (f64, f64),
     /// Π where it begins.
     pub begin: f64,
+    /// What the area that closed loses when it opens.
+    pub dead_band: Option<DeadBand>,
 }
 
 impl<'a> Record<'a> {
@@ -62,6 +64,7 @@ impl<'a> Record<'a> {
             area: 0.0,
             digits: (f64::INFINITY, f64::NAN),
             begin: 0.0,
+            dead_band: None,
         }
     }
 
@@ -217,12 +220,67 @@ impl<'a> Record<'a> {
         });
     }
 
-    /// Turns the control round.
-    pub fn turned(&mut self, at: PathState) {
+    /// Turns the control round; where a unit of area costs more to open than it gained in closing, by how much.
+    pub fn turned(&mut self, at: PathState, more: Option<f64>) {
         self.continuous(EventKind::Turn, None, [Some(at.clone()), Some(at.clone())]);
         self.direction = Direction::Unloading;
         self.piece += 1;
-        self.states.push(PathState { direction: self.direction, piece: self.piece, ..at });
+        let area = at.contact_area;
+        self.dead_band = more.map(|more| DeadBand { area, lost: more * area });
+        let energy = at.energy - self.dead_band.map_or(0.0, |band| band.lost);
+        self.states.push(PathState { energy, direction: self.direction, piece: self.piece, ..at });
+    }
+
+    /// The way of held edges from the last state to another, along a straight line in δ and P.
+    pub fn pinned(&mut self, to: PathState) {
+        if let Some(from) = self.states.last().filter(|_| self.losses == Losses::Twice) {
+            let [approach, force] = [to.approach - from.approach, to.force - from.force];
+            let [mean_approach, mean_force] =
+                [0.5 * (to.approach + from.approach), 0.5 * (to.force + from.force)];
+            self.area += match self.control {
+                Control::Displacement => mean_force * approach,
+                Control::Force => -mean_approach * force,
+                Control::Stiffness(k) => mean_force * (approach + force / k),
+            };
+        }
+        self.states.push(to);
+    }
+
+    /// An edge begins to move.
+    pub fn depinned(&mut self, radius: f64, at: &PathState) {
+        self.continuous(EventKind::Depin, Some(radius), [Some(at.clone()), Some(at.clone())]);
+    }
+
+    /// The way of one disc down to the radius `to` from where its edge is held at the radius `s`, which is recorded: along a straight
+    /// line to where G is γ, and from there as [`descend`](Self::descend), or at once inward where no device holds the edge.
+    ///
+    /// # Errors
+    /// [`PathError`].
+    pub fn released(&mut self, lane: &Lane, s: f64, to: f64) -> Result<PathStop, PathError> {
+        let (solution, monotone) = (&*lane.solution, &*lane.monotone);
+        let place = solution.place(s).ok_or(PathError::Lost { control_value: f64::NAN })?;
+        let free = self.disc(lane, place);
+        self.pinned(free.clone());
+        self.depinned(s, &free);
+        let here = match stable_start(solution, monotone, s) {
+            Some(here) => here,
+            None => {
+                let value = monotone.value(&solution.at(place));
+                let landing = jump::run(solution, monotone, monotone.stretch_of(s), value, Run::Inward);
+                let landing = match landing {
+                    Ok(landing) => landing,
+                    Err(hole) => return Ok(PathStop::Curve(CurveStop::NoEquilibrium(hole))),
+                };
+                let after = landing.map(|landing| landing.place);
+                self.jumped(Event::of_disc(solution, self.control, place, after, self.losses));
+                let Some(landing) = landing else { return Ok(PathStop::Apart) };
+                if solution.at(landing.place).contact_radius < to * (1.0 - AT_END) {
+                    return Ok(PathStop::End);
+                }
+                landing
+            }
+        };
+        self.descend(lane, here, to).map(|descent| stop_of(&descent))
     }
 
     /// The losses so far; `None` where one has no bound.
@@ -246,7 +304,8 @@ impl<'a> Record<'a> {
         let last = self.states.last().map(|state| state.potential(control));
         let is_twice = self.losses == Losses::Twice;
         let balance = last.filter(|_| is_twice && self.area != 0.0).map(|last| {
-            let error = last - self.begin - self.area + before_last;
+            let band = self.dead_band.map_or(0.0, |band| band.lost);
+            let error = last - self.begin - self.area + before_last + band;
             let whole = total.unwrap_or(before_last).abs();
             // An unloading from a start in contact is measured by what it stored there.
             error.abs() / whole.max(work_of_loading.unwrap_or(self.begin).abs())
@@ -254,7 +313,8 @@ impl<'a> Record<'a> {
         let by_area = self.events.iter().try_fold(0.0, |sum, event| Some(sum + event.dissipated_by_area?));
         let at_turn = work_of_loading.map_or(Some(self.begin), |work| {
             let up = self.events.iter().filter(|event| event.direction == Direction::Loading);
-            Some(work - up.filter_map(|event| event.dissipated).fold(0.0, |a, b| a + b))
+            let band = self.dead_band.map_or(0.0, |band| band.lost);
+            Some(work - band - up.filter_map(|event| event.dissipated).fold(0.0, |a, b| a + b))
         });
         let down = self.events.iter().filter(|event| event.direction == Direction::Unloading);
         let lost_down = down.into_iter().try_fold(0.0, |sum, event| Some(sum + event.dissipated?));
@@ -264,6 +324,7 @@ impl<'a> Record<'a> {
             dissipated_before_last_contact: before_last,
             work_of_loading,
             work_of_unloading: lost_down.zip(at_turn).filter(|_| ends_apart).map(|(lost, at)| lost - at),
+            dead_band: self.dead_band,
             balance,
         };
         let warnings = self.warnings(balance);

@@ -28,6 +28,8 @@ pub struct Setting<'a> {
     pub control: Control,
     /// Which contacts are followed.
     pub contact: ContactKind,
+    /// `γ_a`, what a closing edge gains where that is less than γ, which an opening one costs; `None` where it is the same.
+    pub closing: Option<f64>,
     /// Whether losses are computed twice.
     pub losses: Losses,
     /// How many states of one disc there are.
@@ -41,13 +43,21 @@ impl Setting<'static> {
     #[must_use]
     pub fn new(control: Control) -> Self {
         let (contact, losses, detail) = (ContactKind::Rings, Losses::Twice, Detail::Drawn);
-        Self { control, contact, losses, detail, mobility: EVEN }
+        Self { control, contact, closing: None, losses, detail, mobility: EVEN }
     }
 
     /// The same of one disc alone.
     #[must_use]
     pub fn one_disc(control: Control) -> Self {
         Self { contact: ContactKind::OneDisc, ..Self::new(control) }
+    }
+}
+
+impl Setting<'_> {
+    /// What a closing edge gains where an opening one costs `gamma`; `None` where that is not less.
+    #[must_use]
+    pub fn closing_below(&self, gamma: f64) -> Option<f64> {
+        self.closing.filter(|closing| *closing < gamma)
     }
 }
 
@@ -134,9 +144,20 @@ pub struct Totals {
     pub work_of_loading: Option<f64>,
     /// The same on the way down.
     pub work_of_unloading: Option<f64>,
+    /// What closed gains less than it costs to open.
+    pub dead_band: Option<DeadBand>,
     /// |Π(last) − Π(first) − Σ areas + Σ losses| over the losses or the work of loading, whichever is more, from the start to before
     /// the last contact.
     pub balance: Option<f64>,
+}
+
+/// What a loop loses besides its jumps, where a closing edge gains `γ_a` < γ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DeadBand {
+    /// The area that closed, all of which opens again.
+    pub area: f64,
+    /// (γ − `γ_a`) times that area.
+    pub lost: f64,
 }
 
 /// A whole path, in reduced units.

@@ -38,6 +38,18 @@ const BEYOND: f64 = 1.3;
 pub fn unload(curve: &Curve, setting: &Setting<'_>, progress: &dyn Progress) -> Result<Path, PathError> {
     let control = setting.control;
     let (from, to) = (curve.outermost(), curve.innermost());
+    let receding = curve;
+    let gamma = curve.equilibrium.problem.work_of_adhesion;
+    let growing = match setting.closing_below(gamma) {
+        Some(closing) => {
+            let none = PathError::UnstableStart { contact_radius: from, searched: from };
+            let none = if progress.stop() { PathError::Cancelled } else { none };
+            Some(curve.under(closing, progress).ok_or(none)?)
+        }
+        None => None,
+    };
+    // What is in contact at the start has grown to there.
+    let curve = growing.as_ref().unwrap_or(curve);
     let mut longer = None;
     let asked = curve.solution.place(from).map(|place| curve.state(place));
     let here = if let Some(start) = stable_start(&*curve.solution, &curve.monotone(control), from) {
@@ -58,17 +70,31 @@ pub fn unload(curve: &Curve, setting: &Setting<'_>, progress: &dyn Progress) -> 
         let splits = problem.work_of_adhesion == 0.0 && falls(&*problem.gap, start.contact_radius);
         if fault.is_some() || splits {
             let asked = asked.or(fault.map(|why| Asked { state: start, why }));
-            return with_rings(curve, setting, &start, asked, progress);
+            return with_rings(curve, gamma, setting, &start, asked, progress);
         }
     }
     let lane = Lane::of(curve, control);
     let mut record = Record::new(setting, Direction::Unloading, progress);
-    record.begun(record.disc(&lane, here.place));
+    let first = record.disc(&lane, here.place);
+    if growing.is_some() {
+        let mut receding = receding.clone();
+        receding.reach(start.contact_radius);
+        let lane = Lane::of(&receding, control);
+        record.begun(opening(first, gamma - curve.equilibrium.problem.work_of_adhesion));
+        let stop = record.released(&lane, start.contact_radius, to)?;
+        return Ok(record.finished(asked, None, None, stop));
+    }
+    record.begun(first);
     let descent = record.descend(&lane, here, to)?;
     if progress.stop() {
         return Err(PathError::Cancelled);
     }
     Ok(record.finished(asked, None, None, stop_of(&descent)))
+}
+
+/// A state as it opens, where that costs so much more than closing gained.
+fn opening(state: PathState, more: f64) -> PathState {
+    PathState { energy: state.energy - more * state.contact_area, ..state }
 }
 
 /// Why a disc in equilibrium is not all of the contact; `None` where it is.
@@ -79,9 +105,10 @@ fn fault(curve: &Curve, s: f64, progress: &dyn Progress) -> Option<WhyNot> {
     if found.holds { None } else { overlap.or(found.least_pressure.map(|(radius, _)| WhyNot::Pulls(radius))) }
 }
 
-/// The way down from a disc beside which there is more contact.
+/// The way down, at the work of adhesion `to_open`, from a disc beside which there is more contact.
 fn with_rings(
     curve: &Curve,
+    to_open: f64,
     setting: &Setting<'_>,
     start: &State,
     asked: Option<Asked>,
@@ -117,9 +144,8 @@ fn with_rings(
         let record = Record::new(setting, Direction::Unloading, progress);
         let mut course = Course { balance: &balance, setting, turn: None, end: to, record, steps: 0 };
         let first = course.state(&held);
-        course.record.begun(first);
-        let stop = course.unloaded(held)?;
-        Ok(course.record.finished(asked, None, None, stop))
+        course.record.begun(opening(first, to_open - gamma));
+        course.down(held, to_open, &|record, stop| record.finished(asked, None, None, stop))
     })
 }
 

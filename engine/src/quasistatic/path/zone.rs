@@ -399,7 +399,7 @@ impl Course<'_> {
             control => state.potential(control),
         };
         let work_of_loading = self.record.lost().map(|lost| potential + lost);
-        self.record.turned(state);
+        self.record.turned(state, None);
         let stop = self.descend(at_turn)?;
         Ok(self.record.finished(None, Some(TurnReached { asked: turn, reached }), work_of_loading, stop))
     }

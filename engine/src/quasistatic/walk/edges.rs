@@ -125,6 +125,7 @@ impl<'a> Edges<'a> {
             contact: ContactKind::Rings,
             progress: &Unwatched,
             lane: None,
+            pinned: None,
         };
         balance.held(&contacts, &points(self.ground, &contacts), control.value(delta, force)).ok()
     }

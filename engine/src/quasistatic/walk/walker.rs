@@ -89,6 +89,7 @@ impl Walk<'_> {
             contact: ContactKind::Rings,
             progress: &Unwatched,
             lane: None,
+            pinned: None,
         }
     }
 }
