@@ -177,17 +177,14 @@ impl Case {
         let cohesion = preset.cohesion().map(|law| law.reduced_by(units.length, units.pressure));
         let closing = preset.edge.closing_work_of_adhesion.map(|gamma| gamma / units.work_of_adhesion);
         let closing = closing.filter(|closing| *closing < reduced.work_of_adhesion);
-        let start = match cohesion {
-            Some(law) => start_in_zone(&table, law, wanted, progress)
-                .map_err(|error| refused_path(error, Control::Displacement, &units, &shown))?,
-            None => {
-                let work_of_adhesion = closing.unwrap_or(reduced.work_of_adhesion);
-                let grown = Reduced { work_of_adhesion, ..reduced.clone() };
-                contact_radius(&grown, &*basis, wanted, progress).map_err(|e| CaseError::Start {
-                    error: e.in_units(&units),
-                    shown: Box::new(shown.clone()),
-                })?
-            }
+        let start = if let Some(law) = cohesion {
+            start_in_zone(&table, law, wanted, progress)
+                .map_err(|error| refused_path(error, Control::Displacement, &units, &shown))?
+        } else {
+            let work_of_adhesion = closing.unwrap_or(reduced.work_of_adhesion);
+            let grown = Reduced { work_of_adhesion, ..reduced.clone() };
+            contact_radius(&grown, &*basis, wanted, progress)
+                .map_err(|e| CaseError::Start { error: e.in_units(&units), shown: Box::new(shown.clone()) })?
         };
         if preset.basis == BasisSpec::Exact {
             // From here on the start decides how far it reaches, however it was given.

@@ -80,13 +80,13 @@ class Path(Result):
     number: Counts
     """The number of the event on the path, from 1."""
     kind: Texts
-    """``jump-in``, ``first-touch``, ``touch``, ``merge``, ``snap-in``, ``snap``, ``last-contact``, ``snap-off``, ``split``, ``vanish`` or ``turn``."""
+    """``jump-in``, ``first-touch``, ``touch``, ``merge``, ``snap-in``, ``snap``, ``last-contact``, ``snap-off``, ``split``, ``vanish``, ``turn`` or ``depin``."""
     direction: Texts
     """``loading`` or ``unloading``."""
     control: Floats
     """δ, P, or Δ = δ + P/k at which it happens."""
     radius: Floats
-    """Where a crest touches, contacts merge or split or one vanishes, a length; NaN else."""
+    """Where a crest touches, contacts merge or split, one vanishes, or a held edge begins to move, a length; NaN else."""
     before_contact_radius: Floats
     """The outermost edge, a length; NaN while the bodies are apart, as all that begins with ``before_``."""
     before_approach: Floats

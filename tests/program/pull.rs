@@ -106,13 +106,31 @@ fn what_cannot_be_says_what_could() {
     }
 }
 
-/// Elsewhere a dead band is not followed, and that is said.
+/// A loop says what the dead band costs, and what knows no dead band says so.
 #[test]
 fn a_dead_band_is_told_of_where_it_does_not_count() {
     let set = ["wavy-sphere", "--set", "material.closing_work_of_adhesion=0.002"];
-    for command in ["unload", "cycle", "trace"] {
+    for (command, warns) in [("unload", false), ("cycle", false), ("trace", true)] {
         let output = Command::cargo_bin("pulloff").unwrap().arg(command).args(set).assert().success();
-        let text = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
-        assert!(text.contains("material.closing_work_of_adhesion"), "{command}: {text}");
+        let [out, text] = [&output.get_output().stdout, &output.get_output().stderr]
+            .map(|bytes| String::from_utf8_lossy(bytes).into_owned());
+        assert_eq!(text.contains("material.closing_work_of_adhesion"), warns, "{command}: {text}");
+        assert_eq!(out.contains("depin"), !warns, "{command}: {out}");
+        assert_eq!(out.contains("energy lost in the dead band"), command == "cycle", "{command}: {out}");
     }
+    let json =
+        Command::cargo_bin("pulloff").unwrap().arg("cycle").args(set).args(["--format", "json"]).assert();
+    let document: Value = serde_json::from_slice(&json.success().get_output().stdout).unwrap();
+    let totals = &document["totals"];
+    let of = |name: &str| totals[name].as_f64().unwrap();
+    let band = totals["dead_band"]["dissipated"].as_f64().unwrap();
+    let area = totals["dead_band"]["area"].as_f64().unwrap();
+    assert!((band / area / (0.003_978_873_577_297_383_6 - 0.002) - 1.0).abs() < 1e-12);
+    let work = of("work_of_loading") + of("work_of_unloading");
+    assert!((work / (of("dissipated") + band) - 1.0).abs() < 1e-9);
+    let range = ["--set", "material.adhesion=dugdale", "--set", "material.cohesive_strength=1"];
+    let refused =
+        Command::cargo_bin("pulloff").unwrap().arg("unload").args(set).args(range).assert().failure();
+    let text = String::from_utf8_lossy(&refused.get_output().stderr).into_owned();
+    assert!(text.contains("needs short-range adhesion"), "{text}");
 }

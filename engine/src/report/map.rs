@@ -138,7 +138,7 @@ pub struct MapReport {
 
 /// What is said of a preset in rings.
 pub(super) const EXACT: &str =
-    "the lines are those of the exact equation of one disc, whatever the basis of the preset";
+    "all numbers are those of the exact equation of one disc, whatever the basis of the preset";
 
 /// Why there is no map.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -197,6 +197,7 @@ impl MapReport {
         if preset.basis != BasisSpec::Exact {
             report.notes.push(EXACT.to_owned());
         }
+        report.notes.extend(case.warning_of_dead_band());
         let found = Onset::of(preset, progress)?;
         report.onset = found.map(|onset| OnsetReport {
             amplitude_over_wavelength: onset.amplitude_over_wavelength,

@@ -12,7 +12,7 @@ use crate::problem::{ContactKind, Control, Reduced, Turn, Units};
 use crate::progress::{Part, Progress};
 use crate::quasistatic::overlap::passed;
 use crate::quasistatic::path::{
-    Asked, Event, Losses, Passed, Path, PathState, Setting, Totals, TurnReached, WhyNot,
+    Asked, Direction, Event, Losses, Passed, Path, PathState, Setting, Totals, TurnReached, WhyNot,
 };
 use crate::quasistatic::{Curve, Detail, Overlap, State};
 use crate::units::Quantity;
@@ -410,16 +410,32 @@ impl PathReport {
         if path.contact == ContactKind::Rings {
             return Ok(self);
         }
-        let found = passed(curve, &path.pieces(), progress).ok_or(CaseError::Cancelled)?;
-        Ok(self.with_overlaps(case, path, &found))
+        let on =
+            |curve: &Curve, pieces: &[[f64; 2]]| passed(curve, pieces, progress).ok_or(CaseError::Cancelled);
+        let Some(closing) = case.closing else {
+            let found = on(curve, &path.pieces())?;
+            return Ok(self.with_overlaps(case, path, [&[], &found]));
+        };
+        // What has closed is on the equilibria of a closing edge, the start of an unloading too.
+        let growing = curve.under(closing, progress).ok_or(CaseError::Cancelled)?;
+        let start = path.start().map_or(0.0, |start| start.contact_radius);
+        let up = if path.turn.is_some() { path.pieces_on(&[Direction::Loading]) } else { vec![[start; 2]] };
+        let grown = on(&growing, &up)?;
+        let found = on(curve, &path.pieces_on(&[Direction::Unloading]))?;
+        Ok(self.with_overlaps(case, path, [&grown, &found]))
     }
 
-    fn with_overlaps(mut self, case: &Case, path: &Path, passed: &[Overlap]) -> Self {
-        let holds = |state: &PathState| !passed.iter().any(|overlap| overlap.contains(state.contact_radius));
+    /// With what is not admissible of edges that closed, and of others.
+    fn with_overlaps(mut self, case: &Case, path: &Path, [grown, passed]: [&[Overlap]; 2]) -> Self {
+        let holds = |state: &PathState| {
+            let of =
+                if case.closing.is_some() && state.direction == Direction::Loading { grown } else { passed };
+            !of.iter().any(|overlap| overlap.contains(state.contact_radius))
+        };
         for (report, event) in self.events.iter_mut().zip(&path.events) {
             report.admissible = Some(event.before.iter().chain(&event.after).all(holds));
         }
-        let inadmissible = OverlapReport::all(passed, case.units());
+        let inadmissible = OverlapReport::all(&[grown, passed].concat(), case.units());
         self.warnings.extend(overlap::warning("the path", &inadmissible, &case.shown));
         self.inadmissible = Some(inadmissible);
         self

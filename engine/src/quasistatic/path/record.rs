@@ -262,23 +262,22 @@ impl<'a> Record<'a> {
         let free = self.disc(lane, place);
         self.pinned(free.clone());
         self.depinned(s, &free);
-        let here = match stable_start(solution, monotone, s) {
-            Some(here) => here,
-            None => {
-                let value = monotone.value(&solution.at(place));
-                let landing = jump::run(solution, monotone, monotone.stretch_of(s), value, Run::Inward);
-                let landing = match landing {
-                    Ok(landing) => landing,
-                    Err(hole) => return Ok(PathStop::Curve(CurveStop::NoEquilibrium(hole))),
-                };
-                let after = landing.map(|landing| landing.place);
-                self.jumped(Event::of_disc(solution, self.control, place, after, self.losses));
-                let Some(landing) = landing else { return Ok(PathStop::Apart) };
-                if solution.at(landing.place).contact_radius < to * (1.0 - AT_END) {
-                    return Ok(PathStop::End);
-                }
-                landing
+        let here = if let Some(here) = stable_start(solution, monotone, s) {
+            here
+        } else {
+            let value = monotone.value(&solution.at(place));
+            let landing = jump::run(solution, monotone, monotone.stretch_of(s), value, Run::Inward);
+            let landing = match landing {
+                Ok(landing) => landing,
+                Err(hole) => return Ok(PathStop::Curve(CurveStop::NoEquilibrium(hole))),
+            };
+            let after = landing.map(|landing| landing.place);
+            self.jumped(Event::of_disc(solution, self.control, place, after, self.losses));
+            let Some(landing) = landing else { return Ok(PathStop::Apart) };
+            if solution.at(landing.place).contact_radius < to * (1.0 - AT_END) {
+                return Ok(PathStop::End);
             }
+            landing
         };
         self.descend(lane, here, to).map(|descent| stop_of(&descent))
     }

@@ -2,7 +2,7 @@
 
 use super::balance::Held;
 use super::error::Warning;
-use super::event::{Event, EventKind, PathState};
+use super::event::{Direction, Event, EventKind, PathState};
 use super::jump::{EVEN, Mobility};
 use crate::problem::{ContactKind, Control, Turn, Units};
 use crate::quasistatic::State;
@@ -223,7 +223,13 @@ impl Path {
 
     /// The contact radii of its stable stretches as [outer, inner], from outside inward and each radius once.
     pub fn pieces(&self) -> Vec<[f64; 2]> {
+        self.pieces_on(&[Direction::Loading, Direction::Unloading])
+    }
+
+    /// The same of one way, or both.
+    pub fn pieces_on(&self, ways: &[Direction]) -> Vec<[f64; 2]> {
         let mut pieces: Vec<[f64; 2]> = (self.states.chunk_by(|a, b| a.piece == b.piece))
+            .filter(|piece| piece.iter().any(|state| ways.contains(&state.direction)))
             .filter_map(|piece| Some([piece.first()?.contact_radius, piece.last()?.contact_radius]))
             .map(|[from, to]| [from.max(to), from.min(to)])
             .collect();
