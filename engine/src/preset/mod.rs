@@ -17,7 +17,8 @@
 //! | `shape` | the values of `[gap]` → the gap's shape, and back |
 //! | [`read`](mod@read) | TOML text and `--set` assignments → preset, each mistake with its line |
 //! | [`write`](mod@write) | preset → TOML text |
-//! | [`edge`] | how an edge moves: the table `[edge]`, rates and parts of a test |
+//! | [`edge`] | how an edge moves: the keys of `[edge]` and of rates |
+//! | `steps` | the same as it is read, and the parts of a test |
 //! | [`edit`] | a preset laid over the text it was read from, comments and order kept |
 //! | [`changes`] | what turns one preset into another, as assignments |
 //! | [`manual`] | the key table as text for the manual |
@@ -50,6 +51,7 @@ pub mod rows;
 pub mod schema;
 pub mod shape;
 pub mod shipped;
+mod steps;
 pub mod value;
 pub mod values;
 pub mod write;

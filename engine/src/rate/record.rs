@@ -3,8 +3,7 @@
 use super::equation::At;
 use super::law::Motion;
 use super::radau::{NODES, STAGES};
-use super::step::Step;
-use super::stretch::landed;
+use super::step::{Step, landed};
 
 /// One moment of a pull, in reduced units.
 #[derive(Debug, Clone, Copy, PartialEq)]

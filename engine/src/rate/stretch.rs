@@ -10,7 +10,7 @@ use super::law::Motion;
 use super::radau::{NODES, STAGES, interpolated};
 use super::record::Record;
 use super::settings::Settings;
-use super::step::{self, Step};
+use super::step::{self, Step, landed};
 use crate::progress::Progress;
 
 /// Why a stretch ends.
@@ -24,10 +24,6 @@ pub enum End {
     Apart,
 }
 
-/// Solutions of one step by which its end is brought to a place.
-const LANDED: usize = 60;
-/// It is there at this share of the step.
-const THERE: f64 = 1e-14;
 /// The safety of the next step, and by which factors it changes at most.
 const SAFETY: f64 = 0.9;
 const CHANGE: [f64; 2] = [0.2, 4.0];
@@ -157,39 +153,4 @@ impl Stretch<'_> {
         }
         Ok(first)
     }
-}
-
-/// The step that ends where `of` vanishes, by its length in `[from, to]`; `before` is its value at the shorter, `longest` the step at the
-/// longer one.
-pub fn landed(
-    step: &dyn Fn(f64) -> Option<Step>,
-    [mut from, mut to]: [f64; 2],
-    mut before: f64,
-    longest: &Step,
-    of: &dyn Fn(&At) -> f64,
-) -> Option<Step> {
-    let mut after = of(longest.end());
-    let mut found = *longest;
-    let mut side = 0;
-    for _ in 0..LANDED {
-        if after == 0.0 || (to - from) <= THERE * to {
-            break;
-        }
-        // False position; the end that stays counts half each time (Illinois).
-        let share = before / (before - after);
-        let share = if share.is_finite() { share.clamp(1e-3, 1.0 - 1e-3) } else { 0.5 };
-        let h = from + share * (to - from);
-        let tried = step(h)?;
-        let value = of(tried.end());
-        if value == 0.0 || (value > 0.0) == (after > 0.0) {
-            (to, after, found) = (h, value, tried);
-            before *= if side > 0 { 0.5 } else { 1.0 };
-            side = 1;
-        } else {
-            (from, before) = (h, value);
-            after *= if side < 0 { 0.5 } else { 1.0 };
-            side = -1;
-        }
-    }
-    Some(found)
 }
