@@ -5,6 +5,7 @@
 
 mod assigned;
 mod completions;
+mod computed;
 mod console;
 mod explore;
 mod failure;

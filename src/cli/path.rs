@@ -1,10 +1,8 @@
 //! `pulloff unload` and `pulloff cycle`: what happens on the way of the device, event by event.
 
 use super::Failure;
-use super::console::{Console, Messages};
-use super::format::{Format, FormatArgument};
-use super::output::{Destination, Sink};
-use super::problem::Problem;
+use super::computed::{Computed, Opened};
+use super::format::Format;
 use super::watch::Stop;
 use clap::{Args, ValueEnum};
 use pulloff_engine::case::CaseError;
@@ -36,8 +34,6 @@ pub struct CycleArguments {
 /// What both are asked for.
 #[derive(Debug, Args)]
 struct PathArguments {
-    #[command(flatten)]
-    problem: Problem,
     /// Follow one disc of contact alone, as path.contact=one-disc does; states in which the bodies would overlap are marked
     #[arg(long)]
     one_disc: bool,
@@ -48,11 +44,7 @@ struct PathArguments {
     #[arg(long, value_enum, default_value_t = Rows::Events)]
     rows: Rows,
     #[command(flatten)]
-    format: FormatArgument,
-    #[command(flatten)]
-    destination: Destination,
-    #[command(flatten)]
-    messages: Messages,
+    computed: Computed,
 }
 
 /// What a row is.
@@ -106,58 +98,42 @@ impl TurnArguments {
 }
 
 pub fn unload(arguments: &UnloadArguments) -> Result<ExitCode, Failure> {
-    let (report, opened) = arguments
+    arguments
         .path
-        .compute(|_| Ok(None), &|preset, _, extent, progress| PathReport::unload(preset, extent, progress))?;
-    opened.written(&report)
+        .run(|_| Ok(None), &|preset, _, extent, progress| PathReport::unload(preset, extent, progress))
 }
 
 pub fn cycle(arguments: &CycleArguments) -> Result<ExitCode, Failure> {
-    let (report, opened) = arguments.path.compute(|preset| arguments.turn.lay(preset), &PathReport::cycle)?;
-    opened.written(&report)
+    arguments.path.run(|preset| arguments.turn.lay(preset), &PathReport::cycle)
 }
 
 /// How a path is computed.
 type Compute<'a> = &'a dyn Fn(&Preset, Option<Turn>, Extent, &dyn Progress) -> Result<PathReport, CaseError>;
 
-/// Where the answer goes.
-struct Opened {
-    console: Console,
-    format: Format,
-    rows: Rows,
-    sink: Sink,
-}
-
 impl PathArguments {
-    /// Computes a path, once it is sure where it goes.
-    fn compute(
+    /// Computes a path, once it is sure where it goes, and writes it.
+    fn run(
         &self,
         turn: impl FnOnce(&mut Preset) -> Result<Option<Turn>, Failure>,
         path: Compute<'_>,
-    ) -> Result<(PathReport, Opened), Failure> {
-        let console = self.messages.open();
-        let format = self.format.of(self.destination.path(), Format::Table)?;
-        let loaded = self.problem.load(&console)?;
-        let sink = self.destination.sink(self.problem.inputs(&loaded))?;
-        let mut preset = loaded.preset;
-        let turn = turn(&mut preset)?;
+    ) -> Result<ExitCode, Failure> {
+        let mut opened = self.computed.open(Format::Table)?;
+        let turn = turn(&mut opened.preset)?;
         if self.one_disc {
-            preset.path.contact = ContactKind::OneDisc;
+            opened.preset.path.contact = ContactKind::OneDisc;
         }
         let losses = if self.no_area { Losses::Once } else { Losses::Twice };
         let stop = Stop::catch()?;
         let extent = Extent { losses, ..Extent::default() };
-        let report = path(&preset, turn, extent, &console.bar(Some(&stop)))?;
-        Ok((report, Opened { console, format, rows: self.rows, sink }))
+        let report = path(&opened.preset, turn, extent, &opened.console.bar(Some(&stop)))?;
+        self.written(opened, &report)
     }
-}
 
-impl Opened {
-    fn written(self, report: &PathReport) -> Result<ExitCode, Failure> {
-        let Self { console, format, rows, sink } = self;
+    fn written(&self, opened: Opened, report: &PathReport) -> Result<ExitCode, Failure> {
+        let Opened { console, format, sink, .. } = opened;
         console.warn(&report.warnings);
         let units = &report.head.units.shown;
-        let text = match (format, rows) {
+        let text = match (format, self.rows) {
             (Format::Table, Rows::Events) => path_table::path(report),
             (Format::Table, Rows::States) => table::rows(&report.states_table()?),
             (Format::Csv, rows) => {

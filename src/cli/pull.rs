@@ -1,10 +1,8 @@
 //! `pulloff pull`: one disc pulled at a rate, and how long it bears dead loads.
 
 use super::Failure;
-use super::console::Messages;
-use super::format::{Format, FormatArgument};
-use super::output::Destination;
-use super::problem::Problem;
+use super::computed::{Computed, Opened};
+use super::format::Format;
 use super::watch::Stop;
 use clap::{Args, ValueEnum};
 use pulloff_engine::preset::Preset;
@@ -23,8 +21,6 @@ const RATES: usize = 10_000;
 /// The arguments of `pulloff pull`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    #[command(flatten)]
-    problem: Problem,
     /// Pull at this rate of what is controlled until the bodies are apart (repeatable; instead of path.rate and path.steps);
     /// log:FROM..TO:COUNT for rates of equal factors
     #[arg(long, value_name = "RATE")]
@@ -36,11 +32,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = Rows::Runs)]
     rows: Rows,
     #[command(flatten)]
-    format: FormatArgument,
-    #[command(flatten)]
-    destination: Destination,
-    #[command(flatten)]
-    messages: Messages,
+    computed: Computed,
 }
 
 /// What a row is.
@@ -53,11 +45,8 @@ enum Rows {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let console = arguments.messages.open();
-    let format = arguments.format.of(arguments.destination.path(), Format::Table)?;
-    let loaded = arguments.problem.load(&console)?;
-    let preset = &loaded.preset;
-    let sink = arguments.destination.sink(arguments.problem.inputs(&loaded))?;
+    let Opened { console, format, preset, sink } = arguments.computed.open(Format::Table)?;
+    let preset = &preset;
     let mut asked = Asked::default();
     for text in &arguments.rate {
         asked.rates.extend(rates(preset, text)?);

@@ -1,10 +1,8 @@
 //! `pulloff trace`: the equilibrium curve by arc-length continuation.
 
 use super::Failure;
-use super::console::Messages;
-use super::format::{Format, FormatArgument};
-use super::output::Destination;
-use super::problem::Problem;
+use super::computed::{Computed, Opened};
+use super::format::Format;
 use super::watch::Stop;
 use clap::Args;
 use pulloff_engine::quasistatic::CurveStop;
@@ -16,34 +14,24 @@ use std::process::ExitCode;
 /// The arguments of `pulloff trace`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    #[command(flatten)]
-    problem: Problem,
     /// Add the exact solution at the same contact radius, and the relative difference of the force
     #[arg(long)]
     theory: bool,
     #[command(flatten)]
-    format: FormatArgument,
-    #[command(flatten)]
-    destination: Destination,
-    #[command(flatten)]
-    messages: Messages,
+    computed: Computed,
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let console = arguments.messages.open();
-    let format = arguments.format.of(arguments.destination.path(), Format::Csv)?;
-    let loaded = arguments.problem.load(&console)?;
-    let sink = arguments.destination.sink(arguments.problem.inputs(&loaded))?;
+    let Opened { console, format, preset, sink } = arguments.computed.open(Format::Csv)?;
     let stop = Stop::catch()?;
-    let mut report = TraceReport::compute_while(&loaded.preset, &console.bar(Some(&stop)))?;
+    let mut report = TraceReport::compute_while(&preset, &console.bar(Some(&stop)))?;
     if arguments.theory {
-        report = report.beside(&Exact::of(&loaded.preset.problem()));
+        report = report.beside(&Exact::of(&preset.problem()));
     }
     console.warn(&report.warnings);
     console.note(report.start_note.as_deref());
     if format != Format::Json {
         let exact = if arguments.theory { EXACT_COLUMNS } else { &[] };
-        let preset = &loaded.preset;
         let zone: &[&str] = if preset.cohesion().is_some() { ZONE_COLUMNS } else { &[] };
         let units = columns::units(&[COLUMNS, exact, zone].concat(), preset.path.control, &preset.units);
         console.note(units.as_deref());

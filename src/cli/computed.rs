@@ -1,0 +1,41 @@
+//! What the commands have in common that compute one document of one preset.
+
+use super::Failure;
+use super::console::{Console, Messages};
+use super::format::{Format, FormatArgument};
+use super::output::{Destination, Sink};
+use super::problem::Problem;
+use clap::Args;
+use pulloff_engine::preset::Preset;
+
+/// The problem, and where and how the document goes.
+#[derive(Debug, Args)]
+pub struct Computed {
+    #[command(flatten)]
+    problem: Problem,
+    #[command(flatten)]
+    format: FormatArgument,
+    #[command(flatten)]
+    destination: Destination,
+    #[command(flatten)]
+    messages: Messages,
+}
+
+/// The same, read and opened.
+pub struct Opened {
+    pub console: Console,
+    pub format: Format,
+    pub preset: Preset,
+    pub sink: Sink,
+}
+
+impl Computed {
+    /// Reads the preset, and makes sure that the document can be written; in the form `usual` where none is asked for.
+    pub fn open(&self, usual: Format) -> Result<Opened, Failure> {
+        let console = self.messages.open();
+        let format = self.format.of(self.destination.path(), usual)?;
+        let loaded = self.problem.load(&console)?;
+        let sink = self.destination.sink(self.problem.inputs(&loaded))?;
+        Ok(Opened { console, format, preset: loaded.preset, sink })
+    }
+}
