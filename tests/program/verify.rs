@@ -54,6 +54,7 @@ fn the_groups_are_these() {
     Fig. 9 under force control, 200 rings
     Fig. 9 under stiffness=0.15 control, 200 rings
     Adhesion with a range: a sphere against Maugis
+    Pulls at a rate against the laws of slow ones
     Fig. 9, the law of stability, exact
     Rigid flat annulus, force over 2E*δb
     Fig. 9: the loop up to δ = 0.14
@@ -65,6 +66,7 @@ fn the_groups_are_these() {
     Two of our own numbers: Fig. 9 under force control, 200 rings
     Two of our own numbers: Fig. 9 under stiffness=0.15 control, 200 rings
     Two of our own numbers: whole loops
+    Two of our own numbers: Fig. 9, a slow pull
     ");
     for group in GROUPS.iter() {
         let heading = group.title.chars().count() + group.measure.chars().count() + 3;

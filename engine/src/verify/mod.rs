@@ -17,6 +17,7 @@
 //! | [`stability`] | the law of stability and its cusps on Fig. 9 |
 //! | [`loops`] | a rigid annulus, and the whole loop with and without rings |
 //! | [`range`] | the sphere whose adhesion has a range |
+//! | [`rate`] | an edge with a speed against the laws of slow pulls |
 //! | [`balance`] | the work of the device against what is stored and lost |
 //!
 //! All problems have E* = R = 1, so reduced and user's units are the same.
@@ -28,6 +29,7 @@ pub mod figures;
 pub mod loops;
 pub mod newton;
 pub mod range;
+pub mod rate;
 pub mod row;
 pub mod settings;
 pub mod smooth;
@@ -69,6 +71,8 @@ pub fn verify(settings: &Settings) -> Result<Vec<Group>, VerifyError> {
         }
     }
     groups.push(range::group());
+    let [slow, own_pulls] = rate::groups();
+    groups.push(slow);
     groups.push(stability::group(&cases::fig_9())?);
     let loops = loops::groups()?;
     let is_own = |group: &Group| group.rows.iter().any(|row| row.other.is_some());
@@ -76,5 +80,6 @@ pub fn verify(settings: &Settings) -> Result<Vec<Group>, VerifyError> {
     groups.extend(loops);
     groups.extend(own);
     groups.extend(own_loops);
+    groups.push(own_pulls);
     Ok(groups)
 }
