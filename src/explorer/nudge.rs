@@ -4,6 +4,7 @@
 //! (k → ∞) as its ends.
 
 use super::command::Id;
+use pulloff_engine::preset::edge::RATE;
 use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{Parameter, Preset, Value, data};
 use pulloff_engine::problem::Control;
@@ -12,9 +13,9 @@ use std::ops::RangeInclusive;
 /// How far one key press goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Amount {
-    /// 1 %, of the device's stiffness 3 %.
+    /// 1 %, of the device's stiffness 3 %, of the rate of a pull a third of a decade.
     Fine,
-    /// 10 %, of the device's stiffness a factor of 2.
+    /// 10 %, of the device's stiffness a factor of 2, of the rate of a pull a decade.
     Coarse,
 }
 
@@ -33,6 +34,10 @@ pub fn nudge(
     let value = match (row.kind, preset.get(&row.key)) {
         (_, value) if matches!(&*row.key, data::OFFSET | data::BASELINE) => {
             Value::Number(tidy(shifted(preset, &row.key, value, if up { share } else { -share })?))
+        }
+        (Kind::Positive, Some(Value::Number(x))) if row.key == RATE => {
+            let thirds = if amount == Amount::Fine { 1.0 } else { 3.0 };
+            Value::Number(tidy(by_thirds(x, if up { thirds } else { -thirds })))
         }
         (_, None) => {
             return Err(format!("{} follows from other values; {} types one", row.label, Id::Edit.named()));
@@ -68,6 +73,14 @@ pub fn nudge(
     };
     changed.set(&row.key, value).map_err(|invalid| invalid.to_string())?;
     Ok(changed)
+}
+
+/// A rate so many thirds of a decade further: one that is at a third of a decade goes to another, whatever its last digits.
+fn by_thirds(x: f64, thirds: f64) -> f64 {
+    const NEAR: f64 = 1e-4;
+    let here = 3.0 * x.log10();
+    let there = thirds + if (here - here.round()).abs() < NEAR { here.round() } else { here };
+    10.0_f64.powf(there / 3.0)
 }
 
 /// δ₀ or P₀ moved by a tenth of `share` of the range of the measured curve: either may be 0, and has no scale of its own.
@@ -128,6 +141,21 @@ fn tidy(x: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::store::read;
+
+    #[test]
+    fn a_rate_goes_by_thirds_of_a_decade_and_back() {
+        let mut x = 0.01;
+        let found: Vec<f64> = (0..4)
+            .map(|_| {
+                x = tidy(by_thirds(x, 1.0));
+                x
+            })
+            .collect();
+        let near = |(a, b): (&f64, f64)| (a / b - 1.0).abs() < 1e-12;
+        assert!(found.iter().zip([0.021_544_3, 0.046_415_9, 0.1, 0.215_443]).all(near), "{found:?}");
+        assert!(near((&tidy(by_thirds(0.1, -3.0)), 0.01)));
+        assert!((by_thirds(0.03, 1.0) / 0.03 - 10.0_f64.powf(1.0 / 3.0)).abs() < 1e-12);
+    }
     use pulloff_engine::preset::parameter;
 
     /// The paper's Fig. 9, in 200 rings.

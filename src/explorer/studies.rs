@@ -4,10 +4,12 @@
 //! surface is one of many, drawn with a seed, others follow it one by one.
 
 use pulloff_engine::gap::shapes::split_mix::SplitMix64;
+use pulloff_engine::preset::edge::RATE;
 use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{Key, Preset, Row, Value};
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Progress;
+use pulloff_engine::report::slow::SlowPulls;
 use pulloff_engine::sweep::measure::measure;
 use pulloff_engine::sweep::{Cell, Column, Fault};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -22,6 +24,11 @@ const BESIDE: i32 = 50;
 const FACTOR: f64 = 2.0;
 /// The same for the stiffness of the device, which means something over decades.
 const STIFFNESS_FACTOR: f64 = 30.0;
+/// The same for the rate of a pull: the exponents of its law are small.
+const RATE_FACTOR: f64 = 1e3;
+
+/// The quantity whose law at low rates is known.
+const PEAK_FORCE: &str = "peak_force";
 /// How often it is told how far it has come.
 const PACE: Duration = Duration::from_millis(100);
 
@@ -64,6 +71,8 @@ pub struct StudyData {
     pub outcomes: Vec<Outcome>,
     /// What other surfaces give at each value, one after the other; no number where there is none.
     pub others: Vec<Vec<f64>>,
+    /// What the largest pull comes to at low rates, where it is studied over the rate.
+    pub slow: Option<SlowPulls>,
 }
 
 /// The key that is varied and its values, ascending, that of the preset among them.
@@ -77,7 +86,8 @@ pub fn range(preset: &Preset, row: &Row) -> Result<(Key, Vec<Value>), String> {
         (Kind::Control, _) => return Err("the device has no stiffness to vary: it is no spring".to_owned()),
         (_, None) => return Err(format!("{label} follows from other values and has none to vary")),
         (Kind::Positive | Kind::Smoothing, Some(Value::Number(x))) if x > 0.0 => {
-            (row.key.clone(), by_factors(x, FACTOR))
+            let factor = if row.key == RATE { RATE_FACTOR } else { FACTOR };
+            (row.key.clone(), by_factors(x, factor))
         }
         (Kind::NonNegative, Some(Value::Number(x))) if x > 0.0 => {
             (row.key.clone(), between(0.0, x, FACTOR * x))
@@ -193,7 +203,10 @@ impl StudyWish {
     ) -> Option<StudyData> {
         let count = self.values.len();
         let outcomes = vec![Outcome::Waits; count];
-        let mut data = StudyData { wish: self.clone(), outcomes, others: vec![Vec::new(); count] };
+        let is_law = self.key == RATE && self.column.quantity.name == PEAK_FORCE;
+        let slow = if is_law { SlowPulls::of(&self.preset, progress).ok().flatten() } else { None };
+        let others = vec![Vec::new(); count];
+        let mut data = StudyData { wish: self.clone(), outcomes, others, slow };
         let all = count * (1 + self.others());
         let next = AtomicUsize::new(0);
         let (send, done) = channel();

@@ -81,6 +81,7 @@ pub fn of(data: &StudyData, preset: &Preset) -> Figure {
             figure.lines.push(Line::new(Role::Body, words(wish.column), drawn(points)));
         }
     }
+    slow_pulls(&mut figure, data, shown, |force| units.shown(quantity, force).number);
     let bands = bands(&mut figure, data, &places, |y| match data.wish.column.quantity.unit {
         _ if is_counted => y,
         quantity => units.shown(quantity, y).number,
@@ -106,6 +107,21 @@ pub fn of(data: &StudyData, preset: &Preset) -> Figure {
         figure.notes.push(format!("{missing} without a value: the cross-hair says why"));
     }
     figure
+}
+
+/// What the largest pull comes to at low rates: the quasi-static one, and the first order as far as it is one.
+fn slow_pulls(figure: &mut Figure, data: &StudyData, rate: impl Fn(f64) -> f64, force: impl Fn(f64) -> f64) {
+    /// The first order is drawn up to this share of the quasi-static pull.
+    const SHARE: f64 = 1.0;
+    let Some(slow) = &data.slow else { return };
+    figure.x.run = Run::Logarithmic;
+    let rates: Vec<f64> = data.wish.values.iter().filter_map(number).collect();
+    let level = rates.iter().map(|x| (rate(*x), force(slow.force)));
+    figure.lines.push(Line::new(Role::Zero, "quasi-static", level.collect()));
+    let first = rates.iter().filter_map(|x| Some((*x, slow.at(*x)?)));
+    let first = first.take_while(|(_, at)| (at - slow.force).abs() <= SHARE * slow.force.abs());
+    let first = first.map(|(x, at)| (rate(x), force(at)));
+    figure.lines.push(Line::new(Role::Exact, "first order", first.collect()));
 }
 
 /// Where the other surfaces are: areas in which nine tenths and half of them are, and their median. All corners of the areas.

@@ -9,20 +9,26 @@
 //! | 7 | the pressure on waves without adhesion, under rising load |
 //! | 8, 9 | force and contact radius on slight and on steep waves |
 //! | 10 | what the jumps of Fig. 9 dissipate under displacement and under force control |
+//! | rate | beyond the paper: the largest pull of Fig. 9 over the rate |
 
 use crate::explorer::curve::CurvePoint;
+use crate::explorer::studies::{Outcome, StudyWish, threads};
 use crate::explorer::{Axes, CurveData, Overlays, Staged, View};
 use crate::figure::curves::place;
+use crate::figure::study;
 use crate::figure::{Axis, Figure, Line, Mark, Role, Run, Scale, Sign, Subject};
 use crate::store::{read_with, shipped};
-use pulloff_engine::case::{Case, CaseError};
-use pulloff_engine::preset::{Preset, ReadError};
+use pulloff_engine::case::{Case, CaseError, critical_force};
+use pulloff_engine::elementary::pow;
+use pulloff_engine::preset::edge::RATE;
+use pulloff_engine::preset::{Key, Preset, ReadError};
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::Profile;
 use pulloff_engine::quasistatic::admissible::Judge;
 use pulloff_engine::report::number::significant;
 use pulloff_engine::ritz::{Grading, NewtonSettings, Rings, RingsError, solve};
+use pulloff_engine::sweep::{Cell, Column};
 use pulloff_engine::theory::Exact;
 use pulloff_engine::verify::cases::{smooth, sphere};
 use pulloff_engine::verify::convergence::radius_at;
@@ -65,9 +71,9 @@ const RINGS: [usize; 8] = [10, 20, 40, 80, 160, 320, 640, 1280];
 const COMPARED: f64 = 0.9;
 
 /// The names of all figures, in the order of the paper.
-pub const NAMES: [&str; 15] = [
+pub const NAMES: [&str; 16] = [
     "fig-1", "fig-2a", "fig-2b", "fig-3", "fig-4a", "fig-4b", "fig-5", "fig-7a", "fig-7b", "fig-8a",
-    "fig-8b", "fig-9a", "fig-9b", "fig-10a", "fig-10b",
+    "fig-8b", "fig-9a", "fig-9b", "fig-10a", "fig-10b", "rate",
 ];
 
 /// All figures, in the order of the paper; `begin` is told the name of each before it is computed.
@@ -93,6 +99,8 @@ pub fn sheets(mut begin: impl FnMut(&str)) -> Result<Vec<Sheet>, PaperError> {
     begin("Fig. 10");
     sheets.push(losses("fig-10a", Control::Displacement)?);
     sheets.push(losses("fig-10b", Control::Force)?);
+    begin("rate");
+    sheets.push(rates()?);
     Ok(sheets)
 }
 
@@ -199,6 +207,38 @@ fn losses(name: &'static str, control: Control) -> Result<Sheet, PaperError> {
         significant(apart, 2)
     );
     Ok(Sheet { name, figure: figure(&data, View::Unloading), caption })
+}
+
+/// The largest pull of Fig. 9 over the rate of the pull, with what it comes to at low rates.
+fn rates() -> Result<Sheet, PaperError> {
+    const EXPONENT: f64 = 0.5;
+    // Twenty to a decade.
+    let rates: Vec<f64> = (-160..=40).map(|k| pow(10.0, f64::from(k) / 20.0)).collect();
+    let exponent = format!("edge.exponent={EXPONENT}");
+    let preset = shipped("fig-9", &["basis.kind=exact", &exponent, "path.rate=1"])?;
+    let column = Column::named("peak_force").map_err(|_| PaperError::Missing("peak_force"))?;
+    let values = rates.iter().map(|rate| (*rate).into()).collect();
+    let wish = StudyWish { id: 0, preset: preset.clone(), key: Key::Borrowed(RATE), column, values };
+    let data = wish.run(threads(), &Unwatched, &mut |_| {}).ok_or(PaperError::Missing("the study"))?;
+    let mut figure = study::of(&data, &preset);
+    // No preset is turned here.
+    figure.lines.retain(|line| line.role != Role::Level);
+    figure.marks.clear();
+    let found = |rate: f64| {
+        let at = data.nearest(rate).map(|(at, _)| &data.outcomes[at]);
+        let force = if let Some(Outcome::Found(Cell::Number(force))) = at { *force } else { f64::NAN };
+        let critical = critical_force(&preset).unwrap_or(f64::NAN);
+        significant(-force / critical, 4)
+    };
+    let caption = format!(
+        "Beyond the paper: the smallest force of Fig. 9 over the rate V/v₀ of the pull, with an edge that costs \
+         γ [1 + (v/v₀)^{EXPONENT}]. The thin line is the quasi-static path, the dots the first order beside it. The pull is {} P_c \
+         at V = 1e-8 v₀, {} P_c at 1e-2 v₀, {} P_c at v₀.",
+        found(1e-8),
+        found(1e-2),
+        found(1.0)
+    );
+    Ok(Sheet { name: "rate", figure, caption })
 }
 
 /// The contact pressure of the smooth sphere in a few rings, over theory.

@@ -319,7 +319,7 @@ fn the_figures_of_the_paper_agree_with_theory() {
     let captions = std::fs::read_to_string(folder.path().join("all/captions.md")).unwrap();
     for name in [
         "fig-1", "fig-2a", "fig-2b", "fig-3", "fig-4a", "fig-4b", "fig-5", "fig-7a", "fig-7b", "fig-8a",
-        "fig-8b", "fig-9a", "fig-9b", "fig-10a", "fig-10b",
+        "fig-8b", "fig-9a", "fig-9b", "fig-10a", "fig-10b", "rate",
     ] {
         assert!(captions.contains(&format!("**{name}.**")), "{name}");
         let file = |ending: &str| {

@@ -8,6 +8,7 @@
 //! | [`trace`] | the equilibrium curve as a document |
 //! | [`path`] | an unloading, or a loop of loading and unloading, as a document |
 //! | [`pull`] | pulls at a rate, and times to failure, as a document |
+//! | [`slow`] | the largest pull of slow ones over their rate, in closed form |
 //! | [`map`] | maps of two numbers, and limit points over one, as a document |
 //! | [`stability`] | the law of stability over the contact radius as a document |
 //! | [`fit`] | a fit to a measured curve as a document, a table and text |
@@ -34,6 +35,7 @@ pub mod residuals;
 pub mod rows;
 #[cfg(test)]
 mod schema;
+pub mod slow;
 pub mod stability;
 pub mod table;
 pub mod trace;

@@ -508,7 +508,7 @@ fn energy(units: &UnitSystem, x: f64) -> String {
 }
 
 /// The law of the edge of a preset, and v₀ in its units.
-fn law(preset: &Preset) -> Result<(EdgeLaw, f64), PullError> {
+pub(super) fn law(preset: &Preset) -> Result<(EdgeLaw, f64), PullError> {
     let spec = &preset.edge;
     let exponent = spec.exponent.ok_or(PullError::NoLaw { key: edge::EXPONENT })?;
     let unit = (preset.units == UnitSystem::Reduced).then_some(1.0);
