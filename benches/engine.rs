@@ -12,10 +12,11 @@ use pulloff_engine::disc::{Basis, Evaluation, Exact, Order, Table};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::BasisSpec;
 use pulloff_engine::problem::Turn;
-use pulloff_engine::problem::{Control, Problem};
+use pulloff_engine::problem::{Control, Part, Problem};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::Detail;
 use pulloff_engine::quasistatic::path::{Losses, Setting, cycle};
+use pulloff_engine::rate::{Edge, EdgeLaw, Pull, Puller, Settings};
 use pulloff_engine::ritz::{Grading, Rings};
 use pulloff_engine::stability::{Axis, Family, Law};
 use std::sync::Arc;
@@ -261,4 +262,34 @@ fn map_lines(bencher: Bencher, key: &str) {
     bencher.bench_local(|| {
         Family::new(&preset, vec![x.clone(), y.clone()]).unwrap().map([32, 24], &Unwatched).unwrap()
     });
+}
+
+/// One pull of Fig. 9 from s = 0.5, n = 1/2.
+fn pulled(case: &Case, rate: f64, tolerance: f64) -> Pull {
+    let gamma = case.reduced.work_of_adhesion;
+    let puller = Puller {
+        table: &case.table,
+        control: Control::Displacement,
+        edge: Edge { law: EdgeLaw::symmetric(0.5), opening: gamma, closing: gamma },
+        start: 0.5,
+        wave: case.reduced.gap.feature_length(),
+        rise: None,
+        settings: Settings { tolerance, ..Settings::default() },
+    };
+    puller.pull(&[Part::Apart { rate }], &Unwatched).unwrap()
+}
+
+/// A pull at a rate over v₀, with errors of 1e-9.
+#[divan::bench(args = [1e-8, 1e-4, 1e-2, 1.0, 100.0])]
+fn pull_at_a_rate(bencher: Bencher, rate: f64) {
+    let case = fig_9_exact();
+    bencher.bench_local(|| pulled(&case, black_box(rate), 1e-9));
+}
+
+/// A hundred rates over eight decades, with errors of 1e-6.
+#[divan::bench]
+fn pull_at_a_hundred_rates(bencher: Bencher) {
+    let case = fig_9_exact();
+    let rates: Vec<f64> = (0..100).map(|k| 1e-6 * 10.0_f64.powf(8.0 * f64::from(k) / 99.0)).collect();
+    bencher.bench_local(|| rates.iter().map(|rate| pulled(&case, *rate, 1e-6).steps).sum::<usize>());
 }
