@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 use crate::support::session::Session;
+use pulloff::explorer::export::ExportKind;
 use pulloff::explorer::model::Question;
 use pulloff::explorer::script::parse;
 use pulloff::explorer::session::{Document, Ended, Snapshot};
@@ -284,4 +285,38 @@ fn a_foreign_header_asks_for_the_columns_and_the_answer_is_one_change() {
     std::fs::write(&path, "delta,force\n1,2\n3,x\n").unwrap();
     says(&mut session, &format!("data {}", path.display()));
     assert!(session.model.question.is_none(), "{}", session.status());
+}
+
+#[test]
+fn a_walk_of_ones_own_lies_on_its_own_curve() {
+    for (walk, exported) in [
+        ("next-event\n".repeat(4), ExportKind::Walk),
+        ("next-event\n".repeat(12), ExportKind::Walk),
+        (String::new(), ExportKind::Curve),
+    ] {
+        let mut session = Session::new("wavy-sphere");
+        for _ in walk.lines() {
+            session.does(Id::NextEvent);
+        }
+        let path = session.folder.path().join("own.csv").to_string_lossy().into_owned();
+        session.does(Command::Export { what: exported, path: path.clone(), replace: false });
+        let text = std::fs::read_to_string(&path).unwrap();
+        let column =
+            |name: &str| text.lines().next().unwrap().split(',').position(|head| head == name).unwrap();
+        let (x, y) = (column("approach"), column("force"));
+        let critical = session.model.curve.as_ref().unwrap().base.critical_force;
+        let wanted: Vec<(f64, f64)> = text
+            .lines()
+            .skip(1)
+            .map(|line| line.split(',').collect::<Vec<_>>())
+            .map(|cells| (cells[x].parse().unwrap(), cells[y].parse::<f64>().unwrap() / critical))
+            .collect();
+        says(&mut session, &format!("data {path}"));
+        let drawn = drawn(&session, View::ForceApproach).concat();
+        assert!(drawn.len() + 3 > wanted.len() && drawn.len() > 20, "{} of {}", drawn.len(), wanted.len());
+        for at in drawn {
+            let is_it = |row: &(f64, f64)| (row.0 - at.0).abs() < 1e-9 && (row.1 - at.1).abs() < 1e-9;
+            assert!(wanted.iter().any(is_it), "{at:?} is none of the rows");
+        }
+    }
 }

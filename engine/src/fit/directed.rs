@@ -30,7 +30,7 @@ const CLEAR: f64 = 20.0;
 pub fn fit_own(preset: &Preset, options: &Options, progress: &dyn Progress) -> Result<Fit, FitError> {
     let (source, reading) = (preset.data.source.as_ref().ok_or(FitError::NoData)?, preset.reading());
     let points = source.points(&reading).map_err(FitError::Data)?;
-    let said = reading.asked;
+    let said = source.asked(&reading).map_err(FitError::Data)?;
     let asked = Asked {
         segment: said.segment,
         skip: said.skip,

@@ -155,6 +155,15 @@ fn whole((name, unit): Head) -> Head {
     }
 }
 
+impl Header {
+    /// Whether it is that of a curve or a walk that this program wrote.
+    pub(super) fn is_computed(&self) -> bool {
+        /// Columns that both have.
+        const OWN: [&str; 5] = ["contact_radius", "approach", "force", "newton_iterations", "stable_chosen"];
+        OWN.iter().all(|own| self.heads.iter().any(|(name, _)| name == own))
+    }
+}
+
 /// Whether the names of two headers are the same.
 pub(super) fn same(one: Option<&Header>, other: Option<&Header>) -> bool {
     let names = |header: &Header| header.heads.iter().map(|(name, _)| squashed(name)).collect::<Vec<_>>();

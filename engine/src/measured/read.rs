@@ -69,8 +69,11 @@ pub fn parse(bytes: &[u8], spec: &Spec) -> Result<Measured, ReadError> {
     let text = lines_of(text);
     let pieces = Pieces::of(&text)?;
     let settings = Settings::of(&pieces.outline.words);
-    let mut measured =
-        Measured { header: pieces.header.as_ref().map(|header| header.line), ..Measured::default() };
+    let mut measured = Measured {
+        header: pieces.header.as_ref().map(|header| header.line),
+        is_computed: pieces.header.as_ref().is_some_and(Header::is_computed),
+        ..Measured::default()
+    };
     measured.notes.extend(note.map(str::to_owned));
     measured.notes.extend(pieces.notes.iter().chain(&settings.notes).cloned());
     let mut state = State::default();

@@ -38,6 +38,8 @@ pub struct Measured {
     pub radius: Option<Stated>,
     /// The line of the header, from 1.
     pub header: Option<usize>,
+    /// Whether the header is that of a walk or a curve of this program: its signs are known, and no free part is to be found.
+    pub is_computed: bool,
     /// The line of each row, from 1.
     pub lines: Vec<usize>,
     /// How many rows have no number in a column that is used; they are left out.

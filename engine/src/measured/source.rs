@@ -1,6 +1,6 @@
 //! The file of a measured curve as a preset holds it: its bytes, taken apart once for each way of reading them.
 
-use super::asked::Asked;
+use super::asked::{Asked, FreePart};
 use super::branches::Branches;
 use super::points::Points;
 use super::read::{Measured, parse};
@@ -78,6 +78,20 @@ impl Source {
         measured.points(&reading.units, reading.spring).map_err(|error| error.to_string())
     }
 
+    /// What is asked of them, and of a curve that this program computed what is known of it besides: its signs, and that no
+    /// row is apart whose force would be the zero of all others.
+    ///
+    /// # Errors
+    /// As [`measured`](Self::measured).
+    pub fn asked(&self, reading: &Reading) -> Result<Asked, String> {
+        let said = reading.asked;
+        if !self.measured(&reading.columns)?.is_computed {
+            return Ok(said);
+        }
+        let free = if said.free == FreePart::Found { FreePart::None } else { said.free };
+        Ok(Asked { free, turned: said.turned.or(Some([false; 2])), ..said })
+    }
+
     /// Their branches.
     ///
     /// # Errors
@@ -88,7 +102,8 @@ impl Source {
             return Ok(Arc::clone(branches));
         }
         let points = self.points(reading)?;
-        let branches = Arc::new(points.branches(&reading.asked).map_err(|error| error.to_string())?);
+        let asked = self.asked(reading)?;
+        let branches = Arc::new(points.branches(&asked).map_err(|error| error.to_string())?);
         *last = Some((reading.clone(), Arc::clone(&branches)));
         Ok(branches)
     }
