@@ -1,7 +1,7 @@
 //! What goes to standard error: warnings, notes, questions, how far a command is; and what `--quiet` and `--strict` make of it.
 
 use super::Failure;
-use super::watch::{Bar, Stop};
+use super::watch::{Bar, Lines, Stop};
 use clap::Args;
 use std::cell::Cell;
 use std::io::{IsTerminal, Write};
@@ -63,6 +63,11 @@ impl Console {
     /// The share that is done.
     pub fn bar<'a>(&self, stop: Option<&'a Stop>) -> Bar<'a> {
         self.messages.bar(stop)
+    }
+
+    /// The line at which a script of so many is.
+    pub fn lines(&self, count: usize) -> Lines {
+        Lines::begin(count, self.messages.quiet)
     }
 
     pub fn is_quiet(&self) -> bool {

@@ -67,13 +67,18 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     look(&name, &lines, inputs, arguments.replacing)?;
     let (mut model, effects) = open(loaded);
     let permission = Permission { overwrite: arguments.replacing.overwrite, anywhere: arguments.anywhere };
+    let (shown, mut done) = (console.lines(lines.len()), 0);
     let mut told = |line: &ScriptLine, model: &Model| {
-        if arguments.verbose {
-            account(line, model);
-        }
+        done += 1;
+        shown.done(done, || {
+            if arguments.verbose {
+                account(line, model);
+            }
+        });
     };
     play(&mut model, &Inline::new(store()), effects, &lines, permission, &drawn, &mut told)
         .map_err(|failed| Failure::Script { text: format!("{name}:{failed}"), reason: failed.reason })?;
+    drop(shown);
     console.end()
 }
 

@@ -8,7 +8,9 @@ use signal_hook::flag;
 use std::cell::OnceCell;
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::sync::{Arc, OnceLock};
+use std::thread;
 use std::time::{Duration, Instant};
 
 /// Shorter commands show no bar.
@@ -72,6 +74,48 @@ impl<'a> Bar<'a> {
     /// For a command that begins now. Without `stop` a signal ends the program, as ever.
     pub fn begin(stop: Option<&'a Stop>, hidden: bool) -> Self {
         Self { begun: Instant::now(), shown: OnceCell::new(), stop, hidden }
+    }
+}
+
+/// The line at which a script is, shown on a terminal once the script takes longer than a moment: its first line may take all of it.
+pub struct Lines {
+    bar: ProgressBar,
+    /// Dropped at the end: nothing is shown of a script that was over before.
+    _ends: Sender<()>,
+}
+
+impl Lines {
+    /// For a script of so many lines that begins now.
+    pub fn begin(count: usize, hidden: bool) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(count as u64), ProgressDrawTarget::hidden());
+        if let Ok(style) = ProgressStyle::with_template("{wide_bar} line {msg} of {len}, {elapsed}") {
+            bar.set_style(style);
+        }
+        bar.set_message("1");
+        let (ends, over) = mpsc::channel::<()>();
+        let later = bar.clone();
+        if !hidden {
+            thread::spawn(move || {
+                if over.recv_timeout(MOMENT) == Err(RecvTimeoutError::Timeout) {
+                    later.set_draw_target(ProgressDrawTarget::stderr_with_hz(5));
+                    later.enable_steady_tick(Duration::from_secs(1));
+                }
+            });
+        }
+        Self { bar, _ends: ends }
+    }
+
+    /// So many lines are done; `says` writes to standard error meanwhile.
+    pub fn done(&self, lines: usize, says: impl FnOnce()) {
+        self.bar.suspend(says);
+        self.bar.set_position(lines as u64);
+        self.bar.set_message((lines as u64 + 1).min(self.bar.length().unwrap_or(0)).to_string());
+    }
+}
+
+impl Drop for Lines {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
     }
 }
 

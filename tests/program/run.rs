@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 use crate::support::home::{Ended, Home};
+use crate::support::pty::Pty;
 use std::fs;
 use std::io::Write;
 use std::os::unix::fs::symlink;
@@ -270,4 +271,18 @@ fn a_script_draws_what_is_seen() {
     home.fails("export figure walk.svg walk\n", &[], 2, "export walk writes it");
     home.fails("export figure far.svg residuals\n", &[], 2, "no measured curve");
     home.fails("export figure curve.txt\n", &[], 2, "must end in");
+}
+
+#[test]
+fn a_script_that_takes_long_shows_its_line_on_a_terminal() {
+    let home = tempfile::tempdir().unwrap();
+    let script = home.path().join("s.pulloff");
+    // Two thousand rings take seconds.
+    fs::write(&script, "step 1\nset basis.kind=rings\nset basis.rings=2000\n").unwrap();
+    let (folder, path) = (home.path().to_str().unwrap(), script.to_str().unwrap());
+    let env = [("HOME", folder), ("XDG_CONFIG_HOME", folder)];
+    let mut pty = Pty::spawn(env!("CARGO_BIN_EXE_pulloff").as_ref(), &["run", path], &env, 80, 24);
+    pty.wait_for(|screen| screen.contains("line 3 of 3"), "the line that takes long");
+    pty.signal(rustix::process::Signal::KILL);
+    pty.exit_code();
 }
