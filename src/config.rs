@@ -42,7 +42,7 @@ pub struct Config {
 
 /// The rows of `[look]` with the words each takes; `true` and `false` stand there without quotes.
 pub const LOOK: [(&str, &[&str]); 4] = [
-    ("theme", &["dark", "light", "mono"]),
+    ("theme", &["any", "dark", "light", "mono"]),
     ("charts", &["braille", "block", "ascii"]),
     ("ascii", &["true", "false"]),
     ("mouse", &["true", "false"]),
@@ -264,7 +264,7 @@ mod tests {
     fn what_is_wrong_is_said_with_its_line_and_the_nearest_name() {
         for (text, expected) in [
             ("[keys]\nstepp = \"x\"", "config.toml:2: no command is called \"stepp\"; did you mean step?"),
-            ("[look]\ntheme = \"drak\"", "config.toml:2: theme is one of dark, light, mono"),
+            ("[look]\ntheme = \"drak\"", "config.toml:2: theme is one of any, dark, light, mono"),
             (
                 "[look]\nthemes = 3",
                 "config.toml:2: no part of [look] is called \"themes\"; did you mean theme?",

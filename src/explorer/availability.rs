@@ -41,7 +41,7 @@ pub(super) fn why_unavailable(model: &Model, id: Id) -> String {
         Id::Jump => {
             format!("the state is stable: the edge stays; {} runs to the next event", Id::NextEvent.named())
         }
-        Id::Less | Id::More | Id::MuchLess | Id::MuchMore | Id::Free => {
+        Id::FineLess | Id::FineMore | Id::Less | Id::More | Id::MuchLess | Id::MuchMore | Id::Free => {
             format!("select a value first: {} goes to Problem", Id::NextPanel.named())
         }
         Id::Whole => "the whole chart is shown".to_owned(),

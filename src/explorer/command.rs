@@ -9,7 +9,7 @@ mod table;
 pub use named::{by_name, spelled};
 pub use table::{Id, Needs, ROWS, Row, row_of};
 
-use super::view::{Overlay, Panel, View};
+use super::view::{Home, Overlay, Panel, View};
 use pulloff_engine::preset::Key;
 use pulloff_engine::sweep::Column;
 use std::path::PathBuf;
@@ -82,6 +82,8 @@ pub enum Command {
     },
     /// Show this view, whether it has something to show or not.
     Show(View),
+    /// Go to this place.
+    Go(Home),
     /// Show this quantity over the range of the selected value.
     Study(Column),
     /// Draw this theory over the curve, or no longer.
@@ -170,6 +172,7 @@ impl Command {
             Self::TakeBack => Id::Cancel,
             Self::Zoom { closer: true, .. } => Id::ZoomIn,
             Self::Zoom { closer: false, .. } => Id::ZoomOut,
+            Self::Go(_) => Id::Go,
             Self::Show(_) => Id::ChooseView,
             Self::Study(_) => Id::Study,
             Self::Overlay(_) => Id::Overlays,

@@ -8,6 +8,7 @@
 
 use super::command::{Command, FIRST_LENGTH, Id, MOST_STEPS};
 use super::curve::CurveData;
+use super::detours::without_detours;
 use super::node::{Node, NodeKind};
 use super::script;
 use super::walk::{Action, Outcome};
@@ -25,6 +26,8 @@ const BYTES: usize = 1 << 19;
 #[derive(Debug, Clone, Default)]
 pub struct Journal {
     lines: Arc<Vec<String>>,
+    /// How many states each line made; fewer are known of a session that goes on.
+    states: Arc<Vec<Option<usize>>>,
     bytes: usize,
     start: Option<Box<Beginning>>,
     replay: Option<Box<Replay>>,
@@ -84,7 +87,8 @@ impl Journal {
         let Kept { lines, start, replay, steps, broken } = kept;
         let bytes = lines.iter().map(String::len).sum();
         let (start, replay) = (start.map(Box::new), replay.map(Box::new));
-        Self { lines, bytes, start, replay, steps, walking: None, broken }
+        let states = Arc::new(vec![None; lines.len()]);
+        Self { lines, states, bytes, start, replay, steps, walking: None, broken }
     }
 
     /// Its lines so far; a walk that goes on is not in them yet.
@@ -111,7 +115,11 @@ impl Journal {
         if let Some(preset) = preset.or(own.as_ref()) {
             journal.sync(preset, Some(way), failed);
         }
-        journal.broken.map_or_else(|| Ok(journal.lines.to_vec()), Err)
+        if let Some(broken) = journal.broken {
+            return Err(broken);
+        }
+        let made = journal.lines.iter().cloned().zip(journal.states.iter().copied());
+        Ok(without_detours(&made.collect::<Vec<_>>()))
     }
 
     pub(super) fn begin(&mut self, source: Source, preset: Preset) {
@@ -154,6 +162,7 @@ impl Journal {
         if walking.made == 0 && !(is_stale && is_solve) {
             return;
         }
+        let (made, before) = (walking.made, self.lines.len());
         match walking.action {
             Action::Solve { .. } => self.sync(preset, None, is_stale),
             Action::Steps(_) => {
@@ -198,6 +207,12 @@ impl Journal {
                 self.write(&Command::SelectEvent(event + 1));
                 self.turned(walking.inward);
             }
+        }
+        let all = self.steps.filter(|all| *all > made).unwrap_or(made);
+        let has_line = self.lines.len() > before || all > made;
+        if let Some(last) = Arc::make_mut(&mut self.states).last_mut() {
+            // States that no line has made leave it open which line an undo takes back.
+            *last = has_line.then_some(all);
         }
     }
 
@@ -249,6 +264,7 @@ impl Journal {
         if merged.is_some()
             && let Some(last) = Arc::make_mut(&mut self.lines).pop()
         {
+            Arc::make_mut(&mut self.states).pop();
             self.bytes -= last.len();
         }
         let count = merged.unwrap_or(count);
@@ -276,6 +292,7 @@ impl Journal {
         }
         self.bytes += line.len();
         Arc::make_mut(&mut self.lines).push(line);
+        Arc::make_mut(&mut self.states).push(Some(0));
     }
 }
 
@@ -298,7 +315,7 @@ mod tests {
         for shipped in SHIPPED {
             let preset = read(shipped.name, shipped.text).unwrap();
             for row in preset.knobs() {
-                let Ok(to) = nudge(&preset, &row, true, Amount::Coarse, 1.0) else { continue };
+                let Ok(to) = nudge(&preset, &row, true, Amount::First, 1.0) else { continue };
                 if to == preset {
                     continue;
                 }

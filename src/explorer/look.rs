@@ -1,6 +1,7 @@
 //! The commands that change what is shown, and nothing else: views, windows, the cross-hair, overlays, pins.
 
 use super::command::Id;
+use super::curve::CurveData;
 use super::effect::Effect;
 use super::maps::{MapAxes, can_be_axis};
 use super::model::{Level, Model};
@@ -28,8 +29,13 @@ pub const MIDDLE: (f64, f64) = (0.5, 0.5);
 /// Shows where each limit point happens over the selected value; where that is shown, the map of it and the adhesion.
 pub(super) fn map(model: &mut Model) {
     let Some((row, _)) = model.selected_knob().filter(|(row, _)| can_be_axis(row)) else {
-        let text =
-            format!("select a number first, or the control: {} goes to Problem", Id::NextPanel.named());
+        let text = match model.selected_knob() {
+            // Problem is where it stands.
+            Some((row, _)) => format!("{} is no number: select one in Problem, or the control", row.label),
+            None => {
+                format!("select a number first, or the control: {} goes to Problem", Id::NextPanel.named())
+            }
+        };
         return model.tell(Level::Error, text);
     };
     let over = MapAxes::over(&row.key);
@@ -49,7 +55,8 @@ pub(super) fn map_of(model: &mut Model, x: &Key, y: Option<Key>) {
 }
 
 fn show_map(model: &mut Model, axes: MapAxes) {
-    (model.map_axes, model.view) = (Some(axes), View::Map);
+    model.map_axes = Some(axes);
+    model.look_at(View::Map);
     model.windows[View::Map as usize] = Window::WHOLE;
 }
 
@@ -137,6 +144,41 @@ pub(super) fn pin(model: &mut Model) {
     }
 }
 
+/// The same problem in ring elements pinned beside its exact solution, or that beside the rings; away again where it is there.
+pub(super) fn in_rings(model: &mut Model) -> Vec<Effect> {
+    const KIND: &str = "basis.kind";
+    let is_exact = model.preset.get(KIND).is_none_or(|kind| kind.to_string() != "rings");
+    let word = if is_exact { "rings" } else { "exact" };
+    let mut preset = model.preset.clone();
+    if let Err(invalid) = preset.set(KIND, word.into()) {
+        model.tell(Level::Error, invalid.to_string());
+        return Vec::new();
+    }
+    if let Some(number) = model.pins.number_of(&preset) {
+        model.pins.remove(Some(number));
+        return Vec::new();
+    }
+    match model.pins.want(preset.clone()) {
+        Ok(number) => {
+            let text = if is_exact { "in ring elements" } else { "exactly" };
+            model.tell(Level::Info, format!("the same problem {text} as pin {number}; Result has both"));
+            vec![Effect::Pin(number, Box::new(preset))]
+        }
+        Err(reason) => {
+            model.tell(Level::Error, reason);
+            Vec::new()
+        }
+    }
+}
+
+/// The curve of a pin has come, or there is none.
+pub(super) fn pinned(model: &mut Model, number: usize, curve: Option<Arc<CurveData>>) {
+    let is_missing = curve.is_none();
+    if model.pins.came(number, curve) && is_missing {
+        model.tell(Level::Error, format!("there is no curve for pin {number}"));
+    }
+}
+
 pub(super) fn unpin(model: &mut Model, number: Option<usize>) {
     if !model.pins.remove(number) {
         model.tell(Level::Error, "no curve is pinned under that number");
@@ -146,6 +188,7 @@ pub(super) fn unpin(model: &mut Model, number: Option<usize>) {
 /// Carries views, overlays and pins over to another session.
 pub(super) fn carry_on(from: &Model, to: &mut Model) {
     (to.axes, to.overlays, to.view, to.views) = (from.axes, from.overlays, from.view, from.views);
+    to.homes = from.homes;
     (to.panel, to.studied) = (from.panel, from.studied);
     to.pins = from.pins.clone();
 }

@@ -41,7 +41,7 @@
 //! | `saves` | saves that follow each other faster than they are answered |
 //! | [`session`] | a session as a document, to be resumed |
 //! | [`archive`] | the sessions on disk |
-//! | [`journal`] | what was done, as the lines of a script |
+//! | [`journal`], `detours` | what was done, as the lines of a script; without what was taken back |
 //! | [`script`] | commands as text, and scripts run on a model |
 //! | [`driver`] | runs effects inline (tests, scripts) or on worker threads (the screen) |
 //!
@@ -54,6 +54,7 @@ pub mod branches;
 pub mod command;
 pub mod curve;
 pub mod data;
+mod detours;
 pub mod device;
 pub mod driver;
 pub mod effect;
@@ -104,4 +105,4 @@ pub use model::{Level, Model};
 pub use node::{Node, NodeKind};
 pub use progress::{Stage, Staged};
 pub use update::{answer, open, update};
-pub use view::{Axes, Overlay, Overlays, Panel, View, Window};
+pub use view::{Axes, Home, Overlay, Overlays, Panel, View, Window};

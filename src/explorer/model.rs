@@ -16,7 +16,7 @@ use super::progress::Stage;
 use super::setting::same_curve;
 use super::studies::{StudyData, StudyWish};
 use super::undo::{Place, Undo};
-use super::view::{Axes, Overlays, Panel, View, Window};
+use super::view::{Axes, Home, Overlays, Panel, View, Window};
 use super::walk::measure;
 use crate::mend::Reason;
 use crate::store::{Fingerprint, Listing, Loaded, Source};
@@ -29,7 +29,6 @@ use pulloff_engine::quasistatic::walk::At;
 use pulloff_engine::report::path::EventReport;
 use pulloff_engine::sweep::quantity::Under;
 use pulloff_engine::sweep::{Column, QUANTITIES};
-use pulloff_engine::text::sanitize;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -197,6 +196,8 @@ pub struct Model {
     pub walk_line: Option<usize>,
     /// The view shown where only one fits, and the first where more do.
     pub view: View,
+    /// The view last looked at in each place, in the order of [`Home::ALL`].
+    pub homes: [View; Home::ALL.len()],
     pub views: usize,
     /// The part of each view that is shown, in the order of [`View::ALL`].
     pub windows: [Window; View::ALL.len()],
@@ -230,17 +231,6 @@ pub fn is_on_curve(curve: &CurveData, node: &Node) -> bool {
     same_curve(&node.setting.preset, &curve.setting.preset) && !matches!(node.kind, NodeKind::Stale(_))
 }
 
-/// The comment with which the text of a preset begins.
-fn comment(loaded: &Loaded) -> String {
-    let text = match &loaded.source {
-        Source::Shipped(shipped) => shipped.text,
-        Source::Piped { text, .. } => text,
-        Source::User { .. } | Source::File(_) => &loaded.text,
-    };
-    let lines = text.lines().map_while(|line| line.strip_prefix('#')).map(str::trim);
-    lines.map(|line| sanitize(line, 200)).collect::<Vec<_>>().join("\n")
-}
-
 impl Model {
     /// A session on a loaded preset; nothing is computed yet.
     pub fn new(loaded: Loaded) -> Self {
@@ -248,7 +238,7 @@ impl Model {
             Control::Stiffness(k) => Some(k),
             Control::Displacement | Control::Force => None,
         };
-        let comment = comment(&loaded);
+        let comment = loaded.comment();
         let mut model = Self {
             session: 0,
             saved: loaded.preset.clone(),
@@ -293,6 +283,7 @@ impl Model {
             event: 0,
             walk_line: None,
             view: View::ForceApproach,
+            homes: Home::ALL.map(|home| home.views()[0]),
             views: 1,
             windows: [Window::WHOLE; View::ALL.len()],
             cross: None,
@@ -437,6 +428,12 @@ impl Model {
         } else {
             window
         }
+    }
+
+    /// Looks at a view, and at it again when its place is gone to.
+    pub(super) fn look_at(&mut self, view: View) {
+        self.view = view;
+        self.homes[view.home() as usize] = view;
     }
 
     /// Shows a part of a view.

@@ -1,4 +1,4 @@
-//! A parameter changed by a little: logarithmic where a quantity is positive.
+//! A parameter turned by one of its digits, through round values, in the unit in which it is shown.
 //!
 //! The control is one knob: the stiffness k of the loading device, with force control (k → 0) and displacement control
 //! (k → ∞) as its ends.
@@ -13,10 +13,43 @@ use std::ops::RangeInclusive;
 /// How far one key press goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Amount {
-    /// 1 %, of the device's stiffness 3 %, of the rate of a pull a third of a decade.
-    Fine,
-    /// 10 %, of the device's stiffness a factor of 2, of the rate of a pull a decade.
-    Coarse,
+    /// The third digit; of the rate of a pull a third of a decade.
+    Third,
+    /// The second digit; of the rate of a pull a third of a decade.
+    Second,
+    /// The first digit; of the device's stiffness 1, 2 and 5 of a decade, of the rate of a pull a decade.
+    First,
+}
+
+impl Amount {
+    /// How many digits a turned value has.
+    fn digits(self) -> i32 {
+        match self {
+            Self::Third => 3,
+            Self::Second => 2,
+            Self::First => 1,
+        }
+    }
+}
+
+/// The next value after `x` up or down that has so many digits; `x` is not 0, and its sign stays.
+fn turned(x: f64, up: bool, digits: i32) -> f64 {
+    /// What rounding leaves of a digit.
+    const ROUNDING: f64 = 1e-9;
+    let (size, grows) = (x.abs(), up == (x > 0.0));
+    // Of a double it is between -324 and 308.
+    #[expect(clippy::cast_possible_truncation)]
+    let mut unit = size.log10().floor() as i32 + 1 - digits;
+    let steps = |unit: i32| size / 10f64.powi(unit);
+    // A power of ten goes down by the digits of the decade below.
+    if !grows && steps(unit) <= 10f64.powi(digits - 1) * (1.0 + ROUNDING) {
+        unit -= 1;
+    }
+    let at = steps(unit);
+    let next =
+        if grows { (at * (1.0 + ROUNDING)).floor() + 1.0 } else { (at * (1.0 - ROUNDING)).ceil() - 1.0 };
+    // As it is read: exactly the number that is written.
+    format!("{}{next}e{unit}", if x < 0.0 { "-" } else { "" }).parse().unwrap_or(x)
 }
 
 /// `preset` with the value of `row` nudged up or down; `contact` is the contact's own stiffness in the user's units,
@@ -29,14 +62,14 @@ pub fn nudge(
     amount: Amount,
     contact: f64,
 ) -> Result<Preset, String> {
-    let share = if amount == Amount::Fine { 0.01 } else { 0.1 };
+    let share = 0.1_f64.powi(amount.digits());
     let mut changed = preset.clone();
     let value = match (row.kind, preset.get(&row.key)) {
         (_, value) if matches!(&*row.key, data::OFFSET | data::BASELINE) => {
             Value::Number(tidy(shifted(preset, &row.key, value, if up { share } else { -share })?))
         }
         (Kind::Positive, Some(Value::Number(x))) if row.key == RATE => {
-            let thirds = if amount == Amount::Fine { 1.0 } else { 3.0 };
+            let thirds = if amount == Amount::First { 3.0 } else { 1.0 };
             Value::Number(tidy(by_thirds(x, if up { thirds } else { -thirds })))
         }
         (_, None) => {
@@ -53,13 +86,15 @@ pub fn nudge(
                     Id::Edit.named()
                 ));
             }
-            Value::Number(tidy(if up == (x > 0.0) { x * (1.0 + share) } else { x / (1.0 + share) }))
+            let shown = row.shown(&preset.units, x);
+            let text = shown.text(&format!("{:?}", turned(shown.number, up, amount.digits())), true);
+            preset.typed(row, &text).map_err(|invalid| invalid.to_string())?
         }
         (Kind::Integer { .. }, Some(Value::Integer(n))) => {
             // Exact for every count; at least one, so that small counts move too.
             #[expect(clippy::cast_possible_truncation)]
-            let by = ((n as f64 * share).round() as i64).max(1);
-            Value::Integer(if up { n + by } else { n - by })
+            let to = if n == 0 { 0 } else { turned(n as f64, up, amount.digits()).round() as i64 };
+            Value::Integer(if up { to.max(n + 1) } else { to.min(n - 1) })
         }
         (Kind::Choice(words), Some(Value::Text(word))) => {
             let at = words.iter().position(|w| *w == word).unwrap_or(0);
@@ -102,7 +137,18 @@ const STIFFNESSES: RangeInclusive<f64> = 1e-3..=1e3;
 ///
 /// `contact` is the stiffness of the contact itself, in the user's units.
 fn stiffened(control: Control, up: bool, amount: Amount, contact: f64) -> Result<Control, String> {
-    let by = if amount == Amount::Fine { 1.03 } else { 2.0 };
+    // By the first digit 1, 2 and 5 of a decade: there are six of them.
+    let next = |k: f64| {
+        let round = |k: f64| turned(k, up, amount.digits());
+        let is_round =
+            |k: &f64| [1.0, 2.0, 5.0].iter().any(|m| (k / 10f64.powf(k.log10().floor()) - m).abs() < 1e-9);
+        let all = std::iter::successors(Some(round(k)), |k| Some(round(*k))).take(10);
+        if amount == Amount::First {
+            all.clone().find(is_round).unwrap_or_else(|| round(k))
+        } else {
+            round(k)
+        }
+    };
     let (softest, stiffest) = (STIFFNESSES.start() * contact, STIFFNESSES.end() * contact);
     Ok(match (control, up) {
         (Control::Displacement, true) => {
@@ -111,10 +157,9 @@ fn stiffened(control: Control, up: bool, amount: Amount, contact: f64) -> Result
         (Control::Force, false) => return Err("force control is the softest device there is".to_owned()),
         (Control::Displacement, false) => Control::Stiffness(tidy(stiffest)),
         (Control::Force, true) => Control::Stiffness(tidy(softest)),
-        (Control::Stiffness(k), true) if k * by > stiffest => Control::Displacement,
-        (Control::Stiffness(k), false) if k / by < softest => Control::Force,
-        (Control::Stiffness(k), true) => Control::Stiffness(tidy(k * by)),
-        (Control::Stiffness(k), false) => Control::Stiffness(tidy(k / by)),
+        (Control::Stiffness(k), true) if next(k) > stiffest => Control::Displacement,
+        (Control::Stiffness(k), false) if next(k) < softest => Control::Force,
+        (Control::Stiffness(k), _) => Control::Stiffness(next(k)),
     })
 }
 
@@ -164,15 +209,39 @@ mod tests {
     }
 
     #[test]
-    fn positive_values_move_by_a_share_and_never_reach_zero() {
+    fn values_go_through_round_ones_and_never_reach_zero() {
+        for (x, up, digits, next) in [
+            (0.0025, true, 2, 0.0026),
+            (0.0025, false, 2, 0.0024),
+            (0.0025, true, 1, 0.003),
+            (0.0025, false, 1, 0.002),
+            (0.0025, true, 3, 0.00251),
+            (0.001, false, 2, 0.00099),
+            (0.00099, true, 2, 0.001),
+            (0.001, false, 1, 0.0009),
+            (9.7, true, 2, 9.8),
+            (9.9, true, 2, 10.0),
+            (0.003_978_87, true, 2, 0.004),
+            (-0.3, true, 1, -0.2),
+            (-0.3, false, 1, -0.4),
+            (795.774_7, false, 3, 795.0),
+        ] {
+            let found = turned(x, up, digits);
+            assert!(found.total_cmp(&next).is_eq(), "{x} {up} {digits}: {found} {next}");
+        }
         let mut preset = preset();
         let row = &parameter("gap.amplitude").unwrap();
-        let up = nudge(&preset, row, true, Amount::Fine, 1.0).unwrap();
-        assert_eq!(up.get(&row.key), Some(Value::Number(0.002_525)));
+        let up = nudge(&preset, row, true, Amount::Second, 1.0).unwrap();
+        assert_eq!(up.get(&row.key), Some(Value::Number(0.0026)));
+        assert_eq!(nudge(&up, row, false, Amount::Second, 1.0).unwrap(), preset, "there and back");
         for _ in 0..200 {
-            preset = nudge(&preset, row, false, Amount::Coarse, 1.0).unwrap();
+            preset = nudge(&preset, row, false, Amount::First, 1.0).unwrap();
         }
         assert!(matches!(preset.get(&row.key), Some(Value::Number(x)) if x > 0.0));
+        // In its own unit.
+        let preset = read("t", crate::store::shipped::find("fig-9-si").unwrap().text).unwrap();
+        let up = nudge(&preset, row, true, Amount::Second, 1.0).unwrap();
+        assert_eq!(up.get(&row.key), Some(Value::Number(1.3e-5)));
     }
 
     #[test]
@@ -180,17 +249,21 @@ mod tests {
         let mut preset = preset();
         let rings = &parameter("basis.rings").unwrap();
         preset.set("basis.kind", "rings".into()).unwrap();
+        for (amount, count) in [(Amount::First, 300), (Amount::Second, 210), (Amount::Third, 201)] {
+            let more = nudge(&preset, rings, true, amount, 1.0).unwrap();
+            assert_eq!(more.get("basis.rings"), Some(Value::Integer(count)));
+        }
         preset.set("basis.rings", Value::Integer(4)).unwrap();
-        assert!(nudge(&preset, rings, false, Amount::Fine, 1.0).unwrap_err().contains('4'));
+        assert!(nudge(&preset, rings, false, Amount::Third, 1.0).unwrap_err().contains('4'));
         let kind = &parameter("basis.kind").unwrap();
-        let other = nudge(&preset, kind, true, Amount::Fine, 1.0).unwrap();
+        let other = nudge(&preset, kind, true, Amount::Second, 1.0).unwrap();
         assert_eq!((other.get("basis.kind"), other.get("basis.rings")), (Some("exact".into()), None));
-        let back = nudge(&other, kind, true, Amount::Fine, 1.0).unwrap();
+        let back = nudge(&other, kind, true, Amount::Second, 1.0).unwrap();
         assert_eq!(back.get("basis.rings"), Some(Value::Integer(200)));
         preset.set("gap.shape", "power-law".into()).unwrap();
         let exponent = &preset.row("gap.exponent").unwrap();
-        let steeper = nudge(&preset, exponent, true, Amount::Coarse, 1.0).unwrap();
-        assert_eq!(steeper.get("gap.exponent"), Some(Value::Number(2.2)));
+        let steeper = nudge(&preset, exponent, true, Amount::Second, 1.0).unwrap();
+        assert_eq!(steeper.get("gap.exponent"), Some(Value::Number(2.1)));
     }
 
     #[test]
@@ -205,28 +278,27 @@ mod tests {
                 preset.path.control
             })
         };
-        assert!(turn(&mut preset, true, Amount::Fine).unwrap_err().contains("stiffest"));
-        assert_eq!(turn(&mut preset, false, Amount::Fine), Ok(Control::Stiffness(2000.0)));
-        let mut before = 2000.0;
+        assert!(turn(&mut preset, true, Amount::Second).unwrap_err().contains("stiffest"));
+        assert_eq!(turn(&mut preset, false, Amount::Second), Ok(Control::Stiffness(2000.0)));
+        let mut passed = Vec::new();
         let softest = loop {
-            match turn(&mut preset, false, Amount::Coarse).unwrap() {
-                Control::Stiffness(k) => {
-                    assert!((before / k / 2.0 - 1.0).abs() < 1e-5, "{before} {k}");
-                    before = k;
-                }
+            match turn(&mut preset, false, Amount::First).unwrap() {
+                Control::Stiffness(k) => passed.push(k),
                 end => break end,
             }
         };
-        assert_eq!(softest, Control::Force);
-        assert!((0.002..0.004).contains(&before), "{before}");
-        assert!(turn(&mut preset, false, Amount::Coarse).unwrap_err().contains("softest"));
-        assert_eq!(turn(&mut preset, true, Amount::Coarse), Ok(Control::Stiffness(0.002)));
+        assert_eq!((softest, &passed[..4]), (Control::Force, &[1000.0, 500.0, 200.0, 100.0][..]));
+        assert_eq!(passed.len(), 18, "{passed:?}");
+        assert!(turn(&mut preset, false, Amount::First).unwrap_err().contains("softest"));
+        assert_eq!(turn(&mut preset, true, Amount::First), Ok(Control::Stiffness(0.002)));
+        assert_eq!(turn(&mut preset, true, Amount::Second), Ok(Control::Stiffness(0.0021)));
         preset.path.control = Control::Stiffness(1999.0);
-        assert_eq!(turn(&mut preset, true, Amount::Fine), Ok(Control::Displacement));
+        assert_eq!(turn(&mut preset, true, Amount::First), Ok(Control::Stiffness(2000.0)));
+        assert_eq!(turn(&mut preset, true, Amount::First), Ok(Control::Displacement));
         // A stiffness typed beyond the ends turns back by steps, and on to the end.
         preset.path.control = Control::Stiffness(1e6);
-        assert_eq!(turn(&mut preset, false, Amount::Coarse), Ok(Control::Stiffness(500_000.0)));
-        assert_eq!(turn(&mut preset, true, Amount::Coarse), Ok(Control::Displacement));
+        assert_eq!(turn(&mut preset, false, Amount::First), Ok(Control::Stiffness(500_000.0)));
+        assert_eq!(turn(&mut preset, true, Amount::First), Ok(Control::Displacement));
     }
 
     #[test]

@@ -91,16 +91,31 @@ impl Pins {
         if let Some(pin) = self.shown.iter().find(same) {
             return Err(format!("this curve is pinned already, as {}", pin.number));
         }
-        let free = (1..=MOST).find(|number| !self.numbers().any(|taken| taken == *number));
-        let Some(number) = free else {
-            return Err(format!(
-                "{MOST} curves are pinned, which is the most: {} takes one away",
-                Id::Pins.named()
-            ));
-        };
+        let number = self.free()?;
         self.shown.push(Pin { number, curve: Arc::clone(curve) });
         self.shown.sort_by_key(|pin| pin.number);
         Ok(number)
+    }
+
+    /// The smallest free number; an error says that there is none.
+    fn free(&self) -> Result<usize, String> {
+        let free = (1..=MOST).find(|number| !self.numbers().any(|taken| taken == *number));
+        free.ok_or_else(|| {
+            format!("{MOST} curves are pinned, which is the most: {} takes one away", Id::Pins.named())
+        })
+    }
+
+    /// Pins the curve of `preset` once it is computed, under the number that is given back.
+    pub fn want(&mut self, preset: Preset) -> Result<usize, String> {
+        let number = self.free()?;
+        self.awaited.push((number, preset));
+        Ok(number)
+    }
+
+    /// The number of the pin of `preset`, shown or awaited.
+    pub fn number_of(&self, preset: &Preset) -> Option<usize> {
+        let shown = self.shown.iter().find(|pin| pin.preset() == preset).map(|pin| pin.number);
+        shown.or_else(|| self.awaited.iter().find(|(_, other)| other == preset).map(|(number, _)| *number))
     }
 
     /// Takes away the pin of this number, or all; false when there is nothing to take away.

@@ -4,7 +4,7 @@ use super::command::Id;
 use super::model::{Level, Model};
 use super::node::Node;
 use super::studies::range;
-use super::view::View;
+use super::view::{Home, View};
 use pulloff_engine::preset::{Key, Preset, Value};
 use pulloff_engine::problem::Control;
 
@@ -83,10 +83,18 @@ pub fn next(model: &Model, forward: bool) -> View {
 
 /// Shows a view, and says so where there is nothing on it.
 pub(super) fn show(model: &mut Model, view: View) {
-    model.view = view;
+    model.look_at(view);
     if let Some(why) = why_not(model, view) {
         model.tell(Level::Info, format!("{}: {why}", view.name()));
     }
+}
+
+/// Goes to a place: to the view last looked at there, or one that has something to show.
+pub(super) fn go(model: &mut Model, home: Home) {
+    let last = model.homes[home as usize];
+    let has = |view: &View| why_not(model, *view).is_none();
+    let view = Some(last).filter(has).or_else(|| home.views().iter().copied().find(|view| has(view)));
+    show(model, view.unwrap_or(last));
 }
 
 /// The line of the table of states that is selected, from 0: the walker's, where none was chosen.

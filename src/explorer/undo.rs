@@ -6,7 +6,7 @@
 use super::history::History;
 use super::journal::Journal;
 use crate::store::{Fingerprint, Source};
-use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::{Key, Preset};
 use std::sync::Arc;
 
 /// So many commands can be taken back.
@@ -55,13 +55,15 @@ pub struct Undo {
     future: Vec<Arc<Place>>,
     /// Before a walk that has made no state yet.
     begun: Option<Arc<Place>>,
+    /// The value that the last command turned.
+    pub(super) gesture: Option<Key>,
 }
 
 impl Undo {
     /// The undo of a session that goes on: the places before it, the newest last, and those taken back.
     pub fn of(past: Vec<Place>, future: Vec<Place>) -> Self {
         let [past, future] = [past, future].map(|places| places.into_iter().map(Arc::new).collect());
-        Self { past, future, begun: None }
+        Self { past, future, ..Self::default() }
     }
 
     /// The places before the commands done, the newest last.
@@ -79,6 +81,11 @@ impl Undo {
         self.begun = None;
         self.future.clear();
         self.add(Arc::new(before));
+    }
+
+    /// The last command went on: what it began with is kept already.
+    pub(super) fn goes_on(&mut self) {
+        self.future.clear();
     }
 
     fn add(&mut self, place: Arc<Place>) {
@@ -105,7 +112,7 @@ impl Undo {
     /// Takes the place before the last command (or after the next one), for which `swap` gives what is kept the other way.
     /// Places like `here` are passed over: the command came to nothing.
     pub(super) fn take(&mut self, back: bool, here: &Place) -> Option<Arc<Place>> {
-        self.begun = None;
+        (self.begun, self.gesture) = (None, None);
         let from = if back { &mut self.past } else { &mut self.future };
         let at = from.iter().rposition(|place| !place.is_like(here))?;
         from.truncate(at + 1);

@@ -36,7 +36,7 @@ use places::{go_to_event, move_to, select_event, to_largest_pull};
 use pulloff_engine::preset::{Row, Value, groups};
 use pulloff_engine::text::{greek, show_name};
 use travel::{by_states, go_to, go_to_state, travel};
-use turns::{Turn, enqueue, is_blocked, recorded};
+use turns::{Turn, enqueue, gesture, is_blocked, recorded};
 use values::{assign, change_control, set, try_out, turn, untry};
 use walk::{next_event, restart, run, scale_length, scale_pace, walk, walked};
 
@@ -84,7 +84,8 @@ fn allowed(model: &mut Model, command: Command) -> Vec<Effect> {
     if is_travel || Turn::of(&command) == Turn::None && command != Id::Edit.into() {
         return obey(model, command);
     }
-    recorded(model, |model| obey(model, command))
+    let gesture = gesture(model, &command);
+    recorded(model, gesture, |model| obey(model, command))
 }
 
 /// Takes what came of a file.
@@ -99,7 +100,7 @@ fn file_came(model: &mut Model, done: Done) -> Vec<Effect> {
     if matches!(done, Done::Saved { .. }) {
         return file_done(model, done);
     }
-    recorded(model, |model| file_done(model, done))
+    recorded(model, None, |model| file_done(model, done))
 }
 
 /// Does the commands that waited, in order, until one of them has to wait again.
@@ -138,6 +139,10 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         }
         Command::Show(view) => {
             reach::show(model, view);
+            Vec::new()
+        }
+        Command::Go(home) => {
+            reach::go(model, home);
             Vec::new()
         }
         Command::Study(column) => {
@@ -214,7 +219,7 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
             }
             return Vec::new();
         }
-        Reply::Fitted { id, result } => recorded(model, |model| fit_came(model, id, result)),
+        Reply::Fitted { id, result } => recorded(model, None, |model| fit_came(model, id, result)),
         Reply::Distances(found) => {
             if model.distances_wanted.as_ref().is_some_and(|wanted| found.id <= wanted.id) {
                 model.distances = Some(found);
@@ -237,7 +242,7 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
             Vec::new()
         }
         Reply::Pinned(number, curve) => {
-            model.pins.came(number, curve);
+            look::pinned(model, number, curve);
             Vec::new()
         }
         Reply::File(done) => file_came(model, *done),
@@ -269,7 +274,9 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Control => return change_control(model),
         Id::Free => return mark(model),
         Id::Fit => return fit(model),
-        Id::Less | Id::More | Id::MuchLess | Id::MuchMore => return turn(model, id, None),
+        Id::FineLess | Id::FineMore | Id::Less | Id::More | Id::MuchLess | Id::MuchMore => {
+            return turn(model, id, None);
+        }
         Id::Edit => return select(model),
         Id::Up if model.panel == Panel::Charts => look::go(model, 0.0, 1.0),
         Id::Down if model.panel == Panel::Charts => look::go(model, 0.0, -1.0),
@@ -279,14 +286,17 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         Id::Down | Id::Right => move_selection(model, true),
         Id::NextPanel => next_panel(model, 1),
         Id::PreviousPanel => next_panel(model, Panel::ALL.len() - 1),
-        Id::NextView => model.view = reach::next(model, true),
-        Id::PreviousView => model.view = reach::next(model, false),
+        Id::NextView | Id::PreviousView => {
+            let next = reach::next(model, id == Id::NextView);
+            model.look_at(next);
+        }
         Id::ZoomIn => look::zoom(model, model.view, true, model.cross.unwrap_or(look::MIDDLE)),
         Id::ZoomOut => look::zoom(model, model.view, false, model.cross.unwrap_or(look::MIDDLE)),
         Id::Whole => look::whole(model),
         Id::CrossHair => look::cross_hair(model),
         Id::Map => look::map(model),
         Id::Pin => look::pin(model),
+        Id::Rings => return look::in_rings(model),
         Id::Axes => model.axes = if model.axes == Axes::Reduced { Axes::Raw } else { Axes::Reduced },
         Id::Device => model.device = Some(!model.shows_device()),
         Id::Open => return vec![file(Job::List)],
@@ -303,6 +313,7 @@ fn plain(model: &mut Model, id: Id) -> Vec<Effect> {
         | Id::Export
         | Id::Overlays
         | Id::Pins
+        | Id::Go
         | Id::ChooseView
         | Id::Study
         | Id::Branches

@@ -176,11 +176,17 @@ impl View {
         matches!(self, Self::Pressure | Self::Gap | Self::Contact | Self::Energy)
     }
 
-    /// The views after it, or before it, round and round.
+    /// The place where it is.
+    pub fn home(self) -> Home {
+        Home::ALL.into_iter().find(|home| home.views().contains(&self)).unwrap_or(Home::Curve)
+    }
+
+    /// The views of its place after it, or before it, round and round.
     pub fn others(self, forward: bool) -> impl Iterator<Item = Self> {
-        let count = Self::ALL.len();
-        let way = move |by| if forward { by } else { count - by };
-        (1..count).map(move |by| Self::ALL[(self as usize + way(by)) % count])
+        let views = self.home().views();
+        let here = views.iter().position(|view| *view == self).unwrap_or(0);
+        let way = move |by| if forward { by } else { views.len() - by };
+        (1..views.len()).map(move |by| views[(here + way(by)) % views.len()])
     }
 
     /// What is shown beside it where there is room, the most telling first.
@@ -194,17 +200,73 @@ impl View {
             ForceRadius => [ForceApproach, Contact, Energy],
             Cycle => [ContactMap, ForceApproach, Pressure],
             ContactMap => [Cycle, ForceApproach, ForceRadius],
-            Contact => [ForceApproach, Gap, Pressure],
+            Contact => [Gap, Pressure, ForceApproach],
             Stability => [RadiusApproach, ForceApproach, Unloading],
             Map => [Stability, ForceApproach, Unloading],
             Residuals => [ForceApproach, ForceRadius, Pressure],
             Study => [ForceApproach, Unloading, ForceRadius],
             Differences => [ForceApproach, ForceRadius, RadiusApproach],
-            Gap | Unloading | Walk => [ForceApproach, Pressure, Energy],
+            Gap => [Pressure, Contact, ForceApproach],
+            Unloading | Walk => [ForceApproach, Pressure, Energy],
             RadiusApproach => [ForceApproach, Energy, Pressure],
-            Pressure => [ForceApproach, Gap, Energy],
+            Pressure => [Gap, Contact, ForceApproach],
             Energy => [RadiusApproach, ForceApproach, Pressure],
         }
+    }
+}
+
+/// A place: a question, and the views that answer it. Each view is in one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Home {
+    Curve,
+    Inside,
+    Map,
+    Data,
+}
+
+impl Home {
+    /// All, in the order in which they are offered.
+    pub const ALL: [Self; 4] = [Self::Curve, Self::Inside, Self::Map, Self::Data];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Curve => "curve",
+            Self::Inside => "inside",
+            Self::Map => "map",
+            Self::Data => "data",
+        }
+    }
+
+    /// What it answers.
+    pub fn question(self) -> &'static str {
+        match self {
+            Self::Curve => "what happens",
+            Self::Inside => "what this state looks like",
+            Self::Map => "how it depends on the values",
+            Self::Data => "whether it agrees with what was measured, and what was walked",
+        }
+    }
+
+    /// Its views, the main one first.
+    pub fn views(self) -> &'static [View] {
+        use View::{
+            Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, ForcePosition, ForceRadius, Gap,
+            Map, Pressure, RadiusApproach, Residuals, Stability, Study, Unloading, Walk,
+        };
+        match self {
+            Self::Curve => {
+                &[ForceApproach, ForceRadius, ForcePosition, RadiusApproach, Unloading, Cycle, Differences]
+            }
+            Self::Inside => &[Gap, Pressure, Contact, Energy, ContactMap],
+            Self::Map => &[Study, Map, Stability],
+            Self::Data => &[Residuals, Walk],
+        }
+    }
+
+    /// The place of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|home| home.name() == name)
     }
 }
 
@@ -338,19 +400,22 @@ mod tests {
     use std::collections::HashSet;
 
     #[test]
-    fn views_go_round_have_names_and_never_stand_beside_themselves() {
-        let mut view = View::ForceApproach;
+    fn every_view_has_one_home_a_name_and_never_stands_beside_itself() {
+        let all: Vec<View> = Home::ALL.into_iter().flat_map(|home| home.views().iter().copied()).collect();
+        let homes: HashSet<View> = all.iter().copied().collect();
+        assert_eq!((all.len(), homes), (View::ALL.len(), HashSet::from(View::ALL)));
         let mut names = HashSet::new();
-        for _ in View::ALL {
+        for view in View::ALL {
             assert!(names.insert(view.name()));
             let mut shown = HashSet::from(view.companions());
             assert!(shown.insert(view) && shown.len() == 4, "{view:?}");
             assert_eq!(View::named(view.name()), Some(view));
-            view = view.others(true).next().unwrap();
+            // Round its place, and back.
+            let others: Vec<View> = view.others(true).collect();
+            assert_eq!(others.len() + 1, view.home().views().len());
+            assert!(others.iter().rev().copied().eq(view.others(false)));
         }
-        assert_eq!(view, View::ForceApproach);
-        assert_eq!(view.others(false).next(), Some(View::Study));
-        assert_eq!(view.others(true).count(), View::ALL.len() - 1);
+        assert!(Home::ALL.into_iter().all(|home| Home::named(home.name()) == Some(home)));
     }
 
     #[test]

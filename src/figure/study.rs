@@ -76,8 +76,8 @@ pub fn of(data: &StudyData, preset: &Preset) -> Figure {
     }
     for part in places.chunk_by(|a, b| a.1.is_some() == b.1.is_some()) {
         let points: Vec<(f64, f64)> = part.iter().filter_map(|(x, y)| Some((*x, (*y)?))).collect();
-        if !points.is_empty() {
-            let points = if is_counted { stairs(&points) } else { points };
+        let parts = if is_counted { vec![stairs(&points)] } else { unbroken(&points) };
+        for points in parts.into_iter().filter(|points| !points.is_empty()) {
             figure.lines.push(Line::new(Role::Body, words(wish.column), drawn(points)));
         }
     }
@@ -122,6 +122,30 @@ fn slow_pulls(figure: &mut Figure, data: &StudyData, rate: impl Fn(f64) -> f64, 
     let first = first.take_while(|(_, at)| (at - slow.force).abs() <= SHARE * slow.force.abs());
     let first = first.map(|(x, at)| (rate(x), force(at)));
     figure.lines.push(Line::new(Role::Exact, "first order", first.collect()));
+}
+
+/// Points cut where the value jumps: where it goes over much more from one to the next than on either side. Nothing was
+/// computed between, and a line there would be a slope that is none.
+fn unbroken(points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
+    /// So many times what the neighbours go over, and at least this share of the whole range.
+    const TIMES: f64 = 6.0;
+    const SHARE: f64 = 0.03;
+    let [lo, hi] =
+        points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], at| [lo.min(at.1), hi.max(at.1)]);
+    let over = |at: usize| {
+        let pair = points.get(at..at + 2)?;
+        Some((pair[1].1 - pair[0].1).abs())
+    };
+    let jumps = |at: usize| {
+        let beside = [at.checked_sub(1).and_then(over), over(at + 1)].into_iter().flatten();
+        let beside = beside.fold(f64::NEG_INFINITY, f64::max);
+        // Of two points alone nothing is known.
+        over(at).is_some_and(|own| beside >= 0.0 && own > SHARE * (hi - lo) && own > TIMES * beside)
+    };
+    let cuts: Vec<usize> = (0..points.len()).filter(|at| jumps(*at)).map(|at| at + 1).collect();
+    let ends = cuts.iter().copied().chain([points.len()]);
+    let starts = std::iter::once(0).chain(cuts.iter().copied());
+    starts.zip(ends).map(|(from, to)| points[from..to].to_vec()).collect()
 }
 
 /// Where the other surfaces are: areas in which nine tenths and half of them are, and their median. All corners of the areas.
@@ -208,4 +232,25 @@ pub fn taken(data: &StudyData, preset: &Preset, x: f64) -> Option<(usize, f64)> 
     let all = data.wish.values.iter().enumerate().filter_map(|(i, value)| Some((i, number(value)?)));
     let away = |value: f64| (row.shown(units, value).number - x).abs();
     all.min_by(|a, b| away(a.1).total_cmp(&away(b.1)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unbroken;
+
+    #[test]
+    fn a_jump_is_cut_and_a_steep_slope_is_not() {
+        let of = |y: &dyn Fn(f64) -> f64| -> Vec<usize> {
+            let points: Vec<(f64, f64)> = (0..101).map(|i| f64::from(i) / 100.0).map(|x| (x, y(x))).collect();
+            unbroken(&points).iter().map(Vec::len).collect()
+        };
+        assert_eq!(of(&|x| x + if x > 0.5 { 0.3 } else { 0.0 }), [51, 50]);
+        assert_eq!(of(&|x| x * x), [101]);
+        // As steep as a jump, but with points on the slope.
+        assert_eq!(of(&|x| ((x - 0.5) * 60.0).clamp(-1.0, 1.0)), [101]);
+        assert_eq!(of(&|x| f64::from(u8::from(x > 0.3) + u8::from(x > 0.7))), [31, 40, 30]);
+        assert_eq!(of(&|_| 1.0), [101]);
+        assert_eq!(unbroken(&[(0.0, 1.0), (1.0, 2.0)]).len(), 1);
+        assert!(unbroken(&[]).iter().all(Vec::is_empty));
+    }
 }

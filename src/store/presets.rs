@@ -17,7 +17,7 @@ use pulloff_engine::preset::invalid::Invalid;
 use pulloff_engine::preset::model::Preset;
 use pulloff_engine::preset::read::ReadError;
 use pulloff_engine::preset::write::write;
-use pulloff_engine::text::{closest, quote, show_path};
+use pulloff_engine::text::{closest, quote, sanitize, show_path};
 use std::ffi::OsStr;
 use std::fs;
 use std::io;
@@ -86,6 +86,22 @@ pub struct Listed {
     pub source: Source,
     /// Its title, or why it cannot be opened, in one line.
     pub title: Result<String, String>,
+    /// The first line of what it says of itself; may be empty.
+    pub comment: String,
+}
+
+impl Loaded {
+    /// The comment with which its text begins, safe to show.
+    #[must_use]
+    pub fn comment(&self) -> String {
+        let text = match &self.source {
+            Source::Shipped(shipped) => shipped.text,
+            Source::Piped { text, .. } => text,
+            Source::User { .. } | Source::File(_) => &self.text,
+        };
+        let lines = text.lines().map_while(|line| line.strip_prefix('#')).map(str::trim);
+        lines.map(|line| sanitize(line, 200)).collect::<Vec<_>>().join("\n")
+    }
 }
 
 /// The list of presets.
@@ -231,11 +247,14 @@ impl Store {
     #[must_use]
     pub fn list(&self) -> Listing {
         let entry = |name: String, source: Source| {
-            let title = match self.load(&source, &[] as &[&str]) {
-                Ok(loaded) => Ok(loaded.preset.title),
-                Err(error) => Err(error.to_string()),
+            let (title, comment) = match self.load(&source, &[] as &[&str]) {
+                Ok(loaded) => {
+                    let comment = loaded.comment().lines().next().unwrap_or_default().to_owned();
+                    (Ok(loaded.preset.title), comment)
+                }
+                Err(error) => (Err(error.to_string()), String::new()),
             };
-            Listed { name, source, title }
+            Listed { name, source, title, comment }
         };
         let mut presets: Vec<_> =
             SHIPPED.iter().map(|shipped| entry(shipped.name.to_owned(), Source::Shipped(shipped))).collect();
@@ -248,7 +267,8 @@ impl Store {
                 Ok(()) => entry(name.clone(), Source::User { name, path }),
                 Err(error) => {
                     let shown = show_path(&path);
-                    Listed { name: shown, source: Source::File(path), title: Err(error.to_string()) }
+                    let (source, title) = (Source::File(path), Err(error.to_string()));
+                    Listed { name: shown, source, title, comment: String::new() }
                 }
             });
         }

@@ -79,8 +79,8 @@ impl Key {
         let key = match (named, ctrl, single(label)) {
             (Some(key), _, _) => key,
             (_, Some(c), _) if c.is_ascii_alphabetic() || c == '[' => Self::Ctrl(c.to_ascii_lowercase()),
-            (_, _, Some(c)) if c.is_ascii_digit() && c != '0' => {
-                return Err(format!("{c} cannot be bound: digits count steps"));
+            (_, _, Some(c)) if c.is_ascii_digit() => {
+                return Err(format!("{c} cannot be bound: digits go to events"));
             }
             (_, _, Some(c)) if !c.is_control() && !c.is_whitespace() => Self::Char(c),
             _ => {
@@ -128,19 +128,28 @@ fn usual(id: Id) -> &'static [Key] {
         Id::Halve => &[Char('[')],
         Id::Double => &[Char(']')],
         // Typed, since each takes a value.
-        Id::Assign | Id::StepLength | Id::SelectEvent | Id::MoveTo | Id::Data => &[],
+        Id::Assign
+        | Id::StepLength
+        | Id::SelectEvent
+        | Id::MoveTo
+        | Id::Data
+        | Id::Study
+        | Id::ChooseView
+        | Id::Map => &[],
         Id::Undo => &[Char('u')],
         Id::Redo => &[Ctrl('r')],
         Id::Branches => &[Char('B')],
         Id::Restart => &[Named(KeyCode::Home)],
         Id::Control => &[Char('c')],
-        Id::Less => &[Char('<'), Char(',')],
-        Id::More => &[Char('>'), Char('.')],
+        Id::Less => &[Char('<')],
+        Id::More => &[Char('>')],
+        Id::FineLess => &[Char(',')],
+        Id::FineMore => &[Char('.')],
         Id::MuchLess => &[Char('{')],
         Id::MuchMore => &[Char('}')],
         Id::Free => &[Char('*')],
         Id::Fit => &[Char('F')],
-        Id::Edit => &[Named(KeyCode::Enter)],
+        Id::Edit => &[Named(KeyCode::Enter), Char('=')],
         Id::Up => &[Named(KeyCode::Up), Char('k')],
         Id::Down => &[Named(KeyCode::Down), Char('j')],
         Id::Left => &[Named(KeyCode::Left), Char('h')],
@@ -150,17 +159,16 @@ fn usual(id: Id) -> &'static [Key] {
         Id::Enlarge => &[Char('z')],
         Id::NextView => &[Char('t')],
         Id::PreviousView => &[Char('T')],
-        Id::Study => &[Char('Q')],
-        Id::ChooseView => &[Char('V')],
-        Id::ZoomIn => &[Char('+'), Char('=')],
+        Id::Go => &[Char('g')],
+        Id::ZoomIn => &[Char('+')],
         Id::ZoomOut => &[Char('-')],
         Id::Whole => &[Char('f')],
         Id::CrossHair => &[Char('i')],
-        Id::Map => &[Char('M')],
         Id::Axes => &[Char('a')],
         Id::Device => &[Char('K')],
         Id::Overlays => &[Char('y')],
         Id::Pin => &[Char('p')],
+        Id::Rings => &[Char('#')],
         Id::Pins => &[Char('P')],
         Id::Open => &[Char('o')],
         Id::Save => &[Char('s')],
@@ -318,7 +326,7 @@ mod tests {
             for key in usual(row.id) {
                 assert!(seen.insert(key.label()), "{} twice", key.label());
                 assert_eq!(Key::parse(&key.label()), Ok(*key));
-                assert!(!matches!(key, Key::Char('g' | 'G' | '/')), "reserved");
+                assert!(!matches!(key, Key::Char('G' | '/' | '0'..='9')), "reserved");
             }
         }
     }
@@ -351,7 +359,7 @@ mod tests {
             ("[keys]\nstep = \"ctrl-q\"", "Ctrl-Q cannot be bound"),
             ("[keys]\nstep = \"Ctrl-Z\"", "Ctrl-Z cannot be bound: it leads back to the shell"),
             ("[keys]\nstep = \"Ctrl-i\"", "terminals send it as Tab"),
-            ("[keys]\nstep = \"3\"", "3 cannot be bound: digits count steps"),
+            ("[keys]\nstep = \"3\"", "3 cannot be bound: digits go to events"),
             ("[keys]\nstep = \"Hyper-x\"", "\"Hyper-x\" is no key"),
             ("[keys]\nstep = \"\"", "\"\" is no key"),
             ("[keys]\nstep = \"\u{e9}\u{e9}\"", "is no key"),

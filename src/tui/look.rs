@@ -8,7 +8,7 @@
 //! | TERM `vt100` … `vt520`: no colour | `mono` | `ascii` | yes |
 //! | TERM `ansi`, `cygwin`, `ms`: an 8-bit code page | | `ascii` | yes |
 //! | TERM `linux`: its font has half blocks and no braille | | `block` | |
-//! | any other | `dark` | `braille` | |
+//! | any other | `any` | `braille` | |
 //!
 //! Where neither TERM nor `COLORTERM` tells of 256 colours, a theme uses the six normal ones and letters.
 
@@ -102,11 +102,11 @@ impl Look {
         let usual = if family == "linux" { Charts::Block } else { Charts::Braille };
         let no_color = environment.no_color.then_some(Palette::Mono);
         let palette = flags.theme.or(no_color).or(file.theme);
-        let palette = palette.unwrap_or(if is_video { Palette::Mono } else { Palette::Dark });
+        let palette = palette.unwrap_or(if is_video { Palette::Mono } else { Palette::Any });
         let has_many = environment.many_colors || environment.has_256();
         let theme = Theme::new(
             match palette {
-                Palette::Dark if !has_many => Palette::FewDark,
+                Palette::Any | Palette::Dark if !has_many => Palette::FewDark,
                 Palette::Light if !has_many => Palette::FewLight,
                 palette => palette,
             },
@@ -142,12 +142,12 @@ mod tests {
 
     #[test]
     fn the_terminal_decides_where_nobody_says_anything() {
-        assert_eq!(resolved(&on("xterm-256color")), (Palette::Dark, Charts::Braille, false));
-        assert_eq!(resolved(&on("linux")), (Palette::Dark, Charts::Block, false));
+        assert_eq!(resolved(&on("xterm-256color")), (Palette::Any, Charts::Braille, false));
+        assert_eq!(resolved(&on("linux")), (Palette::Any, Charts::Block, false));
         assert_eq!(resolved(&on("vt220")), (Palette::Mono, Charts::Ascii, true));
-        assert_eq!(resolved(&on("ansi")), (Palette::Dark, Charts::Ascii, true));
+        assert_eq!(resolved(&on("ansi")), (Palette::Any, Charts::Ascii, true));
         let plain = Environment { utf8: false, ..on("xterm") };
-        assert_eq!(resolved(&plain), (Palette::Dark, Charts::Ascii, true));
+        assert_eq!(resolved(&plain), (Palette::Any, Charts::Ascii, true));
         let no_color = Environment { no_color: true, ..on("xterm") };
         assert_eq!(resolved(&no_color), (Palette::Mono, Charts::Braille, false));
     }

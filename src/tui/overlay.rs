@@ -157,6 +157,11 @@ impl Choose {
         found
     }
 
+    /// Whether some lines have a note.
+    pub fn has_notes(&self) -> bool {
+        self.items.iter().any(|item| !item.note.is_empty())
+    }
+
     /// The selected line, and its place among all; `None` where no line has what was typed.
     pub fn current(&self) -> Option<(usize, &Item)> {
         self.shown().get(self.selected).copied()
@@ -167,6 +172,8 @@ impl Choose {
 #[derive(Debug, Clone)]
 pub struct Item {
     pub text: String,
+    /// What is said below the list while it is selected; may be empty.
+    pub note: String,
     pub action: Action,
     /// What is asked before it is deleted, and what does it; nothing where it cannot be.
     pub delete: Option<Box<Confirm>>,
@@ -175,7 +182,7 @@ pub struct Item {
 impl Item {
     /// A line that cannot be deleted.
     pub fn new(text: impl Into<String>, action: Action) -> Self {
-        Self { text: text.into(), action, delete: None }
+        Self { text: text.into(), note: String::new(), action, delete: None }
     }
 }
 

@@ -11,8 +11,10 @@ use ratatui::widgets::Block;
 /// Which colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum Palette {
-    /// For a dark background.
+    /// For any background, black and white alike.
     #[default]
+    Any,
+    /// For a dark background.
     Dark,
     /// For a light background.
     Light,
@@ -116,6 +118,35 @@ const BOLD: Style = Style::new().add_modifier(Modifier::BOLD);
 const REVERSED: Style = Style::new().add_modifier(Modifier::REVERSED);
 const REVERSED_BOLD: Style = REVERSED.add_modifier(Modifier::BOLD);
 const UNDERLINED: Style = Style::new().add_modifier(Modifier::UNDERLINED);
+
+/// On black and on white every colour has a contrast of at least 3 : 1, so that nothing needs to know the background. What
+/// was walked has the terminal's own colour of text.
+static ANY: Styles = Styles {
+    frame: hue(244),
+    selected_frame: hue(33).add_modifier(Modifier::BOLD),
+    selected_title: BOLD,
+    strong: BOLD,
+    dim: hue(244),
+    selection: REVERSED,
+    error: hue(167).add_modifier(Modifier::BOLD),
+    key: hue(33),
+    curve: hue(32),
+    smooth: hue(243),
+    walk: ink(Color::Reset).add_modifier(Modifier::BOLD),
+    jump: hue(133),
+    landing: hue(133).add_modifier(Modifier::BOLD),
+    lost: hue(97),
+    aid: hue(131),
+    warning: hue(167),
+    mark: hue(166).add_modifier(Modifier::BOLD),
+    walker: hue(31).add_modifier(Modifier::BOLD.union(Modifier::REVERSED)),
+    stray: hue(244).add_modifier(Modifier::REVERSED),
+    nearest: hue(31).add_modifier(Modifier::BOLD),
+    exact: hue(136),
+    envelope: hue(30),
+    loops: hue(62),
+    pins: [hue(202), hue(169), hue(100), hue(29), hue(160), hue(99)],
+};
 
 /// On black and on dark blue-green every colour has a contrast of at least 3 : 1. The hues are those of the figures on
 /// paper: no two that are compared are a red and a green.
@@ -268,6 +299,7 @@ impl Theme {
     /// The style of every role.
     pub fn styles(self) -> &'static Styles {
         match self.palette {
+            Palette::Any => &ANY,
             Palette::Dark => &DARK,
             Palette::Light => &LIGHT,
             Palette::Mono => &MONO,
@@ -291,7 +323,7 @@ impl Theme {
 
     /// Whether colours alone cannot tell curves apart.
     pub fn has_few_colours(self) -> bool {
-        !matches!(self.palette, Palette::Dark | Palette::Light)
+        !matches!(self.palette, Palette::Any | Palette::Dark | Palette::Light)
     }
 
     /// What an area is filled with: block elements where charts have more than one character.
@@ -319,9 +351,9 @@ impl Theme {
         format!("{}{}", kept[..end].trim_end(), self.glyph("…", "."))
     }
 
-    /// A label of the parameter table with its Greek letters, where the terminal can show them.
+    /// A label of the parameter table with its Greek letters, or in ASCII with the letters that stand for them everywhere.
     pub fn symbols(self, label: &str) -> String {
-        if self.ascii { self.text(label) } else { greek(label) }
+        self.text(&greek(label))
     }
 
     /// The frame of a panel.
@@ -455,8 +487,13 @@ mod tests {
     fn every_colour_stands_out_from_the_backgrounds_it_is_for() {
         let dark = [[0, 0, 0], [0x00, 0x2b, 0x36]];
         let light = [[0xff, 0xff, 0xff], [0xfd, 0xf6, 0xe3]];
-        for (styles, backgrounds) in [(&DARK, dark), (&LIGHT, light)] {
+        let any = [dark[0], light[0]];
+        for (styles, backgrounds) in [(&ANY, any), (&DARK, dark), (&LIGHT, light)] {
             for (color, name) in coloured(styles) {
+                // The terminal's own text stands out from its background.
+                if color == Color::Reset {
+                    continue;
+                }
                 let Color::Indexed(index) = color else { panic!("{name}: {color:?}") };
                 for background in backgrounds {
                     let contrast = contrast(rgb(index), background);
@@ -468,7 +505,7 @@ mod tests {
 
     #[test]
     fn curves_that_are_compared_have_colours_of_their_own() {
-        for styles in [&DARK, &LIGHT] {
+        for styles in [&ANY, &DARK, &LIGHT] {
             let own = [styles.curve, styles.smooth, styles.exact, styles.envelope];
             let all: Vec<Option<Color>> = own.iter().chain(&styles.pins).map(|style| style.fg).collect();
             for (at, color) in all.iter().enumerate() {

@@ -108,9 +108,7 @@ fn every_view_of_a_state_knows_its_rings() {
     let mut session = with_ring();
     session.does(Command::Steps(1));
     for view in [View::Pressure, View::Gap, View::Contact, View::Energy] {
-        while session.model.view != view {
-            session.does(Id::NextView);
-        }
+        session.does(Command::Show(view));
         let figure = Subject::of(&session.model).unwrap().figure(view);
         let count = |role: Role| figure.lines.iter().filter(|line| line.role == role).count();
         match view {

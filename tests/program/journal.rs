@@ -249,8 +249,8 @@ fn the_journal_says_what_was_done_and_leaves_out_what_was_not() {
         "redo 18 states",
         "step-length 0.01",
         "step 1",
-        "set gap.amplitude=0.002525",
-        "set gap.amplitude=0.00255025",
+        "set gap.amplitude=0.0026",
+        "set gap.amplitude=0.0027",
         "set path.control=force",
         "step 1",
     ];

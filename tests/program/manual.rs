@@ -28,8 +28,9 @@ const PAGES: [&str; 6] = [
     "examples/cluster/README.md",
 ];
 /// The generated parts; each is in some file.
-const PARTS: [&str; 14] = [
+const PARTS: [&str; 15] = [
     "options",
+    "charts",
     "screen",
     "keys",
     "exit statuses",
@@ -121,6 +122,19 @@ fn screen() -> String {
         writeln!(text, "{}", row.trim_end()).unwrap();
         text
     })
+}
+
+/// The charts and the one place of each.
+fn charts() -> String {
+    use pulloff::explorer::Home;
+    let rows = Home::ALL.into_iter().flat_map(|home| {
+        let letter = home.name().chars().next().unwrap();
+        home.views().iter().map(move |view| {
+            format!("| {}, `g {letter}` | `{}` | {} |\n", home.name(), view.name(), view.meaning())
+        })
+    });
+    let head = "| place | chart | shows |\n|---|---|---|\n".to_owned();
+    rows.fold(head, |text, row| text + &row)
 }
 
 /// The options that many commands have, by their long names.
@@ -254,6 +268,7 @@ fn generated(name: &str) -> String {
         None if name == "options" => options(),
         None if name == "screen" => fenced("text", &screen()),
         None if name == "exit statuses" => pulloff::cli::Status::markdown(),
+        None if name == "charts" => charts(),
         None if name == "keys" => pulloff::tui::keymap::markdown(),
         None if name == "preset keys" => key_table(),
         Some(("output", command)) => fenced("text", &shown(command)),

@@ -132,7 +132,7 @@ fn any_size_is_survived_and_the_next_one_drawn() {
         pty.keys("t");
     }
     // Back to the views of the start, however many views there are.
-    pty.keys("TTTTTT");
+    pty.keys(":view force-approach\r");
     pty.resize(30, 8);
     pty.wait_for(|screen| screen.contains("pulloff needs 40x10"), "the notice");
     pty.resize(160, 45);

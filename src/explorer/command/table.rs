@@ -66,7 +66,7 @@ macro_rules! commands {
 
 commands! {
     "Walk along the curve" {
-        Step "step" Walker ("number of steps") "step": "one step along the equilibrium curve, past limit points too; type a number first for that many";
+        Step "step" Walker ("number of steps") "step": "one step along the equilibrium curve, past limit points too";
         NextEvent "next-event" Walker "next event": "to the next event of the path; at a limit point or a touch, let it happen";
         Jump "jump" Jump "jump": "let edges run at constant control to the next stable state; from a touch, with the new contact";
         Run "run" Walker ("number of states") "run": "run at a pace one can watch, to the next limit point or touch; any key but those of the pace pauses";
@@ -74,7 +74,7 @@ commands! {
         Faster "faster" Nothing "faster": "twice as many";
         MoveTo "move-to" Curve ("contact radius") "move to": "the walker to the state of a contact radius on the curve";
         LargestPull "largest-pull" Curve "to A": "the walker to A, the largest pull of the path: where a dead load lets go";
-        Reverse "reverse" Walker "turn round": "turn round: steps and events are then those of the other way";
+        Reverse "reverse" Walker "back": "turn round: steps and events are then those of the other way";
         Halve "halve-step" Nothing "half step": "halve the step length";
         Double "double-step" Nothing "double step": "double the step length";
         StepLength "step-length" Nothing ("length") "step length": "the longest step, as a share of every quantity's range";
@@ -83,16 +83,18 @@ commands! {
         Branches "branches" Branches ("branch") "branches": "the branches of the walk: what each ended with, and back to it";
         Restart "restart" WalkerOrNoCurve "start": "start again";
         Control "control" Nothing ("control") "control": "control the displacement, the force, or a spring's far end";
-        SelectEvent "select-event" Walker ("number") "event": "the walker to the event of this number in the list";
+        SelectEvent "select-event" Walker ("number") "event": "the walker to the event of this number; a digit does it too";
     }
     "Change the problem" {
-        Less "less" Parameter "less": "the selected value, a little less";
-        More "more" Parameter "more": "the selected value, a little more";
-        MuchLess "much-less" Parameter "much less": "the selected value, much less";
-        MuchMore "much-more" Parameter "much more": "the selected value, much more";
+        Less "less" Parameter "less": "the selected value less, by its second digit: 0.0025, 0.0024";
+        More "more" Parameter "more": "the selected value more, by its second digit";
+        MuchLess "much-less" Parameter "much less": "the same by its first digit: 0.003, 0.002";
+        MuchMore "much-more" Parameter "much more": "more by its first digit";
+        FineLess "fine-less" Parameter "a bit less": "the same by its third digit: 0.00250, 0.00249";
+        FineMore "fine-more" Parameter "a bit more": "more by its third digit";
         Free "free" Parameter "free": "let a fit change the selected value, or no longer";
         Fit "fit" Nothing "fit": "fit the free values to the measured curve; Esc takes the best so far";
-        Edit "edit" Nothing ("value") "type value": "type the selected value, or choose it; in the log: go to the selected event; at the cross-hair: go there";
+        Edit "edit" Nothing ("value") "type": "type the selected value, or choose it; in the log: go to the selected event; at the cross-hair: go there; in a study its quantity, on a map its axes";
         Data "data" Nothing ("file, or none") "data": "a measured curve behind the chart, to compare and to fit; none takes it away";
         Assign "set" Nothing ("KEY=VALUE ...") "set": "other values for some keys, as one change";
     }
@@ -104,9 +106,10 @@ commands! {
         NextPanel "next-panel" Nothing "panel": "the next panel on the screen";
         PreviousPanel "previous-panel" Nothing "panel back": "previous panel";
         Enlarge "enlarge" Nothing "whole": "the selected panel on the whole screen, and back";
-        NextView "next-view" Nothing "view": "the next view of the chart";
-        PreviousView "previous-view" Nothing "view back": "the view before";
-        ChooseView "view" Nothing ("view") "views": "all views, a line each; those with nothing to show say why";
+        Go "go" Nothing ("curve, inside, map or data") "places": "to a place: c what happens, i inside a state, m how it depends on values, d data and the walk";
+        NextView "next-view" Nothing "chart": "the next chart of the place";
+        PreviousView "previous-view" Nothing "chart back": "the chart before";
+        ChooseView "view" Nothing ("chart") "charts": "any chart by its name; those with nothing to show say why";
         Study "study" Curve ("quantity") "study": "a quantity over the range of the selected value";
         ZoomIn "zoom-in" Curve ("place") "closer": "the chart closer, about the cross-hair or the walker";
         ZoomOut "zoom-out" Curve ("place") "wider": "further away";
@@ -117,6 +120,7 @@ commands! {
         Device "device-line" Nothing "device": "show or hide the line of the loading device through the walker";
         Overlays "overlays" Curve ("theory") "theory": "theory over the curve: smooth sphere, exact solution, envelope";
         Pin "pin" Curve "pin": "keep this curve to compare the next ones with";
+        Rings "rings" Curve "rings": "the same problem in the ring elements of the paper over the chart, or its exact solution over those; again: away";
         Pins "pins" Pins ("number") "pins": "take pinned curves away";
     }
     "Presets and files" {
@@ -127,10 +131,10 @@ commands! {
         Copy "copy" Nothing "copy": "the state, the events, the chart or the screen into the terminal's clipboard";
     }
     "Program" {
-        CommandLine "command-line" Nothing "command": "type a command by its name; Tab completes, up and down bring lines back";
+        CommandLine "command-line" Nothing "all": "type a command by its name; Tab completes, up and down bring lines back";
         Mouse "mouse" Nothing "mouse": "take the mouse (click, wheel), or leave it to the terminal to select text";
         About "about" Nothing "about": "what the preset says of itself, and what was changed since";
-        Help "help" Nothing "help": "this help; / searches it";
+        Help "help" Nothing "keys": "this help; / searches it";
         Cancel "cancel" Nothing "back": "take typed text back, close, stop a run or a curve";
         Quit "quit" Nothing "quit": "quit; asks only if the preset has unsaved changes";
     }

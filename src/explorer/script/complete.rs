@@ -6,7 +6,7 @@ use super::print::overlay_name;
 use crate::explorer::command::ROWS;
 use crate::explorer::export::{ExportKind, Picture};
 use crate::explorer::maps::CURVES;
-use crate::explorer::view::{Overlay, View};
+use crate::explorer::view::{Home, Overlay, View};
 use crate::store::shipped::{self, SHIPPED};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::groups::GROUPS;
@@ -23,18 +23,21 @@ pub struct Completion {
     pub offers: Vec<String>,
 }
 
+/// The names of what is in a folder, which is named with its last `/`, as a line names them; folders end with `/`.
+pub type Files<'a> = &'a dyn Fn(&str) -> Vec<String>;
+
 /// Completes the last word of `line`; `presets` are the known names, or none for those shipped.
-pub fn complete(line: &str, preset: &Preset, presets: &[String]) -> Completion {
+pub fn complete(line: &str, preset: &Preset, presets: &[String], files: Files<'_>) -> Completion {
     let start = line.rfind([' ', '\t']).map_or(0, |at| at + 1);
     let (before, word) = line.split_at(start);
     let words: Vec<&str> = before.split_whitespace().collect();
     // Inside quotes anything may be meant.
     let is_quoted = line.matches('"').count() % 2 == 1;
-    let all = if is_quoted { Vec::new() } else { candidates(&words, word, preset, presets) };
+    let all = if is_quoted { Vec::new() } else { candidates(&words, word, (preset, presets, files)) };
     let offers: Vec<String> = all.into_iter().filter(|offer| offer.starts_with(word)).collect();
     let end = match &*offers {
         [] => word.to_owned(),
-        [one] if one.ends_with('=') => one.clone(),
+        [one] if one.ends_with(['=', '/']) => one.clone(),
         [one] => format!("{one} "),
         [first, rest @ ..] => {
             let same = |a: &str, b: &str| a.chars().zip(b.chars()).take_while(|(a, b)| a == b).count();
@@ -50,13 +53,18 @@ fn owned<'a>(words: impl IntoIterator<Item = &'a str>) -> Vec<String> {
 }
 
 /// The words that can follow `words`, whatever `word` begins with.
-fn candidates(words: &[&str], word: &str, preset: &Preset, presets: &[String]) -> Vec<String> {
+fn candidates(
+    words: &[&str],
+    word: &str,
+    (preset, presets, files): (&Preset, &[String], Files<'_>),
+) -> Vec<String> {
     match words {
         [] => owned(ROWS.iter().map(|row| row.name).chain([RUN_TO.0])),
         ["open"] if presets.is_empty() => owned(SHIPPED.iter().map(|shipped| shipped.name)),
         ["open"] => presets.iter().filter_map(|name| quoted(name)).collect(),
         ["set" | "open", ..] => assignments(word, preset),
         ["control"] => owned(["displacement", "force", "stiffness="]),
+        ["go"] => owned(Home::ALL.map(Home::name)),
         ["view"] => owned(View::ALL.map(View::name)),
         ["study"] => QUANTITIES.iter().flat_map(Quantity::columns).map(|column| column.name()).collect(),
         ["overlays"] => owned(Overlay::ALL.map(overlay_name)),
@@ -64,6 +72,12 @@ fn candidates(words: &[&str], word: &str, preset: &Preset, presets: &[String]) -
             .into_iter()
             .map(|name| format!("{SHIPPED_DATA}{name}"))
             .chain([NONE.to_owned()])
+            // A name with a blank is typed in quotes.
+            .chain(
+                files(&word[..word.rfind('/').map_or(0, |at| at + 1)])
+                    .into_iter()
+                    .filter(|name| !name.contains(' ')),
+            )
             .collect(),
         ["pins"] => owned(["all"]),
         ["map"] => axes(preset),
@@ -110,7 +124,13 @@ mod tests {
 
     fn completed(line: &str) -> (String, usize) {
         let preset = read("t", shipped::find("wavy-sphere").unwrap().text).unwrap();
-        let Completion { line, offers } = complete(line, &preset, &["lab-3".to_owned(), "lab-4".to_owned()]);
+        let files = |folder: &str| match folder {
+            "" => ["mine.csv", "more.txt", "curves/", "a b.csv"].map(str::to_owned).to_vec(),
+            "curves/" => vec!["curves/first.csv".to_owned()],
+            _ => Vec::new(),
+        };
+        let presets = ["lab-3".to_owned(), "lab-4".to_owned()];
+        let Completion { line, offers } = complete(line, &preset, &presets, &files);
         (line, offers.len())
     }
 
@@ -130,6 +150,11 @@ mod tests {
             ("export figure x.svg con", "export figure x.svg contact", 2),
             ("export curve x.csv r", "export curve x.csv replace ", 1),
             ("control f", "control force ", 1),
+            ("data m", "data m", 2),
+            ("data mi", "data mine.csv ", 1),
+            ("data cu", "data curves/", 1),
+            ("data curves/", "data curves/first.csv ", 1),
+            ("data a", "data a", 0),
             ("run-to in", "run-to instability ", 1),
             ("zzz", "zzz", 0),
             ("set title=\"a ", "set title=\"a ", 0),

@@ -7,7 +7,7 @@ use crate::explorer::command::{Assignment, Command, Id, LENGTHS, MOST_STEPS, ROW
 use crate::explorer::export::{ExportKind, Picture, ends_in};
 use crate::explorer::maps::CURVES;
 use crate::explorer::pins;
-use crate::explorer::view::{Overlay, View};
+use crate::explorer::view::{Home, Overlay, View};
 use pulloff_engine::preset::data;
 use pulloff_engine::preset::groups::{self, GROUPS};
 use pulloff_engine::preset::{Key, PARAMETERS, parameter};
@@ -54,9 +54,9 @@ pub fn for_script(command: &Command) -> Result<(), String> {
         Command::Plain(Id::Export) => missing("a document and a file"),
         Command::Plain(Id::Branches) => missing("the reduced approach, force and contact radius of a state"),
         Command::Plain(Id::Pins) => missing("the number of a pin, or all"),
-        Command::Plain(Id::Less | Id::More | Id::MuchLess | Id::MuchMore | Id::Edit) => {
-            Err(format!("{} needs a selection on the screen; a script says set KEY=VALUE", row.name))
-        }
+        Command::Plain(
+            Id::FineLess | Id::FineMore | Id::Less | Id::More | Id::MuchLess | Id::MuchMore | Id::Edit,
+        ) => Err(format!("{} needs a selection on the screen; a script says set KEY=VALUE", row.name)),
         Command::Plain(Id::Free) => {
             Err(format!("{} needs a selection on the screen; a script says set data.free=KEY,...", row.name))
         }
@@ -82,8 +82,10 @@ fn is_of_screen(id: Id) -> bool {
             | Id::Enlarge
             | Id::NextView
             | Id::PreviousView
+            | Id::Go
             | Id::ChooseView
             | Id::Study
+            | Id::Rings
             | Id::ZoomIn
             | Id::ZoomOut
             | Id::Whole
@@ -199,6 +201,11 @@ fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
         Id::Data if !bare => {
             let word = rest.need("a file")?;
             Command::Assign(vec![(data::FILE.into(), word.text.clone())])
+        }
+        Id::Go if !bare => {
+            let word = rest.need("a place")?;
+            let names = Home::ALL.map(Home::name);
+            Command::Go(Home::named(&word.text).ok_or_else(|| unknown(word, "place", &names))?)
         }
         Id::ChooseView if !bare => {
             let word = rest.need("a view")?;

@@ -21,6 +21,7 @@ pub fn line(command: &Command) -> Option<String> {
         Command::Map { x, y } => {
             format!(" {x}{}", y.as_ref().map_or_else(String::new, |y| format!(" {y}")))
         }
+        Command::Go(home) => format!(" {}", home.name()),
         Command::Show(view) => format!(" {}", view.name()),
         Command::Study(column) => format!(" {}", column.name()),
         Command::Overlay(overlay) => format!(" {}", overlay_name(*overlay)),

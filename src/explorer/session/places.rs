@@ -6,7 +6,7 @@ use super::number::Real;
 use super::unreadable::Unreadable;
 use crate::explorer::history::History;
 use crate::explorer::undo::{Place, Undo};
-use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::{Key, Preset};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -15,6 +15,9 @@ use std::sync::Arc;
 pub(super) struct Places {
     past: Vec<Saved>,
     future: Vec<Saved>,
+    /// The value that the last command turned: the next turn of it goes on with that command.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    gesture: Option<String>,
 }
 
 /// A place, its preset and its state by their numbers in the document.
@@ -41,7 +44,8 @@ impl Places {
             });
             saved.collect()
         };
-        Self { past: own(undo.past()), future: own(undo.future()) }
+        let gesture = undo.gesture.as_ref().map(ToString::to_string);
+        Self { past: own(undo.past()), future: own(undo.future()), gesture }
     }
 
     /// The undo of them.
@@ -62,6 +66,8 @@ impl Places {
         };
         let [past, future] = [self.past, self.future]
             .map(|places| places.into_iter().map(place).collect::<Result<Vec<_>, Unreadable>>());
-        Ok(Undo::of(past?, future?))
+        let mut undo = Undo::of(past?, future?);
+        undo.gesture = self.gesture.map(Key::from);
+        Ok(undo)
     }
 }

@@ -74,7 +74,8 @@ impl Look {
 
     /// Gives `model` this look; what cannot be looked at so is left as in a new session.
     fn lay_over(self, model: &mut Model) {
-        (model.panel, model.view, model.axes) = (self.panel, self.view, self.axes);
+        (model.panel, model.axes) = (self.panel, self.axes);
+        model.look_at(self.view);
         (model.overlays, model.inward) = (self.overlays, self.inward);
         (model.event, model.device) = (self.event, self.device);
         model.map_axes = self.map;

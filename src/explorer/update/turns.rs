@@ -5,6 +5,7 @@ use crate::explorer::command::{Command, Id};
 use crate::explorer::effect::Effect;
 use crate::explorer::job::Job;
 use crate::explorer::model::{Awaits, Level, Model};
+use pulloff_engine::preset::Key;
 
 /// Commands that may wait; more key presses than these are a held key.
 const QUEUE: usize = 1000;
@@ -49,6 +50,8 @@ impl Turn {
                 | Id::Double
                 | Id::Undo
                 | Id::Redo
+                | Id::FineLess
+                | Id::FineMore
                 | Id::Less
                 | Id::More
                 | Id::MuchLess
@@ -85,7 +88,9 @@ pub(super) fn is_blocked(model: &Model, command: &Command) -> bool {
 pub(super) fn enqueue(model: &mut Model, command: Command) -> Vec<Effect> {
     let command = match command {
         // A value is turned when its key is pressed: another may be selected when its turn comes.
-        Command::Plain(id @ (Id::Less | Id::More | Id::MuchLess | Id::MuchMore)) => {
+        Command::Plain(
+            id @ (Id::FineLess | Id::FineMore | Id::Less | Id::More | Id::MuchLess | Id::MuchMore),
+        ) => {
             if !is_available(model, id) {
                 model.tell(Level::Error, why_unavailable(model, id));
                 return Vec::new();
@@ -103,8 +108,23 @@ pub(super) fn enqueue(model: &mut Model, command: Command) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Does something that undo can take back.
-pub(super) fn recorded(model: &mut Model, act: impl FnOnce(&mut Model) -> Vec<Effect>) -> Vec<Effect> {
+/// The value that a command turns: turns of one value that follow each other are taken back together.
+pub(super) fn gesture(model: &Model, command: &Command) -> Option<Key> {
+    match command {
+        Command::Turn { key, .. } => Some(key.clone()),
+        Command::Plain(Id::FineLess | Id::FineMore | Id::Less | Id::More | Id::MuchLess | Id::MuchMore) => {
+            model.selected_knob().map(|(row, _)| row.key.clone())
+        }
+        _ => None,
+    }
+}
+
+/// Does something that undo can take back, with the turns of `gesture` before it.
+pub(super) fn recorded(
+    model: &mut Model,
+    gesture: Option<Key>,
+    act: impl FnOnce(&mut Model) -> Vec<Effect>,
+) -> Vec<Effect> {
     let before = model.untried.as_ref().map_or_else(|| model.place(), |untried| untried.place.clone());
     let (session, walking) = (model.session, model.walking.map(|walking| walking.id));
     let effects = act(model);
@@ -114,10 +134,19 @@ pub(super) fn recorded(model: &mut Model, act: impl FnOnce(&mut Model) -> Vec<Ef
     if model.session != session || model.untried.is_some() {
         return effects;
     }
+    let goes_on = gesture.is_some() && model.undo.gesture == gesture;
     if !model.is_at(&before) {
-        model.undo.did(before);
-    } else if model.walking.is_some_and(|now| !now.solves && Some(now.id) != walking) {
-        model.undo.begins(before);
+        if goes_on {
+            model.undo.goes_on();
+        } else {
+            model.undo.did(before);
+        }
+        model.undo.gesture = gesture;
+    } else if !goes_on {
+        model.undo.gesture = None;
+        if model.walking.is_some_and(|now| !now.solves && Some(now.id) != walking) {
+            model.undo.begins(before);
+        }
     }
     effects
 }

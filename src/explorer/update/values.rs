@@ -29,13 +29,15 @@ fn contact_stiffness(model: &Model) -> f64 {
     known.unwrap_or_else(|| model.preset.problem().reduced().units.stiffness)
 }
 
-/// The selected value, or that of `key`, turned by one of the four commands that turn.
+/// The selected value, or that of `key`, turned by one of the commands that turn.
 pub(super) fn turn(model: &mut Model, id: Id, key: Option<&str>) -> Vec<Effect> {
     let (up, amount) = match id {
-        Id::Less => (false, Amount::Fine),
-        Id::More => (true, Amount::Fine),
-        Id::MuchLess => (false, Amount::Coarse),
-        _ => (true, Amount::Coarse),
+        Id::FineLess => (false, Amount::Third),
+        Id::FineMore => (true, Amount::Third),
+        Id::Less => (false, Amount::Second),
+        Id::More => (true, Amount::Second),
+        Id::MuchLess => (false, Amount::First),
+        _ => (true, Amount::First),
     };
     let row = match key {
         Some(key) => model.knobs().into_iter().map(|(row, _)| row).find(|row| row.key == key),

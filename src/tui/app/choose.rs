@@ -4,6 +4,8 @@ use super::state::App;
 use crate::explorer::{Command, Effect, Id, Panel, View, reach};
 use crate::tui::overlay::{Action, Choose, Item, Overlay};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use pulloff_engine::preset::{Row, Value};
+use pulloff_engine::problem::Control;
 use pulloff_engine::sweep::quantity::Under;
 use pulloff_engine::sweep::{Column, QUANTITIES, Quantity};
 
@@ -72,6 +74,35 @@ impl App {
         }
         choose.picture = choose.current().and_then(|(_, item)| self.picture(&item.action));
         self.overlay = Some(Overlay::Choose(choose));
+        Vec::new()
+    }
+
+    /// The words of a value that is one of some.
+    pub(super) fn ask_choice(&mut self, row: &Row, words: &[&str], value: Option<&Value>) -> Vec<Effect> {
+        let set = |word: &str| Action::Command(Command::Set { key: row.key.clone(), text: word.to_owned() });
+        let items = words.iter().map(|word| Item::new(*word, set(word))).collect();
+        let here = words.iter().position(|word| value.is_some_and(|value| value.to_string() == *word));
+        self.choose(&format!("{}: {}", row.label, row.meaning), items, here.unwrap_or(0));
+        Vec::new()
+    }
+
+    /// What the device prescribes; the stiffness of a spring is typed.
+    pub(super) fn ask_control(&mut self, row: &Row, value: Option<Value>) -> Vec<Effect> {
+        let here = match value {
+            Some(Value::Control(Control::Force)) => 1,
+            Some(Value::Control(Control::Stiffness(_))) => 2,
+            _ => 0,
+        };
+        let set = |word: &str| Action::Command(Command::Set { key: row.key.clone(), text: word.to_owned() });
+        let items = vec![
+            Item::new("displacement  fixed grips hold \u{3b4}", set("displacement")),
+            Item::new("force         a dead load holds P", set("force")),
+            Item::new(
+                "stiffness ... a spring holds its far end",
+                Action::Prompt(Box::new(self.value_prompt(row, value))),
+            ),
+        ];
+        self.choose(&format!("{}: {}", row.label, row.meaning), items, here);
         Vec::new()
     }
 

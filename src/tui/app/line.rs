@@ -2,9 +2,11 @@
 
 use super::state::App;
 use crate::explorer::command::ROWS;
+use crate::explorer::data::list;
 use crate::explorer::script::{Completion, complete, parse};
 use crate::explorer::{Command, Effect, Id};
 use crate::tui::overlay::{LONGEST_LINE, Overlay, Prompt, Purpose};
+use crate::tui::view::overlays as prompt;
 use crossterm::event::{Event, KeyCode, KeyEvent};
 use pulloff_engine::text::sanitize;
 use tui_input::Input;
@@ -13,8 +15,10 @@ use tui_input::backend::crossterm::EventHandler;
 /// What stands below an empty line.
 const NOTE: &str = "a command and what it takes; Tab completes, Up and Down bring lines back";
 
-/// The most columns of names that are listed at a time: with what stands behind them they fit a narrow screen.
-const LISTED: usize = 48;
+/// What stands behind names that are listed: how far the list is.
+const BEHIND: usize = " (10 of 10, Tab goes on)".len();
+/// The longest list of names, and the shortest.
+const LISTED: [usize; 2] = [300, 24];
 
 impl App {
     pub(super) fn ask_line(&mut self) -> Vec<Effect> {
@@ -56,7 +60,9 @@ impl App {
         let cursor = prompt.input.cursor();
         let head: String = prompt.input.value().chars().take(cursor).collect();
         let tail: String = prompt.input.value().chars().skip(cursor).collect();
-        let Completion { line, offers } = complete(&head, &self.model.preset, &self.model.preset_names);
+        let files = |folder: &str| self.files(folder);
+        let Completion { line, offers } =
+            complete(&head, &self.model.preset, &self.model.preset_names, &files);
         let cursor = line.chars().count();
         let listed = if line == head { prompt.listed } else { 0 };
         changed(prompt, Input::new(line + &tail).with_cursor(cursor));
@@ -65,9 +71,21 @@ impl App {
             [_] => note(prompt.input.value()),
             offers => {
                 prompt.listed = listed + 1;
-                offered(offers, listed)
+                let room = usize::from(self.screen.width.min(prompt::WIDEST).saturating_sub(4));
+                offered(offers, listed, room.saturating_sub(BEHIND).clamp(LISTED[1], LISTED[0]))
             }
         };
+    }
+
+    /// The folders and files in `folder` that a measured curve may be in, as a line names them.
+    fn files(&self, folder: &str) -> Vec<String> {
+        let own = self.model.preset.data.source.as_ref().and_then(|source| source.folder.clone());
+        let own = own.unwrap_or_else(|| ".".into());
+        let asked = own.join(folder);
+        let Ok(found) = list(Some(&asked), None) else { return Vec::new() };
+        let folders = found.folders.iter().map(|name| format!("{folder}{name}/"));
+        let files = found.files.iter().map(|name| format!("{folder}{name}"));
+        folders.chain(files).collect()
     }
 
     fn obey_line(&mut self, mut prompt: Prompt) -> Vec<Effect> {
@@ -84,7 +102,7 @@ impl App {
                 self.typed.remember(line.trim());
                 self.typed.at = self.typed.lines.len();
                 match command {
-                    Command::Plain(id) => self.act(id, None),
+                    Command::Plain(id) => self.act(id),
                     command => self.open_or_ask(command),
                 }
             }
@@ -95,12 +113,12 @@ impl App {
 }
 
 /// The names that can go on, as many as a line holds; `turn` counts how often they were listed.
-fn offered(offers: &[String], turn: usize) -> String {
+fn offered(offers: &[String], turn: usize, room: usize) -> String {
     let mut pages: Vec<String> = Vec::new();
     for offer in offers {
-        let offer = sanitize(offer, LISTED);
+        let offer = sanitize(offer, room);
         match pages.last_mut() {
-            Some(page) if page.chars().count() + 2 + offer.chars().count() <= LISTED => {
+            Some(page) if page.chars().count() + 2 + offer.chars().count() <= room => {
                 page.push_str("  ");
                 page.push_str(&offer);
             }

@@ -6,6 +6,8 @@
 //! | Charts | the walker goes to the state of the curve there | zooms about the pointer |
 //! | Log | selects; once more goes to the event | selects the one above or below |
 //! | a list | selects; once more takes it | selects the one above or below |
+//! | header | a place is gone to | |
+//! | footer | does what the word says | |
 //!
 //! A place outside of the screen, or of what is drawn, does nothing. A question is answered by keys alone.
 
@@ -16,7 +18,8 @@ use crate::figure::{Subject, map, nearest, study};
 use crate::tui::layout::Regions;
 use crate::tui::overlay::Overlay;
 use crate::tui::terminal::{KeyCode, MouseEvent, MouseEventKind};
-use crate::tui::view::{cells, charts, log, overlays, places, problem, states};
+use crate::tui::view::status::{self, Does};
+use crate::tui::view::{cells, charts, header, log, overlays, places, problem, states};
 use ratatui::layout::{Position, Rect};
 
 /// A click goes to a state of the curve within so many character widths, a row counting twice.
@@ -56,6 +59,12 @@ impl App {
             MouseEventKind::ScrollDown => Some(false),
             _ => None,
         };
+        if up.is_none()
+            && !matches!(self.overlay, Some(Overlay::Confirm(_)))
+            && let Some(effects) = self.click_word(at)
+        {
+            return effects;
+        }
         match (&self.overlay, up) {
             (None, Some(up)) => self.wheel(at, up),
             (None, None) => self.click(at),
@@ -72,6 +81,23 @@ impl App {
             },
             _ => Vec::new(),
         }
+    }
+
+    /// A word of the footer, or a place in the header.
+    fn click_word(&mut self, at: Position) -> Option<Vec<Effect>> {
+        if at.y + 1 == self.screen.bottom() {
+            return Some(match status::word_at(self, self.screen.width, at.x)? {
+                Does::Command(id) => self.act(id),
+                Does::Place(home) => {
+                    self.going = false;
+                    self.run(Command::Go(home))
+                }
+                Does::Key(code) => self.key(code.into()),
+            });
+        }
+        let home = (at.y == self.screen.y && self.overlay.is_none())
+            .then(|| header::place_at(self, self.screen, at.x));
+        home.flatten().map(|home| self.run(Command::Go(home)))
     }
 
     /// Another line of the list that lies over the screen.

@@ -6,7 +6,7 @@ use crate::explorer::branches::are_several;
 use crate::explorer::job::Done;
 use crate::explorer::look::{MIDDLE, NO_ENVELOPE, make_room};
 use crate::explorer::model::{Level, Question};
-use crate::explorer::{Command, Effect, Id, Model, Overlay, Panel, Reply, answer, open, update};
+use crate::explorer::{Command, Effect, Home, Id, Model, Overlay, Panel, Reply, View, answer, open, update};
 use crate::figure::Subject;
 use crate::store::{Listed, Listing, Loaded, Source};
 use crate::tui::keymap::Keymap;
@@ -18,20 +18,15 @@ use crate::tui::theme::Theme;
 use crate::tui::view::help::ABOUT;
 use crate::tui::view::{cells, places};
 use crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
-use pulloff_engine::preset::Value;
 use pulloff_engine::preset::data;
 use pulloff_engine::preset::schema::Kind;
+use pulloff_engine::preset::{Row, Value};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::with_unit;
 use pulloff_engine::text::{sanitize, show_path};
 use pulloff_engine::units::Quantity;
 use ratatui::layout::Rect;
 use tui_input::backend::crossterm::EventHandler;
-
-/// So often at most a command without a number of its own is done for one that was typed before it.
-const REPEATED: usize = 100;
-/// Longest count typed before a command.
-const COUNT: usize = 9999;
 
 /// The question before the deletion of a preset of one's own; what ships with the program stays.
 fn deletion(source: &Source) -> Option<Box<Confirm>> {
@@ -45,8 +40,8 @@ fn deletion(source: &Source) -> Option<Box<Confirm>> {
 pub struct App {
     pub model: Model,
     pub overlay: Option<Over>,
-    /// The number typed before a command.
-    pub count: Option<usize>,
+    /// Whether the next key says to which place to go.
+    pub going: bool,
     pub theme: Theme,
     pub keymap: Keymap,
     pub typed: Typed,
@@ -73,7 +68,7 @@ impl App {
         Self {
             model,
             overlay: None,
-            count: None,
+            going: false,
             theme,
             keymap: Keymap::default(),
             typed: Typed::default(),
@@ -236,6 +231,7 @@ impl App {
             .iter()
             .map(|entry| Item {
                 text: format!("{:<14} {}{}", entry.name, sanitize(&shown(&entry.title), 90), own(entry)),
+                note: entry.comment.clone(),
                 action: Action::Command(Command::Open(entry.name.clone())),
                 delete: deletion(&entry.source),
             })
@@ -251,19 +247,20 @@ impl App {
     }
 
     pub(super) fn command_key(&mut self, key: KeyEvent) -> Vec<Effect> {
-        if let KeyCode::Char(digit @ '0'..='9') = key.code
-            && key.modifiers.is_empty()
-            && (digit != '0' || self.count.is_some())
-        {
-            let value = usize::try_from(u32::from(digit) - u32::from('0')).unwrap_or(0);
-            self.count = Some((self.count.unwrap_or(0) * 10 + value).min(COUNT));
-            return Vec::new();
+        let is_plain = key.modifiers.is_empty();
+        if std::mem::take(&mut self.going) {
+            let letter = |home: &Home| Some(key.code) == home.name().chars().next().map(KeyCode::Char);
+            match Home::ALL.iter().find(|home| letter(home) && is_plain) {
+                Some(home) => return self.run(Command::Go(*home)),
+                None if self.keymap.in_list(key) == Some(Id::Cancel) => return Vec::new(),
+                None => {}
+            }
         }
-        let count = self.count.take();
-        if let (Some(times), Some(id)) = (count, self.keymap.command(key))
-            && is_repeated(id)
+        if let KeyCode::Char(digit @ '1'..='9') = key.code
+            && is_plain
         {
-            return (0..times.clamp(1, REPEATED)).flat_map(|_| self.act(id, None)).collect();
+            let number = usize::try_from(u32::from(digit) - u32::from('0')).unwrap_or(1);
+            return self.run(Command::SelectEvent(number));
         }
         let Some(id) = self.keymap.command(key) else {
             if let Some(effects) = self.page_key(key) {
@@ -273,15 +270,16 @@ impl App {
             self.model.message = Some((Level::Info, text));
             return Vec::new();
         };
-        self.act(id, count)
+        self.act(id)
     }
 
     /// Does a command, or asks for what it takes.
-    pub(super) fn act(&mut self, id: Id, count: Option<usize>) -> Vec<Effect> {
+    pub(super) fn act(&mut self, id: Id) -> Vec<Effect> {
         match id {
-            Id::Step => self.run(Command::Steps(count.unwrap_or(1).max(1))),
-            Id::Undo | Id::Redo if count.is_some() => {
-                self.run(Command::Travel { id, count: count.unwrap_or(1), states: false })
+            Id::Step => self.run(Command::Steps(1)),
+            Id::Go => {
+                (self.going, self.model.message) = (true, None);
+                Vec::new()
             }
             Id::Help => {
                 self.overlay = Some(Over::Help(Help::default()));
@@ -326,6 +324,13 @@ impl App {
             }
             Id::NextPanel | Id::PreviousPanel => self.next_panel(id == Id::NextPanel),
             Id::Up | Id::Down if self.model.panel == Panel::Problem => self.value_beside(id == Id::Down),
+            Id::Edit if self.model.panel == Panel::Charts && self.model.cross.is_none() => {
+                match self.model.view {
+                    View::Study => self.ask_study(),
+                    View::Map => self.run(Id::Map.into()),
+                    _ => self.run(Id::Edit.into()),
+                }
+            }
             Id::Edit if self.model.panel == Panel::Charts => self.go_to_cross_hair(),
             Id::Edit if self.model.panel == Panel::Problem => self.ask_value(),
             id => self.run(id.into()),
@@ -409,8 +414,16 @@ impl App {
             ("gap.shape", Kind::Choice(words)) => return self.ask_shape(words),
             ("gap.formula", _) => return self.ask_formula(row.key.clone(), value),
             (_, Kind::File | Kind::Points) => return self.browse(row.key.clone()),
+            (_, Kind::Choice(words)) => return self.ask_choice(&row, words, value.as_ref()),
+            (_, Kind::Control) => return self.ask_control(&row, value),
             _ => {}
         }
+        self.overlay = Some(Over::Prompt(self.value_prompt(&row, value)));
+        Vec::new()
+    }
+
+    /// Asks for the text of a value.
+    pub(super) fn value_prompt(&self, row: &Row, value: Option<Value>) -> Prompt {
         let units = &self.model.preset.units;
         let text = value.map_or_else(String::new, |value| match value {
             // With its unit, which holds for a bare number typed instead of it too.
@@ -427,7 +440,8 @@ impl App {
             Some(unit) => format!("a value with a unit; a bare number counts in {}", unit.ascii()),
             None => row.allowed(),
         };
-        self.prompt(&format!("{}: {}", row.label, row.meaning), &note, text, Purpose::Value(row.key.clone()))
+        let title = format!("{}: {}", row.label, row.meaning);
+        Prompt::new(title, &note, text, Purpose::Value(row.key.clone()))
     }
 
     pub(super) fn prompt(&mut self, title: &str, note: &str, text: String, purpose: Purpose) -> Vec<Effect> {
@@ -500,27 +514,4 @@ impl App {
             }
         }
     }
-}
-
-/// Whether a number before a command means that it is done so often.
-fn is_repeated(id: Id) -> bool {
-    matches!(
-        id,
-        Id::NextEvent
-            | Id::Jump
-            | Id::Less
-            | Id::More
-            | Id::MuchLess
-            | Id::MuchMore
-            | Id::Halve
-            | Id::Double
-            | Id::Up
-            | Id::Down
-            | Id::Left
-            | Id::Right
-            | Id::NextView
-            | Id::PreviousView
-            | Id::ZoomIn
-            | Id::ZoomOut
-    )
 }

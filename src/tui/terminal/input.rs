@@ -107,6 +107,9 @@ impl<T: Send + 'static> Inbox<T> {
     }
 
     /// What stands for the thread that reads the terminal in a test.
+    ///
+    /// # Panics
+    /// Where nobody reads any more.
     #[cfg(test)]
     pub fn typist(&self) -> impl Fn(Incoming<T>) + Send + 'static {
         let sender = self.sender.clone();

@@ -2,7 +2,7 @@
 
 use super::parts::fitted;
 use crate::explorer::pins::changes;
-use crate::explorer::{Axes, Model};
+use crate::explorer::{Axes, Home, Id, Model};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use pulloff_engine::problem::Control;
@@ -21,8 +21,8 @@ fn stiffness_share(model: &Model) -> Option<f64> {
     Some(k / node.stiffness.in_units(node.setting.units()).contact)
 }
 
-/// Draws the first line.
-pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
+/// What there is, what is held, what is under way.
+fn heading(app: &App, warnings: &[String]) -> Vec<Span<'static>> {
     let (model, theme) = (&app.model, app.theme);
     let name = match &model.source {
         crate::store::Source::File(path) => {
@@ -53,8 +53,6 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
             theme.dim(),
         ));
     }
-    let warnings = model.curve.iter().flat_map(|curve| &curve.base.warnings);
-    let warnings: Vec<String> = warnings.map(|text| theme.text(text)).collect();
     // What is under way and a warning need the room more than what the Problem panel says as well.
     if let (Some(count), true) = (model.preset.get("basis.rings"), warnings.is_empty() && app.late.is_none())
     {
@@ -71,15 +69,72 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         let text = theme.text(&app.keymap.spelled(&beside.text()));
         spans.push(Span::styled(format!("  {text}"), theme.key().add_modifier(Modifier::BOLD)));
     }
-    let used: usize = spans.iter().map(Span::width).sum();
-    let room = usize::from(area.width).saturating_sub(used + 2);
+    spans
+}
+
+fn width(spans: &[Span<'_>]) -> usize {
+    spans.iter().map(Span::width).sum()
+}
+
+fn warnings(app: &App) -> Vec<String> {
+    let warnings = app.model.curve.iter().flat_map(|curve| &curve.base.warnings);
+    warnings.map(|text| app.theme.text(text)).collect()
+}
+
+/// Whether there is room for the places: what is under way, and a warning, need it more.
+fn has_places(app: &App, room: u16) -> bool {
+    let warnings = warnings(app);
+    let warning = warnings.first().map_or(0, |first| first.chars().count() + "  !  +9 ?: all".len());
+    usize::from(room) > width(&heading(app, &warnings)) + width(&places(app)) + warning
+}
+
+/// Draws the first line.
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
+    let theme = app.theme;
+    let warnings = warnings(app);
+    let mut spans = heading(app, &warnings);
+    let (places, has_places) = (places(app), has_places(app, area.width));
+    let taken = width(&spans) + if has_places { width(&places) } else { 0 };
+    let room = usize::from(area.width).saturating_sub(taken + 2);
     if let Some(text) = warned(&app.keymap, &warnings, room) {
         spans.push(Span::styled(format!("  {text}"), theme.error()));
     } else {
-        let text = theme.whole_words(&theme.text(&said(model)), room);
+        let text = theme.whole_words(&theme.text(&said(&app.model)), room);
         spans.push(Span::styled(format!("  {text}"), theme.dim()));
     }
     frame.render_widget(Line::from(spans), area);
+    if has_places {
+        let at = area.right().saturating_sub(u16::try_from(width(&places)).unwrap_or(u16::MAX));
+        frame.render_widget(Line::from(places), Rect { x: at, width: area.right() - at, ..area });
+    }
+}
+
+/// The place whose name stands at this column of the header.
+pub fn place_at(app: &App, area: Rect, column: u16) -> Option<Home> {
+    // The key stands behind them.
+    let key = places(app).last()?.width();
+    let mut right = usize::from(area.width).checked_sub(key).filter(|_| has_places(app, area.width))?;
+    Home::ALL.into_iter().rev().find(|home| {
+        let from = right.saturating_sub(home.name().len());
+        let is_it = (from..right).contains(&usize::from(column));
+        right = from.saturating_sub(2);
+        is_it
+    })
+}
+
+/// The four places, the one that is looked at in capitals, and the key that goes to another.
+fn places(app: &App) -> Vec<Span<'static>> {
+    let theme = app.theme;
+    let here = app.model.view.home();
+    let name = |home: Home| {
+        if home == here {
+            Span::styled(format!("  {}", home.name().to_uppercase()), theme.strong())
+        } else {
+            Span::styled(format!("  {}", home.name()), theme.dim())
+        }
+    };
+    let key = Span::styled(format!("  {} ", app.keymap.first(Id::Go)), theme.key());
+    Home::ALL.into_iter().map(name).chain([key]).collect()
 }
 
 /// What there is to read of the preset, the first that there is: what was changed since it was read, what it says, its title.

@@ -3,7 +3,7 @@
 use super::parts::panel;
 use crate::explorer::command::ROWS;
 use crate::explorer::pins::changes;
-use crate::explorer::{Model, View};
+use crate::explorer::{Home, Id, Model};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use crate::tui::overlay::Help;
@@ -20,7 +20,7 @@ const FIRST_STEPS: &[&str] = &[
     "\u{1}next-event\u{1} again lets it happen, and the energy lost is said; so on, down to the last contact. \u{1}step\u{1} follows the equilibrium instead, past limit points too. \u{1}undo\u{1} takes the last command back, whatever it was.",
     "Select A with the arrow keys and press \u{1}more\u{1} a few times: the curve follows. \u{1}edit\u{1} types a value, with its unit where the preset has units.",
     "\u{1}pin\u{1} keeps the curve to compare the next ones with; \u{1}control\u{1} holds the force, or a spring, instead of the displacement.",
-    "\u{1}next-view\u{1} shows the pressure, the gap, the energy; \u{1}cross-hair\u{1} reads numbers off the chart.",
+    "\u{1}go\u{1} and i shows the inside of the state: gap, pressure, energy; \u{1}go\u{1} and m how it depends on the values; \u{1}next-view\u{1} is the next chart; \u{1}cross-hair\u{1} reads numbers off it.",
     "\u{1}save-as\u{1} keeps the preset under a name of yours, \u{1}export\u{1} writes curve, walk, events or a figure, and \u{1}open\u{1} lists the presets. A session is kept without asking: pulloff --resume goes on with it.",
 ];
 
@@ -33,8 +33,7 @@ const READING: &[&str] = &[
     "States that cannot be have the colour of a warning, or ! without colours: outside the disc the next crest would \
      touch. They stand behind the events. \
      The real path has rings of contact there: its loop is drawn too, loading and unloading in colours of their own; with begin = apart it is the path.",
-    "Views follow each other with \u{1}next-view\u{1}: three of the curve, then the pressure in the disc, the gap \
-     outside it and the potential over the radius at the walker's state, and the unloading with its losses shaded. \
+    "\u{1}go\u{1} and a letter leads to one of four places, \u{1}next-view\u{1} through the charts there. \
      In the potential m and M are its stable and unstable states, B the barrier before the edge lets go; ^ marks the \
      crests.",
     "What was walked is bright; a jump and what branches off are broken lines. Without colours, letters along the lines \
@@ -70,6 +69,7 @@ const SHORT: &[(&str, &str)] = &[
         "spring",
         "soft ones snap earlier; none is stiffer than DISPLACEMENT: what snaps there snaps with all of them, alone or within a larger jump",
     ),
+    ("W", "beside a pin: the energy lost"),
     ("lost 3e-4", "energy lost in jumps; with a + behind it, a jump without bound comes on top"),
     ("no bound", "a dead load falls for ever: what is lost at the last contact has no end"),
     ("by area agrees", "the same loss as the area between the curve and the way of the device"),
@@ -163,11 +163,17 @@ fn reading(app: &App) -> Vec<HelpLine> {
         let label = format!("  {:<1$}", theme.text(short), MEANING - 2);
         HelpLine::new(&label, theme.text(text), Style::new())
     }));
-    section(&mut entries, theme, "Views");
-    entries.extend(View::ALL.map(|view| {
-        let label = format!("  {:<1$}", view.name(), MEANING - 2);
-        HelpLine::new(&label, theme.text(view.meaning()), Style::new())
-    }));
+    for home in Home::ALL {
+        section(
+            &mut entries,
+            theme,
+            &format!("{} {}: {}", keymap.first(Id::Go), home.name(), home.question()),
+        );
+        entries.extend(home.views().iter().map(|view| {
+            let label = format!("  {:<1$}", view.name(), MEANING - 2);
+            HelpLine::new(&label, theme.text(view.meaning()), Style::new())
+        }));
+    }
     section(&mut entries, theme, "The chart");
     entries.extend(READING.iter().map(|text| spelled(app, text)));
     entries

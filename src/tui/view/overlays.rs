@@ -12,6 +12,8 @@ use ratatui::layout::{Margin, Position, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::{Clear, Paragraph, Wrap};
 
+/// The widest prompt or list.
+pub const WIDEST: u16 = 160;
 /// A list beside a picture is so wide,
 const LIST: u16 = 46;
 /// the picture at least so wide,
@@ -46,9 +48,9 @@ fn lower(area: Rect, width: u16, height: u16) -> Rect {
 fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: Theme, prompt: &Prompt) {
     let place = if matches!(prompt.purpose, Purpose::Formula(_) | Purpose::Line) { lower } else { middle };
     // A long reason takes as many lines as it needs at this width.
-    let wide = usize::from(area.width.saturating_sub(4).clamp(1, 74));
+    let wide = usize::from(area.width.saturating_sub(4).clamp(1, WIDEST - 2));
     let lines = prompt.error.as_ref().map_or(0, |error| error.chars().count().div_ceil(wide) + 1);
-    let area = place(area, 76, u16::try_from(lines).unwrap_or(u16::MAX).saturating_add(5));
+    let area = place(area, WIDEST, u16::try_from(lines).unwrap_or(u16::MAX).saturating_add(5));
     let block = panel(theme, &prompt.title, true);
     let inner = block.inner(area);
     frame.render_widget(Clear, area);
@@ -80,8 +82,12 @@ fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: Theme, prompt: &Prompt)
 }
 
 fn place_of(choose: &Choose, area: Rect) -> Rect {
-    let height = u16::try_from(choose.items.len() + 2).unwrap_or(u16::MAX);
-    let (width, height) = if choose.picture.is_some() { (110, height.max(PICTURE)) } else { (76, height) };
+    let height = u16::try_from(choose.items.len() + 2 + usize::from(choose.has_notes())).unwrap_or(u16::MAX);
+    // As wide as its longest line and its title, where the screen is.
+    let longest = choose.items.iter().map(|item| item.text.chars().count()).max().unwrap_or(0);
+    let longest = u16::try_from(longest + 4).unwrap_or(WIDEST).clamp(76, WIDEST);
+    let (width, height) =
+        if choose.picture.is_some() { (110, height.max(PICTURE)) } else { (longest, height) };
     middle(area, width, height)
 }
 
@@ -92,7 +98,8 @@ fn first(choose: &Choose, rows: usize) -> usize {
 
 /// The line of a list at this place of the screen.
 pub fn line_at(choose: &Choose, area: Rect, at: Position) -> Option<usize> {
-    let inner = place_of(choose, area).inner(Margin::new(1, 1));
+    let mut inner = place_of(choose, area).inner(Margin::new(1, 1));
+    inner.height = inner.height.saturating_sub(u16::from(choose.has_notes()));
     let line = first(choose, usize::from(inner.height)) + usize::from(at.y.checked_sub(inner.y)?);
     (inner.contains(at) && line < choose.shown().len()).then_some(line)
 }
@@ -117,6 +124,13 @@ fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose)
         charts::chart(figure, View::Gap, &Window::WHOLE, theme).draw(frame, beside, false);
         inner.width = LIST;
     }
+    if choose.has_notes() && inner.height > 1 {
+        let note = choose.current().map_or("", |(_, item)| &*item.note);
+        let below = Rect { y: inner.bottom() - 1, height: 1, ..inner };
+        let text = theme.whole_words(&theme.text(&format!("  {note}")), usize::from(inner.width));
+        frame.render_widget(Line::styled(text, theme.dim()), below);
+        inner.height -= 1;
+    }
     let rows = usize::from(inner.height);
     let first = first(choose, rows);
     let shown = choose.shown();
@@ -128,7 +142,8 @@ fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose)
         .map(|(i, (_, item))| {
             let chosen = i == choose.selected;
             let mark = if chosen { '>' } else { ' ' };
-            let text = format!("{mark} {}", theme.text(&item.text));
+            let text =
+                theme.whole_words(&format!("{mark} {}", theme.text(&item.text)), usize::from(inner.width));
             if chosen { Line::styled(text, theme.selection()) } else { Line::raw(text) }
         })
         .collect();

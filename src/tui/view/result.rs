@@ -1,7 +1,8 @@
-//! What comes of the path: A, B, the last contact, the snaps and what they lose.
+//! What comes of the path: A, B, the last contact, the snaps and what they lose; with a pin, its numbers beside them.
 
 use super::log::snaps;
 use super::parts::{is_selected, pair, panel};
+use crate::explorer::pins::Pin;
 use crate::explorer::{Model, Panel, View};
 use crate::figure::Scale;
 use crate::tui::app::App;
@@ -21,9 +22,11 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let block = panel(theme, "Result", is_selected(app, Panel::Result));
     let inner = block.inner(area);
     frame.render_widget(block, area);
-    let lines = match model.path() {
-        Some(path) => lines(theme, model, path),
-        None => vec![Line::styled(" no path yet", theme.dim())],
+    let pinned = model.pins.all().last().and_then(|pin| Some((pin, pin.curve.report.as_ref()?)));
+    let lines = match (model.path(), pinned) {
+        (Some(path), Some(pinned)) => beside(theme, model, path, pinned),
+        (Some(path), None) => lines(theme, model, path),
+        (None, _) => vec![Line::styled(" no path yet", theme.dim())],
     };
     frame.render_widget(Paragraph::new(lines), inner);
 }
@@ -61,4 +64,78 @@ fn lines(theme: Theme, model: &Model, path: &PathReport) -> Vec<Line<'static>> {
     lines.push(head(" ", pair(theme, "snaps ", &format!("{}", snaps(path)))));
     lines.push(head(" ", pair(theme, "lost ", &format!("{lost}{fall}"))));
     lines
+}
+
+/// The cells of a name.
+const NAME: usize = 4;
+/// The columns beside it: now, the pin, and the change from the pin in per cent.
+const COLUMNS: [usize; 3] = [8, 8, 7];
+
+/// The same numbers as columns, beside those of the newest pin.
+fn beside(
+    theme: Theme,
+    model: &Model,
+    path: &PathReport,
+    (pin, other): (&Pin, &PathReport),
+) -> Vec<Line<'static>> {
+    let Some(curve) = model.curve.as_deref() else { return Vec::new() };
+    let scales = [Scale::of(curve, model.axes), Scale::of(&pin.curve, model.axes)];
+    let [now_width, pin_width, change_width] = COLUMNS;
+    let head = |name: String, now: &str, pin: &str, change: &str| {
+        // A long name takes its room from a short value.
+        let now_width = (NAME + now_width).saturating_sub(name.chars().count().max(NAME));
+        Line::from(vec![
+            Span::styled(theme.text(&format!("{name:<NAME$}")), theme.dim()),
+            Span::raw(format!("{now:>now_width$}")),
+            Span::styled(format!("{pin:>pin_width$}"), theme.dim()),
+            Span::styled(format!("{change:>change_width$}"), theme.strong()),
+        ])
+    };
+    let row = |name: &str, values: [Option<f64>; 2]| {
+        let [now, pin] = values.map(|x| x.map_or_else(|| "none".to_owned(), cell));
+        let change = match values {
+            [Some(now), Some(was)] if was != 0.0 => change(now, was),
+            _ => String::new(),
+        };
+        head(format!(" {name}"), &now, &pin, &change)
+    };
+    let mut lines = vec![head(String::new(), "now", &format!("pin {}", pin.number), "change")];
+    let totals = [&path.totals, &other.totals];
+    let states = [
+        ("A", totals.map(|totals| totals.largest_pull.as_ref())),
+        ("B", totals.map(|totals| totals.farthest.as_ref())),
+    ];
+    for (name, [now, was]) in states {
+        let both = |value: &dyn Fn(&Scale, &StateReport) -> f64| {
+            [now.map(|at| value(&scales[0], at)), was.map(|at| value(&scales[1], at))]
+        };
+        lines.push(row(&format!("{name} P"), both(&|scale, at| scale.force(at.force))));
+        lines.push(row("  \u{3b4}", both(&|scale, at| scale.length(at.approach))));
+        lines.push(row("  s", both(&|scale, at| scale.radius(at.contact_radius))));
+    }
+    #[expect(clippy::cast_precision_loss)]
+    let counts = [path, other].map(|path| Some(snaps(path) as f64));
+    lines.push(row("snaps", counts));
+    let units = &model.preset.units;
+    let lost = totals.map(|totals| totals.dissipated.unwrap_or(totals.dissipated_before_last_contact));
+    lines.push(row("W", lost.map(|lost| Some(units.shown(Quantity::Energy, lost).number))));
+    lines
+}
+
+/// Three digits of a number, with an exponent where they do not fit a column.
+fn cell(x: f64) -> String {
+    let plain = if x.fract() == 0.0 && x.abs() < 1e6 { format!("{x}") } else { significant(x, 3) };
+    let [width, ..] = COLUMNS;
+    if plain.chars().count() < width { plain } else { format!("{x:.2e}") }
+}
+
+/// By how much of the former value it has changed, in per cent.
+fn change(now: f64, was: f64) -> String {
+    let percent = 100.0 * (now - was) / was.abs();
+    match percent.abs() {
+        x if x > 0.0 && x < 0.05 => format!("{percent:+.0e}%"),
+        0.0..10.0 => format!("{percent:+.1}%"),
+        10.0..1000.0 => format!("{percent:+.0}%"),
+        _ => format!("x{}", significant(now / was, 2)),
+    }
 }

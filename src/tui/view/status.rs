@@ -2,40 +2,62 @@
 
 use super::legend::reading;
 use super::parts::fitted;
-use crate::explorer::Id;
 use crate::explorer::availability::is_available;
 use crate::explorer::command::row_of;
 use crate::explorer::model::Level;
+use crate::explorer::{Home, Id, Panel, View};
 use crate::tui::app::App;
 use crate::tui::overlay::Overlay;
+use crossterm::event::KeyCode;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
-/// The commands of the footer, the most wanted first; as many as fit are shown.
-const FOOTER: &[Id] = &[
-    Id::Step,
-    Id::NextEvent,
-    Id::Jump,
-    Id::Reverse,
-    Id::Undo,
-    Id::Help,
-    Id::Quit,
-    Id::NextPanel,
-    Id::NextView,
-    Id::More,
-    Id::Control,
-    Id::Edit,
-    Id::Save,
-    Id::Open,
-    Id::ZoomIn,
-    Id::Axes,
-    Id::Export,
-    Id::Run,
-    Id::Restart,
-    Id::About,
-    Id::CommandLine,
-];
+/// What the footer offers, the most wanted first, as many as fit: what goes on everywhere, what the selected panel has, the rest.
+fn offered(app: &App) -> Vec<(Id, &'static str)> {
+    let word = |id: Id| (id, row_of(id).short);
+    let walk = [Id::Step, Id::NextEvent, Id::Jump, Id::Reverse, Id::Undo].map(word);
+    let model = &app.model;
+    let own: &[(Id, &str)] = match (model.panel, model.view) {
+        (Panel::Problem, _) if model.preset.data.source.is_some() => &[
+            (Id::Less, "less"),
+            (Id::More, "more"),
+            (Id::Edit, "type"),
+            (Id::Free, "free"),
+            (Id::Fit, "fit"),
+        ],
+        (Panel::Problem, _) => &[(Id::Less, "less"), (Id::More, "more"), (Id::Edit, "type")],
+        (Panel::Log, _) => &[(Id::Edit, "go there")],
+        (Panel::Charts, view) if view.is_table() => &[(Id::Edit, "go there")],
+        (Panel::Charts, _) if model.cross.is_some() => &[(Id::Edit, "go there"), (Id::CrossHair, "off")],
+        (Panel::Charts, View::Study) => &[(Id::Edit, "quantity"), (Id::CrossHair, "cross-hair")],
+        (Panel::Charts, View::Map) => &[(Id::Edit, "axes"), (Id::CrossHair, "cross-hair")],
+        (Panel::Charts, _) => {
+            &[(Id::CrossHair, "cross-hair"), (Id::ZoomIn, "closer"), (Id::ZoomOut, "wider")]
+        }
+        (Panel::Here | Panel::Result, _) => &[],
+    };
+    let rest = [
+        Id::Help,
+        Id::Quit,
+        Id::Go,
+        Id::NextView,
+        Id::NextPanel,
+        Id::CommandLine,
+        Id::Save,
+        Id::Open,
+        Id::Pin,
+        Id::Export,
+        Id::Control,
+        Id::Axes,
+        Id::Rings,
+        Id::Enlarge,
+        Id::Restart,
+        Id::Run,
+        Id::About,
+    ];
+    walk.into_iter().chain(own.iter().copied()).chain(rest.map(word)).collect()
+}
 
 /// Draws the status line and the footer.
 pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
@@ -46,44 +68,90 @@ pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
     let (level, text) = reading.map_or_else(|| app.model.status(), |text| (Level::Info, text));
     let text = app.keymap.spelled(&text);
     let style = if level.is_bad() { theme.error() } else { ratatui::style::Style::new() };
-    let count = app.count.map_or_else(|| " ".to_owned(), |count| format!(" {count} "));
-    let room = usize::from(status.width).saturating_sub(count.len());
+    let room = usize::from(status.width).saturating_sub(1);
     // The help has the status whole, and can be opened while nothing else is open.
     let text = match theme.text(&text) {
         text if app.overlay.is_some() || is_reading => text,
         text => fitted(&app.keymap, &text, "", room),
     };
-    let line = Line::from(vec![Span::styled(count, theme.key()), Span::styled(text, style)]);
+    let line = Line::styled(format!(" {text}"), style);
     frame.render_widget(line, status);
 
     let mut spans = vec![Span::raw(" ")];
-    let mut used = 1;
-    let ids: Vec<Id> = match &app.overlay {
-        Some(Overlay::Prompt(_) | Overlay::Offer(_)) => vec![Id::Edit, Id::Cancel],
-        Some(Overlay::Choose(_) | Overlay::Help(_)) => vec![Id::Up, Id::Down, Id::Edit, Id::Cancel],
-        Some(Overlay::Confirm(_)) => {
-            spans.extend([Span::styled("y", theme.key()), Span::raw(" yes  ")]);
-            vec![Id::Cancel]
-        }
-        None => FOOTER.to_vec(),
-    };
-    for id in ids {
-        let row = row_of(id);
-        if app.overlay.is_none() && !is_available(&app.model, row.id) {
-            continue;
-        }
-        let key = app.keymap.first(id);
-        let word = match (id, &app.overlay) {
-            (Id::Edit, Some(_)) => "accept",
-            _ => row.short,
-        };
-        let width = key.chars().count() + word.chars().count() + 3;
-        if used + width > usize::from(footer.width) + 2 {
-            break;
-        }
-        used += width;
-        spans.push(Span::styled(key, theme.key()));
-        spans.push(Span::raw(format!(" {word}  ")));
+    for word in words(app, footer.width) {
+        spans.push(Span::styled(word.key, theme.key()));
+        spans.push(Span::raw(format!(" {}  ", word.text)));
     }
     frame.render_widget(Line::from(spans), footer);
+}
+
+/// What a word of the footer does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Does {
+    Command(Id),
+    Place(Home),
+    /// What a key does in what lies over the screen.
+    Key(KeyCode),
+}
+
+/// A key of the footer and what it does in a word.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Word {
+    pub key: String,
+    pub text: &'static str,
+    pub does: Does,
+}
+
+impl Word {
+    /// Its columns, with a blank between and two behind.
+    fn width(&self) -> usize {
+        self.key.chars().count() + self.text.chars().count() + 3
+    }
+}
+
+/// The words of the footer that fit into `width`.
+fn words(app: &App, width: u16) -> Vec<Word> {
+    let key = |id: Id| app.keymap.first(id);
+    let command = |(id, text): (Id, &'static str)| Word { key: key(id), text, does: Does::Command(id) };
+    let in_list =
+        |(id, text, code): (Id, &'static str, KeyCode)| Word { key: key(id), text, does: Does::Key(code) };
+    let (accept, back) = ((Id::Edit, "accept", KeyCode::Enter), (Id::Cancel, "back", KeyCode::Esc));
+    let all: Vec<Word> = match &app.overlay {
+        None if app.going => {
+            let place = |home: Home| Word {
+                key: home.name().chars().take(1).collect(),
+                text: home.name(),
+                does: Does::Place(home),
+            };
+            Home::ALL.into_iter().map(place).chain([in_list(back)]).collect()
+        }
+        None => {
+            offered(app).into_iter().filter(|(id, _)| is_available(&app.model, *id)).map(command).collect()
+        }
+        Some(Overlay::Prompt(_) | Overlay::Offer(_)) => [accept, back].map(in_list).to_vec(),
+        Some(Overlay::Choose(_) | Overlay::Help(_)) => {
+            let through = [(Id::Up, "up", KeyCode::Up), (Id::Down, "down", KeyCode::Down)];
+            through.into_iter().chain([accept, back]).map(in_list).collect()
+        }
+        Some(Overlay::Confirm(_)) => {
+            let yes = Word { key: "y".to_owned(), text: "yes", does: Does::Key(KeyCode::Char('y')) };
+            vec![yes, in_list(back)]
+        }
+    };
+    let mut used = 1;
+    let fits = |word: &Word| {
+        used += word.width();
+        used <= usize::from(width) + 2
+    };
+    all.into_iter().take_while(fits).collect()
+}
+
+/// What the word at this column of the footer does.
+pub fn word_at(app: &App, width: u16, column: u16) -> Option<Does> {
+    let mut left = 1;
+    words(app, width).into_iter().find_map(|word| {
+        let is_it = (left..left + word.width() - 2).contains(&usize::from(column));
+        left += word.width();
+        is_it.then_some(word.does)
+    })
 }

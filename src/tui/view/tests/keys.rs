@@ -2,9 +2,10 @@
 
 use super::Screen;
 use crate::config::read;
-use crate::explorer::Id;
+use crate::explorer::{Id, Panel, View};
 use crate::tui::keymap::Keymap;
 use crossterm::event::KeyCode;
+use pulloff_engine::problem::Control;
 
 fn bind(screen: &mut Screen, keys: &str) {
     screen.app.keymap = Keymap::of(&read("c", &format!("[keys]\n{keys}")).unwrap()).unwrap();
@@ -67,19 +68,88 @@ fn what_was_refused_in_a_prompt_names_keys_too() {
 }
 
 #[test]
-fn a_number_before_a_command_does_it_so_often() {
-    let state = |keys: &str| {
+fn turns_of_one_value_are_taken_back_together() {
+    let amplitude = |keys: &str| {
         let mut screen = Screen::new("wavy-sphere");
         screen.keys(keys);
-        let node = screen.app.model.history.current().unwrap();
-        let preset = &screen.app.model.preset;
-        // Solved once for each value or for the last alone: the same to rounding.
-        (format!("{:.9}", node.state.contact_radius), preset.get("gap.amplitude"))
+        screen.app.model.preset.get("gap.amplitude").unwrap().to_string()
     };
-    assert_eq!(state("3n"), state("nnn"));
-    assert_eq!(state("n2xn"), state("nxxn"));
-    assert_eq!(state("4>2n"), state(">>>>nn"));
-    assert_ne!(state("3n"), state("n"));
-    // Each is a command of its own to undo.
-    assert_eq!(state("3>u"), state(">>"));
+    for (keys, value) in [
+        (">>>", "0.0028"),
+        (">>>u", "0.0025"),
+        // What lies between parts them: a step, another value.
+        (">> >u", "0.0027"),
+        (">>l>hu", "0.0027"),
+        (">>l>h>u", "0.0027"),
+        (">u>>u", "0.0025"),
+        ("}}<,,u", "0.0025"),
+        ("}}<,,", "0.00388"),
+    ] {
+        assert_eq!(amplitude(keys), value, "{keys}");
+    }
+}
+
+#[test]
+fn the_footer_offers_what_the_selected_panel_has_and_g_the_places() {
+    let mut screen = Screen::new("wavy-sphere");
+    let footer = |screen: &Screen| screen.text(160, 45).lines().last().unwrap().to_owned();
+    assert!(footer(&screen).contains("< less  > more  Enter type"), "{}", footer(&screen));
+    screen.app.model.panel = Panel::Log;
+    assert!(footer(&screen).contains("Enter go there") && !footer(&screen).contains("more"));
+    screen.app.model.panel = Panel::Charts;
+    assert!(footer(&screen).contains("i cross-hair"), "{}", footer(&screen));
+    screen.keys("gm");
+    assert!(footer(&screen).contains("Enter quantity"), "{}", footer(&screen));
+    assert!(screen.text(160, 45).lines().next().unwrap().contains("curve  inside  MAP  data  g"));
+    screen.keys("g");
+    assert!(
+        footer(&screen).starts_with(" c curve  i inside  m map  d data  Esc back"),
+        "{}",
+        footer(&screen)
+    );
+    // Any other key does what it does, and Escape nothing.
+    screen.keys("n");
+    assert!(footer(&screen).contains("x jump"));
+    screen.keys("g\x1b");
+    assert_eq!(screen.app.model.view, View::Study);
+}
+
+#[test]
+fn choices_are_lists() {
+    let mut screen = Screen::new("wavy-sphere");
+    let select = |screen: &mut Screen, key: &str| {
+        let at = screen.app.model.knobs().iter().position(|(row, _)| row.key == key).unwrap();
+        screen.app.model.parameter = at;
+    };
+    select(&mut screen, "path.begin");
+    screen.keys("\r");
+    let text = screen.text(80, 24);
+    for word in ["> disc", "touch"] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    screen.keys("touch\r");
+    assert_eq!(screen.app.model.preset.get("path.begin").unwrap().to_string(), "touch");
+    // A spring is chosen, and its stiffness typed.
+    select(&mut screen, "path.control");
+    screen.keys("\rjj\r0.3\r");
+    assert_eq!(screen.app.model.preset.path.control, Control::Stiffness(0.3));
+    screen.keys("\rkk\r");
+    assert_eq!(screen.app.model.preset.path.control, Control::Displacement);
+}
+
+#[test]
+fn a_pin_has_a_column_in_result_and_the_change_in_per_cent() {
+    let mut screen = Screen::new("wavy-sphere");
+    assert!(!screen.text(120, 40).contains("change"));
+    screen.keys("p");
+    let text = screen.text(120, 40);
+    assert!(text.contains("now   pin 1 change"), "{text}");
+    assert!(text.contains("+0.0%"), "{text}");
+    screen.keys(":set gap.amplitude=0.003\r");
+    let text = screen.text(120, 40);
+    let row = text.lines().find(|line| line.contains("A P ")).unwrap();
+    let cells: Vec<&str> = row.split('│').nth(1).unwrap().split_whitespace().collect();
+    let [now, pin, change] = [2, 3, 4].map(|at| cells[at].trim_end_matches('%').parse::<f64>().unwrap());
+    assert!((100.0 * (now - pin) / pin.abs() - change).abs() < 0.4, "{row}");
+    assert!(pin.abs() < now.abs() && change < 0.0, "a larger pull: {row}");
 }

@@ -10,8 +10,8 @@ use ratatui::layout::Rect;
 use ratatui::style::Color;
 use std::collections::{HashMap, HashSet};
 
-const PALETTES: [Palette; 5] =
-    [Palette::Dark, Palette::Light, Palette::Mono, Palette::FewDark, Palette::FewLight];
+const PALETTES: [Palette; 6] =
+    [Palette::Any, Palette::Dark, Palette::Light, Palette::Mono, Palette::FewDark, Palette::FewLight];
 
 fn themes() -> Vec<Theme> {
     let looks =
@@ -108,7 +108,8 @@ fn every_theme_draws_every_view_and_mono_has_no_colour() {
     let mut screen = full("wavy-sphere");
     for theme in themes() {
         screen.app.theme = theme;
-        for _ in View::ALL {
+        for view in View::ALL {
+            screen.keys(&format!(":view {}\r", view.name()));
             for (width, height) in [(80, 24), (200, 60)] {
                 let buffer = screen.draw(width, height);
                 for cell in buffer.content() {
@@ -129,7 +130,6 @@ fn every_theme_draws_every_view_and_mono_has_no_colour() {
                 let drawn = buffer.content().iter().filter(|cell| cell.symbol() != " ").count();
                 assert!(drawn > 500, "{theme:?}");
             }
-            screen.keys("t");
         }
     }
 }

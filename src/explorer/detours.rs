@@ -1,0 +1,142 @@
+//! Lines of a session without the walks that were taken back: what nothing goes back to leaves nothing.
+//!
+//! A line that made so many states and the undo of as many states belong together; steps are shortened. Where a later line does
+//! again what was taken back, or goes to a state by its numbers, all lines stay, for what was left may be what it needs.
+
+use super::command::{Command, Id};
+use super::script;
+
+/// Of longer walks some states are forgotten: an undo of so many states is not of as many as were made.
+const LONGEST: usize = 4000;
+
+/// A line, and how many states it made; `None` where that is not known.
+pub type Made = (String, Option<usize>);
+
+/// What a line does, as far as that matters here.
+enum Kind {
+    /// Steps, which can be shortened.
+    Steps,
+    /// Another walk, which is left out whole or not at all.
+    Walk,
+    /// Turned round, or another step length: an undo leaves it as it is.
+    Way,
+    /// Values: an undo of states takes them back only where they made one.
+    Values,
+    /// So many states taken back.
+    Undo(usize),
+    /// Something that needs what was taken back.
+    Needs,
+}
+
+fn kind(line: &str) -> Kind {
+    match script::parse(line) {
+        Ok(Some(Command::Steps(_))) => Kind::Steps,
+        Ok(Some(Command::RunOf(_) | Command::Plain(Id::NextEvent | Id::Run | Id::Jump))) => Kind::Walk,
+        Ok(Some(Command::Plain(Id::Reverse) | Command::StepLength(_))) => Kind::Way,
+        Ok(Some(Command::Travel { id: Id::Undo, count, states: true })) => Kind::Undo(count),
+        Ok(Some(Command::Travel { .. } | Command::GoToState(_) | Command::GoTo { .. })) => Kind::Needs,
+        _ => Kind::Values,
+    }
+}
+
+/// The lines without what was taken back for good.
+pub fn without_detours(lines: &[Made]) -> Vec<String> {
+    let all = || lines.iter().map(|(line, _)| line.clone()).collect();
+    if lines.iter().filter_map(|(_, made)| *made).sum::<usize>() > LONGEST {
+        return all();
+    }
+    let mut kept: Vec<(String, Option<usize>, Kind)> = Vec::new();
+    for (line, made) in lines {
+        let kind = kind(line);
+        if matches!(kind, Kind::Needs) {
+            return all();
+        }
+        match kind {
+            Kind::Undo(count) if take_back(&mut kept, count) => {}
+            kind => kept.push((line.clone(), *made, kind)),
+        }
+    }
+    kept.into_iter().map(|(line, ..)| line).collect()
+}
+
+/// Leaves out what made the last `count` states; false, and nothing is changed, where that cannot be told.
+fn take_back(kept: &mut Vec<(String, Option<usize>, Kind)>, count: usize) -> bool {
+    let mut left = count;
+    let mut out = Vec::new();
+    let mut shortened = None;
+    for (at, (_, made, kind)) in kept.iter().enumerate().rev() {
+        if left == 0 {
+            break;
+        }
+        match (kind, made) {
+            (Kind::Way, _) => {}
+            (Kind::Steps | Kind::Walk, Some(made)) if *made <= left => {
+                left -= made;
+                out.push(at);
+            }
+            (Kind::Steps, Some(made)) => {
+                shortened = Some((at, made - left));
+                left = 0;
+            }
+            _ => return false,
+        }
+    }
+    if left > 0 {
+        return false;
+    }
+    if let Some((at, steps)) = shortened
+        && let Some(line) = script::line(&Command::Steps(steps))
+    {
+        kept[at] = (line, Some(steps), Kind::Steps);
+    }
+    // From the last on: the places before stay.
+    for at in out {
+        kept.remove(at);
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn without(lines: &[(&str, usize)]) -> Vec<String> {
+        let lines: Vec<Made> = lines.iter().map(|(line, made)| ((*line).to_owned(), Some(*made))).collect();
+        without_detours(&lines)
+    }
+
+    #[test]
+    fn what_was_taken_back_for_good_leaves_nothing() {
+        assert_eq!(without(&[("step 6", 6), ("undo 2 states", 0), ("jump", 1)]), ["step 4", "jump"]);
+        assert_eq!(without(&[("next-event", 9), ("jump", 1), ("undo 1 states", 0)]), ["next-event"]);
+        assert_eq!(
+            without(&[("next-event", 9), ("jump", 1), ("undo 10 states", 0), ("step 1", 1)]),
+            ["step 1"]
+        );
+        // What turns the walk stays: an undo does not turn it back.
+        let turned = [("step 2", 2), ("reverse", 0), ("step 3", 3), ("undo 4 states", 0)];
+        assert_eq!(without(&turned), ["step 1", "reverse"]);
+        assert_eq!(
+            without(&[("step 1", 1), ("undo 1 states", 0), ("step 2", 2), ("undo 1 states", 0)]),
+            ["step 1"]
+        );
+    }
+
+    #[test]
+    fn what_is_not_known_or_needed_later_stays() {
+        for lines in [
+            &[("step 2", 2), ("undo 1 states", 0), ("redo 1 states", 0)][..],
+            // A walk is left out whole or not at all.
+            &[("next-event", 9), ("undo 2 states", 0)],
+            &[("step 2", 2), ("set gap.amplitude=0.003", 1), ("undo 1 states", 0)],
+            &[("undo 1 states", 0)],
+        ] {
+            let whole: Vec<&str> = lines.iter().map(|(line, _)| *line).collect();
+            assert_eq!(without(lines), whole);
+        }
+        assert_eq!(
+            without_detours(&[("step 2".to_owned(), None), ("undo 1 states".to_owned(), Some(0))]).len(),
+            2
+        );
+    }
+}
