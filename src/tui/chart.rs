@@ -70,8 +70,8 @@ impl Chart<'_> {
     /// Draws the chart with its frame into `area`.
     pub fn draw(&self, frame: &mut Frame<'_>, area: Rect, selected: bool) {
         let theme = self.theme;
-        let mut block: Block<'_> =
-            theme.block(selected).title(Span::styled(theme.text(&self.title), theme.title(selected)));
+        let title = theme.whole_words(&theme.text(&self.title), usize::from(area.width.saturating_sub(2)));
+        let mut block: Block<'_> = theme.block(selected).title(Span::styled(title, theme.title(selected)));
         let note = self.note();
         if self.legend_fits(area) {
             let mut spans = self.legend_spans(usize::MAX);

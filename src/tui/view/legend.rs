@@ -71,7 +71,7 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
         Sign::Preset => (3, "preset"),
         Sign::Cusp => (5, "cusp"),
         Sign::Swallowtail => (5, "swallowtail"),
-        Sign::Snaps(_) => (6, "snaps"),
+        Sign::Snaps(_) => (0, "snaps"),
         Sign::OfCrest(_) => (4, "crest"),
         Sign::Measured { loading: true, apart: false } => (4, "measured approach"),
         Sign::Measured { loading: false, apart: false } => (4, "measured retraction"),

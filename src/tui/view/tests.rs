@@ -384,6 +384,15 @@ fn pins_are_listed_and_taken_away_one_by_one() {
 }
 
 #[test]
+fn a_map_says_what_its_numbers_are_and_no_title_is_cut_in_a_word() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("gmt");
+    let text = screen.text(80, 24);
+    assert!(text.contains("0-9 snaps"), "{text}");
+    assert!(text.contains("limit points under displacement:…"), "{text}");
+}
+
+#[test]
 fn the_ring_elements_lie_over_the_exact_curve_and_go_again() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("#");
