@@ -127,6 +127,42 @@ fn the_loop_of_the_paper_has_its_numbers() {
 }
 
 #[test]
+fn a_loop_that_comes_to_two_contacts_in_one_zone_keeps_what_it_has() {
+    let home = Home::new();
+    let strength = |value: &str| format!("material.cohesive_strength={value}");
+    let run = |value: &str| {
+        let sets = ["--set", &strength(value), "--set", "material.adhesion=dugdale", "--to-approach", "0.02"];
+        home.run(&[&["cycle", "fig-9-cycle", "--format", "json"], &sets[..]].concat())
+    };
+    let Ended { status, out, err } = run("0.4");
+    assert_eq!(status, 1, "{err}");
+    for words in
+        ["the path stopped early, its 6 events were written", "the contact is torn inside at r = 0.1288"]
+    {
+        assert!(err.contains(words), "{err}");
+    }
+    let document: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(kinds(&document), ["jump-in", "snap-in", "turn", "snap", "snap", "snap"]);
+    for key in
+        ["dissipated", "dissipated_by_area", "largest_pull", "farthest", "last_contact", "work_of_unloading"]
+    {
+        assert!(document["totals"][key].is_null(), "{key}: {}", document["totals"]);
+    }
+    assert!((number(&document["totals"]["dissipated_before_last_contact"]) - 6.684e-4).abs() < 1e-7);
+    let Ended { status, err, .. } = run("0.42");
+    assert_eq!((status, err.as_str()), (0, ""));
+    // In a sweep that row is incomplete.
+    let spec = "preset = 'fig-9'\nset = ['basis.kind=exact', 'material.cohesive_strength=1', 'material.adhesion=dugdale', \
+                'path.turn_approach=0.02']\nquantities = ['cycle_loss']\n[[axis]]\nkey = 'material.cohesive_strength'\n\
+                values = [0.4, 1.0]\n";
+    home.file("range.toml", spec);
+    home.run(&["sweep", "range.toml", "-o", "range.csv"]);
+    let rows = std::fs::read_to_string(home.path("range.csv")).unwrap();
+    let rows: Vec<&str> = rows.lines().collect();
+    assert!(rows[1].contains("torn inside") && rows[2].contains("0.0011562"), "{rows:?}");
+}
+
+#[test]
 fn a_table_and_csv_say_the_same() {
     let home = Home::new();
     let table = home.quiet(&["cycle", "fig-9-weak"]);

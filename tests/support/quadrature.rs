@@ -223,10 +223,10 @@ struct Turn {
 
 /// g, g' (that of the inner side at a corner) and ∫g at one radius.
 #[derive(Debug, Clone, Copy)]
-struct Transform {
-    value: f64,
-    slope: f64,
-    area: f64,
+pub struct Transform {
+    pub value: f64,
+    pub slope: f64,
+    pub area: f64,
 }
 
 /// A piece of the radii, over 0 ≤ u ≤ 1: a = lo + (hi − lo)u, right of a corner with u² for u.
@@ -310,12 +310,18 @@ impl Disc {
         self.reach
     }
 
+    /// The radii at which integrals are broken.
+    pub fn marks(&self) -> &[f64] {
+        &self.marks
+    }
+
     /// The corners, each with the jump of h'.
     pub fn corners(&self) -> &[[f64; 2]] {
         &self.corners
     }
 
-    fn transform(&self, a: f64) -> Transform {
+    /// At one radius.
+    pub fn transform(&self, a: f64) -> Transform {
         let mut sums = [0.0; 3];
         let mut lo = 0.0;
         let inner = self.marks.partition_point(|mark| *mark < a);

@@ -20,6 +20,9 @@ const NODES: usize = 20;
 /// A share of a zone in contact that is none.
 const NO_CONTACT: f64 = 1e-12;
 
+/// A hole of this share of its radius is narrow.
+const NARROW: f64 = 1e-3;
+
 /// A panel is at most so many times as far out at its outer end as at its inner.
 const RATIO: f64 = 4.0;
 
@@ -63,6 +66,13 @@ pub struct Sample {
 pub struct Panel {
     span: Span,
     series: [Vec<f64>; 6],
+}
+
+impl Panel {
+    /// Its width, a length.
+    pub fn width(&self) -> f64 {
+        self.span.hi - self.span.lo
+    }
 }
 
 /// Equilibria in panels.
@@ -232,6 +242,13 @@ impl Solution for Sampled {
         let share = (1.0 - free).max(0.0);
         let contact_radius = if share <= NO_CONTACT { 0.0 } else { radius * share.sqrt() };
         Edges { contact_radius, zone: Some(radius) }
+    }
+
+    fn is_passed(&self, panel: usize) -> bool {
+        // Where zones go from one root of D to another a hole is left, as narrow as panels are halved.
+        let most = if self.touches.is_some() { NARROW } else { 0.0 };
+        let next = self.panels.get(panel + 1).map(|next| next.span.lo);
+        next.is_some_and(|lo| lo <= self.panels[panel].span.hi * (1.0 + most))
     }
 
     fn touches(&self) -> &[Place] {

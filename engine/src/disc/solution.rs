@@ -86,6 +86,11 @@ pub trait Solution: Debug + Send + Sync {
         if self.is_empty() { 0.0 } else { self.span(0).lo }
     }
 
+    /// Whether edges that run pass on to the next panel, which begins where this one ends or a hair beyond.
+    fn is_passed(&self, panel: usize) -> bool {
+        self.is_joined(panel)
+    }
+
     /// Whether the next panel begins where this one ends.
     fn is_joined(&self, panel: usize) -> bool {
         panel + 1 < self.len() && self.span(panel).hi >= self.span(panel + 1).lo

@@ -99,7 +99,8 @@ fn on_panel(
 
 /// The energy lost in a jump as the area between the curve and the control line, from `before` to `after`.
 ///
-/// `None` for a pull-off under a dead load, or where the basis has no equilibrium on the way.
+/// In a narrow hole the work left over is the step of the energy. `None` for a pull-off under a dead load, or where the basis has no
+/// equilibrium on the way.
 pub fn area(solution: &dyn Solution, control: Control, before: Place, after: Option<Place>) -> Option<f64> {
     let line = solution.at(before);
     let compliance = match control {
@@ -115,7 +116,12 @@ pub fn area(solution: &dyn Solution, control: Control, before: Place, after: Opt
     let mut sum = 0.0;
     for panel in end.panel..=before.panel {
         if panel < before.panel && !solution.is_joined(panel) {
-            return None;
+            if !solution.is_passed(panel) {
+                return None;
+            }
+            let [inner, outer] = [Place { panel, x: 1.0 }, Place { panel: panel + 1, x: -1.0 }];
+            let step = solution.at(outer).approach - solution.at(inner).approach;
+            sum += solution.energy(outer) - solution.energy(inner) - line.force * step;
         }
         if panel == 0 && after.is_none() {
             // To the axis: where adhesion alone rules, δ is a power of √s.

@@ -2,7 +2,8 @@
 //!
 //! Running inward from a minimum the control first rises above its value, and the landing is on the first stretch further in
 //! on which it falls back to it; running outward on the first one on which it rises back. Either way the control grows
-//! with s there, which is stability. A stretch whose own minimum is the value to rounding is landed on.
+//! with s there, which is stability. A stretch whose own minimum is the value to rounding is landed on. A narrow hole is passed where
+//! the control drives the edge on both sides of it.
 
 use super::monotone::Monotone;
 use crate::disc::{Place, Solution};
@@ -49,8 +50,11 @@ pub fn run(
     match run {
         Run::Inward => {
             for at in (0..from).rev() {
-                if !stretches[at + 1].joined {
-                    return Err(stretches[at + 1].radii[0]);
+                let [next, here] = [&stretches[at], &stretches[at + 1]];
+                let passes = here.joined
+                    || solution.is_passed(next.outer.panel) && next.values[1].min(here.values[0]) > value;
+                if !passes {
+                    return Err(here.radii[0]);
                 }
                 if stretches[at].rising && stretches[at].values[0] <= value + slack {
                     return Ok(Some(land(at)));
@@ -60,7 +64,11 @@ pub fn run(
         }
         Run::Outward => {
             for (at, stretch) in stretches.iter().enumerate().skip(from + 1) {
-                if !stretch.joined {
+                let before = &stretches[at - 1];
+                let passes = stretch.joined
+                    || solution.is_passed(before.outer.panel)
+                        && before.values[1].max(stretch.values[0]) < value;
+                if !passes {
                     return Err(stretch.radii[0]);
                 }
                 if stretch.rising && stretch.values[1] >= value - slack {

@@ -142,7 +142,8 @@ pub struct PassedReport {
     pub radius: f64,
 }
 
-/// The sums of a path; null where a dead load leaves no bound, or what was not asked for.
+/// The sums of a path; null where a dead load leaves no bound, what was not asked for, and those of a way that was not followed to its
+/// end.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TotalsReport {
@@ -658,8 +659,9 @@ impl TotalsReport {
         let energy = |x: f64| x * problem.units.energy;
         let state = |state: &PathState| StateReport::new(problem, state);
         Self {
-            largest_pull: path.largest_pull().map(state),
-            farthest: path.farthest().map(state),
+            // What is not followed to its end may pull more, or go farther.
+            largest_pull: path.largest_pull().filter(|_| path.is_whole()).map(state),
+            farthest: path.farthest().filter(|_| path.is_whole()).map(state),
             last_contact: path.last_contact().and_then(|event| event.before.as_ref()).map(state),
             dissipated: dissipated.map(energy),
             dissipated_by_area: dissipated_by_area.map(energy),

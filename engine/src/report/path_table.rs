@@ -180,7 +180,9 @@ fn outcome(report: &PathReport) -> String {
     let before = totals.dissipated_before_last_contact;
     let has_zone = report.events.iter().any(|event| event.kind == EventKind::SnapOff.name());
     let last = if has_zone { "the snap-off" } else { "the last contact" };
+    let is_apart = report.events.last().is_some_and(|event| event.after.is_none());
     let _ = match totals.dissipated {
+        None if !is_apart => writeln!(text, "energy lost until there: {}", energy(before)),
         Some(lost) => {
             writeln!(text, "energy lost: {}, of it {} before {last}", energy(lost), energy(before))
         }

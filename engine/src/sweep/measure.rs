@@ -71,15 +71,8 @@ impl Work<'_> {
             Stage::Unloading(of) => {
                 let control = self.reduced(column.under.control(own))?;
                 let path = self.path(control, None)?;
-                match (of(path), path.path.stop) {
-                    // A path that stopped early has no answer.
-                    (_, PathStop::Curve(stop)) => {
-                        let case = &self.start()?.case;
-                        let stop = PathStop::Curve(stop.in_units(case.units()));
-                        Err(Fault::incomplete(&stop.words(&case.shown)))
-                    }
-                    (found, _) => Ok(found),
-                }
+                let (found, stop) = (of(path), path.path.stop);
+                self.ended(found, stop)
             }
             Stage::Passed => {
                 let control = self.reduced(column.under.control(own))?;
@@ -87,11 +80,22 @@ impl Work<'_> {
             }
             Stage::Loop(of) => {
                 let control = self.reduced(column.under.control(own))?;
-                self.whole(control).map(of)
+                let path = self.whole(control)?;
+                let (found, stop) = (of(path), path.path.stop);
+                self.ended(found, stop)
             }
             Stage::Pull(of) => self.pull().map(of),
             Stage::Fit(of) => self.fitting().map(of),
         }
+    }
+
+    /// What is asked of a path with this end: one that stopped early has no answer.
+    fn ended(&mut self, found: Option<Cell>, stop: PathStop) -> Result<Option<Cell>, Fault> {
+        if matches!(stop, PathStop::Apart | PathStop::End) {
+            return Ok(found);
+        }
+        let case = &self.start()?.case;
+        Err(Fault::incomplete(&stop.in_units(case.units()).words(&case.shown)))
     }
 
     fn reduced(&mut self, control: Control) -> Result<Control, Fault> {

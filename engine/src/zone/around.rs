@@ -43,6 +43,14 @@ pub enum FaultKind {
     Torn,
 }
 
+/// Numbers ½, 1½ … up to how many places between two radii are looked at, with that.
+fn places(ground: &Ground, ends: [f64; 2]) -> impl Iterator<Item = [f64; 2]> + use<> {
+    let count = (IN_ZONE + PER_WAVE * ground.lengths_between(ends)).min(MOST).ceil();
+    std::iter::successors(Some(0.5), |k| Some(k + 1.0))
+        .take_while(move |k| *k < count)
+        .map(move |k| [k, count])
+}
+
 /// Where a state is not one disc in one zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fault {
@@ -78,7 +86,7 @@ impl Zone {
     /// ∫_s^{min(r, c)} √((c² − a²)/(r² − a²)) da.
     fn pull(at: ZoneAt, r: f64) -> f64 {
         let (c, s) = (at.edge, at.contact_radius);
-        if r <= s {
+        if r <= s || c <= 0.0 {
             return 0.0;
         }
         let inner = r.min(c);
@@ -122,18 +130,29 @@ impl Zone {
         outside::pressure(panels, s, value, r) - 2.0 * strength * (0.5 - asin(share.min(1.0)) / PI)
     }
 
+    /// Radii in the zone, closer together towards both edges, with the gap there; without contact the axis is one of them.
+    fn gaps<'a>(&'a self, ground: &Ground, at: ZoneAt) -> impl Iterator<Item = (f64, f64)> + 'a {
+        let (c, s) = (at.edge, at.contact_radius);
+        let from = 0.5 * f64::from(u8::from(s <= 0.0));
+        places(ground, [s, c]).map(move |[k, count]| {
+            let sine = sin(FRAC_PI_2 * (k - from) / count);
+            let radius = s + (c - s) * sine * sine;
+            (radius, self.gap_at(at, radius))
+        })
+    }
+
+    /// Radii in the contact with the pressure there.
+    fn pressures<'a>(&'a self, ground: &Ground, at: ZoneAt) -> impl Iterator<Item = (f64, f64)> + 'a {
+        let s = at.contact_radius;
+        let radii = places(ground, [0.0, s]).map(move |[k, count]| s * k / count);
+        radii.take_while(move |_| s > 0.0).map(move |radius| (radius, self.pressure_at(at, radius)))
+    }
+
     /// The first fault of a state on the gap of `ground`, of those asked for.
     pub fn fault(&self, ground: &Ground, at: ZoneAt, ends: Ends) -> Option<Fault> {
         let Cohesion { strength, range } = self.cohesion;
-        let (c, s) = (at.edge, at.contact_radius);
         let (outer, inner) = (ends != Ends::Inner, ends != Ends::Outer);
-        let count = (IN_ZONE + PER_WAVE * ground.lengths_between([s, c])).min(MOST).ceil();
-        let places = std::iter::successors(Some(0.5), |k| Some(k + 1.0)).take_while(|k| *k < count);
-        for k in places {
-            // Closer together towards both edges; without contact the axis itself is looked at.
-            let sine = sin(FRAC_PI_2 * (k - 0.5 * f64::from(u8::from(s <= 0.0))) / count);
-            let radius = s + (c - s) * sine * sine;
-            let gap = self.gap_at(at, radius);
+        for (radius, gap) in self.gaps(ground, at).take_while(|_| at.edge > 0.0) {
             if outer && gap < -ROUNDING * range {
                 return Some(Fault { kind: FaultKind::Touches, radius });
             }
@@ -144,15 +163,27 @@ impl Zone {
         if outer && let Some(radius) = self.second_zone(ground, at) {
             return Some(Fault { kind: FaultKind::SecondZone, radius });
         }
-        if !inner || s <= 0.0 {
-            return None;
-        }
-        let count = (IN_ZONE + PER_WAVE * ground.lengths_between([0.0, s])).min(MOST).ceil();
-        let places = std::iter::successors(Some(0.5), |k| Some(k + 1.0)).take_while(|k| *k < count);
-        places
-            .map(|k| s * k / count)
-            .find(|r| self.pressure_at(at, *r) < -strength * (1.0 + ROUNDING))
-            .map(|radius| Fault { kind: FaultKind::Torn, radius })
+        self.pressures(ground, at)
+            .take_while(|_| inner)
+            .find(|(_, pressure)| *pressure < -strength * (1.0 + ROUNDING))
+            .map(|(radius, _)| Fault { kind: FaultKind::Torn, radius })
+    }
+
+    /// By how much δ and P of the zone with the edge of this state may be larger than its own, where its contact is no disc: not at all
+    /// where it is.
+    ///
+    /// With the gap raised by what it is below zero, and a pressure added where the tension is more than σ₀, the displacement is a
+    /// supersolution of the contact problem. The pressure, nowhere more than p on the disc, raises the gap at c by (4/π)ps at most; an
+    /// approach lowers it by the share (2/π)ψ, to first order in the edges of contact.
+    pub fn slack(&self, ground: &Ground, at: ZoneAt) -> [f64; 2] {
+        let (c, s) = (at.edge, at.contact_radius);
+        let lowest = self.gaps(ground, at).fold(0.0_f64, |least, (_, gap)| least.min(gap));
+        let excess = |(_, pressure): (f64, f64)| -self.cohesion.strength - pressure;
+        let torn = self.pressures(ground, at).map(excess).fold(0.0_f64, f64::max);
+        let below = |most: f64, unit: f64| if most > ROUNDING * unit { most } else { 0.0 };
+        let (lifted, torn) = (below(-lowest, self.cohesion.range), below(torn, self.cohesion.strength));
+        let approach = (lifted + 4.0 * FRAC_1_PI * s * torn) / (2.0 * FRAC_1_PI * acos((s / c).min(1.0)));
+        [approach, 2.0 * c * (approach + lifted) + PI * s * s * torn]
     }
 
     /// A radius beyond the zone at which the bodies are within range.
@@ -168,6 +199,14 @@ impl Zone {
         let end = ground.reach();
         let mut candidates: Vec<f64> =
             ground.samples().into_iter().chain(ground.breaks.iter().copied()).collect();
+        if c <= 0.0 {
+            // Of bodies apart the lowest place comes within range.
+            let lowest = candidates
+                .into_iter()
+                .filter(|r| *r < end)
+                .min_by(|a, b| height(*a).total_cmp(&height(*b)))?;
+            return (height(lowest) < low - ROUNDING * range).then_some(lowest);
+        }
         candidates.retain(|r| *r > c * (1.0 + ROUNDING) && *r < end && height(*r) < low);
         candidates.into_iter().find(|r| self.gap_at(at, *r) < range * (1.0 - ROUNDING))
     }

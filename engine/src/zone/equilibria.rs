@@ -24,6 +24,9 @@ const RATIO: f64 = 3.0;
 /// The width of a panel before it is halved, as a share of the length in which the gap changes there.
 const SHARE_OF_LENGTH: f64 = 0.25;
 
+/// How much wider than the last panel one may be before it is halved.
+const WIDER: f64 = 2.0;
+
 /// Nodes at which the touch is looked for on a panel.
 const NODES: usize = 32;
 
@@ -66,7 +69,7 @@ impl Equilibria {
         progress: &dyn Progress,
     ) -> Result<Self, TableError> {
         let ground = Ground::new(Arc::clone(table), BEYOND * reach, progress)?;
-        let zone = Zone { gap: Arc::clone(&ground.gap), panels: Arc::clone(&ground.panels), cohesion };
+        let zone = Zone::new(Arc::clone(&ground.gap), Arc::clone(&ground.panels), cohesion);
         Ok(Self { ground, zone, panels: Vec::new(), touches: Vec::new(), at: 0.0, base: None })
     }
 
@@ -103,7 +106,8 @@ impl Equilibria {
             return Ok(false);
         }
         self.ground = Ground::new(Arc::clone(&self.ground.table), radius.max(1.5 * known), progress)?;
-        self.zone.panels = Arc::clone(&self.ground.panels);
+        self.zone =
+            Zone::new(Arc::clone(&self.ground.gap), Arc::clone(&self.ground.panels), self.zone.cohesion);
         Ok(true)
     }
 
@@ -144,7 +148,10 @@ impl Equilibria {
     fn next(&mut self, progress: &dyn Progress) -> Result<(), TableError> {
         let lo = self.at;
         let mut hi = if lo > 0.0 {
-            (RATIO * lo).min(lo + SHARE_OF_LENGTH * self.ground.length_at(lo))
+            // About as wide as was fine enough before.
+            let widest = SHARE_OF_LENGTH * self.ground.length_at(lo);
+            let last = self.panels.last().map_or(widest, |panel| panel.width());
+            (RATIO * lo).min(lo + widest.min(WIDER * last))
         } else {
             self.first()
         };

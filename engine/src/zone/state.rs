@@ -11,13 +11,23 @@
 //! ```
 //!
 //! The unknown is z = sin²ψ = 1 − (s/c)², in which D is nearly a line both where the zone is thin and where contact begins. D grows
-//! with z while the gap opens just outside s, so that a zone has one state at most; one at which it does not open is none.
+//! with z while the gap opens just outside s,
+//!
+//! ```text
+//! ω'(s) = g'(s) + 2σ₀s/√(c² − s²) > 0
+//! ```
+//!
+//! and turns where it does not, which needs a falling g. Then several s may hold one zone. **Only that with the largest δ can be a state**:
+//! the displacement of each is a subsolution of the contact problem of its zone, for where the bodies are apart nothing presses and
+//! where they touch it may pull more than σ₀. So the gap of the true contact, a disc or not, is nowhere smaller at that δ, and the zone
+//! is in equilibrium at no smaller δ and P than any of them.
 //!
 //! D. Maugis, J. Colloid Interface Sci. 150, 243 (1992), doi:10.1016/0021-9797(92)90285-T, for a sphere.
 
-use crate::disc::{Panels, outside};
+use crate::disc::{Panels, Place, outside};
 use crate::elementary::asin;
 use crate::gap::Gap;
+use crate::gap::panels::Variable;
 use crate::problem::Cohesion;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
@@ -25,8 +35,35 @@ use std::sync::Arc;
 /// Newton's steps, each kept in its bracket.
 const STEPS: usize = 80;
 
+/// Halvings of a radius at which D turns.
+const HALVINGS: usize = 40;
+
 /// Below this angle ψ − sin ψ cos ψ is a series.
 const SMALL_ANGLE: f64 = 0.2;
+
+/// Places on a panel of the table at which it is looked whether g falls.
+const ON_PANEL: u32 = 16;
+
+/// A share of a panel, or of a stretch, that is beside its end.
+const BESIDE: f64 = 1e-6;
+
+/// Places on a falling stretch of g at which the gap may close outside s.
+const ON_FALL: u32 = 8;
+
+/// A share of the slope of g below which an opening may close beside, and the shortest way there as a share of that between places.
+const NEARLY: f64 = 0.3;
+const SHORTEST: f64 = 1e-4;
+
+/// Inside an s with a gap at c of so many ranges there is no other.
+const FAR: f64 = 2.0;
+
+/// Radii between which g falls, and its least slope there.
+#[derive(Debug, Clone, Copy)]
+struct Fall {
+    lo: f64,
+    hi: f64,
+    slope: f64,
+}
 
 /// A gap in whose zone a tension acts.
 #[derive(Debug, Clone)]
@@ -37,6 +74,7 @@ pub struct Zone {
     pub panels: Arc<Panels>,
     /// σ₀ and `h_c`.
     pub cohesion: Cohesion,
+    falls: Arc<[Fall]>,
 }
 
 /// The equilibrium of one disc in one zone.
@@ -75,7 +113,41 @@ fn sliver(angle: f64, [sine, cosine]: [f64; 2]) -> f64 {
     sum
 }
 
+/// Where g falls, ascending.
+fn falls(panels: &Panels) -> Vec<Fall> {
+    let mut found: Vec<Fall> = Vec::new();
+    let mut before = 0.0;
+    let mut falling = false;
+    for (panel, of) in panels.list().iter().enumerate() {
+        // Right of a corner at which h' falls g falls as a root.
+        let corner = matches!(of.span.variable, Variable::Root { base } if base > 0.0 && base >= of.span.lo);
+        if corner && panels.values(Place { panel, x: BESIDE - 1.0 }).slope < 0.0 {
+            found.push(Fall { lo: of.span.lo, hi: of.span.lo, slope: f64::NEG_INFINITY });
+            falling = true;
+        }
+        for k in 0..ON_PANEL {
+            let x = 2.0 * (f64::from(k) + 0.5) / f64::from(ON_PANEL) - 1.0;
+            let (radius, slope) = (of.span.radius(x), panels.values(Place { panel, x }).slope);
+            match found.last_mut().filter(|_| falling) {
+                Some(fall) => (fall.hi, fall.slope) = (radius, fall.slope.min(slope)),
+                None if slope < 0.0 => found.push(Fall { lo: before, hi: radius, slope }),
+                None => {}
+            }
+            falling = slope < 0.0;
+            before = radius;
+        }
+    }
+    found
+}
+
 impl Zone {
+    /// That of a gap with its table.
+    #[must_use]
+    pub fn new(gap: Arc<dyn Gap>, panels: Arc<Panels>, cohesion: Cohesion) -> Self {
+        let falls = falls(&panels).into();
+        Self { gap, panels, cohesion, falls }
+    }
+
     /// How much the gap at the edge c of a zone that only just touches is wider than `h_c`: there is contact where it is positive.
     pub fn excess(&self, c: f64) -> f64 {
         let Cohesion { strength, range } = self.cohesion;
@@ -125,29 +197,105 @@ impl Zone {
         disc - 4.0 * strength * (pulled + strength * square) - PI * self.cohesion.work() * c * c
     }
 
-    fn in_contact(&self, c: f64, near: Option<f64>) -> Option<ZoneState> {
+    /// ω'(s): how fast the gap opens just outside a contact.
+    fn opening(&self, c: f64, s: f64) -> f64 {
+        let pull = 2.0 * self.cohesion.strength * s / ((c - s) * (c + s)).sqrt();
+        self.panels.values(self.panels.place(s)).slope + pull
+    }
+
+    /// Where between two radii the gap closes outside a contact, by most to some digits; `unit` is the size of g'.
+    fn closing(&self, c: f64, [lo, hi]: [f64; 2], unit: f64) -> Option<f64> {
+        let step = (hi - lo) / f64::from(ON_FALL);
+        let even = (0..ON_FALL).map(|k| lo + step * (f64::from(k) + 0.5));
+        let openings = even.chain([lo + BESIDE * step]).map(|s| (s, self.opening(c, s)));
+        let (mut at, mut least) = openings.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        // Where D has just begun to turn it does so on a short way, beside the least of these.
+        let mut by = 0.5 * step;
+        while least >= 0.0 && least < NEARLY * unit && by > SHORTEST * step {
+            let around = [at - by, at + by].map(|s| (s, self.opening(c, s.clamp(lo, hi))));
+            for (s, opening) in around {
+                if opening < least {
+                    (at, least) = (s.clamp(lo, hi), opening);
+                }
+            }
+            by *= 0.5;
+        }
+        (least < 0.0).then_some(at)
+    }
+
+    /// z of the largest D and of the smallest further in, for each stretch on which D falls with z, from the edge inward, as far in as
+    /// there may be a state.
+    fn turns(&self, c: f64) -> Vec<[f64; 2]> {
+        let mut turns = Vec::new();
+        let inner = self.falls.partition_point(|fall| fall.lo < c);
+        for fall in self.falls[..inner].iter().rev() {
+            let least = 2.0 * self.cohesion.strength * fall.lo / ((c - fall.lo) * (c + fall.lo)).sqrt();
+            if least + fall.slope >= 0.0 {
+                continue;
+            }
+            let hi = fall.hi.min(c);
+            let Some(closing) = self.closing(c, [fall.lo, hi], -fall.slope) else { continue };
+            let ends = [hi, fall.lo].map(|mut opens| {
+                let mut closes = closing;
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (opens + closes);
+                    if self.opening(c, middle) < 0.0 { closes = middle } else { opens = middle }
+                }
+                (c - closes) * (c + closes) / (c * c)
+            });
+            turns.push(ends);
+            if self.miss(c, ends[1]).0 > (FAR - 1.0) * self.cohesion.range {
+                break;
+            }
+        }
+        turns
+    }
+
+    /// D − `h_c` and, where z is not 0, its slope by z.
+    fn miss(&self, c: f64, z: f64) -> (f64, f64) {
         let Cohesion { strength, range } = self.cohesion;
         let panels = &*self.panels;
-        let (mut lo, mut hi) = (0.0, 1.0);
+        let s = c * (1.0 - z).sqrt();
+        let values = panels.values(panels.place(s));
+        let (sine, cosine) = (z.sqrt(), (1.0 - z).sqrt());
+        let angle = asin(sine);
+        let ring = outside::sum_from(panels, s, c, &|place| panels.value(place) - values.value);
+        let miss = 2.0 / PI * ring + 4.0 * strength * c / PI * (angle * sine - z / (1.0 + cosine)) - range;
+        (miss, angle * c / PI * (values.slope / cosine + 2.0 * strength / sine))
+    }
+
+    fn in_contact(&self, c: f64, near: Option<f64>) -> Option<ZoneState> {
+        let turns = self.turns(c);
+        if turns.is_empty() {
+            return self.root(c, [0.0, 1.0], near);
+        }
+        let borders: Vec<f64> = std::iter::once(0.0).chain(turns.concat()).chain([1.0]).collect();
+        let opens = borders.chunks_exact(2).filter(|ends| {
+            let above = |z: f64| z > 0.0 && (z >= 1.0 || self.miss(c, z).0 > 0.0);
+            ends[0] < ends[1] && !above(ends[0]) && above(ends[1])
+        });
+        opens
+            .filter_map(|ends| self.root(c, [ends[0], ends[1]], near))
+            .max_by(|a, b| a.approach.total_cmp(&b.approach))
+    }
+
+    /// The state between two z between which D grows from below `h_c` to above it.
+    fn root(&self, c: f64, [mut lo, mut hi]: [f64; 2], near: Option<f64>) -> Option<ZoneState> {
+        let Cohesion { strength, range } = self.cohesion;
         // Of a thin zone the second term of D is σ₀c z 2/π.
-        let mut z = near.unwrap_or(0.5 * PI * range / (strength * c)).clamp(1e-12, 1.0 - 1e-12);
+        let thin = near.unwrap_or(0.5 * PI * range / (strength * c));
+        let within = if thin > lo && thin < hi { thin } else { 0.5 * (lo + hi) };
+        let mut z = if lo > 0.0 || hi < 1.0 { within } else { thin.clamp(1e-12, 1.0 - 1e-12) };
         let mut opens = false;
         for _ in 0..STEPS {
-            let s = c * (1.0 - z).sqrt();
-            let values = panels.values(panels.place(s));
-            let (sine, cosine) = (z.sqrt(), (1.0 - z).sqrt());
-            let angle = asin(sine);
-            let ring = outside::sum_from(panels, s, c, &|place| panels.value(place) - values.value);
-            let miss =
-                2.0 / PI * ring + 4.0 * strength * c / PI * (angle * sine - z / (1.0 + cosine)) - range;
-            let slope = values.slope / cosine + 2.0 * strength / sine;
+            let (miss, slope) = self.miss(c, z);
             opens = slope > 0.0;
             if miss > 0.0 {
                 hi = z;
             } else {
                 lo = z;
             }
-            let step = miss / (angle * c / PI * slope);
+            let step = miss / slope;
             if miss.abs() <= 2.0 * f64::EPSILON * range || step.abs() <= 2.0 * f64::EPSILON * z {
                 break;
             }

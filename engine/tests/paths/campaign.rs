@@ -24,9 +24,9 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 #[path = "../../../tests/support/problems.rs"]
-mod problems;
+pub mod problems;
 #[path = "../../../tests/support/quadrature.rs"]
-mod quadrature;
+pub mod quadrature;
 
 use crate::support::random_gap;
 use problems::{Problem, draw};

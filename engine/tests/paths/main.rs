@@ -11,3 +11,4 @@ mod maps;
 mod range;
 mod stability;
 mod walk;
+mod zones;

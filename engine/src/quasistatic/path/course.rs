@@ -280,7 +280,7 @@ impl Course<'_, '_> {
     }
 
     fn whole(mut self, turn: Turn, gamma: f64) -> Result<Path, PathError> {
-        let (balance, setting) = (self.balance, self.setting);
+        let balance = self.balance;
         let (crest, first) = self.first_crest(turn)?;
         if balance.work_of_adhesion == 0.0 {
             return self.without_adhesion(crest, turn);
@@ -288,13 +288,8 @@ impl Course<'_, '_> {
         let held = self.loaded(crest, first)?;
         let reached = self.measure(&held);
         let at_turn = self.state(&held);
-        let potential = match setting.control {
-            Control::Force => at_turn.energy,
-            _ => at_turn.potential(setting.control),
-        };
-        let work_of_loading = self.record.lost().map(|lost| potential + lost);
         let more = gamma - balance.work_of_adhesion;
-        self.record.turned(at_turn, (more > 0.0).then_some(more));
+        let work_of_loading = self.record.turned(at_turn, (more > 0.0).then_some(more));
         let turn = Some(TurnReached { asked: turn, reached });
         self.down(held, gamma, &|record, stop| record.finished(None, turn, work_of_loading, stop))
     }

@@ -5,6 +5,7 @@ use crate::annuli::{AnnuliError, ContactsError};
 use crate::problem::{Control, Units};
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
+use crate::zone::FaultKind;
 
 /// What a control value measures: a spring's other end is moved.
 fn quantity(control: Control) -> Quantity {
@@ -13,6 +14,21 @@ fn quantity(control: Control) -> Quantity {
 
 fn of_control(control: Control, units: &Units) -> f64 {
     if control == Control::Force { units.force } else { units.length }
+}
+
+/// What ends a path of one disc in one zone at a state δ, P, with its numbers as `shown` has them.
+pub(super) fn beyond_zone_at(
+    kind: Option<FaultKind>,
+    radius: f64,
+    [approach, force]: [f64; 2],
+    shown: &UnitSystem,
+) -> String {
+    format!(
+        "at the approach {} and the force {} {}",
+        said(shown, Quantity::Length, approach),
+        said(shown, Quantity::Force, force),
+        beyond_zone(kind, &said(shown, Quantity::Length, radius))
+    )
 }
 
 impl PathError {
@@ -122,12 +138,9 @@ impl PathError {
             Self::TooMany { ref error, approach } => {
                 format!("{error}, at the approach {}: turn before", length(approach))
             }
-            Self::BeyondZone { kind, radius, approach, force: load } => format!(
-                "at the approach {} and the force {} {}",
-                length(approach),
-                force(load),
-                beyond_zone(kind, &length(radius))
-            ),
+            Self::BeyondZone { kind, radius, approach, force: load } => {
+                beyond_zone_at(kind, radius, [approach, load], shown)
+            }
             Self::Unseen { radius } => format!("what lies up to r = {} is not known", length(radius)),
             Self::NeverTouches { searched } => {
                 format!("the gap has no least value up to r = {}: the bodies never touch", length(searched))

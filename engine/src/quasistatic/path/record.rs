@@ -145,11 +145,16 @@ impl<'a> Record<'a> {
         for piece in &descent.pieces {
             self.along(lane, *piece)?;
             if let Some(jump) = jumps.next() {
-                let landing = jump.landing.map(|landing| landing.place);
-                self.jumped(Event::of_disc(&*lane.solution, self.control, jump.before, landing, self.losses));
+                self.ran(lane, jump.before, jump.landing);
             }
         }
         Ok(descent)
+    }
+
+    /// Adds a jump of one disc.
+    pub fn ran(&mut self, lane: &Lane, before: Place, landing: Option<Landing>) {
+        let landing = landing.map(|landing| landing.place);
+        self.jumped(Event::of_disc(&*lane.solution, self.control, before, landing, self.losses));
     }
 
     /// Adds a jump, and the state after it as the first of the next stretch.
@@ -220,8 +225,13 @@ impl<'a> Record<'a> {
         });
     }
 
-    /// Turns the control round; where a unit of area costs more to open than it gained in closing, by how much.
-    pub fn turned(&mut self, at: PathState, more: Option<f64>) {
+    /// Turns the control round, where a unit of area costs more to open than it gained in closing by `more`; the work done on the way up.
+    pub fn turned(&mut self, at: PathState, more: Option<f64>) -> Option<f64> {
+        let potential = match self.control {
+            Control::Force => at.energy,
+            control => at.potential(control),
+        };
+        let work = self.lost().map(|lost| potential + lost);
         self.continuous(EventKind::Turn, None, [Some(at.clone()), Some(at.clone())]);
         self.direction = Direction::Unloading;
         self.piece += 1;
@@ -229,6 +239,7 @@ impl<'a> Record<'a> {
         self.dead_band = more.map(|more| DeadBand { area, lost: more * area });
         let energy = at.energy - self.dead_band.map_or(0.0, |band| band.lost);
         self.states.push(PathState { energy, direction: self.direction, piece: self.piece, ..at });
+        work
     }
 
     /// The way of held edges from the last state to another, along a straight line in δ and P.
@@ -299,13 +310,14 @@ impl<'a> Record<'a> {
         let ends_apart = self.events.last().is_some_and(Event::separates);
         let before = &self.events[..self.events.len() - usize::from(ends_apart)];
         let before_last: f64 = before.iter().filter_map(|event| event.dissipated).fold(0.0, |a, b| a + b);
-        let total = self.lost();
+        let is_whole = !matches!(stop, PathStop::BeyondZone { .. });
+        let total = self.lost().filter(|_| is_whole);
         let last = self.states.last().map(|state| state.potential(control));
         let is_twice = self.losses == Losses::Twice;
         let balance = last.filter(|_| is_twice && self.area != 0.0).map(|last| {
             let band = self.dead_band.map_or(0.0, |band| band.lost);
             let error = last - self.begin - self.area + before_last + band;
-            let whole = total.unwrap_or(before_last).abs();
+            let whole = self.lost().unwrap_or(before_last).abs();
             // An unloading from a start in contact is measured by what it stored there.
             error.abs() / whole.max(work_of_loading.unwrap_or(self.begin).abs())
         });
@@ -319,7 +331,7 @@ impl<'a> Record<'a> {
         let lost_down = down.into_iter().try_fold(0.0, |sum, event| Some(sum + event.dissipated?));
         let totals = Totals {
             dissipated: total,
-            dissipated_by_area: by_area,
+            dissipated_by_area: by_area.filter(|_| is_whole),
             dissipated_before_last_contact: before_last,
             work_of_loading,
             work_of_unloading: lost_down.zip(at_turn).filter(|_| ends_apart).map(|(lost, at)| lost - at),

@@ -1,6 +1,7 @@
 //! What a path is asked for, and what it answers.
 
 use super::balance::Held;
+use super::describe::beyond_zone_at;
 use super::error::Warning;
 use super::event::{Direction, Event, EventKind, PathState};
 use super::jump::{EVEN, Mobility};
@@ -9,6 +10,7 @@ use crate::quasistatic::State;
 use crate::quasistatic::curve::{CurveStop, Detail};
 use crate::quasistatic::energy::Losses;
 use crate::units::UnitSystem;
+use crate::zone::FaultKind;
 use std::fmt;
 
 /// What the turn is measured by, of edges at a control value.
@@ -102,6 +104,18 @@ pub enum PathStop {
     End,
     /// The curve ends before.
     Curve(CurveStop),
+    /// The next state of adhesion with a range is not one disc in one zone: where, and δ and P there, as in
+    /// [`PathError::BeyondZone`](super::PathError::BeyondZone).
+    BeyondZone {
+        /// What else there is.
+        kind: Option<FaultKind>,
+        /// Where, a length.
+        radius: f64,
+        /// δ.
+        approach: f64,
+        /// P.
+        force: f64,
+    },
 }
 
 impl fmt::Display for PathStop {
@@ -118,6 +132,9 @@ impl PathStop {
             Self::Apart => "the bodies are apart".to_owned(),
             Self::End => "the end contact radius was reached in a stable state".to_owned(),
             Self::Curve(stop) => format!("the curve ends: {}", stop.words(shown)),
+            Self::BeyondZone { kind, radius, approach, force } => {
+                beyond_zone_at(*kind, *radius, [*approach, *force], shown)
+            }
         }
     }
 
@@ -126,12 +143,19 @@ impl PathStop {
     pub fn in_units(self, units: &Units) -> Self {
         match self {
             Self::Curve(stop) => Self::Curve(stop.in_units(units)),
+            Self::BeyondZone { kind, radius, approach, force } => Self::BeyondZone {
+                kind,
+                radius: radius * units.length,
+                approach: approach * units.length,
+                force: force * units.force,
+            },
             other => other,
         }
     }
 }
 
-/// The sums of a path; `None` where a dead load leaves no bound, or what was not asked for.
+/// The sums of a path; `None` where a dead load leaves no bound, what was not asked for, and those of a way that was not followed to
+/// its end.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Totals {
     /// All losses.
@@ -184,6 +208,11 @@ pub struct Path {
 }
 
 impl Path {
+    /// Whether it was followed to its end, as far as one disc in one zone is concerned.
+    pub fn is_whole(&self) -> bool {
+        !matches!(self.stop, PathStop::BeyondZone { .. })
+    }
+
     /// The first state in contact.
     pub fn start(&self) -> Option<&PathState> {
         self.states.first()

@@ -1,14 +1,15 @@
 //! A path of adhesion with a range: from bodies apart over the jump into a zone to the turn and back, along one disc in one zone.
 //!
-//! Every stable stretch is held to what one disc in one zone is ([`Zone::fault`](crate::zone::Zone::fault)), and every jump at places between its ends: a path
-//! that comes to a state with more ends there in an error that names it.
+//! Every stable stretch and every landing is held to what one disc in one zone is ([`Zone::fault`](crate::zone::Zone::fault)): a path that
+//! comes to a state with more ends before it and names it.
 
 use super::error::PathError;
-use super::event::{Direction, Event, EventKind, Passed, PassedKind, PathState};
+use super::event::{Direction, EventKind, Passed, PassedKind, PathState};
 use super::lane::Lane;
 use super::record::Record;
 use super::setting::{Asked, Path, PathStop, Setting, TurnReached, WhyNot};
-use crate::disc::{Place, Solution, Table};
+use crate::disc::{Local, Place, Solution, Table};
+use crate::elementary::cbrt;
 use crate::problem::{Cohesion, Control, Start, Turn};
 use crate::progress::Progress;
 use crate::quasistatic::descent::{descend, stable_start};
@@ -17,6 +18,7 @@ use crate::quasistatic::equilibrium::State;
 use crate::quasistatic::jump::{self, Landing, Run};
 use crate::quasistatic::monotone::{Monotone, weighted};
 use crate::zone::{Ends, Equilibria, Fault, FaultKind, ZoneAt, ZoneState, equilibria};
+use std::cell::Cell;
 use std::sync::Arc;
 
 /// Times that the equilibria are grown for a path.
@@ -25,11 +27,14 @@ const TIMES: usize = 40;
 /// How much further each time.
 const FURTHER: f64 = 1.3;
 
-/// Places between the ends of a jump that are looked at.
+/// Places between the ends of a jump outward that are looked at, beside those where the control is largest.
 const PASSED: u32 = 6;
 
 /// Halvings by which the first state with a fault is found.
 const HALVINGS: usize = 24;
+
+/// How many times as far out as a value is first taken it is looked for at most.
+const FARTHER: f64 = 4.0;
 
 /// Halvings of a place with a given contact radius.
 const OF_RADIUS: usize = 80;
@@ -37,7 +42,8 @@ const OF_RADIUS: usize = 80;
 /// The loop of the gap of `table` with adhesion that has a range (E* = 1): from apart to the turn and back until the bodies are apart.
 ///
 /// # Errors
-/// [`PathError`]; [`PathError::BeyondZone`] where one disc in one zone is not all of a state.
+/// [`PathError`]; [`PathError::BeyondZone`] where one disc in one zone is not all of the first state. Where it is not all of a later one the
+/// path stops before it.
 pub fn cycle_in_zone(
     table: &Arc<Table>,
     cohesion: Cohesion,
@@ -74,7 +80,9 @@ pub fn cycle_in_zone(
     };
     let mut found = Equilibria::new(table, cohesion, reach, progress)?;
     found.grow(&enough, progress)?;
-    on_equilibria(&mut found, setting, progress, &|course| course.whole(turn))
+    on_equilibria(&mut found, setting, progress, &|course| {
+        course.path(|course, known| course.whole(turn, known))
+    })
 }
 
 /// The way down from the state with contact of the radius `start`, until the bodies are apart.
@@ -90,7 +98,9 @@ pub fn unload_in_zone(
 ) -> Result<Path, PathError> {
     let mut found = Equilibria::new(table, cohesion, equilibria::about(cohesion, start), progress)?;
     found.grow(&|state| state.contact_radius >= start, progress)?;
-    on_equilibria(&mut found, setting, progress, &|course| course.down(start))
+    on_equilibria(&mut found, setting, progress, &|course| {
+        course.path(|course, known| course.down(start, known))
+    })
 }
 
 /// The contact radius of the largest state in equilibrium at an approach or a force; that of a start by radius itself.
@@ -108,9 +118,20 @@ pub fn start_in_zone(
         Start::Approach(approach) => (Control::Displacement, approach),
         Start::Force(force) => (Control::Force, force),
     };
+    // Further out than where it is first taken, as far as a paraboloid would have it.
+    let elastic = if control == Control::Force { cbrt(value.abs()) } else { value.abs().sqrt() };
+    let outer = elastic.max(cbrt(cohesion.work()));
+    let first = Cell::new(f64::INFINITY);
+    let far_enough = |state: &ZoneState| {
+        let rises = control.value(state.slopes[0], state.slopes[1]) > 0.0;
+        if state.contact_radius > 0.0 && rises && control.value(state.approach, state.force) >= value {
+            first.set(first.get().min(state.edge));
+            return state.edge >= outer.min(FARTHER * first.get());
+        }
+        false
+    };
     let mut found = Equilibria::new(table, cohesion, equilibria::about(cohesion, 0.1), progress)?;
-    let of = |state: &ZoneState| control.value(state.approach, state.force);
-    found.grow(&|state| state.contact_radius > 0.0 && of(state) >= value, progress)?;
+    found.grow(&far_enough, progress)?;
     let solution = found.solution();
     let monotone = Monotone::of(&*solution, control);
     let crossings = monotone.crossings(&*solution, weighted(control, value, value));
@@ -221,9 +242,6 @@ fn fault(
         return Err(PathError::Cancelled);
     }
     let at = zone_at(solution, place);
-    if at.edge <= 0.0 {
-        return Ok(None);
-    }
     let radius = zone.sees(ground, at);
     if radius >= ground.reach() && ground.reach() < ground.table.end() * (1.0 - 1e-9) {
         return Err(PathError::Unseen { radius: FURTHER * radius });
@@ -253,6 +271,14 @@ fn place_of(solution: &dyn Solution, s: f64) -> Option<Place> {
     solution.place(hi)
 }
 
+/// What is known of a path beside its states.
+#[derive(Default)]
+struct Known {
+    asked: Option<Asked>,
+    turn: Option<TurnReached>,
+    work_of_loading: Option<f64>,
+}
+
 /// A path in a zone while it runs.
 struct Course<'a> {
     equilibria: &'a Equilibria,
@@ -275,34 +301,57 @@ impl Course<'_> {
         beyond(self.solution(), place, fault)
     }
 
-    /// Holds a stable stretch between two places, `to` further out, to what one disc in one zone is.
-    fn whole_between(&self, [from, to]: [Place; 2]) -> Result<(), PathError> {
-        for (end, other, ends) in [(to, from, Ends::Outer), (from, to, Ends::Inner)] {
-            if self.fault(end, ends)?.is_some() {
-                // The fault appears once on the way from the other end.
-                let radius = |place| self.solution().at(place).contact_radius;
-                let (mut good, mut bad) = (radius(other), radius(end));
-                for _ in 0..HALVINGS {
-                    let middle = 0.5 * (good + bad);
-                    let Some(place) = self.solution().place(middle) else { break };
-                    if self.fault(place, ends)?.is_some() { bad = middle } else { good = middle }
-                }
-                let place = self.solution().place(bad).unwrap_or(end);
-                return Err(self.beyond(place, self.fault(place, ends)?));
+    /// Adds the stable states between two places, as far as each is one disc in one zone; that the first is one is known.
+    ///
+    /// # Errors
+    /// [`PathError::BeyondZone`] with the first state that is not.
+    fn follow(&mut self, [from, to]: [Place; 2]) -> Result<(), PathError> {
+        let radius = |place| self.solution().at(place).contact_radius;
+        let (mut good, mut bad) = (radius(from), radius(to));
+        let ends = if bad >= good { Ends::Outer } else { Ends::Inner };
+        let Some(mut fault) = self.fault(to, ends)? else { return self.record.along(&self.lane, [from, to]) };
+        let [mut last, mut beyond] = [from, to];
+        // It appears once on the way.
+        for _ in 0..HALVINGS {
+            let Some(place) = self.solution().place(0.5 * (good + bad)) else { break };
+            if let Some(found) = self.fault(place, ends)? {
+                (beyond, bad, fault) = (place, radius(place), found);
+            } else {
+                (last, good) = (place, radius(place));
             }
         }
-        Ok(())
+        self.record.along(&self.lane, [from, last])?;
+        Err(self.beyond(beyond, Some(fault)))
     }
 
-    /// The same of what a jump passes.
-    fn passes(&self, before: Place, after: Option<Place>) -> Result<(), PathError> {
-        let radius = |place| self.solution().at(place).contact_radius;
-        let (from, to) = (radius(before), after.map_or(0.0, radius));
-        for k in 1..=PASSED {
-            let edge = from + (to - from) * f64::from(k) / f64::from(PASSED + 1);
-            let Some(place) = self.solution().place(edge) else { return Err(self.beyond(before, None)) };
-            if let Some(fault) = self.fault(place, Ends::Both)? {
-                return Err(self.beyond(place, Some(fault)));
+    /// Holds what a jump lands on to one disc in one zone.
+    ///
+    /// What is passed need not be one. Edges that run outward end in the least state above, and those of one zone do not run further
+    /// than all there may be: where they pass, all do, and the landing, a state, holds all. Inward it is the same with the greatest
+    /// state below. Whether they pass is known inward, where δ and P of a zone with any contact are no less than those of a disc; outward they
+    /// may be more by [`Zone::slack`](crate::zone::Zone::slack).
+    fn lands(&self, before: Place, landing: Option<Landing>) -> Result<(), PathError> {
+        let Some(landing) = landing else { return Ok(()) };
+        if let Some(fault) = self.fault(landing.place, Ends::Both)? {
+            return Err(self.beyond(landing.place, Some(fault)));
+        }
+        let Lane { solution, monotone, .. } = &self.lane;
+        let radius = |place| solution.at(place).contact_radius;
+        let (from, to) = (radius(before), radius(landing.place));
+        if to < from {
+            return Ok(());
+        }
+        let value = monotone.value(&solution.at(landing.place));
+        let even = (1..=PASSED).map(|k| from + (to - from) * f64::from(k) / f64::from(PASSED + 1));
+        let highest = monotone.stretches.iter().map(|stretch| stretch.radii[1]);
+        for edge in even.chain(highest.filter(|edge| from < *edge && *edge < to)) {
+            let Some(place) = solution.place(edge) else { continue };
+            let at = solution.at(place);
+            let Equilibria { zone, ground, .. } = self.equilibria;
+            let [approach, force] = zone.slack(ground, zone_at(&**solution, place));
+            let most = Local { approach: at.approach + approach, force: at.force + force, ..at };
+            if approach > 0.0 && monotone.value(&most) >= value {
+                return Err(self.beyond(place, self.fault(place, Ends::Both)?));
             }
         }
         Ok(())
@@ -334,6 +383,10 @@ impl Course<'_> {
         let begin = Place { panel: 0, x: -1.0 };
         let first =
             self.lane.monotone.stretches.first().ok_or(PathError::Lost { control_value: f64::NAN })?;
+        if let Some(fault) = self.fault(begin, Ends::Outer)? {
+            // A crest elsewhere comes within range first.
+            return Err(self.beyond(begin, Some(fault)));
+        }
         if first.rising {
             // The gap opens faster than the tension closes it: the zone grows from nothing.
             let after = self.state(begin);
@@ -343,7 +396,7 @@ impl Course<'_> {
         }
         let value = first.values[0];
         let landing = self.outward(0, value)?;
-        self.passes(begin, Some(landing.place))?;
+        self.lands(begin, Some(landing))?;
         let after = self.state(landing.place);
         let touched = (after.contact_radius > 0.0).then_some(Passed { kind: PassedKind::Touch, radius: 0.0 });
         // A dead load of nothing does no work.
@@ -364,27 +417,36 @@ impl Course<'_> {
         Ok(landing)
     }
 
-    fn whole(mut self, turn: Turn) -> Result<Path, PathError> {
+    /// The path of what `way` follows, which ends where a state is not one disc in one zone.
+    fn path(
+        mut self,
+        way: impl FnOnce(&mut Self, &mut Known) -> Result<PathStop, PathError>,
+    ) -> Result<Path, PathError> {
+        let mut known = Known::default();
+        let stop = match way(&mut self, &mut known) {
+            Err(PathError::BeyondZone { kind, radius, approach, force })
+                if !self.record.states.is_empty() =>
+            {
+                PathStop::BeyondZone { kind, radius, approach, force }
+            }
+            other => other?,
+        };
+        Ok(self.record.finished(known.asked, known.turn, known.work_of_loading, stop))
+    }
+
+    fn whole(&mut self, turn: Turn, known: &mut Known) -> Result<PathStop, PathError> {
         let mut here = self.jumped_in()?;
         let at_turn = loop {
             let stretch = self.lane.monotone.stretches[here.stretch];
             let turned = self.lane.turns(turn, [here.place, stretch.outer]);
             let to = turned.unwrap_or(stretch.outer);
-            self.whole_between([here.place, to])?;
-            self.record.along(&self.lane, [here.place, to])?;
+            self.follow([here.place, to])?;
             if turned.is_some() {
                 break Landing { place: to, stretch: here.stretch };
             }
             let landing = self.outward(here.stretch, stretch.values[1])?;
-            self.passes(to, Some(landing.place))?;
-            let event = Event::of_disc(
-                self.solution(),
-                self.setting.control,
-                to,
-                Some(landing.place),
-                self.setting.losses,
-            );
-            self.record.jumped(event);
+            self.lands(to, Some(landing))?;
+            self.record.ran(&self.lane, to, Some(landing));
             here = landing;
         };
         let state = self.state(at_turn.place);
@@ -394,14 +456,9 @@ impl Course<'_> {
             Turn::Radius(_) => state.contact_radius,
             Turn::Control(_) => state.control_value,
         };
-        let potential = match self.setting.control {
-            Control::Force => state.energy,
-            control => state.potential(control),
-        };
-        let work_of_loading = self.record.lost().map(|lost| potential + lost);
-        self.record.turned(state, None);
-        let stop = self.descend(at_turn)?;
-        Ok(self.record.finished(None, Some(TurnReached { asked: turn, reached }), work_of_loading, stop))
+        known.turn = Some(TurnReached { asked: turn, reached });
+        known.work_of_loading = self.record.turned(state, None);
+        self.descend(at_turn)
     }
 
     /// The way down of a stable state that is recorded, until the bodies are apart.
@@ -410,39 +467,35 @@ impl Course<'_> {
         let way = descend(&**solution, monotone, from, 0.0);
         let mut jumps = way.jumps.iter();
         for piece in &way.pieces {
-            self.whole_between([piece[1], piece[0]])?;
+            self.follow(*piece)?;
             if let Some(jump) = jumps.next() {
-                self.passes(jump.before, jump.landing.map(|landing| landing.place))?;
+                self.lands(jump.before, jump.landing)?;
+                self.record.ran(&self.lane, jump.before, jump.landing);
             }
         }
         if way.hole.is_some() {
             let last = way.pieces.last().map_or(from.place, |piece| piece[1]);
             return Err(self.beyond(last, None));
         }
-        let pulls_off = way.pulls_off();
-        self.record.descend(&self.lane, from, 0.0)?;
         let Some(last) = self.record.states.last().cloned() else { return Ok(PathStop::End) };
-        if pulls_off {
-            return Ok(PathStop::Apart);
+        if !way.pulls_off() {
+            // The zone shrinks to nothing.
+            self.record.continuous(EventKind::SnapOff, None, [Some(last), None]);
         }
-        // The zone shrinks to nothing.
-        self.record.continuous(EventKind::SnapOff, None, [Some(last), None]);
         Ok(PathStop::Apart)
     }
 
-    fn down(mut self, start: f64) -> Result<Path, PathError> {
+    fn down(&mut self, start: f64, known: &mut Known) -> Result<PathStop, PathError> {
         let solution = Arc::clone(&self.lane.solution);
         let beyond = PathError::BeyondGap { radius: solution.reach(), approach: f64::NAN, force: f64::NAN };
         let asked_at = place_of(&*solution, start).ok_or(beyond)?;
         let edge = solution.at(asked_at).contact_radius;
-        let mut asked = None;
         let here = if let Some(here) = stable_start(&*solution, &self.lane.monotone, edge) {
             here
         } else {
             let at = solution.at(asked_at);
             let stretch = self.lane.monotone.stretch_of(edge);
             let landing = self.outward(stretch, self.lane.monotone.value(&at))?;
-            self.passes(asked_at, Some(landing.place))?;
             let state = State {
                 contact_radius: start,
                 approach: at.approach,
@@ -450,14 +503,14 @@ impl Course<'_> {
                 energy: solution.energy(asked_at),
             };
             // From a falling stretch outward the first crossing is the landing.
-            asked = Some(Asked { state, why: WhyNot::Unstable { falls: true } });
+            known.asked = Some(Asked { state, why: WhyNot::Unstable { falls: true } });
             landing
         };
+        self.lands(asked_at, Some(here))?;
         self.record.direction = Direction::Unloading;
         let first = self.state(here.place);
         self.record.begun(first);
-        let stop = self.descend(here)?;
-        Ok(self.record.finished(asked, None, None, stop))
+        self.descend(here)
     }
 }
 
