@@ -1,9 +1,9 @@
-//! `pulloff figures`: every figure of the paper, computed again.
+//! `pulloff figures`: every figure of the paper, computed again, and what the range of adhesion changes.
 
 use super::Failure;
 use super::console::Messages;
 use super::output::{Inputs, OUTPUT, Outputs, Replacing, Sink, shown};
-use crate::plot::{Width, paper, svg, table};
+use crate::plot::{Width, adhesion, paper, svg, table};
 #[cfg(feature = "png")]
 use crate::print::Format;
 use crate::store::stream;
@@ -57,11 +57,13 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         .map_err(|cause| Failure::System { what: format!("{OUTPUT} {}", shown(folder)), cause })?;
     let mut outputs = Outputs::beside(Inputs::default(), arguments.replacing);
     let mut files = BTreeMap::new();
-    for name in paper::NAMES {
+    for name in paper::NAMES.into_iter().chain(adhesion::NAMES) {
         files.insert(name, arguments.files(&mut outputs, name)?);
     }
     let last = outputs.file(OUTPUT, &folder.join(CAPTIONS))?;
-    let sheets = paper::sheets(|name| console.say(name))?;
+    let mut sheets = paper::sheets(|name| console.say(name))?;
+    console.say("Adhesion with a range");
+    sheets.extend(adhesion::sheets()?);
     let mut captions = String::from("# The figures of the paper, computed again\n");
     for sheet in &sheets {
         let missing = || Failure::Incomplete(format!("{}: its files were not looked at", sheet.name));

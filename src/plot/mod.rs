@@ -2,6 +2,7 @@
 //!
 //! | file | what lives there |
 //! |---|---|
+//! | [`adhesion`] | what the range of adhesion changes, over λ_M |
 //! | [`ink`] | the strokes, colours and signs of the roles: safe for the colour-blind, readable in grey |
 //! | [`lines`] | lines in two numbers at which snaps begin, limit points over one |
 //! | [`map`] | a quantity of a sweep over its two axes |
@@ -12,6 +13,7 @@
 //!
 //! A figure is drawn in its size on paper: 86 mm for one column of a journal, 178 mm for two, letters of 8 points.
 
+pub mod adhesion;
 pub mod ink;
 pub mod lines;
 pub mod map;

@@ -407,7 +407,8 @@ fn errors() -> Result<Sheet, PaperError> {
     Ok(Sheet { name: "fig-5", figure, caption })
 }
 
-fn shipped(name: &'static str, assignments: &[&str]) -> Result<Preset, PaperError> {
+/// A shipped preset with assignments.
+pub fn shipped(name: &'static str, assignments: &[&str]) -> Result<Preset, PaperError> {
     let found = shipped::find(name).ok_or(PaperError::Missing(name))?;
     Ok(read_with(name, found.text, assignments)?)
 }
