@@ -281,7 +281,7 @@ fn judged(number: u64) -> (Came, String) {
     let most = (600 / judge.disc.marks().len()).clamp(1, 10);
     let shown = path.events.iter().flat_map(|event| [&event.before, &event.after]).flatten();
     let some = path.states.iter().skip(random.usize(..50)).step_by(path.states.len() / 4 + 1);
-    let wide = |at: &&PathState| at.zone > Some(1e-6 * widest / length);
+    let wide = |at: &&PathState| at.zone > Some(1e-3 * widest / length);
     for at in some.chain(shown).filter(wide).take(most) {
         judge.holds(&state(at, length), 5, &name);
     }
