@@ -11,6 +11,7 @@ mod exact_unloading;
 mod formula;
 mod preset_gaps;
 mod properties;
+mod pulls;
 mod random_waves;
 mod reference;
 mod shapes;

@@ -133,10 +133,22 @@ pub struct At {
     pub phi_by_y: f64,
     /// dP/dt.
     pub force_rate: f64,
+    /// What is dissipated in a unit of y.
+    pub loss: f64,
+    /// What the device does in a unit of the rest of ξ.
+    pub done: f64,
+}
+
+impl At {
     /// What is dissipated in a unit of ξ.
-    pub dissipation: f64,
+    pub fn dissipation(&self) -> f64 {
+        self.loss * self.phi
+    }
+
     /// What the device does in a unit of ξ.
-    pub work: f64,
+    pub fn work(&self) -> f64 {
+        self.done * (1.0 - self.phi)
+    }
 }
 
 /// The equation of motion of one stretch.
@@ -233,8 +245,8 @@ impl<'a> Equation<'a> {
             phi_by_y,
             force_rate,
             // (G − γ) 2πs ds, of which 2πs is in the gain.
-            dissipation: -sense * gain * ls * phi,
-            work: done * self.rate * lt * (1.0 - phi),
+            loss: -sense * gain * ls,
+            done: done * self.rate * lt,
         })
     }
 

@@ -12,6 +12,11 @@ pub enum RateError {
         /// s.
         contact_radius: f64,
     },
+    /// A closing edge is pressed there: the bodies would touch ahead of it.
+    Pressed {
+        /// s.
+        contact_radius: f64,
+    },
     /// It took too many.
     TooManySteps {
         /// How many.
@@ -36,6 +41,9 @@ impl RateError {
     pub fn in_units(self, units: &Units) -> Self {
         match self {
             Self::Lost { contact_radius } => Self::Lost { contact_radius: contact_radius * units.length },
+            Self::Pressed { contact_radius } => {
+                Self::Pressed { contact_radius: contact_radius * units.length }
+            }
             Self::TooManySteps { steps, contact_radius } => {
                 Self::TooManySteps { steps, contact_radius: contact_radius * units.length }
             }
@@ -55,6 +63,10 @@ impl RateError {
                     length(*contact_radius)
                 )
             }
+            Self::Pressed { contact_radius } => format!(
+                "the closing edge is pressed at the contact radius {}: the bodies touch ahead of it, and a pull follows one disc",
+                length(*contact_radius)
+            ),
             Self::TooManySteps { steps, contact_radius } => format!(
                 "the moving edge was given up after {steps} steps, at the contact radius {}",
                 length(*contact_radius)

@@ -251,7 +251,9 @@ impl Going<'_> {
         let caps = Caps::new(&panels, folds, way.rate, equation.branch.exponent, *wave, *settings);
         let level = way.rate.abs() / folds.slope(&panels, edge.adhesion(motion), self.s);
         let rests = way.rate * motion.sense() <= 0.0 && (motion == Motion::Closing || way.rate >= 0.0);
-        let stretch = Stretch { equation: &equation, caps: &caps, settings, until: way.until, rests };
+        let adhesion = edge.adhesion(motion) * PI * self.s * self.s;
+        let energy = adhesion + self.held().potential(&panels, *control).abs();
+        let stretch = Stretch { equation: &equation, caps: &caps, settings, until: way.until, rests, energy };
         if motion == Motion::Opening && self.pinned_until.is_none() {
             self.pinned_until = Some(self.resting(self.record.dissipated));
         }
@@ -300,7 +302,12 @@ impl Going<'_> {
         let last = self.held();
         let stored = last.potential(&self.panels, control);
         let missing = self.record.work - (stored - elastic) - self.adhesion - self.record.dissipated;
-        let balance = missing.abs() / self.record.work_size.max(f64::MIN_POSITIVE);
+        // A dead load does its work as it falls.
+        let fallen = match control {
+            Control::Force => last.force * last.approach - start.force * start.approach,
+            Control::Displacement | Control::Stiffness(_) => 0.0,
+        };
+        let balance = missing.abs() / (self.record.work_size + fallen.abs()).max(f64::MIN_POSITIVE);
         let mut dissipated = Some(self.record.dissipated);
         let mut last_contact = None;
         if self.is_apart {

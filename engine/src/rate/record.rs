@@ -95,7 +95,7 @@ impl Record {
     /// Adds a step from `start`; `again` solves it with another length.
     pub fn step(&mut self, start: &At, step: &Step, again: &dyn Fn(f64) -> Option<Step>) {
         self.steps += 1;
-        let (lost, done) = (step.sums(|at| at.dissipation), step.sums(|at| at.work));
+        let (lost, done) = (step.sums(At::dissipation), step.sums(At::work));
         let mut before = (0.0, start.force_rate);
         for (i, node) in step.nodes.iter().enumerate() {
             if before.1 < 0.0 && node.force_rate >= 0.0 {
@@ -104,7 +104,7 @@ impl Record {
                 let bracket = [step.length * before.0, step.length * NODES[i]];
                 let found = longest.and_then(|longest| landed(again, bracket, before.1, &longest, rate));
                 let at = found.map_or(*node, |found| *found.end());
-                let lost = found.map_or(lost[i], |found| found.sums(|at| at.dissipation)[STAGES - 1]);
+                let lost = found.map_or(lost[i], |found| found.sums(At::dissipation)[STAGES - 1]);
                 let at = self.moment(&at, self.dissipated + lost);
                 self.least.push(Least { at, then: at.force });
             }

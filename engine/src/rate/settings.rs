@@ -3,7 +3,7 @@
 /// How a pull is integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// The error of a step, in units of the contact radius at which the stretch begins: 1e-12 to 1e-3.
+    /// The error of a step as a share of the contact radius: 1e-12 to 1e-3.
     pub tolerance: f64,
     /// Newton's method ends at this share of it: its next change would be of the square.
     pub converged: f64,

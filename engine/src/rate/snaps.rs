@@ -6,6 +6,12 @@ use crate::elementary::ln;
 /// A snap is this many times as fast.
 const FASTER: f64 = 10.0;
 
+/// Below this share of the speed along the equilibria an edge rests: after a snap it comes to them to rounding, and is as slow as that.
+const RESTS: f64 = 0.1;
+
+/// A way of the edge below this share of the radius is none.
+const NO_WAY: f64 = 1e-6;
+
 /// A stretch of the pull in which the edge ran.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Snap {
@@ -46,7 +52,7 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool) -> Vec<Snap> {
             }
             // The edge is slow at first because it starts from rest.
             is_settled |= speed >= level || speed < a.speed.abs();
-            least = if is_settled { least.min(speed) } else { least };
+            least = if is_settled { least.min(speed).max(RESTS * level) } else { least };
             continue;
         };
         if speed > running.top {
@@ -58,16 +64,17 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool) -> Vec<Snap> {
         let low = running.low.speed.abs();
         if speed <= FASTER * least {
             found.push(running.ended(crossing(a, b, FASTER * least)));
-            (run, least, is_settled) = (None, speed, true);
+            (run, least, is_settled) = (None, speed.max(RESTS * level), true);
         } else if FASTER * low < running.top && speed > FASTER * low {
             found.push(running.ended([running.low.contact_radius, running.low.dissipated]));
-            least = low;
+            least = low.max(RESTS * level);
             run = Some(Run { from: crossing(a, b, FASTER * low), top: speed, low: *b });
         }
     }
     if let (Some(running), Some(last)) = (run.filter(|_| !ends_apart), moments.last()) {
         found.push(running.ended([last.contact_radius, last.dissipated]));
     }
+    found.retain(|snap| (snap.from - snap.to).abs() > NO_WAY * snap.from);
     found
 }
 

@@ -35,6 +35,12 @@ impl Step {
         &self.nodes[STAGES - 1]
     }
 
+    /// The estimated error of what is summed over the step, which begins at `start`.
+    pub fn error_of(&self, density: fn(&At) -> f64, start: &At) -> f64 {
+        let values = self.nodes.each_ref().map(density);
+        self.length * (REAL_EIGENVALUE * density(start) + dot(&ERROR_WEIGHTS, &values))
+    }
+
     /// What is summed over the step up to each stage.
     pub fn sums(&self, density: fn(&At) -> f64) -> [f64; STAGES] {
         let values = self.nodes.each_ref().map(density);
@@ -49,14 +55,15 @@ const THERE: f64 = 1e-14;
 /// φ stays this share of the way from where it was to a bound that Newton's method would pass.
 const TOWARDS_BOUND: f64 = 0.1;
 
-/// Solves a step of the length `h` from ξ and y, where the moment is `start`; `guess` are the stages expected. `None` where Newton's
-/// method finds nothing.
+/// Solves a step of the length `h` from ξ and y, where the moment is `start`; `guess` are the stages expected, `tolerance` that
+/// of y. `None` where Newton's method finds nothing.
 pub fn solve(
     equation: &Equation<'_>,
     [xi, y]: [f64; 2],
     start: &At,
     h: f64,
     guess: [f64; STAGES],
+    tolerance: f64,
     settings: &Settings,
 ) -> Option<Step> {
     let mut p = guess;
@@ -101,7 +108,9 @@ pub fn solve(
             size = size.max((next - *p).abs());
             *p = next;
         }
-        if h * size <= settings.converged * settings.tolerance {
+        if h * size <= settings.converged * tolerance {
+            // What is summed over the step belongs to the same way as y.
+            nodes.iter_mut().zip(p).for_each(|(node, p)| node.phi = p);
             let along = REAL_EIGENVALUE * start.phi + dot(&ERROR_WEIGHTS, &p);
             let damped = 1.0 - h * REAL_EIGENVALUE * start.phi_by_y;
             // An estimate that grows where the edge runs away by itself would be none.

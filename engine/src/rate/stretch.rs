@@ -35,6 +35,10 @@ const FIRST: f64 = 1e-4;
 const LEAST: f64 = 1e-15;
 /// An edge slower than this, as φ, may be expected to stay so for a step of the cap over it.
 const SLOW: f64 = 1e-3;
+/// What a step may miss of the energy, as a share of the tolerance: many steps add up.
+const OF_ENERGY: f64 = 0.3;
+/// A closing edge that is driven by so much is pressed: it closes without bound.
+const PRESSED: f64 = 1e12;
 /// Steps between two questions whether to go on.
 const ASKED: usize = 64;
 
@@ -50,6 +54,8 @@ pub struct Stretch<'a> {
     pub until: Option<f64>,
     /// Whether the control turns the edge round, which then comes to rest.
     pub rests: bool,
+    /// The energy of which what is dissipated is known to the tolerance.
+    pub energy: f64,
 }
 
 /// Where the integration is.
@@ -75,6 +81,7 @@ impl Stretch<'_> {
             if count % ASKED == 0 && progress.stop() {
                 return Err(RateError::Cancelled);
             }
+            self.onto_break(&mut here);
             let rest = 1.0 - here.y;
             if self.equation.motion == Motion::Opening {
                 if rest <= self.settings.gone {
@@ -86,13 +93,21 @@ impl Stretch<'_> {
             let cap = self.caps.at(s) / self.equation.radius;
             h = h.min(cap / here.at.phi.abs().max(SLOW));
             if h < LEAST * here.xi.max(1e-3) {
-                return Err(RateError::Lost { contact_radius: s });
+                let is_pressed = self.equation.motion == Motion::Closing && here.at.drive > PRESSED;
+                return Err(if is_pressed {
+                    RateError::Pressed { contact_radius: s }
+                } else {
+                    RateError::Lost { contact_radius: s }
+                });
             }
             let Some(step) = self.step(&here, h, last.as_ref()) else {
                 h *= AGAIN;
                 continue;
             };
-            let error = step.error.abs() / self.settings.tolerance;
+            let sums = [step.error_of(At::dissipation, &here.at), step.error_of(At::work, &here.at)];
+            let lost = sums.map(f64::abs).into_iter().fold(0.0, f64::max) / (self.energy + record.dissipated);
+            let error =
+                (step.error.abs() / self.tolerance(&here)).max(lost / (OF_ENERGY * self.settings.tolerance));
             let factor =
                 if error > 0.0 { SAFETY * crate::elementary::pow(error, -1.0 / 6.0) } else { CHANGE[1] };
             let advance = (step.y - here.y).abs();
@@ -101,7 +116,11 @@ impl Stretch<'_> {
                 h *= factor.min(shorter).clamp(CHANGE[0], SAFETY);
                 continue;
             }
-            let (step, end) = self.cut(&here, &step)?;
+            let Some((step, end)) = self.cut(&here, &step) else {
+                // The way to a break of the gap is as steep as a root: shorter steps come near.
+                h *= AGAIN;
+                continue;
+            };
             record.step(&here.at, &step, &|h| self.step(&here, h, Some(&step)));
             here = Here { xi: here.xi + step.length, y: step.y, at: *step.end() };
             if let Some(end) = end {
@@ -117,6 +136,22 @@ impl Stretch<'_> {
         })
     }
 
+    /// Moves an edge that is next to a break of the gap onto it.
+    fn onto_break(&self, here: &mut Here) {
+        /// So near to it, of the radius.
+        const NEXT_TO: f64 = 1e-15;
+        let s = here.at.held.contact_radius;
+        let Some(at_break) = self.caps.next_break(self.equation.motion, s) else { return };
+        let way = self.equation.motion.sense() * (at_break - s);
+        if way > 0.0 && way <= 10.0 * NEXT_TO * s {
+            // A hair beyond, on the other side.
+            let y = here.y + (way + NEXT_TO * s) / self.equation.radius;
+            if let Some(at) = self.equation.at(here.xi, y) {
+                (here.y, here.at) = (y, at);
+            }
+        }
+    }
+
     /// The step of the length `h` from here, with what the step before expects of it.
     fn step(&self, here: &Here, h: f64, last: Option<&Step>) -> Option<Step> {
         let guess = match last {
@@ -126,11 +161,19 @@ impl Stretch<'_> {
             }
             None => [here.at.phi; STAGES],
         };
-        step::solve(self.equation, [here.xi, here.y], &here.at, h, guess, self.settings)
+        let tolerance = self.tolerance(here);
+        step::solve(self.equation, [here.xi, here.y], &here.at, h, guess, tolerance, self.settings)
     }
 
-    /// The step as far as the first of what ends it.
-    fn cut(&self, here: &Here, step: &Step) -> Result<(Step, Option<End>), RateError> {
+    /// The error of a step, in units of the radius at which the stretch begins: a share of the radius here. What a dead load or a soft
+    /// spring loses grows as 1/s.
+    fn tolerance(&self, here: &Here) -> f64 {
+        let share = if self.equation.motion == Motion::Opening { 1.0 - here.y } else { 1.0 };
+        self.settings.tolerance * share.max(self.settings.gone)
+    }
+
+    /// The step as far as the first of what ends it; `None` where its end is not found.
+    fn cut(&self, here: &Here, step: &Step) -> Option<(Step, Option<End>)> {
         let at_break = self.caps.next_break(self.equation.motion, here.at.held.contact_radius);
         let sense = self.equation.motion.sense();
         let past_break = |at: &At| at_break.map_or(-1.0, |s| sense * (at.held.contact_radius - s));
@@ -148,9 +191,9 @@ impl Stretch<'_> {
                     &first.0,
                     past,
                 );
-                first = (landed.ok_or(RateError::Lost { contact_radius: here.at.held.contact_radius })?, end);
+                first = (landed?, end);
             }
         }
-        Ok(first)
+        Some(first)
     }
 }

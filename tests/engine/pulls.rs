@@ -1,0 +1,156 @@
+//! Pulls of random problems of every shape: the balance of work and energy closes, whatever the gap, the device, the law and the rate.
+//!
+//! All five hundred:
+//!
+//! ```text
+//! cargo test --release --test engine pulls:: -- --ignored --nocapture
+//! ```
+//!
+//! and `PULLOFF_PULLS=17..18` before that line runs those numbers alone.
+
+#![allow(clippy::float_cmp, reason = "what is exact is compared so")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+
+use crate::support::problems::draw;
+use pulloff_engine::Case;
+use pulloff_engine::problem::{Control, Part};
+use pulloff_engine::progress::Unwatched;
+use pulloff_engine::rate::{Edge, EdgeLaw, Moment, Pull, Puller, RateError, Settings};
+use pulloff_engine::report::pull::{Asked, PullReport};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// What a balance may leave, of the work.
+const BALANCE: f64 = 1e-9;
+
+/// A pull of a number, with its words.
+struct Drawn {
+    case: Case,
+    edge: Edge,
+    control: Control,
+    parts: Vec<Part>,
+    words: String,
+}
+
+impl Drawn {
+    fn puller(&self) -> Puller<'_> {
+        Puller {
+            table: &self.case.table,
+            control: self.control,
+            edge: self.edge,
+            start: self.case.start,
+            wave: self.case.reduced.gap.feature_length(),
+            rise: None,
+            settings: Settings::default(),
+        }
+    }
+}
+
+/// The pull of a number; `None` where the problem has no adhesion or no start.
+fn drawn(number: u64) -> Option<Drawn> {
+    let problem = draw(number).ok()?;
+    let case = Case::new(&problem.preset).ok()?;
+    let gamma = case.reduced.work_of_adhesion;
+    // Of weaker adhesion the edge is driven by less than a millionth of the radius: a pull takes more steps than there may be.
+    if gamma < 1e-12 {
+        return None;
+    }
+    let mut random = fastrand::Rng::with_seed(number ^ 0x5EED);
+    let mut scale = |from: i32, to: i32| 10.0_f64.powf(f64::from(from) + f64::from(to - from) * random.f64());
+    let (rate, stiffness) = (scale(-8, 3), scale(-6, 6));
+    let exponent = 0.1 + 0.9 * random.f64();
+    let control = [Control::Displacement, Control::Force, Control::Stiffness(stiffness)][random.usize(0..3)];
+    let closing = if random.bool() { gamma } else { gamma * (0.2 + 0.8 * random.f64()) };
+    let edge = Edge { law: EdgeLaw::symmetric(exponent), opening: gamma, closing };
+    let mut parts = vec![Part::Apart { rate }];
+    if random.f64() < 0.25 {
+        let held = case.basis.equilibrium(&case.reduced, case.start)?;
+        let c = control.value(held.approach, held.force);
+        let to = c + 0.1 * c.abs();
+        parts = vec![Part::Ramp { to, rate }, Part::Hold { time: 0.1 / rate }, Part::Apart { rate }];
+    }
+    let words = format!(
+        "{number}: {} s {:e} γ {gamma:e} γ_a {closing:e} n {exponent:.3} V {rate:e} {control} {parts:?}",
+        problem.kind, case.start
+    );
+    Some(Drawn { case, edge, control, parts, words })
+}
+
+/// What is wrong with the pull of a number; `None` where there is none.
+fn judged(number: u64) -> Option<Result<(f64, String), String>> {
+    let drawn = drawn(number)?;
+    let words = drawn.words.clone();
+    let pull = match drawn.puller().pull(&drawn.parts, &Unwatched) {
+        Ok(pull) => pull,
+        // What is not known of a gap is not pulled, and where bodies touch ahead of the edge there is more than one disc.
+        Err(RateError::Beyond { .. } | RateError::Pressed { .. }) => return None,
+        Err(error) => return Some(Err(format!("{words}: {error:?}"))),
+    };
+    Some(
+        faults(&drawn, &pull)
+            .map_or(Ok((pull.balance, words.clone())), |fault| Err(format!("{words}: {fault}"))),
+    )
+}
+
+/// What cannot be of a pull.
+fn faults(drawn: &Drawn, pull: &Pull) -> Option<String> {
+    if !(pull.balance <= BALANCE) {
+        return Some(format!("balance {:e} in {} steps", pull.balance, pull.steps));
+    }
+    if pull.last_contact.is_none() {
+        return Some("does not end apart".to_owned());
+    }
+    let last = pull.moments.last().map_or(0.0, |moment| moment.dissipated);
+    let falls = |pair: &[Moment]| pair[1].dissipated < pair[0].dissipated - BALANCE * last;
+    if pull.moments.windows(2).any(falls) {
+        return Some("gains energy".to_owned());
+    }
+    let only_opens = drawn.parts.len() == 1;
+    let grows = |pair: &[Moment]| pair[1].contact_radius > pair[0].contact_radius * (1.0 + 10.0 * BALANCE);
+    (only_opens && pull.moments.windows(2).any(grows)).then(|| "grows while it is pulled".to_owned())
+}
+
+fn campaign(numbers: Range<u64>) {
+    let found: Vec<_> = numbers.into_par_iter().filter_map(judged).collect();
+    let (right, wrong): (Vec<_>, Vec<_>) = found.into_iter().partition(Result::is_ok);
+    let worst = right.iter().filter_map(|found| found.as_ref().ok()).max_by(|a, b| a.0.total_cmp(&b.0));
+    println!("{} pulls right, {} wrong, worst {worst:?}", right.len(), wrong.len());
+    let wrong: Vec<String> = wrong.into_iter().filter_map(Result::err).collect();
+    assert!(wrong.is_empty(), "{} wrong:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn fifty_random_pulls_close_their_balance() {
+    campaign(0..50);
+}
+
+#[test]
+#[ignore = "minutes; in release"]
+fn five_hundred_random_pulls_close_their_balance() {
+    let all = std::env::var("PULLOFF_PULLS").ok();
+    let range = all.and_then(|text| {
+        let (from, to) = text.split_once("..")?;
+        Some(from.parse().ok()?..to.parse().ok()?)
+    });
+    campaign(range.unwrap_or(0..600));
+}
+
+/// Only the ratio of both speeds counts, and that exactly.
+#[test]
+fn twice_both_speeds_is_half_the_time() {
+    let pulled = |speed: &str, rate: f64| {
+        let text = pulloff_engine::preset::shipped::find("wavy-sphere").unwrap().text;
+        let mut preset = pulloff_engine::preset::read("wavy-sphere", text).unwrap();
+        preset.assign("edge.exponent", "0.4").unwrap();
+        preset.assign("edge.reference_speed", speed).unwrap();
+        let asked = Asked { rates: vec![rate], ..Asked::default() };
+        PullReport::compute(&preset, &asked, &Unwatched).unwrap().runs.remove(0)
+    };
+    let (slow, fast) = (pulled("1", 0.01), pulled("2", 0.02));
+    assert_eq!(slow.peak.force.to_bits(), fast.peak.force.to_bits());
+    assert_eq!(slow.dissipated, fast.dissipated);
+    assert_eq!(slow.moments.len(), fast.moments.len());
+    assert_eq!((slow.peak.time, 2.0 * slow.top_edge_speed), (2.0 * fast.peak.time, fast.top_edge_speed));
+    let [a, b] = [&slow, &fast].map(|run| run.last_contact.unwrap());
+    assert_eq!((a.time, a.control), (2.0 * b.time, b.control));
+}
