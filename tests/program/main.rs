@@ -30,6 +30,7 @@ mod output_rule;
 mod outputs;
 mod plot;
 mod pull;
+mod recording;
 mod release;
 mod run;
 mod session;

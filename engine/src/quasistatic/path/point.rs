@@ -258,7 +258,7 @@ impl<'a, 'b> Step<'a, 'b> {
 
     /// The step up to `end`, at the distance `length`, as a polynomial in the length, through states that are added until one lies on it
     /// to `near`: the offsets in the units of the arc length, and dΠ/dc, which is P or, for `by_force`, −δ.
-    pub fn way(&self, length: f64, end: &Point, by_force: bool, near: f64) -> Option<Way> {
+    pub fn way(&self, length: f64, end: &Point, by_force: bool, near: f64) -> Option<Interpolant> {
         /// Where states are added, as shares of the step.
         const ADDED: [f64; 7] = [0.5, 0.2, 0.8, 0.35, 0.65, 0.1, 0.9];
         let balance = self.balance;
@@ -273,7 +273,7 @@ impl<'a, 'b> Step<'a, 'b> {
                 let rate = slope(balance.slopes(point)) / point.tangent.dot(&self.row);
                 [with(x, value), with(self.rate_of(point), rate)]
             });
-        let mut way = Way::between(length, ends);
+        let mut way = Interpolant::between(length, ends);
         for share in ADDED {
             let guess = way.at(length * share).0;
             let (x, value, off) = self.near(length * share, guess.rows(0, self.row.len()).into_owned())?;
@@ -403,12 +403,12 @@ impl<'a, 'b> Step<'a, 'b> {
 }
 
 /// A way as a polynomial in Newton's form: what is known of it at each node in turn.
-pub struct Way {
+pub struct Interpolant {
     nodes: Vec<f64>,
     coefficients: Vec<DVector<f64>>,
 }
 
-impl Way {
+impl Interpolant {
     /// The cubic from 0 to `length` with value and rate at both ends.
     fn between(length: f64, [[start, rate], [end, last]]: [[DVector<f64>; 2]; 2]) -> Self {
         let chord = (end - &start) / length;
