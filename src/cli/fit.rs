@@ -10,11 +10,11 @@ use self::table::Table;
 use super::console::{Console, Messages};
 use super::format::{self, Format, FormatArgument};
 use super::jobs::Jobs;
-use super::measured::{Reading, attach, typed};
+use super::measured::{Reading, attach, own, typed};
 use super::output::{Destination, Inputs, OUTPUT, Outputs, Sink, shown};
 use super::problem::Changes;
 use super::watch::Stop;
-use super::{Failure, problem};
+use super::{Failure, measured, problem};
 use crate::store::hash::sha256;
 use crate::store::{Loaded, stream};
 use crate::sweep::in_order;
@@ -173,19 +173,10 @@ fn one(
     })
 }
 
-/// The file of the preset's own curve; one that comes with the program by its name.
-fn own(preset: &Preset) -> Option<PathBuf> {
-    preset.data.source.as_ref().map(|source| source.path())
-}
-
 impl Arguments {
     /// The files, the preset and what is asked for.
     fn read(&self, console: &Console) -> Result<(Vec<PathBuf>, Loaded, Options), Failure> {
-        let (preset, files) = match self.paths.split_last() {
-            Some((last, files)) if is_preset(last) => (Some(last.clone()), files),
-            _ => (None, &self.paths[..]),
-        };
-        let mut files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
+        let (preset, mut files) = measured::apart(&self.paths);
         let loaded = problem::Problem { preset, changes: self.changes.clone() }.load(console)?;
         files = files::measured(files, console)?;
         if files.is_empty() {
@@ -311,12 +302,4 @@ impl Arguments {
         );
         sha256(format!("{said}\n{}", write(preset)).as_bytes())
     }
-}
-
-/// Whether the last argument names a preset and no points.
-fn is_preset(path: &OsString) -> bool {
-    let shown = Path::new(path);
-    let is_file = shown.is_file() && shown.extension().is_none_or(|ending| ending != "toml");
-    let ends = shown.extension().is_some_and(|ending| ending == "toml") || path == stream::STANDARD;
-    ends || (!is_file && problem::store().resolve(path).is_ok())
 }

@@ -1,13 +1,15 @@
 //! What commands share that read measured curves.
 
-use super::Failure;
+use super::{Failure, problem};
 use crate::store::data::read_points;
+use crate::store::stream;
 use clap::{Args, ValueEnum};
 use pulloff_engine::measured::Spec;
 use pulloff_engine::preset::invalid::Invalid;
 use pulloff_engine::preset::{Preset, Value, data};
 use pulloff_engine::units::Quantity;
-use std::path::Path;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Gives the preset the measured curve in the file `path`, or leaves it its own where that is `None`; the spring that it states
@@ -97,4 +99,26 @@ pub(super) fn typed(preset: &Preset, flag: &str, key: &str, text: &str) -> Resul
         wrong(&text.strip_prefix(&*row.key).map_or(&*text, |rest| rest.trim_start_matches([':', ' '])))
     };
     preset.number(&row, text).map_err(words)
+}
+
+/// The file of the preset's own curve; one that comes with the program by its name.
+pub(super) fn own(preset: &Preset) -> Option<PathBuf> {
+    preset.data.source.as_ref().map(|source| source.path())
+}
+
+/// Files with points, and the preset behind them where the last argument names one.
+pub(super) fn apart(paths: &[OsString]) -> (Option<OsString>, Vec<PathBuf>) {
+    let (preset, files) = match paths.split_last() {
+        Some((last, files)) if is_preset(last) => (Some(last.clone()), files),
+        _ => (None, paths),
+    };
+    (preset, files.iter().map(PathBuf::from).collect())
+}
+
+/// Whether the last argument names a preset and no points.
+fn is_preset(path: &OsString) -> bool {
+    let shown = Path::new(path);
+    let is_file = shown.is_file() && shown.extension().is_none_or(|ending| ending != "toml");
+    let ends = shown.extension().is_some_and(|ending| ending == "toml") || path == stream::STANDARD;
+    ends || (!is_file && problem::store().resolve(path).is_ok())
 }

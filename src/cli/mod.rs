@@ -24,6 +24,7 @@ mod problem;
 mod pull;
 mod run;
 mod sessions;
+mod speeds;
 mod sweep;
 mod sweep_status;
 mod trace;
@@ -74,6 +75,8 @@ enum Command {
     Map(map::Arguments),
     /// Fit values of a preset to measured curves
     Fit(fit::Arguments),
+    /// Compute the energy release rate of a measured curve beside the speed of its edge
+    Speeds(speeds::Arguments),
     /// Draw a view as a figure for print
     Plot(plot::Arguments),
     /// Compute the figures of the paper again: pictures, numbers and captions
@@ -127,6 +130,7 @@ pub fn run() -> ExitCode {
         Some(Command::Pull(arguments)) => pull::run(arguments),
         Some(Command::Map(arguments)) => map::run(arguments),
         Some(Command::Fit(arguments)) => fit::run(arguments),
+        Some(Command::Speeds(arguments)) => speeds::run(arguments),
         Some(Command::Plot(arguments)) => plot::run(arguments),
         Some(Command::Figures(arguments)) => figures::run(arguments),
         Some(Command::Sweep(arguments)) => sweep::run(arguments),

@@ -34,6 +34,7 @@ mod recording;
 mod release;
 mod run;
 mod session;
+mod speeds;
 mod ssh;
 mod statuses;
 mod sweep;

@@ -141,7 +141,7 @@ fn charts() -> String {
 const SHARED: [&str; 7] = ["set", "control", "output", "format", "overwrite", "quiet", "strict"];
 
 /// The options of [`SHARED`] that each command has; this is what they are to be.
-const MATRIX: [(&str, &str); 22] = [
+const MATRIX: [(&str, &str); 23] = [
     ("pulloff", "set control"),
     ("trace", "set control output format overwrite quiet strict"),
     ("unload", "set control output format overwrite quiet strict"),
@@ -149,6 +149,7 @@ const MATRIX: [(&str, &str); 22] = [
     ("pull", "set control output format overwrite quiet strict"),
     ("map", "set control output format overwrite quiet strict"),
     ("fit", "set control output format overwrite quiet strict"),
+    ("speeds", "set control output format overwrite quiet strict"),
     // A figure has a format of its own, by its ending.
     ("plot", "set control output overwrite quiet strict"),
     // Their presets are those of the paper.

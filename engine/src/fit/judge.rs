@@ -5,7 +5,9 @@
 //! | `contact` | does the curve go through the points in contact |
 //! | `apart` | is the force a constant where the bodies are apart |
 //! | `scores` | would a gap of another exponent fit better, or an adhesion with a range |
+//! | `edge` | how fast the edge goes |
 //! | `rate` | does the work of adhesion grow with the speed of the edge |
+//! | `untold` | could the points tell that it does |
 //! | `touch` | do the bodies pull before they touch |
 //! | `spring` | what would another spring give |
 //!
@@ -13,10 +15,12 @@
 
 mod apart;
 mod contact;
+mod edge;
 mod rate;
 mod scores;
 mod spring;
 mod touch;
+mod untold;
 
 pub(super) use spring::of_spring;
 
@@ -45,6 +49,8 @@ const MODULI: [f64; 2] = [10.0, 1e12];
 const ROUNDING: f64 = 0.1;
 /// Works of adhesion that differ by less than this share are one, whatever their errors: points without noise have none.
 const DIFFERENT: f64 = 1e-3;
+/// A work of adhesion below so many of its errors is hardly one.
+const FROM_NONE: f64 = 5.0;
 /// Noise in contact so many times that of the rows apart is another; and how much more where that is known from few rows, times
 /// 1/√n: three of its deviations.
 const NOISIER: f64 = 1.3;
@@ -149,8 +155,17 @@ fn unlikely(problem: &Problem, solved: &Solved, preset: &Preset) -> Vec<Reason> 
 
 /// What is to be doubted about a fit, and leaves its verdict. `is_known` says whether the noise of the force was given, or found in
 /// rows apart.
-pub(super) fn doubts(problem: &Problem, scatter: &Scatter, fitted: &[Fitted], is_known: bool) -> Vec<String> {
-    let mut doubts = Vec::new();
+pub(super) fn doubts(
+    problem: &Problem,
+    solved: &Solved,
+    scatter: &Scatter,
+    inner: Option<&DMatrix<f64>>,
+    fitted: &[Fitted],
+    (reasons, is_known): (&[Reason], bool),
+) -> Vec<String> {
+    let has_speed = reasons.iter().any(|reason| rate::KINDS.contains(&reason.kind));
+    let of_edge = || rate::of_untimed(problem, solved, scatter, inner);
+    let mut doubts: Vec<String> = if has_speed { None } else { of_edge() }.into_iter().collect();
     let adhesions: Vec<&Fitted> = fitted.iter().filter(|fitted| fitted.key.starts_with(ADHESION)).collect();
     if let [approach, retraction] = adhesions[..]
         && let (Some(a), Some(b)) = (approach.standard_error, retraction.standard_error)
@@ -162,6 +177,15 @@ pub(super) fn doubts(problem: &Problem, scatter: &Scatter, fitted: &[Fitted], is
              rate or ageing"
                 .to_owned(),
         );
+    }
+    for fitted in adhesions {
+        if let Some(error) = fitted.standard_error.filter(|error| fitted.value < FROM_NONE * error) {
+            doubts.push(format!(
+                "{} is {} of its errors above 0: the points hardly tell it from no adhesion",
+                fitted.key,
+                short(fitted.value / error, 2)
+            ));
+        }
     }
     let free = problem.data.iter().filter(|datum| datum.free).count().max(1) as f64;
     if let Some(s) = scatter.contact.filter(|s| is_known && *s > NOISIER + OF_FEW / free.sqrt()) {

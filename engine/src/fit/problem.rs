@@ -176,6 +176,13 @@ impl Problem {
         if self.space { 2 } else { 1 }
     }
 
+    /// The contact radius of a point; not a number where it is not measured.
+    #[must_use]
+    pub fn radius(&self, i: usize) -> f64 {
+        let point = &self.data[i].point;
+        if self.abscissa == Abscissa::Radius { point.x } else { point.radius }
+    }
+
     /// 1/σ, 0 for what is not measured.
     #[must_use]
     pub fn weights(&self) -> Place {

@@ -208,6 +208,7 @@ pub(super) fn fit_branches(
     reasons.extend(of_sparse(branches, preset));
     let is_known = [Origin::Given, Origin::Apart].contains(&branches.noise.from[1]);
     let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
+    let warnings = doubts(&problem, &solved, &scatter, what.inner.as_ref(), &fitted, (&reasons, is_known));
     let fitted_preset = laid(preset, &problem, (&found, &problem.instrument_at(u)), &mut notes);
     let lists = |c: nalgebra::DMatrix<f64>| c.row_iter().map(|row| row.iter().copied().collect()).collect();
     let left = real.len().saturating_sub(problem.taken()).max(1) as f64;
@@ -230,7 +231,7 @@ pub(super) fn fit_branches(
         noise: Noise { sigma: problem.sigma, ..branches.noise },
         bootstrapped,
         notes,
-        warnings: doubts(&problem, &scatter, &fitted, is_known),
+        warnings,
         scatter,
         preset: fitted_preset,
         instrument: problem.instrument_at(u),

@@ -16,13 +16,11 @@ use super::solve::Solved;
 use crate::elementary::{exp, ln};
 use crate::measured::Abscissa;
 use crate::measured::branches::median;
+pub(super) use crate::measured::noise::{CLIPPED, LEFT, variance};
 use nalgebra::{DMatrix, DVector};
 
 /// Rows farther off than so many times the scale of all are outliers, and left out.
 const OUTLIER: f64 = 4.0;
-/// Values beyond so many standard deviations count as so many, and the variance of normal values that is left so.
-pub(super) const CLIPPED: f64 = 2.5;
-pub(super) const LEFT: f64 = 0.977_56;
 /// Fewer rows of a branch say nothing of neighbours.
 const FEWEST: usize = 5;
 /// Rows apart by which a correlation is looked for, at least.
@@ -179,24 +177,6 @@ impl Problem {
             apart: rows_apart,
         }
     }
-}
-
-/// The variance around 0 of normal values, some of which may be off.
-#[must_use]
-pub fn variance(values: &[f64]) -> Option<f64> {
-    const TIMES: usize = 20;
-    const SAME: f64 = 1e-6;
-    let mut found = (median(values.iter().map(|x| x.abs()).collect())? / 0.6745).powi(2);
-    for _ in 0..TIMES {
-        let most = CLIPPED * CLIPPED * found;
-        let next = values.iter().map(|x| (x * x).min(most)).sum::<f64>() / values.len() as f64 / LEFT;
-        let is_same = (next - found).abs() <= SAME * found;
-        found = next;
-        if is_same {
-            break;
-        }
-    }
-    Some(found)
 }
 
 /// Whether values go on from row to row, but for some noise: by the squares of their steps over those around their mean, 2 of values

@@ -23,6 +23,7 @@
 //! | `turns` | where the way turns round |
 //! | [`converter`] | steps and ends of the range of a converter, rows that stand there twice |
 //! | `noise` | medians, ranges, scatter |
+//! | [`speed`] | how fast the contact radius goes, row by row |
 //!
 //! Nothing here reads a disk: bytes come from the caller.
 
@@ -36,7 +37,7 @@ mod free;
 mod header;
 mod lines;
 mod names;
-mod noise;
+pub(crate) mod noise;
 pub mod points;
 pub mod read;
 pub mod role;
@@ -44,6 +45,7 @@ mod rows;
 mod sigma;
 mod signs;
 pub mod source;
+pub mod speed;
 pub mod stated;
 mod turns;
 mod words;

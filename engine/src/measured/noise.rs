@@ -4,6 +4,9 @@ use serde::Serialize;
 
 /// The least noise, as a share of the range: a distance to a curve needs both axes.
 pub const FLOOR: f64 = 1e-4;
+/// Values beyond so many standard deviations count as so many, and the variance of normal values that is left so.
+pub(crate) const CLIPPED: f64 = 2.5;
+pub(crate) const LEFT: f64 = 0.977_56;
 /// Deviations of the free part beyond so many σ belong to the contact.
 pub(super) const BEYOND: f64 = 6.0;
 /// The share of the rows, and the fewest, by which the ends are judged.
@@ -48,6 +51,27 @@ pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     let other =
         if count.is_multiple_of(2) { below.iter().copied().fold(f64::NEG_INFINITY, f64::max) } else { at };
     Some(0.5 * (other + at))
+}
+
+/// The variance around 0 of normal values, some of which may be off.
+pub(crate) fn variance(values: &[f64]) -> Option<f64> {
+    const TIMES: usize = 20;
+    const SAME: f64 = 1e-6;
+    let mut found = (median(values.iter().map(|x| x.abs()).collect())? / 0.6745).powi(2);
+    if found == 0.0 {
+        // Half of them are none: of a force in steps.
+        found = values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64;
+    }
+    for _ in 0..TIMES {
+        let most = CLIPPED * CLIPPED * found;
+        let next = values.iter().map(|x| (x * x).min(most)).sum::<f64>() / values.len() as f64 / LEFT;
+        let is_same = (next - found).abs() <= SAME * found;
+        found = next;
+        if is_same {
+            break;
+        }
+    }
+    Some(found)
 }
 
 /// The range of what is a number.

@@ -2,12 +2,13 @@
 //!
 //! ```text
 //! σ_P = median |P_i − P_{i+1}| / 0.954                 of the free part, for normal noise
+//! σ_P = √(Σ (P_i − P_{i+1})² / 2n)                     of a force in steps, whose median is a whole number of them; at least a step/√12
 //! σ_P = median |P_i − line through neighbours| / …      without one, of the rows in contact
 //! σ_x = max(last digit, median |x_{i−1} − 2x_i + x_{i+1}| / 1.652)    both at least 1e-4 of their range
 //! ```
 
 use super::free::Branch;
-use super::noise::{FLOOR, Noise, Origin, median, scatter_over};
+use super::noise::{FLOOR, Noise, Origin, median, scatter_over, variance};
 use super::points::Point;
 use crate::elementary::hypot;
 
@@ -44,7 +45,13 @@ pub(super) fn noise(
     let neighbours = in_contact.into_iter().reduce(f64::min);
     // Of few rows apart nothing is known: those in contact say more.
     let is_known = forces.len() >= FEWEST_APART || neighbours.is_none();
-    let apart = median(forces).filter(|_| is_known).map(|step| step / 0.954);
+    let step = converter.unwrap_or(0.0);
+    let of_forces = if step > 0.0 {
+        variance(&forces).map(|square| (0.5 * square).sqrt())
+    } else {
+        median(forces).map(|off| off / 0.954)
+    };
+    let apart = of_forces.filter(|_| is_known);
     // Of radii alone the scatter has that of the force in it: both cannot be told where neither is known.
     let known = apart.is_some() || given[1].is_some();
     let of_ways = || median(ways).map(|way| way / 1.652);
@@ -55,7 +62,6 @@ pub(super) fn noise(
         of(apart, Origin::Apart).or(of(neighbours, Origin::Neighbours)),
         of(radius, Origin::Neighbours),
     ];
-    let step = converter.unwrap_or(0.0);
     let mut noise = Noise { sigma: [0.0; 3], from: [Origin::Assumed; 3], step };
     for axis in 0..3 {
         let floor = FLOOR * ranges[axis];
@@ -65,9 +71,13 @@ pub(super) fn noise(
         }
         let digits = Some(steps[axis]).filter(|step| step.is_finite()).unwrap_or(0.0);
         let (mut of_data, origin) = found[axis].unwrap_or((0.0, Origin::Assumed));
-        // Noise below a step of the converter is not seen in differences: the force is rounded then.
-        if axis == 1 && of_data < step {
-            of_data = hypot(of_data, step / 12.0_f64.sqrt());
+        // Noise below a step of the converter is not seen in differences: the force is rounded then. Squares of differences of rows apart have
+        // what rounding adds in them, but where all stand at one step.
+        let rounded = step / 12.0_f64.sqrt();
+        if axis == 1 && origin == Origin::Apart {
+            of_data = of_data.max(rounded);
+        } else if axis == 1 && of_data < step {
+            of_data = hypot(of_data, rounded);
         }
         let least = floor.max(digits);
         let found = (of_data.max(least), if of_data.max(digits) < floor { Origin::Assumed } else { origin });

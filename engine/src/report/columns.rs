@@ -16,9 +16,9 @@ fn quantity(column: &str, control: Control) -> Option<Quantity> {
         | "outer_radius" => Some(Quantity::Length),
         "force" => Some(Quantity::Force),
         "time" => Some(Quantity::Time),
-        "energy_release_rate" => Some(Quantity::EnergyPerArea),
+        "energy_release_rate" | "error" => Some(Quantity::EnergyPerArea),
         "rate" if control == Control::Force => Some(Quantity::ForceRate),
-        "rate" | "speed" | "top_edge_speed" => Some(Quantity::Speed),
+        "rate" | "speed" | "speed_error" | "top_edge_speed" => Some(Quantity::Speed),
         "energy" | "dissipated" | "dissipated_by_area" => Some(Quantity::Energy),
         "contact_stiffness" | "tangent_stiffness" | "held_stiffness" => Some(Quantity::ForcePerLength),
 
@@ -57,7 +57,7 @@ pub fn units(columns: &[&str], control: Control, units: &UnitSystem) -> Option<S
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{path, trace};
+    use crate::report::{path, speeds, trace};
     use crate::units::DisplayUnits;
 
     #[test]
@@ -80,9 +80,16 @@ mod tests {
             "state",
             "piece",
             "contact",
+            "window",
+            "segment",
+            "row",
         ];
-        let all =
-            trace::COLUMNS.iter().chain(trace::EXACT_COLUMNS).chain(path::COLUMNS).chain(path::STATE_COLUMNS);
+        let all = trace::COLUMNS
+            .iter()
+            .chain(trace::EXACT_COLUMNS)
+            .chain(path::COLUMNS)
+            .chain(path::STATE_COLUMNS)
+            .chain(speeds::COLUMNS);
         for column in all {
             assert_eq!(unit(column, Control::Force).is_none(), pure.contains(column), "{column}");
         }

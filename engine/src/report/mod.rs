@@ -9,6 +9,7 @@
 //! | [`path`] | an unloading, or a loop of loading and unloading, as a document |
 //! | [`pull`] | pulls at a rate, and times to failure, as a document |
 //! | [`slow`] | the largest pull of slow ones over their rate, in closed form |
+//! | [`speeds`] | G of measured rows beside the speed of the edge as a document |
 //! | [`map`] | maps of two numbers, and limit points over one, as a document |
 //! | [`stability`] | the law of stability over the contact radius as a document |
 //! | [`fit`] | a fit to a measured curve as a document, a table and text |
@@ -36,6 +37,7 @@ pub mod rows;
 #[cfg(test)]
 mod schema;
 pub mod slow;
+pub mod speeds;
 pub mod stability;
 pub mod table;
 pub mod trace;
@@ -49,6 +51,7 @@ pub use overlap::OverlapReport;
 pub use path::PathReport;
 pub use problem::{Head, ProblemReport};
 pub use pull::PullReport;
+pub use speeds::SpeedsReport;
 pub use stability::StabilityReport;
 pub use trace::TraceReport;
 pub use verify::VerifyReport;

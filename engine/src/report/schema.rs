@@ -4,7 +4,8 @@
 
 use super::walk::WalkReport;
 use super::{
-    FitReport, MapReport, PathReport, PullReport, SCHEMA, StabilityReport, TraceReport, VerifyReport,
+    FitReport, MapReport, PathReport, PullReport, SCHEMA, SpeedsReport, StabilityReport, TraceReport,
+    VerifyReport,
 };
 use schemars::generate::SchemaSettings;
 use schemars::transform::{RecursiveTransform, Transform};
@@ -44,6 +45,7 @@ fn schemas_are_those_of_the_documents() {
         ("trace", text::<TraceReport>("trace")),
         ("path", text::<PathReport>("path")),
         ("pull", text::<PullReport>("pull")),
+        ("speeds", text::<SpeedsReport>("speeds")),
         ("map", text::<MapReport>("map")),
         ("stability", text::<StabilityReport>("stability")),
         ("walk", text::<WalkReport>("walk")),

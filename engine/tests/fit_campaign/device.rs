@@ -110,6 +110,13 @@ pub struct Peel {
     pub begin: f64,
 }
 
+/// What samples are even by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum By {
+    Time,
+    Radius,
+}
+
 impl Peel {
     fn approach(&self, s: f64, position: f64) -> f64 {
         let (e, k) = (self.modulus, self.stiffness);
@@ -130,8 +137,24 @@ impl Peel {
         self.reference * (released / self.adhesion - 1.0).max(0.0).powf(1.0 / self.exponent)
     }
 
-    /// `rows` samples in contact, evenly by time, down to the share `last` of the first contact radius.
-    pub fn samples(&self, rows: usize, last: f64) -> Vec<Sample> {
+    /// `rows` samples in contact, even by time or by contact radius, down to the share `last` of the first contact radius.
+    pub fn samples(&self, rows: usize, last: f64, by: By) -> Vec<Sample> {
+        let whole = self.whole(last);
+        let end = whole.len() - 1;
+        let radius = |i: usize| whole[i].state.radius;
+        let share = |i: usize| i as f64 / (rows - 1) as f64;
+        let place = |i: usize| match by {
+            By::Time => i * end / (rows - 1),
+            By::Radius => {
+                let wanted = radius(0) + share(i) * (radius(end) - radius(0));
+                whole.partition_point(|sample| sample.state.radius > wanted).min(end)
+            }
+        };
+        (0..rows).map(|i| whole[place(i)]).collect()
+    }
+
+    /// Very many samples in contact, down to the share `last` of the first contact radius.
+    fn whole(&self, last: f64) -> Vec<Sample> {
         const STEPS: usize = 40_000;
         let s = self.begin;
         let approach = s * s / self.radius - (TAU * self.adhesion * s / self.modulus).sqrt();
@@ -157,7 +180,7 @@ impl Peel {
             let state = self.state(s, position);
             whole.push(Sample { way: Way::Out, time: whole.len() as f64 * time, position, state });
         }
-        (0..rows).map(|i| whole[i * (whole.len() - 1) / (rows - 1)]).collect()
+        whole
     }
 }
 
@@ -181,7 +204,7 @@ mod tests {
             begin: 1.2e-4,
         };
         let least = |speed| {
-            let samples = peel(speed).samples(2000, 0.3);
+            let samples = peel(speed).samples(2000, 0.3, By::Time);
             samples.iter().map(|sample| sample.state.force).fold(f64::INFINITY, f64::min)
         };
         let critical = -1.5 * PI * w * r;

@@ -1,7 +1,7 @@
 //! Kinds of measured curves, each made of a seed: what was measured, what is asked, and what is true.
 
 use super::bodies::{Body, Gap};
-use super::device::{Device, Peel, Way};
+use super::device::{By, Device, Peel, Way};
 use super::record::{Random, Record, Seen};
 use std::f64::consts::PI;
 
@@ -45,10 +45,32 @@ pub const MEASURED: [Kind; 11] = [
 ];
 
 /// What no sphere with adhesion at its edge alone is, or no instrument should do: right, or said.
-pub const DOUBTFUL: [Kind; 36] = [
-    Kind { name: "Gent-Schultz P(s), 29 rows", is_model: false, make: |random| peeled(random, 29, false) },
-    Kind { name: "Gent-Schultz P(s), 38 rows", is_model: false, make: |random| peeled(random, 38, false) },
-    Kind { name: "Gent-Schultz P(s), with times", is_model: false, make: |random| peeled(random, 38, true) },
+pub const DOUBTFUL: [Kind; 38] = [
+    Kind {
+        name: "Gent-Schultz P(s), 29 rows",
+        is_model: false,
+        make: |random| peeled(random, 29, By::Time, false),
+    },
+    Kind {
+        name: "Gent-Schultz P(s), 38 rows",
+        is_model: false,
+        make: |random| peeled(random, 38, By::Time, false),
+    },
+    Kind {
+        name: "Gent-Schultz P(s), with times",
+        is_model: false,
+        make: |random| peeled(random, 38, By::Time, true),
+    },
+    Kind {
+        name: "Gent-Schultz P(s), even in s",
+        is_model: false,
+        make: |random| peeled(random, 38, By::Radius, false),
+    },
+    Kind {
+        name: "Gent-Schultz P(s), even in s, with times",
+        is_model: false,
+        make: |random| peeled(random, 38, By::Radius, true),
+    },
     Kind { name: "P(s), with times", is_model: true, make: radii_with_times },
     Kind { name: "force noise 0.1 P_c", is_model: true, make: loud },
     Kind { name: "ends at the last contact", is_model: true, make: cut_at_contact },
@@ -341,7 +363,7 @@ fn digitized(ball: &Ball, filled: f64, random: &mut Random) -> Made {
     made
 }
 
-fn peeled(random: &mut Random, rows: usize, has_times: bool) -> Made {
+fn peeled(random: &mut Random, rows: usize, by: By, has_times: bool) -> Made {
     let mut ball = Ball::draw(random);
     ball.most *= 1.2;
     let exponent = random.even(0.4, 0.6);
@@ -357,7 +379,7 @@ fn peeled(random: &mut Random, rows: usize, has_times: bool) -> Made {
         begin: ball.most,
     };
     let sigma = random.scale(0.003, 0.01) * ball.critical();
-    let mut record = Record::of(&peel.samples(rows, 0.35), Seen::Radius).noisy(sigma, random);
+    let mut record = Record::of(&peel.samples(rows, 0.35, by), Seen::Radius).noisy(sigma, random);
     record.has_times = has_times;
     let blur = 0.002 * ball.most;
     ball.made(&record.changed(|_, s, force| [s + blur * random.normal(), force]), "\"displacement\"")

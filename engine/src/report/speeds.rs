@@ -1,0 +1,435 @@
+//! The energy release rate of measured rows beside the speed of the edge, as a document.
+//!
+//! ```text
+//! K = g(s) − δ      G = E* K²/2πs      δ = P/(2E* s) + ∫₀ˢ g / s   of P and s;      v = −ds/dt
+//! ```
+//!
+//! No law of adhesion is in it: E* and the gap alone. G follows from the force and the contact radius, or where no radius is measured from force
+//! and approach, of which s follows: at a held approach the force falls with s. D. Maugis and M. Barquins, J. Phys. D 11, 1989 (1978).
+
+use super::problem::Head;
+use super::rows::{RowsError, Table};
+use crate::case::{Case, CaseError};
+use crate::disc::Panels;
+use crate::elementary::hypot;
+use crate::measured::branches::Point;
+use crate::measured::speed::{Speed, noise, speeds};
+use crate::measured::{Abscissa, Branch, Branches};
+use crate::preset::Preset;
+use crate::problem::{Control, Units};
+use crate::progress::Progress;
+use crate::rate::equation::Held;
+use serde::Serialize;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// How often the gap is tabulated further out for radii that are not measured.
+const WIDER: usize = 12;
+
+/// Why there are no speeds.
+#[derive(Debug, thiserror::Error)]
+pub enum SpeedsError {
+    /// The preset could not be made ready.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// The preset has no measured curve.
+    #[error("the preset has no measured curve: name a file, or set data.file")]
+    NoData,
+    /// Its file gives no points, in words.
+    #[error("{0}")]
+    Data(String),
+    /// No row of it is in contact, or none at a radius for which the gap is known.
+    #[error("no row is in contact, or none has a contact radius for which the gap is known")]
+    Nothing,
+}
+
+/// One row in contact.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SpeedRow {
+    /// When it was taken, in seconds, or in reduced units; null where the file does not say it.
+    pub time: Option<f64>,
+    /// s, measured or of force and approach.
+    pub contact_radius: f64,
+    /// −ds/dt: positive where the contact recedes; null without times.
+    pub speed: Option<f64>,
+    /// G; negative where the edge is pressed, K < 0.
+    pub energy_release_rate: f64,
+    /// The standard deviation of G, by the noise of the columns.
+    pub error: f64,
+    /// That of the speed, by the noise of the contact radius.
+    pub speed_error: Option<f64>,
+    /// The rows of the window by which the speed is told.
+    pub window: Option<usize>,
+    /// `approach` or `retraction`.
+    pub segment: &'static str,
+    /// Its number among the rows that are read, from 1.
+    pub row: usize,
+}
+
+/// The columns as CSV; they never change, new ones come after them.
+pub const COLUMNS: &[&str] = &[
+    "time",
+    "contact_radius",
+    "speed",
+    "energy_release_rate",
+    "error",
+    "speed_error",
+    "window",
+    "segment",
+    "row",
+];
+
+/// G at every row in contact, and how fast the edge goes there.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SpeedsReport {
+    /// What it begins with.
+    #[serde(flatten)]
+    pub head: Head,
+    /// What to be careful about.
+    pub warnings: Vec<String>,
+    /// What was found and assumed.
+    pub notes: Vec<String>,
+    /// What G is computed from.
+    pub from: &'static str,
+    /// σ of x, of P and of s, in that order; null for what is not measured.
+    pub sigma: [Option<f64>; 3],
+    /// The rows, branch by branch in the order of measurement.
+    pub rows: Vec<SpeedRow>,
+}
+
+/// What rows are turned into states by.
+struct Reading {
+    panels: Arc<Panels>,
+    units: Units,
+    abscissa: Abscissa,
+    /// That of the way, reduced.
+    control: Control,
+    /// δ₀, P₀ and its slope over x, in base units.
+    instrument: [f64; 3],
+    /// σ of x and P.
+    sigma: [f64; 2],
+}
+
+/// G of one row in base units, its standard deviation but for that of s, and its derivative by s at what is measured beside it.
+struct Released {
+    contact_radius: f64,
+    energy: f64,
+    error: f64,
+    by_radius: f64,
+}
+
+impl Reading {
+    /// G at a row; `None` at a radius that is none, or for which the gap is not known.
+    fn released(&self, point: &Point) -> Option<Released> {
+        let [offset, baseline, tilt] = self.instrument;
+        let force = (point.force - baseline - tilt * point.x) / self.units.force;
+        let [sigma_x, sigma_force] = self.sigma;
+        let [sigma_x, sigma_force] = [sigma_x / self.units.length, sigma_force / self.units.force];
+        let unit = self.units.force / self.units.length;
+        let is_known = |s: f64| s > 0.0 && s <= self.panels.reach();
+        if let Some(radius) = radius_of(self.abscissa, point) {
+            let s = radius / self.units.length;
+            if !is_known(s) {
+                return None;
+            }
+            let held = Held::new(&self.panels, Control::Force, s, force);
+            let of_opening = 2.0 * held.opening / (TAU * s);
+            let by_radius = of_opening * (held.slope - held.by_radius) - held.energy_release_rate() / s;
+            return Some(Released {
+                contact_radius: radius,
+                energy: signed(&held) * unit,
+                error: (of_opening * held.by_control * sigma_force).abs() * unit,
+                by_radius: by_radius * unit / self.units.length,
+            });
+        }
+        let way = (point.x - offset) / self.units.length;
+        let (approach, compliance) = match self.control {
+            Control::Stiffness(k) => (way - force / k, 1.0 / k),
+            _ => (way, 0.0),
+        };
+        let held = self.at_force(approach, force)?;
+        let s = held.contact_radius;
+        // δ and P move s, and both of them K: dP = 2s dδ − 2K ds.
+        let of_opening = 2.0 * held.opening / (TAU * s);
+        let of_radius = of_opening * held.slope - held.energy_release_rate() / s;
+        let by_approach = -of_opening + of_radius * s / held.opening;
+        let by_force = -of_radius / (2.0 * held.opening) - by_approach * compliance;
+        Some(Released {
+            contact_radius: s * self.units.length,
+            energy: signed(&held) * unit,
+            error: hypot(by_approach * sigma_x, by_force * sigma_force) * unit,
+            by_radius: 0.0,
+        })
+    }
+
+    /// The disc that has the force `force` at the approach `approach` and pulls at its edge.
+    fn at_force(&self, approach: f64, force: f64) -> Option<Held> {
+        /// Halvings of an interval: to the last digit.
+        const TIMES: usize = 200;
+        let at = |s: f64| Held::new(&self.panels, Control::Displacement, s, approach);
+        let (mut lo, mut hi) = (self.panels.smallest(), self.panels.reach());
+        // Below the disc whose edge is free the force rises with s: it is behind that one.
+        let is_beyond = |held: &Held| held.opening > 0.0 && held.force < force;
+        if !is_beyond(&at(hi)) {
+            return None;
+        }
+        for _ in 0..TIMES {
+            let middle = 0.5 * (lo + hi);
+            if middle <= lo || middle >= hi {
+                break;
+            }
+            if is_beyond(&at(middle)) { hi = middle } else { lo = middle }
+        }
+        Some(at(hi)).filter(|held| (held.force - force).abs() <= 1e-6 * (force.abs() + held.force.abs()))
+    }
+}
+
+/// G, negative where the edge is pressed.
+fn signed(held: &Held) -> f64 {
+    held.energy_release_rate() * if held.opening < 0.0 { -1.0 } else { 1.0 }
+}
+
+impl SpeedsReport {
+    /// Of the measured curve of `preset`, with its E*, gap, device and what it says of the instrument.
+    ///
+    /// # Errors
+    /// [`SpeedsError`].
+    pub fn compute(preset: &Preset, progress: &dyn Progress) -> Result<Self, SpeedsError> {
+        let source = preset.data.source.as_ref().ok_or(SpeedsError::NoData)?;
+        let branches = source.branches(&preset.reading()).map_err(SpeedsError::Data)?;
+        let case = Case::prepare(preset, progress)?;
+        let units = *case.units();
+        let mut notes = branches.notes.clone();
+        let baseline = preset.data.baseline.or(branches.baseline).unwrap_or_else(|| {
+            notes
+                .push("no row is apart and data.baseline is not set: the force is taken as it is".to_owned());
+            0.0
+        });
+        let mut reach = wanted(&case, &branches);
+        let [sigma_x, sigma_force, _] = branches.noise.sigma;
+        let of_file: Vec<Point> = branches.list.iter().flat_map(|branch| branch.attached.clone()).collect();
+        let mut panels = case.table.up_to(reach).map_err(|_| SpeedsError::Nothing)?;
+        let reading = |panels: Arc<Panels>| Reading {
+            panels,
+            units,
+            abscissa: branches.abscissa,
+            control: if branches.abscissa == Abscissa::Position {
+                case.control
+            } else {
+                Control::Displacement
+            },
+            instrument: [preset.data.offset.unwrap_or(0.0), baseline, preset.data.tilt.unwrap_or(0.0)],
+            sigma: [sigma_x, sigma_force],
+        };
+        // Of force and approach the radius is not known before.
+        for _ in 0..WIDER {
+            let found = reading(Arc::clone(&panels));
+            let is_wide = of_file.iter().all(|point| found.released(point).is_some());
+            if is_wide || reach >= case.reduced.largest_contact() {
+                break;
+            }
+            reach = (2.0 * reach).min(case.reduced.largest_contact());
+            let Ok(wider) = case.table.up_to_while(reach, 0, progress) else { break };
+            panels = wider;
+        }
+        let reading = reading(panels);
+        let mut rows = Vec::new();
+        let mut noises = Vec::new();
+        for branch in &branches.list {
+            let (of_branch, noise) = of_branch(&reading, branch);
+            rows.extend(of_branch);
+            noises.extend(noise);
+        }
+        if rows.is_empty() {
+            return Err(SpeedsError::Nothing);
+        }
+        let mut warnings = case.warnings_of_problem();
+        if rows.len() < of_file.len() {
+            warnings.push(format!(
+                "{} rows in contact are left out: no contact that pulls at its edge has their force there",
+                of_file.len() - rows.len()
+            ));
+        }
+        if rows.iter().all(|row| row.speed.is_none()) {
+            notes.push("no column has the times, so no row has a speed".to_owned());
+        }
+        let is_measured = of_file.iter().all(|point| radius_of(branches.abscissa, point).is_some());
+        let of_radius = if branches.abscissa == Abscissa::Radius { None } else { Some(sigma_x) };
+        Ok(Self {
+            head: Head::new("speeds", preset, &case),
+            warnings,
+            notes,
+            from: if is_measured { "force and contact radius" } else { "force and approach" },
+            sigma: [of_radius, Some(sigma_force), noises.into_iter().reduce(f64::max)],
+            rows,
+        })
+    }
+
+    /// The rows under the names of their columns.
+    ///
+    /// # Errors
+    /// As [`Table::of`].
+    pub fn table(&self) -> Result<Table, RowsError> {
+        Table::of(COLUMNS, &self.rows)
+    }
+}
+
+/// The radius up to which the gap is wanted: the largest that is measured, or else one at which every row is beyond the disc it has.
+fn wanted(case: &Case, branches: &Branches) -> f64 {
+    let of_branch = |branch: &Branch| branch.attached.clone();
+    let measured = branches.list.iter().flat_map(of_branch).map(|point| radius_of(branches.abscissa, &point));
+    let largest = measured.flatten().fold(0.0, f64::max) / case.units().length;
+    largest.max(case.start).min(case.reduced.largest_contact())
+}
+
+/// The contact radius that is measured at a point.
+fn radius_of(abscissa: Abscissa, point: &Point) -> Option<f64> {
+    let radius = if abscissa == Abscissa::Radius { point.x } else { point.radius };
+    radius.is_finite().then_some(radius)
+}
+
+/// The rows of one branch in the order of measurement, and the noise of its contact radii.
+fn of_branch(reading: &Reading, branch: &Branch) -> (Vec<SpeedRow>, Option<f64>) {
+    let mut points = branch.attached.clone();
+    points.sort_by_key(|point| point.at);
+    let found: Vec<(Point, Released)> =
+        points.into_iter().filter_map(|point| Some((point, reading.released(&point)?))).collect();
+    let is_timed = found.iter().all(|(point, _)| point.time.is_finite());
+    let radii: Vec<f64> = found.iter().map(|(_, released)| released.contact_radius).collect();
+    let numbers: Vec<f64> = (0..found.len()).map(|i| i as f64).collect();
+    let times: Vec<f64> =
+        if is_timed { found.iter().map(|(point, _)| point.time).collect() } else { numbers };
+    let sigma = noise(&times, &radii);
+    let speeds = if is_timed { speeds(&times, &radii, sigma) } else { vec![None; found.len()] };
+    let row = |((point, released), speed): (&(Point, Released), Option<Speed>)| SpeedRow {
+        time: is_timed.then_some(point.time),
+        contact_radius: released.contact_radius,
+        speed: speed.map(|speed| -speed.value),
+        energy_release_rate: released.energy,
+        error: hypot(released.error, released.by_radius * sigma),
+        speed_error: speed.map(|speed| speed.error),
+        window: speed.map(|speed| speed.rows),
+        segment: branch.segment.name(),
+        row: point.row,
+    };
+    let rows = found.iter().zip(speeds).map(row).collect();
+    (rows, Some(sigma).filter(|_| !found.is_empty()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measured::Source;
+    use crate::preset::{Value, data, read};
+    use crate::progress::Unwatched;
+    use std::fmt::Write;
+
+    const PRESET: &str = "format = 1\nunits = \"SI\"\n[material]\neffective_modulus = 1e6\nwork_of_adhesion = 0.05\n[gap]\n\
+                          shape = \"sphere\"\nradius_of_curvature = 1e-3\n[path]\ncontrol = \"displacement\"\nstart_contact_radius = 1e-4\n";
+    const E: f64 = 1e6;
+    const R: f64 = 1e-3;
+
+    /// A retraction of a sphere with G = 0.05 (1 + √(v/v₀)) and v that grows as the contact recedes: s, δ, P, t, v and G of rows even in s.
+    fn rows() -> Vec<[f64; 6]> {
+        let mut time = 0.0;
+        let step = 5e-7;
+        (0..160)
+            .map(|i| {
+                let s = 1.2e-4 - step * f64::from(i);
+                let speed = 1e-7 * (1.2e-4 / s).powi(2);
+                if i > 0 {
+                    // The integral of ds/v over the step.
+                    time += ((s + step).powi(3) - s.powi(3)) / (3.0 * 1e-7 * 1.2e-4_f64.powi(2));
+                }
+                let energy = 0.05 * (1.0 + (speed / 1e-7).sqrt());
+                let approach = s * s / R - (TAU * energy * s / E).sqrt();
+                let force = 2.0 * E * (approach * s - s.powi(3) / (3.0 * R));
+                [s, approach, force, time, speed, energy]
+            })
+            .collect()
+    }
+
+    fn report(text: &str) -> SpeedsReport {
+        let mut preset = read("made", PRESET).unwrap();
+        let source = Source::new("made.csv".to_owned(), None, text.as_bytes().into());
+        preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
+        preset.set(data::FREE_PART, Value::Text("none".to_owned())).unwrap();
+        SpeedsReport::compute(&preset, &Unwatched).unwrap()
+    }
+
+    #[test]
+    fn force_and_radius_give_the_energy_and_the_speed_of_a_made_edge() {
+        let made = rows();
+        let mut text = "contact radius [m],force [N],time [s],segment\n".to_owned();
+        for [s, _, force, time, ..] in &made {
+            writeln!(text, "{s:e},{force:e},{time:e},retraction").unwrap();
+        }
+        let mut preset = read("made", PRESET).unwrap();
+        let source = Source::new("made.csv".to_owned(), None, text.as_bytes().into());
+        preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
+        let found = SpeedsReport::compute(&preset, &Unwatched).unwrap();
+        assert_eq!((found.from, found.rows.len()), ("force and contact radius", made.len()));
+        for (row, [s, .., speed, energy]) in found.rows.iter().zip(&made) {
+            assert_eq!(row.contact_radius, *s);
+            assert!((row.energy_release_rate / energy - 1.0).abs() < 1e-9, "{row:?} {energy}");
+            assert!((row.speed.unwrap() / speed - 1.0).abs() < 0.02, "{row:?} {speed}");
+        }
+        assert!(
+            found
+                .table()
+                .unwrap()
+                .csv()
+                .unwrap()
+                .starts_with("time,contact_radius,speed,energy_release_rate,error,")
+        );
+    }
+
+    #[test]
+    fn force_and_approach_give_the_same() {
+        let made = rows();
+        let mut text = "approach [m],force [N],segment\n".to_owned();
+        for [_, approach, force, ..] in &made {
+            writeln!(text, "{approach:e},{force:e},retraction").unwrap();
+        }
+        let found = report(&text);
+        assert_eq!((found.from, found.rows.len()), ("force and approach", made.len()));
+        for row in &found.rows {
+            let [s, .., energy] = made[row.row - 1];
+            assert!((row.contact_radius / s - 1.0).abs() < 1e-6, "{row:?} {s}");
+            assert!((row.energy_release_rate / energy - 1.0).abs() < 1e-6, "{row:?} {energy}");
+            assert!(row.speed.is_none() && row.time.is_none());
+        }
+        assert!(found.notes.iter().any(|note| note.contains("no column has the times")));
+    }
+
+    #[test]
+    fn errors_are_what_the_noise_of_the_columns_does() {
+        let mut state = 7_u64;
+        let mut normal = move || {
+            let mut sum = -6.0;
+            for _ in 0..12 {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                sum += (state >> 11) as f64 / (1_u64 << 53) as f64;
+            }
+            sum
+        };
+        let mut squares = 0.0;
+        let made = rows();
+        let mut text = "contact radius [m],force [N],time [s],segment\n".to_owned();
+        for [s, _, force, time, ..] in &made {
+            let (s, force) = (s + 1e-7 * normal(), force + 2e-6 * normal());
+            writeln!(text, "{s:e},{force:e},{time:e},retraction").unwrap();
+        }
+        let mut preset = read("made", PRESET).unwrap();
+        let source = Source::new("made.csv".to_owned(), None, text.as_bytes().into());
+        preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
+        let found = SpeedsReport::compute(&preset, &Unwatched).unwrap();
+        for row in &found.rows {
+            let energy = made[row.row - 1][5];
+            squares += ((row.energy_release_rate - energy) / row.error).powi(2) / made.len() as f64;
+        }
+        assert!((0.5..1.6).contains(&squares), "{squares}");
+    }
+}

@@ -1,0 +1,72 @@
+//! `pulloff speeds`: the energy release rate of a measured curve beside the speed of its edge.
+
+use super::Failure;
+use super::console::Messages;
+use super::format::{Format, FormatArgument};
+use super::measured::{Reading, apart, attach};
+use super::output::Destination;
+use super::problem::{Changes, Problem};
+use super::watch::Stop;
+use clap::Args;
+use pulloff_engine::report::speeds::{COLUMNS, SpeedsError};
+use pulloff_engine::report::{SpeedsReport, columns, json, table};
+use pulloff_engine::text::show_path;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// The arguments of `pulloff speeds`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// A file with a measured curve, and behind it a preset's name or file (ending in .toml), the wavy sphere when left out; or a
+    /// preset alone that names its curve in data.file
+    #[arg(required = true, num_args = 1..=2, value_name = "FILE [PRESET]")]
+    paths: Vec<OsString>,
+    #[command(flatten)]
+    changes: Changes,
+    #[command(flatten)]
+    reading: Reading,
+    #[command(flatten)]
+    format: FormatArgument,
+    #[command(flatten)]
+    destination: Destination,
+    #[command(flatten)]
+    messages: Messages,
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let console = arguments.messages.open();
+    let format = arguments.format.of(arguments.destination.path(), Format::Table)?;
+    let (preset, files) = apart(&arguments.paths);
+    let file = match &files[..] {
+        [] => None,
+        [file] => Some(file),
+        [_, other, ..] => {
+            return Err(Failure::Usage(format!("{}: neither a preset nor its file", show_path(other))));
+        }
+    };
+    let problem = Problem { preset, changes: arguments.changes.clone() };
+    let mut loaded = problem.load(&console)?;
+    let inputs = problem.inputs(&loaded);
+    let inputs = file.map_or(inputs.clone(), |file| inputs.with("the points", file));
+    let sink = arguments.destination.sink(inputs)?;
+    attach(&mut loaded.preset, file.map(std::path::PathBuf::as_path), &arguments.reading.said()?)?;
+    let preset = &loaded.preset;
+    let stop = Stop::catch()?;
+    let report = SpeedsReport::compute(preset, &console.bar(Some(&stop))).map_err(|error| match error {
+        SpeedsError::Case(error) => error.into(),
+        error => Failure::Usage(error.to_string()),
+    })?;
+    console.warn(&report.warnings);
+    for note in &report.notes {
+        console.note(Some(note));
+    }
+    if format != Format::Json {
+        console.note(columns::units(COLUMNS, preset.path.control, &preset.units).as_deref());
+    }
+    sink.write(match format {
+        Format::Table => table::rows(&report.table()?),
+        Format::Csv => report.table()?.csv()?,
+        Format::Json => json(&report)?,
+    })?;
+    console.end()
+}
