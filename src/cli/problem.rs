@@ -11,13 +11,14 @@ use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
 /// The names of the subcommands, which no preset can have.
-pub(super) const SUBCOMMANDS: [&str; 16] = [
+pub(super) const SUBCOMMANDS: [&str; 17] = [
     "trace",
     "unload",
     "cycle",
     "pull",
     "map",
     "fit",
+    "speeds",
     "plot",
     "figures",
     "sweep",

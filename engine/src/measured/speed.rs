@@ -21,6 +21,8 @@ const AGREE: f64 = 2.0;
 /// The widest window is one part in so many of the rows, to either side, and no more than so many rows.
 const SHARE: usize = 6;
 const WIDEST: usize = 400;
+/// Near an end a window that lies to one side of its row is no wider than this, to either side of its own middle.
+const AT_ENDS: usize = 3;
 
 /// A speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,7 +47,8 @@ pub fn speeds(times: &[f64], values: &[f64], sigma: f64) -> Vec<Option<Speed>> {
         return vec![None; n];
     }
     let widest = (n / SHARE).clamp(1, WIDEST);
-    (0..n).map(|at| of_row(times, values, sigma, at, widest)).collect()
+    let widest = |at: usize| at.min(n - 1 - at).max(AT_ENDS).min(widest);
+    (0..n).map(|at| of_row(times, values, sigma, at, widest(at))).collect()
 }
 
 /// σ of a quantity that goes on from row to row, by its neighbours: over the time, or over the number of the row, whichever tells less.

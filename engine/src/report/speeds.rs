@@ -356,6 +356,7 @@ mod tests {
         let source = Source::new("made.csv".to_owned(), None, text.as_bytes().into());
         preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
         preset.set(data::FREE_PART, Value::Text("none".to_owned())).unwrap();
+        preset.set(data::SIGNS, Value::Text("x=+,force=+".to_owned())).unwrap();
         SpeedsReport::compute(&preset, &Unwatched).unwrap()
     }
 
@@ -388,9 +389,10 @@ mod tests {
 
     #[test]
     fn force_and_approach_give_the_same() {
-        let made = rows();
+        // Before the approach turns back.
+        let made = &rows()[..100];
         let mut text = "approach [m],force [N],segment\n".to_owned();
-        for [_, approach, force, ..] in &made {
+        for [_, approach, force, ..] in made {
             writeln!(text, "{approach:e},{force:e},retraction").unwrap();
         }
         let found = report(&text);

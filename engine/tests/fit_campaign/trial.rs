@@ -33,6 +33,8 @@ pub struct Outcome {
     /// What the fit says of itself: the sentences of the reasons, its notes and the rows in contact and apart.
     #[allow(dead_code, reason = "shown where a value is wrong")]
     pub said: Vec<String>,
+    /// What is to be doubted, whatever the verdict is.
+    pub warnings: Vec<String>,
     pub found: Vec<Found>,
 }
 
@@ -79,6 +81,7 @@ pub fn outcome(number: u64, made: &Made, fit: &Result<Fit, String>) -> Outcome {
                 verdict: "refused".to_owned(),
                 reasons: vec![error.clone()],
                 said: Vec::new(),
+                warnings: Vec::new(),
                 found: Vec::new(),
             };
         }
@@ -106,6 +109,7 @@ pub fn outcome(number: u64, made: &Made, fit: &Result<Fit, String>) -> Outcome {
     Outcome {
         number,
         said: sentences.chain(fit.notes.iter().cloned()).chain([points]).collect(),
+        warnings: fit.warnings.clone(),
         verdict: document["verdict"].as_str().unwrap_or("none").to_owned(),
         reasons: reasons.iter().map(|reason| reason["kind"].as_str().unwrap_or("").to_owned()).collect(),
         found: found.collect(),
