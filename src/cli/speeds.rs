@@ -12,6 +12,7 @@ use pulloff_engine::report::speeds::{COLUMNS, SpeedsError};
 use pulloff_engine::report::{SpeedsReport, columns, json, table};
 use pulloff_engine::text::show_path;
 use std::ffi::OsString;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// The arguments of `pulloff speeds`.
@@ -49,7 +50,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let inputs = problem.inputs(&loaded);
     let inputs = file.map_or(inputs.clone(), |file| inputs.with("the points", file));
     let sink = arguments.destination.sink(inputs)?;
-    attach(&mut loaded.preset, file.map(std::path::PathBuf::as_path), &arguments.reading.said()?)?;
+    attach(&mut loaded.preset, file.map(PathBuf::as_path), &arguments.reading.said()?)?;
     let preset = &loaded.preset;
     let stop = Stop::catch()?;
     let report = SpeedsReport::compute(preset, &console.bar(Some(&stop))).map_err(|error| match error {

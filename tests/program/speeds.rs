@@ -5,18 +5,20 @@
 use crate::support::schema;
 use assert_cmd::Command;
 use serde_json::Value;
+use std::fmt::Write;
+use std::path::Path;
 
 fn pulloff(arguments: &[&str]) -> assert_cmd::assert::Assert {
     Command::cargo_bin("pulloff").unwrap().arg("speeds").args(arguments).assert()
 }
 
 /// A retraction of a sphere whose edge costs 0.05 J/m² at every speed, a row a second.
-fn curve(folder: &std::path::Path) -> String {
+fn curve(folder: &Path) -> String {
     let mut text = "time [s],contact radius [m],force [N]\n".to_owned();
     for i in 0..60 {
         let s = 1.2e-4 - 5e-7 * f64::from(i);
         let force = 4e6 * s.powi(3) / 3e-3 - (8.0 * std::f64::consts::PI * 1e6 * 0.05 * s.powi(3)).sqrt();
-        text.push_str(&format!("{i},{s:e},{force:e}\n"));
+        writeln!(text, "{i},{s:e},{force:e}").unwrap();
     }
     let file = folder.join("curve.csv");
     std::fs::write(&file, text).unwrap();

@@ -29,7 +29,7 @@ pub(super) const KINDS: [&str; 2] = ["rate", "speed"];
 /// The share of right fits that the test flags.
 const FALSE_ALARM: f64 = 5e-3;
 /// Points lean to a work of adhesion that grows by so many standard errors.
-const LEANING: f64 = 1.0;
+const LEANING: f64 = 1.5;
 /// Speeds below this share of the largest are this share.
 const SLOWEST: f64 = 1.0 / 400.0;
 
