@@ -61,7 +61,7 @@ fn folder(page: &str) -> Home {
             home.run(&["sweep", "examples/cluster/sweep.toml", "-o", "results.csv"]);
         assert_eq!(status, 0, "{err}");
     }
-    if page == "fitting.md" {
+    if ["fitting.md", "pulls.md"].contains(&page) {
         let lens = fs::read_to_string(root().join("presets/lens.toml")).unwrap();
         home.file("mine.toml", &lens.replace("shipped:lens.csv", "curve.csv"));
         home.file("curve.csv", &fs::read_to_string(root().join("presets/data/lens.csv")).unwrap());

@@ -38,7 +38,6 @@ fn offered(app: &App) -> Vec<(Id, &'static str)> {
         (Panel::Here | Panel::Result, _) => &[],
     };
     let rest = [
-        Id::Help,
         Id::Quit,
         Id::Go,
         Id::NextView,
@@ -56,7 +55,10 @@ fn offered(app: &App) -> Vec<(Id, &'static str)> {
         Id::Run,
         Id::About,
     ];
-    walk.into_iter().chain(own.iter().copied()).chain(rest.map(word)).collect()
+    // Whoever does not know a key looks for this one, so it stands where a narrow screen has room for it.
+    let (first, more) = own.split_at(own.len().min(2));
+    let own = first.iter().copied().chain([word(Id::Help)]).chain(more.iter().copied());
+    walk.into_iter().chain(own).chain(rest.map(word)).collect()
 }
 
 /// Draws the status line and the footer.

@@ -93,7 +93,7 @@ fn turns_of_one_value_are_taken_back_together() {
 fn the_footer_offers_what_the_selected_panel_has_and_g_the_places() {
     let mut screen = Screen::new("wavy-sphere");
     let footer = |screen: &Screen| screen.text(160, 45).lines().last().unwrap().to_owned();
-    assert!(footer(&screen).contains("< less  > more  Enter type"), "{}", footer(&screen));
+    assert!(footer(&screen).contains("< less  > more  ? keys  Enter type"), "{}", footer(&screen));
     screen.app.model.panel = Panel::Log;
     assert!(footer(&screen).contains("Enter go there") && !footer(&screen).contains("more"));
     screen.app.model.panel = Panel::Charts;
