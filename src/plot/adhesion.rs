@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 /// The names of the figures.
 pub const NAMES: [&str; 2] = ["range-loss", "range-pull"];
 
-/// λ_M from where the range is long to where it hardly counts, and how many there are.
+/// `λ_M` from where the range is long to where it hardly counts, and how many there are.
 const FROM: f64 = 0.05;
 const TO: f64 = 50.0;
 const COUNT: i32 = 31;
@@ -25,11 +25,11 @@ const COUNT: i32 = 31;
 /// δ/R at which the loops turn.
 const TURN: f64 = 0.02;
 
-/// A loop over λ_M: λ_M, what is lost over that of adhesion without a range, −P/πγR of the largest pull.
+/// A loop over `λ_M`: `λ_M`, what is lost over that of adhesion without a range, −P/πγR of the largest pull.
 struct Over {
     name: &'static str,
     points: Vec<[f64; 3]>,
-    /// The largest λ_M at which a loop comes to more than one disc in one zone.
+    /// The largest `λ_M` at which a loop comes to more than one disc in one zone.
     ends: Option<f64>,
 }
 
@@ -82,7 +82,7 @@ pub fn sheets() -> Result<[Sheet; 2], PaperError> {
     let axis = |title: &str, run: Run| Axis::pure(title.to_owned()).running(run);
     let sheet = |name, of: usize, y: &str, more: Vec<Line>, caption: String| {
         let at = |over: &Over| over.points.iter().map(|at| (at[0], at[of])).collect::<Vec<_>>();
-        let marks = all.iter().flat_map(|over| at(over)).map(|at| Mark { sign: Sign::Value, at }).collect();
+        let marks = all.iter().flat_map(&at).map(|at| Mark { sign: Sign::Value, at }).collect();
         let lines = (1..)
             .zip(&all)
             .map(|(k, over)| Line::new(Role::Pin(k), over.name, at(over)))

@@ -2,7 +2,7 @@
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`adhesion`] | what the range of adhesion changes, over λ_M |
+//! | [`adhesion`] | what the range of adhesion changes, over `λ_M` |
 //! | [`ink`] | the strokes, colours and signs of the roles: safe for the colour-blind, readable in grey |
 //! | [`lines`] | lines in two numbers at which snaps begin, limit points over one |
 //! | [`map`] | a quantity of a sweep over its two axes |

@@ -94,7 +94,7 @@ fn judged(number: u64) -> Option<Result<(f64, String), String>> {
 
 /// What cannot be of a pull.
 fn faults(drawn: &Drawn, pull: &Pull) -> Option<String> {
-    if !(pull.balance <= BALANCE) {
+    if pull.balance.is_nan() || pull.balance > BALANCE {
         return Some(format!("balance {:e} in {} steps", pull.balance, pull.steps));
     }
     if pull.last_contact.is_none() {
