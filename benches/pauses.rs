@@ -5,7 +5,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a bench that cannot be set up must stop")]
 
-use pulloff::explorer::maps::{MapAxes, MapWish};
+use pulloff::explorer::map_axes::MapAxes;
+use pulloff::explorer::maps::MapData;
 use pulloff::explorer::{CurveData, Staged};
 use pulloff_engine::fit::{Options, fit_own};
 use pulloff_engine::preset::shipped::SHIPPED;
@@ -80,8 +81,8 @@ fn main() {
         measure("cycle", &|progress| drop(PathReport::cycle(&preset, None, Extent::default(), progress)));
         // A map of five hundred waves takes minutes.
         if SHIPPED.iter().any(|shipped| shipped.name == name) {
-            let wish = MapWish { id: 0, preset: preset.clone(), axes: MapAxes::usual(&preset) };
-            measure("map", &|progress| drop(wish.run(progress)));
+            let axes = MapAxes::usual(&preset);
+            measure("map", &|progress| drop(MapData::of(&preset, &axes, progress)));
         }
         let wished = [
             "last_contact_force",

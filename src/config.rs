@@ -9,11 +9,11 @@
 //! theme = "light"
 //! ```
 //!
-//! The names are those of the [command table](crate::explorer::command::ROWS); what is not named keeps its keys. A table
+//! The names are those of the [command table](crate::explorer::table::ROWS); what is not named keeps its keys. A table
 //! of settings is a row of `TABLES` and a reader of its own.
 
 use crate::explorer::Id;
-use crate::explorer::command::ROWS;
+use crate::explorer::table::ROWS;
 use crate::store::file::{FileError, read_text};
 use etcetera::BaseStrategy;
 use pulloff_engine::text::{closest, quote, show_path};

@@ -1,7 +1,7 @@
 //! `pulloff man`: the manual page, made from the command line and the command table.
 
 use super::{Failure, Status, output};
-use crate::explorer::command::ROWS;
+use crate::explorer::table::ROWS;
 use clap::Command;
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, bold, roman};
@@ -70,7 +70,8 @@ fn commands() -> Roff {
     roff.control("SH", ["COMMANDS OF THE EXPLORER"]);
     roff.text([roman("Their names in scripts, in the settings and behind the key of command-line.")]);
     for row in ROWS {
-        let argument = row.argument.map_or_else(String::new, |argument| format!(" [{argument}]"));
+        let argument = Some(row.takes.what).filter(|what| !what.is_empty());
+        let argument = argument.map_or_else(String::new, |what| format!(" [{what}]"));
         roff.control("TP", []);
         roff.text([bold(row.name), roman(argument), roman(keys(row.id))]);
         roff.text([roman(row.help)]);

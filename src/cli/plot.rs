@@ -5,8 +5,9 @@ use super::console::{Console, Messages};
 use super::measured::{Reading, attach, typed};
 use super::output::{Destination, Inputs, OUTPUT, Outputs, Sink, shown as shown_path};
 use super::problem::Problem;
-use crate::explorer::fitting::FitWish;
-use crate::explorer::maps::{MapAxes, MapWish};
+use crate::explorer::fitting::Distances;
+use crate::explorer::map_axes::MapAxes;
+use crate::explorer::maps::MapData;
 use crate::explorer::profile::{Ask, Inside};
 use crate::explorer::reach::no_spring;
 use crate::explorer::{Axes, CurveData, Overlays, Staged, View};
@@ -171,14 +172,14 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None
     };
     console.warn(cycle.as_ref().map_or(&[][..], |cycle| &cycle.warnings));
-    let wish = || MapWish { id: 0, preset: preset.clone(), axes: MapAxes::usual(&preset) };
-    let found = (view == View::Map).then(|| wish().run(&Unwatched)).flatten();
-    let map = found.as_ref().map(|map| map.report());
+    let map = || MapData::of(&preset, &MapAxes::usual(&preset), &Unwatched);
+    let found = (view == View::Map).then(map).flatten();
+    let map = found.as_ref().map(MapData::report);
     let overlays = Overlays { smooth: true, exact: arguments.theory, envelope: arguments.theory };
     let axes = if arguments.raw { Axes::Raw } else { Axes::Reduced };
     let measured = Points::of(&preset).and_then(Result::ok);
-    let distances = (view == View::Residuals && preset.data.source.is_some())
-        .then(|| FitWish { id: 0, preset: preset.clone() }.distances().found);
+    let distances =
+        (view == View::Residuals && preset.data.source.is_some()).then(|| Distances::of(&preset).found);
     let subject = Subject {
         measured,
         distances: distances.as_ref(),
@@ -319,7 +320,7 @@ fn inside(curve: &Arc<CurveData>, radius: Option<&str>, exact: bool) -> Result<I
     })?;
     let state = equilibrium.state(&point);
     let curve = Arc::clone(curve);
-    Ok(Inside::compute(&Ask { id: 0, curve, state, rings: None, exact, barrier: Some(Run::Inward) }))
+    Ok(Inside::of(&Ask { curve, state, rings: None, exact, barrier: Some(Run::Inward) }))
 }
 
 /// A contact radius as typed, in SI or reduced units.

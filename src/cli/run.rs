@@ -4,7 +4,7 @@ use super::Failure;
 use super::console::Messages;
 use super::output::{Inputs, Outputs, Replacing};
 use super::problem::{Changes, Problem, store};
-use crate::explorer::command::{Command, by_name, row_of};
+use crate::explorer::command::{Command, by_name};
 use crate::explorer::export::{Page, Picture};
 use crate::explorer::files::target;
 use crate::explorer::script::{self, Permission, ScriptLine, play};
@@ -94,7 +94,7 @@ fn look(name: &str, lines: &[ScriptLine], inputs: Inputs, replacing: Replacing) 
         else {
             continue;
         };
-        let option = format!("{name}:{}: {}", line.number, row_of(line.command.id()).name);
+        let option = format!("{name}:{}: {}", line.number, line.command.id().name());
         let path = target(path);
         // What a line of the same script wrote, another replaces where it says so.
         let place = Place::written(&path);

@@ -1,52 +1,88 @@
-//! Which commands can be done now, and why the others cannot.
+//! What must be there before a command can be done: `Err` says why it cannot be done now.
 
-use super::branches;
-use super::command::{Id, Needs, row_of};
+use super::branches as walk_branches;
+use super::command::Id;
 use super::model::Model;
 use super::node::Node;
 use super::status_line::back_or_anew;
 use super::view::{Panel, Window};
 
-/// Whether a command can be done now.
-pub fn is_available(model: &Model, id: Id) -> bool {
-    let is_walking = model.history.current().is_some();
-    match row_of(id).needs {
-        Needs::Nothing => true,
-        Needs::Walker => is_walking,
-        // Without a curve, which was given up or failed, it is computed again.
-        Needs::WalkerOrNoCurve => is_walking || !model.is_computing(),
-        Needs::Jump => model.can_jump(),
-        Needs::Undo => model.can_travel(model.undo.past()),
-        Needs::Redo => model.can_travel(model.undo.future()),
-        Needs::Branches => branches::are_several(&model.history),
-        Needs::Curve => model.curve.is_some(),
-        Needs::Pins => !model.pins.is_empty(),
-        Needs::Parameter => model.panel == Panel::Problem,
-        Needs::Zoom => model.window(model.view) != Window::WHOLE,
-    }
+/// Why a command cannot be done, in words.
+pub type Available = Result<(), String>;
+
+fn when(is_there: bool, why: impl FnOnce() -> String) -> Available {
+    if is_there { Ok(()) } else { Err(why()) }
 }
 
-pub(super) fn why_unavailable(model: &Model, id: Id) -> String {
-    let apart = model.history.current().is_some_and(Node::is_apart);
-    match id {
-        Id::Undo => "this is the start: there is nothing to undo".to_owned(),
-        Id::Redo => "there is nothing to redo".to_owned(),
-        Id::Branches => {
-            format!(
-                "the walk has one branch: {} goes back, and another step begins a second",
-                Id::Undo.named()
-            )
-        }
-        Id::Jump if apart => format!("the bodies are apart: {}", back_or_anew()),
-        Id::Jump => {
-            format!("the state is stable: the edge stays; {} runs to the next event", Id::NextEvent.named())
-        }
-        Id::FineLess | Id::FineMore | Id::Less | Id::More | Id::MuchLess | Id::MuchMore | Id::Free => {
-            format!("select a value first: {} goes to Problem", Id::NextPanel.named())
-        }
-        Id::Whole => "the whole chart is shown".to_owned(),
-        Id::Pins => format!("no curve is pinned: {} pins the one on the screen", Id::Pin.named()),
-        _ if model.is_computing() => "the curve is being computed".to_owned(),
-        _ => format!("there is no curve: change a value, or {} computes it again", Id::Restart.named()),
+fn no_curve(model: &Model) -> String {
+    if model.is_computing() {
+        return "the curve is being computed".to_owned();
     }
+    format!("there is no curve: change a value, or {} computes it again", Id::Restart.named())
+}
+
+/// Nothing.
+#[expect(clippy::unnecessary_wraps, reason = "all that is needed has one form")]
+pub(super) fn always(_: &Model) -> Available {
+    Ok(())
+}
+
+/// A state of the walk.
+pub(super) fn walker(model: &Model) -> Available {
+    when(model.history.current().is_some(), || no_curve(model))
+}
+
+/// A state of the walk, or no curve being computed: one that was given up or failed is computed again.
+pub(super) fn walker_or_no_curve(model: &Model) -> Available {
+    if model.is_computing() { walker(model) } else { Ok(()) }
+}
+
+/// A state in which the edge can run.
+pub(super) fn jump(model: &Model) -> Available {
+    let is_apart = model.history.current().is_some_and(Node::is_apart);
+    when(model.can_jump(), || {
+        if is_apart {
+            return format!("the bodies are apart: {}", back_or_anew());
+        }
+        format!("the state is stable: the edge stays; {} runs to the next event", Id::NextEvent.named())
+    })
+}
+
+/// A command to take back.
+pub(super) fn undo(model: &Model) -> Available {
+    when(model.can_travel(model.undo.past()), || "this is the start: there is nothing to undo".to_owned())
+}
+
+/// One to do again.
+pub(super) fn redo(model: &Model) -> Available {
+    when(model.can_travel(model.undo.future()), || "there is nothing to redo".to_owned())
+}
+
+/// A second branch of the walk.
+pub(super) fn branches(model: &Model) -> Available {
+    when(walk_branches::are_several(&model.history), || {
+        format!("the walk has one branch: {} goes back, and another step begins a second", Id::Undo.named())
+    })
+}
+
+/// A curve.
+pub(super) fn curve(model: &Model) -> Available {
+    when(model.curve.is_some(), || no_curve(model))
+}
+
+/// A pinned curve.
+pub(super) fn pins(model: &Model) -> Available {
+    let why = || format!("no curve is pinned: {} pins the one on the screen", Id::Pin.named());
+    when(!model.pins.is_empty(), why)
+}
+
+/// A selected value.
+pub(super) fn parameter(model: &Model) -> Available {
+    let why = || format!("select a value first: {} goes to Problem", Id::NextPanel.named());
+    when(model.panel == Panel::Problem, why)
+}
+
+/// A view that shows a part of its chart only.
+pub(super) fn zoomed(model: &Model) -> Available {
+    when(model.window(model.view) != Window::WHOLE, || "the whole chart is shown".to_owned())
 }

@@ -1,18 +1,54 @@
-//! Commands, and the one table that names and describes them.
+//! Commands: their identities, of the one [list](list) of them, and what they carry.
 //!
-//! Footer, help screen, scripts and the manual's key table are read from it; the keymap of the terminal gives each id its
-//! keys.
+//! | file | what lives there |
+//! |---|---|
+//! | `list` | the rows, of which the identities here and the [table](super::table) are made |
+//! | `named` | commands in sentences |
 
+pub mod list;
 mod named;
-mod table;
 
+use list::each_command;
 pub use named::{by_name, spelled};
-pub use table::{Id, Needs, ROWS, Row, row_of};
 
 use super::view::{Home, Overlay, Panel, View};
 use pulloff_engine::preset::Key;
 use pulloff_engine::sweep::Column;
 use std::path::PathBuf;
+
+/// Makes [`Id`] of the list.
+macro_rules! identities {
+    ($($section:literal { $(
+        $id:ident $name:literal $keys:literal $short:literal $needs:ident $waits:ident $script:ident $(($what:literal))?
+        $help:literal { $($field:ident: $value:expr),* }
+    )* })*) => {
+        /// A command's identity.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum Id { $($(
+            #[doc = $help]
+            $id,
+        )*)* }
+
+        impl Id {
+            /// All, in the order of the help.
+            pub const ALL: &[Self] = &[$($(Self::$id,)*)*];
+
+            /// The name in scripts, in the settings and on the command line.
+            pub fn name(self) -> &'static str {
+                match self { $($(Self::$id => $name,)*)* }
+            }
+        }
+    };
+}
+
+each_command!(identities);
+
+impl Id {
+    /// The command of a name.
+    pub fn called(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|id| id.name() == name)
+    }
+}
 
 /// A key and the text of its value.
 pub type Assignment = (Key, String);
@@ -164,8 +200,7 @@ impl Command {
             Self::Steps(_) => Id::Step,
             Self::RunOf(_) => Id::Run,
             Self::StepLength(_) => Id::StepLength,
-            Self::SelectEvent(_) => Id::SelectEvent,
-            Self::MoveTo(_) => Id::MoveTo,
+            Self::SelectEvent(_) | Self::MoveTo(_) => Id::MoveTo,
             Self::Assign(_) | Self::Turn { .. } => Id::Assign,
             Self::Set { .. } | Self::Try { .. } | Self::Browse { .. } => Id::Edit,
             Self::Pick { .. } => Id::NextPanel,

@@ -29,12 +29,13 @@ enum Kind {
 }
 
 fn kind(line: &str) -> Kind {
-    match script::parse(line) {
-        Ok(Some(Command::Steps(_))) => Kind::Steps,
-        Ok(Some(Command::RunOf(_) | Command::Plain(Id::NextEvent | Id::Run | Id::Jump))) => Kind::Walk,
-        Ok(Some(Command::Plain(Id::Reverse) | Command::StepLength(_))) => Kind::Way,
-        Ok(Some(Command::Travel { id: Id::Undo, count, states: true })) => Kind::Undo(count),
-        Ok(Some(Command::Travel { .. } | Command::GoToState(_) | Command::GoTo { .. })) => Kind::Needs,
+    let words: Vec<&str> = line.split(' ').collect();
+    match (Id::called(words[0]), &words[1..]) {
+        (Some(Id::Step), _) => Kind::Steps,
+        (Some(Id::Run | Id::NextEvent | Id::Jump), _) => Kind::Walk,
+        (Some(Id::Reverse | Id::StepLength), _) => Kind::Way,
+        (Some(Id::Undo), [count, "states"]) => count.parse().map_or(Kind::Needs, Kind::Undo),
+        (Some(Id::Undo | Id::Redo | Id::Branches), _) => Kind::Needs,
         _ => Kind::Values,
     }
 }

@@ -1,17 +1,20 @@
 //! The commands about a fit: which keys it may change, its beginning and what comes of it.
 
+use super::background::{Background, Tell, Want, Watch, ask, asked, stop};
 use super::command::Id;
-use super::fitting::{FitWish, Fitting, named};
+use super::effect::Effect;
+use super::fitting::named;
 use super::model::{Level, Model};
 use super::requests::change;
-use super::{Effect, View};
 use crate::mend::Reason;
 use pulloff_engine::fit::least_squares::Ending;
-use pulloff_engine::fit::{Fit, FitError, Verdict};
+use pulloff_engine::fit::{Fit, FitError, Options, Verdict, fit_own};
 use pulloff_engine::measured::Abscissa;
-use pulloff_engine::preset::{Value, data};
+use pulloff_engine::preset::{Preset, Value, data};
+use pulloff_engine::progress::Progress;
 use pulloff_engine::report::number::short;
 use pulloff_engine::text::greek;
+use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 
 /// Marks the selected key as free to be fitted, or no longer.
@@ -37,10 +40,88 @@ pub(super) fn mark(model: &mut Model) -> Vec<Effect> {
     }
 }
 
-/// Asks for a fit of the values as they are.
+/// What is done of a fit.
+#[derive(Debug, Clone)]
+pub enum Fitted {
+    /// So many per cent.
+    Percent(u8),
+    Done(Result<Arc<Fit>, Reason>),
+}
+
+/// Tells of a fit how far it has come.
+struct Told<'a> {
+    percent: Cell<u8>,
+    progress: &'a dyn Progress,
+    tell: RefCell<&'a mut dyn FnMut(Fitted)>,
+}
+
+impl Progress for Told<'_> {
+    fn report(&self, share: f64) {
+        // A share of a hundred; every fifth is enough for who waits.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let percent = (share.clamp(0.0, 1.0) * 100.0) as u8;
+        if percent >= self.percent.get() + 5 {
+            self.percent.set(percent);
+            (self.tell.borrow_mut())(Fitted::Percent(percent));
+        }
+    }
+
+    fn stop(&self) -> bool {
+        self.progress.stop()
+    }
+}
+
+impl Background for Fitted {
+    type Key = Preset;
+    const NAME: &'static str = "fit";
+    const CHANGES_VALUES: bool = true;
+
+    /// A command asks for it; once it is done, it is wanted no longer.
+    fn wanted(model: &Model) -> Want<Preset> {
+        if model.results.under_way::<Self>().is_some() { Want::Later } else { Want::Not }
+    }
+
+    fn is_same(asked: &Preset, wanted: &Preset) -> bool {
+        asked == wanted
+    }
+
+    fn compute(preset: &Preset, progress: Watch<'_>, told: Tell<'_, Self>) -> Option<Self> {
+        let free = preset.data.free().map(str::to_owned).collect();
+        let options = Options { free, ..Options::default() };
+        let watch = Told { percent: Cell::new(0), progress, tell: RefCell::new(told) };
+        let found = fit_own(preset, &options, &watch).map(Arc::new).map_err(|error| {
+            let can_be_mended = !matches!(error, FitError::NoStart | FitError::Cancelled);
+            Reason { text: format!("not fitted: {error}"), can_be_mended }
+        });
+        Some(Self::Done(found))
+    }
+
+    fn came(model: &mut Model, found: Arc<Self>) -> Vec<Effect> {
+        let Self::Done(result) = &*found else { return Vec::new() };
+        if asked::<Self>(model) != Some(&model.preset) {
+            model.tell(Level::Error, "the values were changed while the fit ran: what it found is not taken");
+            return Vec::new();
+        }
+        match result {
+            Ok(found) => taken(model, found),
+            Err(reason) => {
+                model.tell(Level::of(reason), reason.text.clone());
+                Vec::new()
+            }
+        }
+    }
+
+    fn says(model: &Model) -> Option<String> {
+        model.results.under_way::<Self>()?;
+        let percent = if let Some(Self::Percent(percent)) = model.results.so_far() { *percent } else { 0 };
+        Some(format!("fitting, {percent} %; {} takes the best so far", Id::Cancel.named()))
+    }
+}
+
+/// Asks for a fit of the values as they are; ends one that is under way with the best so far.
 pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
-    if let Some(fitting) = &model.fitting {
-        return vec![Effect::StopFit(fitting.id)];
+    if let Some(stops) = stop::<Fitted>(model) {
+        return vec![stops];
     }
     if model.preset.data.source.is_some() && model.preset.data.free().next().is_none() {
         let text =
@@ -48,33 +129,19 @@ pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
         model.tell(Level::Error, text);
         return Vec::new();
     }
-    let wish = FitWish { id: model.number(), preset: model.preset.clone() };
-    model.fitting = Some(Fitting { id: wish.id, preset: wish.preset.clone(), percent: 0 });
-    vec![Effect::Fit(Box::new(wish))]
+    let preset = model.preset.clone();
+    vec![ask::<Fitted>(model, preset)]
 }
 
-/// Takes what came of a fit.
-pub(super) fn fit_came(model: &mut Model, id: u64, result: Result<Arc<Fit>, Reason>) -> Vec<Effect> {
-    let Some(fitting) = model.fitting.take_if(|fitting| fitting.id == id) else { return Vec::new() };
-    if fitting.preset != model.preset {
-        model.tell(Level::Error, "the values were changed while the fit ran: what it found is not taken");
-        return Vec::new();
-    }
-    let found = match result {
-        Ok(found) => found,
-        Err(reason) => {
-            model.tell(Level::of(&reason), reason.text);
-            return Vec::new();
-        }
-    };
+/// Takes what a fit found.
+fn taken(model: &mut Model, found: &Arc<Fit>) -> Vec<Effect> {
     if let Some(direction) = &found.direction {
         model.tell(Level::Error, format!("not determined, and not taken: {direction}"));
         return Vec::new();
     }
-    let preset = found.preset.clone();
-    model.tell(if found.verdict == Verdict::Describes { Level::Info } else { Level::Error }, told(&found));
-    model.fit = Some(found);
-    change(model, preset)
+    model.tell(if found.verdict == Verdict::Describes { Level::Info } else { Level::Error }, told(found));
+    model.fit = Some(Arc::clone(found));
+    change(model, found.preset.clone())
 }
 
 /// What a fit found, in a line: the verdict first, since narrow screens cut the end.
@@ -101,17 +168,4 @@ impl Model {
         }
         fit.parameters.iter().find(|fitted| fitted.key == key)?.standard_error
     }
-}
-
-/// Asks for the distances of the points while they are looked at.
-pub(super) fn want_distances(model: &mut Model) -> Option<Effect> {
-    let is_shown = model.shown_views().contains(&View::Residuals) && model.preset.data.source.is_some();
-    let is_there = model.distances.as_ref().is_some_and(|found| found.preset == model.preset);
-    let is_asked = model.distances_wanted.as_ref().is_some_and(|wanted| wanted.preset == model.preset);
-    if !is_shown || is_there || is_asked {
-        return None;
-    }
-    let wish = FitWish { id: model.number(), preset: model.preset.clone() };
-    model.distances_wanted = Some(Box::new(wish.clone()));
-    Some(Effect::Distances(Box::new(wish)))
 }

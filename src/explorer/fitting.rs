@@ -1,56 +1,46 @@
-//! The measured curve and the model: a fit of the keys that may change, and how far each point is from the curve.
-//!
-//! Both take longer than a frame and are done by a worker. A fit ends with one change of the values, which is taken back as
-//! one command; what it says of them stands beside them for as long as they are what it found.
+//! The measured curve and the model: how far each point is from the curve, and which keys a fit may change.
 
-use crate::mend::Reason;
+use super::background::{Background, Tell, Want, Watch};
+use super::model::Model;
+use super::view::View;
 use pulloff_engine::fit::run::{Residual, residuals_own};
-use pulloff_engine::fit::{Fit, FitError, Options, fit_own};
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{Preset, data};
-use pulloff_engine::progress::Progress;
-use std::sync::Arc;
-
-/// A fit, or residuals, that are wanted.
-#[derive(Debug, Clone)]
-pub struct FitWish {
-    pub id: u64,
-    pub preset: Preset,
-}
-
-/// A fit that is running.
-#[derive(Debug, Clone)]
-pub struct Fitting {
-    pub id: u64,
-    /// The values that it began with: a fit to others is not taken.
-    pub preset: Preset,
-    /// The share that is done, in per cent.
-    pub percent: u8,
-}
 
 /// The distances of the points from the curve of a preset, in σ.
 #[derive(Debug, Clone)]
 pub struct Distances {
-    pub id: u64,
     pub preset: Preset,
     pub found: Result<(Abscissa, Vec<Residual>), String>,
 }
 
-impl FitWish {
-    /// Fits the free keys.
-    pub fn fit(&self, progress: &dyn Progress) -> Result<Arc<Fit>, Reason> {
-        let free = self.preset.data.free().map(str::to_owned).collect();
-        let options = Options { free, ..Options::default() };
-        fit_own(&self.preset, &options, progress).map(Arc::new).map_err(|error| {
-            let can_be_mended = !matches!(error, FitError::NoStart | FitError::Cancelled);
-            Reason { text: format!("not fitted: {error}"), can_be_mended }
-        })
+impl Distances {
+    /// Finds them.
+    pub fn of(preset: &Preset) -> Self {
+        let found = residuals_own(preset).map_err(|error| error.to_string());
+        Self { preset: preset.clone(), found }
+    }
+}
+
+impl Background for Distances {
+    type Key = Preset;
+    const NAME: &'static str = "distances";
+
+    fn wanted(model: &Model) -> Want<Preset> {
+        let is_shown = model.shown_views().contains(&View::Residuals) && model.preset.data.source.is_some();
+        if is_shown { Want::Now(model.preset.clone()) } else { Want::Later }
     }
 
-    /// Finds the distances.
-    pub fn distances(&self) -> Distances {
-        let found = residuals_own(&self.preset).map_err(|error| error.to_string());
-        Distances { id: self.id, preset: self.preset.clone(), found }
+    fn is_same(asked: &Preset, wanted: &Preset) -> bool {
+        asked == wanted
+    }
+
+    fn is_of(&self, wanted: &Preset) -> bool {
+        self.preset == *wanted
+    }
+
+    fn compute(preset: &Preset, _: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+        Some(Self::of(preset))
     }
 }
 

@@ -82,7 +82,7 @@ impl Model {
     /// The path of the device from where it begins; it can be that of values before.
     pub fn path(&self) -> Option<&PathReport> {
         match self.preset.path.begin {
-            Begin::Touch => self.cycle.as_ref()?.report(),
+            Begin::Touch => self.cycle()?.report(),
             Begin::Disc => self.curve.as_ref()?.report.as_ref(),
         }
     }

@@ -1,16 +1,13 @@
 //! The commands that change what is shown, and nothing else: views, windows, the cross-hair, overlays, pins.
 
+use super::backgrounds::want_all;
 use super::command::Id;
-use super::curve::CurveData;
 use super::effect::Effect;
-use super::maps::{MapAxes, can_be_axis};
+use super::map_axes::{MapAxes, can_be_axis};
 use super::model::{Level, Model};
-use super::profile::{Ask, Inside};
 use super::reach::{pick_walk_line, walk_line};
-use super::view::{Overlay, Panel, View, Window};
+use super::view::{Axes, Overlay, Panel, View, Window};
 use pulloff_engine::preset::Key;
-use pulloff_engine::quasistatic::jump::Run;
-use std::sync::Arc;
 
 /// One press brings the chart closer by this factor.
 const CLOSER: f64 = 2.0;
@@ -124,11 +121,22 @@ pub(super) fn go(model: &mut Model, right: f64, up: f64) {
 
 /// Toggles an overlay, and says so if this problem has none.
 pub(super) fn overlay(model: &mut Model, overlay: Overlay) {
-    model.overlays.toggle(overlay);
+    let on = !model.is_over(overlay);
+    match overlay {
+        Overlay::Smooth => model.overlays.smooth = on,
+        Overlay::Exact => model.overlays.exact = on,
+        Overlay::Envelope => model.overlays.envelope = on,
+        Overlay::Device => model.device = Some(on),
+    }
     let missing = model.curve.as_ref().is_some_and(|curve| curve.base.theory.envelope.is_none());
-    if overlay == Overlay::Envelope && model.overlays.envelope && missing {
+    if overlay == Overlay::Envelope && on && missing {
         model.tell(Level::Info, format!("the envelope is {NO_ENVELOPE}"));
     }
+}
+
+/// Reduced axes, or raw values.
+pub(super) fn axes(model: &mut Model) {
+    model.axes = if model.axes == Axes::Reduced { Axes::Raw } else { Axes::Reduced };
 }
 
 pub(super) fn pin(model: &mut Model) {
@@ -145,37 +153,24 @@ pub(super) fn pin(model: &mut Model) {
 }
 
 /// The same problem in ring elements pinned beside its exact solution, or that beside the rings; away again where it is there.
-pub(super) fn in_rings(model: &mut Model) -> Vec<Effect> {
+pub(super) fn in_rings(model: &mut Model) {
     const KIND: &str = "basis.kind";
     let is_exact = model.preset.get(KIND).is_none_or(|kind| kind.to_string() != "rings");
     let word = if is_exact { "rings" } else { "exact" };
     let mut preset = model.preset.clone();
     if let Err(invalid) = preset.set(KIND, word.into()) {
-        model.tell(Level::Error, invalid.to_string());
-        return Vec::new();
+        return model.tell(Level::Error, invalid.to_string());
     }
     if let Some(number) = model.pins.number_of(&preset) {
         model.pins.remove(Some(number));
-        return Vec::new();
+        return;
     }
-    match model.pins.want(preset.clone()) {
+    match model.pins.want(preset) {
         Ok(number) => {
             let text = if is_exact { "in ring elements" } else { "exactly" };
             model.tell(Level::Info, format!("the same problem {text} as pin {number}; Result has both"));
-            vec![Effect::Pin(number, Box::new(preset))]
         }
-        Err(reason) => {
-            model.tell(Level::Error, reason);
-            Vec::new()
-        }
-    }
-}
-
-/// The curve of a pin has come, or there is none.
-pub(super) fn pinned(model: &mut Model, number: usize, curve: Option<Arc<CurveData>>) {
-    let is_missing = curve.is_none();
-    if model.pins.came(number, curve) && is_missing {
-        model.tell(Level::Error, format!("there is no curve for pin {number}"));
+        Err(reason) => model.tell(Level::Error, reason),
     }
 }
 
@@ -196,38 +191,5 @@ pub(super) fn carry_on(from: &Model, to: &mut Model) {
 /// The screen has room for so many views.
 pub fn make_room(model: &mut Model, views: usize) -> Vec<Effect> {
     model.views = views.clamp(1, View::ALL.len());
-    want_profile(model).into_iter().collect()
-}
-
-/// Asks for the profile of the walker's state if a view shows it and it was not asked for yet.
-pub(super) fn want_profile(model: &mut Model) -> Option<Effect> {
-    let wanted = model.shown_views().into_iter().any(View::is_state);
-    let node = model.walker().filter(|node| wanted && !node.is_apart());
-    let (Some(node), Some(curve)) = (node, &model.curve) else {
-        model.profile_wanted = None;
-        return None;
-    };
-    let run = if model.inward { Run::Inward } else { Run::Outward };
-    let mut ask = Box::new(Ask {
-        id: 0,
-        curve: Arc::clone(curve),
-        state: node.state,
-        rings: node.has_rings().then(|| node.contacts()),
-        exact: model.overlays.exact,
-        barrier: (!node.is_limit(curve.case.control)).then_some(run),
-    });
-    if model.profile_wanted.as_ref().is_some_and(|last| last.is_like(&ask)) {
-        return None;
-    }
-    ask.id = model.number();
-    model.profile_wanted = Some(ask.clone());
-    Some(Effect::Profile(ask))
-}
-
-/// Takes a profile, even if a newer one was asked for: a run shows the states it passes.
-pub(super) fn profile_came(model: &mut Model, profile: Arc<Inside>) {
-    let newer = model.profile.as_ref().is_none_or(|shown| shown.id < profile.id);
-    if model.profile_wanted.is_some() && newer {
-        model.profile = Some(profile);
-    }
+    want_all(model)
 }

@@ -3,21 +3,25 @@
 //! It takes longer than the curve, which never waits for it. While values are turned the loop on the screen may be that of
 //! values before: it says so.
 
+use super::background::{Background, Tell, Want, Watch};
 use super::curve::CurveData;
+use super::effect::Effect;
+use super::model::Model;
 use super::setting::same_curve;
+use super::view::View;
 use crate::mend::Reason;
 use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::Preset;
-use pulloff_engine::progress::Progress;
+use pulloff_engine::problem::Begin;
 use pulloff_engine::quasistatic::admissible::falls;
 use pulloff_engine::quasistatic::path::{Losses, Setting};
 use pulloff_engine::report::PathReport;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// A loop that is wanted.
 #[derive(Debug, Clone)]
-pub struct LoopWish {
-    pub id: u64,
+pub struct LoopKey {
     /// The preset with its control and its turn.
     pub preset: Preset,
     /// The curve of the same problem.
@@ -29,35 +33,73 @@ pub struct LoopWish {
 /// A loop, or why there is none.
 #[derive(Debug, Clone)]
 pub struct LoopData {
-    /// The number it was asked for under.
-    pub id: u64,
     pub preset: Preset,
     pub report: Result<PathReport, Reason>,
 }
 
-impl LoopWish {
-    /// Computes it; `None` when `progress` said stop.
-    #[must_use]
-    pub fn run(&self, progress: &dyn Progress) -> Option<LoopData> {
-        let base = &self.curve.case;
+impl Background for LoopData {
+    type Key = LoopKey;
+    const NAME: &'static str = "loop";
+    const PATIENCE: Duration = Duration::from_millis(50);
+
+    /// The loop of the values as they are, once their curve is there; where the gap has no crests, only when it is looked at.
+    fn wanted(model: &Model) -> Want<LoopKey> {
+        let curve = model.curve.as_ref().filter(|_| model.shows_its_curve() && !model.is_computing());
+        let Some(curve) = curve.cloned() else { return Want::Later };
+        // From apart the loop is the path.
+        let is_path = model.preset.path.begin == Begin::Touch;
+        let is_shown = is_path || model.shown_views().into_iter().any(View::is_cycle);
+        if !is_shown && !has_crests(&curve) {
+            return Want::Not;
+        }
+        Want::Now(LoopKey { preset: model.preset.clone(), curve, is_shown })
+    }
+
+    fn is_same(asked: &LoopKey, wanted: &LoopKey) -> bool {
+        // A script computes only the loop that is looked at, and so asks again for one that was not.
+        same_loop(&asked.preset, &wanted.preset) && (asked.is_shown || !wanted.is_shown)
+    }
+
+    fn is_of(&self, wanted: &LoopKey) -> bool {
+        same_loop(&self.preset, &wanted.preset)
+    }
+
+    fn is_for_scripts(key: &LoopKey) -> bool {
+        key.is_shown
+    }
+
+    fn compute(key: &LoopKey, progress: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+        let base = &key.curve.case;
         let units = base.units();
-        let turn = self.preset.path.turn;
+        let turn = key.preset.path.turn;
         let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, base.control));
         let case = Case { turn, ..base.clone() };
         let setting = Setting { losses: Losses::Once, ..case.setting() };
         let report = match case.cycle(None, &setting, progress) {
             Err(CaseError::Cancelled) => return None,
             Err(error) => Err(Reason::of("", &error)),
-            Ok(cycle) => Ok(PathReport::new(&self.preset, &case, &cycle)),
+            Ok(cycle) => Ok(PathReport::new(&key.preset, &case, &cycle)),
         };
-        Some(LoopData { id: self.id, preset: self.preset.clone(), report })
+        Some(Self { preset: key.preset.clone(), report })
+    }
+
+    fn came(model: &mut Model, _: Arc<Self>) -> Vec<Effect> {
+        model.event = model.event.min(model.log_lines().saturating_sub(1));
+        Vec::new()
+    }
+}
+
+impl Model {
+    /// The loop of loading and unloading, where the gap has crests or it is looked at; it can be that of values before.
+    pub fn cycle(&self) -> Option<&LoopData> {
+        self.results.shown()
     }
 }
 
 impl LoopData {
     /// Whether it is the loop of `preset`.
     #[must_use]
-    pub fn is_of(&self, preset: &Preset) -> bool {
+    pub fn is_of_preset(&self, preset: &Preset) -> bool {
         same_loop(&self.preset, preset)
     }
 
@@ -69,14 +111,14 @@ impl LoopData {
 }
 
 /// Whether two presets have the same loop.
-pub(super) fn same_loop(a: &Preset, b: &Preset) -> bool {
+fn same_loop(a: &Preset, b: &Preset) -> bool {
     let of = |preset: &Preset| (preset.path.control, preset.path.contact, preset.path.turn);
     same_curve(a, b) && of(a) == of(b)
 }
 
 /// Whether the gap of a curve has crests further out: else the loop is the first touch and the unloading.
 #[must_use]
-pub fn has_crests(curve: &CurveData) -> bool {
+fn has_crests(curve: &CurveData) -> bool {
     let reduced = &curve.case.reduced;
     reduced.gap.wavelength().is_some() || falls(&reduced.gap, curve.case.start)
 }

@@ -1,169 +1,64 @@
-//! The map of two numbers, or the limit points over one, computed in the background while it is looked at.
+//! The map of two numbers, or the limit points over one, computed while it is looked at.
 //!
 //! Turning one of its numbers moves the preset on it and asks for nothing.
 
+use super::background::{Background, Tell, Want, Watch};
+use super::map_axes::MapAxes;
+use super::model::Model;
+use super::view::View;
 use crate::mend::Reason;
-use pulloff_engine::gap::Gap;
-use pulloff_engine::preset::schema::Kind;
-use pulloff_engine::preset::{Key, Parameter, Preset};
+use pulloff_engine::preset::Preset;
 use pulloff_engine::progress::Progress;
 use pulloff_engine::report::MapReport;
-use pulloff_engine::report::map::{MapError, Ordinate};
-use pulloff_engine::stability::{Axis, COMPLIANCE};
-use serde::{Deserialize, Serialize};
-
-/// The groups on the axes, for a gap with one wave.
-const AMPLITUDE: &str = "groups.amplitude_over_wavelength";
-const ADHESIONS: [&str; 2] = ["groups.adhesion", "material.work_of_adhesion"];
-
-/// Decades of adhesion on both sides of the preset's.
-const DECADES: f64 = 1.0;
-
-/// A/λ at the end of an axis on which the preset stands at zero.
-const FROM_ZERO: f64 = 0.05;
-
-/// An end of an axis that is no value of the preset comes nearer to it, halving the way so often at most.
-const HALVINGS: usize = 20;
-
-/// What stands on the axes of a map.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct MapAxes {
-    /// A key, a group, or [`COMPLIANCE`].
-    pub x: String,
-    /// Another of them, or what limit points have: `control`, `approach` or `force`.
-    pub y: String,
-}
-
-/// What limit points have, over one number.
-pub const CURVES: [(&str, Ordinate); 3] =
-    [("control", Ordinate::Control), ("approach", Ordinate::Approach), ("force", Ordinate::Force)];
-
-impl MapAxes {
-    /// The usual ones: A/λ, or the compliance where there is no one wave, and the adhesion.
-    #[must_use]
-    pub fn usual(preset: &Preset) -> Self {
-        let has = |key: &str| preset.get(key).is_some();
-        let x = if has(AMPLITUDE) { AMPLITUDE } else { COMPLIANCE };
-        let y = if has(ADHESIONS[0]) { ADHESIONS[0] } else { ADHESIONS[1] };
-        Self { x: x.to_owned(), y: y.to_owned() }
-    }
-
-    /// The limit points over a key; the control over the device's own compliance would be two quantities.
-    #[must_use]
-    pub fn over(key: &Key) -> Self {
-        let y = if is_device(key) { "force" } else { "control" };
-        Self { x: axis_of(key), y: y.to_owned() }
-    }
-
-    /// The map of a key and the adhesion, or of the adhesion and what is usual beside it.
-    #[must_use]
-    pub fn beside_adhesion(key: &Key, preset: &Preset) -> Self {
-        let usual = Self::usual(preset);
-        if ADHESIONS.contains(&&**key) {
-            return Self { x: usual.x, y: key.to_string() };
-        }
-        Self { x: axis_of(key), y: usual.y }
-    }
-
-    /// Whether limit points over one number are shown.
-    #[must_use]
-    pub fn is_curves(&self) -> bool {
-        CURVES.iter().any(|(name, _)| *name == self.y)
-    }
-
-    /// The axes with their ranges about the values of `preset`.
-    /// Errors: In words.
-    fn ranges(&self, preset: &Preset) -> Result<(Axis, Ordinate), String> {
-        let x = range(preset, &self.x)?;
-        let curve = CURVES.iter().find(|(name, _)| *name == self.y).map(|(_, curve)| curve.clone());
-        let y = curve.map_or_else(|| range(preset, &self.y).map(Ordinate::Key), Ok)?;
-        Ok((x, y))
-    }
-}
-
-fn is_device(key: &str) -> bool {
-    key.starts_with("path.control") || key == COMPLIANCE
-}
-
-fn axis_of(key: &Key) -> String {
-    if is_device(key) { COMPLIANCE.to_owned() } else { key.to_string() }
-}
-
-/// Whether a row can be an axis: a number, or the device.
-#[must_use]
-pub fn can_be_axis(row: &Parameter) -> bool {
-    row.kind.is_number() || row.kind == Kind::Control
-}
-
-/// An axis of `key` about the value that `preset` has.
-fn range(preset: &Preset, key: &str) -> Result<Axis, String> {
-    let axis =
-        |range, logarithmic| Axis::new(key, range, logarithmic, 1.0).map_err(|error| error.to_string());
-    if key == COMPLIANCE {
-        let unit = preset.gap.reference_length() * preset.material.effective_modulus;
-        return Axis::new(key, [0.0, f64::INFINITY], false, 1.0 / unit).map_err(|error| error.to_string());
-    }
-    let Some(row) = preset.row(key) else {
-        // With the nearest name.
-        let unknown = preset.clone().set(key, 1.0.into()).err();
-        return Err(unknown.map_or_else(|| format!("{key} is no number of this preset"), |e| e.to_string()));
-    };
-    let value = preset.get(key).and_then(|value| value.as_number()).filter(|_| row.kind.is_number());
-    let Some(x) = value else { return Err(format!("{key} has no number here to be an axis")) };
-    if ADHESIONS.contains(&key) && x > 0.0 {
-        let factor = 10f64.powf(DECADES);
-        return axis([x / factor, x * factor], true);
-    }
-    let wavelength = preset.gap.wavelength().unwrap_or(0.0);
-    let ends = match (key, row.kind) {
-        (AMPLITUDE, _) if x == 0.0 => [0.0, FROM_ZERO],
-        ("gap.amplitude", _) if x == 0.0 => [0.0, FROM_ZERO * wavelength],
-        _ if x == 0.0 => return Err(format!("{key} is 0 and has no scale to be an axis by")),
-        (_, Kind::NonNegative) => [0.0, 2.0 * x],
-        (_, Kind::Finite) => [x - x.abs(), x + x.abs()],
-        _ => [0.5 * x, 2.0 * x],
-    };
-    // Ends that are no values, such as a start beyond the gap, come nearer.
-    let [lo, hi] = ends.map(|mut end| {
-        for _ in 0..HALVINGS {
-            if preset.clone().set(key, end.into()).is_ok() {
-                break;
-            }
-            end = 0.5 * (end + x);
-        }
-        end
-    });
-    axis([lo, hi], row.kind == Kind::Positive)
-}
+use pulloff_engine::report::map::MapError;
+use pulloff_engine::stability::COMPLIANCE;
 
 /// Columns and rows in which snaps are counted.
 const CELLS: [u32; 2] = [32, 24];
 
-/// A map that is wanted.
-#[derive(Debug, Clone)]
-pub struct MapWish {
-    pub id: u64,
-    pub preset: Preset,
-    pub axes: MapAxes,
-}
+/// A map that is wanted: its values, and what stands on its axes.
+pub type MapKey = (Preset, MapAxes);
 
 /// A map, or why there is none.
 #[derive(Debug, Clone)]
 pub struct MapData {
-    /// The number it was asked for under.
-    pub id: u64,
     pub preset: Preset,
     pub axes: MapAxes,
     report: Result<MapReport, Reason>,
 }
 
-impl MapWish {
-    /// Computes it; `None` when `progress` said stop.
+impl Background for MapData {
+    type Key = MapKey;
+    const NAME: &'static str = "map";
+
+    fn wanted(model: &Model) -> Want<MapKey> {
+        if !model.shown_views().contains(&View::Map) || model.is_computing() {
+            return Want::Later;
+        }
+        let axes = model.map_axes.clone().unwrap_or_else(|| MapAxes::usual(&model.preset));
+        Want::Now((model.preset.clone(), axes))
+    }
+
+    fn is_same(asked: &MapKey, wanted: &MapKey) -> bool {
+        asked == wanted
+    }
+
+    fn is_of(&self, (preset, axes): &MapKey) -> bool {
+        self.is_over(preset, axes)
+    }
+
+    fn compute((preset, axes): &MapKey, progress: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+        Self::of(preset, axes, progress)
+    }
+}
+
+impl MapData {
+    /// The map of a preset; `None` when `progress` said stop.
     #[must_use]
-    pub fn run(&self, progress: &dyn Progress) -> Option<MapData> {
-        let report = if self.preset.material.work_of_adhesion > 0.0 {
-            match self.axes.ranges(&self.preset) {
-                Ok((x, y)) => match MapReport::compute(&self.preset, x, &y, CELLS, progress) {
+    pub fn of(preset: &Preset, axes: &MapAxes, progress: &dyn Progress) -> Option<Self> {
+        let report = if preset.material.work_of_adhesion > 0.0 {
+            match axes.ranges(preset) {
+                Ok((x, y)) => match MapReport::compute(preset, x, &y, CELLS, progress) {
                     Err(MapError::Cancelled) => return None,
                     found => found.map_err(|error| Reason::of("", &error)),
                 },
@@ -172,19 +67,16 @@ impl MapWish {
         } else {
             Err(Reason::mendable("a gap without adhesion has no limit points to follow"))
         };
-        Some(MapData { id: self.id, preset: self.preset.clone(), axes: self.axes.clone(), report })
+        Some(Self { preset: preset.clone(), axes: axes.clone(), report })
     }
-}
 
-impl MapData {
     /// The map.
     pub fn report(&self) -> Result<&MapReport, &str> {
         self.report.as_ref().map_err(|reason| reason.text.as_str())
     }
 
     /// Whether it is the map of `preset` over `axes`; the preset may stand elsewhere on it.
-    #[must_use]
-    pub fn is_of(&self, preset: &Preset, axes: &MapAxes) -> bool {
+    fn is_over(&self, preset: &Preset, axes: &MapAxes) -> bool {
         if self.axes != *axes {
             return false;
         }

@@ -6,8 +6,8 @@
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`command`] | the commands and their table |
-//! | [`availability`] | which commands can be done now |
+//! | [`command`], [`table`] | the commands; the table of what is to be known of each |
+//! | [`availability`] | what must be there before a command can be done |
 //! | [`model`] | the state of a session |
 //! | [`update`](mod@update) | the only code that changes the model; it never solves and never reads a file |
 //! | [`effect`] | the work that the model asks for, and the replies |
@@ -26,11 +26,12 @@
 //! | `prune` | which states of a long walk may be forgotten |
 //! | [`curve`] | the equilibrium curve of a problem, and what belongs to its control |
 //! | [`progress`] | how far the computation of a curve has come |
-//! | [`background_jobs`] | pinned curves, admissibility checks, the profile of the current state |
+//! | [`background`], [`backgrounds`], [`results`] | results that belong to the values: how one is wanted, computed and kept; the list of them; what there is |
+//! | [`admissibility`], `pinned` | which states of the curve are admissible; the curves of pins |
 //! | [`loops`] | the loop of loading and unloading with rings of contact |
 //! | [`onset`] | the smallest amplitude at which a problem snaps |
-//! | [`maps`], [`studies`], `study_table` | the map of two numbers; a quantity over one, and its documents |
-//! | [`fitting`], `fit` | a fit and the distances of measured points; the commands about them |
+//! | [`maps`], [`map_axes`], [`studies`], `study_table` | the map of two numbers, its axes; a quantity over one, and its documents |
+//! | [`fitting`], `fit` | the distances of measured points; a fit |
 //! | [`device`] | the line of the loading device through the walker |
 //! | [`profile`] | pressure, gap and potential of one state |
 //! | [`walk`] | steps, runs and jumps along the curve |
@@ -47,9 +48,11 @@
 //!
 //! Nothing here knows terminals, keys or colours.
 
+pub mod admissibility;
 pub mod archive;
 pub mod availability;
-pub mod background_jobs;
+pub mod background;
+pub mod backgrounds;
 pub mod branches;
 pub mod command;
 pub mod curve;
@@ -69,17 +72,20 @@ pub mod journal;
 pub mod log;
 pub mod look;
 pub mod loops;
+pub mod map_axes;
 pub mod maps;
 pub mod model;
 pub mod node;
 pub mod nudge;
 pub mod onset;
+mod pinned;
 pub mod pins;
 pub mod profile;
 pub mod progress;
 mod prune;
 pub mod reach;
 pub mod requests;
+pub mod results;
 mod saves;
 pub mod script;
 pub mod session;
@@ -87,6 +93,7 @@ pub mod setting;
 pub mod status_line;
 pub mod studies;
 mod study_table;
+pub mod table;
 pub mod theory;
 pub mod undo;
 pub mod update;
@@ -98,7 +105,7 @@ mod watch;
 pub use command::{Command, Id};
 pub use curve::{CurveData, Inadmissible, ProblemCurve};
 pub use driver::{Inline, Workers};
-pub use effect::{Check, Effect, Reply, Wish};
+pub use effect::{Effect, Reply, Wish};
 pub use history::History;
 pub use journal::Journal;
 pub use model::{Level, Model};

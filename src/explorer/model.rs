@@ -3,20 +3,16 @@
 use super::command::{Command, FIRST_LENGTH, FIRST_PACE};
 use super::curve::{CurveData, Inadmissible};
 use super::data::Folder;
-use super::fitting::{Distances, FitWish, Fitting};
 use super::history::{History, Mark};
 use super::journal::Journal;
-use super::loops::{LoopData, LoopWish};
-use super::maps::{MapAxes, MapData, MapWish};
+use super::map_axes::MapAxes;
 use super::node::{Node, NodeKind};
-use super::onset::SnapsFrom;
 use super::pins::Pins;
-use super::profile::{Ask, Inside};
 use super::progress::Stage;
+use super::results::Results;
 use super::setting::same_curve;
-use super::studies::{StudyData, StudyWish};
 use super::undo::{Place, Undo};
-use super::view::{Axes, Home, Overlays, Panel, View, Window};
+use super::view::{Axes, Home, Overlay, Overlays, Panel, View, Window};
 use super::walk::measure;
 use crate::mend::Reason;
 use crate::store::{Fingerprint, Listing, Loaded, Source};
@@ -87,15 +83,6 @@ pub struct Walking {
     pub stops: bool,
 }
 
-/// The admissibility check of the curve on the screen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Checking {
-    /// It was asked under this number.
-    Asked(u64),
-    /// The person cancelled it: it is not asked for again on this curve.
-    GivenUp,
-}
-
 /// How much a message matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Level {
@@ -142,32 +129,12 @@ pub struct Model {
     pub curve_shown: u64,
     /// Progress of the curve being computed, once that takes long.
     pub stage: Option<Stage>,
-    /// The number under which the admissibility of the curve was asked for, while it is.
-    pub checking: Option<Checking>,
-    /// The loop of loading and unloading, where the gap has crests; it can be that of values before.
-    pub cycle: Option<Arc<LoopData>>,
-    /// The newest loop asked for.
-    pub cycle_wanted: Option<Box<LoopWish>>,
-    /// The map of two numbers; it can be that of values before.
-    pub map: Option<Arc<MapData>>,
-    /// The newest map asked for.
-    pub map_wanted: Option<Box<MapWish>>,
-    /// Where snaps begin, of a problem that can be another by now.
-    pub snaps_from: Option<Arc<SnapsFrom>>,
+    /// What is computed in the background.
+    pub results: Results,
     /// What stands on the axes of the map; `None` for what is usual.
     pub map_axes: Option<MapAxes>,
-    /// The fit that is running.
-    pub fitting: Option<Fitting>,
     /// The last fit that was taken; the values may be others by now.
     pub fit: Option<Arc<Fit>>,
-    /// The distances of the measured points; they can be those of values before.
-    pub distances: Option<Arc<Distances>>,
-    /// The newest distances asked for.
-    pub distances_wanted: Option<Box<FitWish>>,
-    /// The study on the screen; it can be that of values before, or not yet done.
-    pub study: Option<Arc<StudyData>>,
-    /// The newest study asked for.
-    pub study_wanted: Option<Box<StudyWish>>,
     /// The quantity that is studied.
     pub studied: Column,
     /// The last stiffness of the device, in the user's units.
@@ -207,9 +174,6 @@ pub struct Model {
     /// The theory drawn over the curve.
     pub overlays: Overlays,
     pub pins: Pins,
-    /// The profile of the walker's state, or still of the state before.
-    pub profile: Option<Arc<Inside>>,
-    pub profile_wanted: Option<Box<Ask>>,
     /// What to tell; `None` leaves the line to the hint.
     pub message: Option<(Level, String)>,
     pub preset_names: Vec<String>,
@@ -252,19 +216,9 @@ impl Model {
             curve_wanted: 0,
             curve_shown: 0,
             stage: None,
-            checking: None,
-            cycle: None,
-            cycle_wanted: None,
-            map: None,
-            map_wanted: None,
+            results: Results::default(),
             map_axes: None,
-            snaps_from: None,
-            fitting: None,
             fit: None,
-            distances: None,
-            distances_wanted: None,
-            study: None,
-            study_wanted: None,
             studied: Column { quantity: &QUANTITIES[0], under: Under::Own },
             stiffness,
             device: None,
@@ -290,8 +244,6 @@ impl Model {
             axes: Axes::Reduced,
             overlays: Overlays::default(),
             pins: Pins::default(),
-            profile: None,
-            profile_wanted: None,
             message: None,
             preset_names: Vec::new(),
             question: None,
@@ -348,14 +300,19 @@ impl Model {
         })
     }
 
+    /// Whether something is drawn over the curve.
+    pub fn is_over(&self, overlay: Overlay) -> bool {
+        match overlay {
+            Overlay::Smooth => self.overlays.smooth,
+            Overlay::Exact => self.overlays.exact,
+            Overlay::Envelope => self.overlays.envelope,
+            Overlay::Device => self.shows_device(),
+        }
+    }
+
     /// Whether the line of the device is drawn: that of a spring, where nobody has said otherwise.
     pub fn shows_device(&self) -> bool {
         self.device.unwrap_or(matches!(self.control(), Some(Control::Stiffness(_))))
-    }
-
-    /// The smallest A/λ at which the problem snaps, where it is known.
-    pub fn snaps_from(&self) -> Option<f64> {
-        self.snaps_from.as_ref().filter(|found| found.is_of(&self.preset))?.amplitude_over_wavelength
     }
 
     /// Whether a run goes on at the pace, which any key but those of the pace ends.
@@ -413,11 +370,6 @@ impl Model {
     /// The views on the screen, the first one first.
     pub fn shown_views(&self) -> Vec<View> {
         std::iter::once(self.view).chain(self.view.companions()).take(self.views.max(1)).collect()
-    }
-
-    /// The profile of the walker's state, or of the one before while that is computed.
-    pub fn shown_profile(&self) -> Option<&Inside> {
-        self.profile.as_deref().filter(|_| self.profile_wanted.is_some())
     }
 
     /// The part of a view that is shown: views of the force beside the first one show the same part of its axis.

@@ -1,8 +1,9 @@
 //! The smallest A/λ at which a problem snaps at all, found behind its curve and kept while only the amplitude is turned.
 
+use super::background::{Background, Tell, Want, Watch};
+use super::model::Model;
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::Preset;
-use pulloff_engine::progress::Progress;
 use pulloff_engine::stability::Onset;
 
 /// Where snaps begin for the adhesion, device and start of a preset.
@@ -13,26 +14,48 @@ pub struct SnapsFrom {
     pub amplitude_over_wavelength: Option<f64>,
 }
 
-impl SnapsFrom {
-    /// Finds it; `None` when `progress` said stop.
-    #[must_use]
-    pub fn find(preset: &Preset, progress: &dyn Progress) -> Option<Self> {
+impl Background for SnapsFrom {
+    type Key = Preset;
+    const NAME: &'static str = "onset";
+
+    /// Behind the curve and what is admissible on it.
+    fn wanted(model: &Model) -> Want<Preset> {
+        let is_checked = model.curve.as_ref().is_some_and(|curve| curve.is_checked());
+        if is_checked && !model.is_computing() { Want::Now(model.preset.clone()) } else { Want::Later }
+    }
+
+    fn is_same(asked: &Preset, wanted: &Preset) -> bool {
+        is_alike(asked, wanted)
+    }
+
+    fn is_of(&self, wanted: &Preset) -> bool {
+        is_alike(&self.preset, wanted)
+    }
+
+    fn compute(preset: &Preset, progress: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
         // A start that some amplitude does not have is the curve's to tell.
         let onset = Onset::of(preset, progress).ok().flatten();
         let amplitude_over_wavelength = onset.map(|onset| onset.amplitude_over_wavelength);
         (!progress.stop()).then(|| Self { preset: preset.clone(), amplitude_over_wavelength })
     }
+}
 
-    /// Whether it is that of `preset`, whose amplitude and basis may be others.
-    #[must_use]
-    pub fn is_of(&self, preset: &Preset) -> bool {
-        let waves = match (&self.preset.gap, &preset.gap) {
-            (
-                Shape::WavySphere { radius_of_curvature: a, wavelength: b, .. },
-                Shape::WavySphere { radius_of_curvature: c, wavelength: d, .. },
-            ) => (a, b) == (c, d),
-            (a, b) => a == b,
-        };
-        waves && self.preset.material == preset.material && self.preset.path == preset.path
+/// Whether two presets differ in amplitude and basis at most.
+fn is_alike(one: &Preset, other: &Preset) -> bool {
+    let waves = match (&one.gap, &other.gap) {
+        (
+            Shape::WavySphere { radius_of_curvature: a, wavelength: b, .. },
+            Shape::WavySphere { radius_of_curvature: c, wavelength: d, .. },
+        ) => (a, b) == (c, d),
+        (a, b) => a == b,
+    };
+    waves && one.material == other.material && one.path == other.path
+}
+
+impl Model {
+    /// The smallest A/λ at which the problem snaps, where it is known.
+    pub fn snaps_from(&self) -> Option<f64> {
+        let found = self.results.found::<SnapsFrom>();
+        found.filter(|found| is_alike(&found.preset, &self.preset))?.amplitude_over_wavelength
     }
 }

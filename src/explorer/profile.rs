@@ -1,6 +1,9 @@
 //! The inside of the walker's state, computed by a worker: pressure, gap and potential, for the views that show them.
 
+use super::background::{Background, Tell, Want, Watch};
 use super::curve::CurveData;
+use super::model::Model;
+use super::view::View;
 use pulloff_engine::annuli::Contacts;
 use pulloff_engine::gap::Gap;
 use pulloff_engine::problem::{Control, Units};
@@ -21,7 +24,6 @@ const SHARES: [f64; 2] = [0.95, 0.6];
 /// What is wanted of a state.
 #[derive(Debug, Clone)]
 pub struct Ask {
-    pub id: u64,
     /// The curve of the problem that the state solves, with the control whose potential is wanted.
     pub curve: Arc<CurveData>,
     pub state: State,
@@ -49,7 +51,6 @@ impl Ask {
 /// The inside of one state, reduced.
 #[derive(Debug, Clone)]
 pub struct Inside {
-    pub id: u64,
     /// Factors to the user's units.
     pub units: Units,
     /// λ, where the gap has one wave alone.
@@ -66,7 +67,7 @@ pub struct Inside {
 
 impl Inside {
     /// Computes what `ask` wants.
-    pub fn compute(ask: &Ask) -> Self {
+    pub fn of(ask: &Ask) -> Self {
         let case = &ask.curve.case;
         let State { contact_radius: s, approach, .. } = ask.state;
         let landscape = if ask.rings.is_some() { None } else { landscape(ask) };
@@ -75,7 +76,6 @@ impl Inside {
             rings.and_then(|contacts| Profile::of_contacts(&case.reduced, &case.table, contacts, approach));
         let judge = Judge::new(&case.reduced, &case.table);
         Self {
-            id: ask.id,
             units: *case.units(),
             wave: case.reduced.gap.wavelength(),
             profile: rings
@@ -84,6 +84,46 @@ impl Inside {
             barrier: landscape.as_ref().zip(ask.barrier).and_then(|(landscape, run)| landscape.barrier(run)),
             landscape,
         }
+    }
+}
+
+impl Background for Inside {
+    type Key = Ask;
+    const NAME: &'static str = "profile";
+
+    /// That of the walker's state, if a view shows it. An answer to an older question is taken too: a run shows the states it passes.
+    fn wanted(model: &Model) -> Want<Ask> {
+        let is_shown = model.shown_views().into_iter().any(View::is_state);
+        let node = model.walker().filter(|node| is_shown && !node.is_apart());
+        let (Some(node), Some(curve)) = (node, &model.curve) else { return Want::Not };
+        let run = if model.inward { Run::Inward } else { Run::Outward };
+        Want::Now(Ask {
+            curve: Arc::clone(curve),
+            state: node.state,
+            rings: node.has_rings().then(|| node.contacts()),
+            exact: model.overlays.exact,
+            barrier: (!node.is_limit(curve.case.control)).then_some(run),
+        })
+    }
+
+    fn is_same(asked: &Ask, wanted: &Ask) -> bool {
+        asked.is_like(wanted)
+    }
+
+    fn compute(ask: &Ask, _: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+        Some(Self::of(ask))
+    }
+
+    /// It is short and cannot be given up.
+    fn says(model: &Model) -> Option<String> {
+        model.results.under_way::<Self>().map(|_| "computing the state".to_owned())
+    }
+}
+
+impl Model {
+    /// The inside of the walker's state, or of the one before while that is computed.
+    pub fn shown_profile(&self) -> Option<&Inside> {
+        self.results.shown()
     }
 }
 

@@ -3,9 +3,9 @@
 use super::command::Id;
 use super::model::{Level, Model};
 use super::node::Node;
-use super::studies::range;
+use super::studies::study_range;
 use super::view::{Home, View};
-use pulloff_engine::preset::{Key, Preset, Value};
+use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
 
 /// Why a view has nothing to show now; `None` where it has, or will have once it is computed.
@@ -23,7 +23,7 @@ pub fn why_not(model: &Model, view: View) -> Option<String> {
             unloading.and_then(|path| path.as_ref().err().map(|reason| format!("no path: {reason}")))
         }
         View::Cycle | View::ContactMap => {
-            let cycle = model.cycle.as_ref().filter(|cycle| cycle.is_of(&model.preset));
+            let cycle = model.cycle().filter(|cycle| cycle.is_of_preset(&model.preset));
             cycle.and_then(|cycle| Some(format!("no loop: {}", cycle.report.as_ref().err()?.text)))
         }
         View::Map => (model.preset.material.work_of_adhesion <= 0.0)
@@ -54,13 +54,6 @@ pub fn no_spring(preset: &Preset) -> Option<String> {
         "the device has no spring, and its way is the approach: path.control has the stiffness of one"
             .to_owned()
     })
-}
-
-/// The key that a study varies, and the values it takes: those of the selected value.
-/// Errors: Why it has none, in words.
-pub fn study_range(model: &Model) -> Result<(Key, Vec<Value>), String> {
-    let Some((row, _)) = model.selected_knob() else { return Err("no value is selected".to_owned()) };
-    range(&model.preset, &row).map_err(|why| format!("{why}; select another in Problem"))
 }
 
 /// Whether any other curve is drawn with that of the preset.

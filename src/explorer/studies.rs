@@ -3,6 +3,10 @@
 //! The value of the preset is one of those computed. Turning it within the range moves its mark and asks for nothing. Where the
 //! surface is one of many, drawn with a seed, others follow it one by one.
 
+use super::background::{Background, Tell, Want, Watch};
+use super::command::Id;
+use super::model::Model;
+use super::view::View;
 use pulloff_engine::gap::shapes::split_mix::SplitMix64;
 use pulloff_engine::preset::edge::RATE;
 use pulloff_engine::preset::schema::Kind;
@@ -54,7 +58,6 @@ pub enum Outcome {
 /// A study that is wanted.
 #[derive(Debug, Clone)]
 pub struct StudyWish {
-    pub id: u64,
     pub preset: Preset,
     pub key: Key,
     pub column: Column,
@@ -77,7 +80,7 @@ pub struct StudyData {
 
 /// The key that is varied and its values, ascending, that of the preset among them.
 /// Errors: Why this value has no range, in words.
-pub fn range(preset: &Preset, row: &Row) -> Result<(Key, Vec<Value>), String> {
+fn range(preset: &Preset, row: &Row) -> Result<(Key, Vec<Value>), String> {
     let label = &row.label;
     let (key, values) = match (row.kind, preset.get(&row.key)) {
         (Kind::Control, Some(Value::Control(Control::Stiffness(k)))) => {
@@ -103,6 +106,13 @@ pub fn range(preset: &Preset, row: &Row) -> Result<(Key, Vec<Value>), String> {
         _ => return Err(format!("{label} is no number: there is nothing to vary")),
     };
     Ok((key, values))
+}
+
+/// The key that a study varies, and the values it takes: those of the selected value.
+/// Errors: Why it has none, in words.
+pub fn study_range(model: &Model) -> Result<(Key, Vec<Value>), String> {
+    let Some((row, _)) = model.selected_knob() else { return Err("no value is selected".to_owned()) };
+    range(&model.preset, &row).map_err(|why| format!("{why}; select another in Problem"))
 }
 
 /// From the factor below a value to the factor above it, in equal ratios.
@@ -276,11 +286,6 @@ impl StudyData {
         self.outcomes.iter().filter(|outcome| **outcome != Outcome::Waits).count()
     }
 
-    /// Whether it is that of `preset`, whose value may be another within the range.
-    pub fn is_of(&self, preset: &Preset, key: &str, column: Column) -> bool {
-        self.wish.is_of(preset, key, column)
-    }
-
     /// The value computed that is nearest to `x`, and its place in the list.
     pub fn nearest(&self, x: f64) -> Option<(usize, f64)> {
         let places = self.wish.values.iter().enumerate().filter_map(|(i, value)| Some((i, number(value)?)));
@@ -289,9 +294,10 @@ impl StudyData {
 }
 
 impl StudyWish {
-    /// Whether it is that of `preset`, whose value may be another within the range.
-    pub fn is_of(&self, preset: &Preset, key: &str, column: Column) -> bool {
-        if self.key != key || self.column != column {
+    /// Whether it is the one that is wanted, whose value may be another within the range.
+    fn is_like(&self, wanted: &Self) -> bool {
+        let (preset, key) = (&wanted.preset, &wanted.key);
+        if self.key != *key || self.column != wanted.column {
             return false;
         }
         if self.preset == *preset {
@@ -303,6 +309,43 @@ impl StudyWish {
         number(&value).is_some_and(|x| (lo..=hi).contains(&x))
             && moved.set(key, value).is_ok()
             && moved == *preset
+    }
+}
+
+impl Background for StudyData {
+    type Key = StudyWish;
+    const NAME: &'static str = "study";
+    const ONLY_NEWEST: bool = true;
+
+    fn wanted(model: &Model) -> Want<StudyWish> {
+        if !model.shown_views().contains(&View::Study) || model.is_computing() {
+            return Want::Later;
+        }
+        let Ok((key, values)) = study_range(model) else { return Want::Later };
+        Want::Now(StudyWish { preset: model.preset.clone(), key, column: model.studied, values })
+    }
+
+    fn is_same(asked: &StudyWish, wanted: &StudyWish) -> bool {
+        asked.is_like(wanted)
+    }
+
+    fn is_of(&self, wanted: &StudyWish) -> bool {
+        self.wish.is_like(wanted)
+    }
+
+    fn compute(key: &StudyWish, progress: Watch<'_>, told: Tell<'_, Self>) -> Option<Self> {
+        key.run(threads(), progress, told)
+    }
+
+    /// Only of other surfaces: the values themselves are seen to come.
+    fn says(model: &Model) -> Option<String> {
+        let study = model.results.so_far::<Self>()?;
+        (study.done() == study.outcomes.len())
+            .then(|| format!("computing other surfaces; {} keeps those there are", Id::Cancel.named()))
+    }
+
+    fn given_up(model: &mut Model) -> Option<String> {
+        Self::says(model).map(|_| "the study keeps the surfaces that are there".to_owned())
     }
 }
 
@@ -359,7 +402,7 @@ mod tests {
         let preset = preset(&[]);
         let (key, values) = range(&preset, &row(&preset, "gap.amplitude")).unwrap();
         let column = Column::named("largest_pull").unwrap();
-        let wish = StudyWish { id: 1, preset: preset.clone(), key: key.clone(), column, values };
+        let wish = StudyWish { preset: preset.clone(), key: key.clone(), column, values };
         let [one, three] = [1, 3].map(|threads| wish.run(threads, &Unwatched, &mut |_| {}).unwrap());
         assert_eq!(one.outcomes, three.outcomes);
         assert_eq!(one.done(), one.outcomes.len());
@@ -370,14 +413,15 @@ mod tests {
         assert!(wish.run(2, &|| true, &mut |_| {}).is_none());
         assert_eq!((one.surfaces(), wish.others()), (0, 0));
         // Its value may move within the range, and nothing else.
+        let is_of = |preset: &Preset| one.is_of(&StudyWish { preset: preset.clone(), ..wish.clone() });
         let mut moved = preset.clone();
         moved.set(&key, 0.003.into()).unwrap();
-        assert!(one.is_of(&moved, &key, column));
+        assert!(is_of(&moved));
         moved.set("gap.wavelength", 0.06.into()).unwrap();
-        assert!(!one.is_of(&moved, &key, column));
+        assert!(!is_of(&moved));
         moved = preset;
         moved.set(&key, 0.0051.into()).unwrap();
-        assert!(!one.is_of(&moved, &key, column));
+        assert!(!is_of(&moved));
     }
 
     #[test]
@@ -389,7 +433,7 @@ mod tests {
         let values = [0.003, 0.004, 0.006].map(Value::from).to_vec();
         let column = Column::named("enhancement").unwrap();
         let key = Key::Borrowed("material.work_of_adhesion");
-        let wish = StudyWish { id: 1, preset: preset.clone(), key, column, values };
+        let wish = StudyWish { preset: preset.clone(), key, column, values };
         let [one, three] = [1, 3].map(|threads| wish.run(threads, &Unwatched, &mut |_| {}).unwrap());
         let bits =
             |data: &StudyData| -> Vec<u64> { data.others.iter().flatten().map(|x| x.to_bits()).collect() };

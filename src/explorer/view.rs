@@ -279,11 +279,28 @@ pub enum Overlay {
     Exact,
     /// The envelope of small waves, Kesari and Lew.
     Envelope,
+    /// The line of the loading device through the walker.
+    Device,
 }
 
 impl Overlay {
     /// All, in the order in which they are offered.
-    pub const ALL: [Self; 3] = [Self::Smooth, Self::Exact, Self::Envelope];
+    pub const ALL: [Self; 4] = [Self::Smooth, Self::Exact, Self::Envelope, Self::Device];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Smooth => "smooth",
+            Self::Exact => "exact",
+            Self::Envelope => "envelope",
+            Self::Device => "device",
+        }
+    }
+
+    /// The one of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|overlay| overlay.name() == name)
+    }
 }
 
 /// Which overlays are drawn.
@@ -300,27 +317,6 @@ pub struct Overlays {
 impl Default for Overlays {
     fn default() -> Self {
         Self { smooth: true, exact: false, envelope: false }
-    }
-}
-
-impl Overlays {
-    /// Whether `overlay` is drawn.
-    pub fn has(self, overlay: Overlay) -> bool {
-        match overlay {
-            Overlay::Smooth => self.smooth,
-            Overlay::Exact => self.exact,
-            Overlay::Envelope => self.envelope,
-        }
-    }
-
-    /// Draws `overlay`, or no longer.
-    pub fn toggle(&mut self, overlay: Overlay) {
-        let place = match overlay {
-            Overlay::Smooth => &mut self.smooth,
-            Overlay::Exact => &mut self.exact,
-            Overlay::Envelope => &mut self.envelope,
-        };
-        *place = !*place;
     }
 }
 

@@ -3,11 +3,12 @@
 use super::measured::Points;
 use super::scale::Scale;
 use crate::explorer::branches::{Branch, branches};
+use crate::explorer::fitting::Distances;
+use crate::explorer::maps::MapData;
 use crate::explorer::model::is_on_curve;
 use crate::explorer::pins::{Pin, name_among};
 use crate::explorer::profile::Inside;
-use crate::explorer::reach::study_range;
-use crate::explorer::studies::StudyData;
+use crate::explorer::studies::{StudyData, study_range};
 use crate::explorer::{Axes, CurveData, Model, Node, Overlays, View, device};
 use pulloff_engine::fit::run::Residual;
 use pulloff_engine::measured::Abscissa;
@@ -57,11 +58,11 @@ impl<'a> Subject<'a> {
             inside: model.shown_profile(),
             device: device::line(model),
             path: model.path(),
-            cycle: model.cycle.as_ref().and_then(|cycle| cycle.report()),
-            map: model.map.as_ref().map(|map| map.report()),
+            cycle: model.cycle().and_then(|cycle| cycle.report()),
+            map: model.results.found::<MapData>().map(MapData::report),
             event: model.log().entries.get(model.event).and_then(|entry| entry.number),
             measured: Points::of(&model.preset).and_then(Result::ok),
-            distances: model.distances.as_ref().map(|distances| &distances.found),
+            distances: model.results.found::<Distances>().map(|distances| &distances.found),
             study: study(model),
             pins: model.pins.all(),
             preset: &model.preset,
@@ -123,7 +124,7 @@ fn study(model: &Model) -> Option<Result<&StudyData, String>> {
         Err(why) => Some(Err(why)),
         Ok((key, _)) => {
             let is_it = |study: &&StudyData| study.wish.key == key && study.wish.column == model.studied;
-            model.study.as_deref().filter(is_it).map(Ok)
+            model.results.found::<StudyData>().filter(is_it).map(Ok)
         }
     }
 }

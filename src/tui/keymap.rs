@@ -1,11 +1,12 @@
-//! Command id → keys: those of the table below, or the person's own.
+//! Command id → keys: those of the table of commands, or the person's own.
 //!
 //! Never Ctrl-S or Ctrl-Q (flow control) or Ctrl-Z (suspend); by default never a function or Alt key as the only way.
 //! A command without a key is reached through the command line.
 
 use crate::config::{Config, ConfigError, Mistake};
 use crate::explorer::Id;
-use crate::explorer::command::{ROWS, row_of, spelled};
+use crate::explorer::command::spelled;
+use crate::explorer::table::{ROWS, Row};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use pulloff_engine::text::quote;
 
@@ -114,74 +115,8 @@ fn single(text: &str) -> Option<char> {
 }
 
 /// The keys a command has unless the person says otherwise, the one shown in the footer first.
-fn usual(id: Id) -> &'static [Key] {
-    use Key::{Char, Ctrl, Named};
-    match id {
-        Id::Step => &[Char(' ')],
-        Id::Run => &[Char('r')],
-        Id::Slower => &[Char('(')],
-        Id::Faster => &[Char(')')],
-        Id::NextEvent => &[Char('n')],
-        Id::Jump => &[Char('x')],
-        Id::LargestPull => &[Char('L')],
-        Id::Reverse => &[Char('b')],
-        Id::Halve => &[Char('[')],
-        Id::Double => &[Char(']')],
-        // Typed, since each takes a value.
-        Id::Assign
-        | Id::StepLength
-        | Id::SelectEvent
-        | Id::MoveTo
-        | Id::Data
-        | Id::Study
-        | Id::ChooseView
-        | Id::Map => &[],
-        Id::Undo => &[Char('u')],
-        Id::Redo => &[Ctrl('r')],
-        Id::Branches => &[Char('B')],
-        Id::Restart => &[Named(KeyCode::Home)],
-        Id::Control => &[Char('c')],
-        Id::Less => &[Char('<')],
-        Id::More => &[Char('>')],
-        Id::FineLess => &[Char(',')],
-        Id::FineMore => &[Char('.')],
-        Id::MuchLess => &[Char('{')],
-        Id::MuchMore => &[Char('}')],
-        Id::Free => &[Char('*')],
-        Id::Fit => &[Char('F')],
-        Id::Edit => &[Named(KeyCode::Enter), Char('=')],
-        Id::Up => &[Named(KeyCode::Up), Char('k')],
-        Id::Down => &[Named(KeyCode::Down), Char('j')],
-        Id::Left => &[Named(KeyCode::Left), Char('h')],
-        Id::Right => &[Named(KeyCode::Right), Char('l')],
-        Id::NextPanel => &[Named(KeyCode::Tab)],
-        Id::PreviousPanel => &[Named(KeyCode::BackTab)],
-        Id::Enlarge => &[Char('z')],
-        Id::NextView => &[Char('t')],
-        Id::PreviousView => &[Char('T')],
-        Id::Go => &[Char('g')],
-        Id::ZoomIn => &[Char('+')],
-        Id::ZoomOut => &[Char('-')],
-        Id::Whole => &[Char('f')],
-        Id::CrossHair => &[Char('i')],
-        Id::Axes => &[Char('a')],
-        Id::Device => &[Char('K')],
-        Id::Overlays => &[Char('y')],
-        Id::Pin => &[Char('p')],
-        Id::Rings => &[Char('#')],
-        Id::Pins => &[Char('P')],
-        Id::Open => &[Char('o')],
-        Id::Save => &[Char('s')],
-        Id::SaveAs => &[Char('S')],
-        Id::Export => &[Char('e')],
-        Id::CommandLine => &[Char(':')],
-        Id::Copy => &[Char('Y')],
-        Id::Mouse => &[Char('m')],
-        Id::About => &[Char('I')],
-        Id::Help => &[Char('?')],
-        Id::Cancel => &[Named(KeyCode::Esc)],
-        Id::Quit => &[Char('q'), Ctrl('c')],
-    }
+fn usual(row: &Row) -> Vec<Key> {
+    row.keys.split_whitespace().filter_map(|label| Key::parse(label).ok()).collect()
 }
 
 /// The keys of every command.
@@ -190,7 +125,7 @@ pub struct Keymap(Vec<(Id, Vec<Key>)>);
 
 impl Default for Keymap {
     fn default() -> Self {
-        Self(ROWS.iter().map(|row| (row.id, usual(row.id).to_vec())).collect())
+        Self(ROWS.iter().map(|row| (row.id, usual(row))).collect())
     }
 }
 
@@ -235,7 +170,7 @@ impl Keymap {
             .filter_map(|(i, (second, key))| {
                 let (first, _) = all[..i].iter().find(|(_, other)| other == key)?;
                 let (first, second) = if line(*second).is_some() { (first, second) } else { (second, first) };
-                let (a, b) = (row_of(*second).name, row_of(*first).name);
+                let (a, b) = (second.name(), first.name());
                 let what = if first == second {
                     format!("{} stands twice for {a}", key.label())
                 } else {
@@ -280,7 +215,7 @@ impl Keymap {
     /// How a command without a key is typed.
     fn typed(&self, id: Id) -> String {
         let line = self.keys(Id::CommandLine).first().map_or_else(String::new, |key| key.label());
-        format!("{line}{}", row_of(id).name)
+        format!("{line}{}", id.name())
     }
 
     /// The keys of a command as text.
@@ -322,10 +257,11 @@ mod tests {
     fn every_command_has_a_key_of_its_own_and_none_is_flow_control() {
         let mut seen = HashSet::new();
         for row in ROWS {
-            assert!(row.argument.is_some() || !usual(row.id).is_empty(), "{}", row.name);
-            for key in usual(row.id) {
+            assert!(!row.takes.what.is_empty() || !row.keys.is_empty(), "{}", row.name);
+            for label in row.keys.split_whitespace() {
+                let key = Key::parse(label).unwrap();
                 assert!(seen.insert(key.label()), "{} twice", key.label());
-                assert_eq!(Key::parse(&key.label()), Ok(*key));
+                assert_eq!(key.label(), label);
                 assert!(!matches!(key, Key::Char('G' | '/' | '0'..='9')), "reserved");
             }
         }

@@ -1,8 +1,7 @@
 //! What takes so long that it is told of: telling of everything would make two frames more of every step.
 
 use super::app::App;
-use crate::explorer::background_jobs::BackgroundJob;
-use std::mem::discriminant;
+use crate::explorer::backgrounds::under_way;
 use std::time::{Duration, Instant};
 
 /// Shorter jobs are not shown.
@@ -11,7 +10,7 @@ const SHORT: Duration = Duration::from_millis(100);
 /// The background job under way, and since when.
 #[derive(Debug, Default)]
 pub(super) struct SlowNotice {
-    since: Option<(BackgroundJob, Instant)>,
+    since: Option<(&'static str, Instant)>,
     is_told: bool,
 }
 
@@ -19,15 +18,17 @@ impl SlowNotice {
     /// Updates the notice in `app`; whether it changed.
     pub(super) fn look(&mut self, app: &mut App) -> bool {
         let now = Instant::now();
-        let begun = |beside: BackgroundJob| {
-            let same = self.since.filter(|(last, _)| discriminant(last) == discriminant(&beside));
-            (beside, same.map_or(now, |(_, begun)| begun))
+        let under_way = under_way(&app.model);
+        let begun = |name: &'static str| {
+            let same = self.since.filter(|(last, _)| *last == name);
+            (name, same.map_or(now, |(_, begun)| begun))
         };
-        self.since = BackgroundJob::of(&app.model).map(begun);
-        let late = self.since.filter(|(_, begun)| now.duration_since(*begun) >= SHORT);
-        let late = late.map(|(beside, _)| beside);
-        self.is_told = late.is_some();
-        std::mem::replace(&mut app.late, late) != late
+        self.since = under_way.as_ref().map(|(name, _)| begun(name));
+        self.is_told = self.since.is_some_and(|(_, begun)| now.duration_since(begun) >= SHORT);
+        let late = under_way.filter(|_| self.is_told).map(|(_, says)| says);
+        let is_changed = app.late != late;
+        app.late = late;
+        is_changed
     }
 
     /// When to look again if nothing happens before.
@@ -55,11 +56,12 @@ mod tests {
             assert!(app.late.is_none() && late.due().is_some());
             std::thread::sleep(Duration::from_millis(5));
         }
-        assert_eq!((app.late, late.due()), (Some(BackgroundJob::Pins(2)), None));
+        let says = |app: &App, text: &str| app.late.as_ref().is_some_and(|late| late.contains(text));
+        assert!(says(&app, "computing 2 pinned curves") && late.due().is_none());
         // The next of the same kind is late as well.
         app.model.pins.came(1, None);
         assert!(late.look(&mut app));
-        assert_eq!(app.late, Some(BackgroundJob::Pins(1)));
+        assert!(says(&app, "computing a pinned curve"));
         app.model.pins.came(2, None);
         assert!(late.look(&mut app) && app.late.is_none());
     }

@@ -145,12 +145,14 @@ fn the_line_of_the_device_has_its_slope_and_ends_at_the_landing() {
     let mut session = Session::new("wavy-sphere");
     session.does(pulloff::explorer::Command::Steps(3));
     assert_eq!(line(&session.model), None);
-    session.does(Id::Device);
+    session.does(pulloff::explorer::Command::Overlay(pulloff::explorer::Overlay::Device));
     let [from, to] = line(&session.model).unwrap();
     assert!((from.0 - to.0).abs() <= f64::EPSILON && from.1 < to.1);
-    session.does(Id::Device).set("path.control", "force");
+    session
+        .does(pulloff::explorer::Command::Overlay(pulloff::explorer::Overlay::Device))
+        .set("path.control", "force");
     assert_eq!(line(&session.model), None);
-    session.does(Id::Device);
+    session.does(pulloff::explorer::Command::Overlay(pulloff::explorer::Overlay::Device));
     let [from, to] = line(&session.model).unwrap();
     assert!(from.0 < to.0 && (from.1 - to.1).abs() <= f64::EPSILON);
 
@@ -176,7 +178,7 @@ fn the_line_of_the_device_has_its_slope_and_ends_at_the_landing() {
     assert!((ends[0].0 - event.before.as_ref().unwrap().approach).abs() < 1e-9);
     assert!((ends[1].0 - event.after.as_ref().unwrap().approach).abs() < 1e-9);
     assert!((ends[1].1 - event.after.as_ref().unwrap().force).abs() < 1e-9);
-    session.does(Id::Device);
+    session.does(pulloff::explorer::Command::Overlay(pulloff::explorer::Overlay::Device));
     assert_eq!(line(&session.model), None);
 }
 

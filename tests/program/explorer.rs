@@ -385,7 +385,7 @@ fn a_walker_that_was_stable_stays_so_when_a_value_changes() {
 fn the_least_force_is_one_key_away_under_every_control() {
     for control in ["displacement", "force"] {
         let mut session = Session::new("wavy-sphere");
-        session.set("path.control", control).does(Id::LargestPull);
+        session.set("path.control", control).does(Id::MoveTo);
         let model = &session.model;
         let least = model
             .curve
@@ -404,7 +404,7 @@ fn the_least_force_is_one_key_away_under_every_control() {
         assert!((force - least).abs() < 1e-9 * least.abs(), "{control}: {force} {least}");
         assert_eq!(node.is_limit(node.control), control == "force", "{}", session.status());
         // It is a place like any other: the script says it.
-        let place = if control == "force" { "select-event" } else { "move-to" };
+        let place = if control == "force" { "move-to event" } else { "move-to" };
         assert!(model.script().unwrap().last().unwrap().starts_with(place), "{:?}", model.script());
         session.does(Id::Undo);
         let node = session.model.history.current().unwrap();
@@ -527,8 +527,9 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
     let effects = answer(&mut session.model, curve);
     // The curve is on the screen first.
     assert!(!session.model.curve.as_ref().unwrap().is_checked() && !session.model.is_computing());
-    let (check, walk): (Vec<_>, Vec<_>) =
-        effects.into_iter().partition(|effect| matches!(effect, Effect::Check(_)));
+    let (check, walk): (Vec<_>, Vec<_>) = effects
+        .into_iter()
+        .partition(|effect| matches!(effect, Effect::Compute(task) if task.name == "check"));
     session.driver.settle(&mut session.model, walk);
     assert!(!session.model.curve.as_ref().unwrap().is_checked());
     // A curve that is wanted meanwhile makes the answer void, and giving it up has it asked again.
@@ -537,7 +538,10 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
     answer(&mut session.model, late);
     assert!(!session.model.curve.as_ref().unwrap().is_checked());
     let effects = update(&mut session.model, Id::Cancel.into());
-    assert!(effects.iter().any(|effect| matches!(effect, Effect::Check(_))), "{effects:?}");
+    assert!(
+        effects.iter().any(|effect| matches!(effect, Effect::Compute(task) if task.name == "check")),
+        "{effects:?}"
+    );
     session.driver.settle(&mut session.model, effects);
     session.does(Id::Undo);
 
@@ -607,7 +611,7 @@ fn pins_and_views_go_on_in_another_preset() {
 fn the_inside_of_a_state_is_computed_only_where_a_view_shows_it_and_follows_the_walker() {
     let mut session = Session::new("wavy-sphere");
     session.does(Id::Step);
-    assert!(session.model.profile.is_none());
+    assert!(session.model.shown_profile().is_none());
     session.does(Command::Go(Home::Inside));
     assert_eq!(session.model.view, View::Gap);
     let shown = |session: &Session| session.model.shown_profile().unwrap().profile.contact_radius.to_bits();
@@ -615,14 +619,14 @@ fn the_inside_of_a_state_is_computed_only_where_a_view_shows_it_and_follows_the_
     session.does(Command::Steps(3));
     assert_eq!(shown(&session), session.radius().to_bits());
     // Asked for once: nothing has changed.
-    assert!(update(&mut session.model, Id::Reverse.into()).len() == 1);
+    let [asked] = update(&mut session.model, Id::Reverse.into()).try_into().unwrap();
     assert!(update(&mut session.model, Id::Axes.into()).is_empty());
     // Late answers of older states do not replace newer ones.
-    let newest = session.model.profile.clone().unwrap();
+    let newest = session.driver.run(asked).unwrap();
+    assert!(matches!(newest, Reply::Found(_)));
     session.all(&[Id::Undo, Id::Undo]);
     let back = shown(&session);
-    assert_ne!(back, newest.profile.contact_radius.to_bits());
-    answer(&mut session.model, Reply::Profile(newest));
+    answer(&mut session.model, newest);
     assert_eq!(shown(&session), back);
 }
 

@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 use crate::support::session::Session;
-use pulloff::explorer::maps::MapAxes;
+use pulloff::explorer::map_axes::MapAxes;
+use pulloff::explorer::maps::MapData;
+use pulloff::explorer::onset::SnapsFrom;
 use pulloff::explorer::session::{Document, Ended, Snapshot};
 use pulloff::explorer::{Command, Id, Panel, View};
 use pulloff::figure::{Figure, Role, Sign, Subject};
@@ -25,7 +27,7 @@ fn the_limit_points_over_the_amplitude_carry_the_events_and_the_selected_one_is_
     let mut session = Session::new("wavy-sphere");
     session.does(Id::Map);
     assert_eq!(session.model.view, View::Map);
-    let report = session.model.map.clone().unwrap();
+    let report = session.model.results.share::<MapData>().unwrap();
     let report = report.report().unwrap();
     assert_eq!((&*report.x.key, &*report.y.key), ("gap.amplitude", "control"));
     let shown = figure(&session);
@@ -64,7 +66,7 @@ fn pressed_again_it_is_the_map_of_the_number_and_the_adhesion_and_any_axes_can_b
     session.all(&[Id::Map, Id::Map]);
     let axes = session.model.map_axes.clone().unwrap();
     assert_eq!((&*axes.x, &*axes.y), ("gap.amplitude", "groups.adhesion"));
-    assert!(session.model.map.as_ref().unwrap().report().unwrap().counts.is_some());
+    assert!(session.model.results.found::<MapData>().unwrap().report().unwrap().counts.is_some());
     session.does(map("compliance", Some("gap.amplitude")));
     let shown = figure(&session);
     // Under displacement control the preset stands at the beginning of the compliance.
@@ -80,7 +82,7 @@ fn pressed_again_it_is_the_map_of_the_number_and_the_adhesion_and_any_axes_can_b
     assert!(session.status().contains("two keys"), "{}", session.status());
     // What is no number of this preset has a reason in place of a picture.
     session.does(map("gap.rms", None));
-    assert!(session.model.map.as_ref().unwrap().report().is_err());
+    assert!(session.model.results.found::<MapData>().unwrap().report().is_err());
     assert!(figure(&session).missing.is_some());
 }
 
@@ -89,9 +91,9 @@ fn where_snaps_begin_follows_the_device_and_is_not_sought_again_for_another_ampl
     let mut session = Session::new("wavy-sphere");
     let first = session.model.snaps_from().unwrap();
     assert!((first - 1.2152e-3).abs() < 1e-6, "{first}");
-    let known = session.model.snaps_from.clone().unwrap();
+    let known = session.model.results.share::<SnapsFrom>().unwrap();
     session.set("gap.amplitude", "0.001");
-    assert!(std::sync::Arc::ptr_eq(&known, session.model.snaps_from.as_ref().unwrap()));
+    assert!(std::sync::Arc::ptr_eq(&known, &session.model.results.share::<SnapsFrom>().unwrap()));
     assert_eq!(session.model.snaps_from(), Some(first));
     session.set("path.control", "force");
     let dead = session.model.snaps_from().unwrap();

@@ -60,25 +60,17 @@ impl Late {
             match effect {
                 // The newest curve wins.
                 Effect::Curve(_) => {
-                    self.pending.retain(|old| !matches!(old, Effect::Curve(_) | Effect::Check(_)));
+                    self.pending.retain(|old| !matches!(old, Effect::Curve(_) | Effect::Compute(_)))
                 }
-                Effect::Check(_) => self.pending.retain(|old| !matches!(old, Effect::Check(_))),
                 Effect::StopWalk(_) => self.cut(rng),
-                Effect::Walk(_)
-                | Effect::Profile(_)
-                | Effect::File(_)
-                | Effect::StopCurve(_)
-                | Effect::StopPins
-                | Effect::Fit(_)
-                | Effect::StopFit(_)
-                | Effect::Pin(..) => {}
-                // Nothing that is walked depends on it.
-                Effect::Loop(_)
-                | Effect::Map(_)
-                | Effect::Distances(_)
-                | Effect::Study(_)
-                | Effect::StopStudy(_)
-                | Effect::Pace(_) => continue,
+                Effect::Walk(_) | Effect::File(_) | Effect::StopCurve(_) => {}
+                // Only what is known of the curve concerns the walk.
+                Effect::Compute(ref task) if ["check", "profile", "pins"].contains(&task.name) => {
+                    let is_older =
+                        |old: &Effect| matches!(old, Effect::Compute(waits) if waits.name == task.name);
+                    self.pending.retain(|old| !is_older(old));
+                }
+                Effect::Compute(_) | Effect::Stop { .. } | Effect::Pace(_) => continue,
             }
             self.pending.push_back(effect);
         }

@@ -52,8 +52,8 @@ impl Scripts {
 #[test]
 fn a_script_walks_and_exports_and_its_session_walks_again() {
     let home = Scripts::new();
-    let script = "# the first instability\nopen wavy-sphere gap.amplitude=0.003\nstep 3\nrun-to instability\njump\n\
-                  set gap.amplitude=0.0025\ncontrol force\nselect-event 2\nundo\nnext-event\n\
+    let script = "# the first instability\nopen wavy-sphere gap.amplitude=0.003\nstep 3\nrun\njump\n\
+                  set gap.amplitude=0.0025\ncontrol force\nmove-to event 2\nundo\nnext-event\n\
                   export walk walk.csv\nexport script again.pulloff\npin\npins all\nexport curve curve.json\n";
     home.quiet(script, &[]);
     let walk = fs::read(home.at("here/walk.csv")).unwrap();
@@ -90,7 +90,7 @@ fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
     home.quiet("next-event\nnext-event\ntry jump\ntry open none\nquit\nundo\nundo\nundo\nundo", &preset);
     for (script, said) in [
         ("set gap.amplitude=-1", "1: set gap.amplitude=-1: gap.amplitude = -1.0 is out of range"),
-        ("select-event 9", "there is no event 9: the path has"),
+        ("move-to event 9", "there is no event 9: the path has"),
         ("open wavy", "no preset is called \"wavy\""),
         ("set gap.shape=profile gap.file=none.csv", "none.csv"),
     ] {

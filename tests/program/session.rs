@@ -69,7 +69,11 @@ fn story() -> Vec<Command> {
     story.extend([Id::NextEvent, Id::Jump, Id::More, Id::More, Id::Step, Id::Undo, Id::Undo].map(Into::into));
     story.extend([Id::Step, Id::Redo, Id::Undo, Id::Undo, Id::Undo, Id::Redo].map(Into::into));
     story.extend([Command::Overlay(Overlay::Exact), Id::Axes.into(), Id::Restart.into(), Id::Double.into()]);
-    story.extend([Command::Steps(2), Id::NextPanel.into(), Id::Device.into()]);
+    story.extend([
+        Command::Steps(2),
+        Id::NextPanel.into(),
+        Command::Overlay(pulloff::explorer::Overlay::Device),
+    ]);
     story
 }
 

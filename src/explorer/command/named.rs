@@ -3,7 +3,7 @@
 //! A sentence holds the command itself ([`Id::named`]). Who shows it knows what the command is called there: the terminal
 //! its key, a script its name.
 
-use super::table::{Id, ROWS, row_of};
+use super::Id;
 
 /// Encloses the name of a command. No text from outside holds it: it is a control character, and those are replaced.
 const MARK: char = '\u{1}';
@@ -11,7 +11,7 @@ const MARK: char = '\u{1}';
 impl Id {
     /// This command within a sentence.
     pub fn named(self) -> String {
-        format!("{MARK}{}{MARK}", row_of(self).name)
+        format!("{MARK}{}{MARK}", self.name())
     }
 }
 
@@ -21,8 +21,8 @@ pub fn spelled(sentence: &str, called: impl Fn(Id) -> String) -> String {
     let mut text = parts.next().unwrap_or_default().to_owned();
     // A name and what follows it, in turn.
     while let Some(name) = parts.next() {
-        match ROWS.iter().find(|row| row.name == name) {
-            Some(row) => text.push_str(&called(row.id)),
+        match Id::called(name) {
+            Some(id) => text.push_str(&called(id)),
             None => text.push_str(name),
         }
         text.push_str(parts.next().unwrap_or_default());
@@ -32,7 +32,7 @@ pub fn spelled(sentence: &str, called: impl Fn(Id) -> String) -> String {
 
 /// A sentence with the names of its commands, for where there are no keys.
 pub fn by_name(sentence: &str) -> String {
-    spelled(sentence, |id| row_of(id).name.to_owned())
+    spelled(sentence, |id| id.name().to_owned())
 }
 
 #[cfg(test)]

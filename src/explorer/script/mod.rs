@@ -1,6 +1,6 @@
 //! Commands as text: scripts, the line typed on the screen, and the journal share one grammar.
 //!
-//! A line is a command's name from the [table](super::command::ROWS) and what it takes, in words divided by spaces.
+//! A line is a command's name from the [table](super::table::ROWS) and what it takes, in words divided by spaces.
 //! A word with spaces, quotes or nothing in it stands in double quotes, in which `\"` and `\\` mean a quote and a backslash;
 //! a quote may begin inside a word (`gap.wavelength="3 um"`). A word that begins with `#` begins a comment.
 //!
@@ -10,11 +10,10 @@
 //! | `set KEY=VALUE ...` | other values, as one change; a bare number is SI in an SI preset |
 //! | `control displacement`, `force`, `stiffness=K`, or nothing | what is controlled, or the next of them |
 //! | `step [N]`, `step-length X`, `halve-step`, `double-step`, `reverse` | steps, their length, their way |
-//! | `next-event`, `run-to instability` | to the next limit point of the control |
-//! | `run [N]`, `previous-limit`, `jump`, `restart` | as the keys of these names |
+//! | `next-event`, `run [N]`, `jump`, `restart` | as the keys of these names |
 //! | `undo [N]`, `redo [N]` | so many commands taken back, done again |
 //! | `undo N states`, `redo N states` | so many single states along the walk, with their values |
-//! | `select-event N` | to the event of this number in the list |
+//! | `move-to A`, `move-to event N`, `move-to S` | to the largest pull, an event of the path, a contact radius |
 //! | `events`, `pin`, `pins N`, `pins all` | whose events are listed; curves kept and taken away |
 //! | `export WHAT FILE [replace]` | writes `curve`, `walk`, `events`, `script` or `study` |
 //! | `export figure FILE [VIEW] [replace]`, `export screen FILE [replace]` | draws a view, the screen |
@@ -27,6 +26,8 @@
 //! | file | what lives there |
 //! |---|---|
 //! | `lexer` | a line → words with their columns, and the quoting |
+//! | [`arguments`] | what commands take, and how it is read |
+//! | [`offers`] | what can be typed there |
 //! | `parse` | words → a command |
 //! | `read` | the lines of a whole script |
 //! | `print` | a command → its line |
@@ -35,9 +36,11 @@
 //! | [`mod@play`] | a script run on a model, without a terminal |
 //! | `permissions` | where a script may write |
 
+pub mod arguments;
 mod complete;
 mod fault;
 mod lexer;
+pub mod offers;
 mod parse;
 mod permissions;
 pub mod play;

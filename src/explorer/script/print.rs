@@ -1,19 +1,18 @@
 //! A command → its line.
 
 use super::lexer::quoted;
-use crate::explorer::command::{Assignment, Command, row_of};
+use crate::explorer::command::{Assignment, Command};
 use crate::explorer::export::Picture;
-use crate::explorer::view::Overlay;
 
 /// The line that reads back as this command; `None` for commands that need a screen.
 pub fn line(command: &Command) -> Option<String> {
-    let name = row_of(command.id()).name;
+    let name = command.id().name();
     let rest = match command {
         Command::Plain(_) => String::new(),
-        Command::Steps(count)
-        | Command::RunOf(count)
-        | Command::SelectEvent(count)
-        | Command::Travel { count, states: false, .. } => format!(" {count}"),
+        Command::Steps(count) | Command::RunOf(count) | Command::Travel { count, states: false, .. } => {
+            format!(" {count}")
+        }
+        Command::SelectEvent(number) => format!(" event {number}"),
         Command::StepLength(length) | Command::MoveTo(length) => format!(" {length:?}"),
         Command::Travel { count, states: true, .. } => format!(" {count} states"),
         Command::GoToState([approach, force, radius]) => format!(" {approach:?} {force:?} {radius:?}"),
@@ -24,7 +23,7 @@ pub fn line(command: &Command) -> Option<String> {
         Command::Go(home) => format!(" {}", home.name()),
         Command::Show(view) => format!(" {}", view.name()),
         Command::Study(column) => format!(" {}", column.name()),
-        Command::Overlay(overlay) => format!(" {}", overlay_name(*overlay)),
+        Command::Overlay(overlay) => format!(" {}", overlay.name()),
         Command::Unpin(None) => " all".to_owned(),
         Command::Unpin(Some(number)) => format!(" {number}"),
         Command::Open(name) => format!(" {}", quoted(name)?),
@@ -58,14 +57,6 @@ pub fn line(command: &Command) -> Option<String> {
 
 fn replacing(replace: bool) -> &'static str {
     if replace { " replace" } else { "" }
-}
-
-pub(super) fn overlay_name(overlay: Overlay) -> &'static str {
-    match overlay {
-        Overlay::Smooth => "smooth",
-        Overlay::Exact => "exact",
-        Overlay::Envelope => "envelope",
-    }
 }
 
 /// ` KEY=VALUE` for each.

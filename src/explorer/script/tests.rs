@@ -1,14 +1,13 @@
 use super::*;
-use crate::explorer::command::{Command, Id, MOST_STEPS, ROWS, row_of};
+use crate::explorer::command::{Command, Id, MOST_STEPS};
 use crate::explorer::export::ExportKind;
+use crate::explorer::table::ROWS;
 use crate::explorer::view::Overlay;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 fn plain() -> impl Strategy<Value = Command> {
-    // These mean nothing without what they take.
-    let needy = |id: &Id| matches!(id, Id::Assign | Id::StepLength | Id::SelectEvent | Id::MoveTo);
-    let ids: Vec<Id> = ROWS.iter().map(|row| row.id).filter(|id| !needy(id)).collect();
+    let ids: Vec<Id> = ROWS.iter().filter(|row| !row.takes.is_needed).map(|row| row.id).collect();
     proptest::sample::select(ids).prop_map(Command::from)
 }
 
@@ -83,7 +82,7 @@ fn fault(text: &str) -> String {
 
 #[test]
 fn a_script_is_read_with_comments_quotes_and_synonyms() {
-    let text = "# a comment\n\n  step 20  # so many\nrun-to instability\ncontrol force\n\
+    let text = "# a comment\n\n  step 20  # so many\nrun\ncontrol force\n\
         try set gap.wavelength=\"3 um\" title=\"a \\\"b\\\" # c\"\nexport curve \"out file.csv\"\r\nsave-as x replace";
     let lines = read("t", text).unwrap();
     let commands: Vec<(usize, Command)> =
@@ -124,7 +123,6 @@ fn a_fault_names_line_column_word_and_what_is_allowed() {
         ("help", "t:1:1: help only changes what a screen shows"),
         ("more", "t:1:1: more needs a selection on the screen; a script says set KEY=VALUE"),
         ("try", "t:1:1: try stands before a command"),
-        ("run-to pull-off", "t:1:8: no such end of a run is called \"pull-off\": it is instability, limit"),
         ("step \u{1b}[2J", "t:1:6: a control or invisible character"),
     ] {
         let said = fault(text);
@@ -137,11 +135,8 @@ fn a_fault_names_line_column_word_and_what_is_allowed() {
 
 #[test]
 fn every_command_of_the_table_is_for_scripts_or_says_why_not() {
-    let refused: Vec<&str> = ROWS
-        .iter()
-        .filter(|row| for_script(&row.id.into()).is_err())
-        .map(|row| row_of(row.id).name)
-        .collect();
+    let refused: Vec<&str> =
+        ROWS.iter().filter(|row| for_script(&row.id.into()).is_err()).map(|row| row.name).collect();
     assert!(refused.contains(&"cross-hair") && !refused.contains(&"step") && !refused.contains(&"pin"));
     for row in ROWS {
         assert!(read("t", row.name).is_ok() || !fault(row.name).is_empty());

@@ -1,10 +1,11 @@
 //! What is kept of a model, and the model of it.
 
+use crate::explorer::backgrounds::want_all;
 use crate::explorer::command::{FIRST_LENGTH, LENGTHS};
 use crate::explorer::effect::Effect;
 use crate::explorer::history::History;
 use crate::explorer::journal::{Journal, Kept};
-use crate::explorer::maps::MapAxes;
+use crate::explorer::map_axes::MapAxes;
 use crate::explorer::model::Model;
 use crate::explorer::pins::Pins;
 use crate::explorer::requests::want_curve;
@@ -156,9 +157,8 @@ impl Snapshot {
             model.follow(before);
         }
         let mut effects = vec![want_curve(&mut model)];
-        effects
-            .extend(self.pins.iter().map(|(number, preset)| Effect::Pin(*number, Box::new(preset.clone()))));
         model.pins = Pins::awaiting(self.pins);
+        effects.extend(want_all(&mut model));
         (model, effects)
     }
 }

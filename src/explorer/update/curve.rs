@@ -4,7 +4,7 @@ use super::walk::{begin_walk, walk};
 use crate::explorer::command::Id;
 use crate::explorer::curve::CurveData;
 use crate::explorer::effect::Effect;
-use crate::explorer::model::{Checking, CurveError, Level, Model};
+use crate::explorer::model::{CurveError, Level, Model};
 use crate::explorer::node::NodeKind;
 use crate::explorer::status_line::of_before;
 use crate::explorer::walk::Action;
@@ -85,11 +85,4 @@ pub(super) fn solve_again(model: &mut Model) -> Option<Vec<Effect>> {
     let node = model.history.current().filter(|node| !model.is_on_curve(node) && !node.is_apart())?;
     let again = Action::solve(node);
     Some(walk(model, again))
-}
-
-/// The admissibility of the curve on the screen is known.
-pub(super) fn checked(model: &mut Model, id: u64, curve: Arc<CurveData>) {
-    if model.checking == Some(Checking::Asked(id)) {
-        model.curve = Some(curve);
-    }
 }

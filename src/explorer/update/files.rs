@@ -10,6 +10,7 @@ use crate::explorer::journal::Beginning;
 use crate::explorer::look;
 use crate::explorer::model::{Level, Model, Question};
 use crate::explorer::requests::{change, file, want_curve};
+use crate::explorer::studies::StudyData;
 use crate::explorer::undo::Place;
 use crate::print::Format;
 use crate::store::{Overwrite, Source};
@@ -18,7 +19,7 @@ use pulloff_engine::preset::Preset;
 use std::path::Path;
 use std::sync::Arc;
 
-pub(super) fn save_back(model: &mut Model) -> Vec<Effect> {
+pub(in crate::explorer) fn save_back(model: &mut Model) -> Vec<Effect> {
     let why = match model.source {
         Source::Shipped(_) => Some("shipped presets are read-only"),
         Source::Piped { .. } => Some("the preset came through a pipe and has no file"),
@@ -54,7 +55,8 @@ pub(super) fn export(model: &mut Model, what: ExportKind, path: String, replace:
         }
         ExportKind::Events => Content::Events(curve, model.path_events().to_vec()),
         ExportKind::Study => {
-            let study = model.study.clone().filter(|study| study.done() == study.outcomes.len());
+            let study =
+                model.results.share::<StudyData>().filter(|study| study.done() == study.outcomes.len());
             let Some(study) = study else {
                 let text = format!("there is no study to export: {} makes one", Id::Study.named());
                 model.tell(Level::Error, text);

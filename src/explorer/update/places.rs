@@ -35,10 +35,10 @@ pub(super) fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
 }
 
 /// The walker goes to A, the largest pull of the path.
-pub(super) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
+pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
     let Some(curve) = &model.curve else { return Vec::new() };
     let Some(path) = model.path() else {
-        let why = match (&curve.unloading, model.cycle.as_ref().map(|cycle| &cycle.report)) {
+        let why = match (&curve.unloading, model.cycle().map(|cycle| &cycle.report)) {
             (_, Some(Err(why))) if model.preset.path.begin == Begin::Touch => why.to_string(),
             (Err(why), _) => why.clone(),
             _ => "it is being computed".to_owned(),

@@ -2,7 +2,7 @@
 
 use super::curve::solve_again;
 use super::walk::abandon;
-use crate::explorer::availability::why_unavailable;
+use crate::explorer::availability::{redo, undo};
 use crate::explorer::command::{Command, Id};
 use crate::explorer::effect::Effect;
 use crate::explorer::look::carry_on;
@@ -16,7 +16,7 @@ use std::mem;
 use std::sync::Arc;
 
 /// So many commands taken back or done again, as far as there are any.
-pub(super) fn travel(model: &mut Model, id: Id, count: usize) -> Vec<Effect> {
+pub(in crate::explorer) fn travel(model: &mut Model, id: Id, count: usize) -> Vec<Effect> {
     let mut effects = Vec::new();
     for _ in 0..count {
         match once(model, id == Id::Undo) {
@@ -125,7 +125,8 @@ pub(super) fn by_states(model: &mut Model, id: Id, count: usize) -> Vec<Effect> 
         model.history.redo_target().is_some()
     };
     if !is_there {
-        model.tell(Level::Error, why_unavailable(model, id));
+        let needs = if id == Id::Undo { undo } else { redo };
+        model.tell(Level::Error, needs(model).err().unwrap_or_default());
     }
     for _ in 0..count {
         if id == Id::Undo && model.is_ahead() {

@@ -1,75 +1,26 @@
 //! Which commands wait for which, and which of them undo can take back.
 
-use crate::explorer::availability::{is_available, why_unavailable};
 use crate::explorer::command::{Command, Id};
 use crate::explorer::effect::Effect;
 use crate::explorer::job::Job;
 use crate::explorer::model::{Awaits, Level, Model};
+use crate::explorer::table::{Waits, is_available, row_of, why_unavailable};
 use pulloff_engine::preset::Key;
 
 /// Commands that may wait; more key presses than these are a held key.
 const QUEUE: usize = 1000;
 
 /// What a command waits for.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Turn {
-    /// Nothing: it concerns only what is looked at.
-    None,
-    /// Only for those before it, and the walk they began.
-    InOrder,
-    /// For the newest curve too, and the walker's state on it.
-    Curve,
-}
-
-impl Turn {
-    pub(super) fn of(command: &Command) -> Self {
-        let is_control = |key: &str| key == "path.control";
-        match command {
-            Command::Plain(
-                Id::Step
-                | Id::Run
-                | Id::NextEvent
-                | Id::Jump
-                | Id::Restart
-                | Id::MoveTo
-                | Id::LargestPull
-                | Id::SelectEvent
-                | Id::Control
-                | Id::Pin,
-            )
-            | Command::Steps(_)
-            | Command::RunOf(_)
-            | Command::MoveTo(_)
-            | Command::SelectEvent(_) => Self::Curve,
-            // Another control holds the force or approach that the values before it led to.
-            Command::Set { key, .. } | Command::Turn { key, .. } if is_control(key) => Self::Curve,
-            Command::Assign(all) if all.iter().any(|(key, _)| is_control(key)) => Self::Curve,
-            Command::Plain(
-                Id::Reverse
-                | Id::Halve
-                | Id::Double
-                | Id::Undo
-                | Id::Redo
-                | Id::FineLess
-                | Id::FineMore
-                | Id::Less
-                | Id::More
-                | Id::MuchLess
-                | Id::MuchMore
-                | Id::Free,
-            )
-            | Command::StepLength(_)
-            | Command::Set { .. }
-            | Command::Try { .. }
-            | Command::Assign(_)
-            | Command::Turn { .. }
-            | Command::Travel { .. }
-            | Command::GoTo { .. }
-            | Command::GoToState(_)
-            | Command::Open(_)
-            | Command::OpenWith { .. } => Self::InOrder,
-            _ => Self::None,
+pub(super) fn waits(command: &Command) -> Waits {
+    let is_control = |key: &str| key == "path.control";
+    match command {
+        // Another control holds the force or approach that the values before it led to.
+        Command::Set { key, .. } | Command::Turn { key, .. } if is_control(key) => Waits::Curve,
+        Command::Assign(all) if all.iter().any(|(key, _)| is_control(key)) => Waits::Curve,
+        Command::Set { .. } | Command::Try { .. } | Command::Open(_) | Command::OpenWith { .. } => {
+            Waits::InOrder
         }
+        command => row_of(command.id()).waits,
     }
 }
 
@@ -80,7 +31,7 @@ pub(super) fn is_blocked(model: &Model, command: &Command) -> bool {
         return false;
     }
     let is_walking = model.walking.is_some_and(|walking| !walking.solves);
-    let waits_for_curve = || Turn::of(command) == Turn::Curve && model.is_busy();
+    let waits_for_curve = || waits(command) == Waits::Curve && model.is_busy();
     model.awaits == Awaits::File || is_walking || waits_for_curve()
 }
 

@@ -30,7 +30,7 @@ fn contact_stiffness(model: &Model) -> f64 {
 }
 
 /// The selected value, or that of `key`, turned by one of the commands that turn.
-pub(super) fn turn(model: &mut Model, id: Id, key: Option<&str>) -> Vec<Effect> {
+pub(in crate::explorer) fn turn(model: &mut Model, id: Id, key: Option<&str>) -> Vec<Effect> {
     let (up, amount) = match id {
         Id::FineLess => (false, Amount::Third),
         Id::FineMore => (true, Amount::Third),
@@ -315,7 +315,7 @@ fn tell_points(model: &mut Model, preset: &Preset) {
     }
 }
 
-pub(super) fn change_control(model: &mut Model) -> Vec<Effect> {
+pub(in crate::explorer) fn change_control(model: &mut Model) -> Vec<Effect> {
     let mut preset = model.preset.clone();
     preset.path.control = next_control(&model.preset, model.stiffness);
     change(model, preset)

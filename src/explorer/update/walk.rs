@@ -5,7 +5,7 @@ use crate::explorer::curve::CurveData;
 use crate::explorer::effect::Effect;
 use crate::explorer::model::{Level, Model, Walking};
 use crate::explorer::node::{Node, NodeKind};
-use crate::explorer::requests::{stop_walk, want_curve};
+use crate::explorer::requests::{stop, stop_walk, want_curve};
 use crate::explorer::status_line::{back_or_anew, of_before};
 use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
 use pulloff_engine::problem::Begin;
@@ -15,7 +15,7 @@ use pulloff_engine::units::Quantity;
 use std::sync::Arc;
 
 /// Asks for a walk on the curve on the screen, or says why there is none.
-pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
+pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     if model.is_computing() {
         model.tell(Level::Info, "the curve is being computed");
         return Vec::new();
@@ -63,7 +63,7 @@ pub(super) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
 }
 
 /// On to the next event of the path: what is pending happens, and where the path ends outward it turns round.
-pub(super) fn next_event(model: &mut Model) -> Vec<Effect> {
+pub(in crate::explorer) fn next_event(model: &mut Model) -> Vec<Effect> {
     if model.can_jump() {
         return walk(model, Action::Jump);
     }
@@ -97,6 +97,11 @@ pub(super) fn run(model: &mut Model, action: Action) -> Vec<Effect> {
     effects
 }
 
+/// A run to the next limit point; while one goes on, its end.
+pub(in crate::explorer) fn run_or_stop(model: &mut Model) -> Vec<Effect> {
+    if model.walking.is_some() { stop(model) } else { run(model, Action::ToLimit) }
+}
+
 /// The contact radius of a walker that is stable in one disc, in the user's units.
 fn stood_stable(model: &Model) -> Option<f64> {
     let node = model.history.current()?;
@@ -127,7 +132,7 @@ fn tell_of_fold(model: &mut Model, before: f64) {
 }
 
 /// Another pace, of the run under way too.
-pub(super) fn scale_pace(model: &mut Model, by: f64) -> Vec<Effect> {
+pub(in crate::explorer) fn scale_pace(model: &mut Model, by: f64) -> Vec<Effect> {
     let pace = (model.pace * by).clamp(*PACES.start(), *PACES.end());
     if pace.total_cmp(&model.pace).is_eq() {
         let word = if by < 1.0 { "slowest" } else { "fastest" };
@@ -262,7 +267,7 @@ fn mark_stale(model: &mut Model, request: u64, reason: &str) {
 }
 
 /// Back to where the walk begins; without a curve, that is asked for again.
-pub(super) fn restart(model: &mut Model) -> Vec<Effect> {
+pub(in crate::explorer) fn restart(model: &mut Model) -> Vec<Effect> {
     model.inward = true;
     if !model.is_computing() && !model.shows_its_curve() {
         // Given up or failed before: asked for again.
@@ -279,7 +284,7 @@ pub(super) fn restart(model: &mut Model) -> Vec<Effect> {
         .map_or_else(Vec::new, |s| walk(model, Action::MoveTo(s)))
 }
 
-pub(super) fn scale_length(model: &mut Model, by: f64) {
+pub(in crate::explorer) fn scale_length(model: &mut Model, by: f64) {
     model.length = (model.length * by).clamp(*LENGTHS.start(), *LENGTHS.end());
 }
 

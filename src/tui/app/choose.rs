@@ -1,13 +1,14 @@
 //! A list to choose from: the arrows go through it, text typed keeps the lines that have it.
 
 use super::state::App;
-use crate::explorer::{Command, Effect, Id, Panel, View, reach};
+use crate::explorer::script::offers::Typing;
+use crate::explorer::script::parse;
+use crate::explorer::table::{Row as CommandRow, row_of};
+use crate::explorer::{Command, Effect, Id, Panel, reach};
 use crate::tui::overlay::{Action, Choose, Item, Overlay};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use pulloff_engine::preset::{Row, Value};
 use pulloff_engine::problem::Control;
-use pulloff_engine::sweep::quantity::Under;
-use pulloff_engine::sweep::{Column, QUANTITIES, Quantity};
 
 /// So many lines a page.
 const PAGE: usize = 10;
@@ -106,32 +107,22 @@ impl App {
         Vec::new()
     }
 
-    /// All views, a line each; of those that have nothing to show, why.
-    pub(super) fn ask_view(&mut self) -> Vec<Effect> {
-        let model = &self.model;
-        let items = View::ALL.map(|view| {
-            let said = match reach::why_not(model, view) {
-                None => view.meaning().to_owned(),
-                Some(why) => format!("- {}", self.keymap.spelled(&why)),
-            };
-            Item::new(format!("{:<15} {said}", view.name()), Action::Command(Command::Show(view)))
+    /// What a command can take, a line each.
+    pub(super) fn ask_argument(&mut self, row: &'static CommandRow) -> Vec<Effect> {
+        let files = |folder: &str| self.files(folder);
+        let typing = Typing { model: &self.model, words: &[], word: "", files: &files };
+        let offers = (row.takes.offers)(&typing);
+        let width = offers.iter().map(|offer| offer.word.len()).max().unwrap_or(0);
+        let items = offers.iter().filter_map(|offer| {
+            let said = self.theme.symbols(&self.keymap.spelled(&offer.says));
+            let does =
+                offer.does.clone().or_else(|| parse(&format!("{} {}", row.name, offer.word)).ok()?)?;
+            Some(Item::new(format!("{:<width$}  {said}", offer.word), Action::Command(does)))
         });
-        let here = View::ALL.iter().position(|view| *view == model.view).unwrap_or(0);
-        self.choose("Views", items.to_vec(), here);
-        Vec::new()
-    }
-
-    /// The quantities that can be studied.
-    pub(super) fn ask_study(&mut self) -> Vec<Effect> {
-        let item = |quantity: &'static Quantity| {
-            let column = Column { quantity, under: Under::Own };
-            let text = format!("{:<20} {}", quantity.name, quantity.meaning);
-            Item::new(text, Action::Command(Command::Study(column)))
-        };
-        let here = QUANTITIES.iter().position(|quantity| quantity.name == self.model.studied.quantity.name);
-        let over =
-            self.model.selected_knob().map_or_else(String::new, |(row, _)| format!(" over {}", row.label));
-        self.choose(&format!("Study{over}"), QUANTITIES.iter().map(item).collect(), here.unwrap_or(0));
+        let here = offers.iter().position(|offer| offer.is_here).unwrap_or(0);
+        let title = row.help.split([':', ';']).next().unwrap_or_default();
+        let title = format!("{}{}", title[..1].to_uppercase(), &title[1..]);
+        self.choose(&title, items.collect(), here);
         Vec::new()
     }
 
@@ -141,7 +132,10 @@ impl App {
             // Several may be wanted: the list stays until it is closed.
             Action::Command(command @ Command::Overlay(_)) => {
                 let effects = self.run(command);
-                self.ask_overlays(at);
+                self.ask_argument(row_of(Id::Overlays));
+                if let Some(Overlay::Choose(choose)) = &mut self.overlay {
+                    choose.selected = at;
+                }
                 effects
             }
             Action::Command(command) => self.open_or_ask(command),

@@ -1,9 +1,9 @@
 //! The command line: the grammar of scripts, typed on the screen.
 
 use super::state::App;
-use crate::explorer::command::ROWS;
 use crate::explorer::data::list;
 use crate::explorer::script::{Completion, complete, parse};
+use crate::explorer::table::called;
 use crate::explorer::{Command, Effect, Id};
 use crate::tui::overlay::{LONGEST_LINE, Overlay, Prompt, Purpose};
 use crate::tui::view::overlays as prompt;
@@ -61,8 +61,7 @@ impl App {
         let head: String = prompt.input.value().chars().take(cursor).collect();
         let tail: String = prompt.input.value().chars().skip(cursor).collect();
         let files = |folder: &str| self.files(folder);
-        let Completion { line, offers } =
-            complete(&head, &self.model.preset, &self.model.preset_names, &files);
+        let Completion { line, offers } = complete(&head, &self.model, &files);
         let cursor = line.chars().count();
         let listed = if line == head { prompt.listed } else { 0 };
         changed(prompt, Input::new(line + &tail).with_cursor(cursor));
@@ -78,7 +77,7 @@ impl App {
     }
 
     /// The folders and files in `folder` that a measured curve may be in, as a line names them.
-    fn files(&self, folder: &str) -> Vec<String> {
+    pub(super) fn files(&self, folder: &str) -> Vec<String> {
         let own = self.model.preset.data.source.as_ref().and_then(|source| source.folder.clone());
         let own = own.unwrap_or_else(|| ".".into());
         let asked = own.join(folder);
@@ -143,16 +142,11 @@ fn changed(prompt: &mut Prompt, input: Input) {
 
 fn note(line: &str) -> String {
     let name = line.split_whitespace().next().unwrap_or_default();
-    let row = ROWS.iter().find(|row| row.name == name);
-    row.map_or_else(
-        || NOTE.to_owned(),
-        |row| match row.argument {
-            // What is typed as it stands and what stands for something else look different.
-            Some(argument) if argument.chars().any(char::is_uppercase) => {
-                format!("{name} {argument}: {}", row.help)
-            }
-            Some(argument) => format!("{name} {}: {}", argument.to_uppercase(), row.help),
-            None => row.help.to_owned(),
-        },
-    )
+    let Some(row) = called(name) else { return NOTE.to_owned() };
+    match row.takes.what {
+        "" => row.help.to_owned(),
+        // What is typed as it stands and what stands for something else look different.
+        what if what.chars().any(char::is_uppercase) => format!("{name} {what}: {}", row.help),
+        what => format!("{name} {}: {}", what.to_uppercase(), row.help),
+    }
 }

@@ -1,12 +1,11 @@
 //! The explorer on the screen: the session, what lies over it, and the keys that reach both.
 
 use super::typed::Typed;
-use crate::explorer::background_jobs::BackgroundJob;
-use crate::explorer::branches::are_several;
 use crate::explorer::job::Done;
-use crate::explorer::look::{MIDDLE, NO_ENVELOPE, make_room};
+use crate::explorer::look::{MIDDLE, make_room};
 use crate::explorer::model::{Level, Question};
-use crate::explorer::{Command, Effect, Home, Id, Model, Overlay, Panel, Reply, View, answer, open, update};
+use crate::explorer::table::{is_available, row_of};
+use crate::explorer::{Command, Effect, Home, Id, Model, Panel, Reply, View, answer, open, update};
 use crate::figure::Subject;
 use crate::store::{Listed, Listing, Loaded, Source};
 use crate::tui::keymap::Keymap;
@@ -52,8 +51,8 @@ pub struct App {
     pub clipboard: Option<String>,
     /// The screen as last drawn.
     pub screen: Rect,
-    /// The background job that takes long enough to be shown.
-    pub late: Option<BackgroundJob>,
+    /// What is said of a background job that takes long enough to be shown.
+    pub late: Option<String>,
 }
 
 impl App {
@@ -301,11 +300,9 @@ impl App {
             Id::Export => self.ask_export(),
             Id::Data => self.browse(data::FILE.into()),
             Id::Copy => self.ask_copy(),
-            Id::ChooseView => self.ask_view(),
-            Id::Study if self.model.curve.is_some() => self.ask_study(),
-            Id::Overlays if self.model.curve.is_some() => self.ask_overlays(0),
-            Id::Pins if !self.model.pins.is_empty() => self.ask_pins(),
-            Id::Branches if are_several(&self.model.history) => self.ask_branch(),
+            id if row_of(id).takes.is_listed && is_available(&self.model, id) => {
+                self.ask_argument(row_of(id))
+            }
             Id::ZoomIn | Id::ZoomOut => {
                 let about = self.walker_place();
                 self.run(Command::Zoom { view: self.model.view, closer: id == Id::ZoomIn, about })
@@ -326,7 +323,7 @@ impl App {
             Id::Up | Id::Down if self.model.panel == Panel::Problem => self.value_beside(id == Id::Down),
             Id::Edit if self.model.panel == Panel::Charts && self.model.cross.is_none() => {
                 match self.model.view {
-                    View::Study => self.ask_study(),
+                    View::Study => self.ask_argument(row_of(Id::Study)),
                     View::Map => self.run(Id::Map.into()),
                     _ => self.run(Id::Edit.into()),
                 }
@@ -369,37 +366,6 @@ impl App {
             figure.bounds.part(&self.model.window(view)).share(figure.walker()?)
         });
         place.unwrap_or(MIDDLE)
-    }
-
-    pub(super) fn ask_overlays(&mut self, selected: usize) -> Vec<Effect> {
-        let Some(curve) = &self.model.curve else { return Vec::new() };
-        let theory = &curve.base.theory;
-        let items = Overlay::ALL.map(|overlay| {
-            let name = match (overlay, &theory.envelope) {
-                (Overlay::Smooth, _) => format!("smooth sphere ({})", theory.smooth_name),
-                (Overlay::Exact, _) => format!("exact solution ({})", theory.exact_name),
-                (Overlay::Envelope, Some(_)) => "envelope of small waves (Kesari-Lew)".to_owned(),
-                (Overlay::Envelope, None) => format!("envelope of small waves: {NO_ENVELOPE}"),
-            };
-            let on = if self.model.overlays.has(overlay) { 'x' } else { ' ' };
-            Item::new(format!("[{on}] {name}"), Action::Command(Command::Overlay(overlay)))
-        });
-        self.choose("Theory over the curve", items.to_vec(), selected);
-        Vec::new()
-    }
-
-    pub(super) fn ask_pins(&mut self) -> Vec<Effect> {
-        let pins = self.model.pins.all().iter();
-        let mut items: Vec<Item> = pins
-            .map(|pin| {
-                let name = self.theme.symbols(&pin.name(&self.model.preset));
-                let text = format!("{}  {name}", pin.number);
-                Item::new(text, Action::Command(Command::Unpin(Some(pin.number))))
-            })
-            .collect();
-        items.push(Item::new("all", Action::Command(Command::Unpin(None))));
-        self.choose("Take a pinned curve away", items, 0);
-        Vec::new()
     }
 
     pub(super) fn choose(&mut self, title: &str, items: Vec<Item>, selected: usize) {

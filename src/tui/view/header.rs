@@ -65,8 +65,8 @@ fn heading(app: &App, warnings: &[String]) -> Vec<Span<'static>> {
     if model.curve.is_some() && !model.is_computing() && !model.shows_its_curve() {
         spans.push(Span::styled("  curve and state of other values", theme.error()));
     }
-    if let Some(beside) = app.late {
-        let text = theme.text(&app.keymap.spelled(&beside.text()));
+    if let Some(says) = &app.late {
+        let text = theme.text(&app.keymap.spelled(says));
         spans.push(Span::styled(format!("  {text}"), theme.key().add_modifier(Modifier::BOLD)));
     }
     spans

@@ -1,8 +1,8 @@
 //! The help in pages: how to read the screen, first steps, every key, read from the one table of commands, and what the preset says.
 
 use super::parts::panel;
-use crate::explorer::command::ROWS;
 use crate::explorer::pins::changes;
+use crate::explorer::table::ROWS;
 use crate::explorer::{Home, Id, Model};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;

@@ -107,7 +107,7 @@ fn part(part: &Inadmissible, units: &UnitSystem, ascii: bool) -> String {
 /// What the marks mean, and whether all of it is of values before.
 fn title(model: &Model, theme: Theme, width: usize) -> String {
     let is_old = model.preset.path.begin == Begin::Touch
-        && model.cycle.as_ref().is_some_and(|cycle| !cycle.is_of(&model.preset));
+        && model.cycle().is_some_and(|cycle| !cycle.is_of_preset(&model.preset));
     let old = if is_old { ", of the values before" } else { "" };
     let marks = format!(
         "Log{old} {} done {} here {} ahead",
@@ -156,7 +156,7 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
 }
 
 fn empty(model: &Model, keymap: &Keymap) -> String {
-    let why = match (&model.curve, model.preset.path.begin, &model.cycle) {
+    let why = match (&model.curve, model.preset.path.begin, model.cycle()) {
         (None, ..) | (Some(_), Begin::Touch, None) => " computing the path".to_owned(),
         (Some(_), Begin::Touch, Some(cycle)) => match &cycle.report {
             Err(reason) => format!(" no path: {reason}"),

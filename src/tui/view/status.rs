@@ -2,9 +2,8 @@
 
 use super::legend::reading;
 use super::parts::fitted;
-use crate::explorer::availability::is_available;
-use crate::explorer::command::row_of;
 use crate::explorer::model::Level;
+use crate::explorer::table::{is_available, row_of};
 use crate::explorer::{Home, Id, Panel, View};
 use crate::tui::app::App;
 use crate::tui::overlay::Overlay;

@@ -376,7 +376,7 @@ fn pins_are_listed_and_taken_away_one_by_one() {
     assert!(text.contains("1 A 0.0025") && text.contains("pinned as 2"), "{text}");
     screen.keys("P");
     let text = screen.text(120, 40);
-    assert!(text.contains("1  A 0.0025") && text.contains("2  as now"), "{text}");
+    assert!(text.contains("1    A 0.0025") && text.contains("2    as now"), "{text}");
     screen.keys("\rPj");
     assert!(screen.text(120, 40).contains("> all"));
     screen.keys("\r");
@@ -541,7 +541,7 @@ fn the_footer_shows_only_what_can_be_done() {
     assert!(!screen.text(120, 40).contains("x jump"));
     screen.keys("n");
     assert!(screen.text(120, 40).contains("x jump"));
-    assert!(crate::explorer::command::row_of(Id::Undo).short.len() < 10);
+    assert!(crate::explorer::table::row_of(Id::Undo).short.len() < 10);
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn a_typed_command_does_what_its_key_does() {
     screen.keys(":step 3\r");
     assert_eq!(screen.app.model.history.nodes().len(), 4);
     assert!(screen.app.overlay.is_none());
-    screen.keys(":control force\r:set gap.amplitude=0.003 title=\"two  words\"\r:run-to instability\r");
+    screen.keys(":control force\r:set gap.amplitude=0.003 title=\"two  words\"\r:run\r");
     let model = &screen.app.model;
     assert_eq!(model.preset.path.control, Control::Force);
     assert_eq!(model.preset.title, "two  words");
@@ -105,7 +105,7 @@ fn tab_pages_through_all_names_and_begins_again() {
         screen.keys("\t");
     }
     assert_eq!(note(&screen), first);
-    for row in crate::explorer::command::ROWS {
+    for row in crate::explorer::table::ROWS {
         assert!(names.split_whitespace().any(|name| name == row.name), "{}: {names}", row.name);
     }
     // Whatever is typed begins anew.

@@ -1,6 +1,7 @@
 //! The mouse, the clipboard, and presets deleted.
 
 use super::{PLAIN, Screen};
+use crate::explorer::studies::StudyData;
 use crate::explorer::{Panel, View, Window};
 use crate::store::{Overwrite, Store};
 use crate::tui::copy::text;
@@ -8,6 +9,7 @@ use crate::tui::overlay::Content;
 use crossterm::event::{KeyCode, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use pulloff_engine::progress::Unwatched;
 use ratatui::layout::{Position, Rect};
+use std::sync::Arc;
 
 const SIZE: Rect = Rect { x: 0, y: 0, width: 120, height: 40 };
 
@@ -377,11 +379,11 @@ fn a_study_is_looked_at_read_taken_over_and_exported() {
     let after = screen.app.model.preset.get("gap.amplitude");
     assert_ne!(before, after);
     // The same study, the mark moved.
-    let study = screen.app.model.study.clone().unwrap();
+    let study = screen.app.model.results.share::<StudyData>().unwrap();
     assert!(study.wish.values.contains(&after.clone().unwrap()));
     screen.keys("u");
     assert_eq!(screen.app.model.preset.get("gap.amplitude"), before);
-    assert_eq!(screen.app.model.study.as_ref().map(|study| study.wish.id), Some(study.wish.id));
+    assert!(Arc::ptr_eq(&screen.app.model.results.share::<StudyData>().unwrap(), &study));
     // As values, and as a sweep that has them again.
     let (csv, toml) = (screen.folder.path().join("a.csv"), screen.folder.path().join("a.toml"));
     screen.keys(&format!(":export study {}\r", csv.display()));

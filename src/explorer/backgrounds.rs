@@ -1,0 +1,150 @@
+//! All results that are computed in the background. Of several under way the first is told of, and given up first.
+
+use super::admissibility::Admissibility;
+use super::background::Kind;
+use super::effect::Effect;
+use super::fit::Fitted;
+use super::fitting::Distances;
+use super::loops::LoopData;
+use super::maps::MapData;
+use super::model::Model;
+use super::onset::SnapsFrom;
+use super::pinned::PinCurve;
+use super::profile::Inside;
+use super::studies::StudyData;
+
+/// The kinds, in the order in which they are told of.
+pub static KINDS: [Kind; 9] = [
+    Kind::of::<Fitted>(),
+    Kind::of::<PinCurve>(),
+    Kind::of::<StudyData>(),
+    Kind::of::<Admissibility>(),
+    Kind::of::<Inside>(),
+    Kind::of::<LoopData>(),
+    Kind::of::<MapData>(),
+    Kind::of::<Distances>(),
+    Kind::of::<SnapsFrom>(),
+];
+
+/// Asks for all that is wanted now.
+pub(super) fn want_all(model: &mut Model) -> Vec<Effect> {
+    KINDS.iter().filter_map(|kind| (kind.want)(model)).collect()
+}
+
+/// The kind of a name.
+pub(super) fn kind_of(name: &str) -> Option<&'static Kind> {
+    KINDS.iter().find(|kind| kind.name == name)
+}
+
+/// Gives up the first that is under way.
+pub(super) fn give_up_first(model: &mut Model) -> Vec<Effect> {
+    KINDS.iter().find_map(|kind| (kind.give_up)(model)).unwrap_or_default()
+}
+
+/// What is under way and is told of where it takes long: its name, and the words.
+pub fn under_way(model: &Model) -> Option<(&'static str, String)> {
+    KINDS.iter().find_map(|kind| Some((kind.name, (kind.says)(model)?)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::explorer::driver::Inline;
+    use crate::explorer::pins::Pins;
+    use crate::explorer::results::Task;
+    use crate::explorer::{Command, Id, Reply, Workers, answer, open, update};
+    use crate::store::Store;
+    use pulloff_engine::preset::Value;
+    use std::sync::mpsc::channel;
+    use std::time::Duration;
+
+    fn says(model: &Model, text: &str) -> bool {
+        under_way(model).is_some_and(|(_, says)| says.contains(text))
+    }
+
+    /// A session whose curve has come, and its driver.
+    fn session() -> (Model, Inline, Vec<Effect>) {
+        let store = Store::at("/nowhere", &[]);
+        let loaded = store.load(&store.resolve("fig-3-jkr").unwrap(), &[] as &[&str]).unwrap();
+        let driver = Inline::new(store);
+        let (mut model, effects) = open(loaded);
+        let replies: Vec<_> = effects.into_iter().filter_map(|effect| driver.run(effect)).collect();
+        let effects = replies.into_iter().flat_map(|reply| answer(&mut model, reply)).collect();
+        (model, driver, effects)
+    }
+
+    #[test]
+    fn a_check_is_told_of_and_given_up_for_its_curve_alone() {
+        let (mut model, driver, effects) = session();
+        let asked = |effects: &[Effect]| {
+            effects.iter().any(|effect| matches!(effect, Effect::Compute(task) if task.name == "check"))
+        };
+        assert!(asked(&effects), "{effects:?}");
+        assert!(says(&model, "checking admissibility"));
+        let number = model.results.under_way::<Admissibility>().unwrap();
+        let effects = update(&mut model, Id::Cancel.into());
+        assert!(
+            matches!(effects.as_slice(), [Effect::Stop { name: "check", id }] if *id == number),
+            "{effects:?}"
+        );
+        assert_eq!(under_way(&model), None);
+        assert!(model.status().1.contains("which states of this curve are admissible"));
+        // Nothing that happens on this curve asks again.
+        for effect in update(&mut model, Id::Step.into()) {
+            let effects = driver.run(effect).map_or_else(Vec::new, |reply| answer(&mut model, reply));
+            assert!(!asked(&effects), "{effects:?}");
+        }
+        assert!(update(&mut model, Id::Cancel.into()).is_empty());
+        // Another curve is asked about.
+        let set = Command::Set { key: "material.effective_modulus".into(), text: "2".to_owned() };
+        let mut waiting = update(&mut model, set);
+        let mut again = false;
+        while let Some(effect) = waiting.pop() {
+            again |= asked(std::slice::from_ref(&effect));
+            waiting.extend(driver.run(effect).map_or_else(Vec::new, |reply| answer(&mut model, reply)));
+        }
+        assert!(again);
+    }
+
+    #[test]
+    fn the_pins_of_a_resumed_session_are_given_up_together() {
+        let (mut model, driver, effects) = session();
+        driver.settle(&mut model, effects);
+        assert_eq!(under_way(&model), None);
+        model.pins = Pins::awaiting([(1, model.preset.clone()), (3, model.preset.clone())]);
+        assert!(says(&model, "computing 2 pinned curves"));
+        let [Effect::Compute(first)] = &want_all(&mut model)[..] else { panic!("one after the other") };
+        let effects = update(&mut model, Id::Cancel.into());
+        assert!(matches!(effects.as_slice(), [Effect::Stop { name: "pins", id }] if *id == first.id));
+        assert!(under_way(&model).is_none() && model.pins.is_empty());
+    }
+
+    #[test]
+    fn a_curve_that_is_given_up_is_not_computed_to_its_end() {
+        let (model, ..) = session();
+        let (send, replies) = channel();
+        let workers =
+            Workers::start(Store::at("/nowhere", &[]), move |reply| drop(send.send(reply))).unwrap();
+        let mut large = model.preset.clone();
+        large.set("basis.kind", "rings".into()).unwrap();
+        large.set("basis.rings", Value::Integer(2000)).unwrap();
+        let task = |model: &mut Model, number, preset| -> Task {
+            model.pins = Pins::awaiting([(number, preset)]);
+            match &want_all(model)[..] {
+                [.., Effect::Compute(task)] => task.clone(),
+                other => panic!("{other:?}"),
+            }
+        };
+        let mut model = model;
+        let small = model.preset.clone();
+        let first = task(&mut model, 1, large);
+        workers.submit(Effect::Compute(first.clone()));
+        workers.submit(Effect::Stop { name: "pins", id: first.id });
+        workers.submit(Effect::Compute(task(&mut model, 2, small)));
+        let reply = replies.recv_timeout(Duration::from_secs(120)).unwrap();
+        assert!(
+            matches!(&reply, Reply::Found(found) if found.name == "pins" && found.id > first.id),
+            "{reply:?}"
+        );
+    }
+}

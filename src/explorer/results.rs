@@ -1,0 +1,105 @@
+//! What is computed in the background: the last answers, and the work that brings new ones.
+
+use pulloff_engine::progress::Progress;
+use std::any::{Any, TypeId};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Arc;
+use std::time::Duration;
+
+pub(super) type Shared = Arc<dyn Any + Send + Sync>;
+
+/// A question, and the last answer.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Slot {
+    pub asked: Option<(u64, Shared)>,
+    pub found: Option<(u64, Shared)>,
+    /// The number of the last question that was answered whole, or given up.
+    pub over: u64,
+}
+
+/// All results of a session.
+#[derive(Debug, Clone, Default)]
+pub struct Results(BTreeMap<TypeId, Slot>);
+
+impl Results {
+    pub(super) fn slot<R: 'static>(&self) -> Option<&Slot> {
+        self.0.get(&TypeId::of::<R>())
+    }
+
+    pub(super) fn slot_mut<R: 'static>(&mut self) -> &mut Slot {
+        self.0.entry(TypeId::of::<R>()).or_default()
+    }
+
+    /// The last answer, which can be that of values before.
+    pub fn found<R: 'static>(&self) -> Option<&R> {
+        self.slot::<R>()?.found.as_ref()?.1.downcast_ref()
+    }
+
+    /// The same, shared.
+    pub fn share<R: Send + Sync + 'static>(&self) -> Option<Arc<R>> {
+        Arc::clone(&self.slot::<R>()?.found.as_ref()?.1).downcast().ok()
+    }
+
+    /// The last answer, while one is wanted.
+    pub fn shown<R: 'static>(&self) -> Option<&R> {
+        self.slot::<R>()?.asked.as_ref()?;
+        self.found()
+    }
+
+    /// What is done so far of what is under way.
+    pub fn so_far<R: 'static>(&self) -> Option<&R> {
+        let (id, found) = self.slot::<R>()?.found.as_ref()?;
+        if self.under_way::<R>() == Some(*id) { found.downcast_ref() } else { None }
+    }
+
+    /// The key of what was asked for last, and is still wanted.
+    pub fn asked<R: 'static, K: 'static>(&self) -> Option<&K> {
+        self.slot::<R>()?.asked.as_ref()?.1.downcast_ref()
+    }
+
+    /// The number of what was asked for and is neither whole nor given up.
+    pub fn under_way<R: 'static>(&self) -> Option<u64> {
+        let slot = self.slot::<R>()?;
+        slot.asked.as_ref().map(|(id, _)| *id).filter(|id| *id > slot.over)
+    }
+}
+
+/// Work for a thread.
+#[derive(Clone)]
+pub struct Task {
+    /// Which kind of result it is.
+    pub name: &'static str,
+    pub id: u64,
+    pub patience: Duration,
+    /// Whether it is done where nobody looks.
+    pub is_for_scripts: bool,
+    pub(super) work: Arc<Work>,
+}
+
+pub(super) type Work = dyn Fn(&(dyn Progress + Sync), &mut dyn FnMut(Shared)) -> Option<Shared> + Send + Sync;
+
+impl fmt::Debug for Task {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Task({} {})", self.name, self.id)
+    }
+}
+
+/// An answer, or as much of it as is done.
+#[derive(Debug, Clone)]
+pub struct Found {
+    pub name: &'static str,
+    pub id: u64,
+    pub(super) is_whole: bool,
+    pub(super) what: Shared,
+}
+
+impl Task {
+    /// Does it, and hands over what comes of it.
+    pub fn run(&self, progress: &(dyn Progress + Sync), reply: &mut dyn FnMut(Found)) {
+        let found = |what, is_whole| Found { name: self.name, id: self.id, is_whole, what };
+        if let Some(what) = (self.work)(progress, &mut |part| reply(found(part, false))) {
+            reply(found(what, true));
+        }
+    }
+}

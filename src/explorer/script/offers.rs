@@ -1,0 +1,209 @@
+//! What can be typed behind the name of a command, as the screen lists it and Tab completes it.
+
+use super::arguments::PICTURES;
+use super::lexer::quoted;
+use crate::explorer::branches;
+use crate::explorer::command::Command;
+use crate::explorer::export::{ExportKind, Picture};
+use crate::explorer::look::NO_ENVELOPE;
+use crate::explorer::map_axes::CURVES;
+use crate::explorer::model::Model;
+use crate::explorer::view::{Home, Overlay, View};
+use crate::explorer::{pins, reach};
+use crate::store::shipped::{self, SHIPPED};
+use pulloff_engine::preset::groups::GROUPS;
+use pulloff_engine::preset::measured::SHIPPED_DATA;
+use pulloff_engine::preset::schema::{AUTO, Kind, NONE};
+use pulloff_engine::report::number::{significant, with_unit};
+use pulloff_engine::stability::COMPLIANCE;
+use pulloff_engine::sweep::{QUANTITIES, Quantity as Column};
+use pulloff_engine::units::Quantity;
+
+/// The names of what is in a folder, which is named with its last `/`, as a line names them; folders end with `/`.
+pub type Files<'a> = &'a dyn Fn(&str) -> Vec<String>;
+
+/// A line that is being typed.
+pub struct Typing<'a> {
+    pub model: &'a Model,
+    /// The words between the name of the command and the last one.
+    pub words: &'a [&'a str],
+    /// The last one, so far.
+    pub word: &'a str,
+    pub files: Files<'a>,
+}
+
+/// What can be typed.
+#[derive(Debug, Clone)]
+pub struct Offer {
+    pub word: String,
+    /// What it is, where a list has room to say it.
+    pub says: String,
+    /// Whether it is so already.
+    pub is_here: bool,
+    /// What it does, where its word does not say it.
+    pub does: Option<Command>,
+}
+
+impl Offer {
+    fn new(word: impl Into<String>, says: impl Into<String>) -> Self {
+        Self { word: word.into(), says: says.into(), is_here: false, does: None }
+    }
+}
+
+/// Words that say what they are.
+pub fn words<'a>(words: impl IntoIterator<Item = &'a str>) -> Vec<Offer> {
+    words.into_iter().map(|word| Offer::new(word, "")).collect()
+}
+
+pub(in crate::explorer) fn places(_: &Typing<'_>) -> Vec<Offer> {
+    Home::ALL.map(|home| Offer::new(home.name(), home.question())).to_vec()
+}
+
+/// All views; of those that have nothing to show, why.
+pub(in crate::explorer) fn views(typing: &Typing<'_>) -> Vec<Offer> {
+    let offer = |view: View| {
+        let why = reach::why_not(typing.model, view);
+        let says = why.map_or_else(|| view.meaning().to_owned(), |why| format!("- {why}"));
+        Offer { is_here: view == typing.model.view, ..Offer::new(view.name(), says) }
+    };
+    View::ALL.map(offer).to_vec()
+}
+
+/// The quantities that can be studied.
+pub(in crate::explorer) fn quantities(typing: &Typing<'_>) -> Vec<Offer> {
+    let all = QUANTITIES.iter().flat_map(Column::columns);
+    all.map(|column| {
+        let name = column.name();
+        let is_here = name == typing.model.studied.name();
+        Offer { is_here, ..Offer::new(name, column.quantity.meaning) }
+    })
+    .collect()
+}
+
+/// What is drawn over the curve.
+pub(in crate::explorer) fn theories(typing: &Typing<'_>) -> Vec<Offer> {
+    let theory = typing.model.curve.as_ref().map(|curve| &curve.base.theory);
+    let offer = |overlay: Overlay| {
+        let says = match (overlay, theory) {
+            (Overlay::Smooth, theory) => {
+                format!(
+                    "smooth sphere{}",
+                    theory.map_or_else(String::new, |t| format!(" ({})", t.smooth_name))
+                )
+            }
+            (Overlay::Exact, theory) => {
+                format!(
+                    "exact solution{}",
+                    theory.map_or_else(String::new, |t| format!(" ({})", t.exact_name))
+                )
+            }
+            (Overlay::Envelope, Some(theory)) if theory.envelope.is_none() => {
+                format!("envelope of small waves: {NO_ENVELOPE}")
+            }
+            (Overlay::Envelope, _) => "envelope of small waves (Kesari-Lew)".to_owned(),
+            (Overlay::Device, _) => "the line of the loading device through the walker".to_owned(),
+        };
+        let on = if typing.model.is_over(overlay) { 'x' } else { ' ' };
+        Offer::new(overlay.name(), format!("[{on}] {says}"))
+    };
+    Overlay::ALL.map(offer).to_vec()
+}
+
+pub(in crate::explorer) fn pins_of(typing: &Typing<'_>) -> Vec<Offer> {
+    let model = typing.model;
+    let pins = model.pins.all().iter();
+    let numbered = pins.map(|pin| Offer::new(pin.number.to_string(), pin.name(&model.preset)));
+    numbered.chain(words(["all"])).collect()
+}
+
+/// The branches of the walk: how many steps, where each ended, and in which values it differs from those of now.
+pub(in crate::explorer) fn branches_of(typing: &Typing<'_>) -> Vec<Offer> {
+    let history = &typing.model.history;
+    let all = branches::branches(history).into_iter().filter_map(|branch| {
+        let node = branch.last()?;
+        let state = node.state.in_units(node.setting.units());
+        let value =
+            |quantity, x| with_unit(&node.setting.preset.units, quantity, x, false, |x| significant(x, 4));
+        let place = if node.is_apart() {
+            "the bodies are apart".to_owned()
+        } else {
+            let length = |x| value(Quantity::Length, x);
+            let [delta, s] = [state.approach, state.contact_radius].map(length);
+            format!("δ {delta} P {} s {s}", value(Quantity::Force, state.force))
+        };
+        let differs = pins::name(&node.setting.preset, &typing.model.preset);
+        let word = if branch.is_here { "here" } else { "" };
+        Some(Offer {
+            is_here: branch.is_here,
+            does: Some(Command::GoTo { node: branch.end, numbering: history.numbering() }),
+            ..Offer::new(word, format!("step {:<5} {place}  {differs}", node.step))
+        })
+    });
+    all.collect()
+}
+
+/// Measured curves: those of the program, and files.
+pub(in crate::explorer) fn curves(typing: &Typing<'_>) -> Vec<Offer> {
+    let folder = &typing.word[..typing.word.rfind('/').map_or(0, |at| at + 1)];
+    let own = shipped::CURVES.iter().map(|shipped| Offer::new(format!("{SHIPPED_DATA}{}", shipped.name), ""));
+    let files = (typing.files)(folder);
+    // A name with a blank is typed in quotes.
+    let files = files.into_iter().filter(|name| !name.contains(' ')).map(|name| Offer::new(name, ""));
+    own.chain(words([NONE])).chain(files).collect()
+}
+
+/// A preset, and then values of its keys.
+pub(in crate::explorer) fn presets(typing: &Typing<'_>) -> Vec<Offer> {
+    let known = &typing.model.preset_names;
+    match typing.words {
+        [] if known.is_empty() => words(SHIPPED.iter().map(|shipped| shipped.name)),
+        [] => known.iter().filter_map(|name| Some(Offer::new(quoted(name)?, ""))).collect(),
+        _ => assignments_of(typing),
+    }
+}
+
+/// What is exported, and for a figure which view.
+pub(in crate::explorer) fn documents(typing: &Typing<'_>) -> Vec<Offer> {
+    match typing.words {
+        [] => words(ExportKind::ALL.map(ExportKind::name).into_iter().chain(PICTURES.map(Picture::name))),
+        ["figure", _] => words(View::ALL.map(View::name).into_iter().chain(["replace"])),
+        [_, _] => words(["replace"]),
+        _ => Vec::new(),
+    }
+}
+
+pub(in crate::explorer) fn names(typing: &Typing<'_>) -> Vec<Offer> {
+    if typing.words.is_empty() { Vec::new() } else { words(["with-data", "replace"]) }
+}
+
+/// What can stand on an axis of a map.
+pub(in crate::explorer) fn axes_of(typing: &Typing<'_>) -> Vec<Offer> {
+    let preset = &typing.model.preset;
+    if typing.words.len() > 1 {
+        return Vec::new();
+    }
+    let rows = preset.rows().filter(|row| row.kind.is_number() && preset.get(&row.key).is_some());
+    let keys = rows.map(|row| Offer::new(&*row.key, &*row.meaning));
+    let groups = GROUPS.iter().map(|row| Offer::new(&*row.key, &*row.meaning));
+    let curves = if typing.words.is_empty() { Vec::new() } else { words(CURVES.map(|(name, _)| name)) };
+    keys.chain(groups).chain(words([COMPLIANCE])).chain(curves).collect()
+}
+
+/// The keys of the preset, or the words that the key begun takes.
+pub(in crate::explorer) fn assignments_of(typing: &Typing<'_>) -> Vec<Offer> {
+    let preset = &typing.model.preset;
+    let Some((key, _)) = typing.word.split_once('=') else {
+        // Those that have or could have a value here.
+        let rows = preset.rows().filter(|row| row.key != "format");
+        let keys = rows.map(|row| Offer::new(format!("{}=", row.key), &*row.meaning));
+        let groups = GROUPS.iter().map(|row| Offer::new(format!("{}=", row.key), &*row.meaning));
+        return keys.chain(groups).collect();
+    };
+    let values: &[&str] = match preset.row(key).map(|row| row.kind) {
+        Some(Kind::Choice(words)) => words,
+        Some(Kind::Smoothing) => &[AUTO, NONE],
+        Some(Kind::Control) => &super::arguments::CONTROLS,
+        _ => &[],
+    };
+    values.iter().map(|value| Offer::new(format!("{key}={value}"), "")).collect()
+}

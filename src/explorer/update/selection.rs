@@ -1,0 +1,95 @@
+//! Panels, and the line selected in each.
+
+use super::curve::give_up;
+use crate::explorer::backgrounds::give_up_first;
+use crate::explorer::effect::Effect;
+use crate::explorer::fit::{Fitted, fit};
+use crate::explorer::model::{Level, Model};
+use crate::explorer::requests::stop;
+use crate::explorer::view::Panel;
+use crate::explorer::{look, reach};
+use pulloff_engine::preset::{Row, Value, groups};
+use pulloff_engine::text::{greek, show_name};
+
+/// An arrow key: in Charts it moves what is shown, elsewhere the selection.
+pub(in crate::explorer) fn arrow(model: &mut Model, (right, up): (f64, f64), down: bool) {
+    if model.panel == Panel::Charts { look::go(model, right, up) } else { move_selection(model, down) }
+}
+
+/// Ends what is under way, the newest first.
+pub(in crate::explorer) fn cancel(model: &mut Model) -> Vec<Effect> {
+    if model.walking.is_some() {
+        stop(model)
+    } else if model.is_computing() {
+        give_up(model)
+    } else if model.results.under_way::<Fitted>().is_some() {
+        fit(model)
+    } else if model.cross.take().is_some() {
+        Vec::new()
+    } else {
+        give_up_first(model)
+    }
+}
+
+pub(in crate::explorer) fn next_panel(model: &mut Model, by: usize) {
+    let at = Panel::ALL.iter().position(|panel| *panel == model.panel).unwrap_or(0);
+    model.panel = Panel::ALL[(at + by) % Panel::ALL.len()];
+}
+
+fn move_selection(model: &mut Model, down: bool) {
+    let moved = |at: usize, count: usize| {
+        let last = count.saturating_sub(1);
+        if down { (at + 1).min(last) } else { at.saturating_sub(1).min(last) }
+    };
+    match model.panel {
+        Panel::Problem => {
+            let knobs = model.knobs();
+            model.parameter = moved(model.parameter, knobs.len());
+            let selected = knobs.into_iter().nth(model.parameter);
+            if let Some(text) = selected
+                .and_then(|(row, value)| group_effect(&row).or_else(|| long_text(&row, value.as_ref())))
+            {
+                model.tell(Level::Info, text);
+            }
+        }
+        Panel::Log => {
+            model.event = moved(model.event, model.log_lines());
+        }
+        Panel::Here | Panel::Result | Panel::Charts => {}
+    }
+}
+
+/// What a group changes, if this is one; in few words, since the list may scroll at the same time.
+fn group_effect(row: &Row) -> Option<String> {
+    let [changed, held] = groups::effect(&row.key)?;
+    Some(greek(&format!("turning it changes {changed}, {held} held")))
+}
+
+/// A text that is longer than its place beside the label may be, whole.
+fn long_text(row: &Row, value: Option<&Value>) -> Option<String> {
+    /// Characters that fit on every screen.
+    const FITTING: usize = 11;
+    match value? {
+        Value::Text(text) if text.chars().count() > FITTING => Some(format!("{}: {text}", row.label)),
+        Value::Profile(rows) => Some(format!("{}: {}", row.label, show_name(&rows.name))),
+        _ => None,
+    }
+}
+
+/// A panel is selected, and a line of it, the last at most.
+pub(super) fn pick(model: &mut Model, panel: Panel, line: Option<usize>) {
+    model.panel = panel;
+    let lines = match panel {
+        Panel::Problem => model.knobs().len(),
+        Panel::Log => model.log_lines(),
+        Panel::Charts if model.view.is_table() => model.history.path().len(),
+        Panel::Here | Panel::Result | Panel::Charts => 0,
+    };
+    let Some(line) = line.map(|line| line.min(lines.saturating_sub(1))) else { return };
+    match panel {
+        Panel::Problem => model.parameter = line,
+        Panel::Log => model.event = line,
+        Panel::Charts if model.view.is_table() => reach::pick_walk_line(model, line),
+        Panel::Here | Panel::Result | Panel::Charts => {}
+    }
+}
