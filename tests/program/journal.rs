@@ -60,7 +60,7 @@ impl Late {
             match effect {
                 // The newest curve wins.
                 Effect::Curve(_) => {
-                    self.pending.retain(|old| !matches!(old, Effect::Curve(_) | Effect::Compute(_)))
+                    self.pending.retain(|old| !matches!(old, Effect::Curve(_) | Effect::Compute(_)));
                 }
                 Effect::StopWalk(_) => self.cut(rng),
                 Effect::Walk(_) | Effect::File(_) | Effect::StopCurve(_) => {}

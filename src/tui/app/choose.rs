@@ -117,7 +117,7 @@ impl App {
             let said = self.theme.symbols(&self.keymap.spelled(&offer.says));
             let does =
                 offer.does.clone().or_else(|| parse(&format!("{} {}", row.name, offer.word)).ok()?)?;
-            Some(Item::new(format!("{:<width$}  {said}", offer.word), Action::Command(does)))
+            Some(Item::new(format!("{:<width$} {said}", offer.word), Action::Command(does)))
         });
         let here = offers.iter().position(|offer| offer.is_here).unwrap_or(0);
         let title = row.help.split([':', ';']).next().unwrap_or_default();

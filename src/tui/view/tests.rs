@@ -376,7 +376,7 @@ fn pins_are_listed_and_taken_away_one_by_one() {
     assert!(text.contains("1 A 0.0025") && text.contains("pinned as 2"), "{text}");
     screen.keys("P");
     let text = screen.text(120, 40);
-    assert!(text.contains("1    A 0.0025") && text.contains("2    as now"), "{text}");
+    assert!(text.contains("1   A 0.0025") && text.contains("2   as now"), "{text}");
     screen.keys("\rPj");
     assert!(screen.text(120, 40).contains("> all"));
     screen.keys("\r");
