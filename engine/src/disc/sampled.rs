@@ -17,8 +17,8 @@ use std::sync::Arc;
 /// Equilibria on a panel.
 const NODES: usize = 20;
 
-/// A share of a zone in contact that is none.
-const NO_CONTACT: f64 = 1e-12;
+/// A share of a zone in contact that is none, over what it is elsewhere on the panel.
+const NO_CONTACT: f64 = 1e-13;
 
 /// A hole of this share of its radius is narrow.
 const NARROW: f64 = 1e-3;
@@ -57,11 +57,11 @@ pub struct Sample {
     pub slopes: [f64; 2],
     /// U.
     pub energy: f64,
-    /// Of a zone that ends at the radius it was asked for the share 1 − (s/c)² of it that is free of contact.
-    pub free: f64,
+    /// Of a zone that ends at the radius it was asked for the share (s/c)² of it that is in contact.
+    pub share: f64,
 }
 
-/// One panel: the series of δ, P, dδ/dv, dP/dv, U, and of the free share of a zone.
+/// One panel: the series of δ, P, dδ/dv, dP/dv, U, and of the share of a zone that is in contact.
 #[derive(Debug)]
 pub struct Panel {
     span: Span,
@@ -112,7 +112,7 @@ impl Sampled {
                 force: at.force,
                 slopes: at.slopes(),
                 energy: at.energy,
-                free: 0.0,
+                share: 1.0,
             };
             found.iter().map(sample).collect()
         };
@@ -177,7 +177,7 @@ fn panel(
                 series(&|j| found[j].slopes[0] * stretch(j)),
                 series(&|j| found[j].slopes[1] * stretch(j)),
                 series(&|j| found[j].energy),
-                series(&|j| found[j].free),
+                series(&|j| found[j].share),
             ],
         };
         let ends = |tail: f64| {
@@ -237,10 +237,9 @@ impl Solution for Sampled {
         if self.touches.is_none() {
             return Edges { contact_radius: radius, zone: None };
         }
-        let free = chebyshev::sum(&series[5], place.x);
-        // Where there is no contact the series is 1 to rounding.
-        let share = (1.0 - free).max(0.0);
-        let contact_radius = if share <= NO_CONTACT { 0.0 } else { radius * share.sqrt() };
+        let share = chebyshev::sum(&series[5], place.x);
+        let size: f64 = series[5].iter().map(|c| c.abs()).sum();
+        let contact_radius = if share > NO_CONTACT * size { radius * share.sqrt() } else { 0.0 };
         Edges { contact_radius, zone: Some(radius) }
     }
 

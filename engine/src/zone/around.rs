@@ -8,7 +8,7 @@
 //! A state is whole where the gap is positive in the zone and below `h_c`, not below `h_c` beyond it, and p ≥ −σ₀ in the contact. Along a
 //! stable stretch δ and c grow together, and with them the gap falls everywhere outside the contact and the pressure grows everywhere
 //! inside, for the increment of a tension that pulls at the edge and of an approach is a pressure; what the edge s reaches it finds
-//! closed, what c reaches it finds at `h_c`. So the stretch is whole where at its outer end nothing touches in the zone or comes within
+//! closed, but for a corner at which h' falls, and what c reaches it finds at `h_c`. So the stretch is whole where at its outer end nothing touches in the zone or comes within
 //! range beyond it, and at its inner end nothing opens in the zone or under the contact.
 
 use super::state::Zone;
@@ -26,6 +26,10 @@ const ROUNDING: f64 = 1e-9;
 const IN_ZONE: f64 = 24.0;
 const PER_WAVE: f64 = 16.0;
 const MOST: f64 = 4000.0;
+
+/// At a corner of the gap at which h' falls a disc pulls without bound, and a hole opens there: one narrower than this, of the contact
+/// radius, is none.
+const HOLE: f64 = 1e-6;
 
 /// What a displacement beyond the zone may be more than at its edge.
 const FARTHER: f64 = 1.2;
@@ -130,22 +134,31 @@ impl Zone {
         outside::pressure(panels, s, value, r) - 2.0 * strength * (0.5 - asin(share.min(1.0)) / PI)
     }
 
-    /// Radii in the zone, closer together towards both edges, with the gap there; without contact the axis is one of them.
+    /// Radii in the zone, closer together towards both edges, and the corners in it, with the gap there; without contact the axis is one of
+    /// them.
     fn gaps<'a>(&'a self, ground: &Ground, at: ZoneAt) -> impl Iterator<Item = (f64, f64)> + 'a {
         let (c, s) = (at.edge, at.contact_radius);
         let from = 0.5 * f64::from(u8::from(s <= 0.0));
-        places(ground, [s, c]).map(move |[k, count]| {
+        let even = places(ground, [s, c]).map(move |[k, count]| {
             let sine = sin(FRAC_PI_2 * (k - from) / count);
-            let radius = s + (c - s) * sine * sine;
-            (radius, self.gap_at(at, radius))
-        })
+            s + (c - s) * sine * sine
+        });
+        let corners: Vec<f64> = ground.breaks.iter().copied().filter(|r| s < *r && *r < c).collect();
+        even.chain(corners).map(move |radius| (radius, self.gap_at(at, radius)))
+    }
+
+    /// Radii beside the corners in the contact at which h' falls, with the pressure there.
+    fn at_corners(&self, at: ZoneAt) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let s = at.contact_radius;
+        let beside = self.corners().flat_map(move |r| [r - HOLE * s, r + HOLE * s]);
+        beside.filter(move |r| 0.0 < *r && *r < s).map(move |radius| (radius, self.pressure_at(at, radius)))
     }
 
     /// Radii in the contact with the pressure there.
     fn pressures<'a>(&'a self, ground: &Ground, at: ZoneAt) -> impl Iterator<Item = (f64, f64)> + 'a {
         let s = at.contact_radius;
-        let radii = places(ground, [0.0, s]).map(move |[k, count]| s * k / count);
-        radii.take_while(move |_| s > 0.0).map(move |radius| (radius, self.pressure_at(at, radius)))
+        let even = places(ground, [0.0, s]).map(move |[k, count]| s * k / count);
+        even.take_while(move |_| s > 0.0).map(move |radius| (radius, self.pressure_at(at, radius)))
     }
 
     /// The first fault of a state on the gap of `ground`, of those asked for.
@@ -163,8 +176,8 @@ impl Zone {
         if outer && let Some(radius) = self.second_zone(ground, at) {
             return Some(Fault { kind: FaultKind::SecondZone, radius });
         }
-        self.pressures(ground, at)
-            .take_while(|_| inner)
+        self.at_corners(at)
+            .chain(self.pressures(ground, at).take_while(|_| inner))
             .find(|(_, pressure)| *pressure < -strength * (1.0 + ROUNDING))
             .map(|(radius, _)| Fault { kind: FaultKind::Torn, radius })
     }

@@ -234,9 +234,9 @@ fn samples(zone: &Zone, edges: &[f64], progress: &dyn Progress) -> Vec<Sample> {
     let mut found = Vec::with_capacity(edges.len());
     for edge in edges {
         let state = if progress.stop() { None } else { zone.state(*edge, near) };
-        let Some(ZoneState { approach, force, slopes, energy, free, .. }) = state else { break };
-        near = (free < 1.0).then_some(free);
-        found.push(Sample { approach, force, slopes, energy, free });
+        let Some(ZoneState { approach, force, slopes, energy, share, .. }) = state else { break };
+        near = (share > 0.0).then_some(share);
+        found.push(Sample { approach, force, slopes, energy, share });
     }
     found
 }

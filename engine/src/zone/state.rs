@@ -10,8 +10,8 @@
 //! no contact (ψ = π/2), where h(c) + 2σ₀c(1 − 2/π) ≤ h_c:      δ = h(c) − 4σ₀c/π − h_c,      P = −πσ₀c²
 //! ```
 //!
-//! The unknown is z = sin²ψ = 1 − (s/c)², in which D is nearly a line both where the zone is thin and where contact begins. D grows
-//! with z while the gap opens just outside s,
+//! The unknown is z = sin²ψ = 1 − (s/c)² where the zone is thin and 1 − z where little of it is in contact, so that both keep their
+//! digits; D is nearly a line in either. It grows with z while the gap opens just outside s,
 //!
 //! ```text
 //! ω'(s) = g'(s) + 2σ₀s/√(c² − s²) > 0
@@ -34,6 +34,12 @@ use std::sync::Arc;
 
 /// Newton's steps, each kept in its bracket.
 const STEPS: usize = 80;
+
+/// Shares up to this are those that are looked for.
+const HALF: f64 = 0.5;
+
+/// What is left of a share where Newton's method goes below nothing.
+const TOWARDS_NOTHING: f64 = 0.1;
 
 /// Halvings of a radius at which D turns.
 const HALVINGS: usize = 40;
@@ -84,8 +90,8 @@ pub struct ZoneState {
     pub edge: f64,
     /// s; 0 where there is no contact.
     pub contact_radius: f64,
-    /// 1 − (s/c)².
-    pub free: f64,
+    /// (s/c)².
+    pub share: f64,
     /// δ.
     pub approach: f64,
     /// P.
@@ -94,6 +100,29 @@ pub struct ZoneState {
     pub energy: f64,
     /// dδ/dc and dP/dc.
     pub slopes: [f64; 2],
+}
+
+/// How much of a zone is free, z, and in contact, 1 − z. The smaller of the two is known to all of its digits.
+#[derive(Debug, Clone, Copy)]
+struct Shares {
+    free: f64,
+    contact: f64,
+}
+
+impl Shares {
+    fn of_free(free: f64) -> Self {
+        Self { free, contact: 1.0 - free }
+    }
+
+    fn of_contact(contact: f64) -> Self {
+        Self { free: 1.0 - contact, contact }
+    }
+
+    /// ψ, sin ψ and cos ψ.
+    fn angle(self) -> [f64; 3] {
+        let (sine, cosine) = (self.free.sqrt(), self.contact.sqrt());
+        [if sine < cosine { asin(sine) } else { FRAC_PI_2 - asin(cosine) }, sine, cosine]
+    }
 }
 
 /// ψ − sin ψ cos ψ.
@@ -148,13 +177,20 @@ impl Zone {
         Self { gap, panels, cohesion, falls }
     }
 
+    /// The radii, ascending, at which h' falls at a corner, the axis among them.
+    pub fn corners(&self) -> impl Iterator<Item = f64> {
+        let axis = (self.falls.first().is_some_and(|fall| fall.lo <= 0.0)).then_some(0.0);
+        axis.into_iter()
+            .chain(self.falls.iter().filter(|fall| fall.slope == f64::NEG_INFINITY).map(|fall| fall.lo))
+    }
+
     /// How much the gap at the edge c of a zone that only just touches is wider than `h_c`: there is contact where it is positive.
     pub fn excess(&self, c: f64) -> f64 {
         let Cohesion { strength, range } = self.cohesion;
         self.gap.jet(c).value + 2.0 * strength * c * (1.0 - 2.0 / PI) - range
     }
 
-    /// The equilibrium of the zone with the outer edge `c`, a positive length; z is looked for from `near` on. `None` where there is
+    /// The equilibrium of the zone with the outer edge `c`, a positive length; (s/c)² is looked for from `near` on. `None` where there is
     /// none of one disc.
     pub fn state(&self, c: f64, near: Option<f64>) -> Option<ZoneState> {
         if self.excess(c) <= 0.0 { self.without_contact(c) } else { self.in_contact(c, near) }
@@ -168,7 +204,7 @@ impl Zone {
         approach.is_finite().then(|| ZoneState {
             edge: c,
             contact_radius: 0.0,
-            free: 1.0,
+            share: 0.0,
             approach,
             force: -PI * strength * c * c,
             energy: self.energy(c, 0.0, approach),
@@ -234,6 +270,12 @@ impl Zone {
                 continue;
             }
             let hi = fall.hi.min(c);
+            let free = (c - hi) * (c + hi) / (c * c);
+            // By no more than this D falls on the way in.
+            let drop = -fall.slope * (hi - fall.lo);
+            if free > 0.0 && drop.is_finite() && self.is_far(c, free, drop) {
+                break;
+            }
             let Some(closing) = self.closing(c, [fall.lo, hi], -fall.slope) else { continue };
             let ends = [hi, fall.lo].map(|mut opens| {
                 let mut closes = closing;
@@ -244,24 +286,29 @@ impl Zone {
                 (c - closes) * (c + closes) / (c * c)
             });
             turns.push(ends);
-            if self.miss(c, ends[1]).0 > (FAR - 1.0) * self.cohesion.range {
+            if self.is_far(c, ends[1], 0.0) {
                 break;
             }
         }
         turns
     }
 
+    /// Whether there is no state with a larger share free than this, where D falls by no more than `drop` on the way in.
+    fn is_far(&self, c: f64, free: f64, drop: f64) -> bool {
+        self.miss(c, Shares::of_free(free)).0 - drop > (FAR - 1.0) * self.cohesion.range
+    }
+
     /// D − `h_c` and, where z is not 0, its slope by z.
-    fn miss(&self, c: f64, z: f64) -> (f64, f64) {
+    fn miss(&self, c: f64, at: Shares) -> (f64, f64) {
         let Cohesion { strength, range } = self.cohesion;
         let panels = &*self.panels;
-        let s = c * (1.0 - z).sqrt();
+        let [angle, sine, cosine] = at.angle();
+        let s = c * cosine;
         let values = panels.values(panels.place(s));
-        let (sine, cosine) = (z.sqrt(), (1.0 - z).sqrt());
-        let angle = asin(sine);
         let ring = outside::sum_from(panels, s, c, &|place| panels.value(place) - values.value);
-        let miss = 2.0 / PI * ring + 4.0 * strength * c / PI * (angle * sine - z / (1.0 + cosine)) - range;
-        (miss, angle * c / PI * (values.slope / cosine + 2.0 * strength / sine))
+        let pull = 4.0 * strength * c / PI * (angle * sine - at.free / (1.0 + cosine));
+        let slope = angle * c / PI * (values.slope / cosine + 2.0 * strength / sine);
+        (2.0 / PI * ring + pull - range, slope)
     }
 
     fn in_contact(&self, c: f64, near: Option<f64>) -> Option<ZoneState> {
@@ -271,7 +318,7 @@ impl Zone {
         }
         let borders: Vec<f64> = std::iter::once(0.0).chain(turns.concat()).chain([1.0]).collect();
         let opens = borders.chunks_exact(2).filter(|ends| {
-            let above = |z: f64| z > 0.0 && (z >= 1.0 || self.miss(c, z).0 > 0.0);
+            let above = |z: f64| z > 0.0 && (z >= 1.0 || self.miss(c, Shares::of_free(z)).0 > 0.0);
             ends[0] < ends[1] && !above(ends[0]) && above(ends[1])
         });
         opens
@@ -280,47 +327,62 @@ impl Zone {
     }
 
     /// The state between two z between which D grows from below `h_c` to above it.
-    fn root(&self, c: f64, [mut lo, mut hi]: [f64; 2], near: Option<f64>) -> Option<ZoneState> {
+    fn root(&self, c: f64, [lo, hi]: [f64; 2], near: Option<f64>) -> Option<ZoneState> {
         let Cohesion { strength, range } = self.cohesion;
-        // Of a thin zone the second term of D is σ₀c z 2/π.
-        let thin = near.unwrap_or(0.5 * PI * range / (strength * c));
-        let within = if thin > lo && thin < hi { thin } else { 0.5 * (lo + hi) };
-        let mut z = if lo > 0.0 || hi < 1.0 { within } else { thin.clamp(1e-12, 1.0 - 1e-12) };
+        let half = Shares::of_free(HALF);
+        let is_thin = hi <= HALF || lo < HALF && self.miss(c, half).0 > 0.0;
+        let (shares, sense): (fn(f64) -> Shares, f64) =
+            if is_thin { (Shares::of_free, 1.0) } else { (Shares::of_contact, -1.0) };
+        let [mut lo, mut hi] = if is_thin { [lo, hi.min(HALF)] } else { [1.0 - hi, (1.0 - lo).min(HALF)] };
+        let begin = match near {
+            Some(share) if is_thin => 1.0 - share,
+            Some(share) => share,
+            // Of a thin zone the second term of D is σ₀c z 2/π.
+            None if is_thin => (0.5 * PI * range / (strength * c)).max(1e-12),
+            None => hi,
+        };
+        let mut x = if begin > lo && begin < hi { begin } else { 0.5 * (lo + hi) };
         let mut opens = false;
         for _ in 0..STEPS {
-            let (miss, slope) = self.miss(c, z);
+            let (miss, slope) = self.miss(c, shares(x));
             opens = slope > 0.0;
-            if miss > 0.0 {
-                hi = z;
+            if miss * sense > 0.0 {
+                hi = x;
             } else {
-                lo = z;
+                lo = x;
             }
-            let step = miss / slope;
-            if miss.abs() <= 2.0 * f64::EPSILON * range || step.abs() <= 2.0 * f64::EPSILON * z {
+            let step = miss * sense / slope;
+            if miss.abs() <= 2.0 * f64::EPSILON * range || step.abs() <= 2.0 * f64::EPSILON * x {
                 break;
             }
-            let next = z - step;
-            z = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
+            let next = x - step;
+            x = if next > lo && next < hi {
+                next
+            } else if lo > 0.0 {
+                0.5 * (lo + hi)
+            } else {
+                // Beside a cone D goes as the root of what is in contact: Newton's method comes up from below.
+                TOWARDS_NOTHING * hi
+            };
         }
-        opens.then(|| self.at(c, z)).flatten()
+        opens.then(|| self.at(c, shares(x))).flatten()
     }
 
-    /// The state with the free share z, which is in equilibrium.
-    fn at(&self, c: f64, z: f64) -> Option<ZoneState> {
+    /// The state with these shares, which is in equilibrium.
+    fn at(&self, c: f64, shares: Shares) -> Option<ZoneState> {
         let Cohesion { strength, .. } = self.cohesion;
         let panels = &*self.panels;
-        let (sine, cosine) = (z.sqrt(), (1.0 - z).sqrt());
-        let angle = asin(sine).min(FRAC_PI_2);
+        let [angle, sine, cosine] = shares.angle();
         let s = c * cosine;
         let [value, area] = panels.value_and_area(panels.place(s));
         let approach = value - 2.0 * strength * c * sine;
         let rise = outside::rise_from(panels, s, c);
-        let slope = (rise - 2.0 * strength * z / (1.0 + cosine)) / angle;
+        let slope = (rise - 2.0 * strength * shares.free / (1.0 + cosine)) / angle;
         let ring = 2.0 * strength * c * c * sliver(angle, [sine, cosine]);
         approach.is_finite().then(|| ZoneState {
             edge: c,
             contact_radius: s,
-            free: z,
+            share: shares.contact,
             approach,
             force: 2.0 * (approach * s - area) - ring,
             energy: self.energy(c, s, approach),

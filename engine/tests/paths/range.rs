@@ -260,7 +260,7 @@ fn times() {
     let mut near = None;
     let all = median(21, || {
         for c in &edges {
-            near = of.zone.state(*c, near).map(|state| state.free).filter(|free| *free < 1.0);
+            near = of.zone.state(*c, near).map(|state| state.share).filter(|share| *share > 0.0);
         }
     });
     println!("a state: {:.1} us", 1e3 * all);

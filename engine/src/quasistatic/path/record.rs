@@ -318,8 +318,9 @@ impl<'a> Record<'a> {
             let band = self.dead_band.map_or(0.0, |band| band.lost);
             let error = last - self.begin - self.area + before_last + band;
             let whole = self.lost().unwrap_or(before_last).abs();
-            // An unloading from a start in contact is measured by what it stored there.
-            error.abs() / whole.max(work_of_loading.unwrap_or(self.begin).abs())
+            // An unloading from a start in contact is measured by what it stored there, a path that ends before its turn by what it stores.
+            let stored = self.begin.abs().max(last.abs());
+            error.abs() / whole.max(work_of_loading.map_or(stored, f64::abs))
         });
         let by_area = self.events.iter().try_fold(0.0, |sum, event| Some(sum + event.dissipated_by_area?));
         let at_turn = work_of_loading.map_or(Some(self.begin), |work| {

@@ -36,6 +36,9 @@ const HALVINGS: usize = 24;
 /// How many times as far out as a value is first taken it is looked for at most.
 const FARTHER: f64 = 4.0;
 
+/// How far beyond a corner the edge of a contact that passes it is looked at, of the radius.
+const BEYOND_CORNER: f64 = 1e-3;
+
 /// Halvings of a place with a given contact radius.
 const OF_RADIUS: usize = 80;
 
@@ -307,21 +310,40 @@ impl Course<'_> {
     /// [`PathError::BeyondZone`] with the first state that is not.
     fn follow(&mut self, [from, to]: [Place; 2]) -> Result<(), PathError> {
         let radius = |place| self.solution().at(place).contact_radius;
-        let (mut good, mut bad) = (radius(from), radius(to));
-        let ends = if bad >= good { Ends::Outer } else { Ends::Inner };
-        let Some(mut fault) = self.fault(to, ends)? else { return self.record.along(&self.lane, [from, to]) };
-        let [mut last, mut beyond] = [from, to];
-        // It appears once on the way.
-        for _ in 0..HALVINGS {
-            let Some(place) = self.solution().place(0.5 * (good + bad)) else { break };
-            if let Some(found) = self.fault(place, ends)? {
-                (beyond, bad, fault) = (place, radius(place), found);
-            } else {
-                (last, good) = (place, radius(place));
+        let ends = if radius(to) >= radius(from) { Ends::Outer } else { Ends::Inner };
+        let passed = self.passed([from, to]);
+        let mut last = from;
+        for to in passed.into_iter().chain([to]) {
+            let Some(mut fault) = self.fault(to, ends)? else {
+                last = to;
+                continue;
+            };
+            let (mut beyond, mut good, mut bad) = (to, radius(last), radius(to));
+            // It appears once on the way.
+            for _ in 0..HALVINGS {
+                let Some(place) = self.solution().place(0.5 * (good + bad)) else { break };
+                if let Some(found) = self.fault(place, ends)? {
+                    (beyond, bad, fault) = (place, radius(place), found);
+                } else {
+                    (last, good) = (place, radius(place));
+                }
             }
+            self.record.along(&self.lane, [from, last])?;
+            return Err(self.beyond(beyond, Some(fault)));
         }
-        self.record.along(&self.lane, [from, last])?;
-        Err(self.beyond(beyond, Some(fault)))
+        self.record.along(&self.lane, [from, to])
+    }
+
+    /// The places between two, in order, at which contact ends just beyond a corner, where most pulls.
+    fn passed(&self, [from, to]: [Place; 2]) -> Vec<Place> {
+        let [begin, end] = [from, to].map(|place| self.solution().edges(place).contact_radius);
+        let corners = self.equilibria.zone.corners().map(|corner| corner * (1.0 + BEYOND_CORNER));
+        let between = corners.filter(|s| begin.min(end) < *s && *s < begin.max(end));
+        let mut places: Vec<Place> = between.filter_map(|s| place_of(self.solution(), s)).collect();
+        if end < begin {
+            places.reverse();
+        }
+        places
     }
 
     /// Holds what a jump lands on to one disc in one zone.
