@@ -76,6 +76,11 @@ impl Folds {
         Self { list, monotone }
     }
 
+    /// The radii between which equilibria are not stable.
+    pub fn unstable(&self) -> Vec<[f64; 2]> {
+        self.monotone.stretches.iter().filter(|at| !at.rising).map(|at| at.radii).collect()
+    }
+
     /// dc/ds of the equilibria at a radius.
     pub fn slope(&self, panels: &Arc<Panels>, gamma: f64, s: f64) -> f64 {
         let solution = ExactSolution::new(Arc::clone(panels), gamma);

@@ -249,6 +249,7 @@ impl Going<'_> {
         let equation =
             Equation::new(&panels, *control, edge, motion, [self.s, self.t, self.c], way.rate, left);
         let caps = Caps::new(&panels, folds, way.rate, equation.branch.exponent, *wave, *settings);
+        let unstable = folds.unstable();
         let level = way.rate.abs() / folds.slope(&panels, edge.adhesion(motion), self.s);
         let rests = way.rate * motion.sense() <= 0.0 && (motion == Motion::Closing || way.rate >= 0.0);
         let adhesion = edge.adhesion(motion) * PI * self.s * self.s;
@@ -259,8 +260,7 @@ impl Going<'_> {
         }
         let first = self.record.moments.len();
         let (at, end) = stretch.follow(&mut self.record, progress)?;
-        let level = if level > 0.0 { level } else { f64::MIN_POSITIVE };
-        self.snaps.extend(snaps(&self.record.moments[first..], level, end == End::Apart));
+        self.snaps.extend(snaps(&self.record.moments[first..], level, end == End::Apart, &unstable));
         let s = at.held.contact_radius;
         self.adhesion += edge.adhesion(motion) * PI * (self.s - s) * (self.s + s);
         if motion == Motion::Closing && self.closed_to.is_none_or(|[largest, _]| s > largest) {

@@ -1,4 +1,8 @@
-//! The snaps of a pull: stretches in which the edge is ten times as fast as at its slowest since the last one.
+//! The snaps of a pull: stretches in which the edge is ten times as fast as at its slowest since the last one, and crosses equilibria that
+//! are not stable. Without those it follows the equilibria, however much its speed along them changes.
+//!
+//! An edge that runs past a place where there was an equilibrium before is slow there too, but it rests only where it is about as slow as
+//! along the equilibria: in between it is still the same snap.
 
 use super::record::Moment;
 use crate::elementary::ln;
@@ -8,6 +12,9 @@ const FASTER: f64 = 10.0;
 
 /// Below this share of the speed along the equilibria an edge rests: after a snap it comes to them to rounding, and is as slow as that.
 const RESTS: f64 = 0.1;
+
+/// Above this many times the speed along the equilibria an edge that has run does not rest.
+const RUNS: f64 = 100.0;
 
 /// A way of the edge below this share of the radius is none.
 const NO_WAY: f64 = 1e-6;
@@ -36,10 +43,12 @@ struct Run {
     low: Moment,
 }
 
-/// The snaps among the moments of one stretch, whose edge would go at the speed `level` at its beginning if it followed the equilibria.
-/// The one in which the bodies come apart is none.
-pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool) -> Vec<Snap> {
+/// The snaps among the moments of one stretch, whose edge would go at the speed `level` at its beginning if it followed the equilibria;
+/// of held control that is nothing. The one in which the bodies come apart is none. Between the radii `unstable` equilibria are not stable.
+pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool, unstable: &[[f64; 2]]) -> Vec<Snap> {
     let mut found = Vec::new();
+    let slow = if level > 0.0 { RUNS * level } else { f64::INFINITY };
+    let level = level.max(f64::MIN_POSITIVE);
     let (mut least, mut is_settled) = (level, false);
     let mut run: Option<Run> = None;
     for pair in moments.windows(2) {
@@ -65,7 +74,7 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool) -> Vec<Snap> {
         if speed <= FASTER * least {
             found.push(running.ended(crossing(a, b, FASTER * least)));
             (run, least, is_settled) = (None, speed.max(RESTS * level), true);
-        } else if FASTER * low < running.top && speed > FASTER * low {
+        } else if low <= slow && FASTER * low < running.top && speed > FASTER * low {
             found.push(running.ended([running.low.contact_radius, running.low.dissipated]));
             least = low.max(RESTS * level);
             run = Some(Run { from: crossing(a, b, FASTER * low), top: speed, low: *b });
@@ -74,7 +83,12 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool) -> Vec<Snap> {
     if let (Some(running), Some(last)) = (run.filter(|_| !ends_apart), moments.last()) {
         found.push(running.ended([last.contact_radius, last.dissipated]));
     }
-    found.retain(|snap| (snap.from - snap.to).abs() > NO_WAY * snap.from);
+    found.retain(|snap| {
+        (snap.from - snap.to).abs() > NO_WAY * snap.from
+            && unstable
+                .iter()
+                .any(|[inner, outer]| *inner < snap.from.max(snap.to) && *outer > snap.from.min(snap.to))
+    });
     found
 }
 

@@ -63,7 +63,7 @@ pub struct MomentReport {
     pub force: f64,
 }
 
-/// A stretch in which the edge exceeds ten times its least speed since the last one.
+/// A stretch in which the edge exceeds ten times its least speed since the last one and crosses unstable equilibria.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SnapReport {

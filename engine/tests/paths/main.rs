@@ -8,6 +8,7 @@ mod cycle;
 mod dead_band;
 mod elements;
 mod maps;
+mod pulls;
 mod range;
 mod stability;
 mod walk;
