@@ -46,7 +46,7 @@ from .errors import (
     StartError,
     UnstableStart,
 )
-from .results import Fit, Map, Path, Pull, Stability, Sweep, Trace
+from .results import Fit, Map, Path, Pull, Speeds, Stability, Sweep, Trace
 
 __version__ = _engine.__version__
 
@@ -77,6 +77,7 @@ __all__ = [
     "Quantity",
     "SpecError",
     "Pull",
+    "Speeds",
     "Stability",
     "StartError",
     "Sweep",

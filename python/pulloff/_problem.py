@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import os
 from operator import index
-from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, Literal, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _engine
 from ._gap import column, plain, sampled
 from ._points import Range, draws_of, free_part_of, points_of, range_of, skip_of
 from ._progress import Progress, told
 from .errors import ComputationError, DataError, MapError, NotConverged, NotDetermined, PresetError, PullError
-from .results import Fit, Map, Path, Pull, Stability, Trace
+from .results import Fit, Map, Path, Pull, Speeds, Stability, Trace
 
 if TYPE_CHECKING:
     import numpy as np
@@ -529,6 +529,37 @@ class Problem:
         if direction is not None:
             raise NotDetermined(direction, result=result)
         return result
+
+    def speeds(
+        self,
+        data: Union[str, "os.PathLike[str]", Mapping[str, ArrayLike], Any, None] = None,
+        *,
+        columns: Optional[str] = None,
+        segment: Optional[str] = None,
+        free_part: Union[Range, str, None] = None,
+        signs: Optional[str] = None,
+        skip: int = 0,
+        of: Optional[Literal["force-radius", "approach-radius", "force-approach"]] = None,
+        progress: Progress = None,
+    ) -> Speeds:
+        """The energy release rate at every measured row in contact, beside the speed of the edge.
+
+        Parameters
+        ----------
+        data, columns, segment, free_part, signs, skip
+            As of :meth:`fit`; the speed needs a column ``"time"``.
+        of : {"force-radius", "approach-radius", "force-approach"}, optional
+            What G is computed from: force and radius when left out, or force and approach of points without contact radii.
+
+        Raises
+        ------
+        DataError
+            The points are refused, or none is in contact.
+        """
+        reading = (columns, segment, free_part_of(free_part), signs)
+        points = None if data is None else points_of(data, self._native.values().get("units") == "SI")
+        with told(progress, "speeds") as tell:
+            return Speeds(_engine.speeds(self._native, points, reading, skip_of(skip), of, tell))
 
     def pressure(self, s: float, r: ArrayLike) -> NDArray[np.float64]:
         """The contact pressure at the radii ``r`` in equilibrium at the contact radius ``s``, compression positive.

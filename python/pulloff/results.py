@@ -219,6 +219,39 @@ class Pull(Result):
         return ax
 
 
+class Speeds(Result):
+    """The energy release rate of measured rows beside the speed of their edge; each column has the shape (rows,)."""
+
+    time: Floats
+    """In seconds, or in reduced units; NaN where no column says it."""
+    contact_radius: Floats
+    """s, measured or of force and approach."""
+    speed: Floats
+    """−ds/dt, positive where the contact recedes; NaN without times."""
+    energy_release_rate: Floats
+    """G, negative where the edge is pressed."""
+    error: Floats
+    """The standard deviation of G, by the noise of the columns."""
+    speed_error: Floats
+    window: Floats
+    """The rows by which the speed is told."""
+    segment: Texts
+    row: Counts
+    """The number among the rows that are read, from 1."""
+
+    def _title(self) -> str:
+        return f"{self.row_count} rows in contact"
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws G over the speed where the contact recedes, and returns the axes of matplotlib."""
+        ax = self._axes(ax)
+        recedes = self.speed > 0
+        ax.loglog(self.speed[recedes], self.energy_release_rate[recedes], ".")
+        ax.set_xlabel("speed of the edge −ds/dt")
+        ax.set_ylabel(self._unit("energy_per_area", "energy release rate G"))
+        return ax
+
+
 class Stability(Result):
     """The law of stability of one disc over the contact radius; each column has the shape (radii,), from the end of the path
     outward. A state is stable where the work of adhesion is less than the critical one."""

@@ -4,7 +4,9 @@ use crate::arrays::arrays_ready;
 use crate::errors::in_python;
 use numpy::PyArray1;
 use pulloff_engine::report::rows::{RowsError, Table};
-use pulloff_engine::report::{self, MapReport, PathReport, PullReport, StabilityReport, TraceReport};
+use pulloff_engine::report::{
+    self, MapReport, PathReport, PullReport, SpeedsReport, StabilityReport, TraceReport,
+};
 use pyo3::exceptions::{PyKeyError, PyRuntimeError};
 use pyo3::prelude::*;
 use serde_json::Value;
@@ -38,7 +40,14 @@ macro_rules! reports {
     };
 }
 
-reports!(TraceReport: warnings, PathReport: warnings, MapReport: notes, StabilityReport: warnings, PullReport: warnings);
+reports!(
+    TraceReport: warnings,
+    PathReport: warnings,
+    MapReport: notes,
+    StabilityReport: warnings,
+    PullReport: warnings,
+    SpeedsReport: warnings
+);
 
 /// A result, immutable.
 #[pyclass(frozen, module = "pulloff._engine")]

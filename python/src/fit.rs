@@ -11,6 +11,8 @@ use pulloff_engine::report;
 use pulloff_engine::report::fit::FitReport;
 use pulloff_engine::report::residuals;
 use pulloff_engine::report::rows::{RowsError, Table};
+use pulloff_engine::report::speeds::{Pair, SpeedsError, SpeedsReport};
+use pulloff_engine::text::quote;
 use pyo3::prelude::*;
 use serde_json::Value;
 use std::sync::Arc;
@@ -89,6 +91,66 @@ impl Wanted {
     }
 }
 
+/// The name of the points and the preset of `problem` with `data`, the name and the text of a table, in place of its own measured curve,
+/// read as `reading` says: columns, segment, free part and signs.
+fn attached(
+    py: Python<'_>,
+    problem: &Problem,
+    data: Option<(String, Vec<u8>)>,
+    reading: [&Option<String>; 4],
+    skip: u32,
+    uncertain: Option<&String>,
+) -> PyResult<(String, Preset)> {
+    let mut preset = problem.preset.clone();
+    let own = preset.data.source.as_ref().map(|source| source.name.clone());
+    let name = data.as_ref().map(|(name, _)| name.clone()).or(own).unwrap_or_else(|| "data".to_owned());
+    let mut changes = Vec::new();
+    if let Some((name, text)) = data {
+        let source = Source::new(name, None, text.into());
+        changes.push((data_keys::FILE, PresetValue::Points(Arc::new(source))));
+    }
+    // With the file that they are of, not with the one before.
+    let keys = [data_keys::COLUMNS, data_keys::SEGMENT, data_keys::FREE_PART, data_keys::SIGNS];
+    let texts = keys.into_iter().zip(reading.map(Option::as_ref)).chain([(data_keys::UNCERTAIN, uncertain)]);
+    changes.extend(texts.filter_map(|(key, text)| Some((key, PresetValue::Text(text?.clone())))));
+    if skip > 0 {
+        changes.push((data_keys::SKIP, PresetValue::Integer(skip.into())));
+    }
+    preset.set_all(changes).map_err(|invalid| match invalid {
+        Invalid::Made { key, cause } if key == data_keys::FILE => errors::of_data(py, &cause),
+        invalid => errors::of_data(py, &format!("{name}: {invalid}")),
+    })?;
+    Ok((name, preset))
+}
+
+/// G of the rows of `data`, or of the measured curve of `problem`, beside the speed of their edge; `reading` says what the columns are,
+/// which branch is used, which rows are apart, and the signs; `of` the two columns of which G is computed.
+#[pyfunction]
+pub fn speeds(
+    py: Python<'_>,
+    problem: &Bound<'_, Problem>,
+    data: Option<(String, Vec<u8>)>,
+    reading: [Option<String>; 4],
+    skip: u32,
+    of: Option<String>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Document> {
+    let (name, preset) = attached(py, problem.get(), data, reading.each_ref(), skip, None)?;
+    let names = Pair::ALL.map(Pair::name);
+    let pair = Pair::ALL.into_iter().find(|pair| of.as_deref() == Some(pair.name()));
+    if let Some(of) = of.filter(|_| pair.is_none()) {
+        return Err(errors::of_data(py, &format!("of = \"{}\" is none of {}", quote(&of), names.join(", "))));
+    }
+    let made = long(py, progress, |progress| SpeedsReport::compute(&preset, pair, progress))?;
+    made.map(Document::new).map_err(|error| match error {
+        SpeedsError::Case(error) => errors::of_case(py, &error),
+        SpeedsError::NoData => {
+            errors::of_data(py, "the problem has no measured curve of its own: give data, or set data.file")
+        }
+        error => errors::of_data(py, &format!("{name}: {error}")),
+    })
+}
+
 /// The fit of `problem` to `data`, the name and the text of a table, or to its own measured curve: the document, the fitted
 /// problem, how it ended, what is not determined, and the points beside it as CSV.
 #[pyfunction]
@@ -99,32 +161,9 @@ pub fn fitted(
     wanted: Wanted,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Document, Problem, &'static str, Option<String>, String)> {
-    let mut preset = problem.get().preset.clone();
-    let own = preset.data.source.as_ref().map(|source| source.name.clone());
-    let name = data.as_ref().map(|(name, _)| name.clone()).or(own).unwrap_or_else(|| "data".to_owned());
+    let reading = [&wanted.columns, &wanted.segment, &wanted.free_part, &wanted.signs];
+    let (name, preset) = attached(py, problem.get(), data, reading, wanted.skip, wanted.uncertain.as_ref())?;
     let refused = |error: &dyn std::fmt::Display| errors::of_data(py, &format!("{name}: {error}"));
-    let mut changes = Vec::new();
-    if let Some((name, text)) = data {
-        let source = Source::new(name, None, text.into());
-        changes.push((data_keys::FILE, PresetValue::Points(Arc::new(source))));
-    }
-    // With the file that they are of, not with the one before.
-    for (key, text) in [
-        (data_keys::COLUMNS, &wanted.columns),
-        (data_keys::SEGMENT, &wanted.segment),
-        (data_keys::UNCERTAIN, &wanted.uncertain),
-        (data_keys::FREE_PART, &wanted.free_part),
-        (data_keys::SIGNS, &wanted.signs),
-    ] {
-        changes.extend(text.as_ref().map(|text| (key, PresetValue::Text(text.clone()))));
-    }
-    if wanted.skip > 0 {
-        changes.push((data_keys::SKIP, PresetValue::Integer(wanted.skip.into())));
-    }
-    preset.set_all(changes).map_err(|invalid| match invalid {
-        Invalid::Made { key, cause } if key == data_keys::FILE => errors::of_data(py, &cause),
-        invalid => refused(&invalid),
-    })?;
     let options = wanted.options(&preset);
     let made = long(py, progress, |progress| fit_own(&preset, &options, progress))?;
     let made = made.map_err(|error| match error {

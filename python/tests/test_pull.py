@@ -36,3 +36,31 @@ def test_what_is_missing_is_said():
         problem.replace({"edge.exponent": 0.5}).pull()
     with pytest.raises(pulloff.PullError, match="above 0"):
         problem.replace({"edge.exponent": 0.5}).pull(-1.0)
+
+
+def test_speeds_of_a_made_edge():
+    problem = pulloff.Problem(
+        "lens",
+        {
+            "material.effective_modulus": "1 MPa",
+            "gap.radius_of_curvature": "1 mm",
+            "path.control": "displacement",
+            "data.baseline": 0.0,
+        },
+    )
+    s = 1.2e-4 - 5e-7 * np.arange(60)
+    opening = np.sqrt(2 * np.pi * 0.05 * s / 1e6)
+    approach = s**2 / 1e-3 - opening
+    force = 2e6 * (approach * s - s**3 / 3e-3)
+    points = {"time": np.arange(60.0), "contact radius": s, "force": force}
+    found = problem.speeds(points)
+    assert found.row_count == 60
+    assert np.allclose(found.energy_release_rate, 0.05, rtol=1e-6)
+    assert np.allclose(found.speed, 5e-7, rtol=1e-6)
+    assert found.to_dict()["from"] == "force and contact radius"
+    with pytest.raises(pulloff.DataError, match="no approach"):
+        problem.speeds(points, of="approach-radius")
+    with pytest.raises(pulloff.DataError, match="is none of force-radius"):
+        problem.speeds(points, of="radius")
+    with pytest.raises(pulloff.DataError, match="no measured curve"):
+        problem.speeds()

@@ -8,7 +8,7 @@ use super::output::Destination;
 use super::problem::{Changes, Problem};
 use super::watch::Stop;
 use clap::Args;
-use pulloff_engine::report::speeds::{COLUMNS, SpeedsError};
+use pulloff_engine::report::speeds::{COLUMNS, Pair, SpeedsError};
 use pulloff_engine::report::{SpeedsReport, columns, json, table};
 use pulloff_engine::text::show_path;
 use std::ffi::OsString;
@@ -22,6 +22,9 @@ pub struct Arguments {
     /// preset alone that names its curve in data.file
     #[arg(required = true, num_args = 1..=2, value_name = "FILE [PRESET]")]
     paths: Vec<OsString>,
+    /// What G is computed from: force and radius when left out, or force and approach of a file without contact radii
+    #[arg(long, value_name = "COLUMNS", value_parser = Pair::ALL.map(Pair::name))]
+    from: Option<String>,
     #[command(flatten)]
     changes: Changes,
     #[command(flatten)]
@@ -53,10 +56,12 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     attach(&mut loaded.preset, file.map(PathBuf::as_path), &arguments.reading.said()?)?;
     let preset = &loaded.preset;
     let stop = Stop::catch()?;
-    let report = SpeedsReport::compute(preset, &console.bar(Some(&stop))).map_err(|error| match error {
-        SpeedsError::Case(error) => error.into(),
-        error => Failure::Usage(error.to_string()),
-    })?;
+    let pair = Pair::ALL.into_iter().find(|pair| arguments.from.as_deref() == Some(pair.name()));
+    let report =
+        SpeedsReport::compute(preset, pair, &console.bar(Some(&stop))).map_err(|error| match error {
+            SpeedsError::Case(error) => error.into(),
+            error => Failure::Usage(error.to_string()),
+        })?;
     console.warn(&report.warnings);
     for note in &report.notes {
         console.note(Some(note));

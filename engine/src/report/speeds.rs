@@ -4,8 +4,9 @@
 //! K = g(s) − δ      G = E* K²/2πs      δ = P/(2E* s) + ∫₀ˢ g / s   of P and s;      v = −ds/dt
 //! ```
 //!
-//! No law of adhesion is in it: E* and the gap alone. G follows from the force and the contact radius, or where no radius is measured from force
-//! and approach, of which s follows: at a held approach the force falls with s. D. Maugis and M. Barquins, J. Phys. D 11, 1989 (1978).
+//! No law of adhesion is in it: E* and the gap alone. G follows from any two of force, approach and contact radius; of force and approach s
+//! follows first, for at a held approach the force falls with s. From approach and radius no force is in it, unless the way is that of the
+//! other end of a spring. D. Maugis and M. Barquins, J. Phys. D 11, 1989 (1978).
 
 use super::problem::Head;
 use super::rows::{RowsError, Table};
@@ -38,9 +39,52 @@ pub enum SpeedsError {
     /// Its file gives no points, in words.
     #[error("{0}")]
     Data(String),
+    /// A column is not there.
+    #[error("G cannot be computed from {}: the file has no {missing}", .pair.words())]
+    Lacks {
+        /// What was asked for.
+        pair: Pair,
+        /// What is missing.
+        missing: &'static str,
+    },
     /// No row of it is in contact, or none at a radius for which the gap is known.
     #[error("no row is in contact, or none has a contact radius for which the gap is known")]
     Nothing,
+}
+
+/// What G is computed from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pair {
+    /// P and s.
+    ForceRadius,
+    /// δ and s.
+    ApproachRadius,
+    /// P and δ.
+    ForceApproach,
+}
+
+impl Pair {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::ForceRadius, Self::ApproachRadius, Self::ForceApproach];
+
+    /// Its name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ForceRadius => "force-radius",
+            Self::ApproachRadius => "approach-radius",
+            Self::ForceApproach => "force-approach",
+        }
+    }
+
+    /// What it is, in words.
+    fn words(self) -> &'static str {
+        match self {
+            Self::ForceRadius => "force and contact radius",
+            Self::ApproachRadius => "approach and contact radius",
+            Self::ForceApproach => "force and approach",
+        }
+    }
 }
 
 /// One row in contact.
@@ -104,6 +148,7 @@ struct Reading {
     panels: Arc<Panels>,
     units: Units,
     abscissa: Abscissa,
+    pair: Pair,
     /// That of the way, reduced.
     control: Control,
     /// δ₀, P₀ and its slope over x, in base units.
@@ -129,26 +174,33 @@ impl Reading {
         let [sigma_x, sigma_force] = [sigma_x / self.units.length, sigma_force / self.units.force];
         let unit = self.units.force / self.units.length;
         let is_known = |s: f64| s > 0.0 && s <= self.panels.reach();
-        if let Some(radius) = radius_of(self.abscissa, point) {
-            let s = radius / self.units.length;
-            if !is_known(s) {
-                return None;
-            }
-            let held = Held::new(&self.panels, Control::Force, s, force);
-            let of_opening = 2.0 * held.opening / (TAU * s);
-            let by_radius = of_opening * (held.slope - held.by_radius) - held.energy_release_rate() / s;
-            return Some(Released {
-                contact_radius: radius,
-                energy: signed(&held) * unit,
-                error: (of_opening * held.by_control * sigma_force).abs() * unit,
-                by_radius: by_radius * unit / self.units.length,
-            });
-        }
         let way = (point.x - offset) / self.units.length;
         let (approach, compliance) = match self.control {
             Control::Stiffness(k) => (way - force / k, 1.0 / k),
             _ => (way, 0.0),
         };
+        if self.pair != Pair::ForceApproach {
+            let radius = radius_of(self.abscissa, point)?;
+            let s = radius / self.units.length;
+            if !is_known(s) {
+                return None;
+            }
+            let (held, of_column) = if self.pair == Pair::ForceRadius {
+                let held = Held::new(&self.panels, Control::Force, s, force);
+                (held, held.by_control * sigma_force)
+            } else {
+                let held = Held::new(&self.panels, Control::Displacement, s, approach);
+                (held, hypot(sigma_x, compliance * sigma_force))
+            };
+            let of_opening = 2.0 * held.opening / (TAU * s);
+            let by_radius = of_opening * (held.slope - held.by_radius) - held.energy_release_rate() / s;
+            return Some(Released {
+                contact_radius: radius,
+                energy: signed(&held) * unit,
+                error: (of_opening * of_column).abs() * unit,
+                by_radius: by_radius * unit / self.units.length,
+            });
+        }
         let held = self.at_force(approach, force)?;
         let s = held.contact_radius;
         // δ and P move s, and both of them K: dP = 2s dδ − 2K ds.
@@ -192,11 +244,16 @@ fn signed(held: &Held) -> f64 {
 }
 
 impl SpeedsReport {
-    /// Of the measured curve of `preset`, with its E*, gap, device and what it says of the instrument.
+    /// Of the measured curve of `preset`, with its E*, gap, device and what it says of the instrument, from two of its columns: force and
+    /// radius where no others are asked for, and force and approach of a file without radii.
     ///
     /// # Errors
     /// [`SpeedsError`].
-    pub fn compute(preset: &Preset, progress: &dyn Progress) -> Result<Self, SpeedsError> {
+    pub fn compute(
+        preset: &Preset,
+        pair: Option<Pair>,
+        progress: &dyn Progress,
+    ) -> Result<Self, SpeedsError> {
         let source = preset.data.source.as_ref().ok_or(SpeedsError::NoData)?;
         let branches = source.branches(&preset.reading()).map_err(SpeedsError::Data)?;
         let case = Case::prepare(preset, progress)?;
@@ -210,11 +267,21 @@ impl SpeedsReport {
         let mut reach = wanted(&case, &branches);
         let [sigma_x, sigma_force, _] = branches.noise.sigma;
         let of_file: Vec<Point> = branches.list.iter().flat_map(|branch| branch.attached.clone()).collect();
+        let is_measured = of_file.iter().all(|point| radius_of(branches.abscissa, point).is_some());
+        let usual = if is_measured { Pair::ForceRadius } else { Pair::ForceApproach };
+        let pair = pair.unwrap_or(usual);
+        if pair != Pair::ForceApproach && !is_measured {
+            return Err(SpeedsError::Lacks { pair, missing: "contact radius at every row" });
+        }
+        if pair != Pair::ForceRadius && branches.abscissa == Abscissa::Radius {
+            return Err(SpeedsError::Lacks { pair, missing: "approach" });
+        }
         let mut panels = case.table.up_to(reach).map_err(|_| SpeedsError::Nothing)?;
         let reading = |panels: Arc<Panels>| Reading {
             panels,
             units,
             abscissa: branches.abscissa,
+            pair,
             control: if branches.abscissa == Abscissa::Position {
                 case.control
             } else {
@@ -255,13 +322,12 @@ impl SpeedsReport {
         if rows.iter().all(|row| row.speed.is_none()) {
             notes.push("no column has the times, so no row has a speed".to_owned());
         }
-        let is_measured = of_file.iter().all(|point| radius_of(branches.abscissa, point).is_some());
         let of_radius = if branches.abscissa == Abscissa::Radius { None } else { Some(sigma_x) };
         Ok(Self {
             head: Head::new("speeds", preset, &case),
             warnings,
             notes,
-            from: if is_measured { "force and contact radius" } else { "force and approach" },
+            from: pair.words(),
             sigma: [of_radius, Some(sigma_force), noises.into_iter().reduce(f64::max)],
             rows,
         })
@@ -357,7 +423,7 @@ mod tests {
         preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
         preset.set(data::FREE_PART, Value::Text("none".to_owned())).unwrap();
         preset.set(data::SIGNS, Value::Text("x=+,force=+".to_owned())).unwrap();
-        SpeedsReport::compute(&preset, &Unwatched).unwrap()
+        SpeedsReport::compute(&preset, None, &Unwatched).unwrap()
     }
 
     #[test]
@@ -370,7 +436,7 @@ mod tests {
         let mut preset = read("made", PRESET).unwrap();
         let source = Source::new("made.csv".to_owned(), None, text.as_bytes().into());
         preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
-        let found = SpeedsReport::compute(&preset, &Unwatched).unwrap();
+        let found = SpeedsReport::compute(&preset, None, &Unwatched).unwrap();
         assert_eq!((found.from, found.rows.len()), ("force and contact radius", made.len()));
         for (row, [s, .., speed, energy]) in found.rows.iter().zip(&made) {
             assert!((row.contact_radius / s - 1.0).abs() < 1e-12, "{row:?} {s}");
@@ -407,6 +473,35 @@ mod tests {
     }
 
     #[test]
+    fn any_two_of_three_columns_give_the_same() {
+        let made = &rows()[..100];
+        let mut text = "approach [m],force [N],contact radius [m],segment\n".to_owned();
+        for [s, approach, force, ..] in made {
+            writeln!(text, "{approach:e},{force:e},{s:e},retraction").unwrap();
+        }
+        let mut preset = read("made", PRESET).unwrap();
+        let source = Source::new("made.csv".to_owned(), None, text.as_bytes().into());
+        preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
+        preset.set(data::FREE_PART, Value::Text("none".to_owned())).unwrap();
+        preset.set(data::SIGNS, Value::Text("x=+,force=+".to_owned())).unwrap();
+        for pair in Pair::ALL {
+            let found = SpeedsReport::compute(&preset, Some(pair), &Unwatched).unwrap();
+            assert_eq!((found.from, found.rows.len()), (pair.words(), made.len()));
+            for row in &found.rows {
+                let [s, .., energy] = made[row.row - 1];
+                assert!((row.contact_radius / s - 1.0).abs() < 1e-6, "{row:?} {s}");
+                assert!((row.energy_release_rate / energy - 1.0).abs() < 1e-6, "{row:?} {energy}");
+            }
+        }
+        // An E* twice as large: twice the G of approach and radius, and another one of the others.
+        preset.set("material.effective_modulus", Value::Number(2e6)).unwrap();
+        let of = |pair| SpeedsReport::compute(&preset, Some(pair), &Unwatched).unwrap().rows[50];
+        let [s, .., energy] = made[of(Pair::ApproachRadius).row - 1];
+        assert!((of(Pair::ApproachRadius).energy_release_rate / (2.0 * energy) - 1.0).abs() < 1e-6);
+        assert!((of(Pair::ForceRadius).energy_release_rate / (2.0 * energy) - 1.0).abs() > 0.1, "{s}");
+    }
+
+    #[test]
     fn errors_are_what_the_noise_of_the_columns_does() {
         let mut state = 7_u64;
         let mut normal = move || {
@@ -427,7 +522,7 @@ mod tests {
         let mut preset = read("made", PRESET).unwrap();
         let source = Source::new("made.csv".to_owned(), None, text.as_bytes().into());
         preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
-        let found = SpeedsReport::compute(&preset, &Unwatched).unwrap();
+        let found = SpeedsReport::compute(&preset, None, &Unwatched).unwrap();
         for row in &found.rows {
             let energy = made[row.row - 1][5];
             squares += ((row.energy_release_rate - energy) / row.error).powi(2) / made.len() as f64;
