@@ -26,17 +26,13 @@ pub(super) fn mark(model: &mut Model) -> Vec<Effect> {
     if keys.len() == preset.data.free().count() {
         let known = pulloff_engine::fit::options::target(&preset, Abscissa::Approach, &row.key);
         if let Err(FitError::Key { why, .. }) = known {
-            model.tell(Level::Error, format!("{} {why}", row.key));
-            return Vec::new();
+            return model.refuse(format!("{} {why}", row.key));
         }
         keys.push(row.key.to_string());
     }
     match preset.set(data::FREE, Value::Text(keys.join(","))) {
         Ok(()) => change(model, preset),
-        Err(invalid) => {
-            model.tell(Level::Error, invalid.to_string());
-            Vec::new()
-        }
+        Err(invalid) => model.refuse(invalid.to_string()),
     }
 }
 
@@ -99,8 +95,7 @@ impl Background for Fitted {
     fn came(model: &mut Model, found: Arc<Self>) -> Vec<Effect> {
         let Self::Done(result) = &*found else { return Vec::new() };
         if asked::<Self>(model) != Some(&model.preset) {
-            model.tell(Level::Error, "the values were changed while the fit ran: what it found is not taken");
-            return Vec::new();
+            return model.refuse("the values were changed while the fit ran: what it found is not taken");
         }
         match result {
             Ok(found) => taken(model, found),
@@ -126,8 +121,7 @@ pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
     if model.preset.data.source.is_some() && model.preset.data.free().next().is_none() {
         let text =
             format!("nothing is free to be fitted: {} lets the selected value change", Id::Free.named());
-        model.tell(Level::Error, text);
-        return Vec::new();
+        return model.refuse(text);
     }
     let preset = model.preset.clone();
     vec![ask::<Fitted>(model, preset)]
@@ -136,8 +130,7 @@ pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
 /// Takes what a fit found.
 fn taken(model: &mut Model, found: &Arc<Fit>) -> Vec<Effect> {
     if let Some(direction) = &found.direction {
-        model.tell(Level::Error, format!("not determined, and not taken: {direction}"));
-        return Vec::new();
+        return model.refuse(format!("not determined, and not taken: {direction}"));
     }
     model.tell(if found.verdict == Verdict::Describes { Level::Info } else { Level::Error }, told(found));
     model.fit = Some(Arc::clone(found));

@@ -105,7 +105,9 @@ impl Model {
         let walk = &walk[first..];
         let of_curve: Vec<&(usize, &Node)> = walk.iter().filter(|(_, node)| self.is_on_curve(node)).collect();
         let mut done: Vec<Option<Option<usize>>> = vec![None; events.len()];
-        if let Some((_, node)) = of_curve.first().filter(|(_, node)| node.begins) {
+        // Solved again for other values it stands where it stood, behind what had happened.
+        let goes_on = |node: &Node| node.begins || node.kind == NodeKind::Solved;
+        if let Some((_, node)) = of_curve.first().filter(|(_, node)| goes_on(node)) {
             done.iter_mut().take(self.passed_before(events, node)).for_each(|done| *done = Some(None));
         }
         // What was walked and is no event of the path stands behind the last one that was.

@@ -30,7 +30,7 @@
 //! | [`admissibility`], `pinned` | which states of the curve are admissible; the curves of pins |
 //! | [`loops`] | the loop of loading and unloading with rings of contact |
 //! | [`onset`] | the smallest amplitude at which a problem snaps |
-//! | [`maps`], [`map_axes`], [`studies`], `study_table` | the map of two numbers, its axes; a quantity over one, and its documents |
+//! | [`maps`], [`map_axes`], [`studies`], [`study`], `study_table` | the map of two numbers, its axes; a quantity over one, and its documents |
 //! | [`fitting`], `fit` | the distances of measured points; a fit |
 //! | [`device`] | the line of the loading device through the walker |
 //! | [`profile`] | pressure, gap and potential of one state |
@@ -92,6 +92,7 @@ pub mod session;
 pub mod setting;
 pub mod status_line;
 pub mod studies;
+pub mod study;
 mod study_table;
 pub mod table;
 pub mod theory;

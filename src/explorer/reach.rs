@@ -3,7 +3,7 @@
 use super::command::Id;
 use super::model::{Level, Model};
 use super::node::Node;
-use super::studies::study_range;
+use super::study::study_range;
 use super::view::{Home, View};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;

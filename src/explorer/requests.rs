@@ -2,12 +2,20 @@
 
 use super::effect::{Effect, Wish};
 use super::job::Job;
-use super::model::{Awaits, Model, Walking};
+use super::model::{Awaits, Level, Model, Walking};
 use super::node::NodeKind;
 use pulloff_engine::preset::{Key, Preset, Value};
 use pulloff_engine::problem::Control;
 use std::path::PathBuf;
 use std::sync::Arc;
+
+impl Model {
+    /// Says why something is not done.
+    pub(super) fn refuse(&mut self, why: impl Into<String>) -> Vec<Effect> {
+        self.tell(Level::Error, why);
+        Vec::new()
+    }
+}
 
 /// Asks for the curve of the preset as it is.
 pub(super) fn want_curve(model: &mut Model) -> Effect {

@@ -3,10 +3,6 @@
 //! The value of the preset is one of those computed. Turning it within the range moves its mark and asks for nothing. Where the
 //! surface is one of many, drawn with a seed, others follow it one by one.
 
-use super::background::{Background, Tell, Want, Watch};
-use super::command::Id;
-use super::model::Model;
-use super::view::View;
 use pulloff_engine::gap::shapes::split_mix::SplitMix64;
 use pulloff_engine::preset::edge::RATE;
 use pulloff_engine::preset::schema::Kind;
@@ -80,7 +76,7 @@ pub struct StudyData {
 
 /// The key that is varied and its values, ascending, that of the preset among them.
 /// Errors: Why this value has no range, in words.
-fn range(preset: &Preset, row: &Row) -> Result<(Key, Vec<Value>), String> {
+pub fn range(preset: &Preset, row: &Row) -> Result<(Key, Vec<Value>), String> {
     let label = &row.label;
     let (key, values) = match (row.kind, preset.get(&row.key)) {
         (Kind::Control, Some(Value::Control(Control::Stiffness(k)))) => {
@@ -106,13 +102,6 @@ fn range(preset: &Preset, row: &Row) -> Result<(Key, Vec<Value>), String> {
         _ => return Err(format!("{label} is no number: there is nothing to vary")),
     };
     Ok((key, values))
-}
-
-/// The key that a study varies, and the values it takes: those of the selected value.
-/// Errors: Why it has none, in words.
-pub fn study_range(model: &Model) -> Result<(Key, Vec<Value>), String> {
-    let Some((row, _)) = model.selected_knob() else { return Err("no value is selected".to_owned()) };
-    range(&model.preset, &row).map_err(|why| format!("{why}; select another in Problem"))
 }
 
 /// From the factor below a value to the factor above it, in equal ratios.
@@ -295,7 +284,7 @@ impl StudyData {
 
 impl StudyWish {
     /// Whether it is the one that is wanted, whose value may be another within the range.
-    fn is_like(&self, wanted: &Self) -> bool {
+    pub(super) fn is_like(&self, wanted: &Self) -> bool {
         let (preset, key) = (&wanted.preset, &wanted.key);
         if self.key != *key || self.column != wanted.column {
             return false;
@@ -309,43 +298,6 @@ impl StudyWish {
         number(&value).is_some_and(|x| (lo..=hi).contains(&x))
             && moved.set(key, value).is_ok()
             && moved == *preset
-    }
-}
-
-impl Background for StudyData {
-    type Key = StudyWish;
-    const NAME: &'static str = "study";
-    const ONLY_NEWEST: bool = true;
-
-    fn wanted(model: &Model) -> Want<StudyWish> {
-        if !model.shown_views().contains(&View::Study) || model.is_computing() {
-            return Want::Later;
-        }
-        let Ok((key, values)) = study_range(model) else { return Want::Later };
-        Want::Now(StudyWish { preset: model.preset.clone(), key, column: model.studied, values })
-    }
-
-    fn is_same(asked: &StudyWish, wanted: &StudyWish) -> bool {
-        asked.is_like(wanted)
-    }
-
-    fn is_of(&self, wanted: &StudyWish) -> bool {
-        self.wish.is_like(wanted)
-    }
-
-    fn compute(key: &StudyWish, progress: Watch<'_>, told: Tell<'_, Self>) -> Option<Self> {
-        key.run(threads(), progress, told)
-    }
-
-    /// Only of other surfaces: the values themselves are seen to come.
-    fn says(model: &Model) -> Option<String> {
-        let study = model.results.so_far::<Self>()?;
-        (study.done() == study.outcomes.len())
-            .then(|| format!("computing other surfaces; {} keeps those there are", Id::Cancel.named()))
-    }
-
-    fn given_up(model: &mut Model) -> Option<String> {
-        Self::says(model).map(|_| "the study keeps the surfaces that are there".to_owned())
     }
 }
 
@@ -413,7 +365,7 @@ mod tests {
         assert!(wish.run(2, &|| true, &mut |_| {}).is_none());
         assert_eq!((one.surfaces(), wish.others()), (0, 0));
         // Its value may move within the range, and nothing else.
-        let is_of = |preset: &Preset| one.is_of(&StudyWish { preset: preset.clone(), ..wish.clone() });
+        let is_of = |preset: &Preset| one.wish.is_like(&StudyWish { preset: preset.clone(), ..wish.clone() });
         let mut moved = preset.clone();
         moved.set(&key, 0.003.into()).unwrap();
         assert!(is_of(&moved));

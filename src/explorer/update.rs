@@ -71,8 +71,7 @@ fn allowed(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::Travel { states: true, .. } | Command::GoToState(_) | Command::GoTo { .. }
     );
     if !by_states && !is_available(model, command.id()) {
-        model.tell(Level::Error, why_unavailable(model, command.id()));
-        return Vec::new();
+        return model.refuse(why_unavailable(model, command.id()));
     }
     let is_travel =
         matches!(command, Command::Plain(Id::Undo | Id::Redo) | Command::Travel { states: false, .. });
@@ -110,74 +109,49 @@ fn go_on(model: &mut Model) -> Vec<Effect> {
 
 fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
     match command {
-        Command::Plain(Id::Edit) => select(model),
-        Command::Plain(id) => row_of(id).does(model),
-        Command::Steps(count) => walk(model, Action::Steps(count)),
-        Command::RunOf(count) => run(model, Action::Run(count)),
-        Command::StepLength(length) => {
-            model.length = length.clamp(*LENGTHS.start(), *LENGTHS.end());
-            Vec::new()
-        }
-        Command::SelectEvent(number) => select_event(model, number),
-        Command::Assign(assignments) => assign(model, assignments),
-        Command::Set { key, text } => set(model, &key, &text),
-        Command::Try { key, text } => try_out(model, &key, &text),
-        Command::TakeBack => untry(model),
-        Command::Browse { key, folder } => vec![browse(model, key, folder)],
-        Command::Pick { panel, line } => {
-            pick(model, panel, line);
-            Vec::new()
-        }
-        Command::MoveTo(radius) => move_to(model, radius),
-        Command::Zoom { view, closer, about } => {
-            look::zoom(model, view, closer, about);
-            Vec::new()
-        }
-        Command::Show(view) => {
-            reach::show(model, view);
-            Vec::new()
-        }
-        Command::Go(home) => {
-            reach::go(model, home);
-            Vec::new()
-        }
+        Command::Plain(Id::Edit) => return select(model),
+        Command::Plain(id) => return row_of(id).does(model),
+        Command::Steps(count) => return walk(model, Action::Steps(count)),
+        Command::RunOf(count) => return run(model, Action::Run(count)),
+        Command::StepLength(length) => model.length = length.clamp(*LENGTHS.start(), *LENGTHS.end()),
+        Command::SelectEvent(number) => return select_event(model, number),
+        Command::Assign(assignments) => return assign(model, assignments),
+        Command::Set { key, text } => return set(model, &key, &text),
+        Command::Try { key, text } => return try_out(model, &key, &text),
+        Command::TakeBack => return untry(model),
+        Command::Browse { key, folder } => return vec![browse(model, key, folder)],
+        Command::Pick { panel, line } => pick(model, panel, line),
+        Command::MoveTo(radius) => return move_to(model, radius),
+        Command::Zoom { view, closer, about } => look::zoom(model, view, closer, about),
+        Command::Show(view) => reach::show(model, view),
+        Command::Go(home) => reach::go(model, home),
         Command::Study(column) => {
             model.studied = column;
             reach::show(model, View::Study);
-            Vec::new()
         }
-        Command::Overlay(overlay) => {
-            look::overlay(model, overlay);
-            Vec::new()
-        }
-        Command::Map { x, y } => {
-            look::map_of(model, &x, y);
-            Vec::new()
-        }
-        Command::GoTo { node, numbering } => go_to(model, node, numbering),
-        Command::GoToState(state) => go_to_state(model, state),
-        Command::Travel { id, count, states: false } => travel(model, id, count),
-        Command::Travel { id, count, states: true } => by_states(model, id, count),
-        Command::Turn { id, key } => turn(model, id, Some(&key)),
-        Command::Unpin(number) => {
-            look::unpin(model, number);
-            Vec::new()
-        }
-        Command::Open(name) => vec![file(Job::Open { name, assignments: Vec::new() })],
-        Command::OpenWith { name, assignments } => vec![file(Job::Open { name, assignments })],
-        Command::Delete(name) => vec![file(Job::Delete(name))],
+        Command::Overlay(overlay) => look::overlay(model, overlay),
+        Command::Map { x, y } => look::map_of(model, &x, y),
+        Command::GoTo { node, numbering } => return go_to(model, node, numbering),
+        Command::GoToState(state) => return go_to_state(model, state),
+        Command::Travel { id, count, states: false } => return travel(model, id, count),
+        Command::Travel { id, count, states: true } => return by_states(model, id, count),
+        Command::Turn { id, key } => return turn(model, id, Some(&key)),
+        Command::Unpin(number) => look::unpin(model, number),
+        Command::Open(name) => return vec![file(Job::Open { name, assignments: Vec::new() })],
+        Command::OpenWith { name, assignments } => return vec![file(Job::Open { name, assignments })],
+        Command::Delete(name) => return vec![file(Job::Delete(name))],
         Command::SaveAs { name, replace, with_data } => {
             let preset = Box::new(model.preset.clone());
-            vec![file(Job::SaveAs { name, preset, replace, with_data, from: model.source.clone() })]
+            return vec![file(Job::SaveAs { name, preset, replace, with_data, from: model.source.clone() })];
         }
-        Command::SaveAnyway => save(model, Overwrite::Always),
-        Command::Export { what, path, replace } => export(model, what, path, replace),
-        Command::ExportPage { page, path, replace } => export_page(model, page, path, replace),
+        Command::SaveAnyway => return save(model, Overwrite::Always),
+        Command::Export { what, path, replace } => return export(model, what, path, replace),
+        Command::ExportPage { page, path, replace } => return export_page(model, page, path, replace),
         Command::Picture { picture, .. } => {
-            model.tell(Level::Error, format!("nothing here draws a {}", picture.name()));
-            Vec::new()
+            model.tell(Level::Error, format!("nothing here draws a {}", picture.name()))
         }
     }
+    Vec::new()
 }
 
 /// What a reply does to the model, and what follows from it.
@@ -196,10 +170,7 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
             Some(kind) => (kind.keep)(model, found),
             None => Vec::new(),
         },
-        Reply::Notice(text) => {
-            model.tell(Level::Error, text);
-            Vec::new()
-        }
+        Reply::Notice(text) => model.refuse(text),
         Reply::File(done) => file_came(model, *done),
     };
     effects.extend(go_on(model));

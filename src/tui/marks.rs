@@ -1,7 +1,7 @@
 //! How each line and sign of a figure is drawn: its stroke, letter and colour.
 
 use crate::figure::{Role, Sign};
-use crate::tui::raster::{Meets, Stroke};
+use crate::tui::raster::{Meets, STABLE, Stroke, UNSTABLE};
 use crate::tui::theme::{Charts, Palette, Theme};
 use ratatui::style::Style;
 
@@ -28,9 +28,9 @@ pub fn look(role: Role, theme: Theme) -> Stroke {
             let at = number.saturating_sub(1) % DIGITS.len();
             of(styles.pins[at], Shares, false, DIGITS[at])
         }
-        Role::Unstable => of(styles.curve, Shares, true, '.'),
+        Role::Unstable => of(styles.curve, Shares, true, UNSTABLE),
         Role::Stable | Role::Body | Role::Edges | Role::Law | Role::Cusps => {
-            of(styles.curve, Shares, false, 'o')
+            of(styles.curve, Shares, false, STABLE)
         }
         Role::Loading => of(styles.exact, Beneath, false, 'l'),
         Role::Unloading => of(styles.loops, Beneath, false, 'u'),

@@ -14,6 +14,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
+/// What a curve is in cells of one character, and its broken parts; a bit says that a cell has more than those.
+pub const STABLE: char = 'o';
+pub const UNSTABLE: char = '.';
+const SOLID: u8 = 0x80;
+
 /// The distance between the dots of a line.
 const DENSE: f64 = 0.25;
 /// A broken line: of so many widths so many are drawn. No cell of it stays empty.
@@ -97,6 +102,9 @@ impl Layer {
             let row = place((height - y) / height * f64::from(plot.height * down), plot.height * down);
             let cell = usize::from(row / down) * usize::from(plot.width) + usize::from(column / across);
             self.bits[cell] |= 1 << (row % down * across + column % across);
+            if charts == Charts::Ascii && !is_broken {
+                self.bits[cell] |= SOLID;
+            }
             if distance >= next_letter && self.letters.last() != Some(&cell) {
                 self.letters.push(cell);
                 next_letter = distance + apart;
@@ -139,6 +147,7 @@ pub fn draw(layers: &[Layer], buffer: &mut Buffer, plot: Rect, charts: Charts) -
         let symbol = match charts {
             Charts::Braille => char::from_u32(0x2800 + braille(bits)).unwrap_or(' '),
             Charts::Block => [' ', '\u{2580}', '\u{2584}', '\u{2588}'][usize::from(bits & 3)],
+            Charts::Ascii if over.symbol == STABLE && layers[at].bits[cell] & SOLID == 0 => UNSTABLE,
             Charts::Ascii => over.symbol,
         };
         let place = &mut buffer[(plot.x + cell_at(column), plot.y + cell_at(row))];

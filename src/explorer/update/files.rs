@@ -27,8 +27,7 @@ pub(in crate::explorer) fn save_back(model: &mut Model) -> Vec<Effect> {
     };
     if let Some(why) = why {
         let text = format!("{why}: {} saves under a name of your own", Id::SaveAs.named());
-        model.tell(Level::Error, text);
-        return Vec::new();
+        return model.refuse(text);
     }
     let overwrite = model.fingerprint.map_or(Overwrite::Never, Overwrite::IfUnchanged);
     save(model, overwrite)
@@ -41,12 +40,10 @@ pub(super) fn save(model: &mut Model, overwrite: Overwrite) -> Vec<Effect> {
 
 pub(super) fn export(model: &mut Model, what: ExportKind, path: String, replace: bool) -> Vec<Effect> {
     let (Some(curve), Some(start)) = (model.curve.clone(), model.journal.start().cloned()) else {
-        model.tell(Level::Error, "there is no curve to export yet");
-        return Vec::new();
+        return model.refuse("there is no curve to export yet");
     };
     if !ends_in(&path, what.endings()) {
-        model.tell(Level::Error, format!("the file must end in .{}", what.endings().join(" or .")));
-        return Vec::new();
+        return model.refuse(format!("the file must end in .{}", what.endings().join(" or .")));
     }
     let content = match what {
         ExportKind::Curve => Content::Curve(curve),
@@ -59,8 +56,7 @@ pub(super) fn export(model: &mut Model, what: ExportKind, path: String, replace:
                 model.results.share::<StudyData>().filter(|study| study.done() == study.outcomes.len());
             let Some(study) = study else {
                 let text = format!("there is no study to export: {} makes one", Id::Study.named());
-                model.tell(Level::Error, text);
-                return Vec::new();
+                return model.refuse(text);
             };
             let preset = study.wish.preset.clone();
             Content::Study(study, Box::new(Beginning { source: model.source.clone(), preset }))
@@ -68,8 +64,7 @@ pub(super) fn export(model: &mut Model, what: ExportKind, path: String, replace:
         ExportKind::Script => match model.script() {
             Ok(lines) => Content::Script(Box::new(start), lines),
             Err(reason) => {
-                model.tell(Level::Error, format!("not exported: {reason}"));
-                return Vec::new();
+                return model.refuse(format!("not exported: {reason}"));
             }
         },
     };
@@ -82,8 +77,7 @@ pub(super) fn export_page(model: &mut Model, page: Page, path: String, replace: 
         Page::Figure(_) => Format::of(Path::new(&path)).err().map(|error| error.to_string()),
     };
     if let Some(reason) = refused {
-        model.tell(Level::Error, reason);
-        return Vec::new();
+        return model.refuse(reason);
     }
     vec![file(Job::Write { page, path, replace })]
 }

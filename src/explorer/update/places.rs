@@ -24,12 +24,9 @@ pub(super) fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
         let largest = ROOM * curve.case.start * curve.case.units().length;
         let length = |s| with_unit(&model.preset.units, Quantity::Length, s, false, |s| short(s, 6));
         let (asked, largest) = (length(radius), length(largest));
-        model.tell(Level::Error,
-            format!(
+        return model.refuse(format!(
                 "contact radius {asked} is out of range: it must be at most {largest}, three times that of the start"
-            ),
-        );
-        return Vec::new();
+            ));
     }
     walk(model, Action::MoveTo(reduced))
 }
@@ -43,8 +40,7 @@ pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
             (Err(why), _) => why.clone(),
             _ => "it is being computed".to_owned(),
         };
-        model.tell(Level::Error, format!("there is no path, and so no largest pull of it: {why}"));
-        return Vec::new();
+        return model.refuse(format!("there is no path, and so no largest pull of it: {why}"));
     };
     let Some(pull) = &path.totals.largest_pull else { return Vec::new() };
     let radius = pull.contact_radius;
@@ -71,8 +67,7 @@ pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
 pub(super) fn select_event(model: &mut Model, number: usize) -> Vec<Effect> {
     let count = model.path_events().len();
     let Some(line) = model.log().place(number) else {
-        model.tell(Level::Error, format!("there is no event {number}: the path has {count}"));
-        return Vec::new();
+        return model.refuse(format!("there is no event {number}: the path has {count}"));
     };
     model.event = line;
     go_to_event(model)

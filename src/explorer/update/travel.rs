@@ -168,8 +168,7 @@ fn to_node(model: &mut Model, node: usize) {
 /// To the end of a branch, its parameters with it.
 pub(super) fn go_to(model: &mut Model, node: usize, numbering: u64) -> Vec<Effect> {
     if model.history.numbering() != numbering || model.history.node(node).is_none() {
-        model.tell(Level::Error, "the walk has changed meanwhile: ask for its branches again");
-        return Vec::new();
+        return model.refuse("the walk has changed meanwhile: ask for its branches again");
     }
     let mut effects = abandon(model);
     to_node(model, node);
@@ -185,8 +184,7 @@ pub(super) fn go_to_state(model: &mut Model, state: [f64; 3]) -> Vec<Effect> {
     };
     let found = (0..model.history.len()).rev().find(|at| model.history.node(*at).is_some_and(is_it));
     let Some(found) = found else {
-        model.tell(Level::Error, "no state of the walk has these values");
-        return Vec::new();
+        return model.refuse("no state of the walk has these values");
     };
     go_to(model, found, model.history.numbering())
 }

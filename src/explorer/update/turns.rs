@@ -3,7 +3,7 @@
 use crate::explorer::command::{Command, Id};
 use crate::explorer::effect::Effect;
 use crate::explorer::job::Job;
-use crate::explorer::model::{Awaits, Level, Model};
+use crate::explorer::model::{Awaits, Model};
 use crate::explorer::table::{Waits, is_available, row_of, why_unavailable};
 use pulloff_engine::preset::Key;
 
@@ -43,8 +43,7 @@ pub(super) fn enqueue(model: &mut Model, command: Command) -> Vec<Effect> {
             id @ (Id::FineLess | Id::FineMore | Id::Less | Id::More | Id::MuchLess | Id::MuchMore),
         ) => {
             if !is_available(model, id) {
-                model.tell(Level::Error, why_unavailable(model, id));
-                return Vec::new();
+                return model.refuse(why_unavailable(model, id));
             }
             let Some((row, _)) = model.selected_knob() else { return Vec::new() };
             Command::Turn { id, key: row.key.clone() }

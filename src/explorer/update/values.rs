@@ -50,10 +50,7 @@ pub(in crate::explorer) fn turn(model: &mut Model, id: Id, key: Option<&str>) ->
             tell_effect(model, &row.key, &preset);
             change(model, preset)
         }
-        Err(reason) => {
-            model.tell(Level::Error, reason);
-            Vec::new()
-        }
+        Err(reason) => model.refuse(reason),
     }
 }
 
@@ -120,10 +117,7 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
             }
             change(model, preset)
         }
-        Err(invalid) => {
-            model.tell(Level::Error, invalid.to_string());
-            Vec::new()
-        }
+        Err(invalid) => model.refuse(invalid.to_string()),
     }
 }
 
@@ -248,10 +242,7 @@ pub(super) fn assign(model: &mut Model, assignments: Vec<Assignment>) -> Vec<Eff
             tell_points(model, &preset);
             change(model, preset)
         }
-        Err(invalid) => {
-            model.tell(Level::Error, invalid.to_string());
-            Vec::new()
-        }
+        Err(invalid) => model.refuse(invalid.to_string()),
     }
 }
 
@@ -273,10 +264,7 @@ pub(super) fn rows_came(model: &mut Model, rows: Arc<Rows>) -> Vec<Effect> {
             model.tell(Level::Info, std::iter::once(said).chain(more).collect::<Vec<_>>().join("; "));
             change(model, preset)
         }
-        Err(invalid) => {
-            model.tell(Level::Error, invalid.to_string());
-            Vec::new()
-        }
+        Err(invalid) => model.refuse(invalid.to_string()),
     }
 }
 

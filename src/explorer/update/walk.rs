@@ -27,8 +27,7 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
     };
     if !model.shows_its_curve() {
         let reason = model.curve_error.as_ref().map(|error| error.text().to_owned());
-        model.tell(Level::Error, reason.unwrap_or_else(of_before));
-        return Vec::new();
+        return model.refuse(reason.unwrap_or_else(of_before));
     }
     let control = curve.case.control;
     let moves = matches!(
@@ -38,14 +37,12 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
     let node = model.history.current();
     if !moves {
         if node.is_some_and(Node::is_apart) {
-            model.tell(Level::Error, format!("the bodies are apart: {}", back_or_anew()));
-            return Vec::new();
+            return model.refuse(format!("the bodies are apart: {}", back_or_anew()));
         }
         let is_stale = |node: &Node| !model.is_on_curve(node) && matches!(node.kind, NodeKind::Stale(_));
         if node.is_some_and(is_stale) {
             let text = format!("this state is not solved for the values as they are: {}", back_or_anew());
-            model.tell(Level::Error, text);
-            return Vec::new();
+            return model.refuse(text);
         }
     }
     let at = node.map_or(At::Nothing, |node| node.at(control));

@@ -411,6 +411,42 @@ fn the_ring_elements_lie_over_the_exact_curve_and_go_again() {
 }
 
 #[test]
+fn characters_tell_stable_and_unstable_parts_apart() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.app.theme = PLAIN;
+    let text = screen.text(120, 40);
+    // Below the legend, and left of the second chart.
+    let chart: String = text
+        .lines()
+        .skip(4)
+        .take(22)
+        .map(|line| line.chars().skip(30).take(40).collect::<String>() + "\n")
+        .collect();
+    let count = |wanted: &str| chart.matches(wanted).count();
+    assert!(count("o") > 20 && count("..") > 3, "{chart}");
+}
+
+#[test]
+fn what_happened_stays_done_when_a_value_is_turned_behind_it() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("nn");
+    let first = |screen: &mut Screen| screen.text(160, 45).contains("\u{2713}1 ");
+    assert!(first(&mut screen));
+    screen.keys(">");
+    assert!(first(&mut screen), "{}", screen.text(160, 45));
+    screen.keys("nn>");
+    let text = screen.text(160, 45);
+    assert!(
+        text.contains("\u{2713}1 ") && text.contains("\u{2713}2 ") && !text.contains("\u{2713}3 "),
+        "{text}"
+    );
+    // At the start nothing has happened.
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(">");
+    assert!(!first(&mut screen));
+}
+
+#[test]
 fn an_ascii_terminal_gets_nothing_else() {
     let mut screen = Screen::new("wavy-sphere");
     screen.app.theme = PLAIN;

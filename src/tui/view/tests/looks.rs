@@ -23,7 +23,7 @@ fn themes() -> Vec<Theme> {
 /// A walk with a jump, two pins, all the theory, the device's line.
 fn full(preset: &str) -> Screen {
     let mut screen = Screen::new(preset);
-    screen.keys("nxnp}pKy\rj\rj\r\x1b");
+    screen.keys("nxnp}py\rj\rj\rj\r\x1b");
     screen
 }
 

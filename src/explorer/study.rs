@@ -1,0 +1,52 @@
+//! The study of the selected value, computed while it is looked at.
+
+use super::background::{Background, Tell, Want, Watch};
+use super::command::Id;
+use super::model::Model;
+use super::studies::{StudyData, StudyWish, range, threads};
+use super::view::View;
+use pulloff_engine::preset::{Key, Value};
+
+/// The key that a study varies, and the values it takes: those of the selected value.
+/// Errors: Why it has none, in words.
+pub fn study_range(model: &Model) -> Result<(Key, Vec<Value>), String> {
+    let Some((row, _)) = model.selected_knob() else { return Err("no value is selected".to_owned()) };
+    range(&model.preset, &row).map_err(|why| format!("{why}; select another in Problem"))
+}
+
+impl Background for StudyData {
+    type Key = StudyWish;
+    const NAME: &'static str = "study";
+    const ONLY_NEWEST: bool = true;
+
+    fn wanted(model: &Model) -> Want<StudyWish> {
+        if !model.shown_views().contains(&View::Study) || model.is_computing() {
+            return Want::Later;
+        }
+        let Ok((key, values)) = study_range(model) else { return Want::Later };
+        Want::Now(StudyWish { preset: model.preset.clone(), key, column: model.studied, values })
+    }
+
+    fn is_same(asked: &StudyWish, wanted: &StudyWish) -> bool {
+        asked.is_like(wanted)
+    }
+
+    fn is_of(&self, wanted: &StudyWish) -> bool {
+        self.wish.is_like(wanted)
+    }
+
+    fn compute(key: &StudyWish, progress: Watch<'_>, told: Tell<'_, Self>) -> Option<Self> {
+        key.run(threads(), progress, told)
+    }
+
+    /// Only of other surfaces: the values themselves are seen to come.
+    fn says(model: &Model) -> Option<String> {
+        let study = model.results.so_far::<Self>()?;
+        (study.done() == study.outcomes.len())
+            .then(|| format!("computing other surfaces; {} keeps those there are", Id::Cancel.named()))
+    }
+
+    fn given_up(model: &mut Model) -> Option<String> {
+        Self::says(model).map(|_| "the study keeps the surfaces that are there".to_owned())
+    }
+}
