@@ -148,7 +148,7 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::Export { what, path, replace } => return export(model, what, path, replace),
         Command::ExportPage { page, path, replace } => return export_page(model, page, path, replace),
         Command::Picture { picture, .. } => {
-            model.tell(Level::Error, format!("nothing here draws a {}", picture.name()))
+            model.tell(Level::Error, format!("nothing here draws a {}", picture.name()));
         }
     }
     Vec::new()
