@@ -433,6 +433,7 @@ class Problem:
         x_range: Optional[Range] = None,
         force_range: Optional[Range] = None,
         separate: bool = False,
+        model: Optional[str] = None,
         robust: bool = True,
         sigma_x: Optional[float] = None,
         sigma_force: Optional[float] = None,
@@ -474,6 +475,9 @@ class Problem:
             Rows in this range alone are used, as they are in the data; None leaves an end open.
         separate : bool
             Whether approach and retraction have a work of adhesion each.
+        model : {"short-range", "dugdale"}, optional
+            How the adhesion acts: at the edge of contact alone, or within a range, whose ``material.cohesive_strength`` is then free
+            too; ``material.adhesion`` of the problem when left out.
         robust : bool
             Whether points far away count linearly, not squared.
         sigma_x, sigma_force : float, optional
@@ -511,6 +515,7 @@ class Problem:
             "free": [free] if isinstance(free, str) else None if free is None else list(free),
             "uncertain": None if uncertain is None else ",".join(f"{key}={error}" for key, error in uncertain.items()),
             "separate": separate,
+            "model": model,
             "robust": robust,
             "sigma": (sigma_x, sigma_force),
             "x_range": range_of("x_range", x_range),

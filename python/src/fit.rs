@@ -4,7 +4,7 @@ use crate::document::{Document, Report};
 use crate::errors;
 use crate::problem::Problem;
 use crate::running::long;
-use pulloff_engine::fit::{FitError, Options, fit_own};
+use pulloff_engine::fit::{FitError, Model, Options, fit_models};
 use pulloff_engine::measured::{Asked, Source, Span};
 use pulloff_engine::preset::{Invalid, Preset, Value as PresetValue, data as data_keys};
 use pulloff_engine::report;
@@ -58,6 +58,7 @@ pub struct Wanted {
     free: Option<Vec<String>>,
     uncertain: Option<String>,
     separate: bool,
+    model: Option<String>,
     robust: bool,
     sigma: [Option<f64>; 2],
     x_range: Option<[f64; 2]>,
@@ -165,7 +166,15 @@ pub fn fitted(
     let (name, preset) = attached(py, problem.get(), data, reading, wanted.skip, wanted.uncertain.as_ref())?;
     let refused = |error: &dyn std::fmt::Display| errors::of_data(py, &format!("{name}: {error}"));
     let options = wanted.options(&preset);
-    let made = long(py, progress, |progress| fit_own(&preset, &options, progress))?;
+    let models: Vec<Model> = match &wanted.model {
+        Some(word) => vec![Model::of(word).ok_or_else(|| {
+            let known = Model::ALL.map(Model::name).join(", ");
+            errors::of_data(py, &format!("model {word:?} is none of {known}"))
+        })?],
+        None => Vec::new(),
+    };
+    let made = long(py, progress, |progress| fit_models(&preset, &models, &options, progress))?;
+    let made = made.and_then(|models| models.best().map(|(fit, _)| fit.clone()).ok_or(FitError::NoStart));
     let made = made.map_err(|error| match error {
         FitError::NoStart | FitError::Cancelled => errors::of_fit(py, &error.to_string()),
         FitError::NothingFree => errors::of_data(

@@ -18,8 +18,9 @@ use super::{Failure, measured, problem};
 use crate::store::hash::sha256;
 use crate::store::{Loaded, stream};
 use crate::sweep::in_order;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use pulloff_engine::fit::{Fit, FitError, Options, fit_own};
+use pulloff_engine::fit::{FitError, Model, Models, Options, fit_models};
 use pulloff_engine::measured::asked::AskedError;
 use pulloff_engine::measured::{Asked, Span};
 use pulloff_engine::preset::{Preset, Value, data, write};
@@ -54,6 +55,10 @@ pub struct Arguments {
     /// Fit this key for approach and retraction apart
     #[arg(long, value_name = "KEY", value_parser = ["material.work_of_adhesion", "work_of_adhesion", "gamma"])]
     separate: Option<String>,
+    /// Fit this model instead of material.adhesion: short-range, at the edge of contact alone; or dugdale, with a range, whose
+    /// material.cohesive_strength is then free. Of several, on one file of points, it is said which the points speak for
+    #[arg(long, value_name = "MODEL,...", value_delimiter = ',', value_parser = models())]
+    model: Vec<Model>,
     #[command(flatten)]
     reading: Reading,
     /// Use rows in this range alone, as they are in the file: x=LO..HI or force=LO..HI (repeatable)
@@ -118,6 +123,11 @@ enum Robust {
     None,
 }
 
+/// The words of models.
+fn models() -> impl TypedValueParser<Value = Model> {
+    PossibleValuesParser::new(Model::ALL.map(Model::name)).try_map(|word| Model::of(&word).ok_or("no model"))
+}
+
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let messages = arguments.messages;
     let console = messages.open();
@@ -125,7 +135,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let sinks = arguments.sinks(&files, &loaded)?;
     let stop = Stop::catch()?;
     let said = arguments.said()?;
-    let mut done = Done::new(arguments, &options, &console, sinks);
+    let mut done = Done::new(arguments, &console, sinks);
     let left = done.left(&files);
     let many = files.len() > 1;
     let compute = |index: u64| {
@@ -133,7 +143,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         // Of many files each is a share of the whole, which is soon done.
         let bar = (!many).then(|| messages.bar(Some(&stop)));
         let progress = bar.as_ref().map_or(&stop as &dyn Progress, |bar| bar);
-        Some(one(path, &loaded, &said, &options, progress))
+        Some(one(path, &loaded, &said, (&options, &arguments.model), progress))
     };
     let bar = console.bar(None);
     let (all, mut paths) = (left.len() as u64, left.iter());
@@ -159,15 +169,14 @@ fn one(
     path: &Path,
     loaded: &Loaded,
     said: &[(&'static str, Value)],
-    options: &Options,
+    (options, models): (&Options, &[Model]),
     progress: &dyn Progress,
-) -> Result<Fit, Failure> {
+) -> Result<Models, Failure> {
     let named = |error: &dyn std::fmt::Display| format!("{}: {error}", show_path(path));
     let mut preset = loaded.preset.clone();
     let other = Some(path).filter(|path| own(&preset).as_deref() != Some(path));
     attach(&mut preset, other, said)?;
-    let fitted = fit_own(&preset, options, progress);
-    fitted.map_err(|error| match error {
+    fit_models(&preset, models, options, progress).map_err(|error| match error {
         FitError::NoStart | FitError::Cancelled => Failure::Incomplete(named(&error)),
         error => Failure::Usage(named(&error)),
     })
@@ -181,6 +190,12 @@ impl Arguments {
         files = files::measured(files, console)?;
         if files.is_empty() {
             files.extend(own(&loaded.preset));
+        }
+        if files.len() > 1 && self.model.len() > 1 {
+            return Err(Failure::Usage(format!(
+                "--model: several models are compared on one file of points, and {} are given",
+                files.len()
+            )));
         }
         if files.is_empty() {
             return Err(Failure::Usage(
@@ -295,10 +310,11 @@ impl Arguments {
 
     /// What decides the rows of a table, but for the files themselves.
     fn fingerprint(&self, preset: &Preset) -> String {
-        let Self { free, uncertain, changes, separate, reading, range, sigma_x, sigma_force, .. } = self;
+        let Self { free, uncertain, changes, separate, model, reading, range, sigma_x, sigma_force, .. } =
+            self;
         let Self { robust, no_scan, .. } = self;
         let said = format!(
-            "{free:?} {uncertain:?} {changes:?} {separate:?} {reading:?} {range:?} {sigma_x:?} {sigma_force:?} {robust:?} {no_scan}"
+            "{free:?} {uncertain:?} {changes:?} {separate:?} {model:?} {reading:?} {range:?} {sigma_x:?} {sigma_force:?} {robust:?} {no_scan}"
         );
         sha256(format!("{said}\n{}", write(preset)).as_bytes())
     }

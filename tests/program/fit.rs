@@ -82,6 +82,32 @@ fn the_truth_of_the_shipped_curve_is_found_and_written() {
     assert_eq!(again.status, 0, "{}", again.err);
 }
 
+#[test]
+fn models_are_compared() {
+    let home = Home::new();
+    let both = ["fit", "lens", "--segment", "retraction", "--model", "short-range,dugdale"];
+    let ended = home.run(&[&both[..], &["--format", "json", "-o", "both.json"]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let document: Value = serde_json::from_str(&home.text("both.json")).unwrap();
+    assert_eq!((&document["document"], &document["best"]), (&"fit-models".into(), &"short-range".into()));
+    let [pair] = &document["pairs"].as_array().unwrap()[..] else { panic!("{document}") };
+    assert_eq!(pair["told_apart"], false, "{pair}");
+    let [sharp, ranged] = &document["fits"].as_array().unwrap()[..] else { panic!("{document}") };
+    assert_eq!([&sharp["model"], &sharp["verdict"]], ["short-range", "describes"]);
+    // The tension is free without being named, and not determined.
+    assert_eq!([&ranged["model"], &ranged["verdict"]], ["dugdale", "not-determined"]);
+    let keys: Vec<&str> =
+        ranged["parameters"].as_array().unwrap().iter().map(|of| of["key"].as_str().unwrap()).collect();
+    assert!(keys.contains(&"material.cohesive_strength"), "{keys:?}");
+    assert!(ranged["direction"].as_str().unwrap().contains("how far the adhesion reaches"), "{ranged}");
+    let ended =
+        home.run(&["fit", "shipped:lens.csv", "shipped:lens.csv", "lens", "--model", "short-range,dugdale"]);
+    assert_ne!(ended.status, 0);
+    assert!(ended.err.contains("on one file of points"), "{}", ended.err);
+    let ended = home.run(&["fit", "lens", "--model", "hertz"]);
+    assert!(ended.status == 2 && ended.err.contains("dugdale"), "{}", ended.err);
+}
+
 /// The rows of this part, of one branch or of both.
 fn counted(rows: &Value, part: &str) -> usize {
     let of = |rows: &Value| usize::try_from(rows[part].as_u64().unwrap()).unwrap();

@@ -14,6 +14,7 @@ use super::least_squares::LeastSquares;
 use super::path::{Foot, Mover, Place};
 use super::problem::{ADHESION, Datum, Instrument, Parameter, Paths, Problem, Target};
 use crate::measured::Segment;
+use crate::preset::schema::RANGE_KEYS;
 use nalgebra::{DMatrix, DVector};
 
 /// The step of a difference, in u.
@@ -41,6 +42,8 @@ fn mover(target: &Target) -> Option<(Mover, Option<Segment>)> {
         Target::Key(key) if key == "material.effective_modulus" => Some((Mover::Modulus, None)),
         Target::Key(key) if key == ADHESION => Some((Mover::Adhesion, None)),
         Target::Key(key) if key == "path.control.stiffness" => Some((Mover::Stiffness, None)),
+        Target::Key(key) if key == RANGE_KEYS[0] => Some((Mover::Strength, None)),
+        Target::Key(key) if key == RANGE_KEYS[1] => Some((Mover::Extent, None)),
         Target::Adhesion(segment) => Some((Mover::Adhesion, Some(*segment))),
         _ => None,
     }
@@ -102,10 +105,18 @@ impl Problem {
         let mut beside = None;
         for (i, (datum, foot)) in self.data.iter().zip(feet).enumerate() {
             let Some(foot) = foot else { continue };
-            let by = match (closed, foot.foot) {
-                (Some((_, Some(segment))), _) if segment != datum.segment => continue,
-                (Some((mover, _)), Foot::Radius(_)) => paths.of(datum.segment).moves(mover, foot.at),
-                _ => {
+            if matches!(closed, Some((_, Some(segment))) if segment != datum.segment) {
+                continue;
+            }
+            let told = match (closed, foot.foot) {
+                (Some((mover, _)), Foot::Radius(along)) => {
+                    paths.of(datum.segment).moves(mover, along, foot.at)
+                }
+                _ => None,
+            };
+            let by = match told {
+                Some(by) => by,
+                None => {
                     if beside.is_none() {
                         beside = Some(self.either_side(u, j, paths)?);
                     }
@@ -136,8 +147,8 @@ impl Problem {
         let (per, weights) = (self.per_point(), self.weights());
         let mut column = DVector::zeros(per * self.data.len());
         for (i, (datum, foot)) in self.data.iter().zip(&feet).enumerate() {
-            if let Some(foot @ Nearest { foot: Foot::Radius(_), .. }) = foot {
-                let by = paths.of(datum.segment).moves(mover, foot.at);
+            if let Some(foot @ Nearest { foot: Foot::Radius(along), .. }) = foot {
+                let by = paths.of(datum.segment).moves(mover, *along, foot.at)?;
                 let share = share(i);
                 (0..per).for_each(|k| column[per * i + k] = share * moved(foot, by, weights, k));
             }

@@ -28,7 +28,7 @@ pub struct Bootstrapped {
 
 impl Problem {
     /// The same with the parameter `j` held at `u`.
-    fn holding(&self, j: usize, u: f64) -> Option<Self> {
+    pub(super) fn holding(&self, j: usize, u: f64) -> Option<Self> {
         let mut held = self.clone();
         let Parameter { target, .. } = held.parameters.remove(j);
         let value = self.parameters[j].value(u);

@@ -16,12 +16,14 @@
 mod apart;
 mod contact;
 mod edge;
+mod range;
 mod rate;
 mod scores;
 mod spring;
 mod touch;
 mod untold;
 
+pub(super) use range::unseen;
 pub(super) use spring::of_spring;
 
 use super::fitted::Fitted;
@@ -82,11 +84,16 @@ pub(super) fn reasons(
     reasons.extend(contact::of_contact(problem, solved, scatter, inner));
     reasons.extend(apart::of_apart(problem, solved, scatter));
     reasons.extend(scores::of_shape(problem, solved, scatter, inner));
-    reasons.extend(touch::of_touch(problem, solved, scatter, inner));
-    reasons.extend(scores::of_range(problem, solved, scatter, inner));
-    reasons.extend(rate::of_rate(problem, solved, scatter, inner));
+    if preset.cohesion().is_some() {
+        reasons.extend(range::of_zone(problem, solved));
+    } else {
+        // All are told by what an adhesion at the edge alone does.
+        reasons.extend(touch::of_touch(problem, solved, scatter, inner));
+        reasons.extend(scores::of_range(problem, solved, scatter, inner));
+        reasons.extend(rate::of_rate(problem, solved, scatter, inner));
+        reasons.extend(of_range(preset));
+    }
     reasons.extend(unlikely(problem, solved, preset));
-    reasons.extend(of_range(preset));
     reasons
 }
 
@@ -165,7 +172,8 @@ pub(super) fn doubts(
 ) -> Vec<String> {
     let has_speed = reasons.iter().any(|reason| rate::KINDS.contains(&reason.kind));
     let of_edge = || rate::of_untimed(problem, solved, scatter, inner);
-    let mut doubts: Vec<String> = if has_speed { None } else { of_edge() }.into_iter().collect();
+    let is_sharp = problem.preset.cohesion().is_none();
+    let mut doubts: Vec<String> = if has_speed || !is_sharp { None } else { of_edge() }.into_iter().collect();
     let adhesions: Vec<&Fitted> = fitted.iter().filter(|fitted| fitted.key.starts_with(ADHESION)).collect();
     if let [approach, retraction] = adhesions[..]
         && let (Some(a), Some(b)) = (approach.standard_error, retraction.standard_error)

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`least_squares`] | Levenberg and Marquardt with Huber's loss |
 //! | [`way`] | the ways of a device along a curve with snaps |
+//! | `ground` | what the arcs of a path run along: equilibria over the contact radius or over the edge of a zone |
 //! | [`path`] | the curve that points lie on: equilibria and jumps |
 //! | [`distance`] | the signed distance of a point from it |
 //! | [`prior`] | the minimum with what is known of values before |
@@ -25,6 +26,7 @@
 //! | [`verdict`] | what it comes to, in one word, and why |
 //! | [`rows`] | what a fit makes of the rows of a file, counted |
 //! | [`run`] | all of it, in order |
+//! | [`models`] | several models beside each other |
 //! | `directed` | the same, in the direction in which the columns run |
 //!
 //! Distances are measured to the curve itself and not along one axis: a residual P − P(x) jumps with the values where the
@@ -37,9 +39,11 @@ pub mod determined;
 mod directed;
 pub mod distance;
 pub mod fitted;
+mod ground;
 pub mod intervals;
 pub mod judge;
 pub mod least_squares;
+pub mod models;
 pub mod options;
 pub mod path;
 pub mod pose;
@@ -58,6 +62,7 @@ pub mod way;
 
 pub use directed::{fit, fit_own};
 pub use fitted::Fitted;
+pub use models::{Model, Models, fit_models};
 pub use options::{FitError, Options};
 pub use rows::{BranchRows, Rows};
 pub use run::Fit;

@@ -4,7 +4,7 @@ use super::problem::{ADHESION, Target};
 use crate::measured::Asked;
 use crate::measured::{Abscissa, BranchError};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
-use crate::preset::schema::{CHOOSERS, Kind, Row};
+use crate::preset::schema::{CHOOSERS, Kind, RANGE_KEYS, Row};
 use crate::preset::{Preset, Value};
 use crate::text::{closest_key, greek, quote};
 use thiserror::Error;
@@ -66,12 +66,6 @@ pub enum FitError {
         given: String,
         /// Why not.
         why: String,
-    },
-    /// Adhesion with a range.
-    #[error("material.adhesion = \"{word}\" is not fitted: only \"short-range\" is")]
-    HasRange {
-        /// Its word.
-        word: &'static str,
     },
     /// The points give no branches.
     #[error(transparent)]
@@ -147,11 +141,11 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
             meant.map_or_else(String::new, |key| format!("; did you mean {key}?"))
         )));
     };
-    let fits = row.key.starts_with("gap.")
-        || ["material.effective_modulus", ADHESION, "path.control.stiffness"].contains(&&*row.key);
+    let others = ["material.effective_modulus", ADHESION, "path.control.stiffness"];
+    let fits = row.key.starts_with("gap.") || others.iter().chain(&RANGE_KEYS).any(|key| row.key == *key);
     if !fits || !matches!(row.kind, Kind::Positive | Kind::NonNegative) {
         return Err(refused(
-            "is no positive number of the bodies, the gap or the spring, which alone can be fitted"
+            "is no positive number of the bodies, the gap, the adhesion or the spring, which alone can be fitted"
                 .to_owned(),
         ));
     }

@@ -4,18 +4,18 @@
 //! values change. With snaps it is the path of a quasi-static unloading, jumps included, and behind the pull-off the unstable
 //! stretch that begins there; or that of loading from the first touch.
 
+use super::ground::{Eye, Ground, State};
 use super::way::{Leg, Seen, Way, legs};
-use crate::case;
-use crate::disc::{self, Basis, Exact, Local};
+use crate::disc::{self, Local};
 use crate::elementary::hypot;
 use crate::measured::Abscissa;
 use crate::preset::Preset;
-use crate::problem::{Control, Reduced, Units};
+use crate::problem::Control;
 use crate::progress::Unwatched;
 use crate::quasistatic::overlap::passed;
-use crate::quasistatic::{Curve, Detail, Sample};
+use crate::quasistatic::path::PathError;
+use crate::zone::FaultKind;
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
 /// x, P and s.
 pub type Place = [f64; 3];
@@ -23,7 +23,7 @@ pub type Place = [f64; 3];
 /// A point of the path: its piece and where on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Foot {
-    /// On an arc, at this contact radius.
+    /// On an arc, at this contact radius, or edge of a zone.
     Radius(f64),
     /// At the outer end of a piece.
     Outer,
@@ -42,6 +42,10 @@ pub enum Mover {
     Adhesion,
     /// k.
     Stiffness,
+    /// σ₀ of an adhesion with a range, γ held.
+    Strength,
+    /// `h_c` of it, γ held.
+    Extent,
     /// 1/σ₀², of an adhesion that is a tension σ₀ up to the separation γ/σ₀, where it is 0: not by its logarithm.
     Range,
 }
@@ -49,7 +53,7 @@ pub enum Mover {
 /// A piece of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Piece {
-    /// Equilibria between two radii, the outer first.
+    /// Equilibria between two radii, or edges of a zone, the outer first.
     Arc([f64; 2]),
     /// A jump, by its ends, that before it first: x, P, s.
     Line([Place; 2]),
@@ -64,7 +68,7 @@ pub struct Vertex {
     pub slopes: Place,
     /// Its piece.
     pub piece: usize,
-    /// s on an arc, the share on a line.
+    /// The radius or edge on an arc, the share on a line.
     pub along: f64,
 }
 
@@ -93,11 +97,8 @@ pub struct Reach {
 /// The path of one preset.
 #[derive(Debug, Clone)]
 pub struct Path {
-    curve: Curve,
-    units: Units,
-    abscissa: Abscissa,
-    /// 1/k; 0 where x is no way of a spring.
-    compliance: f64,
+    ground: Ground,
+    eye: Eye,
     /// E* and γ.
     material: [f64; 2],
     /// Its pieces, running inward.
@@ -112,13 +113,9 @@ pub struct Path {
     pub least_force: f64,
 }
 
-/// Contact radii begin at this share of the outermost.
-const INNERMOST: f64 = 1e-3;
 /// The cosine of the turn of the curve between two corners of the polyline, and how often a step is halved for it.
 const STRAIGHT: f64 = 0.98;
 const DEEPEST: usize = 7;
-/// How far beyond the points the path goes.
-const MARGIN: f64 = 1.15;
 
 impl Path {
     /// The path of `preset` on this way; `None` where it has none that reaches so far.
@@ -127,39 +124,27 @@ impl Path {
         let control = preset.path.control;
         let length = preset.gap.length().unwrap_or(reach.length);
         let reduced = preset.problem().reduced_by(length);
-        let units = reduced.units;
         let compliance = match (abscissa, control) {
             (Abscissa::Position, Control::Stiffness(k)) => 1.0 / k,
             _ => 0.0,
         };
-        let table = case::table(&preset.gap, &reduced, 1.0, &preset.units, &Unwatched).ok()?;
-        let x_of = |delta: f64, force: f64, s: f64| {
-            let (delta, force) = (delta * units.length, force * units.force);
-            if abscissa == Abscissa::Radius { s * units.length } else { delta + compliance * force }
-        };
-        let outermost = match reach.radius {
-            Some(radius) => (radius / units.length).min(reduced.largest_contact()),
-            None => outermost(&reduced, &Exact::new(Arc::clone(&table), 1e-3), reach, &x_of)?,
-        };
-        let basis: Arc<dyn Basis> = Arc::new(Exact::new(Arc::clone(&table), outermost));
-        let innermost = INNERMOST * outermost;
-        let mut curve = Curve::new(reduced, basis, table, [outermost, innermost], Detail::Drawn, &Unwatched)?;
+        let units = reduced.units;
+        let eye = Eye { units, abscissa, compliance };
         let held = control.in_units(units.stiffness);
-        curve.hold(held);
+        let mut ground = Ground::new(preset, reduced, &eye, reach, held)?;
+        let [outermost, innermost] = ground.ends();
         // A rising stretch outside a falling one, or one of either: a curve without snaps.
         let inside = |s: f64| s > innermost && s < outermost;
-        let limits = curve.monotone(held).limits.iter().filter(|limit| inside(limit.contact_radius)).count();
+        let limits = ground.monotone(held).limits.iter().filter(|limit| inside(limit.contact_radius)).count();
         let seen = Seen {
-            x_of: &|at: &Local| x_of(at.approach, at.force, at.contact_radius),
+            x_of: &|at: &Local| eye.x([at.contact_radius, at.approach, at.force]),
             most: reach.most[0],
             turn: [reach.turn[0], reach.turn[1] / units.force],
         };
-        let legs = if limits > 1 { legs(&mut curve, held, way, &seen) } else { Vec::new() };
+        let legs = if limits > 1 { legs(&mut ground, held, way, &seen) } else { Vec::new() };
         let mut path = Self {
-            curve,
-            units,
-            abscissa,
-            compliance,
+            ground,
+            eye,
             material: [preset.material.effective_modulus, preset.material.work_of_adhesion],
             pieces: Vec::new(),
             vertices: Vec::new(),
@@ -168,14 +153,15 @@ impl Path {
             least_force: f64::INFINITY,
         };
         for leg in &legs {
-            let ends = |places: &[disc::Place; 2]| places.map(|place| path.curve.solution.at(place));
+            let ends = |places: &[disc::Place; 2]| {
+                places.map(|place| path.ground.solution().at(place).contact_radius)
+            };
             let piece = match leg {
-                Leg::Along(places) => Piece::Arc(ends(places).map(|at| at.contact_radius * units.length)),
+                Leg::Along(places) => Piece::Arc(ends(places).map(|along| along * units.length)),
                 Leg::Jump(places) => {
                     path.snaps += 1;
-                    let place =
-                        |at: Local| path.place(at.contact_radius * units.length, at.approach, at.force);
-                    Piece::Line(ends(places).map(place))
+                    let states = ends(places).map(|along| path.ground.state(along));
+                    Piece::Line(states.map(|state| state.map_or([f64::NAN; 3], |state| path.place(state.at))))
                 }
             };
             path.pieces.push(piece);
@@ -191,25 +177,34 @@ impl Path {
     /// another one then.
     #[must_use]
     pub fn overlap(&self, to: f64) -> Option<f64> {
-        let reduced = |s: f64| s.min(to) / self.units.length;
+        let Ground::Edge(curve) = &self.ground else { return None };
+        let length = self.eye.units.length;
+        let reduced = |s: f64| s.min(to) / length;
         let arcs = self.pieces.iter().filter_map(|piece| match piece {
             Piece::Arc([outer, inner]) if *inner < to => Some([reduced(*outer), reduced(*inner)]),
             _ => None,
         });
-        let found = passed(&self.curve, &arcs.collect::<Vec<_>>(), &Unwatched)?;
-        found.iter().map(|overlap| overlap.to * self.units.length).reduce(f64::min)
+        let found = passed(curve, &arcs.collect::<Vec<_>>(), &Unwatched)?;
+        found.iter().map(|overlap| overlap.to * length).reduce(f64::min)
+    }
+
+    /// Where the state `along` an arc is not one disc in one zone, and what else there is; `None` where that is all of it, or adhesion has no
+    /// range.
+    pub(super) fn fault(&self, along: f64) -> Option<(f64, Option<FaultKind>)> {
+        let length = self.eye.units.length;
+        match self.ground.fault(along / length)? {
+            PathError::BeyondZone { kind, radius, .. } => Some((radius * length, kind)),
+            _ => Some((along, None)),
+        }
     }
 
     /// The corners of the polyline.
     fn draw(&mut self) {
-        let curve = &self.curve;
+        let states = self.ground.drawn();
         let mut vertices = Vec::new();
-        let ranges = [|at: &Sample| at.approach, |at: &Sample| at.force].map(|of| {
-            let ends = curve
-                .samples
-                .iter()
-                .map(of)
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);
+        let ranges = [1, 2].map(|k| {
+            let values = states.iter().map(|state| state.at[k]);
+            let ends = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);
             ends[1] - ends[0]
         });
         for (piece, what) in self.pieces.iter().enumerate() {
@@ -224,12 +219,11 @@ impl Path {
                     }
                 }
                 Piece::Arc([outer, inner]) => {
-                    let within = |sample: &&Sample| {
-                        let s = sample.contact_radius * self.units.length;
-                        s < *outer && s > *inner
+                    let within = |state: &&State| {
+                        let along = state.along * self.eye.units.length;
+                        along < *outer && along > *inner
                     };
-                    let drawn =
-                        curve.samples.iter().filter(within).map(|sample| self.of_sample(sample, ranges));
+                    let drawn = states.iter().filter(within).map(|state| self.drawn(state, ranges));
                     let [outer, inner] = [outer, inner].map(|s| self.corner(*s, ranges));
                     let corners: Vec<Corner> = [outer].into_iter().chain(drawn).chain([inner]).collect();
                     for pair in corners.windows(2) {
@@ -244,31 +238,20 @@ impl Path {
         self.vertices = vertices;
     }
 
-    /// The corner at the contact radius `s`; no number where there is no equilibrium.
-    fn corner(&self, s: f64, ranges: [f64; 2]) -> Corner {
-        let none = Corner { at: [f64::NAN; 3], slopes: [f64::NAN; 3], along: s, direction: None };
-        self.local(s).map_or(none, |(local, by_radius)| {
-            self.drawn(s, [local.approach, local.force], by_radius, ranges)
-        })
+    /// The corner at a place `along` an arc; no number where there is none.
+    fn corner(&self, along: f64, ranges: [f64; 2]) -> Corner {
+        let none = Corner { at: [f64::NAN; 3], slopes: [f64::NAN; 3], along, direction: None };
+        let state = self.ground.state(along / self.eye.units.length);
+        state.map_or(none, |state| Corner { along, ..self.drawn(&state, ranges) })
     }
 
-    /// The corner at a state of the curve, which is there already.
-    fn of_sample(&self, sample: &Sample, ranges: [f64; 2]) -> Corner {
-        let s = sample.contact_radius * self.units.length;
-        let by_radius = [sample.slopes.approach, sample.slopes.force];
-        // On the outer side of a corner of the gap there are none.
-        if by_radius.iter().any(|slope| !slope.is_finite()) {
-            return self.corner(s, ranges);
-        }
-        self.drawn(s, [sample.approach, sample.force], by_radius, ranges)
-    }
-
-    /// The corner of a reduced state with its derivatives by the radius.
-    fn drawn(&self, s: f64, [delta, force]: [f64; 2], by_radius: [f64; 2], ranges: [f64; 2]) -> Corner {
-        let [x, p] = [by_radius[0] / ranges[0], by_radius[1] / ranges[1]];
+    /// The corner at a state.
+    fn drawn(&self, state: &State, ranges: [f64; 2]) -> Corner {
+        let [x, p] = [state.slopes[1] / ranges[0], state.slopes[2] / ranges[1]];
         let length = hypot(x, p);
         let direction = (length > 0.0).then_some([x / length, p / length]);
-        Corner { at: self.place(s, delta, force), slopes: self.slopes(by_radius), along: s, direction }
+        let along = state.along * self.eye.units.length;
+        Corner { at: self.place(state.at), slopes: self.slopes(state.slopes), along, direction }
     }
 
     /// Adds corners between two of them where the curve turns: at a limit point it may turn back within a step.
@@ -295,46 +278,44 @@ impl Path {
     }
 
     /// x, P and s of a reduced state.
-    fn place(&self, s: f64, delta: f64, force: f64) -> Place {
-        let (delta, force) = (delta * self.units.length, force * self.units.force);
-        let x = if self.abscissa == Abscissa::Radius { s } else { delta + self.compliance * force };
-        [x, force, s]
+    fn place(&self, state: [f64; 3]) -> Place {
+        [self.eye.x(state), state[2] * self.eye.units.force, state[0] * self.eye.units.length]
     }
 
-    /// The reduced equilibrium of the contact radius `s`, with dδ/ds and dP/ds; `None` beyond what is known.
-    fn local(&self, s: f64) -> Option<(Local, [f64; 2])> {
-        // The outermost radius may be rounded beyond what is known.
-        let reduced = (s / self.units.length).min(self.curve.solution.reach());
-        let local = self.curve.solution.at(self.curve.solution.place(reduced)?);
-        Some((local, local.slopes.map(|slope| slope / local.stretch)))
+    /// The derivatives of x, P and s by what runs along, of those of the reduced state.
+    fn slopes(&self, slopes: [f64; 3]) -> Place {
+        self.place(slopes).map(|slope| slope / self.eye.units.length)
     }
 
-    /// The derivatives of x, P and s by s, of those of the reduced δ and P.
-    fn slopes(&self, [delta, force]: [f64; 2]) -> Place {
-        let force = force * self.units.force / self.units.length;
-        let x = if self.abscissa == Abscissa::Radius { 1.0 } else { delta + self.compliance * force };
-        [x, force, 1.0]
+    /// The place `along` an arc, with its derivatives by that; `None` beyond what is known.
+    pub fn at(&self, along: f64) -> Option<(Place, Place)> {
+        let state = self.ground.state(along / self.eye.units.length)?;
+        Some((self.place(state.at), self.slopes(state.slopes)))
     }
 
-    /// The equilibrium of the contact radius `s`, with its derivatives by s; `None` beyond what is known.
-    pub fn at(&self, s: f64) -> Option<(Place, Place)> {
-        let (local, by_radius) = self.local(s)?;
-        Some((self.place(s, local.approach, local.force), self.slopes(by_radius)))
-    }
-
-    /// How the equilibrium `at` moves for each unit of the logarithm of a value, its contact radius held.
+    /// How the place `at`, `along` an arc, moves for each unit of the logarithm of a value, what runs along held; `None` where no closed form
+    /// says it.
     #[must_use]
-    pub fn moves(&self, mover: Mover, [_, force, s]: Place) -> Place {
+    pub fn moves(&self, mover: Mover, along: f64, at: Place) -> Option<Place> {
+        let [_, force, s] = at;
+        let compliance = self.eye.compliance;
+        if mover == Mover::Stiffness {
+            return Some([-compliance * force, 0.0, 0.0]);
+        }
+        if !matches!(self.ground, Ground::Edge(_)) {
+            let moved = self.ground.moves(mover, along / self.eye.units.length)?;
+            return Some(self.place(moved));
+        }
         let [e, gamma] = self.material;
         let root = (TAU * gamma * s / e).sqrt();
         let [delta, force] = match mover {
             Mover::Modulus => [0.5 * root, force + e * s * root],
             Mover::Adhesion => [-0.5 * root, -e * s * root],
-            Mover::Stiffness => return [-self.compliance * force, 0.0, 0.0],
             Mover::Range => self.of_range(s, root),
+            Mover::Stiffness | Mover::Strength | Mover::Extent => return None,
         };
-        let x = if self.abscissa == Abscissa::Radius { 0.0 } else { delta + self.compliance * force };
-        [x, force, 0.0]
+        let x = if self.eye.abscissa == Abscissa::Radius { 0.0 } else { delta + compliance * force };
+        Some([x, force, 0.0])
     }
 
     /// How δ and P move with 1/σ₀², where `root` is T = √(2πγs/E*). The zone of the tension ends at c = s/cos ψ, with ψ → q/σ₀:
@@ -354,11 +335,11 @@ impl Path {
         [delta, 2.0 * e * s * delta - 4.0 / 3.0 * s * s * q.powi(3)]
     }
 
-    /// δ at the contact radius `s`.
+    /// δ at a place `along` an arc.
     #[must_use]
-    pub fn approach(&self, s: f64) -> Option<f64> {
-        let place = self.curve.solution.place(s / self.units.length)?;
-        Some(self.curve.solution.at(place).approach * self.units.length)
+    pub fn approach(&self, along: f64) -> Option<f64> {
+        let length = self.eye.units.length;
+        self.ground.state(along / length).map(|state| state.at[1] * length)
     }
 
     /// Where a foot is on this path.
@@ -384,35 +365,4 @@ impl Path {
         let [a, b] = [pair[0].at, pair[1].at];
         (a[1] >= p && a[1] > b[1]).then(|| b[0] + (p - b[1]) / (a[1] - b[1]) * (a[0] - b[0]))
     }
-}
-
-/// The reduced radius from which the curve reaches beyond all points.
-fn outermost(
-    reduced: &Reduced,
-    basis: &Exact,
-    reach: &Reach,
-    x_of: &dyn Fn(f64, f64, f64) -> f64,
-) -> Option<f64> {
-    const FIRST: f64 = 1e-7;
-    const GROWTH: f64 = 1.5;
-    let largest = reduced.largest_contact();
-    let units = reduced.units;
-    let mut s = FIRST;
-    let mut before = [f64::INFINITY; 2];
-    for _ in 0..120 {
-        if s >= largest {
-            return Some(largest);
-        }
-        let at = basis.equilibrium(reduced, s)?;
-        let here = [x_of(at.approach, at.force, s), at.force * units.force];
-        // Small contacts have an approach and a force near zero too: only beyond the pull-off both rise.
-        let rises = here[0] > before[0] && here[1] > before[1];
-        let enough = here[0] >= reach.most[0] && here[1] >= reach.most[1];
-        if rises && enough && s * units.length >= reach.most[2] {
-            return Some((MARGIN * s).min(largest));
-        }
-        before = here;
-        s *= GROWTH;
-    }
-    None
 }

@@ -30,9 +30,6 @@ pub fn posed(
     options: &Options,
     notes: &mut Vec<String>,
 ) -> Result<Problem, FitError> {
-    if preset.cohesion().is_some() {
-        return Err(FitError::HasRange { word: preset.material.adhesion.name() });
-    }
     let mut bare = preset.clone();
     // Its own points say nothing of other values.
     bare.data = DataSpec::default();

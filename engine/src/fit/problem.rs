@@ -7,7 +7,9 @@ use crate::elementary::{exp, ln};
 use crate::measured::branches::Point;
 use crate::measured::{Abscissa, Segment};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
+use crate::preset::schema::RANGE_KEYS;
 use crate::preset::{Preset, Value};
+use crate::problem::{Adhesion, Stated};
 use nalgebra::DVector;
 use std::num::NonZero;
 use std::panic::resume_unwind;
@@ -200,12 +202,15 @@ impl Problem {
                 _ => continue,
             };
             let value = parameter.value(*u);
-            // The two that need no check across keys.
+            // Those that need no check across keys.
             match key {
                 "material.effective_modulus" if value.is_normal() => {
                     preset.material.effective_modulus = value;
                 }
                 ADHESION if value.is_finite() => preset.material.work_of_adhesion = value,
+                key if key == RANGE_KEYS[0] && value.is_normal() => {
+                    preset.material.adhesion = Adhesion::Dugdale(Stated::Strength(value));
+                }
                 key => preset.set(key, Value::Number(value)).ok()?,
             }
         }

@@ -1,10 +1,10 @@
 //! A whole fit: branches, start, minimum, errors, doubts.
 
 use super::chance::t_of;
-use super::determined::determined;
+use super::determined::{Determined, determined};
 use super::fitted::Fitted;
 use super::intervals::{FEW_DEGREES, block, bootstrap, profile};
-use super::judge::{doubts, of_sparse, of_spring, reasons};
+use super::judge::{doubts, of_sparse, of_spring, reasons, unseen};
 use super::least_squares::{Ending, LeastSquares};
 use super::options::{FitError, Options, letter};
 use super::pose::posed;
@@ -185,7 +185,18 @@ pub(super) fn fit_branches(
     }
     let u = &solved.minimum.parameters;
     let scatter = problem.scatter(&solved);
-    let what = determined(&problem, &solved, &scatter, options.robust);
+    let mut what = determined(&problem, &solved, &scatter, options.robust);
+    let unseen = unseen(&problem, u, &what);
+    let is_unseen = unseen.is_some();
+    if let Some(direction) = unseen {
+        what = Determined {
+            errors: None,
+            degrees: None,
+            correlations: None,
+            direction: Some(direction),
+            ..what
+        };
+    }
     let priors = given(&problem, &what.shares, &mut notes);
     let real = problem.real(&solved.minimum.at.residuals);
     let rows = real.len() as f64 / scatter.correlation.rows();
@@ -203,7 +214,12 @@ pub(super) fn fit_branches(
     };
     notes.extend(of_spring(&problem, &solved, options.robust, &Part::new(progress, [0.95, 1.0])));
     let found = problem.preset_at(u, Segment::Retraction).ok_or(FitError::NoStart)?;
-    let ending = if progress.stop() { Ending::Cancelled } else { solved.minimum.ending };
+    let ending = match solved.minimum.ending {
+        _ if progress.stop() => Ending::Cancelled,
+        // A range that shrinks without end has no minimum.
+        Ending::Rounds if is_unseen => Ending::Converged,
+        ending => ending,
+    };
     let mut reasons = reasons(&problem, &solved, &scatter, &found, what.inner.as_ref(), branches.clipped);
     reasons.extend(of_sparse(branches, preset));
     let is_known = [Origin::Given, Origin::Apart].contains(&branches.noise.from[1]);

@@ -10,7 +10,9 @@ use crate::elementary::ln;
 use crate::gap::Gap;
 use crate::measured::branches::median;
 use crate::measured::{Abscissa, Segment};
-use crate::progress::Progress;
+use crate::preset::schema::RANGE_KEYS;
+use crate::problem::{Adhesion, Cohesion};
+use crate::progress::{Part, Progress};
 
 /// Values of E*, and the decades they span.
 const MODULI: usize = 31;
@@ -97,6 +99,40 @@ impl Problem {
         Some(vec![u])
     }
 
+    /// Candidates where adhesion has a range: the best without one, which is found soon, with some ranges where that is free. `None` where
+    /// it has none, or nothing is found without.
+    fn of_ranges(&self, robust: bool, progress: &dyn Progress) -> Option<Vec<Vec<f64>>> {
+        /// Maugis' λ_M.
+        const MAUGIS: [f64; 4] = [0.15, 0.5, 1.2, 3.0];
+        self.preset.cohesion()?;
+        let own: Vec<f64> =
+            self.parameters.iter().map(|parameter| parameter.inner(parameter.start)).collect();
+        let range = self.index(|t| matches!(t, Target::Key(key) if RANGE_KEYS.contains(&&**key)));
+        let mut short = match range.first() {
+            Some(&j) => self.holding(j, own[j])?,
+            None => self.clone(),
+        };
+        short.preset.material.adhesion = Adhesion::ShortRange;
+        let (found, _) = start(&short, true, robust, &Part::new(progress, [0.0, 0.5]))?;
+        let Some(&j) = range.first() else { return Some(vec![own, found]) };
+        let preset = short.preset_at(&found, Segment::Retraction)?;
+        let (gamma, e) = (preset.material.work_of_adhesion, preset.material.effective_modulus);
+        // λ_M is σ₀ times this.
+        let unit = Cohesion { strength: 1.0, range: gamma };
+        let own_strength = self.preset.cohesion()?.strength;
+        let strengths = MAUGIS.map(|maugis| match preset.gap.radius_of_curvature() {
+            Some(radius) => maugis / unit.maugis(radius, e),
+            None => maugis * own_strength,
+        });
+        let is_strength = self.parameters[j].key() == RANGE_KEYS[0];
+        let with = |strength: f64| {
+            let mut u = found.clone();
+            u.insert(j, self.parameters[j].inner(if is_strength { strength } else { gamma / strength }));
+            u
+        };
+        Some(std::iter::once(own).chain(strengths.map(with)).collect())
+    }
+
     /// The candidates, that of the preset first.
     fn candidates(&self, scan: bool) -> Vec<Vec<f64>> {
         let own: Vec<f64> =
@@ -152,7 +188,10 @@ pub fn start(
     let (compared, run) = (problem.thinned(COMPARED), problem.thinned(RUN));
     let attached = problem.data.iter().filter(|datum| !datum.free);
     let least = attached.map(|datum| datum.point.force).fold(f64::INFINITY, f64::min);
-    let candidates = problem.candidates(scan);
+    let candidates = match problem.of_ranges(robust, progress) {
+        Some(found) if scan => found,
+        _ => problem.candidates(scan),
+    };
     let count = candidates.len() as f64;
     let mut ranked: Vec<(f64, Vec<f64>)> = Vec::new();
     for (i, u) in candidates.into_iter().enumerate() {

@@ -393,7 +393,7 @@ fn a_range_of_the_adhesion_moves_the_curve_as_maugis_says() {
     let path = Path::new(&preset, Abscissa::Approach, &reach, Way::Down).unwrap();
     let (at, _) = path.at(1.0).unwrap();
     assert!((at[1] / (-1.5 * PI) - 1.0).abs() < 1e-12, "{at:?}");
-    let [delta, force, _] = path.moves(Mover::Range, at);
+    let [delta, force, _] = path.moves(Mover::Range, 1.0, at).unwrap();
     // P/(πγR) = −1.5 − 0.1638/λ² + …, by the equations of Maugis (1992) at λ = 20 to 100.
     let lambda = (9.0 / (TAU * e * e)).cbrt();
     assert!((force * lambda * lambda / PI + 0.1638).abs() < 5e-5, "{force}");

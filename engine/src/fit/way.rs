@@ -1,8 +1,8 @@
 //! The ways of a device along a curve with snaps, leg by leg: up from the first touch, or down from where it turned round.
 
+use super::ground::Ground;
 use crate::disc::{Local, Place};
 use crate::problem::Control;
-use crate::quasistatic::Curve;
 use crate::quasistatic::ascent::{Rise, ascend};
 use crate::quasistatic::descent::{descend, stable_start};
 use crate::quasistatic::jump::Landing;
@@ -39,25 +39,25 @@ pub enum Leg {
 const LONGER: f64 = 1.1;
 const TIMES: usize = 8;
 
-/// The legs of the way under `control`, running inward. `curve` is made longer where its end is not stable. Empty where there is no
+/// The legs of the way under `control`, running inward. `ground` is made longer where its end is not stable. Empty where there is no
 /// such way.
 ///
 /// With the stable legs comes the unstable stretch at the end that is nearer to the axis: so a point just beyond a pull-off or a first
 /// touch has a curve on both sides.
-pub fn legs(curve: &mut Curve, control: Control, way: Way, seen: &Seen<'_>) -> Vec<Leg> {
+pub(super) fn legs(ground: &mut Ground, control: Control, way: Way, seen: &Seen<'_>) -> Vec<Leg> {
     for _ in 0..TIMES {
         let found = match way {
-            Way::Up => up(curve, control, seen),
+            Way::Up => up(ground, control, seen),
             Way::Down => {
-                let outermost =
-                    || stable_start(&*curve.solution, &curve.monotone(control), curve.solution.reach());
-                turned(curve, control, seen).or_else(outermost).map(|start| down(curve, control, start))
+                let solution = ground.solution();
+                let outermost = || stable_start(solution, &ground.monotone(control), solution.reach());
+                turned(ground, control, seen).or_else(outermost).map(|start| down(ground, control, start))
             }
         };
         if let Some(found) = found {
             return found;
         }
-        if !curve.reach(LONGER * curve.solution.reach()) {
+        if !ground.longer(LONGER) {
             break;
         }
     }
@@ -65,12 +65,12 @@ pub fn legs(curve: &mut Curve, control: Control, way: Way, seen: &Seen<'_>) -> V
 }
 
 /// The outer end of the stable stretch on which the points begin: of those with a state at their x that whose force is nearest.
-fn turned(curve: &Curve, control: Control, seen: &Seen<'_>) -> Option<Landing> {
+fn turned(ground: &Ground, control: Control, seen: &Seen<'_>) -> Option<Landing> {
     const HALVINGS: usize = 50;
     let [x, force] = seen.turn;
-    let solution = &*curve.solution;
+    let solution = ground.solution();
     let mut best: Option<(f64, Landing)> = None;
-    for (number, stretch) in curve.monotone(control).stretches.iter().enumerate() {
+    for (number, stretch) in ground.monotone(control).stretches.iter().enumerate() {
         let ends = [stretch.inner, stretch.outer].map(|place| (seen.x_of)(&solution.at(place)));
         if !(stretch.rising && (ends[0]..=ends[1]).contains(&x)) {
             continue;
@@ -89,11 +89,11 @@ fn turned(curve: &Curve, control: Control, seen: &Seen<'_>) -> Option<Landing> {
 }
 
 /// The way up, where it goes far enough.
-fn up(curve: &Curve, control: Control, seen: &Seen<'_>) -> Option<Vec<Leg>> {
+fn up(ground: &Ground, control: Control, seen: &Seen<'_>) -> Option<Vec<Leg>> {
     let enough = |at: &Local| (seen.x_of)(at) >= seen.most;
-    let rises = ascend(&*curve.solution, &curve.monotone(control), 0.0, &enough);
-    rises.last().filter(|last| enough(&curve.solution.at(last.end)))?;
-    let stretches = &curve.monotone(control).stretches;
+    let rises = ascend(ground.solution(), &ground.monotone(control), 0.0, &enough);
+    rises.last().filter(|last| enough(&ground.solution().at(last.end)))?;
+    let stretches = &ground.monotone(control).stretches;
     let mut legs = Vec::new();
     for (i, Rise { landing, end }) in rises.iter().enumerate().rev() {
         if let Some(before) = i.checked_sub(1).and_then(|before| rises.get(before)) {
@@ -108,9 +108,9 @@ fn up(curve: &Curve, control: Control, seen: &Seen<'_>) -> Option<Vec<Leg>> {
     Some(legs)
 }
 
-fn down(curve: &Curve, control: Control, from: Landing) -> Vec<Leg> {
-    let stretches = &curve.monotone(control).stretches;
-    let descent = descend(&*curve.solution, &curve.monotone(control), from, curve.innermost());
+fn down(ground: &Ground, control: Control, from: Landing) -> Vec<Leg> {
+    let stretches = &ground.monotone(control).stretches;
+    let descent = descend(ground.solution(), &ground.monotone(control), from, ground.ends()[1]);
     let mut legs = Vec::new();
     for (i, piece) in descent.pieces.iter().enumerate() {
         legs.push(Leg::Along(*piece));

@@ -6,6 +6,7 @@ use super::table::aligned;
 use crate::fit::fitted::quantity;
 use crate::fit::intervals::FEW_DEGREES;
 use crate::fit::least_squares::Ending;
+use crate::fit::models::{Model, Models, Pair};
 use crate::fit::options::letter;
 use crate::fit::run::{Fit, Given};
 use crate::fit::{Reason, Rows, Verdict};
@@ -24,6 +25,8 @@ pub struct FitReport {
     pub document: &'static str,
     /// The file of the points.
     pub file: String,
+    /// How the adhesion acts: the word of `material.adhesion`.
+    pub model: &'static str,
     /// What it comes to: whether the values and their errors may be believed.
     pub verdict: Verdict,
     /// What speaks against it; empty where the model describes the points.
@@ -121,6 +124,80 @@ pub struct ParameterReport {
     quantity: Quantity,
 }
 
+/// Several models fitted to the same points.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct ModelsReport {
+    /// The version of all documents.
+    pub schema: u32,
+    /// Which document it is.
+    pub document: &'static str,
+    /// The file of the points.
+    pub file: String,
+    /// The model that is nearest to the points for what it takes; null where none could be fitted.
+    pub best: Option<Model>,
+    /// Each other one beside it, and whether the points tell them apart.
+    pub pairs: Vec<Pair>,
+    /// The fits, in the order in which they were asked for.
+    pub fits: Vec<FitReport>,
+    /// The models that could not be fitted, and why.
+    pub refused: Vec<Refused>,
+}
+
+/// A model that could not be fitted.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Refused {
+    /// The model.
+    pub model: Model,
+    /// Why, in words.
+    pub why: String,
+}
+
+impl ModelsReport {
+    /// The document of `models` fitted to the points of `file`, with E beside E* for Poisson's ratio ν.
+    #[must_use]
+    pub fn new(file: &str, models: &Models, poisson: Option<f64>) -> Self {
+        let fitted = models.fits.iter().filter_map(|fitted| fitted.fit.as_ref().ok());
+        let refused = models.fits.iter().filter_map(|fitted| {
+            let why = fitted.fit.as_ref().err()?.to_string();
+            Some(Refused { model: fitted.model?, why })
+        });
+        Self {
+            schema: super::SCHEMA,
+            document: "fit-models",
+            file: file.to_owned(),
+            best: models.best.and_then(|best| models.fits[best].model),
+            pairs: models.pairs.clone(),
+            fits: fitted.map(|fit| FitReport::new(file, fit, poisson)).collect(),
+            refused: refused.collect(),
+        }
+    }
+
+    /// The report of the best model.
+    #[must_use]
+    pub fn best(&self) -> Option<&FitReport> {
+        let best = self.best?.name();
+        self.fits.iter().find(|fit| fit.model == best)
+    }
+
+    /// The fits as lines of text, and below them which model the points speak for.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        for fit in &self.fits {
+            let _ = writeln!(text, "model: {}\n{}", fit.model, fit.text());
+        }
+        for Refused { model, why } in &self.refused {
+            let _ = writeln!(text, "model: {} could not be fitted: {why}\n", model.name());
+        }
+        for pair in &self.pairs {
+            let _ = writeln!(text, "{}", pair.sentence);
+        }
+        text
+    }
+}
+
 /// A start that was run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -179,6 +256,7 @@ impl FitReport {
             schema: super::SCHEMA,
             document: "fit",
             file: file.to_owned(),
+            model: fit.preset.material.adhesion.name(),
             verdict: fit.verdict,
             reasons: fit.reasons.clone(),
             parameters,
@@ -391,8 +469,8 @@ impl FitReport {
     /// The header and the row of a table with one row for each file.
     #[must_use]
     pub fn row(&self) -> [Vec<String>; 2] {
-        let mut header = vec!["file".to_owned(), "verdict".to_owned()];
-        let mut row = vec![self.file.clone(), self.verdict.word().to_owned()];
+        let mut header = ["file", "verdict", "model"].map(str::to_owned).to_vec();
+        let mut row = [&self.file, self.verdict.word(), self.model].map(str::to_owned).to_vec();
         for parameter in &self.parameters {
             header.push(parameter.key.clone());
             header.push(format!("{} error", parameter.key));

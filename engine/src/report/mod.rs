@@ -45,7 +45,7 @@ pub mod verify;
 pub mod walk;
 
 pub use crate::units::number;
-pub use fit::FitReport;
+pub use fit::{FitReport, ModelsReport};
 pub use map::MapReport;
 pub use overlap::OverlapReport;
 pub use path::PathReport;

@@ -4,8 +4,8 @@
 
 use super::walk::WalkReport;
 use super::{
-    FitReport, MapReport, PathReport, PullReport, SCHEMA, SpeedsReport, StabilityReport, TraceReport,
-    VerifyReport,
+    FitReport, MapReport, ModelsReport, PathReport, PullReport, SCHEMA, SpeedsReport, StabilityReport,
+    TraceReport, VerifyReport,
 };
 use schemars::generate::SchemaSettings;
 use schemars::transform::{RecursiveTransform, Transform};
@@ -50,6 +50,7 @@ fn schemas_are_those_of_the_documents() {
         ("stability", text::<StabilityReport>("stability")),
         ("walk", text::<WalkReport>("walk")),
         ("fit", text::<FitReport>("fit")),
+        ("fit-models", text::<ModelsReport>("fit-models")),
         ("verify", text::<VerifyReport>("verify")),
     ];
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/schema");

@@ -8,9 +8,9 @@ use crate::cli::watch::Stop;
 use crate::cli::{Failure, Status};
 use crate::store::Loaded;
 use crate::store::atomic::folder_of;
-use pulloff_engine::fit::{Fit, Options, Verdict};
+use pulloff_engine::fit::{Models, Verdict};
 use pulloff_engine::preset::{Value, data, write};
-use pulloff_engine::report::{FitReport, SCHEMA, json, residuals};
+use pulloff_engine::report::{FitReport, ModelsReport, SCHEMA, json, residuals};
 use pulloff_engine::text::show_path;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -18,21 +18,17 @@ use std::process::ExitCode;
 /// What has been fitted so far.
 pub(super) struct Done<'a> {
     arguments: &'a Arguments,
-    options: &'a Options,
     console: &'a Console,
     sinks: Sinks,
     reports: Vec<FitReport>,
+    /// Where several models are compared.
+    compared: Option<ModelsReport>,
     worst: Status,
 }
 
 impl<'a> Done<'a> {
-    pub(super) fn new(
-        arguments: &'a Arguments,
-        options: &'a Options,
-        console: &'a Console,
-        sinks: Sinks,
-    ) -> Self {
-        Self { arguments, options, console, sinks, reports: Vec::new(), worst: Status::Done }
+    pub(super) fn new(arguments: &'a Arguments, console: &'a Console, sinks: Sinks) -> Self {
+        Self { arguments, console, sinks, reports: Vec::new(), compared: None, worst: Status::Done }
     }
 
     /// The files that the table does not have yet.
@@ -50,8 +46,17 @@ impl<'a> Done<'a> {
     }
 
     /// Writes what was found of a file to all that is asked for.
-    pub(super) fn keep(&mut self, path: &Path, found: &Fit, stop: &Stop) -> Result<(), Failure> {
+    pub(super) fn keep(&mut self, path: &Path, models: &Models, stop: &Stop) -> Result<(), Failure> {
         let arguments = self.arguments;
+        let Some((found, free)) = models.best() else {
+            return self.refuse(
+                path,
+                &Failure::Incomplete(format!("{}: no model could be fitted", show_path(path))),
+            );
+        };
+        if models.fits.len() > 1 {
+            self.compared = Some(ModelsReport::new(&show_path(path), models, arguments.poisson));
+        }
         let report = FitReport::new(&show_path(path), found, arguments.poisson);
         self.console.warn(&report.doubts);
         // What was cut off is computed again by a rerun.
@@ -64,7 +69,7 @@ impl<'a> Done<'a> {
         }
         if let Some(sink) = &self.sinks.fitted {
             let mut preset = found.preset.placed_in(folder_of(arguments.destination.path()));
-            let free = Value::Text(self.options.free.join(","));
+            let free = Value::Text(free.join(","));
             preset.set(data::FREE, free).map_err(|invalid| Failure::Usage(invalid.to_string()))?;
             sink.write(write(&preset))?;
         }
@@ -85,19 +90,24 @@ impl<'a> Done<'a> {
 
     /// Writes the report, of one of `many` files with a summary, and says how it ended.
     pub(super) fn end(self, many: bool, loaded: &Loaded, stop: &Stop) -> Result<ExitCode, Failure> {
-        let Self { arguments, console, sinks, reports, worst, .. } = self;
+        let Self { arguments, console, sinks, reports, compared, worst, .. } = self;
         let summary = match &sinks.table {
             Some(table) => Summary::of(table.header(), table.rows()),
             None => Summary::of_reports(&reports),
         };
         let summary = Some(summary).filter(|_| many);
-        sinks.report.write(match (sinks.format, reports.as_slice()) {
-            (Format::Json, [report]) if !many => json(report)?,
-            (Format::Json, reports) => {
+        sinks.report.write(match (sinks.format, reports.as_slice(), &compared) {
+            (Format::Json, _, Some(compared)) => json(compared)?,
+            (Format::Table, _, Some(compared)) => compared.text(),
+            (Format::Json, [report], None) if !many => json(report)?,
+            (Format::Json, reports, None) => {
                 json(&serde_json::json!({ "schema": SCHEMA, "document": "fits", "fits": reports, "summary": summary }))?
             }
-            (Format::Csv, reports) => table::csv(&reports.iter().map(FitReport::row).collect::<Vec<_>>())?,
-            (Format::Table, reports) => {
+            (Format::Csv, reports, compared) => {
+                let fits = compared.as_ref().map_or(reports, |compared| &compared.fits);
+                table::csv(&fits.iter().map(FitReport::row).collect::<Vec<_>>())?
+            }
+            (Format::Table, reports, None) => {
                 let summary = summary.map(|summary| summary.text(&loaded.preset));
                 reports.iter().map(FitReport::text).chain(summary).collect::<Vec<_>>().join("\n")
             }

@@ -9,7 +9,7 @@ use super::lane::Lane;
 use super::record::Record;
 use super::setting::{Asked, Path, PathStop, Setting, TurnReached, WhyNot};
 use crate::disc::{Local, Place, Solution, Table};
-use crate::elementary::cbrt;
+use crate::elementary::{atan2, cbrt, sin};
 use crate::problem::{Cohesion, Control, Start, Turn};
 use crate::progress::Progress;
 use crate::quasistatic::descent::{descend, stable_start};
@@ -19,6 +19,7 @@ use crate::quasistatic::jump::{self, Landing, Run};
 use crate::quasistatic::monotone::{Monotone, weighted};
 use crate::zone::{Ends, Equilibria, Fault, FaultKind, ZoneAt, ZoneState, equilibria};
 use std::cell::Cell;
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 /// Times that the equilibria are grown for a path.
@@ -193,13 +194,59 @@ impl Zones {
         s: f64,
         progress: &dyn Progress,
     ) -> Result<Self, PathError> {
-        let mut equilibria = Equilibria::new(table, cohesion, equilibria::about(cohesion, s), progress)?;
-        equilibria.grow(&|state| state.contact_radius >= s, progress)?;
-        let solution = equilibria.solution();
-        let radius = equilibria.reach();
+        let about = equilibria::about(cohesion, s);
+        let mut found = Self::grown(table, cohesion, about, &|state| state.contact_radius >= s, progress)?;
+        let radius = found.equilibria.reach();
         let beyond = PathError::BeyondGap { radius, approach: f64::NAN, force: f64::NAN };
-        let start = place_of(&*solution, s).ok_or(beyond)?;
+        found.start = place_of(&*found.solution, s).ok_or(beyond)?;
+        Ok(found)
+    }
+
+    /// Those up to the first panel at whose end `enough` says that they reach far enough, or to the end of the gap, where they start; the
+    /// table begins with the reach `about`.
+    ///
+    /// # Errors
+    /// [`PathError`] where the gap has no table.
+    pub fn grown(
+        table: &Arc<Table>,
+        cohesion: Cohesion,
+        about: f64,
+        enough: &dyn Fn(&ZoneState) -> bool,
+        progress: &dyn Progress,
+    ) -> Result<Self, PathError> {
+        let mut equilibria = Equilibria::new(table, cohesion, about, progress)?;
+        equilibria.grow(enough, progress)?;
+        let solution = equilibria.solution();
+        let start = Place { panel: solution.len().saturating_sub(1), x: 1.0 };
         Ok(Self { equilibria, solution, start })
+    }
+
+    /// How s, δ and P of the zone at a place change with σ₀ and with `h_c` while its outer edge c is held (E* = 1, s = c cos ψ):
+    ///
+    /// ```text
+    /// δ' = −(π/2ψ) h_c' − (2c/ψ)(1 − cos ψ) σ₀'      P' = 2s δ' − 2c²(ψ − sin ψ cos ψ) σ₀'      s' = −c sin ψ ψ'
+    /// ψ' = [h_c' − (4c/π)(ψ sin ψ − 1 + cos ψ) σ₀']/D_ψ      D_ψ = (2ψ/π) c sin ψ [g'(s) + 2σ₀s/(c sin ψ)]
+    /// ```
+    ///
+    /// from D(c, ψ) = `h_c` in the header of [`crate::zone::state`].
+    #[must_use]
+    pub fn moves(&self, place: Place) -> [[f64; 3]; 2] {
+        let ZoneAt { edge: c, contact_radius: s, .. } = zone_at(&*self.solution, place);
+        let sine = ((c - s) * (c + s)).max(0.0).sqrt() / c;
+        let cosine = s / c;
+        let angle = atan2(sine, cosine);
+        let zone = &self.equilibria.zone;
+        let half = 2.0 * sin(0.5 * angle).powi(2);
+        let opening =
+            zone.panels.values(zone.panels.place(s)).slope + 2.0 * zone.cohesion.strength * cosine / sine;
+        let turning = angle * c * sine * opening / FRAC_PI_2;
+        let of = |strength: f64, range: f64| {
+            let approach = -(FRAC_PI_2 * range + 2.0 * c * half * strength) / angle;
+            let force = 2.0 * s * approach - 2.0 * c * c * (angle - sine * cosine) * strength;
+            let turned = (range - 2.0 * c / FRAC_PI_2 * (angle * sine - half) * strength) / turning;
+            [if s > 0.0 { -c * sine * turned } else { 0.0 }, approach, force]
+        };
+        [of(1.0, 0.0), of(0.0, 1.0)]
     }
 
     /// The error of the state at a place that is not one disc in one zone; `None` where it is.
@@ -538,7 +585,7 @@ impl Course<'_> {
 
 impl FaultKind {
     /// What is wrong, with the radius as it is shown.
-    pub(super) fn words(self, radius: &str) -> String {
+    pub(crate) fn words(self, radius: &str) -> String {
         match self {
             Self::SecondZone => format!("a second zone forms at r = {radius}"),
             Self::Touches => format!("the bodies touch in the zone at r = {radius}"),

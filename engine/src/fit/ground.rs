@@ -1,0 +1,302 @@
+//! What the arcs of a path run along: equilibria over the contact radius, or over the edge of the zone where adhesion has a range.
+//!
+//! All in reduced units.
+
+use super::path::{Mover, Reach};
+use crate::case;
+use crate::disc::{Basis, Exact, Local, Place, Solution, Table};
+use crate::measured::Abscissa;
+use crate::preset::Preset;
+use crate::problem::{Adhesion, Cohesion, Control, Reduced, Stated, Units};
+use crate::progress::Unwatched;
+use crate::quasistatic::curve::places;
+use crate::quasistatic::path::{PathError, Zones};
+use crate::quasistatic::{Curve, Detail, Monotone, Sample};
+use crate::zone::ZoneState;
+use crate::zone::equilibria::about;
+use std::sync::Arc;
+
+/// Contact radii begin at this share of the outermost.
+const INNERMOST: f64 = 1e-3;
+/// How far beyond the points the path goes.
+const MARGIN: f64 = 1.15;
+/// Halvings of the outermost edge of a zone.
+const HALVINGS: usize = 40;
+
+/// Beyond this `λ_M` the zone is so thin that the pull-off force is that of none to 0.0007 of it, and no fit goes.
+pub(super) const LARGEST_MAUGIS: f64 = 15.0;
+
+/// One state of it: s, δ and P, with their slopes by what runs along.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct State {
+    /// The contact radius, or the edge of the zone.
+    pub(super) along: f64,
+    pub(super) at: [f64; 3],
+    pub(super) slopes: [f64; 3],
+}
+
+/// How δ and P are seen.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Eye {
+    pub(super) units: Units,
+    pub(super) abscissa: Abscissa,
+    /// 1/k; 0 where x is no way of a spring.
+    pub(super) compliance: f64,
+}
+
+impl Eye {
+    /// x of a reduced state.
+    pub(super) fn x(&self, [s, delta, force]: [f64; 3]) -> f64 {
+        let (delta, force) = (delta * self.units.length, force * self.units.force);
+        if self.abscissa == Abscissa::Radius {
+            s * self.units.length
+        } else {
+            delta + self.compliance * force
+        }
+    }
+
+    /// Whether a state reaches as far as the points.
+    fn is_enough(&self, state: [f64; 3], reach: &Reach) -> bool {
+        let force = state[2] * self.units.force;
+        let far = self.x(state) >= reach.most[0] && force >= reach.most[1];
+        far && state[0] * self.units.length >= reach.most[2]
+    }
+}
+
+/// What arcs run along.
+#[derive(Debug, Clone)]
+pub(super) enum Ground {
+    /// Adhesion at the edge of contact alone.
+    Edge(Box<Curve>),
+    /// Adhesion with a range.
+    Zone {
+        zones: Arc<Zones>,
+        monotone: Arc<Monotone>,
+        ends: [f64; 2],
+        law: Cohesion,
+        /// Whether its range stays as it is when γ changes, not its tension.
+        holds_range: bool,
+    },
+}
+
+impl Ground {
+    /// That of a preset that reaches as far as the points, its stretches under `held` known; `None` where there is none.
+    pub(super) fn new(
+        preset: &Preset,
+        reduced: Reduced,
+        eye: &Eye,
+        reach: &Reach,
+        held: Control,
+    ) -> Option<Self> {
+        let units = reduced.units;
+        let table = case::table(&preset.gap, &reduced, 1.0, &preset.units, &Unwatched).ok()?;
+        if let Some(law) = preset.cohesion() {
+            let law = law.reduced_by(units.length, units.pressure);
+            let holds_range = !matches!(preset.material.adhesion, Adhesion::Dugdale(Stated::Strength(_)));
+            let radius = preset.gap.radius_of_curvature().map(|radius| radius / units.length);
+            return Self::in_zone(&table, (law, holds_range, radius), eye, reach, held);
+        }
+        let outermost = match reach.radius {
+            Some(radius) => (radius / units.length).min(reduced.largest_contact()),
+            None => outermost(&reduced, &Exact::new(Arc::clone(&table), 1e-3), reach, eye)?,
+        };
+        let basis: Arc<dyn Basis> = Arc::new(Exact::new(Arc::clone(&table), outermost));
+        let ends = [outermost, INNERMOST * outermost];
+        let mut curve = Curve::new(reduced, basis, table, ends, Detail::Drawn, &Unwatched)?;
+        curve.hold(held);
+        Some(Self::Edge(Box::new(curve)))
+    }
+
+    fn in_zone(
+        table: &Arc<Table>,
+        (law, holds_range, radius): (Cohesion, bool, Option<f64>),
+        eye: &Eye,
+        reach: &Reach,
+        held: Control,
+    ) -> Option<Self> {
+        if radius.is_some_and(|radius| law.maugis(radius, 1.0) > LARGEST_MAUGIS) {
+            return None;
+        }
+        let length = eye.units.length;
+        let wanted = reach.radius.map(|radius| radius / length);
+        let enough = |state: &ZoneState| match wanted {
+            Some(edge) => state.edge >= edge,
+            // Beyond the pull-off both rise.
+            None => {
+                let rises = state.slopes.iter().all(|slope| *slope > 0.0);
+                rises && eye.is_enough([state.contact_radius, state.approach, state.force], reach)
+            }
+        };
+        let zones = Zones::grown(table, law, about(law, wanted.unwrap_or(0.1)), &enough, &Unwatched).ok()?;
+        let solution = Arc::clone(&zones.solution);
+        let end = solution.reach();
+        let outermost = match wanted {
+            Some(edge) if edge <= end => edge,
+            Some(_) => return None,
+            None => {
+                let is_enough = |c: f64| {
+                    let place = solution.place(c)?;
+                    let Local { approach, force, slopes, .. } = solution.at(place);
+                    let rises = slopes.iter().all(|slope| *slope > 0.0);
+                    let s = solution.edges(place).contact_radius;
+                    Some(rises && eye.is_enough([s, approach, force], reach))
+                };
+                if !is_enough(end)? {
+                    return None;
+                }
+                let (mut lo, mut hi) = (solution.begin(), end);
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (lo + hi);
+                    if is_enough(middle).unwrap_or(false) { hi = middle } else { lo = middle }
+                }
+                (MARGIN * hi).min(end)
+            }
+        };
+        let monotone = Arc::new(Monotone::of(&*solution, held));
+        let ends = [outermost, (INNERMOST * outermost).max(solution.begin())];
+        Some(Self::Zone { zones: Arc::new(zones), monotone, ends, law, holds_range })
+    }
+
+    pub(super) fn solution(&self) -> &dyn Solution {
+        match self {
+            Self::Edge(curve) => &*curve.solution,
+            Self::Zone { zones, .. } => &*zones.solution,
+        }
+    }
+
+    /// The stretches of the control that is held.
+    pub(super) fn monotone(&self, held: Control) -> Arc<Monotone> {
+        match self {
+            Self::Edge(curve) => curve.monotone(held),
+            Self::Zone { monotone, .. } => Arc::clone(monotone),
+        }
+    }
+
+    /// Its outer and its inner end.
+    pub(super) fn ends(&self) -> [f64; 2] {
+        match self {
+            Self::Edge(curve) => [curve.outermost(), curve.innermost()],
+            Self::Zone { ends, .. } => *ends,
+        }
+    }
+
+    /// Makes it reach so many times as far; false where it cannot.
+    pub(super) fn longer(&mut self, by: f64) -> bool {
+        match self {
+            Self::Edge(curve) => curve.reach(by * curve.solution.reach()),
+            // It ends where a panel does, some way beyond the points.
+            Self::Zone { .. } => false,
+        }
+    }
+
+    /// The state at `along`; `None` beyond what is known.
+    pub(super) fn state(&self, along: f64) -> Option<State> {
+        let solution = self.solution();
+        // The outermost radius may be rounded beyond what is known.
+        Some(self.state_at(solution.place(along.min(solution.reach()))?, along))
+    }
+
+    fn state_at(&self, place: Place, along: f64) -> State {
+        let solution = self.solution();
+        let local = solution.at(place);
+        let [delta, force] = local.slopes.map(|slope| slope / local.stretch);
+        match self {
+            Self::Edge(_) => {
+                State { along, at: [along, local.approach, local.force], slopes: [1.0, delta, force] }
+            }
+            Self::Zone { zones, .. } => {
+                let s = solution.edges(place).contact_radius;
+                let slope = if s > 0.0 { zones.contact_slope(place) } else { 0.0 };
+                State { along, at: [s, local.approach, local.force], slopes: [slope, delta, force] }
+            }
+        }
+    }
+
+    /// States to draw it by, running inward, as far as it is connected.
+    pub(super) fn drawn(&self) -> Vec<State> {
+        let solution = self.solution();
+        match self {
+            Self::Edge(curve) => {
+                let of = |sample: &Sample| {
+                    let Sample { contact_radius: s, approach, force, slopes } = *sample;
+                    let slopes = [1.0, slopes.approach, slopes.force];
+                    // On the outer side of a corner of the gap there are none.
+                    let known = slopes.iter().all(|slope| slope.is_finite());
+                    let own = State { along: s, at: [s, approach, force], slopes };
+                    if known { own } else { self.state(s).unwrap_or(own) }
+                };
+                curve.samples.iter().map(of).collect()
+            }
+            Self::Zone { ends: [outer, inner], .. } => {
+                let mut panel = None;
+                let joined = |place: &Place| {
+                    let is_joined =
+                        panel.is_none_or(|outer| outer == place.panel || solution.is_joined(place.panel));
+                    panel = Some(place.panel);
+                    is_joined
+                };
+                let places = places(solution, *outer, *inner, Detail::Drawn);
+                let connected = places.into_iter().take_while(joined);
+                let states = connected.map(|place| self.state_at(place, solution.at(place).contact_radius));
+                states.filter(|state| state.slopes.iter().all(|slope| slope.is_finite())).collect()
+            }
+        }
+    }
+
+    /// The error of a state that is not one disc in one zone.
+    pub(super) fn fault(&self, along: f64) -> Option<PathError> {
+        let Self::Zone { zones, .. } = self else { return None };
+        let place = zones.solution.place(along)?;
+        zones.fault(place, &Unwatched).unwrap_or_else(Some)
+    }
+
+    /// How s, δ and P change for each unit of the logarithm of a value, what runs along held; `None` where no closed form says it.
+    pub(super) fn moves(&self, mover: Mover, along: f64) -> Option<[f64; 3]> {
+        let Self::Zone { zones, law, holds_range, .. } = self else { return None };
+        let solution = self.solution();
+        let place = solution.place(along.min(solution.reach()))?;
+        let [by_strength, by_range] = zones.moves(place);
+        let of = |strength: f64, range: f64| -> [f64; 3] {
+            std::array::from_fn(|k| {
+                strength * law.strength * by_strength[k] + range * law.range * by_range[k]
+            })
+        };
+        Some(match mover {
+            // P is E* times a function of σ₀/E*.
+            Mover::Modulus => {
+                let [s, delta, force] = of(-1.0, 0.0);
+                [s, delta, force + solution.at(place).force]
+            }
+            Mover::Adhesion if *holds_range => of(1.0, 0.0),
+            Mover::Adhesion => of(0.0, 1.0),
+            Mover::Strength => of(1.0, -1.0),
+            Mover::Extent => of(-1.0, 1.0),
+            Mover::Stiffness | Mover::Range => return None,
+        })
+    }
+}
+
+/// The reduced radius from which the curve reaches beyond all points.
+fn outermost(reduced: &Reduced, basis: &Exact, reach: &Reach, eye: &Eye) -> Option<f64> {
+    const FIRST: f64 = 1e-7;
+    const GROWTH: f64 = 1.5;
+    let largest = reduced.largest_contact();
+    let mut s = FIRST;
+    let mut before = [f64::INFINITY; 2];
+    for _ in 0..120 {
+        if s >= largest {
+            return Some(largest);
+        }
+        let at = basis.equilibrium(reduced, s)?;
+        let state = [s, at.approach, at.force];
+        let here = [eye.x(state), at.force * eye.units.force];
+        // Small contacts have an approach and a force near zero too: only beyond the pull-off both rise.
+        let rises = here[0] > before[0] && here[1] > before[1];
+        if rises && eye.is_enough(state, reach) {
+            return Some((MARGIN * s).min(largest));
+        }
+        before = here;
+        s *= GROWTH;
+    }
+    None
+}

@@ -1,0 +1,62 @@
+//! What a fit of adhesion with a range cannot tell, and where one disc in one zone is not all of it.
+
+use super::super::determined::Determined;
+use super::super::ground::LARGEST_MAUGIS;
+use super::super::options::letter;
+use super::super::path::Foot;
+use super::super::problem::Problem;
+use super::super::solve::Solved;
+use super::super::verdict::Reason;
+use crate::measured::Segment;
+use crate::preset::schema::RANGE_KEYS;
+use crate::problem::Groups;
+use crate::units::Quantity;
+use crate::units::number::{said, short};
+
+/// The largest error of the logarithm of a tension or a range that is one: its 95 % interval goes from a quarter of it to four times.
+const MOST: f64 = 0.7;
+/// A `λ_M` beyond this share of the largest is at it.
+const AT_END: f64 = 0.8;
+/// Places of a path at which it is looked whether one disc in one zone is all of the state.
+const LOOKED: u32 = 12;
+
+/// Why the points do not tell how far the adhesion reaches, where that is free; nothing where they do.
+pub(in super::super) fn unseen(problem: &Problem, u: &[f64], what: &Determined) -> Option<String> {
+    let j = problem.parameters.iter().position(|parameter| RANGE_KEYS.contains(&&*parameter.key()))?;
+    let error = what.errors.as_ref()?[j];
+    let preset = problem.preset_at(u, Segment::Retraction)?;
+    let maugis = Groups::of(&preset.problem(), None, preset.cohesion()).maugis;
+    if error <= MOST && maugis.is_none_or(|maugis| maugis < AT_END * LARGEST_MAUGIS) {
+        return None;
+    }
+    let at = maugis.map_or_else(String::new, |maugis| format!(" at lambda_M = {}", short(maugis, 2)));
+    Some(format!(
+        "{}: its error{at} is {} of itself, so the points do not tell how far the adhesion reaches: hold it, or take \
+         material.adhesion = \"short-range\", and compare both with --model short-range,dugdale",
+        letter(&problem.preset, &problem.parameters[j].key()),
+        short(error, 2)
+    ))
+}
+
+/// A state between those of the points that one disc in one zone does not hold: the values are those of another problem.
+pub(super) fn of_zone(problem: &Problem, solved: &Solved) -> Option<Reason> {
+    let u = &solved.minimum.parameters;
+    let paths = problem.paths(u)?;
+    let feet = problem.feet(&paths, &problem.instrument_at(u))?;
+    [Segment::Approach, Segment::Retraction].into_iter().find_map(|segment| {
+        let of = problem.data.iter().zip(&feet).filter(|(datum, _)| datum.segment == segment);
+        let along = of.filter_map(|(_, foot)| match foot.as_ref()?.foot {
+            Foot::Radius(along) => Some(along),
+            _ => None,
+        });
+        let [lo, hi] = along.fold([f64::INFINITY, 0.0], |[lo, hi]: [f64; 2], at| [lo.min(at), hi.max(at)]);
+        let places = (0..=LOOKED).map(|k| lo + (hi - lo) * f64::from(k) / f64::from(LOOKED));
+        let (radius, why) = places.filter(|_| lo <= hi).find_map(|at| paths.of(segment).fault(at))?;
+        let shown = said(&problem.preset.units, Quantity::Length, radius);
+        let sentence = format!(
+            "the fitted path has a state that one disc in one zone does not hold ({}): its values are no result",
+            why.map_or_else(|| format!("none at r = {shown}"), |kind| kind.words(&shown))
+        );
+        Some(Reason::new("zone", radius, sentence))
+    })
+}

@@ -1,0 +1,236 @@
+//! Several models fitted to the same points, and which of them these tell apart.
+//!
+//! ```text
+//! A = Σ min(r²/s², 16)/k + 2p
+//! ```
+//!
+//! with s the noise of neighbouring points in σ, k the rows of the noise that count as one and p the free values: H. Akaike, IEEE Trans.
+//! Autom. Control 19, 716 (1974). A model whose A is larger by more than 10 has no support beside the other: K. P. Burnham and
+//! D. R. Anderson, *Model Selection and Multimodel Inference* (2002), section 2.6.
+
+use super::directed::fit_own;
+use super::options::{FitError, Options};
+use super::run::Fit;
+use super::verdict::Verdict;
+use crate::elementary::cbrt;
+use crate::measured::Origin;
+use crate::preset::Preset;
+use crate::preset::schema::RANGE_KEYS;
+use crate::problem::{Adhesion, Stated};
+use crate::progress::{Part, Progress};
+use crate::units::number::short;
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// A difference of A that tells two models apart.
+const APART: f64 = 10.0;
+/// Residuals count as so many s at most.
+const MOST: f64 = 4.0;
+
+/// How the adhesion acts, or the edge moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+pub enum Model {
+    /// Adhesion at the edge of contact alone.
+    ShortRange,
+    /// A constant tension within a range.
+    Dugdale,
+}
+
+impl Model {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::ShortRange, Self::Dugdale];
+
+    /// Its word.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ShortRange => Adhesion::NAMES[0],
+            Self::Dugdale => Adhesion::NAMES[1],
+        }
+    }
+
+    /// The model of a word.
+    #[must_use]
+    pub fn of(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|model| model.name() == word)
+    }
+
+    /// `preset` with this model, and what is free in it beside `free`: the tension of adhesion with a range, unless its range is.
+    fn laid(self, preset: &Preset, free: &[String]) -> (Preset, Vec<String>) {
+        let mut laid = preset.clone();
+        let row = |key: &str| preset.row(key).map_or_else(String::new, |row| row.label.to_string());
+        let is_free = |key: &str| free.iter().any(|name| name == key || *name == row(key));
+        let mut free: Vec<String> = match self {
+            Self::ShortRange => {
+                let of_range = |name: &String| RANGE_KEYS.iter().any(|key| name == key || *name == row(key));
+                free.iter().filter(|name| !of_range(name)).cloned().collect()
+            }
+            Self::Dugdale => free.to_vec(),
+        };
+        let asks = RANGE_KEYS.iter().any(|key| is_free(key));
+        match (self, preset.material.adhesion) {
+            (Self::ShortRange, _) => laid.material.adhesion = Adhesion::ShortRange,
+            (Self::Dugdale, Adhesion::Dugdale(Stated::Strength(_) | Stated::Range(_))) => {}
+            (Self::Dugdale, _) => {
+                laid.material.adhesion = Adhesion::Dugdale(Stated::Strength(guess(preset)));
+            }
+        }
+        if self == Self::Dugdale && !asks {
+            let key = usize::from(matches!(laid.material.adhesion, Adhesion::Dugdale(Stated::Range(_))));
+            free.push(RANGE_KEYS[key].to_owned());
+        }
+        (laid, free)
+    }
+}
+
+/// A tension to begin with: λ_M = 1.
+fn guess(preset: &Preset) -> f64 {
+    let (e, gamma) = (preset.material.effective_modulus, preset.material.work_of_adhesion);
+    let length = preset.gap.radius_of_curvature().or(preset.gap.length()).unwrap_or(1.0);
+    cbrt(2.0 * PI * gamma * e * e / (9.0 * length))
+}
+
+/// One model fitted.
+#[derive(Debug, Clone)]
+pub struct Fitted {
+    /// The model; `None` of one that the preset alone has.
+    pub model: Option<Model>,
+    /// What is free in it.
+    pub free: Vec<String>,
+    /// Its fit, or why there is none.
+    pub fit: Result<Fit, FitError>,
+}
+
+/// Two models beside each other.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Pair {
+    /// The better one and the other.
+    pub models: [Model; 2],
+    /// By how much A of the other is larger.
+    pub difference: f64,
+    /// Whether these points tell them apart.
+    pub told_apart: bool,
+    /// The same in words.
+    pub sentence: String,
+}
+
+/// Several models fitted to the same points.
+#[derive(Debug, Clone)]
+pub struct Models {
+    /// The fits, in the order in which they were asked for.
+    pub fits: Vec<Fitted>,
+    /// The number of the best; `None` where no fit came to an end.
+    pub best: Option<usize>,
+    /// Each other one beside the best.
+    pub pairs: Vec<Pair>,
+}
+
+impl Models {
+    /// The fit of the best, and what was free in it.
+    #[must_use]
+    pub fn best(&self) -> Option<(&Fit, &[String])> {
+        let Fitted { fit, free, .. } = self.fits.get(self.best?)?;
+        Some((fit.as_ref().ok()?, free))
+    }
+}
+
+/// Fits `models`, each named once, to the own measured curve of `preset`; where none is named, that of the preset.
+///
+/// # Errors
+/// [`FitError`] of the only model; where there are several, each has its own.
+pub fn fit_models(
+    preset: &Preset,
+    models: &[Model],
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Models, FitError> {
+    if options.free.is_empty() {
+        return Err(FitError::NothingFree);
+    }
+    let laid: Vec<_> = match models {
+        [] => vec![(Model::of(preset.material.adhesion.name()), preset.clone(), options.free.clone())],
+        models => {
+            let of = |model: &Model| {
+                let (laid, free) = model.laid(preset, &options.free);
+                (Some(*model), laid, free)
+            };
+            models.iter().map(of).collect()
+        }
+    };
+    let count = laid.len() as f64;
+    let mut fits: Vec<Fitted> = Vec::new();
+    for (i, (model, laid, free)) in laid.into_iter().enumerate() {
+        let mut options = Options { free: free.clone(), ..options.clone() };
+        // One is judged by the noise of the other.
+        if let Some(first) = fits.iter().find_map(|fitted| fitted.fit.as_ref().ok())
+            && first.noise.from[1] == Origin::Neighbours
+        {
+            let of = |axis: usize| Some(first.noise.sigma[axis]).filter(|sigma| *sigma > 0.0);
+            options.asked.sigma = [of(0), of(1), of(2)];
+        }
+        let part = Part::new(progress, [i as f64 / count, (i + 1) as f64 / count]);
+        fits.push(Fitted { model, free, fit: fit_own(&laid, &options, &part) });
+    }
+    if let [Fitted { fit: Err(error), .. }] = &fits[..] {
+        return Err(error.clone());
+    }
+    let scores = scores(&fits);
+    let best = (0..fits.len())
+        .filter(|i| scores[*i].is_finite())
+        .min_by(|a, b| rank(&fits[*a], scores[*a]).total_cmp(&rank(&fits[*b], scores[*b])));
+    let pairs = best.map_or_else(Vec::new, |best| {
+        let others = (0..fits.len()).filter(|i| *i != best && scores[*i].is_finite());
+        others.filter_map(|i| pair(&fits, &scores, [best, i])).collect()
+    });
+    Ok(Models { fits, best, pairs })
+}
+
+/// A of each; infinite where there is none.
+fn scores(fits: &[Fitted]) -> Vec<f64> {
+    let known = fits.iter().filter_map(|fitted| fitted.fit.as_ref().ok());
+    let noise = known.clone().filter_map(|fit| fit.scatter.contact).fold(f64::INFINITY, f64::min);
+    let together = known.map(|fit| fit.scatter.correlation.rows()).fold(f64::INFINITY, f64::min).max(1.0);
+    let s = if noise.is_finite() { noise.max(1.0) } else { 1.0 };
+    let of = |fit: &Fit| {
+        let cost: f64 = fit.residuals.iter().map(|row| (row.residual / s).clamp(-MOST, MOST).powi(2)).sum();
+        cost / together + 2.0 * fit.parameters.len() as f64
+    };
+    fits.iter().map(|fitted| fitted.fit.as_ref().map_or(f64::INFINITY, of)).collect()
+}
+
+/// A, a difference in what it takes for a model that is not determined: such a one is no better than one that is as good.
+fn rank(fitted: &Fitted, score: f64) -> f64 {
+    let is_told = fitted.fit.as_ref().is_ok_and(|fit| fit.direction.is_none());
+    if is_told { score } else { score + APART }
+}
+
+fn pair(fits: &[Fitted], scores: &[f64], [best, other]: [usize; 2]) -> Option<Pair> {
+    let difference = scores[other] - scores[best];
+    let told_apart = difference > APART;
+    let [Some(one), Some(two)] = [best, other].map(|i| fits[i].model) else { return None };
+    let says = |i: usize| fits[i].fit.as_ref().is_ok_and(|fit| fit.verdict == Verdict::Describes);
+    let sentence = match (told_apart, says(best)) {
+        (true, true) => format!(
+            "the points speak for {} and against {}: A is larger by {} there",
+            one.name(),
+            two.name(),
+            short(difference, 3)
+        ),
+        (true, false) => format!(
+            "{} is nearer to the points than {}, whose A is larger by {}; but its own verdict is not that it describes them",
+            one.name(),
+            two.name(),
+            short(difference, 3)
+        ),
+        (false, _) => format!(
+            "the points do not tell {} from {}: A differs by {}, and {APART} would be wanted",
+            one.name(),
+            two.name(),
+            short(difference, 3).replace('-', "−")
+        ),
+    };
+    Some(Pair { models: [one, two], difference, told_apart, sentence })
+}

@@ -1,0 +1,112 @@
+//! Other models than that of adhesion at the edge alone: how their paths move with their values, and which the points tell apart.
+
+use super::kinds::{DOUBTFUL, plain};
+use super::trial::{made, options, outcome, preset};
+use pulloff_engine::fit::path::{Mover, Path, Reach};
+use pulloff_engine::fit::way::Way;
+use pulloff_engine::fit::{Model, fit_models};
+use pulloff_engine::measured::Abscissa;
+use pulloff_engine::preset::{Preset, Value, read};
+use pulloff_engine::problem::Groups;
+use pulloff_engine::progress::Unwatched;
+
+/// What a key moves by its logarithm.
+const MOVED: [(&str, Mover); 4] = [
+    ("material.effective_modulus", Mover::Modulus),
+    ("material.work_of_adhesion", Mover::Adhesion),
+    ("material.cohesive_strength", Mover::Strength),
+    ("material.cohesive_range", Mover::Extent),
+];
+
+fn path(preset: &Preset, abscissa: Abscissa) -> Path {
+    let reach = Reach { most: [0.1, 0.1, 0.3], turn: [0.1, 0.1], radius: Some(0.4), length: 1.0 };
+    Path::new(preset, abscissa, &reach, Way::Down).unwrap()
+}
+
+#[test]
+fn a_zone_moves_by_closed_forms() {
+    const STEP: f64 = 1e-5;
+    let sphere = "shape='sphere'\nradius_of_curvature=1.0";
+    let waves = "shape='wavy-sphere'\nradius_of_curvature=1.0\namplitude=0.0005\nwavelength=0.1";
+    for (gap, abscissa) in
+        [(sphere, Abscissa::Approach), (sphere, Abscissa::Radius), (waves, Abscissa::Approach)]
+    {
+        for stated in ["material.cohesive_strength", "material.cohesive_range"] {
+            let start = if stated.ends_with("range") { 0.02 } else { 0.2 };
+            let text = format!(
+                "[material]\neffective_modulus=1.3\nwork_of_adhesion=0.004\nadhesion='dugdale'\n{}={start}\n[gap]\n{gap}\n\
+                 [path]\nstart_contact_radius=0.3\n",
+                &stated["material.".len()..]
+            );
+            let truth = read("zone", &text).unwrap();
+            let here = path(&truth, abscissa);
+            for (key, mover) in MOVED.iter().filter(|(key, _)| !key.contains("cohesive") || *key == stated) {
+                let Some(Value::Number(value)) = truth.get(key) else { panic!("{key}") };
+                let beside = |h: f64| {
+                    let mut other = truth.clone();
+                    other.set(key, Value::Number(value * (1.0 + h))).unwrap();
+                    path(&other, abscissa)
+                };
+                let [below, above] = [beside(-STEP), beside(STEP)];
+                // Without contact, just in contact, far in.
+                for along in [0.1, 0.17, 0.2, 0.25, 0.39] {
+                    let (at, _) = here.at(along).unwrap();
+                    let moved = here.moves(*mover, along, at).unwrap();
+                    let [a, b] = [&below, &above].map(|path| path.at(along).unwrap().0);
+                    for k in 0..3 {
+                        let difference = (b[k] - a[k]) / (2.0 * STEP);
+                        let size = at[k].abs().max(1e-3);
+                        assert!(
+                            (moved[k] - difference).abs() < 1e-5 * size,
+                            "{key} {abscissa:?} at {along} ({at:?}), part {k}: {} {difference}",
+                            moved[k]
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn adhesion_of_a_range_is_found_with_its_model() {
+    const MODELS: [Model; 2] = [Model::ShortRange, Model::Dugdale];
+    for (name, mu, least) in [("Tabor 0.5", 0.5, 3), ("Tabor 1", 1.0, 1), ("Tabor 2", 2.0, 0)] {
+        let kind = DOUBTFUL.iter().find(|kind| kind.name == name).unwrap();
+        let mut told = 0;
+        for number in 0..3 {
+            let made = made(kind, number);
+            let found = fit_models(&preset(&made), &MODELS, &options(&made.free), &Unwatched).unwrap();
+            let ([pair], [_, ranged]) = (&found.pairs[..], &found.fits[..]) else { panic!("{found:#?}") };
+            let fit = ranged.fit.as_ref().unwrap();
+            let outcome = outcome(number, &made, &Ok(fit.clone()));
+            println!(
+                "{name} {number}: {} {} {:?} {:?}",
+                pair.sentence, outcome.verdict, outcome.found, fit.direction
+            );
+            if !outcome.is_trusted() {
+                // Too little is seen of the range, and no other reason there is.
+                assert_eq!(outcome.verdict, "not-determined", "{outcome:#?} {pair:?}");
+                continue;
+            }
+            assert!(outcome.off() < 4.0, "{outcome:#?}");
+            let tension = fit.parameters.iter().find(|of| of.key == "material.cohesive_strength").unwrap();
+            let tabor = Groups::of(&fit.preset.problem(), None, fit.preset.cohesion()).tabor.unwrap();
+            let error = tension.standard_error.unwrap() / tension.value;
+            assert!((tabor / mu).ln().abs() < 4.0 * error, "{name} {number}: {tabor} {error}");
+            told += usize::from(pair.told_apart && pair.models[0] == Model::Dugdale);
+        }
+        assert!(told >= least, "{name}: {told}");
+    }
+}
+
+#[test]
+fn a_range_that_the_points_do_not_show_is_not_determined() {
+    let made = plain(3);
+    let found = fit_models(&preset(&made), &Model::ALL, &options(&made.free), &Unwatched).unwrap();
+    assert_eq!(found.fits[found.best.unwrap()].model, Some(Model::ShortRange), "{:#?}", found.pairs);
+    let ranged = found.fits[1].fit.as_ref().unwrap();
+    println!("{:?} {:?} {:?} {:?}", found.pairs, ranged.verdict, ranged.direction, ranged.parameters);
+    assert!(found.pairs.iter().all(|pair| !pair.told_apart), "{:#?}", found.pairs);
+    assert!(ranged.direction.as_ref().is_some_and(|why| why.contains("how far the adhesion reaches")));
+}
