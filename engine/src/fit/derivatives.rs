@@ -17,9 +17,6 @@ use crate::measured::Segment;
 use crate::preset::schema::RANGE_KEYS;
 use nalgebra::{DMatrix, DVector};
 
-/// The step of a difference, in u.
-const STEP: f64 = 1e-5;
-
 /// The paths at some values, and the feet of the points on them.
 pub struct Look {
     paths: Paths,
@@ -79,6 +76,7 @@ impl Problem {
 
     /// The paths on either side of `u` in the parameter `j`, with the step between them; where one has other snaps, that of `paths`.
     fn either_side(&self, u: &[f64], j: usize, paths: &Paths) -> Option<([Option<Paths>; 2], f64)> {
+        let step = paths.of(Segment::Retraction).step();
         let beside = |h: f64| {
             let mut u = u.to_vec();
             u[j] += h;
@@ -88,10 +86,10 @@ impl Problem {
                 .all(|of| found.of(*of).pieces.len() == paths.of(*of).pieces.len());
             same.then_some(found)
         };
-        match (beside(-STEP), beside(STEP)) {
+        match (beside(-step), beside(step)) {
             (None, None) => None,
             (below, above) => {
-                let width = if below.is_some() && above.is_some() { 2.0 * STEP } else { STEP };
+                let width = if below.is_some() && above.is_some() { 2.0 * step } else { step };
                 Some(([below, above], width))
             }
         }
@@ -114,19 +112,18 @@ impl Problem {
                 }
                 _ => None,
             };
-            let by = match told {
-                Some(by) => by,
-                None => {
-                    if beside.is_none() {
-                        beside = Some(self.either_side(u, j, paths)?);
-                    }
-                    let ([below, above], width) = beside.as_ref()?;
-                    let place = |side: &Option<Paths>| {
-                        side.as_ref().unwrap_or(paths).of(datum.segment).foot(foot.piece, foot.foot)
-                    };
-                    let (a, b) = (place(below)?, place(above)?);
-                    std::array::from_fn(|axis| (b[axis] - a[axis]) / width)
+            let by = if let Some(by) = told {
+                by
+            } else {
+                if beside.is_none() {
+                    beside = Some(self.either_side(u, j, paths)?);
                 }
+                let ([below, above], width) = beside.as_ref()?;
+                let place = |side: &Option<Paths>| {
+                    side.as_ref().unwrap_or(paths).of(datum.segment).foot(foot.piece, foot.foot)
+                };
+                let (a, b) = (place(below)?, place(above)?);
+                std::array::from_fn(|axis| (b[axis] - a[axis]) / width)
             };
             (0..per).for_each(|k| put(per * i + k, moved(foot, by, weights, k)));
         }

@@ -3,6 +3,7 @@
 //! All in reduced units.
 
 use super::path::{Mover, Reach};
+use super::pulled::{Trail, is_pulled};
 use crate::case;
 use crate::disc::{Basis, Exact, Local, Place, Solution, Table};
 use crate::measured::Abscissa;
@@ -77,6 +78,8 @@ pub(super) enum Ground {
         /// Whether its range stays as it is when γ changes, not its tension.
         holds_range: bool,
     },
+    /// A pull at a rate.
+    Pull(Arc<Trail>),
 }
 
 impl Ground {
@@ -95,6 +98,10 @@ impl Ground {
             let holds_range = !matches!(preset.material.adhesion, Adhesion::Dugdale(Stated::Strength(_)));
             let radius = preset.gap.radius_of_curvature().map(|radius| radius / units.length);
             return Self::in_zone(&table, (law, holds_range, radius), eye, reach, held);
+        }
+        if is_pulled(preset) {
+            let trail = Trail::of(preset, &reduced, &table, held)?;
+            return Some(Self::Pull(Arc::new(trail)));
         }
         let outermost = match reach.radius {
             Some(radius) => (radius / units.length).min(reduced.largest_contact()),
@@ -119,13 +126,13 @@ impl Ground {
         }
         let length = eye.units.length;
         let wanted = reach.radius.map(|radius| radius / length);
-        let enough = |state: &ZoneState| match wanted {
-            Some(edge) => state.edge >= edge,
-            // Beyond the pull-off both rise.
-            None => {
-                let rises = state.slopes.iter().all(|slope| *slope > 0.0);
-                rises && eye.is_enough([state.contact_radius, state.approach, state.force], reach)
+        let enough = |state: &ZoneState| {
+            if let Some(edge) = wanted {
+                return state.edge >= edge;
             }
+            // Beyond the pull-off both rise.
+            let rises = state.slopes.iter().all(|slope| *slope > 0.0);
+            rises && eye.is_enough([state.contact_radius, state.approach, state.force], reach)
         };
         let zones = Zones::grown(table, law, about(law, wanted.unwrap_or(0.1)), &enough, &Unwatched).ok()?;
         let solution = Arc::clone(&zones.solution);
@@ -157,19 +164,29 @@ impl Ground {
         Some(Self::Zone { zones: Arc::new(zones), monotone, ends, law, holds_range })
     }
 
-    pub(super) fn solution(&self) -> &dyn Solution {
+    /// The equilibria; a pull has none.
+    pub(super) fn solution(&self) -> Option<&dyn Solution> {
         match self {
-            Self::Edge(curve) => &*curve.solution,
-            Self::Zone { zones, .. } => &*zones.solution,
+            Self::Edge(curve) => Some(&*curve.solution),
+            Self::Zone { zones, .. } => Some(&*zones.solution),
+            Self::Pull(_) => None,
         }
     }
 
-    /// The stretches of the control that is held.
-    pub(super) fn monotone(&self, held: Control) -> Arc<Monotone> {
+    /// The stretches of the control that is held; a pull has none.
+    pub(super) fn monotone(&self, held: Control) -> Option<Arc<Monotone>> {
         match self {
-            Self::Edge(curve) => curve.monotone(held),
-            Self::Zone { monotone, .. } => Arc::clone(monotone),
+            Self::Edge(curve) => Some(curve.monotone(held)),
+            Self::Zone { monotone, .. } => Some(Arc::clone(monotone)),
+            Self::Pull(_) => None,
         }
+    }
+
+    /// The step of the logarithm of a value by which the derivatives of paths are taken: what is integrated is known to fewer digits.
+    pub(super) fn step(&self) -> f64 {
+        const OF_EQUILIBRIA: f64 = 1e-5;
+        const OF_PULLS: f64 = 3e-4;
+        if matches!(self, Self::Pull(_)) { OF_PULLS } else { OF_EQUILIBRIA }
     }
 
     /// Its outer and its inner end.
@@ -177,6 +194,7 @@ impl Ground {
         match self {
             Self::Edge(curve) => [curve.outermost(), curve.innermost()],
             Self::Zone { ends, .. } => *ends,
+            Self::Pull(trail) => trail.ends(),
         }
     }
 
@@ -185,23 +203,25 @@ impl Ground {
         match self {
             Self::Edge(curve) => curve.reach(by * curve.solution.reach()),
             // It ends where a panel does, some way beyond the points.
-            Self::Zone { .. } => false,
+            Self::Zone { .. } | Self::Pull(_) => false,
         }
     }
 
     /// The state at `along`; `None` beyond what is known.
     pub(super) fn state(&self, along: f64) -> Option<State> {
-        let solution = self.solution();
+        if let Self::Pull(trail) = self {
+            return Some(trail.state(along));
+        }
+        let solution = self.solution()?;
         // The outermost radius may be rounded beyond what is known.
-        Some(self.state_at(solution.place(along.min(solution.reach()))?, along))
+        Some(self.state_at(solution, solution.place(along.min(solution.reach()))?, along))
     }
 
-    fn state_at(&self, place: Place, along: f64) -> State {
-        let solution = self.solution();
+    fn state_at(&self, solution: &dyn Solution, place: Place, along: f64) -> State {
         let local = solution.at(place);
         let [delta, force] = local.slopes.map(|slope| slope / local.stretch);
         match self {
-            Self::Edge(_) => {
+            Self::Edge(_) | Self::Pull(_) => {
                 State { along, at: [along, local.approach, local.force], slopes: [1.0, delta, force] }
             }
             Self::Zone { zones, .. } => {
@@ -214,8 +234,8 @@ impl Ground {
 
     /// States to draw it by, running inward, as far as it is connected.
     pub(super) fn drawn(&self) -> Vec<State> {
-        let solution = self.solution();
         match self {
+            Self::Pull(trail) => trail.states().to_vec(),
             Self::Edge(curve) => {
                 let of = |sample: &Sample| {
                     let Sample { contact_radius: s, approach, force, slopes } = *sample;
@@ -227,7 +247,8 @@ impl Ground {
                 };
                 curve.samples.iter().map(of).collect()
             }
-            Self::Zone { ends: [outer, inner], .. } => {
+            Self::Zone { zones, ends: [outer, inner], .. } => {
+                let solution = &*zones.solution;
                 let mut panel = None;
                 let joined = |place: &Place| {
                     let is_joined =
@@ -237,7 +258,8 @@ impl Ground {
                 };
                 let places = places(solution, *outer, *inner, Detail::Drawn);
                 let connected = places.into_iter().take_while(joined);
-                let states = connected.map(|place| self.state_at(place, solution.at(place).contact_radius));
+                let states =
+                    connected.map(|place| self.state_at(solution, place, solution.at(place).contact_radius));
                 states.filter(|state| state.slopes.iter().all(|slope| slope.is_finite())).collect()
             }
         }
@@ -253,7 +275,7 @@ impl Ground {
     /// How s, δ and P change for each unit of the logarithm of a value, what runs along held; `None` where no closed form says it.
     pub(super) fn moves(&self, mover: Mover, along: f64) -> Option<[f64; 3]> {
         let Self::Zone { zones, law, holds_range, .. } = self else { return None };
-        let solution = self.solution();
+        let solution = &*zones.solution;
         let place = solution.place(along.min(solution.reach()))?;
         let [by_strength, by_range] = zones.moves(place);
         let of = |strength: f64, range: f64| -> [f64; 3] {
@@ -274,6 +296,31 @@ impl Ground {
             Mover::Stiffness | Mover::Range => return None,
         })
     }
+}
+
+/// The contact radius of the outermost equilibrium of `preset` at x, in the user's units: where a retraction that begins there has its edge.
+pub(super) fn begins(preset: &Preset, abscissa: Abscissa, x: f64, length: f64) -> Option<f64> {
+    if abscissa == Abscissa::Radius {
+        return Some(x);
+    }
+    let reduced = preset.problem().reduced_by(preset.gap.length().unwrap_or(length));
+    let compliance = match (abscissa, preset.path.control) {
+        (Abscissa::Position, Control::Stiffness(k)) => 1.0 / k,
+        _ => 0.0,
+    };
+    let eye = Eye { units: reduced.units, abscissa, compliance };
+    let table = case::table(&preset.gap, &reduced, 1.0, &preset.units, &Unwatched).ok()?;
+    let basis = Exact::new(table, 1e-3);
+    let reach =
+        Reach { most: [x, f64::NEG_INFINITY, f64::NEG_INFINITY], turn: [x, 0.0], radius: None, length };
+    let mut hi = outermost(&reduced, &basis, &reach, &eye)?;
+    let mut lo = 0.5 * hi;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (lo + hi);
+        let at = basis.equilibrium(&reduced, middle)?;
+        if eye.x([middle, at.approach, at.force]) > x { hi = middle } else { lo = middle }
+    }
+    Some(hi * reduced.units.length)
 }
 
 /// The reduced radius from which the curve reaches beyond all points.

@@ -29,6 +29,7 @@ pub(super) use spring::of_spring;
 use super::fitted::Fitted;
 use super::path::Foot;
 use super::problem::{ADHESION, Paths, Problem};
+use super::pulled::is_pulled;
 use super::scatter::Scatter;
 use super::solve::Solved;
 use super::verdict::Reason;
@@ -86,7 +87,7 @@ pub(super) fn reasons(
     reasons.extend(scores::of_shape(problem, solved, scatter, inner));
     if preset.cohesion().is_some() {
         reasons.extend(range::of_zone(problem, solved));
-    } else {
+    } else if !is_pulled(&problem.preset) {
         // All are told by what an adhesion at the edge alone does.
         reasons.extend(touch::of_touch(problem, solved, scatter, inner));
         reasons.extend(scores::of_range(problem, solved, scatter, inner));
@@ -172,7 +173,7 @@ pub(super) fn doubts(
 ) -> Vec<String> {
     let has_speed = reasons.iter().any(|reason| rate::KINDS.contains(&reason.kind));
     let of_edge = || rate::of_untimed(problem, solved, scatter, inner);
-    let is_sharp = problem.preset.cohesion().is_none();
+    let is_sharp = problem.preset.cohesion().is_none() && !is_pulled(&problem.preset);
     let mut doubts: Vec<String> = if has_speed || !is_sharp { None } else { of_edge() }.into_iter().collect();
     let adhesions: Vec<&Fitted> = fitted.iter().filter(|fitted| fitted.key.starts_with(ADHESION)).collect();
     if let [approach, retraction] = adhesions[..]
@@ -213,9 +214,9 @@ fn extent(problem: &Problem, u: &[f64], paths: &Paths) -> (f64, f64) {
     for (datum, foot) in problem.data.iter().zip(&feet) {
         let Some(foot) = foot else { continue };
         let path = paths.of(datum.segment);
-        if let Foot::Radius(s) = foot.foot {
-            widest = f64::max(widest, s);
-            deepest = f64::max(deepest, path.approach(s).unwrap_or(deepest));
+        if let Foot::Radius(along) = foot.foot {
+            widest = f64::max(widest, path.radius(along).unwrap_or(widest));
+            deepest = f64::max(deepest, path.approach(along).unwrap_or(deepest));
         }
     }
     (widest, deepest)

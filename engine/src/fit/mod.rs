@@ -7,6 +7,7 @@
 //! | `ground` | what the arcs of a path run along: equilibria over the contact radius or over the edge of a zone |
 //! | [`path`] | the curve that points lie on: equilibria and jumps |
 //! | [`distance`] | the signed distance of a point from it |
+//! | `pulled` | the path of a pull at a rate |
 //! | [`prior`] | the minimum with what is known of values before |
 //! | [`problem`] | parameters, data, the paths of values |
 //! | [`derivatives`] | residuals and their derivatives |
@@ -49,6 +50,7 @@ pub mod path;
 pub mod pose;
 pub mod prior;
 pub mod problem;
+mod pulled;
 mod rings;
 pub mod rows;
 pub mod run;

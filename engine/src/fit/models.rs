@@ -85,7 +85,7 @@ impl Model {
     }
 }
 
-/// A tension to begin with: λ_M = 1.
+/// A tension to begin with: `λ_M` = 1.
 fn guess(preset: &Preset) -> f64 {
     let (e, gamma) = (preset.material.effective_modulus, preset.material.work_of_adhesion);
     let length = preset.gap.radius_of_curvature().or(preset.gap.length()).unwrap_or(1.0);

@@ -5,7 +5,7 @@ use crate::measured::Asked;
 use crate::measured::{Abscissa, BranchError};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::schema::{CHOOSERS, Kind, RANGE_KEYS, Row};
-use crate::preset::{Preset, Value};
+use crate::preset::{Preset, Value, edge};
 use crate::text::{closest_key, greek, quote};
 use thiserror::Error;
 
@@ -67,6 +67,11 @@ pub enum FitError {
         /// Why not.
         why: String,
     },
+    /// An edge with a speed, and no device with one.
+    #[error(
+        "{0} is fitted to a retraction at an even rate: set path.rate, or give times beside the way of the device, {1}"
+    )]
+    NoRate(String, &'static str),
     /// The points give no branches.
     #[error(transparent)]
     Branches(#[from] BranchError),
@@ -141,9 +146,20 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
             meant.map_or_else(String::new, |key| format!("; did you mean {key}?"))
         )));
     };
-    let others = ["material.effective_modulus", ADHESION, "path.control.stiffness"];
+    let others = [
+        "material.effective_modulus",
+        ADHESION,
+        "path.control.stiffness",
+        edge::REFERENCE_SPEED,
+        edge::EXPONENT,
+    ];
     let fits = row.key.starts_with("gap.") || others.iter().chain(&RANGE_KEYS).any(|key| row.key == *key);
-    if !fits || !matches!(row.kind, Kind::Positive | Kind::NonNegative) {
+    let is_positive = match row.kind {
+        Kind::Positive | Kind::NonNegative => true,
+        Kind::Between { min, .. } => min > 0.0,
+        _ => false,
+    };
+    if !fits || !is_positive {
         return Err(refused(
             "is no positive number of the bodies, the gap, the adhesion or the spring, which alone can be fitted"
                 .to_owned(),

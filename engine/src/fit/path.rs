@@ -135,26 +135,32 @@ impl Path {
         let [outermost, innermost] = ground.ends();
         // A rising stretch outside a falling one, or one of either: a curve without snaps.
         let inside = |s: f64| s > innermost && s < outermost;
-        let limits = ground.monotone(held).limits.iter().filter(|limit| inside(limit.contact_radius)).count();
+        let limits = ground.monotone(held).map_or(0, |monotone| {
+            monotone.limits.iter().filter(|limit| inside(limit.contact_radius)).count()
+        });
         let seen = Seen {
             x_of: &|at: &Local| eye.x([at.contact_radius, at.approach, at.force]),
             most: reach.most[0],
             turn: [reach.turn[0], reach.turn[1] / units.force],
         };
         let legs = if limits > 1 { legs(&mut ground, held, way, &seen) } else { Vec::new() };
+        // What runs along a pull is none.
+        let outermost_radius =
+            if let Ground::Pull(trail) = &ground { trail.state(outermost).at[0] } else { outermost };
         let mut path = Self {
             ground,
             eye,
             material: [preset.material.effective_modulus, preset.material.work_of_adhesion],
             pieces: Vec::new(),
             vertices: Vec::new(),
-            outermost: outermost * units.length,
+            outermost: outermost_radius * units.length,
             snaps: 0,
             least_force: f64::INFINITY,
         };
         for leg in &legs {
             let ends = |places: &[disc::Place; 2]| {
-                places.map(|place| path.ground.solution().at(place).contact_radius)
+                let along = |place| path.ground.solution().map_or(f64::NAN, |of| of.at(place).contact_radius);
+                places.map(along)
             };
             let piece = match leg {
                 Leg::Along(places) => Piece::Arc(ends(places).map(|along| along * units.length)),
@@ -340,6 +346,18 @@ impl Path {
     pub fn approach(&self, along: f64) -> Option<f64> {
         let length = self.eye.units.length;
         self.ground.state(along / length).map(|state| state.at[1] * length)
+    }
+
+    /// s at a place `along` an arc.
+    #[must_use]
+    pub fn radius(&self, along: f64) -> Option<f64> {
+        self.at(along).map(|([_, _, s], _)| s)
+    }
+
+    /// The step of the logarithm of a value by which its derivatives are taken.
+    #[must_use]
+    pub(super) fn step(&self) -> f64 {
+        self.ground.step()
     }
 
     /// Where a foot is on this path.

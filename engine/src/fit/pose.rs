@@ -1,8 +1,9 @@
 //! What is fitted: the points and parameters of a preset's branches.
 
+use super::ground::begins;
 use super::options::{FitError, Options, target};
 use super::path::Reach;
-use super::problem::{ADHESION, Datum, Instrument, Parameter, Prior, Problem, Target};
+use super::problem::{ADHESION, Datum, Instrument, Parameter, Prior, Problem, START, Target};
 use super::uncertain::{Uncertain, uncertain};
 use crate::gap::Gap;
 use crate::measured::branches::{Point, median};
@@ -10,7 +11,7 @@ use crate::measured::{Abscissa, Branches, Segment};
 use crate::preset::data::BASELINE;
 use crate::preset::data::DataSpec;
 use crate::preset::{BasisSpec, Preset, Value};
-use crate::problem::Start;
+use crate::problem::{Control, Start};
 use crate::units::{Quantity, number::said};
 
 /// Points in contact for each free parameter, at least.
@@ -38,10 +39,16 @@ pub fn posed(
     if preset.basis != BasisSpec::Exact {
         notes.push("the fit is made in the exact basis, whatever basis.kind says".to_owned());
     }
-    let data = data(branches);
+    let mut data = data(branches);
     let has_waves = preset.gap.feature_length().is_some();
-    let loops = has_waves && data.iter().any(|datum| datum.segment == Segment::Approach);
     let mut targets = targets(preset, branches, options)?;
+    if let Some(key) = targets.iter().map(Target::key).find(|key| key.starts_with("edge.")) {
+        bare.path.start = pulled(&mut bare, branches, &mut data, &key, notes)?;
+        targets.push(Target::Key(START.to_owned()));
+    } else {
+        bare.edge.rate = None;
+    }
+    let loops = has_waves && data.iter().any(|datum| datum.segment == Segment::Approach);
     let known = known(preset, branches, options)?;
     let is_known = known.iter().any(|known| known.target == Target::Baseline);
     let instrument = instrument(preset, branches, options, (&mut targets, is_known), notes)?;
@@ -53,7 +60,7 @@ pub fn posed(
             .cloned()
             .collect::<Vec<_>>(),
     );
-    let parameters = targets.into_iter().map(|target| parameter(preset, branches, &instrument, target));
+    let parameters = targets.into_iter().map(|target| parameter(&bare, branches, &instrument, target));
     let parameters: Vec<Parameter> = parameters.collect();
     let attached = data.iter().filter(|datum| !datum.free).count();
     // What is known before takes the place of points.
@@ -87,6 +94,66 @@ pub fn posed(
         loops,
         counts: None,
     })
+}
+
+/// Makes `bare` a pull at the rate of the retraction, of which alone the points are kept; where it starts.
+fn pulled(
+    bare: &mut Preset,
+    branches: &Branches,
+    data: &mut Vec<Datum>,
+    key: &str,
+    notes: &mut Vec<String>,
+) -> Result<Start, FitError> {
+    let before = data.len();
+    data.retain(|datum| datum.segment == Segment::Retraction);
+    if data.len() < before {
+        notes.push(format!(
+            "the {} points of the approach are left out: an edge that has a speed is fitted to the retraction",
+            before - data.len()
+        ));
+    }
+    let refused = |why| FitError::NoRate(key.to_owned(), why);
+    if bare.edge.exponent.is_none() || bare.edge.reference_speed.is_none() {
+        return Err(refused("and first guesses of edge.exponent and edge.reference_speed"));
+    }
+    let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
+    let attached: Vec<&Point> = retraction.flat_map(|branch| &branch.attached).collect();
+    if bare.edge.rate.is_none() {
+        let is_way = branches.abscissa == Abscissa::Position || bare.path.control == Control::Displacement;
+        if branches.abscissa == Abscissa::Radius || !is_way {
+            return Err(refused("which this file has not"));
+        }
+        let rate = even_rate(&attached).ok_or_else(|| refused("which go at an even rate"))?;
+        let quantity =
+            if bare.path.control == Control::Force { Quantity::ForceRate } else { Quantity::Speed };
+        notes.push(format!("the times say path.rate = {}", said(&bare.units, quantity, rate)));
+        bare.edge.rate = Some(rate);
+    }
+    let first = &attached[..TURN.min(attached.len())];
+    let middle =
+        |of: fn(&Point) -> f64| median(first.iter().map(|point| of(point)).collect()).unwrap_or(f64::NAN);
+    let offset = bare.data.offset.unwrap_or(0.0);
+    let seen = middle(|point| point.radius);
+    let start = if seen.is_finite() && branches.abscissa != Abscissa::Radius {
+        Some(seen)
+    } else {
+        begins(bare, branches.abscissa, middle(|point| point.x) - offset, branches.ranges[0])
+    };
+    start.filter(|start| *start > 0.0).map(Start::ContactRadius).ok_or(FitError::NoStart)
+}
+
+/// The rate of x over the times of a retraction; `None` where it is not even or not known.
+fn even_rate(points: &[&Point]) -> Option<f64> {
+    /// Rates of both halves that differ by less than this share are one.
+    const EVEN: f64 = 0.05;
+    let rate = |of: &[&Point]| {
+        let (first, last) = (of.first()?, of.last()?);
+        let rate = (first.x - last.x) / (last.time - first.time);
+        (rate > 0.0 && rate.is_finite()).then_some(rate)
+    };
+    let (one, two) = points.split_at(points.len() / 2);
+    let (whole, one, two) = (rate(points)?, rate(one)?, rate(two)?);
+    ((one - two).abs() < EVEN * whole).then_some(whole)
 }
 
 /// The points that are fitted.

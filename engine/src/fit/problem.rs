@@ -8,8 +8,8 @@ use crate::measured::branches::Point;
 use crate::measured::{Abscissa, Segment};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::schema::RANGE_KEYS;
-use crate::preset::{Preset, Value};
-use crate::problem::{Adhesion, Stated};
+use crate::preset::{Preset, Value, edge};
+use crate::problem::{Adhesion, Start, Stated};
 use nalgebra::DVector;
 use std::num::NonZero;
 use std::panic::resume_unwind;
@@ -46,6 +46,9 @@ impl Target {
 
 /// The key of the work of adhesion.
 pub const ADHESION: &str = "material.work_of_adhesion";
+
+/// The key of the contact radius at which a pull begins.
+pub const START: &str = "path.start_contact_radius";
 
 /// A parameter that is free.
 #[derive(Debug, Clone, PartialEq)]
@@ -208,6 +211,8 @@ impl Problem {
                     preset.material.effective_modulus = value;
                 }
                 ADHESION if value.is_finite() => preset.material.work_of_adhesion = value,
+                edge::REFERENCE_SPEED if value.is_normal() => preset.edge.reference_speed = Some(value),
+                START if value.is_normal() => preset.path.start = Start::ContactRadius(value),
                 key if key == RANGE_KEYS[0] && value.is_normal() => {
                     preset.material.adhesion = Adhesion::Dugdale(Stated::Strength(value));
                 }

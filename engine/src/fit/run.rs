@@ -9,18 +9,23 @@ use super::least_squares::{Ending, LeastSquares};
 use super::options::{FitError, Options, letter};
 use super::pose::posed;
 use super::problem::{ADHESION, Datum, Instrument, Parameter, Prior, Problem, Target};
+use super::pulled::is_pulled;
 use super::rows::Rows;
 use super::scatter::Scatter;
 use super::solve::{Solved, solve};
 use super::start::{Tried, start};
 use super::uncertain::{uncertain, written};
 use super::verdict::{Reason, Verdict};
+use crate::elementary::{ln, pow};
 use crate::measured::branches::FLOOR;
 use crate::measured::{Abscissa, Branches, Noise, Origin, Segment};
-use crate::preset::Preset;
 use crate::preset::data::{BASELINE, OFFSET, TILT};
+use crate::preset::{Preset, edge};
 use crate::progress::{Part, Progress};
-use crate::units::{Quantity, number::said};
+use crate::units::{
+    Quantity,
+    number::{said, significant},
+};
 use nalgebra::DVector;
 use serde::Serialize;
 
@@ -186,7 +191,8 @@ pub(super) fn fit_branches(
     let u = &solved.minimum.parameters;
     let scatter = problem.scatter(&solved);
     let mut what = determined(&problem, &solved, &scatter, options.robust);
-    let unseen = unseen(&problem, u, &what);
+    notes.extend(growth(&problem, u, &what));
+    let unseen = unseen(&problem, &solved, (&what, &scatter), options.robust, progress);
     let is_unseen = unseen.is_some();
     if let Some(direction) = unseen {
         what = Determined {
@@ -281,6 +287,34 @@ fn given(problem: &Problem, shares: &[Vec<f64>], notes: &mut Vec<String>) -> Vec
         }
     }
     given
+}
+
+/// By how much G of a fast edge grows, G − γ = K vⁿ with K = γ/v₀ⁿ, where its law is fitted: better known than γ and v₀, of which a fast pull
+/// alone tells no more.
+fn growth(problem: &Problem, u: &[f64], what: &Determined) -> Option<String> {
+    if !is_pulled(&problem.preset) {
+        return None;
+    }
+    let preset = problem.preset_at(u, Segment::Retraction)?;
+    let (n, speed) = (preset.edge.exponent?, preset.edge.reference_speed?);
+    let value = preset.material.work_of_adhesion / pow(speed, n);
+    // d ln K by the logarithms of the values.
+    let slope = |parameter: &Parameter| match &*parameter.key() {
+        ADHESION => 1.0,
+        edge::REFERENCE_SPEED => -n,
+        edge::EXPONENT => -n * ln(speed),
+        _ => 0.0,
+    };
+    let slopes: Vec<f64> = problem.parameters.iter().map(slope).collect();
+    let error = what.errors.as_ref().zip(what.correlations.as_ref()).map(|(errors, correlations)| {
+        let along = DVector::from_fn(slopes.len(), |j, _| slopes[j] * errors[j]);
+        (correlations * &along).dot(&along).max(0.0).sqrt() * value
+    });
+    let error = error.map_or_else(String::new, |error| format!(" +- {}", significant(error, 2)));
+    Some(format!(
+        "a fast edge costs K v^n more than gamma, with K = gamma/v0^n = {}{error} in base units",
+        significant(value, 4)
+    ))
 }
 
 /// What a fit comes to.

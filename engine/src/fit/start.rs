@@ -3,15 +3,18 @@
 //! E* over five decades; at each γ such that the smallest force is that of the points, δ₀ the median offset. Other free keys are
 //! tried at a few shares of their values.
 
+use super::ground::begins;
 use super::least_squares::LeastSquares;
-use super::problem::{ADHESION, Datum, Problem, Target};
+use super::problem::{ADHESION, Datum, Problem, START, Target};
+use super::pulled::is_pulled;
 use super::solve::{Solved, solve};
 use crate::elementary::ln;
 use crate::gap::Gap;
 use crate::measured::branches::median;
 use crate::measured::{Abscissa, Segment};
+use crate::preset::edge;
 use crate::preset::schema::RANGE_KEYS;
-use crate::problem::{Adhesion, Cohesion};
+use crate::problem::{Adhesion, Cohesion, Control};
 use crate::progress::{Part, Progress};
 
 /// Values of E*, and the decades they span.
@@ -61,7 +64,9 @@ impl Problem {
         let adhesions =
             self.index(|t| matches!(t, Target::Adhesion(_)) || *t == Target::Key(ADHESION.to_owned()));
         let offsets = self.index(|t| *t == Target::Offset);
+        self.begun(&mut u);
         for _ in 0..if adhesions.is_empty() || least >= 0.0 { 0 } else { TIMES } {
+            self.begun(&mut u);
             let paths = self.paths(&u)?;
             let ratio = least / paths.of(Segment::Retraction).least_force;
             if !(ratio > 0.0 && ratio.is_finite()) || (ratio - 1.0).abs() < 0.01 {
@@ -102,7 +107,7 @@ impl Problem {
     /// Candidates where adhesion has a range: the best without one, which is found soon, with some ranges where that is free. `None` where
     /// it has none, or nothing is found without.
     fn of_ranges(&self, robust: bool, progress: &dyn Progress) -> Option<Vec<Vec<f64>>> {
-        /// Maugis' λ_M.
+        /// Maugis' `λ_M`.
         const MAUGIS: [f64; 4] = [0.15, 0.5, 1.2, 3.0];
         self.preset.cohesion()?;
         let own: Vec<f64> =
@@ -131,6 +136,71 @@ impl Problem {
             u
         };
         Some(std::iter::once(own).chain(strengths.map(with)).collect())
+    }
+
+    /// Candidates of a pull at a rate: the best of a quasi-static retraction, stiffer than the bodies are, with laws slow and fast. `None`
+    /// where it is none.
+    fn of_rates(&self, robust: bool, progress: &dyn Progress) -> Option<Vec<Vec<f64>>> {
+        /// E* over that of the quasi-static fit, v₀ over the rate of the device, n.
+        const SOFTER: [f64; 3] = [1.0, 0.7, 0.45];
+        const SPEEDS: [f64; 4] = [0.01, 0.3, 3.0, 100.0];
+        const EXPONENTS: [f64; 2] = [0.35, 0.7];
+        if !is_pulled(&self.preset) {
+            return None;
+        }
+        let own: Vec<f64> =
+            self.parameters.iter().map(|parameter| parameter.inner(parameter.start)).collect();
+        let of_edge =
+            |target: &Target| matches!(target, Target::Key(key) if key.starts_with("edge.") || key == START);
+        let free = self.index(of_edge);
+        let mut still = self.clone();
+        for &j in free.iter().rev() {
+            still = still.holding(j, own[j])?;
+        }
+        still.preset.edge.rate = None;
+        let (found, _) = start(&still, true, robust, &Part::new(progress, [0.0, 0.3]))?;
+        let mut base = found;
+        for &j in &free {
+            base.insert(j, own[j]);
+        }
+        let [modulus, speed, exponent] =
+            ["material.effective_modulus", edge::REFERENCE_SPEED, edge::EXPONENT]
+                .map(|key| self.index(|target| target.key() == key).first().copied());
+        // The rate of a force is no speed: there the guess of the preset stands in its place.
+        let is_force = self.preset.path.control == Control::Force;
+        let unit = self.preset.edge.rate.filter(|_| !is_force).or(self.preset.edge.reference_speed)?;
+        let mut list = vec![own];
+        let vary = |list: Vec<Vec<f64>>, j: Option<usize>, values: &dyn Fn(f64) -> Vec<f64>| match j {
+            None => list,
+            Some(j) => {
+                let each = |u: Vec<f64>| {
+                    values(u[j])
+                        .into_iter()
+                        .map(move |value| {
+                            let mut u = u.clone();
+                            u[j] = value;
+                            u
+                        })
+                        .collect::<Vec<_>>()
+                };
+                list.into_iter().flat_map(each).collect()
+            }
+        };
+        let scan = vary(vec![base], modulus, &|u| SOFTER.map(|factor| u + ln(factor)).to_vec());
+        let scan = vary(scan, speed, &|_| SPEEDS.map(|factor| ln(factor * unit)).to_vec());
+        list.extend(vary(scan, exponent, &|_| EXPONENTS.map(ln).to_vec()));
+        Some(list)
+    }
+
+    /// The contact radius at which a pull begins, where that is free, as the values have it at the first points.
+    fn begun(&self, u: &mut [f64]) {
+        let Some(&j) = self.index(|target| target.key() == START).first() else { return };
+        let at = self.instrument_at(u);
+        let x = self.reach.turn[0] - if self.abscissa == Abscissa::Radius { 0.0 } else { at.offset };
+        let preset = self.preset_at(u, Segment::Retraction);
+        if let Some(s) = preset.and_then(|preset| begins(&preset, self.abscissa, x, self.reach.length)) {
+            u[j] = self.parameters[j].inner(s);
+        }
     }
 
     /// The candidates, that of the preset first.
@@ -188,10 +258,8 @@ pub fn start(
     let (compared, run) = (problem.thinned(COMPARED), problem.thinned(RUN));
     let attached = problem.data.iter().filter(|datum| !datum.free);
     let least = attached.map(|datum| datum.point.force).fold(f64::INFINITY, f64::min);
-    let candidates = match problem.of_ranges(robust, progress) {
-        Some(found) if scan => found,
-        _ => problem.candidates(scan),
-    };
+    let others = || problem.of_ranges(robust, progress).or_else(|| problem.of_rates(robust, progress));
+    let candidates = if scan { others() } else { None }.unwrap_or_else(|| problem.candidates(scan));
     let count = candidates.len() as f64;
     let mut ranked: Vec<(f64, Vec<f64>)> = Vec::new();
     for (i, u) in candidates.into_iter().enumerate() {

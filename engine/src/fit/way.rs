@@ -1,8 +1,9 @@
 //! The ways of a device along a curve with snaps, leg by leg: up from the first touch, or down from where it turned round.
 
 use super::ground::Ground;
-use crate::disc::{Local, Place};
+use crate::disc::{Local, Place, Solution};
 use crate::problem::Control;
+use crate::quasistatic::Monotone;
 use crate::quasistatic::ascent::{Rise, ascend};
 use crate::quasistatic::descent::{descend, stable_start};
 use crate::quasistatic::jump::Landing;
@@ -46,13 +47,12 @@ const TIMES: usize = 8;
 /// touch has a curve on both sides.
 pub(super) fn legs(ground: &mut Ground, control: Control, way: Way, seen: &Seen<'_>) -> Vec<Leg> {
     for _ in 0..TIMES {
+        let (Some(solution), Some(monotone)) = (ground.solution(), ground.monotone(control)) else { break };
         let found = match way {
-            Way::Up => up(ground, control, seen),
-            Way::Down => {
-                let solution = ground.solution();
-                let outermost = || stable_start(solution, &ground.monotone(control), solution.reach());
-                turned(ground, control, seen).or_else(outermost).map(|start| down(ground, control, start))
-            }
+            Way::Up => up(seen, solution, &monotone),
+            Way::Down => turned(seen, solution, &monotone)
+                .or_else(|| stable_start(solution, &monotone, solution.reach()))
+                .map(|start| down(solution, &monotone, start, ground.ends()[1])),
         };
         if let Some(found) = found {
             return found;
@@ -65,12 +65,11 @@ pub(super) fn legs(ground: &mut Ground, control: Control, way: Way, seen: &Seen<
 }
 
 /// The outer end of the stable stretch on which the points begin: of those with a state at their x that whose force is nearest.
-fn turned(ground: &Ground, control: Control, seen: &Seen<'_>) -> Option<Landing> {
+fn turned(seen: &Seen<'_>, solution: &dyn Solution, monotone: &Monotone) -> Option<Landing> {
     const HALVINGS: usize = 50;
     let [x, force] = seen.turn;
-    let solution = ground.solution();
     let mut best: Option<(f64, Landing)> = None;
-    for (number, stretch) in ground.monotone(control).stretches.iter().enumerate() {
+    for (number, stretch) in monotone.stretches.iter().enumerate() {
         let ends = [stretch.inner, stretch.outer].map(|place| (seen.x_of)(&solution.at(place)));
         if !(stretch.rising && (ends[0]..=ends[1]).contains(&x)) {
             continue;
@@ -89,11 +88,11 @@ fn turned(ground: &Ground, control: Control, seen: &Seen<'_>) -> Option<Landing>
 }
 
 /// The way up, where it goes far enough.
-fn up(ground: &Ground, control: Control, seen: &Seen<'_>) -> Option<Vec<Leg>> {
+fn up(seen: &Seen<'_>, solution: &dyn Solution, monotone: &Monotone) -> Option<Vec<Leg>> {
     let enough = |at: &Local| (seen.x_of)(at) >= seen.most;
-    let rises = ascend(ground.solution(), &ground.monotone(control), 0.0, &enough);
-    rises.last().filter(|last| enough(&ground.solution().at(last.end)))?;
-    let stretches = &ground.monotone(control).stretches;
+    let rises = ascend(solution, monotone, 0.0, &enough);
+    rises.last().filter(|last| enough(&solution.at(last.end)))?;
+    let stretches = &monotone.stretches;
     let mut legs = Vec::new();
     for (i, Rise { landing, end }) in rises.iter().enumerate().rev() {
         if let Some(before) = i.checked_sub(1).and_then(|before| rises.get(before)) {
@@ -108,9 +107,9 @@ fn up(ground: &Ground, control: Control, seen: &Seen<'_>) -> Option<Vec<Leg>> {
     Some(legs)
 }
 
-fn down(ground: &Ground, control: Control, from: Landing) -> Vec<Leg> {
-    let stretches = &ground.monotone(control).stretches;
-    let descent = descend(ground.solution(), &ground.monotone(control), from, ground.ends()[1]);
+fn down(solution: &dyn Solution, monotone: &Monotone, from: Landing, innermost: f64) -> Vec<Leg> {
+    let stretches = &monotone.stretches;
+    let descent = descend(solution, monotone, from, innermost);
     let mut legs = Vec::new();
     for (i, piece) in descent.pieces.iter().enumerate() {
         legs.push(Leg::Along(*piece));

@@ -5,37 +5,74 @@ use super::super::ground::LARGEST_MAUGIS;
 use super::super::options::letter;
 use super::super::path::Foot;
 use super::super::problem::Problem;
-use super::super::solve::Solved;
+use super::super::scatter::Scatter;
+use super::super::solve::{Solved, solve};
+use super::super::start::start;
 use super::super::verdict::Reason;
 use crate::measured::Segment;
 use crate::preset::schema::RANGE_KEYS;
-use crate::problem::Groups;
+use crate::problem::{Adhesion, Groups};
+use crate::progress::Progress;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
+use nalgebra::DVector;
 
 /// The largest error of the logarithm of a tension or a range that is one: its 95 % interval goes from a quarter of it to four times.
 const MOST: f64 = 0.7;
 /// A `λ_M` beyond this share of the largest is at it.
 const AT_END: f64 = 0.8;
+/// By so much χ² is larger where a range is told from none: the bound of two models beside each other, with one value more.
+const WORSE: f64 = 12.0;
+/// Residuals count as so many s at most.
+const CLIPPED: f64 = 4.0;
+/// Rounds of the fit without a range.
+const ROUNDS: usize = 100;
 /// Places of a path at which it is looked whether one disc in one zone is all of the state.
 const LOOKED: u32 = 12;
 
 /// Why the points do not tell how far the adhesion reaches, where that is free; nothing where they do.
-pub(in super::super) fn unseen(problem: &Problem, u: &[f64], what: &Determined) -> Option<String> {
+///
+/// The errors are those next to the minimum. Farther off, where the range goes to nothing, there may be another that is as deep: it is looked
+/// for anew.
+pub(in super::super) fn unseen(
+    problem: &Problem,
+    solved: &Solved,
+    (what, scatter): (&Determined, &Scatter),
+    robust: bool,
+    progress: &dyn Progress,
+) -> Option<String> {
+    let u = &solved.minimum.parameters;
     let j = problem.parameters.iter().position(|parameter| RANGE_KEYS.contains(&&*parameter.key()))?;
     let error = what.errors.as_ref()?[j];
     let preset = problem.preset_at(u, Segment::Retraction)?;
     let maugis = Groups::of(&preset.problem(), None, preset.cohesion()).maugis;
-    if error <= MOST && maugis.is_none_or(|maugis| maugis < AT_END * LARGEST_MAUGIS) {
-        return None;
-    }
     let at = maugis.map_or_else(String::new, |maugis| format!(" at lambda_M = {}", short(maugis, 2)));
+    let is_known = error <= MOST && maugis.is_none_or(|maugis| maugis < AT_END * LARGEST_MAUGIS);
+    let why = if is_known {
+        let mut sharp = problem.holding(j, u[j])?;
+        sharp.preset.material.adhesion = Adhesion::ShortRange;
+        let (start, _) = start(&sharp, true, robust, progress)?;
+        let found = solve(&sharp, &start, robust, ROUNDS, progress)?;
+        let s = scatter.contact.unwrap_or(solved.scale).max(1.0);
+        let worse = cost(&found.minimum.at.residuals, s) - cost(&solved.minimum.at.residuals, s);
+        let worse = worse / scatter.correlation.rows();
+        if worse > WORSE {
+            return None;
+        }
+        format!("adhesion at the edge alone fits as well, its chi squared is larger by {}", short(worse, 2))
+    } else {
+        format!("its error{at} is {} of itself", short(error, 2))
+    };
     Some(format!(
-        "{}: its error{at} is {} of itself, so the points do not tell how far the adhesion reaches: hold it, or take \
-         material.adhesion = \"short-range\", and compare both with --model short-range,dugdale",
+        "{}: {why}, so the points do not tell how far the adhesion reaches: hold it, or take material.adhesion = \"short-range\", and \
+         compare both with --model short-range,dugdale",
         letter(&problem.preset, &problem.parameters[j].key()),
-        short(error, 2)
     ))
+}
+
+/// χ² of residuals in s, of which none counts as more than a few.
+fn cost(residuals: &DVector<f64>, s: f64) -> f64 {
+    residuals.iter().map(|r| (r / s).clamp(-CLIPPED, CLIPPED).powi(2)).sum()
 }
 
 /// A state between those of the points that one disc in one zone does not hold: the values are those of another problem.

@@ -1,0 +1,123 @@
+//! The path of a disc that is pulled at a rate: force over approach or contact radius, along what device and edge do together.
+//!
+//! ```text
+//! q = ∫ (V/L_c dt + |ds|/s₀)     ds/dt = −v     dδ/dt = δ_s ds/dt + δ_c dc/dt     dP/dt = 2s dδ/dt + 2Kv     K = √(2πsG)
+//! ```
+//!
+//! with `L_c` the way of the control and `δ_s`, `δ_c` the derivatives of δ at held control and at held radius. In q both the rest at the start, where the
+//! edge does not move, and the snaps, where the control does not, are smooth. Between the moments of the integrator the path is a cubic. Over
+//! what runs along, the largest q less q, it runs inward as the other paths do. Reduced units.
+
+use super::ground::State;
+use crate::disc::Table;
+use crate::gap::Gap;
+use crate::preset::Preset;
+use crate::problem::{Control, Part, Reduced, Start};
+use crate::progress::Unwatched;
+use crate::rate::{Edge, EdgeLaw, Moment, Puller, Settings};
+use std::f64::consts::TAU;
+
+/// The error of a step of the integrator, as a share of the radius: far below that of any instrument.
+const TOLERANCE: f64 = 1e-8;
+/// Moments nearer to each other than this, of the whole way, are one.
+const ONE: f64 = 1e-9;
+
+/// The states of a pull, from its start to the last contact.
+#[derive(Debug, Clone)]
+pub(super) struct Trail(Vec<State>);
+
+/// Whether `preset` is fitted to a pull: its edge has a law, its device a rate, and the start is a contact radius.
+pub(super) fn is_pulled(preset: &Preset) -> bool {
+    let edge = &preset.edge;
+    let has_law = edge.rate.is_some() && edge.exponent.is_some() && edge.reference_speed.is_some();
+    has_law && matches!(preset.path.start, Start::ContactRadius(_))
+}
+
+impl Trail {
+    /// The pull of `preset` until the bodies are apart; `None` where it is none, or cannot be followed.
+    pub(super) fn of(preset: &Preset, reduced: &Reduced, table: &Table, held: Control) -> Option<Self> {
+        let units = reduced.units;
+        let Start::ContactRadius(start) = preset.path.start else { return None };
+        let (rate, speed) = (preset.edge.rate?, preset.edge.reference_speed?);
+        let opening = reduced.work_of_adhesion;
+        let closing = preset.edge.closing_work_of_adhesion.map(|gamma| gamma / units.work_of_adhesion);
+        let unit = if held == Control::Force { units.force } else { units.length };
+        let rate = rate / unit * (units.length / speed);
+        let puller = Puller {
+            table,
+            control: held,
+            edge: Edge {
+                law: EdgeLaw::symmetric(preset.edge.exponent?),
+                opening,
+                closing: closing.filter(|closing| *closing < opening).unwrap_or(opening),
+            },
+            start: (start / units.length).min(reduced.largest_contact()),
+            wave: reduced.gap.feature_length(),
+            rise: None,
+            settings: Settings { tolerance: TOLERANCE, ..Settings::default() },
+        };
+        let pull = puller.pull(&[Part::Apart { rate }], &Unwatched).ok()?;
+        let last = pull.moments.iter().rfind(|moment| moment.contact_radius > 0.0)?;
+        let (first, way) = (pull.start, (pull.start.control - last.control).abs());
+        let q = |moment: &Moment| {
+            (first.control - moment.control) / way
+                + (first.contact_radius - moment.contact_radius) / first.contact_radius
+        };
+        let end = q(last);
+        let mut states: Vec<State> = Vec::new();
+        for moment in pull.moments.iter().filter(|moment| moment.contact_radius > 0.0) {
+            let along = end - q(moment);
+            if states.last().is_none_or(|before| before.along - along > ONE * end) {
+                states.push(state(moment, along, held, [rate, rate / way, first.contact_radius]));
+            }
+        }
+        let is_known = states.iter().all(|state| state.at.iter().chain(&state.slopes).all(|x| x.is_finite()));
+        (states.len() > 1 && is_known).then_some(Self(states))
+    }
+
+    /// Its states, running inward.
+    pub(super) fn states(&self) -> &[State] {
+        &self.0
+    }
+
+    /// What runs along, at its start and at its end.
+    pub(super) fn ends(&self) -> [f64; 2] {
+        [self.0[0].along, self.0[self.0.len() - 1].along]
+    }
+
+    /// The state at `along`, or at the end that is beyond.
+    pub(super) fn state(&self, along: f64) -> State {
+        let states = &self.0;
+        let [outer, inner] = self.ends();
+        let along = along.clamp(inner, outer);
+        let at = states.partition_point(|state| state.along >= along).clamp(1, states.len() - 1);
+        let [a, b] = [&states[at], &states[at - 1]];
+        let way = b.along - a.along;
+        let t = (along - a.along) / way;
+        let cubic = |k: usize| {
+            let (there, from, to) = (b.at[k] - a.at[k], way * a.slopes[k], way * b.slopes[k]);
+            let value =
+                a.at[k] + t * (1.0 - t) * ((1.0 - t) * from - t * to) + t * t * (3.0 - 2.0 * t) * there;
+            let slope =
+                (1.0 - t) * (1.0 - 3.0 * t) * from + t * (3.0 * t - 2.0) * to + 6.0 * t * (1.0 - t) * there;
+            [value, slope / way]
+        };
+        let found = [0, 1, 2].map(cubic);
+        State { along, at: found.map(|[value, _]| value), slopes: found.map(|[_, slope]| slope) }
+    }
+}
+
+/// A moment as a state; `rate` is that of the control, `by_control` its share of dq/dt, and `radius` the unit of s in q.
+fn state(moment: &Moment, along: f64, held: Control, [rate, by_control, radius]: [f64; 3]) -> State {
+    let Moment { contact_radius: s, approach, force, speed: v, .. } = *moment;
+    let opening = (TAU * s * moment.energy_release_rate).sqrt();
+    let [by_radius, by_value] = match held {
+        Control::Displacement => [0.0, 1.0],
+        Control::Force => [opening / s, 0.5 / s],
+        Control::Stiffness(k) => [2.0 * opening / (k + 2.0 * s), k / (k + 2.0 * s)],
+    };
+    let delta = -by_radius * v - by_value * rate;
+    let rates = [-v, delta, 2.0 * (s * delta + opening * v)];
+    let whole = by_control + v / radius;
+    State { along, at: [s, approach, force], slopes: rates.map(|x| -x / whole) }
+}
