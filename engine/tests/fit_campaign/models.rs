@@ -200,13 +200,7 @@ fn laws(numbers: Range<u64>) -> [usize; 2] {
 }
 
 #[test]
-fn the_law_of_an_edge_is_found_from_one_pull() {
-    let [held, all] = laws(0..3);
-    assert!(held + 1 >= all, "{held} of {all}");
-}
-
-#[test]
-#[ignore = "thirty sets: some minutes"]
+#[ignore = "an hour without optimization"]
 fn the_laws_of_thirty_pulls_lie_within_their_errors() {
     let [held, all] = laws(0..30);
     println!("{held} of {all}");
