@@ -63,4 +63,4 @@ def test_speeds_of_a_made_edge():
     with pytest.raises(pulloff.DataError, match="is none of force-radius"):
         problem.speeds(points, of="radius")
     with pytest.raises(pulloff.DataError, match="no measured curve"):
-        problem.speeds()
+        pulloff.Problem("wavy-sphere").speeds()

@@ -148,7 +148,7 @@ impl Judge {
             - 2.0 * self.strength * c * c * (angle - angle.sin() * angle.cos());
         let scale = 2.0 * (at.approach.abs() * s + area.abs()) + PI * self.strength * c * c;
         assert!(
-            (force - at.force).abs() < 1e-8 * scale + 1e-15 * self.most,
+            (force - at.force).abs() < 1e-8 * scale + 1e-14 * self.most,
             "{name}: the force is {force}: {at:?}"
         );
         for r in even([s, c]) {
