@@ -45,7 +45,7 @@ pub const MEASURED: [Kind; 11] = [
 ];
 
 /// What no sphere with adhesion at its edge alone is, or no instrument should do: right, or said.
-pub const DOUBTFUL: [Kind; 37] = [
+pub const DOUBTFUL: [Kind; 38] = [
     Kind {
         name: "Gent-Schultz P(s), 29 rows",
         is_model: false,
@@ -65,6 +65,11 @@ pub const DOUBTFUL: [Kind; 37] = [
         name: "Gent-Schultz P(s), even in s, with times",
         is_model: false,
         make: |random| peeled(random, 38, By::Radius, true),
+    },
+    Kind {
+        name: "Gent-Schultz P(s), even in s",
+        is_model: false,
+        make: |random| peeled(random, 38, By::Radius, false),
     },
     Kind { name: "P(s), with times", is_model: true, make: radii_with_times },
     Kind { name: "force noise 0.1 P_c", is_model: true, make: loud },
@@ -100,13 +105,6 @@ pub const DOUBTFUL: [Kind; 37] = [
     Kind { name: "tilt not asked for", is_model: false, make: tilt_untold },
     Kind { name: "two works of adhesion", is_model: false, make: hysteretic },
 ];
-
-/// Nothing in such a file says how fast the edge goes, and most of its law is taken up by a modulus: doubted, where it is trusted.
-pub const UNTIMED: Kind = Kind {
-    name: "Gent-Schultz P(s), even in s",
-    is_model: false,
-    make: |random| peeled(random, 38, By::Radius, false),
-};
 
 /// A soft sphere, and what is known of it before.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,6 @@
 //! What fits once told wrong with a small error: each is right now, or said not to be.
 
-use super::kinds::{ADHESION, DOUBTFUL, Kind, MEASURED, UNTIMED, plain};
+use super::kinds::{ADHESION, DOUBTFUL, Kind, MEASURED, plain};
 use super::trial::{Outcome, fitted, made, options, outcome, tried};
 use pulloff_engine::fit::fit_own;
 use pulloff_engine::measured::Source;
@@ -53,14 +53,7 @@ fn adhesion_that_grows_with_the_speed_of_the_edge_is_said() {
     said("Gent-Schultz P(s), 38 rows");
     said("Gent-Schultz P(s), with times");
     said("Gent-Schultz P(s), even in s, with times");
-}
-
-#[test]
-fn what_radii_without_times_cannot_tell_is_doubted() {
-    let is_of_speed = |warning: &String| warning.contains("no column has the times");
-    for outcome in (0..SEEDS).map(|number| tried(&UNTIMED, number)) {
-        assert!(!outcome.is_trusted() || outcome.warnings.iter().any(is_of_speed), "{outcome:#?}");
-    }
+    right_or_said("Gent-Schultz P(s), even in s");
 }
 
 #[test]

@@ -5,33 +5,74 @@ use crate::elementary::hypot;
 use crate::measured::speed::{Speed, noise, speeds};
 use crate::measured::{Abscissa, Segment};
 
+/// What says when a row was measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Clock {
+    /// A column of times.
+    Times,
+    /// The number of the row: rows that are even in time.
+    Rows,
+    /// The approach that the measured force and radius have in the fitted model: bodies that are pulled apart at an even rate.
+    Approach,
+}
+
+impl Clock {
+    /// What must hold for its speeds, as the end of a sentence.
+    pub(super) fn condition(self) -> &'static str {
+        match self {
+            Self::Times => "",
+            Self::Rows => ", if the rows are even in time",
+            Self::Approach => ", if the bodies are pulled apart at an even rate",
+        }
+    }
+}
+
 /// What is known of the edge at the points of a problem.
 pub(super) struct Edge {
     /// −ds/dt, by the number of the point; nothing but for retractions in contact.
     pub(super) speeds: Vec<Option<Speed>>,
     /// The number of the row in its retraction, over their number.
     pub(super) order: Vec<f64>,
-    /// Whether a column has the times.
-    pub(super) is_timed: bool,
+    /// What the speeds go by.
+    pub(super) clock: Clock,
 }
 
 impl Edge {
-    /// Of the retractions of `problem`; nothing where radii are not measured.
-    pub(super) fn of(problem: &Problem) -> Option<Self> {
+    /// Of the retractions of `problem`, whose values are `u`, by each clock there is: the column of times, or without one all others. None where
+    /// radii are not measured.
+    pub(super) fn all(problem: &Problem, u: &[f64]) -> Vec<Self> {
         if problem.abscissa != Abscissa::Radius && !problem.space {
-            return None;
+            return Vec::new();
         }
+        let mut rows = retractions(problem).into_iter().flatten();
+        if rows.all(|i| problem.data[i].point.time.is_finite()) {
+            return vec![Self::of(problem, Clock::Times, &|i| problem.data[i].point.time)];
+        }
+        let by_rows = Self::of(problem, Clock::Rows, &|i| problem.data[i].point.at as f64);
+        let by_approach = approach(problem, u)
+            .map(|approach| Self::of(problem, Clock::Approach, &|i| -approach(i).unwrap_or(f64::NAN)));
+        [Some(by_rows), by_approach].into_iter().flatten().collect()
+    }
+
+    fn of(problem: &Problem, clock: Clock, time: &dyn Fn(usize) -> f64) -> Self {
         let count = problem.data.len();
-        let mut edge = Self { speeds: vec![None; count], order: vec![0.0; count], is_timed: true };
+        let mut edge = Self { speeds: vec![None; count], order: vec![0.0; count], clock };
         for rows in retractions(problem) {
-            edge.is_timed &= rows.iter().all(|i| problem.data[*i].point.time.is_finite());
             let share = 1.0 / rows.len() as f64;
-            for (number, (i, speed)) in rows.iter().zip(of_rows(problem, &rows)).enumerate() {
-                edge.speeds[*i] = speed;
+            let (times, radii): (Vec<f64>, Vec<f64>) =
+                rows.iter().map(|i| (time(*i), problem.radius(*i))).unzip();
+            let found = speeds(&times, &radii, noise(&times, &radii));
+            for (number, (i, speed)) in rows.iter().zip(found).enumerate() {
+                edge.speeds[*i] = speed.map(|speed| Speed { value: -speed.value, ..speed });
                 edge.order[*i] = number as f64 * share;
             }
         }
-        Some(edge)
+        edge
+    }
+
+    /// Whether a column says when a row was measured.
+    pub(super) fn is_timed(&self) -> bool {
+        self.clock == Clock::Times
     }
 
     /// The speed at a point; one within its error is that: nothing says how much slower the edge is.
@@ -54,14 +95,14 @@ pub(super) fn retractions(problem: &Problem) -> Vec<Vec<usize>> {
     (0..problem.branches()).map(of_branch).filter(|rows| !rows.is_empty()).collect()
 }
 
-/// −ds/dt at each of the rows, in the order of measurement; a unit of time is that from row to row where nothing else says it.
-fn of_rows(problem: &Problem, rows: &[usize]) -> Vec<Option<Speed>> {
-    let is_timed = rows.iter().all(|i| problem.data[*i].point.time.is_finite());
-    let of = |i: &usize| {
-        let point = problem.data[*i].point;
-        (if is_timed { point.time } else { point.at as f64 }, problem.radius(*i))
-    };
-    let (times, radii): (Vec<f64>, Vec<f64>) = rows.iter().map(of).unzip();
-    let found = speeds(&times, &radii, noise(&times, &radii));
-    found.into_iter().map(|speed| speed.map(|speed| Speed { value: -speed.value, ..speed })).collect()
+/// δ of a row by its force and radius: at a held contact radius δ goes with P as at a punch, at the stiffness 2E*s.
+fn approach<'a>(problem: &'a Problem, u: &[f64]) -> Option<impl Fn(usize) -> Option<f64> + 'a> {
+    let paths = problem.paths(u)?;
+    let modulus = problem.preset_at(u, Segment::Retraction)?.material.effective_modulus;
+    let baseline = problem.instrument_at(u).baseline;
+    Some(move |i: usize| {
+        let (path, s) = (paths.of(Segment::Retraction), problem.radius(i));
+        let more = problem.data[i].point.force - baseline - path.at(s)?.0[1];
+        Some(path.approach(s)? + more / (2.0 * modulus * s))
+    })
 }

@@ -2,14 +2,15 @@
 //! (1972); D. Maugis and M. Barquins, J. Phys. D 11, 1989 (1978).
 //!
 //! ```text
-//! G = γ (v/v_max)ⁿ          v = −ds/dt of a retraction, whose rows are even in time where no column says it
+//! G = γ (v/v_max)ⁿ          v = −ds/dt of a retraction
 //! ```
 //!
 //! An edge that rests has a work of adhesion too: below a share of the largest speed, or within the error of a speed, all speeds are one.
 //! The noise of a row's own radius has no weight in the speed of that row but at the ends, so it does not enter residual and speed at once.
 //!
 //! A fit takes most of what a speed does: what is left shows in few rows. So here the false alarm is one in two hundred. Where no column has the
-//! times, a work of adhesion that grows from row to row is looked for too, as √(number of the row), with half of that alarm each.
+//! times, two clocks stand for one: rows that are even in time, and bodies that are pulled apart at an even rate. A work of adhesion that grows
+//! from row to row is looked for too, as √(number of the row); the three share that alarm.
 
 use super::super::chance::beyond_t;
 use super::super::path::Mover;
@@ -29,7 +30,7 @@ pub(super) const KINDS: [&str; 2] = ["rate", "speed"];
 /// The share of right fits that the test flags.
 const FALSE_ALARM: f64 = 5e-3;
 /// Points lean to a work of adhesion that grows by so many standard errors.
-const LEANING: f64 = 1.5;
+const LEANING: f64 = 0.7;
 /// Speeds below this share of the largest are this share.
 const SLOWEST: f64 = 1.0 / 400.0;
 
@@ -40,13 +41,21 @@ pub(super) fn of_rate(
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
 ) -> Option<Reason> {
-    let edge = Edge::of(problem)?;
-    let tested = tested(problem, solved, scatter, inner, &edge)?;
-    let found = grows(problem, scatter, &edge, tested);
-    let lean = tested[0][1];
-    // Without times nothing says that the edge moves at all: where the points do not lean to it, that is a doubt, and no reason.
-    let may = edge.is_timed || lean >= LEANING;
-    found.or_else(|| may.then(|| untold(problem, solved, scatter, inner, (&edge, lean))).flatten())
+    let edges = Edge::all(problem, &solved.minimum.parameters);
+    let tested: Vec<(&Edge, [[f64; 2]; 2])> = edges
+        .iter()
+        .filter_map(|edge| Some((edge, tested(problem, solved, scatter, inner, edge)?)))
+        .collect();
+    // The speed by each clock, and where none is a column of times the number of the row.
+    let tests = if edges.iter().any(Edge::is_timed) { 1.0 } else { 1.0 + edges.len() as f64 };
+    let found = tested.iter().find_map(|(edge, tested)| grows(problem, scatter, edge, (*tested, tests)));
+    found.or_else(|| {
+        tested.iter().find_map(|(edge, [[_, lean], _])| {
+            // Without times nothing says that the edge moves at all: where the points do not lean to it, that is a doubt, and no reason.
+            let may = edge.is_timed() || *lean >= LEANING;
+            may.then(|| untold(problem, solved, scatter, inner, (edge, *lean))).flatten()
+        })
+    })
 }
 
 /// What is to be doubted where no column has the times and nothing else was found: whether the edge rests is not in the points.
@@ -56,8 +65,9 @@ pub(super) fn of_untimed(
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
 ) -> Option<String> {
-    let edge = Edge::of(problem).filter(|edge| !edge.is_timed)?;
-    let reason = untold(problem, solved, scatter, inner, (&edge, 0.0))?;
+    let edges = Edge::all(problem, &solved.minimum.parameters);
+    let untimed = edges.iter().filter(|edge| !edge.is_timed());
+    let reason = untimed.flat_map(|edge| untold(problem, solved, scatter, inner, (edge, 0.0))).next()?;
     Some(format!("no column has the times: {}", reason.sentence))
 }
 
@@ -92,9 +102,8 @@ fn grows(
     problem: &Problem,
     scatter: &Scatter,
     edge: &Edge,
-    [by_speed, by_row]: [[f64; 2]; 2],
+    ([by_speed, by_row], tests): ([[f64; 2]; 2], f64),
 ) -> Option<Reason> {
-    let tests = if edge.is_timed { 1.0 } else { 2.0 };
     let is_found = |[n, t]: [f64; 2]| n > 0.0 && tests * 0.5 * beyond_t(t, scatter.degrees) < FALSE_ALARM;
     if is_found(by_speed) {
         let [n, t] = by_speed;
@@ -102,14 +111,15 @@ fn grows(
             .filter_map(|i| edge.speed(i))
             .fold([f64::INFINITY, 0.0], |[lo, hi], speed| [lo.min(speed), hi.max(speed)]);
         let sentence = format!(
-            "a work of adhesion that grows with the speed of the edge describes the points better: that of the fastest rows is near {} times \
-             that of the slowest ({} standard errors). No quasi-static curve has such an edge",
+            "a work of adhesion that grows with the speed of the edge describes the points better{}: that of the fastest rows is near {} \
+             times that of the slowest ({} standard errors). No quasi-static curve has such an edge",
+            edge.clock.condition(),
             short(pow((least / most).max(SLOWEST), -n.min(1.0)), 2),
             short(t, 2)
         );
         return Some(Reason::new("rate", n, sentence));
     }
-    let [n, t] = Some(by_row).filter(|of| !edge.is_timed && is_found(*of))?;
+    let [n, t] = Some(by_row).filter(|of| !edge.is_timed() && is_found(*of))?;
     let sentence = format!(
         "a work of adhesion that grows along the retraction describes the points better ({} standard errors), as one does that grows with \
          the speed of the edge: a column of times would tell",

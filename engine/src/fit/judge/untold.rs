@@ -5,9 +5,9 @@
 //! ```
 //!
 //! after A. N. Gent and J. Schultz, J. Adhesion 3, 281 (1972), with their exponent near ½. A modulus takes up much of such a law: of force over
-//! radius all that goes as s^{3/2} in √G. The law is fitted, and where it fits as well as none, within two standard errors and those by which the
-//! points lean to such a law, the values are those of a guess. Laws that are steeper are told more easily, and those that are weaker move the
-//! values by less. A point is moved to where its state would be with γ alone, at its own radius:
+//! radius all that goes as s^{3/2} in √G. The law is fitted, and where it fits as well as none, within one and a half standard errors and those by
+//! which the points lean to such a law, the values are those of a guess. Laws that are steeper are told more easily, and those that are weaker
+//! move the values by less. A point is moved to where its state would be with γ alone, at its own radius:
 //!
 //! ```text
 //! P + 2E* s T (√(G/γ) − 1)     δ + T (√(G/γ) − 1)     T = √(2πγs/E*)
@@ -35,7 +35,7 @@ use std::f64::consts::TAU;
 /// v₀ over the median speed.
 const REFERENCE: f64 = 3.0;
 /// A law that is off by no more than so many standard errors is as good; by as many more as those by which the points lean to one, up to three.
-const AS_GOOD: f64 = 2.0;
+const AS_GOOD: f64 = 1.5;
 const LEANING: f64 = 3.0;
 /// A value that such a law moves by no more than so many of its errors is told all the same.
 const MOVED: f64 = 3.0;
@@ -77,8 +77,9 @@ pub(super) fn untold(
         })
         .collect();
     let sentence = format!(
-        "the points do not tell whether the work of adhesion grows with the speed of the edge: one that is {} times that at rest at the \
+        "the points do not tell whether the work of adhesion grows with the speed of the edge{}: one that is {} times that at rest at the \
          median speed fits as well, with {}. Rows of slower edges, or of a wider range of speeds, would tell",
+        edge.clock.condition(),
         short(1.0 + REFERENCE.recip().sqrt(), 2),
         told.join(", ")
     );
