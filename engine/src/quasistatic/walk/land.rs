@@ -11,7 +11,6 @@ use crate::progress::Unwatched;
 use crate::quasistatic::path::course::first_crest;
 use crate::quasistatic::path::{Balance, Direction, EVEN, Held, Passed, PassedKind, PathError, PathState};
 use crate::quasistatic::{Event, EventKind, Point};
-use nalgebra::{DMatrix, DVector};
 
 /// How often the table is made longer for one landing.
 const LONGER: usize = 12;
@@ -148,7 +147,11 @@ impl Walk<'_> {
                 (balance.kicked(&contacts, &null, sense), sense)
             }
             At::Nothing => {
-                let Some(null) = falling(&before) else { return Ok(None) };
+                let least = Balance::least_eigenvalue(&before);
+                if least > 0.0 || least.is_nan() {
+                    return Ok(None);
+                }
+                let null = Balance::softest(&before);
                 let sense = if self.inward { -1.0 } else { 1.0 };
                 (balance.kicked(&contacts, &null, sense), sense)
             }
@@ -239,23 +242,4 @@ impl Walk<'_> {
         }
         Err(WalkFailure::NothingOutward)
     }
-}
-
-/// The direction in which unstable edges run: the eigenvector of the least eigenvalue of J; `None` where they are stable.
-fn falling(held: &Held) -> Option<DVector<f64>> {
-    let j = &held.jacobian;
-    let lowest = Balance::least_eigenvalue(held);
-    if lowest > 0.0 || lowest.is_nan() {
-        return None;
-    }
-    let n = j.nrows();
-    // J = S·diag(e κ), S symmetric and κ the same at every edge.
-    let roots: Vec<f64> = held.state.contacts.edges().iter().map(|edge| edge.radius.sqrt()).collect();
-    let symmetric = DMatrix::from_fn(n, n, |i, k| {
-        0.5 * (j[(i, k)] * roots[i] / roots[k] + j[(k, i)] * roots[k] / roots[i])
-    });
-    let eigen = symmetric.symmetric_eigen();
-    let least = eigen.eigenvalues.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1))?.0;
-    let vector = eigen.eigenvectors.column(least);
-    Some(DVector::from_fn(n, |i, _| vector[i] / roots[i]))
 }
