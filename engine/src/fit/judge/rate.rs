@@ -66,8 +66,8 @@ pub(super) fn of_untimed(
     inner: Option<&DMatrix<f64>>,
 ) -> Option<String> {
     let edges = Edge::all(problem, &solved.minimum.parameters);
-    let untimed = edges.iter().filter(|edge| !edge.is_timed());
-    let reason = untimed.flat_map(|edge| untold(problem, solved, scatter, inner, (edge, 0.0))).next()?;
+    let mut untimed = edges.iter().filter(|edge| !edge.is_timed());
+    let reason = untimed.find_map(|edge| untold(problem, solved, scatter, inner, (edge, 0.0)))?;
     Some(format!("no column has the times: {}", reason.sentence))
 }
 
