@@ -56,7 +56,7 @@ pub struct Arguments {
     #[arg(long, value_name = "KEY", value_parser = ["material.work_of_adhesion", "work_of_adhesion", "gamma"])]
     separate: Option<String>,
     /// Fit this model instead of material.adhesion: short-range, at the edge of contact alone; or dugdale, with a range, whose
-    /// material.cohesive_strength is then free. Of several, on one file of points, it is said which the points speak for
+    /// `material.cohesive_strength` is then free. Of several, on one file of points, it is said which the points speak for
     #[arg(long, value_name = "MODEL,...", value_delimiter = ',', value_parser = models())]
     model: Vec<Model>,
     #[command(flatten)]
