@@ -1,4 +1,4 @@
-//! Commands: their identities, of the one [list](list) of them, and what they carry.
+//! Commands: their identities, of the one [`list`] of them, and what they carry.
 //!
 //! | file | what lives there |
 //! |---|---|
