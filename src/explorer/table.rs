@@ -12,12 +12,12 @@ use super::job::Job;
 use super::model::Model;
 use super::requests::file;
 use super::script::arguments::{
-    CONTROLS, Takes, assigned, axes, branch, destination, exported, pin, place, preset, quantity, saved,
-    saved_as, takes, theory, travelled, view,
+    Takes, assigned, axes, branch, destination, exported, pin, place, preset, quantity, saved, saved_as,
+    takes, theory, travelled, view,
 };
 use super::script::offers::{
-    assignments_of, axes_of, branches_of, curves, documents, names, pins_of, places, presets, quantities,
-    theories, views, words,
+    CONTROLS, assignments_of, axes_of, branches_of, curves, documents, names, pins_of, places, presets,
+    quantities, theories, views, words,
 };
 use super::update::files::save_back;
 use super::update::places::to_largest_pull;

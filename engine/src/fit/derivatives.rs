@@ -11,8 +11,9 @@
 
 use super::distance::Nearest;
 use super::least_squares::LeastSquares;
-use super::path::{Foot, Mover, Place};
+use super::path::{Foot, Place};
 use super::problem::{ADHESION, Datum, Instrument, Parameter, Paths, Problem, Target};
+use super::track::Mover;
 use crate::measured::Segment;
 use crate::preset::schema::RANGE_KEYS;
 use nalgebra::{DMatrix, DVector};

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`least_squares`] | Levenberg and Marquardt with Huber's loss |
 //! | [`way`] | the ways of a device along a curve with snaps |
-//! | `ground` | what the arcs of a path run along: equilibria over the contact radius or over the edge of a zone |
+//! | `track` | what the arcs of a path run along: equilibria over the contact radius or over the edge of a zone |
 //! | [`path`] | the curve that points lie on: equilibria and jumps |
 //! | [`distance`] | the signed distance of a point from it |
 //! | `pulled` | the path of a pull at a rate |
@@ -40,7 +40,6 @@ pub mod determined;
 mod directed;
 pub mod distance;
 pub mod fitted;
-mod ground;
 pub mod intervals;
 pub mod judge;
 pub mod least_squares;
@@ -58,6 +57,7 @@ pub mod scatter;
 pub mod solve;
 mod spread;
 pub mod start;
+pub mod track;
 mod uncertain;
 pub mod verdict;
 pub mod way;

@@ -4,7 +4,8 @@
 //! values change. With snaps it is the path of a quasi-static unloading, jumps included, and behind the pull-off the unstable
 //! stretch that begins there; or that of loading from the first touch.
 
-use super::ground::{Eye, Ground, State};
+use super::pulled::TrackState;
+use super::track::{Eye, Mover, Reach, Track};
 use super::way::{Leg, Seen, Way, legs};
 use crate::disc::{self, Local};
 use crate::elementary::hypot;
@@ -31,23 +32,6 @@ pub enum Foot {
     Inner,
     /// On a line, this share of the way from its inner to its outer end.
     Share(f64),
-}
-
-/// What moves a path at a held contact radius by a closed form.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mover {
-    /// E*.
-    Modulus,
-    /// γ.
-    Adhesion,
-    /// k.
-    Stiffness,
-    /// σ₀ of an adhesion with a range, γ held.
-    Strength,
-    /// `h_c` of it, γ held.
-    Extent,
-    /// 1/σ₀², of an adhesion that is a tension σ₀ up to the separation γ/σ₀, where it is 0: not by its logarithm.
-    Range,
 }
 
 /// A piece of a path.
@@ -81,23 +65,10 @@ struct Corner {
     direction: Option<[f64; 2]>,
 }
 
-/// What a path must reach.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reach {
-    /// The largest x, P and s of the points; minus infinity where there are none.
-    pub most: Place,
-    /// x and P where the retraction begins.
-    pub turn: [f64; 2],
-    /// Where it begins, whatever the points are: of two paths beside each other the pieces are then the same.
-    pub radius: Option<f64>,
-    /// The length by which a gap without one of its own is reduced.
-    pub length: f64,
-}
-
 /// The path of one preset.
 #[derive(Debug, Clone)]
 pub struct Path {
-    ground: Ground,
+    track: Track,
     eye: Eye,
     /// E* and γ.
     material: [f64; 2],
@@ -131,11 +102,11 @@ impl Path {
         let units = reduced.units;
         let eye = Eye { units, abscissa, compliance };
         let held = control.in_units(units.stiffness);
-        let mut ground = Ground::new(preset, reduced, &eye, reach, held)?;
-        let [outermost, innermost] = ground.ends();
+        let mut track = Track::new(preset, reduced, &eye, reach, held)?;
+        let [outermost, innermost] = track.ends();
         // A rising stretch outside a falling one, or one of either: a curve without snaps.
         let inside = |s: f64| s > innermost && s < outermost;
-        let limits = ground.monotone(held).map_or(0, |monotone| {
+        let limits = track.monotone(held).map_or(0, |monotone| {
             monotone.limits.iter().filter(|limit| inside(limit.contact_radius)).count()
         });
         let seen = Seen {
@@ -143,12 +114,12 @@ impl Path {
             most: reach.most[0],
             turn: [reach.turn[0], reach.turn[1] / units.force],
         };
-        let legs = if limits > 1 { legs(&mut ground, held, way, &seen) } else { Vec::new() };
+        let legs = if limits > 1 { legs(&mut track, held, way, &seen) } else { Vec::new() };
         // What runs along a pull is none.
         let outermost_radius =
-            if let Ground::Pull(trail) = &ground { trail.state(outermost).at[0] } else { outermost };
+            if let Track::Pull(trail) = &track { trail.state(outermost).at[0] } else { outermost };
         let mut path = Self {
-            ground,
+            track,
             eye,
             material: [preset.material.effective_modulus, preset.material.work_of_adhesion],
             pieces: Vec::new(),
@@ -159,14 +130,14 @@ impl Path {
         };
         for leg in &legs {
             let ends = |places: &[disc::Place; 2]| {
-                let along = |place| path.ground.solution().map_or(f64::NAN, |of| of.at(place).contact_radius);
+                let along = |place| path.track.solution().map_or(f64::NAN, |of| of.at(place).contact_radius);
                 places.map(along)
             };
             let piece = match leg {
                 Leg::Along(places) => Piece::Arc(ends(places).map(|along| along * units.length)),
                 Leg::Jump(places) => {
                     path.snaps += 1;
-                    let states = ends(places).map(|along| path.ground.state(along));
+                    let states = ends(places).map(|along| path.track.state(along));
                     Piece::Line(states.map(|state| state.map_or([f64::NAN; 3], |state| path.place(state.at))))
                 }
             };
@@ -183,7 +154,7 @@ impl Path {
     /// another one then.
     #[must_use]
     pub fn overlap(&self, to: f64) -> Option<f64> {
-        let Ground::Edge(curve) = &self.ground else { return None };
+        let Track::Edge(curve) = &self.track else { return None };
         let length = self.eye.units.length;
         let reduced = |s: f64| s.min(to) / length;
         let arcs = self.pieces.iter().filter_map(|piece| match piece {
@@ -198,7 +169,7 @@ impl Path {
     /// range.
     pub(super) fn fault(&self, along: f64) -> Option<(f64, Option<FaultKind>)> {
         let length = self.eye.units.length;
-        match self.ground.fault(along / length)? {
+        match self.track.fault(along / length)? {
             PathError::BeyondZone { kind, radius, .. } => Some((radius * length, kind)),
             _ => Some((along, None)),
         }
@@ -206,7 +177,7 @@ impl Path {
 
     /// The corners of the polyline.
     fn draw(&mut self) {
-        let states = self.ground.drawn();
+        let states = self.track.drawn();
         let mut vertices = Vec::new();
         let ranges = [1, 2].map(|k| {
             let values = states.iter().map(|state| state.at[k]);
@@ -225,7 +196,7 @@ impl Path {
                     }
                 }
                 Piece::Arc([outer, inner]) => {
-                    let within = |state: &&State| {
+                    let within = |state: &&TrackState| {
                         let along = state.along * self.eye.units.length;
                         along < *outer && along > *inner
                     };
@@ -247,12 +218,12 @@ impl Path {
     /// The corner at a place `along` an arc; no number where there is none.
     fn corner(&self, along: f64, ranges: [f64; 2]) -> Corner {
         let none = Corner { at: [f64::NAN; 3], slopes: [f64::NAN; 3], along, direction: None };
-        let state = self.ground.state(along / self.eye.units.length);
+        let state = self.track.state(along / self.eye.units.length);
         state.map_or(none, |state| Corner { along, ..self.drawn(&state, ranges) })
     }
 
     /// The corner at a state.
-    fn drawn(&self, state: &State, ranges: [f64; 2]) -> Corner {
+    fn drawn(&self, state: &TrackState, ranges: [f64; 2]) -> Corner {
         let [x, p] = [state.slopes[1] / ranges[0], state.slopes[2] / ranges[1]];
         let length = hypot(x, p);
         let direction = (length > 0.0).then_some([x / length, p / length]);
@@ -295,7 +266,7 @@ impl Path {
 
     /// The place `along` an arc, with its derivatives by that; `None` beyond what is known.
     pub fn at(&self, along: f64) -> Option<(Place, Place)> {
-        let state = self.ground.state(along / self.eye.units.length)?;
+        let state = self.track.state(along / self.eye.units.length)?;
         Some((self.place(state.at), self.slopes(state.slopes)))
     }
 
@@ -308,8 +279,8 @@ impl Path {
         if mover == Mover::Stiffness {
             return Some([-compliance * force, 0.0, 0.0]);
         }
-        if !matches!(self.ground, Ground::Edge(_)) {
-            let moved = self.ground.moves(mover, along / self.eye.units.length)?;
+        if !matches!(self.track, Track::Edge(_)) {
+            let moved = self.track.moves(mover, along / self.eye.units.length)?;
             return Some(self.place(moved));
         }
         let [e, gamma] = self.material;
@@ -345,7 +316,7 @@ impl Path {
     #[must_use]
     pub fn approach(&self, along: f64) -> Option<f64> {
         let length = self.eye.units.length;
-        self.ground.state(along / length).map(|state| state.at[1] * length)
+        self.track.state(along / length).map(|state| state.at[1] * length)
     }
 
     /// s at a place `along` an arc.
@@ -357,7 +328,7 @@ impl Path {
     /// The step of the logarithm of a value by which its derivatives are taken.
     #[must_use]
     pub(super) fn step(&self) -> f64 {
-        self.ground.step()
+        self.track.step()
     }
 
     /// Where a foot is on this path.

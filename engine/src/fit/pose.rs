@@ -1,9 +1,9 @@
 //! What is fitted: the points and parameters of a preset's branches.
 
-use super::ground::begins;
 use super::options::{FitError, Options, target};
-use super::path::Reach;
 use super::problem::{ADHESION, Datum, Instrument, Parameter, Prior, Problem, START, Target};
+use super::track::Reach;
+use super::track::begins;
 use super::uncertain::{Uncertain, uncertain};
 use crate::gap::Gap;
 use crate::measured::branches::{Point, median};

@@ -1,7 +1,8 @@
 //! What is fitted: parameters, data, the paths of values and the feet of points on them.
 
 use super::distance::{Nearest, Scaled};
-use super::path::{Path, Place, Reach};
+use super::path::{Path, Place};
+use super::track::Reach;
 use super::way::Way;
 use crate::elementary::{exp, ln};
 use crate::measured::branches::Point;

@@ -8,7 +8,6 @@
 //! edge does not move, and the snaps, where the control does not, are smooth. Between the moments of the integrator the path is a cubic. Over
 //! what runs along, the largest q less q, it runs inward as the other paths do. Reduced units.
 
-use super::ground::State;
 use crate::disc::Table;
 use crate::gap::Gap;
 use crate::preset::Preset;
@@ -22,9 +21,18 @@ const TOLERANCE: f64 = 1e-8;
 /// Moments nearer to each other than this, of the whole way, are one.
 const ONE: f64 = 1e-9;
 
+/// One state of what the arcs of a path run along: s, δ and P, with their slopes by what runs along.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TrackState {
+    /// The contact radius, or the edge of the zone.
+    pub(super) along: f64,
+    pub(super) at: [f64; 3],
+    pub(super) slopes: [f64; 3],
+}
+
 /// The states of a pull, from its start to the last contact.
 #[derive(Debug, Clone)]
-pub(super) struct Trail(Vec<State>);
+pub(super) struct Trail(Vec<TrackState>);
 
 /// Whether `preset` is fitted to a pull: its edge has a law, its device a rate, and the start is a contact radius.
 pub(super) fn is_pulled(preset: &Preset) -> bool {
@@ -64,7 +72,7 @@ impl Trail {
                 + (first.contact_radius - moment.contact_radius) / first.contact_radius
         };
         let end = q(last);
-        let mut states: Vec<State> = Vec::new();
+        let mut states: Vec<TrackState> = Vec::new();
         for moment in pull.moments.iter().filter(|moment| moment.contact_radius > 0.0) {
             let along = end - q(moment);
             if states.last().is_none_or(|before| before.along - along > ONE * end) {
@@ -76,7 +84,7 @@ impl Trail {
     }
 
     /// Its states, running inward.
-    pub(super) fn states(&self) -> &[State] {
+    pub(super) fn states(&self) -> &[TrackState] {
         &self.0
     }
 
@@ -86,7 +94,7 @@ impl Trail {
     }
 
     /// The state at `along`, or at the end that is beyond.
-    pub(super) fn state(&self, along: f64) -> State {
+    pub(super) fn state(&self, along: f64) -> TrackState {
         let states = &self.0;
         let [outer, inner] = self.ends();
         let along = along.clamp(inner, outer);
@@ -103,12 +111,12 @@ impl Trail {
             [value, slope / way]
         };
         let found = [0, 1, 2].map(cubic);
-        State { along, at: found.map(|[value, _]| value), slopes: found.map(|[_, slope]| slope) }
+        TrackState { along, at: found.map(|[value, _]| value), slopes: found.map(|[_, slope]| slope) }
     }
 }
 
 /// A moment as a state; `rate` is that of the control, `by_control` its share of dq/dt, and `radius` the unit of s in q.
-fn state(moment: &Moment, along: f64, held: Control, [rate, by_control, radius]: [f64; 3]) -> State {
+fn state(moment: &Moment, along: f64, held: Control, [rate, by_control, radius]: [f64; 3]) -> TrackState {
     let Moment { contact_radius: s, approach, force, speed: v, .. } = *moment;
     let opening = (TAU * s * moment.energy_release_rate).sqrt();
     let [by_radius, by_value] = match held {
@@ -119,5 +127,5 @@ fn state(moment: &Moment, along: f64, held: Control, [rate, by_control, radius]:
     let delta = -by_radius * v - by_value * rate;
     let rates = [-v, delta, 2.0 * (s * delta + opening * v)];
     let whole = by_control + v / radius;
-    State { along, at: [s, approach, force], slopes: rates.map(|x| -x / whole) }
+    TrackState { along, at: [s, approach, force], slopes: rates.map(|x| -x / whole) }
 }

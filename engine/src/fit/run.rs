@@ -151,15 +151,15 @@ pub fn residuals_own(preset: &Preset) -> Result<(Abscissa, Vec<Residual>), FitEr
     Ok((branches.abscissa, beside(&problem, &residuals, scale)))
 }
 
-/// Fits the free keys of `preset` to `branches`.
-pub(super) fn fit_branches(
+/// The problem of a fit, where its starts ended, and its minimum.
+fn posed_and_solved(
     preset: &Preset,
     branches: &Branches,
     options: &Options,
+    notes: &mut Vec<String>,
     progress: &dyn Progress,
-) -> Result<Fit, FitError> {
-    let mut notes = branches.notes.clone();
-    let mut problem = posed(preset, branches, options, &mut notes)?;
+) -> Result<(Problem, Vec<Tried>, Solved), FitError> {
+    let mut problem = posed(preset, branches, options, notes)?;
     // Without rows apart neighbours say how well the force is known, never the residuals themselves.
     let of_neighbours = branches.noise.from[1] == Origin::Neighbours;
     // Nor are both told apart of radii, but by the slope of the curve.
@@ -173,15 +173,27 @@ pub(super) fn fit_branches(
     };
     let (mut starts, mut solved) = found(&mut problem)?;
     if let Some(why) = problem.overlapping(&solved.minimum.parameters) {
-        problem = problem.without_loading(why, &mut notes)?;
+        problem = problem.without_loading(why, notes)?;
         (starts, solved) = found(&mut problem)?;
     }
     if branches.noise.from[1] == Origin::Apart {
         solved = of_correlated(&mut problem, solved, options.robust, progress);
     }
     if preset.data.uncertain.is_empty() {
-        solved = of_tare(&mut problem, solved, options.robust, (&mut notes, progress));
+        solved = of_tare(&mut problem, solved, options.robust, (notes, progress));
     }
+    Ok((problem, starts, solved))
+}
+
+/// Fits the free keys of `preset` to `branches`.
+pub(super) fn fit_branches(
+    preset: &Preset,
+    branches: &Branches,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Fit, FitError> {
+    let mut notes = branches.notes.clone();
+    let (problem, starts, solved) = posed_and_solved(preset, branches, options, &mut notes, progress)?;
     if branches.baseline.is_none() {
         notes.push(
             "there is no free part: the baseline is held, and neighbouring rows tell sigma of the force"
@@ -218,7 +230,9 @@ pub(super) fn fit_branches(
         }
         None => None,
     };
-    notes.extend(of_spring(&problem, &solved, options.robust, &Part::new(progress, [0.95, 1.0])));
+    if what.errors.is_some() {
+        notes.extend(of_spring(&problem, &solved, options.robust, &Part::new(progress, [0.95, 1.0])));
+    }
     let found = problem.preset_at(u, Segment::Retraction).ok_or(FitError::NoStart)?;
     let ending = match solved.minimum.ending {
         _ if progress.stop() => Ending::Cancelled,

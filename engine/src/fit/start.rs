@@ -3,11 +3,11 @@
 //! E* over five decades; at each γ such that the smallest force is that of the points, δ₀ the median offset. Other free keys are
 //! tried at a few shares of their values.
 
-use super::ground::begins;
 use super::least_squares::LeastSquares;
 use super::problem::{ADHESION, Datum, Problem, START, Target};
 use super::pulled::is_pulled;
 use super::solve::{Solved, solve};
+use super::track::begins;
 use crate::elementary::ln;
 use crate::gap::Gap;
 use crate::measured::branches::median;

@@ -1,7 +1,8 @@
 //! Known values from made curves: closed forms of JKR's sphere and of the cone, and our own unloading of a wavy sphere.
 
 use super::least_squares::Ending;
-use super::path::{Mover, Path, Reach};
+use super::path::Path;
+use super::track::{Mover, Reach};
 use super::way::Way;
 use super::*;
 use crate::gap::shapes::split_mix::SplitMix64;

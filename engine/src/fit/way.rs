@@ -1,6 +1,6 @@
 //! The ways of a device along a curve with snaps, leg by leg: up from the first touch, or down from where it turned round.
 
-use super::ground::Ground;
+use super::track::Track;
 use crate::disc::{Local, Place, Solution};
 use crate::problem::Control;
 use crate::quasistatic::Monotone;
@@ -40,24 +40,24 @@ pub enum Leg {
 const LONGER: f64 = 1.1;
 const TIMES: usize = 8;
 
-/// The legs of the way under `control`, running inward. `ground` is made longer where its end is not stable. Empty where there is no
+/// The legs of the way under `control`, running inward. `track` is made longer where its end is not stable. Empty where there is no
 /// such way.
 ///
 /// With the stable legs comes the unstable stretch at the end that is nearer to the axis: so a point just beyond a pull-off or a first
 /// touch has a curve on both sides.
-pub(super) fn legs(ground: &mut Ground, control: Control, way: Way, seen: &Seen<'_>) -> Vec<Leg> {
+pub(super) fn legs(track: &mut Track, control: Control, way: Way, seen: &Seen<'_>) -> Vec<Leg> {
     for _ in 0..TIMES {
-        let (Some(solution), Some(monotone)) = (ground.solution(), ground.monotone(control)) else { break };
+        let (Some(solution), Some(monotone)) = (track.solution(), track.monotone(control)) else { break };
         let found = match way {
             Way::Up => up(seen, solution, &monotone),
             Way::Down => turned(seen, solution, &monotone)
                 .or_else(|| stable_start(solution, &monotone, solution.reach()))
-                .map(|start| down(solution, &monotone, start, ground.ends()[1])),
+                .map(|start| down(solution, &monotone, start, track.ends()[1])),
         };
         if let Some(found) = found {
             return found;
         }
-        if !ground.longer(LONGER) {
+        if !track.longer(LONGER) {
             break;
         }
     }

@@ -2,7 +2,7 @@
 
 use super::fault::Fault;
 use super::lexer::Word;
-use super::offers::{Offer, Typing};
+use super::offers::{Offer, PICTURES, Typing};
 use crate::explorer::command::{Assignment, Command, Id, LENGTHS, MOST_STEPS};
 use crate::explorer::export::{ExportKind, Picture, ends_in};
 use crate::explorer::map_axes::CURVES;
@@ -13,12 +13,6 @@ use pulloff_engine::preset::{Key, PARAMETERS, parameter};
 use pulloff_engine::stability::COMPLIANCE;
 use pulloff_engine::sweep::Column;
 use pulloff_engine::text::{closest, closest_key, quote};
-
-/// What is drawn rather than written.
-pub(super) const PICTURES: [Picture; 2] = [Picture::Figure(None), Picture::Screen];
-
-/// What a device can prescribe.
-pub const CONTROLS: [&str; 3] = ["displacement", "force", "stiffness="];
 
 /// What a command takes.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,5 @@
 //! What can be typed behind the name of a command, as the screen lists it and Tab completes it.
 
-use super::arguments::PICTURES;
 use super::lexer::quoted;
 use crate::explorer::branches;
 use crate::explorer::command::Command;
@@ -18,6 +17,12 @@ use pulloff_engine::report::number::{significant, with_unit};
 use pulloff_engine::stability::COMPLIANCE;
 use pulloff_engine::sweep::{QUANTITIES, Quantity as Column};
 use pulloff_engine::units::Quantity;
+
+/// What is drawn rather than written.
+pub(super) const PICTURES: [Picture; 2] = [Picture::Figure(None), Picture::Screen];
+
+/// What a device can prescribe.
+pub const CONTROLS: [&str; 3] = ["displacement", "force", "stiffness="];
 
 /// The names of what is in a folder, which is named with its last `/`, as a line names them; folders end with `/`.
 pub type Files<'a> = &'a dyn Fn(&str) -> Vec<String>;
@@ -202,7 +207,7 @@ pub(in crate::explorer) fn assignments_of(typing: &Typing<'_>) -> Vec<Offer> {
     let values: &[&str] = match preset.row(key).map(|row| row.kind) {
         Some(Kind::Choice(words)) => words,
         Some(Kind::Smoothing) => &[AUTO, NONE],
-        Some(Kind::Control) => &super::arguments::CONTROLS,
+        Some(Kind::Control) => &CONTROLS,
         _ => &[],
     };
     values.iter().map(|value| Offer::new(format!("{key}={value}"), "")).collect()

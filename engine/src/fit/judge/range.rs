@@ -1,13 +1,13 @@
 //! What a fit of adhesion with a range cannot tell, and where one disc in one zone is not all of it.
 
 use super::super::determined::Determined;
-use super::super::ground::LARGEST_MAUGIS;
 use super::super::options::letter;
 use super::super::path::Foot;
 use super::super::problem::Problem;
 use super::super::scatter::Scatter;
 use super::super::solve::{Solved, solve};
 use super::super::start::start;
+use super::super::track::LARGEST_MAUGIS;
 use super::super::verdict::Reason;
 use crate::measured::Segment;
 use crate::preset::schema::RANGE_KEYS;
@@ -51,15 +51,24 @@ pub(in super::super) fn unseen(
     let why = if is_known {
         let mut sharp = problem.holding(j, u[j])?;
         sharp.preset.material.adhesion = Adhesion::ShortRange;
-        let (start, _) = start(&sharp, true, robust, progress)?;
-        let found = solve(&sharp, &start, robust, ROUNDS, progress)?;
+        let found = start(&sharp, true, robust, progress)
+            .and_then(|(start, _)| solve(&sharp, &start, robust, ROUNDS, progress));
         let s = scatter.contact.unwrap_or(solved.scale).max(1.0);
-        let worse = cost(&found.minimum.at.residuals, s) - cost(&solved.minimum.at.residuals, s);
-        let worse = worse / scatter.correlation.rows();
-        if worse > WORSE {
-            return None;
+        match found {
+            // Nothing was found to compare with: no claim, either.
+            None => "no fit of adhesion at the edge alone was found to compare it with".to_owned(),
+            Some(found) => {
+                let worse = cost(&found.minimum.at.residuals, s) - cost(&solved.minimum.at.residuals, s);
+                let worse = worse / scatter.correlation.rows();
+                if worse > WORSE {
+                    return None;
+                }
+                format!(
+                    "adhesion at the edge alone fits as well, its chi squared is larger by {}",
+                    short(worse, 2)
+                )
+            }
         }
-        format!("adhesion at the edge alone fits as well, its chi squared is larger by {}", short(worse, 2))
     } else {
         format!("its error{at} is {} of itself", short(error, 2))
     };

@@ -13,10 +13,10 @@
 //! from row to row is looked for too, as √(number of the row); the three share that alarm.
 
 use super::super::chance::beyond_t;
-use super::super::path::Mover;
 use super::super::problem::Problem;
 use super::super::scatter::Scatter;
 use super::super::solve::Solved;
+use super::super::track::Mover;
 use super::super::verdict::Reason;
 use super::edge::{Edge, retractions};
 use super::scores::{MOST_OF_NEIGHBOURS, score};

@@ -11,10 +11,10 @@
 
 use super::super::chance::beyond_t;
 use super::super::least_squares::LeastSquares;
-use super::super::path::Mover;
 use super::super::problem::{Problem, Target};
 use super::super::scatter::Scatter;
 use super::super::solve::Solved;
+use super::super::track::Mover;
 use super::super::verdict::Reason;
 use super::ROUNDING;
 use crate::elementary::pow;

@@ -1,9 +1,11 @@
 //! What the fit would be with another spring.
 
+use super::super::least_squares::Ending;
 use super::super::options::letter;
 use super::super::problem::{Problem, Target};
 use super::super::solve::{Solved, solve};
 use crate::elementary::exp_m1;
+use crate::measured::Abscissa;
 use crate::preset::Value;
 use crate::problem::Control;
 use crate::progress::Progress;
@@ -11,6 +13,8 @@ use crate::progress::Progress;
 /// Rows of the part, and rounds of each fit.
 const ROWS: usize = 240;
 const ROUNDS: usize = 40;
+/// A change of a value, of its logarithm where it is positive, that is none.
+const STILL: f64 = 1e-9;
 
 /// `k 10 % larger: E* -8.0 %, γ +7.1 %; …`: what the fit would be with another spring; `None` where there is none, or it is free.
 pub(in crate::fit) fn of_spring(
@@ -32,6 +36,12 @@ pub(in crate::fit) fn of_spring(
         let mut other = problem.clone();
         other.preset.set(KEY, Value::Number(factor * k)).ok()?;
         let found = solve(&other, &own, robust, ROUNDS, progress);
+        // Another spring moves the points: values that stay where they were have not been fitted to it.
+        let has_moved = |u: &[f64]| u.iter().zip(&own).any(|(a, b)| (a - b).abs() > STILL);
+        let found = found.filter(|found| {
+            let moves = problem.abscissa != Abscissa::Position || has_moved(&found.minimum.parameters);
+            found.minimum.ending == Ending::Converged && moves
+        });
         let words = match found {
             None => format!("{words}: no fit"),
             Some(found) => {

@@ -16,10 +16,10 @@
 //! Each row counts as far as its speed is known: a speed that is off changes its G.
 
 use super::super::options::letter;
-use super::super::path::Mover;
 use super::super::problem::Problem;
 use super::super::scatter::Scatter;
 use super::super::solve::{Solved, solve};
+use super::super::track::Mover;
 use super::super::verdict::Reason;
 use super::edge::Edge;
 use crate::elementary::{exp_m1, hypot};

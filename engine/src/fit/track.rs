@@ -2,8 +2,7 @@
 //!
 //! All in reduced units.
 
-use super::path::{Mover, Reach};
-use super::pulled::{Trail, is_pulled};
+use super::pulled::{TrackState, Trail, is_pulled};
 use crate::case;
 use crate::disc::{Basis, Exact, Local, Place, Solution, Table};
 use crate::measured::Abscissa;
@@ -27,13 +26,34 @@ const HALVINGS: usize = 40;
 /// Beyond this `λ_M` the zone is so thin that the pull-off force is that of none to 0.0007 of it, and no fit goes.
 pub(super) const LARGEST_MAUGIS: f64 = 15.0;
 
-/// One state of it: s, δ and P, with their slopes by what runs along.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct State {
-    /// The contact radius, or the edge of the zone.
-    pub(super) along: f64,
-    pub(super) at: [f64; 3],
-    pub(super) slopes: [f64; 3],
+/// What moves a path at a held contact radius by a closed form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mover {
+    /// E*.
+    Modulus,
+    /// γ.
+    Adhesion,
+    /// k.
+    Stiffness,
+    /// σ₀ of an adhesion with a range, γ held.
+    Strength,
+    /// `h_c` of it, γ held.
+    Extent,
+    /// 1/σ₀², of an adhesion that is a tension σ₀ up to the separation γ/σ₀, where it is 0: not by its logarithm.
+    Range,
+}
+
+/// What a path must reach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// The largest x, P and s of the points; minus infinity where there are none.
+    pub most: [f64; 3],
+    /// x and P where the retraction begins.
+    pub turn: [f64; 2],
+    /// Where it begins, whatever the points are: of two paths beside each other the pieces are then the same.
+    pub radius: Option<f64>,
+    /// The length by which a gap without one of its own is reduced.
+    pub length: f64,
 }
 
 /// How δ and P are seen.
@@ -66,7 +86,7 @@ impl Eye {
 
 /// What arcs run along.
 #[derive(Debug, Clone)]
-pub(super) enum Ground {
+pub(super) enum Track {
     /// Adhesion at the edge of contact alone.
     Edge(Box<Curve>),
     /// Adhesion with a range.
@@ -82,7 +102,7 @@ pub(super) enum Ground {
     Pull(Arc<Trail>),
 }
 
-impl Ground {
+impl Track {
     /// That of a preset that reaches as far as the points, its stretches under `held` known; `None` where there is none.
     pub(super) fn new(
         preset: &Preset,
@@ -208,7 +228,7 @@ impl Ground {
     }
 
     /// The state at `along`; `None` beyond what is known.
-    pub(super) fn state(&self, along: f64) -> Option<State> {
+    pub(super) fn state(&self, along: f64) -> Option<TrackState> {
         if let Self::Pull(trail) = self {
             return Some(trail.state(along));
         }
@@ -217,23 +237,23 @@ impl Ground {
         Some(self.state_at(solution, solution.place(along.min(solution.reach()))?, along))
     }
 
-    fn state_at(&self, solution: &dyn Solution, place: Place, along: f64) -> State {
+    fn state_at(&self, solution: &dyn Solution, place: Place, along: f64) -> TrackState {
         let local = solution.at(place);
         let [delta, force] = local.slopes.map(|slope| slope / local.stretch);
         match self {
             Self::Edge(_) | Self::Pull(_) => {
-                State { along, at: [along, local.approach, local.force], slopes: [1.0, delta, force] }
+                TrackState { along, at: [along, local.approach, local.force], slopes: [1.0, delta, force] }
             }
             Self::Zone { zones, .. } => {
                 let s = solution.edges(place).contact_radius;
                 let slope = if s > 0.0 { zones.contact_slope(place) } else { 0.0 };
-                State { along, at: [s, local.approach, local.force], slopes: [slope, delta, force] }
+                TrackState { along, at: [s, local.approach, local.force], slopes: [slope, delta, force] }
             }
         }
     }
 
     /// States to draw it by, running inward, as far as it is connected.
-    pub(super) fn drawn(&self) -> Vec<State> {
+    pub(super) fn drawn(&self) -> Vec<TrackState> {
         match self {
             Self::Pull(trail) => trail.states().to_vec(),
             Self::Edge(curve) => {
@@ -242,7 +262,7 @@ impl Ground {
                     let slopes = [1.0, slopes.approach, slopes.force];
                     // On the outer side of a corner of the gap there are none.
                     let known = slopes.iter().all(|slope| slope.is_finite());
-                    let own = State { along: s, at: [s, approach, force], slopes };
+                    let own = TrackState { along: s, at: [s, approach, force], slopes };
                     if known { own } else { self.state(s).unwrap_or(own) }
                 };
                 curve.samples.iter().map(of).collect()
