@@ -10,7 +10,7 @@ use super::walk_table::changed_keys;
 use super::{data, script, study_table, walk_table};
 use crate::mend::Reason;
 use crate::print::Format;
-use crate::store::{Fingerprint, Overwrite, Source, Store, StoreError, WriteError, write_atomically};
+use crate::store::{Fingerprint, Listed, Overwrite, Source, Store, StoreError, WriteError, write_atomically};
 use pulloff_engine::preset::changes::{changes, differences};
 use pulloff_engine::preset::{Invalid, Preset, Value, data as data_keys};
 use pulloff_engine::progress::Unwatched;
@@ -46,7 +46,10 @@ fn assign(preset: &mut Preset, assignments: &[Assignment]) -> Result<(), Invalid
 pub fn run(store: &Store, job: Job) -> Done {
     match job {
         Job::List => Done::Listed(Box::new(store.list())),
-        Job::Names => Done::Named(store.known()),
+        Job::Names => {
+            let named = |listed: Listed| [listed.name, listed.title.unwrap_or_else(|why| why)];
+            Done::Named(store.list().presets.into_iter().map(named).collect())
+        }
         Job::Assign { mut preset, assignments } => {
             match assign(&mut preset, &assignments) {
                 Ok(()) => {

@@ -99,7 +99,8 @@ pub enum Job {
 #[derive(Debug, Clone)]
 pub enum Done {
     Listed(Box<Listing>),
-    Named(Vec<String>),
+    /// Names and titles of the presets.
+    Named(Vec<[String; 2]>),
     Browsed(Key, Box<Folder>),
     Assigned(Box<Preset>),
     /// A measured curve whose columns must be named, and why.

@@ -176,7 +176,8 @@ pub struct Model {
     pub pins: Pins,
     /// What to tell; `None` leaves the line to the hint.
     pub message: Option<(Level, String)>,
-    pub preset_names: Vec<String>,
+    /// The names of the presets and their titles, once the list of commands was opened.
+    pub preset_names: Vec<[String; 2]>,
     pub question: Option<Question>,
     pub next_request: u64,
     pub quit: bool,

@@ -42,6 +42,8 @@ pub struct Row {
     pub short: &'static str,
     /// What it does.
     pub help: &'static str,
+    /// Other words that someone may look for it by.
+    pub words: &'static str,
     /// What may be typed behind it.
     pub takes: Takes,
     /// What must be there before it can be done.
@@ -86,6 +88,7 @@ impl Row {
         keys: "",
         short: "",
         help: "",
+        words: "",
         takes: Takes::NOTHING,
         needs: always,
         waits: Waits::Nothing,

@@ -218,12 +218,15 @@ impl Keymap {
         format!("{line}{}", id.name())
     }
 
-    /// The keys of a command as text.
+    /// The keys of a command as text; empty where it is typed.
+    pub fn keys_of(&self, id: Id) -> String {
+        self.keys(id).iter().map(|key| key.label()).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The keys of a command as text, or how it is typed.
     pub fn label(&self, id: Id) -> String {
-        match self.keys(id) {
-            [] => self.typed(id),
-            keys => keys.iter().map(|key| key.label()).collect::<Vec<_>>().join(" "),
-        }
+        let keys = self.keys_of(id);
+        if keys.is_empty() { self.typed(id) } else { keys }
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::explorer::Command;
 use crate::explorer::data::Foreign;
 use crate::explorer::export::{ExportKind, Page};
+use crate::explorer::script::Entry;
 use crate::explorer::session::Snapshot;
 use crate::figure::Figure;
 use pulloff_engine::gap::formula::{Formula, FormulaError};
@@ -45,8 +46,10 @@ pub struct Prompt {
     pub waits: bool,
     /// The column of what is wrong in the text, from 1, where it has one.
     pub fault: Option<usize>,
-    /// How often Tab found nothing more to add: each time the next names are listed.
-    pub listed: usize,
+    /// What the line of a command could become.
+    pub entries: Vec<Entry>,
+    /// The entry that Enter runs; none where that is the line itself.
+    pub selected: Option<usize>,
 }
 
 /// What a typed line is for.
@@ -62,7 +65,11 @@ pub enum Purpose {
     File(ExportKind),
     Page(Page),
     Path,
-    Line,
+    /// A command, out of the list of all.
+    Line {
+        /// Whether it was opened to see what can be done.
+        is_help: bool,
+    },
 }
 
 /// The help, and what is looked for in it.
@@ -101,8 +108,15 @@ impl Prompt {
             error: None,
             waits: false,
             fault: None,
-            listed: 0,
+            entries: Vec::new(),
+            selected: None,
         }
+    }
+
+    /// What is said below the text and its list.
+    pub fn said(&self) -> &str {
+        let selected = self.selected.and_then(|at| self.entries.get(at));
+        selected.map_or(&self.note, |entry| &entry.says)
     }
 
     /// What is wrong with the text, if it is a formula.
@@ -129,7 +143,7 @@ impl Purpose {
             Self::File(what) => Command::Export { what, path: text, replace: false },
             Self::Page(page) => Command::ExportPage { page, path: text, replace: false },
             Self::Path => Command::Open(text),
-            Self::Line => return None,
+            Self::Line { .. } => return None,
         })
     }
 }

@@ -21,7 +21,7 @@ macro_rules! each_command {
             { run: |model| walk(model, Action::Jump) }
         Run "run" "r" "run" walker Curve Yes
             "run at a pace one can watch, to the next limit point or touch; any key but those of the pace pauses"
-            { run: run_or_stop,
+            { words: "animate play", run: run_or_stop,
             takes: takes("number of states", |rest| Ok(Command::RunOf(rest.count("a number of states", MOST_STEPS)?))) }
         Slower "slower" "(" "slower" always Nothing Screen "half as many states a second in a run, at first 20"
             { run: |model| scale_pace(model, 0.5) }
@@ -31,22 +31,22 @@ macro_rules! each_command {
             { run: to_largest_pull,
             takes: takes("A, event N, or a contact radius", destination).offering(|_| words(["A", "event"])) }
         Reverse "reverse" "b" "back" walker InOrder Yes "turn round: steps and events are then those of the other way"
-            { look: |model| model.inward = !model.inward }
+            { words: "turn direction", look: |model| model.inward = !model.inward }
         Halve "halve-step" "[" "half step" always InOrder Yes "halve the step length" { look: |model| scale_length(model, 0.5) }
         Double "double-step" "]" "double step" always InOrder Yes "double the step length"
             { look: |model| scale_length(model, 2.0) }
         StepLength "step-length" "" "step length" always InOrder Yes "the longest step, as a share of every quantity's range"
             { takes: takes("length", |rest| Ok(Command::StepLength(rest.length()?))).always() }
         Undo "undo" "u" "undo" undo InOrder Yes "take the last command back, whatever it was; no state is erased"
-            { run: |model| travel(model, Id::Undo, 1), takes: takes("number", |rest| travelled(rest, Id::Undo)) }
+            { words: "back take", run: |model| travel(model, Id::Undo, 1), takes: takes("number", |rest| travelled(rest, Id::Undo)) }
         Redo "redo" "Ctrl-R" "redo" redo InOrder Yes "do again what was taken back" { run: |model| travel(model, Id::Redo, 1),
             takes: takes("number", |rest| travelled(rest, Id::Redo)) }
         Branches "branches" "B" "branches" branches InOrder Needs("the reduced approach, force and contact radius of a state")
             "the branches of the walk: what each ended with, and back to it"
             { takes: takes("branch", branch).listing(branches_of) }
-        Restart "restart" "Home" "start" walker_or_no_curve Curve Yes "start again" { run: restart }
+        Restart "restart" "Home" "start" walker_or_no_curve Curve Yes "start again" { words: "reset", run: restart }
         Control "control" "c" "control" always Curve Yes "control the displacement, the force, or a spring's far end"
-            { run: change_control,
+            { words: "spring stiffness load grips device", run: change_control,
             takes: takes("control", |rest| rest.assigned("a control", "path.control")).offering(|_| words(CONTROLS)) }
     }
     "Change the problem" {
@@ -65,12 +65,12 @@ macro_rules! each_command {
         Free "free" "*" "free" parameter InOrder Selected("data.free=KEY,...")
             "let a fit change the selected value, or no longer" { run: mark }
         Fit "fit" "F" "fit" always Nothing Yes "fit the free values to the measured curve; Esc takes the best so far"
-            { run: fit }
+            { words: "regression", run: fit }
         Edit "edit" "Enter =" "type" always Nothing Selected("KEY=VALUE")
             "type the selected value, or choose it; in the log: go to the selected event; at the cross-hair: go there; in a study its quantity, on a map its axes" {}
         Data "data" "" "data" always Nothing Needs("a file, or none")
             "a measured curve behind the chart, to compare and to fit; none takes it away"
-            { takes: takes("file, or none", |rest| rest.assigned("a file", data::FILE)).offering(curves) }
+            { words: "measured experiment csv file", takes: takes("file, or none", |rest| rest.assigned("a file", data::FILE)).offering(curves) }
         Assign "set" "" "set" always InOrder Yes "other values for some keys, as one change"
             { takes: takes("KEY=VALUE ...", assigned).going_on(assignments_of).always() }
     }
@@ -98,7 +98,7 @@ macro_rules! each_command {
         ChooseView "view" "" "charts" always Nothing Screen "any chart by its name; those with nothing to show say why"
             { takes: takes("chart", view).listing(views) }
         Study "study" "" "study" curve Nothing Screen "a quantity over the range of the selected value"
-            { takes: takes("quantity", quantity).listing(quantities) }
+            { words: "sweep dependence parameter", takes: takes("quantity", quantity).listing(quantities) }
         ZoomIn "zoom-in" "+" "closer" curve Nothing Screen "the chart closer, about the cross-hair or the walker"
             { look: |model| look::zoom(model, model.view, true, model.cross.unwrap_or(look::MIDDLE)) }
         ZoomOut "zoom-out" "-" "wider" curve Nothing Screen "further away"
@@ -107,42 +107,42 @@ macro_rules! each_command {
         CrossHair "cross-hair" "i" "cross-hair" curve Nothing Screen "a cross-hair that reads the chart; arrows move it"
             { look: look::cross_hair }
         Map "map" "" "map" curve Nothing Screen
-            "where snaps happen over the selected value; again: the map of it and the adhesion" { look: look::map,
+            "where snaps happen over the selected value; again: the map of it and the adhesion" { words: "phase diagram", look: look::map,
             takes: takes("KEY [KEY, control, approach or force]", axes).going_on(axes_of) }
         Axes "axes" "a" "axes" always Nothing Screen "axes in P/Pc, delta, s/lambda, or raw values" { look: look::axes }
         Overlays "overlays" "y" "theory" curve Nothing Screen
             "theory over the curve: smooth sphere, exact solution, envelope, the line of the loading device"
             { takes: takes("theory", theory).listing(theories) }
-        Pin "pin" "p" "pin" curve Curve Yes "keep this curve to compare the next ones with" { look: look::pin }
+        Pin "pin" "p" "pin" curve Curve Yes "keep this curve to compare the next ones with" { words: "compare keep", look: look::pin }
         Rings "rings" "#" "rings" curve Nothing Screen
             "the same problem in the ring elements of the paper over the chart, or its exact solution over those; again: away"
-            { look: look::in_rings }
+            { words: "elements", look: look::in_rings }
         Pins "pins" "P" "pins" pins Nothing Needs("the number of a pin, or all") "take pinned curves away"
             { takes: takes("number", pin).listing(pins_of) }
     }
     "Presets and files" {
         Open "open" "o" "open" always Nothing Needs("a preset") "open a preset; D in the list deletes one of your own"
-            { run: |_| vec![file(Job::List)], takes: takes("preset", preset).going_on(presets) }
-        Save "save" "s" "save" always Nothing Yes "save the preset" { run: save_back,
+            { words: "load preset file", run: |_| vec![file(Job::List)], takes: takes("preset", preset).going_on(presets) }
+        Save "save" "s" "save" always Nothing Yes "save the preset" { words: "w write", run: save_back,
             takes: takes("replace", saved).offering(|_| words(["replace"])) }
         SaveAs "save-as" "S" "save as" always Nothing Needs("a name") "save the preset under another name"
             { takes: takes("name", saved_as).going_on(names) }
         Export "export" "e" "export" always Nothing Needs("a document and a file")
             "write curve, walk or events as CSV or JSON, the session as a script, the screen as text"
-            { takes: takes("file", exported).going_on(documents) }
+            { words: "figure plot picture svg pdf csv json image", takes: takes("file", exported).going_on(documents) }
         Copy "copy" "Y" "copy" always Nothing Screen
-            "the state, the events, the chart or the screen into the terminal's clipboard" {}
+            "the state, the events, the chart or the screen into the terminal's clipboard" { words: "clipboard yank" }
     }
     "Program" {
         CommandLine "command-line" ":" "all" always Nothing Screen
-            "type a command by its name; Tab completes, up and down bring lines back" { run: |_| vec![file(Job::Names)] }
+            "everything that can be done, of which what is typed keeps what has it; Tab takes a line, Enter runs it" { run: |_| vec![file(Job::Names)] }
         Mouse "mouse" "m" "mouse" always Nothing Screen
             "take the mouse (click, wheel), or leave it to the terminal to select text" {}
         About "about" "I" "about" always Nothing Screen "what the preset says of itself, and what was changed since" {}
-        Help "help" "?" "keys" always Nothing Screen "this help; / searches it" {}
+        Help "help" "?" "keys" always Nothing Screen "what can be done here, by key and name; Tab: how to read the screen" { words: "manual keys" }
         Cancel "cancel" "Esc" "back" always Nothing Screen "take typed text back, close, stop a run or a curve" { run: cancel }
         Quit "quit" "q Ctrl-C" "quit" always Nothing Yes "quit; asks only if the preset has unsaved changes"
-            { look: |model| model.quit = true }
+            { words: "exit leave wq close bye", look: |model| model.quit = true }
     }
         }
     };

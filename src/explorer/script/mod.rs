@@ -32,25 +32,25 @@
 //! | `read` | the lines of a whole script |
 //! | `print` | a command → its line |
 //! | `fault` | what can be wrong with a line |
-//! | `complete` | what a line begun could go on with |
+//! | `palette` | the list of what a line could become |
 //! | [`mod@play`] | a script run on a model, without a terminal |
 //! | `permissions` | where a script may write |
 
 pub mod arguments;
-mod complete;
 mod fault;
 mod lexer;
 pub mod offers;
+mod palette;
 mod parse;
 mod permissions;
 pub mod play;
 mod print;
 mod read;
 
-pub use complete::{Completion, complete};
 pub use fault::{Fault, LONGEST};
 /// The first line of a script that a session writes.
 pub(super) const HEAD: &str = "# A session of pulloff: `pulloff run` walks it again.";
+pub use palette::{Entry, palette};
 pub use parse::{for_script, parse};
 pub use permissions::Permission;
 pub use play::{Failed, play};

@@ -1,4 +1,4 @@
-//! What can be typed behind the name of a command, as the screen lists it and Tab completes it.
+//! What can be typed behind the name of a command, as the screen lists it.
 
 use super::lexer::quoted;
 use crate::explorer::branches;
@@ -162,7 +162,7 @@ pub(in crate::explorer) fn presets(typing: &Typing<'_>) -> Vec<Offer> {
     let known = &typing.model.preset_names;
     match typing.words {
         [] if known.is_empty() => words(SHIPPED.iter().map(|shipped| shipped.name)),
-        [] => known.iter().filter_map(|name| Some(Offer::new(quoted(name)?, ""))).collect(),
+        [] => known.iter().filter_map(|[name, title]| Some(Offer::new(quoted(name)?, &**title))).collect(),
         _ => assignments_of(typing),
     }
 }

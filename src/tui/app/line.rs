@@ -1,51 +1,60 @@
-//! The command line: the grammar of scripts, typed on the screen.
+//! The list of everything that can be done, and the line typed over it: the grammar of scripts.
 
 use super::state::App;
 use crate::explorer::data::list;
-use crate::explorer::script::{Completion, complete, parse};
-use crate::explorer::table::called;
+use crate::explorer::script::{palette, parse};
+use crate::explorer::table::{called, row_of};
 use crate::explorer::{Command, Effect, Id};
-use crate::tui::overlay::{LONGEST_LINE, Overlay, Prompt, Purpose};
-use crate::tui::view::overlays as prompt;
+use crate::tui::overlay::{Help, LONGEST_LINE, Overlay, Prompt, Purpose};
+use crate::tui::view::help::now;
+use crate::tui::view::status;
 use crossterm::event::{Event, KeyCode, KeyEvent};
-use pulloff_engine::text::sanitize;
 use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
 
 /// What stands below an empty line.
-const NOTE: &str = "a command and what it takes; Tab completes, Up and Down bring lines back";
-
-/// What stands behind names that are listed: how far the list is.
-const BEHIND: usize = " (10 of 10, Tab goes on)".len();
-/// The longest list of names, and the shortest.
-const LISTED: [usize; 2] = [300, 24];
+const NOTE: &str = "type what you look for; Tab takes a line, Enter runs it, Up brings lines back";
+/// So many lines a page.
+const PAGE: usize = 8;
 
 impl App {
-    pub(super) fn ask_line(&mut self) -> Vec<Effect> {
+    /// Opens the list, for a line or to see what can be done.
+    pub(super) fn ask_line(&mut self, is_help: bool) -> Vec<Effect> {
         let effects = self.run(Id::CommandLine.into());
         self.typed.at = self.typed.lines.len();
-        self.overlay = Some(Overlay::Prompt(Prompt::new("Command", NOTE, String::new(), Purpose::Line)));
+        let title = if is_help { "What can be done (Tab: how to read the screen)" } else { "Command" };
+        let mut prompt = Prompt::new(title, NOTE, String::new(), Purpose::Line { is_help });
+        self.changed(&mut prompt, Input::default());
+        self.overlay = Some(Overlay::Prompt(prompt));
         effects
     }
 
     pub(super) fn line_key(&mut self, mut prompt: Prompt, key: KeyEvent) -> Vec<Effect> {
+        let is_empty = prompt.input.value().is_empty();
         match key.code {
             KeyCode::Esc => return Vec::new(),
             _ if prompt.waits => {}
             KeyCode::Enter => return self.obey_line(prompt),
-            KeyCode::Tab => self.complete(&mut prompt),
-            KeyCode::Up | KeyCode::Down => {
-                if let Some(line) = self.typed.recall(key.code == KeyCode::Up, prompt.input.value()) {
-                    changed(&mut prompt, Input::new(line));
-                }
+            KeyCode::Tab if is_empty && prompt.purpose == (Purpose::Line { is_help: true }) => {
+                self.overlay = Some(Overlay::Help(Help::default()));
+                return Vec::new();
             }
+            KeyCode::Tab => self.take_entry(&mut prompt),
+            // Above the list are the lines typed before.
+            KeyCode::Up if prompt.selected.is_none() || self.is_recalled() => self.recall(&mut prompt, true),
+            KeyCode::Down if self.is_recalled() => self.recall(&mut prompt, false),
+            KeyCode::Up => prompt.selected = prompt.selected.and_then(|at| at.checked_sub(1)),
+            KeyCode::Down => select(&mut prompt, |at| at.map_or(0, |at| at + 1)),
+            KeyCode::PageUp => select(&mut prompt, |at| at.unwrap_or(0).saturating_sub(PAGE)),
+            KeyCode::PageDown => select(&mut prompt, |at| at.unwrap_or(0) + PAGE),
             _ if self.closes(key) => return Vec::new(),
             _ if prompt.input.value().chars().count() >= LONGEST_LINE
                 && matches!(key.code, KeyCode::Char(_)) => {}
             _ => {
                 let mut input = prompt.input.clone();
                 if input.handle_event(&Event::Key(key)).is_some_and(|change| change.value) {
-                    changed(&mut prompt, input);
+                    self.typed.at = self.typed.lines.len();
+                    self.changed(&mut prompt, input);
                 } else {
                     prompt.input = input;
                 }
@@ -55,25 +64,61 @@ impl App {
         Vec::new()
     }
 
-    /// What the text before the cursor can go on with.
-    fn complete(&self, prompt: &mut Prompt) {
-        let cursor = prompt.input.cursor();
-        let head: String = prompt.input.value().chars().take(cursor).collect();
-        let tail: String = prompt.input.value().chars().skip(cursor).collect();
+    fn is_recalled(&self) -> bool {
+        self.typed.at < self.typed.lines.len()
+    }
+
+    fn recall(&mut self, prompt: &mut Prompt, older: bool) {
+        if let Some(line) = self.typed.recall(older, prompt.input.value()) {
+            self.changed(prompt, Input::new(line));
+        }
+    }
+
+    /// Another text: the list is what it could become, and what was wrong with the last is forgotten.
+    fn changed(&self, prompt: &mut Prompt, input: Input) {
+        let head: String = input.value().chars().take(input.cursor()).collect();
         let files = |folder: &str| self.files(folder);
-        let Completion { line, offers } = complete(&head, &self.model, &files);
-        let cursor = line.chars().count();
-        let listed = if line == head { prompt.listed } else { 0 };
-        changed(prompt, Input::new(line + &tail).with_cursor(cursor));
-        prompt.note = match &*offers {
-            [] => "nothing begins so".to_owned(),
-            [_] => note(prompt.input.value()),
-            offers => {
-                prompt.listed = listed + 1;
-                let room = usize::from(self.screen.width.min(prompt::WIDEST).saturating_sub(4));
-                offered(offers, listed, room.saturating_sub(BEHIND).clamp(LISTED[1], LISTED[0]))
-            }
+        let first: Vec<Id> = status::offered(self).into_iter().map(|(id, _)| id).collect();
+        prompt.entries = palette(&head, &first, &self.model, &files);
+        // A line that is a command is run as it stands.
+        let is_command = parse(input.value()).is_ok();
+        prompt.selected = (!is_command && !prompt.entries.is_empty()).then_some(0);
+        let is_help = prompt.purpose == Purpose::Line { is_help: true } && input.value().is_empty();
+        prompt.note = if is_help { now(self).join("  ") } else { note(input.value()) };
+        prompt.input = input;
+        prompt.error = None;
+        prompt.fault = None;
+    }
+
+    /// The list of a line that stands there, when more is known: names of presets.
+    pub(super) fn list_again(&mut self) {
+        let Some(Overlay::Prompt(mut prompt)) = self.overlay.take_if(|over| {
+            matches!(
+                over,
+                Overlay::Prompt(Prompt { purpose: Purpose::Line { .. }, error: None, waits: false, .. })
+            )
+        }) else {
+            return;
         };
+        let (input, selected) = (prompt.input.clone(), prompt.selected);
+        self.changed(&mut prompt, input);
+        prompt.selected = selected.filter(|at| *at < prompt.entries.len());
+        self.overlay = Some(Overlay::Prompt(prompt));
+    }
+
+    /// Puts the selected entry, or the first, where the text before the cursor stands.
+    fn take_entry(&mut self, prompt: &mut Prompt) {
+        let Some(entry) = prompt.entries.get(prompt.selected.unwrap_or(0)) else {
+            "nothing has that".clone_into(&mut prompt.note);
+            return;
+        };
+        let takes_more = entry.id.is_some_and(|id| !row_of(id).takes.what.is_empty());
+        let is_open = entry.line.ends_with(['=', '/']) || (entry.id.is_some() && !takes_more);
+        let line = if is_open { entry.line.clone() } else { format!("{} ", entry.line) };
+        let tail: String = prompt.input.value().chars().skip(prompt.input.cursor()).collect();
+        let cursor = line.chars().count();
+        let tail = if line.ends_with(' ') { tail.trim_start() } else { &tail };
+        self.changed(prompt, Input::new(line + tail).with_cursor(cursor));
     }
 
     /// The folders and files in `folder` that a measured curve may be in, as a line names them.
@@ -88,7 +133,15 @@ impl App {
     }
 
     fn obey_line(&mut self, mut prompt: Prompt) -> Vec<Effect> {
-        let line = prompt.input.value().to_owned();
+        let mut line = prompt.input.value().to_owned();
+        if let Some(entry) = prompt.selected.and_then(|at| prompt.entries.get(at)) {
+            if !entry.is_whole {
+                self.take_entry(&mut prompt);
+                self.overlay = Some(Overlay::Prompt(prompt));
+                return Vec::new();
+            }
+            line.clone_from(&entry.line);
+        }
         let effects = match parse(&line) {
             Ok(None) => return Vec::new(),
             Err(fault) => {
@@ -111,33 +164,9 @@ impl App {
     }
 }
 
-/// The names that can go on, as many as a line holds; `turn` counts how often they were listed.
-fn offered(offers: &[String], turn: usize, room: usize) -> String {
-    let mut pages: Vec<String> = Vec::new();
-    for offer in offers {
-        let offer = sanitize(offer, room);
-        match pages.last_mut() {
-            Some(page) if page.chars().count() + 2 + offer.chars().count() <= room => {
-                page.push_str("  ");
-                page.push_str(&offer);
-            }
-            _ => pages.push(offer),
-        }
-    }
-    let at = turn % pages.len().max(1);
-    match &*pages {
-        [all] => all.clone(),
-        pages => format!("{}  ({} of {}, Tab goes on)", pages[at], at + 1, pages.len()),
-    }
-}
-
-/// Another text: what was wrong with the last is forgotten.
-fn changed(prompt: &mut Prompt, input: Input) {
-    prompt.note = note(input.value());
-    prompt.input = input;
-    prompt.error = None;
-    prompt.fault = None;
-    prompt.listed = 0;
+/// Selects another entry.
+fn select(prompt: &mut Prompt, to: impl Fn(Option<usize>) -> usize) {
+    prompt.selected = prompt.entries.len().checked_sub(1).map(|last| to(prompt.selected).min(last));
 }
 
 fn note(line: &str) -> String {

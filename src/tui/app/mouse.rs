@@ -68,7 +68,15 @@ impl App {
         match (&self.overlay, up) {
             (None, Some(up)) => self.wheel(at, up),
             (None, None) => self.click(at),
-            (Some(Overlay::Choose(_) | Overlay::Help(_)), Some(up)) => {
+            (Some(Overlay::Prompt(prompt)), None) => match overlays::entry_at(prompt, self.screen, at) {
+                Some(line) if Some(line) == prompt.selected => self.key(KeyCode::Enter.into()),
+                Some(line) => {
+                    self.select_item(line);
+                    Vec::new()
+                }
+                None => Vec::new(),
+            },
+            (Some(Overlay::Choose(_) | Overlay::Help(_) | Overlay::Prompt(_)), Some(up)) => {
                 self.key(if up { KeyCode::Up } else { KeyCode::Down }.into())
             }
             (Some(Overlay::Choose(choose)), None) => match overlays::line_at(choose, self.screen, at) {
@@ -102,10 +110,18 @@ impl App {
 
     /// Another line of the list that lies over the screen.
     fn select_item(&mut self, line: usize) {
-        let Some(Overlay::Choose(mut choose)) = self.overlay.take() else { return };
-        choose.selected = line;
-        choose.picture = choose.current().and_then(|(_, item)| self.picture(&item.action));
-        self.overlay = Some(Overlay::Choose(choose));
+        match self.overlay.take() {
+            Some(Overlay::Choose(mut choose)) => {
+                choose.selected = line;
+                choose.picture = choose.current().and_then(|(_, item)| self.picture(&item.action));
+                self.overlay = Some(Overlay::Choose(choose));
+            }
+            Some(Overlay::Prompt(mut prompt)) => {
+                prompt.selected = Some(line);
+                self.overlay = Some(Overlay::Prompt(prompt));
+            }
+            other => self.overlay = other,
+        }
     }
 
     fn pick(&mut self, panel: Panel, line: Option<usize>) -> Vec<Effect> {

@@ -139,9 +139,12 @@ impl App {
 
     /// A worker has answered.
     pub fn reply(&mut self, reply: Reply) -> Vec<Effect> {
-        let is_answer = matches!(&reply, Reply::File(done) if !matches!(**done, Done::Named(_)));
+        let is_file = matches!(reply, Reply::File(_));
+        let is_named = matches!(&reply, Reply::File(done) if matches!(**done, Done::Named(_)));
         let effects = answer(&mut self.model, reply);
-        if is_answer {
+        if is_named {
+            self.list_again();
+        } else if is_file {
             self.file_answered();
         }
         // A line being typed, or an offer, is not torn away: the question waits for its end.
@@ -280,11 +283,7 @@ impl App {
                 (self.going, self.model.message) = (true, None);
                 Vec::new()
             }
-            Id::Help => {
-                self.overlay = Some(Over::Help(Help::default()));
-                Vec::new()
-            }
-            Id::CommandLine => self.ask_line(),
+            Id::Help | Id::CommandLine => self.ask_line(id == Id::Help),
             Id::Quit if self.model.is_unsaved() => {
                 let saves =
                     self.keymap.keys(Id::SaveAs).first().map(|key| format!(", {} saves", key.label()));
@@ -423,7 +422,7 @@ impl App {
 
     pub(super) fn prompt_key(&mut self, mut prompt: Prompt, key: KeyEvent) -> Vec<Effect> {
         let mut effects = Vec::new();
-        if prompt.purpose == Purpose::Line {
+        if matches!(prompt.purpose, Purpose::Line { .. }) {
             return self.line_key(prompt, key);
         }
         match key.code {

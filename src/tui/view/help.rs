@@ -1,11 +1,9 @@
-//! The help in pages: how to read the screen, first steps, every key, read from the one table of commands, and what the preset says.
+//! The glossary in pages: how to read the screen, first steps, and what the preset says. Every key is in the list of commands.
 
 use super::parts::panel;
 use crate::explorer::pins::changes;
-use crate::explorer::table::ROWS;
-use crate::explorer::{Home, Id, Model};
+use crate::explorer::{Home, Id};
 use crate::tui::app::App;
-use crate::tui::keymap::Keymap;
 use crate::tui::overlay::Help;
 use crate::tui::theme::Theme;
 use ratatui::Frame;
@@ -74,14 +72,15 @@ const SHORT: &[(&str, &str)] = &[
     ("no bound", "a dead load falls for ever: what is lost at the last contact has no end"),
     ("by area agrees", "the same loss as the area between the curve and the way of the device"),
     ("admissible", "whether the bodies stay apart outside the contact"),
+    ("Ctrl-Z", "back to the shell; fg returns"),
     ("modified", "the title was given to other values than those shown; * unsaved: they are in no file"),
 ];
 
 /// The pages by their names, in their order.
-pub const PAGES: [&str; 4] = ["how to read it", "first steps", "keys", "this preset"];
+pub const PAGES: [&str; 3] = ["how to read it", "first steps", "this preset"];
 
 /// The page of what the preset says.
-pub const ABOUT: usize = 3;
+pub const ABOUT: usize = 2;
 
 /// Where what a key does begins.
 const MEANING: usize = 20;
@@ -92,46 +91,33 @@ struct HelpLine {
     label: String,
     text: String,
     style: Style,
-    /// The command's name, shown where there is room for it.
-    name: &'static str,
 }
 
 impl HelpLine {
     fn new(label: &str, text: impl Into<String>, style: Style) -> Self {
-        Self { label: label.to_owned(), text: text.into(), style, name: "" }
+        Self { label: label.to_owned(), text: text.into(), style }
     }
 
     fn rows(&self, theme: Theme, width: usize) -> Vec<Line<'static>> {
         let indent = Span::raw(&*self.label).width();
         let room = width.saturating_sub(indent).max(1);
-        let mut rows: Vec<Line<'static>> = textwrap::wrap(&self.text, room)
+        textwrap::wrap(&self.text, room)
             .into_iter()
             .enumerate()
             .map(|(i, row)| {
                 let label = if i == 0 { self.label.clone() } else { " ".repeat(indent) };
                 Line::from(vec![Span::styled(label, theme.key()), Span::styled(row.into_owned(), self.style)])
             })
-            .collect();
-        if let (Some(row), false) = (rows.last_mut(), self.name.is_empty()) {
-            let left = width.saturating_sub(row.width() + self.name.len());
-            if left > 1 {
-                row.push_span(Span::raw(" ".repeat(left)));
-                row.push_span(Span::styled(self.name, theme.dim()));
-            }
-        }
-        rows
+            .collect()
     }
 }
 
 /// What narrow screens cut elsewhere, whole: the status, warnings, notes.
-fn now(theme: Theme, keymap: &Keymap, model: &Model) -> Vec<HelpLine> {
-    let entry = |text: &str, style| HelpLine::new("  ", theme.text(text), style);
-    let mut entries = vec![entry(&keymap.spelled(&model.status().1), Style::new())];
-    if let Some(curve) = &model.curve {
-        entries.extend(curve.base.warnings.iter().map(|text| entry(&format!("! {text}"), theme.error())));
-        entries.extend(curve.base.notes.iter().map(|text| entry(text, Style::new())));
-    }
-    entries
+pub fn now(app: &App) -> Vec<String> {
+    let base = app.model.curve.as_ref().map(|curve| &curve.base);
+    let warnings = base.iter().flat_map(|base| base.warnings.iter().map(|text| format!("! {text}")));
+    let notes = base.iter().flat_map(|base| base.notes.iter().cloned());
+    [app.keymap.spelled(&app.model.status().1)].into_iter().chain(warnings).chain(notes).collect()
 }
 
 /// The lines of a page.
@@ -139,8 +125,7 @@ fn entries(app: &App, page: usize) -> Vec<HelpLine> {
     match page {
         0 => reading(app),
         1 => steps(app),
-        ABOUT => about(app),
-        _ => keys(app),
+        _ => about(app),
     }
 }
 
@@ -157,7 +142,10 @@ fn reading(app: &App) -> Vec<HelpLine> {
     let (theme, keymap) = (app.theme, &app.keymap);
     let mut entries = Vec::new();
     section(&mut entries, theme, "Now");
-    entries.extend(now(theme, keymap, &app.model));
+    entries.extend(now(app).into_iter().map(|text| {
+        let style = if text.starts_with("! ") { theme.error() } else { Style::new() };
+        HelpLine::new("  ", theme.text(&text), style)
+    }));
     section(&mut entries, theme, "Written short");
     entries.extend(SHORT.iter().map(|(short, text)| {
         let label = format!("  {:<1$}", theme.text(short), MEANING - 2);
@@ -208,27 +196,9 @@ fn about(app: &App) -> Vec<HelpLine> {
     entries
 }
 
-fn keys(app: &App) -> Vec<HelpLine> {
-    let (theme, keymap) = (app.theme, &app.keymap);
-    let mut entries = Vec::new();
-    let mut current = "";
-    for row in ROWS {
-        if row.section != current {
-            current = row.section;
-            section(&mut entries, theme, current);
-        }
-        let label = format!("  {:<1$}", keymap.label(row.id), MEANING - 2);
-        entries
-            .push(HelpLine { name: row.name, ..HelpLine::new(&label, theme.text(row.help), Style::new()) });
-    }
-    let label = format!("  {:<1$}", "Ctrl-Z", MEANING - 2);
-    entries.push(HelpLine::new(&label, "back to the shell; fg returns", Style::new()));
-    entries
-}
-
 /// The lines of a page as they are searched.
 pub fn plain(app: &App, page: usize) -> Vec<String> {
-    entries(app, page).iter().map(|entry| format!("{}{} {}", entry.label, entry.text, entry.name)).collect()
+    entries(app, page).iter().map(|entry| format!("{}{}", entry.label, entry.text)).collect()
 }
 
 fn title(help: &Help) -> String {

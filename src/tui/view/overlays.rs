@@ -13,7 +13,7 @@ use ratatui::text::Line;
 use ratatui::widgets::{Clear, Paragraph, Wrap};
 
 /// The widest prompt or list.
-pub const WIDEST: u16 = 160;
+const WIDEST: u16 = 160;
 /// A list beside a picture is so wide,
 const LIST: u16 = 46;
 /// the picture at least so wide,
@@ -24,7 +24,7 @@ const PICTURE: u16 = 16;
 /// Draws what lies over the screen, except the help.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, overlay: &Overlay) {
     match overlay {
-        Overlay::Prompt(prompt) => draw_prompt(frame, area, app.theme, prompt),
+        Overlay::Prompt(prompt) => draw_prompt(frame, area, app, prompt),
         Overlay::Choose(choose) => draw_choose(frame, area, app.theme, choose),
         Overlay::Confirm(confirm) => draw_question(frame, area, app.theme, "Sure?", &confirm.question),
         Overlay::Offer(offer) => draw_question(frame, area, app.theme, "Go on?", &offer.question),
@@ -45,14 +45,68 @@ fn lower(area: Rect, width: u16, height: u16) -> Rect {
     Rect { y: area.bottom().saturating_sub(middle.height + 2).max(area.y), ..middle }
 }
 
-fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: Theme, prompt: &Prompt) {
-    let place = if matches!(prompt.purpose, Purpose::Formula(_) | Purpose::Line) { lower } else { middle };
+/// Where a prompt stands, with so many rows of its list.
+fn place_of_prompt(prompt: &Prompt, area: Rect) -> (Rect, u16) {
+    // The list is as high as it may be, whatever is typed: what it leaves in sight stays.
+    let is_line = matches!(prompt.purpose, Purpose::Line { .. });
+    let rows = if is_line { area.height * 2 / 5 } else { 0 };
+    let place = if is_line || matches!(prompt.purpose, Purpose::Formula(_)) { lower } else { middle };
     // A long reason takes as many lines as it needs at this width.
     let wide = usize::from(area.width.saturating_sub(4).clamp(1, WIDEST - 2));
-    let lines = prompt.error.as_ref().map_or(0, |error| error.chars().count().div_ceil(wide) + 1);
-    let area = place(area, WIDEST, u16::try_from(lines).unwrap_or(u16::MAX).saturating_add(5));
-    let block = panel(theme, &prompt.title, true);
+    let lines = |text: &str| textwrap::wrap(text, wide).len();
+    let error = prompt.error.as_ref().map_or(0, |error| lines(error) + 1);
+    let said = lines(prompt.said()).max(if is_line { 2 } else { 1 });
+    let more = u16::try_from(error + said).unwrap_or(u16::MAX);
+    (place(area, WIDEST, more.saturating_add(4 + rows)), rows)
+}
+
+/// The entry of a prompt at this place of the screen.
+pub fn entry_at(prompt: &Prompt, area: Rect, at: Position) -> Option<usize> {
+    let (area, rows) = place_of_prompt(prompt, area);
+    let inner = area.inner(Margin::new(1, 1));
+    let row = at.y.checked_sub(inner.y + 2).filter(|row| *row < rows && inner.contains(at))?;
+    let line = first(prompt.selected.unwrap_or(0), usize::from(rows)) + usize::from(row);
+    (line < prompt.entries.len()).then_some(line)
+}
+
+/// The entries of a line, in so many rows.
+fn entries(app: &App, prompt: &Prompt, rows: usize, width: usize) -> Vec<Line<'static>> {
+    /// Columns of the keys and of the lines.
+    const KEYS: usize = 11;
+    const LINES: usize = 28;
+    let theme = app.theme;
+    let shown = prompt.entries.iter().enumerate().skip(first(prompt.selected.unwrap_or(0), rows)).take(rows);
+    let mut lines: Vec<Line<'static>> = shown
+        .map(|(at, entry)| {
+            let keys = entry.id.map_or_else(String::new, |id| app.keymap.keys_of(id));
+            let says = theme.text(&theme.symbols(&app.keymap.spelled(&entry.says)));
+            let is_selected = prompt.selected == Some(at);
+            let mark = if is_selected { '>' } else { ' ' };
+            let text =
+                theme.whole_words(&format!("{mark} {keys:<KEYS$} {:<LINES$} {says}", entry.line), width);
+            match is_selected {
+                true => Line::styled(text, theme.selection()),
+                false if entry.says.starts_with("- ") => Line::styled(text, theme.dim()),
+                false => Line::raw(text),
+            }
+        })
+        .collect();
+    if lines.is_empty() && rows > 0 {
+        lines.push(Line::styled("  nothing has that", theme.dim()));
+    }
+    lines.resize(rows, Line::default());
+    lines
+}
+
+fn draw_prompt(frame: &mut Frame<'_>, area: Rect, app: &App, prompt: &Prompt) {
+    let theme = app.theme;
+    let (area, rows) = place_of_prompt(prompt, area);
+    let mut block = panel(theme, &prompt.title, true);
     let inner = block.inner(area);
+    if rows > 0 {
+        let at = prompt.selected.map_or_else(String::new, |at| format!("{} of ", at + 1));
+        block = block.title_bottom(Line::from(format!("{at}{}", prompt.entries.len())).right_aligned());
+    }
     frame.render_widget(Clear, area);
     frame.render_widget(block, area);
     let width = usize::from(inner.width.saturating_sub(3)).max(1);
@@ -65,14 +119,12 @@ fn draw_prompt(frame: &mut Frame<'_>, area: Rect, theme: Theme, prompt: &Prompt)
         .filter(|at| (2..=width + 2).contains(at));
     let caret = fault
         .map_or_else(Line::default, |at| Line::styled(format!("{:>w$}", "^", w = at + 1), theme.error()));
-    let mut lines = vec![
-        Line::raw(format!("> {}", theme.text(&shown))),
-        caret,
-        Line::styled(theme.text(&prompt.note), theme.dim()),
-    ];
+    let mut lines = vec![Line::raw(format!("> {}", theme.text(&shown))), caret];
+    lines.extend(entries(app, prompt, usize::from(rows), usize::from(inner.width)));
     if let Some(error) = &prompt.error {
         lines.push(Line::styled(theme.text(error), theme.error()));
     }
+    lines.push(Line::styled(theme.text(&theme.symbols(&app.keymap.spelled(prompt.said()))), theme.dim()));
     frame.render_widget(Paragraph::new(lines).wrap(Wrap { trim: false }), inner);
     let column = prompt.input.visual_cursor().saturating_sub(scroll).min(width);
     let column = u16::try_from(column).unwrap_or(0);
@@ -91,16 +143,16 @@ fn place_of(choose: &Choose, area: Rect) -> Rect {
     middle(area, width, height)
 }
 
-/// The first line of it shown in so many rows.
-fn first(choose: &Choose, rows: usize) -> usize {
-    (choose.selected + 1).saturating_sub(rows)
+/// The first line of a list shown in so many rows.
+fn first(selected: usize, rows: usize) -> usize {
+    (selected + 1).saturating_sub(rows)
 }
 
 /// The line of a list at this place of the screen.
 pub fn line_at(choose: &Choose, area: Rect, at: Position) -> Option<usize> {
     let mut inner = place_of(choose, area).inner(Margin::new(1, 1));
     inner.height = inner.height.saturating_sub(u16::from(choose.has_notes()));
-    let line = first(choose, usize::from(inner.height)) + usize::from(at.y.checked_sub(inner.y)?);
+    let line = first(choose.selected, usize::from(inner.height)) + usize::from(at.y.checked_sub(inner.y)?);
     (inner.contains(at) && line < choose.shown().len()).then_some(line)
 }
 
@@ -132,7 +184,7 @@ fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose)
         inner.height -= 1;
     }
     let rows = usize::from(inner.height);
-    let first = first(choose, rows);
+    let first = first(choose.selected, rows);
     let shown = choose.shown();
     let mut lines: Vec<Line> = shown
         .iter()

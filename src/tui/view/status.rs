@@ -6,14 +6,14 @@ use crate::explorer::model::Level;
 use crate::explorer::table::{is_available, row_of};
 use crate::explorer::{Home, Id, Panel, View};
 use crate::tui::app::App;
-use crate::tui::overlay::Overlay;
+use crate::tui::overlay::{Overlay, Prompt, Purpose};
 use crossterm::event::KeyCode;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
 /// What the footer offers, the most wanted first, as many as fit: what goes on everywhere, what the selected panel has, the rest.
-fn offered(app: &App) -> Vec<(Id, &'static str)> {
+pub fn offered(app: &App) -> Vec<(Id, &'static str)> {
     let word = |id: Id| (id, row_of(id).short);
     let walk = [Id::Step, Id::NextEvent, Id::Jump, Id::Reverse, Id::Undo].map(word);
     let model = &app.model;
@@ -128,6 +128,14 @@ fn words(app: &App, width: u16) -> Vec<Word> {
         }
         None => {
             offered(app).into_iter().filter(|(id, _)| is_available(&app.model, *id)).map(command).collect()
+        }
+        Some(Overlay::Prompt(Prompt { purpose: Purpose::Line { .. }, .. })) => {
+            let take = Word { key: "Tab".to_owned(), text: "take", does: Does::Key(KeyCode::Tab) };
+            [(Id::Edit, "run", KeyCode::Enter), (Id::Down, "down", KeyCode::Down), back]
+                .map(in_list)
+                .into_iter()
+                .chain([take])
+                .collect()
         }
         Some(Overlay::Prompt(_) | Overlay::Offer(_)) => [accept, back].map(in_list).to_vec(),
         Some(Overlay::Choose(_) | Overlay::Help(_)) => {

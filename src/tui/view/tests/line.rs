@@ -30,7 +30,7 @@ fn a_typed_command_does_what_its_key_does() {
     assert_eq!(model.preset.title, "two  words");
     assert!(model.history.current().unwrap().is_limit(Control::Force));
     // What a screen only shows is a command here too; what it asks for, it asks for.
-    screen.keys(":help\r");
+    screen.keys(":help\r\t");
     assert!(matches!(screen.app.overlay, Some(Overlay::Help(_))));
     screen.keys("\x1b:export\r");
     assert!(matches!(screen.app.overlay, Some(Overlay::Choose(_))));
@@ -61,7 +61,7 @@ fn what_is_wrong_is_said_with_its_column_and_stays_to_be_mended() {
 }
 
 #[test]
-fn tab_completes_and_up_and_down_bring_lines_back() {
+fn tab_takes_an_entry_and_up_brings_lines_back() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys(":ha\t\r:set gap.am\t0.003\r:set gap.shape=exp");
     assert_eq!(screen.app.model.preset.gap.wave(), Some((0.003, 0.05)));
@@ -71,46 +71,52 @@ fn tab_completes_and_up_and_down_bring_lines_back() {
     screen.press(KeyCode::Up);
     screen.press(KeyCode::Up);
     assert_eq!(line(&screen), "halve-step");
-    for _ in 0..5 {
-        screen.press(KeyCode::Down);
-    }
+    screen.press(KeyCode::Down);
+    screen.press(KeyCode::Down);
     assert_eq!(line(&screen), "set gap.shape=exp");
-    // Offers are listed; before the cursor is completed, behind it nothing is lost.
-    screen.keys("\x1b:open fig-\t");
-    assert!(screen.text(80, 24).contains("fig-3-jkr"), "{}", screen.text(80, 24));
+    // Before the cursor is taken, behind it nothing is lost.
     screen.keys("\x1b: 5");
     screen.press(KeyCode::Home);
     screen.keys("step\t");
     assert_eq!(line(&screen), "step 5");
-    let shown = screen.text(80, 24);
-    assert!(shown.contains("step  step-length"), "{shown}");
 }
 
 #[test]
-fn tab_pages_through_all_names_and_begins_again() {
+fn what_is_typed_keeps_what_has_it_and_enter_runs_what_is_selected() {
     let mut screen = Screen::new("wavy-sphere");
-    screen.keys(":\t");
-    let mut names = String::new();
-    let note = |screen: &Screen| match &screen.app.overlay {
-        Some(Overlay::Prompt(prompt)) => prompt.note.clone(),
-        other => unreachable!("no line to type: {other:?}"),
-    };
-    let first = note(&screen);
-    let pages = 1 + first.rsplit_once(" of ").unwrap().1.split_once(',').unwrap().0.parse::<usize>().unwrap();
-    for _ in 1..pages {
-        let shown = note(&screen);
-        assert!(shown.chars().count() <= 76 && screen.text(80, 24).contains(&shown), "{shown}");
-        names.push_str(&shown);
-        names.push(' ');
-        screen.keys("\t");
+    screen.keys(":");
+    let shown = screen.text(80, 24);
+    assert!(shown.contains("Space") && shown.contains("one step along"), "{shown}");
+    // What cannot be done now says why.
+    screen.keys("jump");
+    assert!(screen.text(120, 40).contains("- the state is stable"), "{}", screen.text(120, 40));
+    screen.keys("\x1b:A 0.003\r");
+    assert_eq!(screen.app.model.preset.gap.wave(), Some((0.003, 0.05)));
+    screen.keys(":amplitude\r");
+    assert_eq!(prompt(&screen).0, "set gap.amplitude=");
+    screen.keys("0.002\r");
+    assert_eq!(screen.app.model.preset.gap.wave(), Some((0.002, 0.05)));
+    // The arrows go through the list; more names stand below.
+    screen.keys(":fig-");
+    screen.press(KeyCode::Down);
+    let shown = screen.text(80, 24);
+    let chosen = shown.lines().find(|line| line.contains("> ") && line.contains("open fig-")).unwrap();
+    assert!(shown.contains("2 of ") && !chosen.contains("fig-1-hertz"), "{shown}");
+    for _ in 0..50 {
+        screen.press(KeyCode::Down);
     }
-    assert_eq!(note(&screen), first);
-    for row in crate::explorer::table::ROWS {
-        assert!(names.split_whitespace().any(|name| name == row.name), "{}: {names}", row.name);
+    let Some(Overlay::Prompt(prompt)) = &screen.app.overlay else { unreachable!() };
+    assert_eq!(prompt.selected, Some(prompt.entries.len() - 1));
+    let states = screen.app.model.history.nodes().len();
+    screen.keys("\x1b?");
+    screen.press(KeyCode::Down);
+    screen.keys("\r");
+    assert_eq!(screen.app.model.history.nodes().len(), states + 1, "the first is a step");
+    screen.keys("?");
+    for _ in 0..2 {
+        screen.press(KeyCode::Up);
     }
-    // Whatever is typed begins anew.
-    screen.keys("s\t");
-    assert!(note(&screen).starts_with("step") && prompt(&screen).0 == "s");
+    assert!(matches!(&screen.app.overlay, Some(Overlay::Prompt(_))));
 }
 
 #[test]
@@ -156,10 +162,10 @@ fn the_help_is_searched() {
         Some(Overlay::Help(help)) => help.found,
         other => unreachable!("no help: {other:?}"),
     };
-    screen.keys("?/PRESET\r");
+    screen.keys("?\t/PRESET\r");
     let first = found(&screen).unwrap();
     let of = first.of;
-    assert!(first.number == 1 && of > 2, "{first:?}");
+    assert!(first.number == 1 && of > 1, "{first:?}");
     assert!(screen.text(80, 24).contains(&format!("/PRESET: 1 of {of}")));
     screen.keys("n");
     let second = found(&screen).unwrap();
@@ -187,9 +193,9 @@ fn a_persons_keys_work_and_are_shown_in_footer_and_help() {
     screen.keys("wu ");
     assert_eq!(screen.app.model.history.cursor(), Some(0));
     assert!(screen.text(80, 24).contains("F4 step"));
-    screen.keys("?\t\t");
-    let help = screen.text(100, 60);
-    assert!(help.contains("F4 ") && help.contains("w Ctrl-U") && help.contains(":jump"), "{help}");
+    screen.keys("?");
+    let help = screen.text(100, 150);
+    assert!(help.contains("F4 ") && help.contains("w Ctrl-U") && help.contains("jump"), "{help}");
     // A list is chosen from with Enter all the same.
     screen.keys("\x1be\r");
     assert!(matches!(screen.app.overlay, Some(Overlay::Prompt(_))));
@@ -243,14 +249,14 @@ fn text_typed_in_a_list_keeps_the_lines_that_have_it() {
 #[test]
 fn the_help_names_commands_and_undo_takes_a_count() {
     let mut screen = Screen::new("wavy-sphere");
-    screen.keys("?");
+    screen.keys("?\t");
     let shown = screen.text(100, 30);
-    assert!(shown.lines().next().unwrap().contains("Help 1 of 4: how to read it"), "{shown}");
+    assert!(shown.lines().next().unwrap().contains("Help 1 of 3: how to read it"), "{shown}");
     screen.keys("\t");
     assert!(screen.text(100, 30).lines().nth(1).unwrap().contains("First steps"));
     screen.press(KeyCode::BackTab);
     assert_eq!(screen.text(100, 30), shown);
-    for (keys, found) in [("/next-event\r", "next-event"), ("/double-step\r", "double-step")] {
+    for (keys, found) in [("/Ctrl-Z\r", "back to the shell"), ("/crest\r", "crest")] {
         screen.keys(keys);
         let shown = screen.text(100, 30);
         assert!(!shown.contains("not found") && shown.contains(found), "{shown}");

@@ -1,0 +1,205 @@
+//! The one list behind a typed line: commands, charts, quantities, presets, files and keys, of which the text keeps those that have it.
+
+use super::offers::{Files, Offer, Typing};
+use super::parse::parse;
+use crate::explorer::command::Id;
+use crate::explorer::model::Model;
+use crate::explorer::table::{ROWS, Row, called};
+use pulloff_engine::preset::groups::GROUPS;
+
+/// One line of the list.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Entry {
+    /// What would be typed for it.
+    pub line: String,
+    /// What it does, or why it cannot be done now.
+    pub says: String,
+    /// The command, where it is one alone.
+    pub id: Option<Id>,
+    /// Whether nothing more need be typed.
+    pub is_whole: bool,
+}
+
+impl Entry {
+    fn new(line: String, says: impl Into<String>) -> Self {
+        let is_whole = !line.ends_with(['=', '/']) && parse(&line).is_ok();
+        Self { line, says: says.into(), id: None, is_whole }
+    }
+
+    fn command(row: &Row, model: &Model) -> Self {
+        let says = (row.needs)(model).map_or_else(|why| format!("- {why}"), |()| row.help.to_owned());
+        Self { id: Some(row.id), ..Self::new(row.name.to_owned(), says) }
+    }
+
+    fn offer(before: &str, offer: &Offer) -> Self {
+        Self::new(format!("{before}{}", offer.word), offer.says.trim())
+    }
+}
+
+/// What `line` could become: below no text all commands, those of `first` before the others; behind the name of a command what it takes;
+/// else whatever has all words of the text, the best match first.
+pub fn palette(line: &str, first: &[Id], model: &Model, files: Files<'_>) -> Vec<Entry> {
+    let start = line.rfind([' ', '\t']).map_or(0, |at| at + 1);
+    let (before, word) = line.split_at(start);
+    let words: Vec<&str> = before.split_whitespace().collect();
+    // Inside quotes anything may be meant.
+    if line.matches('"').count() % 2 == 1 {
+        return Vec::new();
+    }
+    match words.split_first() {
+        None if word.is_empty() => commands(first, model),
+        Some((name, words)) if called(name).is_some() => {
+            let Some(row) = called(name) else { return Vec::new() };
+            // Behind a word that is all there is nothing more.
+            if !words.is_empty() && !row.takes.goes_on {
+                return Vec::new();
+            }
+            let offers = (row.takes.offers)(&Typing { model, words, word, files });
+            let entries = offers.iter().map(|offer| Entry::offer(before, offer));
+            ranked(entries.collect(), |entry| rank(&entry.line[start..], &entry.says, "", word))
+        }
+        _ => anything(line.trim(), model, files),
+    }
+}
+
+/// All commands, those of `first` before the others.
+fn commands(first: &[Id], model: &Model) -> Vec<Entry> {
+    let of_pane = first.iter().filter_map(|id| ROWS.iter().find(|row| row.id == *id));
+    let others = ROWS.iter().filter(|row| !first.contains(&row.id));
+    of_pane.chain(others).map(|row| Entry::command(row, model)).collect()
+}
+
+/// Whatever has all words of `text`.
+fn anything(text: &str, model: &Model, files: Files<'_>) -> Vec<Entry> {
+    let wanted: Vec<&str> = text.split_whitespace().collect();
+    let known =
+        |line: &str| called(line).map_or_else(String::new, |row| format!("{} {}", row.short, row.words));
+    let last = wanted.last().copied().unwrap_or_default();
+    let offered = ROWS.iter().flat_map(|row| {
+        let before = format!("{} ", row.name);
+        let offers = (row.takes.offers)(&Typing { model, words: &[], word: last, files });
+        offers.into_iter().map(move |offer| Entry::offer(&before, &offer))
+    });
+    let all = ROWS.iter().map(|row| Entry::command(row, model)).chain(offered).collect();
+    let mut found = of_key(&wanted, model);
+    found.extend(ranked(all, |entry| {
+        let ranks = wanted.iter().map(|word| rank(&entry.line, &entry.says, &known(&entry.line), word));
+        ranks.collect::<Option<Vec<u8>>>()?.into_iter().max()
+    }));
+    found
+}
+
+/// A value for a key that is called by its symbol or the end of its name: `A 0.003`, `amplitude=0.003`.
+fn of_key(wanted: &[&str], model: &Model) -> Vec<Entry> {
+    let (symbol, value) = match wanted {
+        [symbol, value] => (*symbol, *value),
+        [one] => one.split_once('=').unwrap_or((one, "")),
+        _ => return Vec::new(),
+    };
+    let is_called = |key: &str, label: &str| {
+        label == symbol || key == symbol || key.rsplit('.').next().is_some_and(|name| name == symbol)
+    };
+    let keys = model.preset.rows().map(|row| (row.key.clone(), row.label.clone(), row.meaning.clone()));
+    let groups = GROUPS.iter().map(|row| (row.key.clone(), row.label.clone(), row.meaning.clone()));
+    let called = keys.chain(groups).filter(|(key, label, _)| is_called(key, label));
+    called.map(|(key, _, meaning)| Entry::new(format!("set {key}={value}"), &*meaning)).collect()
+}
+
+/// Those that have a rank, the best first, equals in their order.
+fn ranked(entries: Vec<Entry>, rank: impl Fn(&Entry) -> Option<u8>) -> Vec<Entry> {
+    let mut found: Vec<_> =
+        entries.into_iter().filter_map(|entry| rank(&entry).map(|rank| (rank, entry))).collect();
+    found.sort_by_key(|(rank, _)| *rank);
+    found.into_iter().map(|(_, entry)| entry).collect()
+}
+
+/// How well a line and what it says match a word: 0 is best; `None` where they do not have it. `words` are others for the same.
+fn rank(line: &str, says: &str, words: &str, word: &str) -> Option<u8> {
+    let [line, says, words, word] = [line, says, words, word].map(str::to_lowercase);
+    let has =
+        |text: &str, is_it: &dyn Fn(&str) -> bool| text.split(|c: char| !c.is_alphanumeric()).any(is_it);
+    let begins = |text: &str| has(text, &|part| part.starts_with(&word));
+    let is_in = |text: &str| has(text, &|part| part == word);
+    if line == word {
+        Some(0)
+    } else if line.starts_with(&word) || is_in(&line) || is_in(&words) {
+        Some(1)
+    } else if begins(&line) || begins(&words) {
+        Some(2)
+    } else if line.contains(&word) {
+        Some(3)
+    } else if begins(&says) {
+        Some(4)
+    } else {
+        says.contains(&word).then_some(5)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::{Loaded, Source, read, shipped};
+
+    fn found(line: &str) -> Vec<Entry> {
+        let text = shipped::find("wavy-sphere").unwrap();
+        let preset = read("t", text.text).unwrap();
+        let loaded = Loaded { source: Source::Shipped(text), preset, text: String::new(), fingerprint: None };
+        let mut model = Model::new(loaded);
+        model.preset_names =
+            ["lab-3", "lab-4"].map(|name| [name.to_owned(), "rubber on glass".to_owned()]).to_vec();
+        let files = |folder: &str| match folder {
+            "" => ["mine.csv", "more.txt", "curves/", "a b.csv"].map(str::to_owned).to_vec(),
+            "curves/" => vec!["curves/first.csv".to_owned()],
+            _ => Vec::new(),
+        };
+        palette(line, &[Id::Pin], &model, &files)
+    }
+
+    #[test]
+    fn what_is_typed_finds_commands_keys_values_presets_and_documents() {
+        for (line, first, is_whole) in [
+            ("ste", "step", true),
+            ("step-", "step-length", false),
+            ("wq", "quit", true),
+            ("compare", "pin", true),
+            ("figure", "export", true),
+            ("export fig", "export figure", false),
+            ("potential", "view energy", true),
+            ("largest", "study largest_pull", true),
+            ("smooth", "overlays smooth", true),
+            ("lab-4", "open lab-4", true),
+            ("glass", "open lab-3", true),
+            ("mine", "data mine.csv", true),
+            ("curves/fi", "data curves/first.csv", true),
+            ("A 0.003", "set gap.amplitude=0.003", true),
+            ("A=0.003", "set gap.amplitude=0.003", true),
+            ("wavelength", "set gap.wavelength=", false),
+            ("half step", "halve-step", true),
+            ("set gap.am", "set gap.amplitude=", false),
+            ("set gap.amplitude=1 path.contr", "set gap.amplitude=1 path.control=", false),
+            ("set gap.shape=po", "set gap.shape=power-law", true),
+            ("set amplitude", "set gap.amplitude=", false),
+            ("open lab-3 basis.k", "open lab-3 basis.kind=", false),
+            ("map gap.amplitude fo", "map gap.amplitude force", true),
+            ("export figure x.svg con", "export figure x.svg contact", true),
+            ("control f", "control force", true),
+            ("data mi", "data mine.csv", true),
+            ("data cu", "data curves/", false),
+        ] {
+            let found = found(line);
+            let entry = found.first().map(|entry| (&*entry.line, entry.is_whole));
+            assert_eq!(entry, Some((first, is_whole)), "{line}: {found:?}");
+        }
+        for line in ["zzz", "set title=\"a ", "quit 3"] {
+            assert_eq!(found(line), [], "{line}");
+        }
+    }
+
+    #[test]
+    fn without_text_all_commands_are_listed_once_and_say_why_not_now() {
+        let all = found("");
+        assert_eq!((all.len(), &*all[0].line), (ROWS.len(), "pin"));
+        let jump = all.iter().find(|entry| entry.id == Some(Id::Jump)).unwrap();
+        assert!(jump.says.starts_with("- "), "{}", jump.says);
+    }
+}
