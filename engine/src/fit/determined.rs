@@ -108,7 +108,7 @@ pub fn determined(problem: &Problem, solved: &Solved, scatter: &Scatter, robust:
     let of_points = (&bread * &points * &bread).diagonal();
     let mut whole = &bread * (points + &known) * &bread;
     // The level of a force in steps is not known better than they are, however many rows stand at it.
-    let level = &inner * at.jacobian.tr_mul(&rounding(problem, at.residuals.len()));
+    let level = &inner * at.jacobian.tr_mul(&rounding(problem, scatter, at.residuals.len()));
     whole += &level * level.transpose();
     let share = |prior: &Prior, j: usize| {
         let along = bread.column(prior.parameter)[j] / prior.sigma;
@@ -137,16 +137,24 @@ pub fn determined(problem: &Problem, solved: &Solved, scatter: &Scatter, robust:
     }
 }
 
-/// The standard deviation in σ by which all rows apart are off together, where the force is in steps: q/√12 without noise, and less by
-/// exp(−2π²σ²/q²) where noise carries it over many steps. B. Widrow and I. Kollár, *Quantization Noise* (2008), chapter 4.
-fn rounding(problem: &Problem, rows: usize) -> DVector<f64> {
+/// The standard deviation in σ by which all rows apart are off together, where the force is in steps:
+///
+/// ```text
+/// q²/(2π²) Σ_k exp(−4π²k²σ²/q²)/k²         q²/12 without noise, and nothing where noise carries the force over many steps
+/// ```
+///
+/// B. Widrow and I. Kollár, *Quantization Noise* (2008), chapter 4. Rows apart that stand on both sides of an edge between two steps scatter by
+/// up to q/2 without any noise, so those in contact tell it, whose force goes over many steps.
+fn rounding(problem: &Problem, scatter: &Scatter, rows: usize) -> DVector<f64> {
+    const TERMS: u32 = 20;
     let (per, step, sigma) = (problem.per_point(), problem.step, problem.sigma[1]);
-    let noise = (sigma * sigma - step * step / 12.0).max(0.0);
-    let off = if step > 0.0 {
-        step / 12.0_f64.sqrt() * exp(-2.0 * PI * PI * noise / (step * step)) / sigma
-    } else {
-        0.0
+    let found = scatter.contact.map_or(1.0, |s| s.min(1.0)) * sigma;
+    let noise = (found * found / (step * step) - 1.0 / 12.0).max(0.0);
+    let term = |k: u32| {
+        let square = f64::from(k * k);
+        exp(-4.0 * PI * PI * square * noise) / (2.0 * PI * PI * square)
     };
+    let off = if step > 0.0 { step * (1..=TERMS).map(term).sum::<f64>().sqrt() / sigma } else { 0.0 };
     DVector::from_fn(rows, |i, _| if problem.data[i / per].free && i.is_multiple_of(per) { off } else { 0.0 })
 }
 
