@@ -14,9 +14,9 @@
 use super::problem::{Datum, Problem};
 use super::solve::Solved;
 use crate::elementary::{exp, ln};
-use crate::measured::Abscissa;
 use crate::measured::branches::median;
 pub(super) use crate::measured::noise::{CLIPPED, LEFT, variance};
+use crate::measured::{Abscissa, Segment};
 use nalgebra::{DMatrix, DVector};
 
 /// Rows farther off than so many times the scale of all are outliers, and left out.
@@ -25,6 +25,8 @@ const OUTLIER: f64 = 4.0;
 const FEWEST: usize = 5;
 /// Rows apart by which a correlation is looked for, at least.
 const FEWEST_APART: usize = 20;
+/// Of so many rows apart one belongs to the farthest, in which a correlation must be seen too.
+const OUTER: usize = 2;
 /// Rows apart that scatter by less than this share of σ are rounding, in which there is always some order.
 const ROUNDING: f64 = 0.1;
 /// The correlation of neighbours in white noise is beyond so many times 1/√n once in a thousand times.
@@ -132,6 +134,14 @@ impl Problem {
         rows
     }
 
+    /// The residuals of the rows apart of one branch, the farthest from the contact first.
+    fn apart(&self, solved: &Solved, branch: usize) -> Vec<f64> {
+        let rows = self.rows(solved, branch, true, 0);
+        let leaves = rows.first().is_some_and(|row| self.data[row.index].segment == Segment::Retraction);
+        let residuals = rows.iter().map(|row| row.residual);
+        if leaves { residuals.rev().collect() } else { residuals.collect() }
+    }
+
     /// How many branches there are.
     pub(super) fn branches(&self) -> usize {
         self.data.iter().map(|datum| datum.branch + 1).max().unwrap_or(0)
@@ -139,15 +149,16 @@ impl Problem {
 
     /// The noise of the rows, by the residuals of `solved`.
     pub(super) fn scatter(&self, solved: &Solved) -> Scatter {
-        let apart: Vec<Vec<f64>> = (0..self.branches())
-            .map(|branch| {
-                detrended(
-                    &self.rows(solved, branch, true, 0).iter().map(|row| row.residual).collect::<Vec<_>>(),
-                )
-            })
-            .filter(|rows| rows.len() >= FEWEST)
-            .collect();
-        let correlation = correlation(&apart);
+        let apart: Vec<Vec<f64>> = (0..self.branches()).map(|branch| self.apart(solved, branch)).collect();
+        let of = |parts: usize| {
+            let outer = |rows: &Vec<f64>| detrended(&rows[..rows.len().div_ceil(parts)]);
+            apart.iter().map(outer).filter(|rows| rows.len() >= FEWEST).collect::<Vec<_>>()
+        };
+        let (apart, outer) = (of(1), of(OUTER));
+        // Noise hangs together everywhere; what only the rows near the contact have in common is the contact, which begins before it is seen.
+        let is_told = outer.iter().map(Vec::len).sum::<usize>() >= FEWEST_APART;
+        let is_noise = !is_told || correlation(&outer).share > 0.0;
+        let correlation = if is_noise { correlation(&apart) } else { Correlation::default() };
         let (mut differences, mut residuals, mut degrees) = (Vec::new(), Vec::new(), 0.0);
         for branch in 0..self.branches() {
             for part in 0..self.per_point() {
