@@ -36,7 +36,7 @@ use std::f64::consts::TAU;
 const REFERENCE: f64 = 3.0;
 /// A law that is off by no more than so many standard errors is as good; by as many more as those by which the points lean to one, up to three.
 const AS_GOOD: f64 = 1.5;
-const LEANING: f64 = 3.0;
+const MOST_LEANING: f64 = 3.0;
 /// A value that such a law moves by no more than so many of its errors is told all the same.
 const MOVED: f64 = 3.0;
 /// Rows of the fits; where there are more, a part stands for all.
@@ -65,7 +65,7 @@ pub(super) fn untold(
     let law = Law::of(problem, edge, (REFERENCE * usual, &slopes, s));
     let (moved, worse) = law.against_none(problem, u, s)?;
     let errors = |j: usize| moved[j].abs() / (s * inner[(j, j)].max(0.0).sqrt());
-    let enough = AS_GOOD + lean.clamp(0.0, LEANING);
+    let enough = AS_GOOD + lean.clamp(0.0, MOST_LEANING);
     if worse > enough * enough || (0..moved.len()).all(|j| errors(j) < MOVED) {
         return None;
     }
