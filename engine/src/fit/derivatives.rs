@@ -153,6 +153,14 @@ impl Problem {
         }
         column.iter().all(|x| x.is_finite()).then_some(column)
     }
+
+    /// How the residuals at `u` change with a slope of the force over x.
+    pub(super) fn tilted(&self, u: &[f64]) -> Option<DVector<f64>> {
+        let (_, Look { feet, .. }) = self.look(u)?;
+        let mut column = DVector::zeros(self.per_point() * self.data.len());
+        self.of_shift(&feet, (shift(&Target::Tilt)?, 1.0), |row, derivative| column[row] = derivative);
+        column.iter().all(|x| x.is_finite()).then_some(column)
+    }
 }
 
 impl LeastSquares for Problem {

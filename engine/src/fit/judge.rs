@@ -83,7 +83,7 @@ pub(super) fn reasons(
 ) -> Vec<Reason> {
     let mut reasons: Vec<Reason> = clipped.map(|clipped| of_clipped(preset, clipped)).into_iter().collect();
     reasons.extend(contact::of_contact(problem, solved, scatter, inner));
-    reasons.extend(apart::of_apart(problem, solved, scatter));
+    reasons.extend(apart::of_apart(problem, solved, scatter, inner));
     reasons.extend(scores::of_shape(problem, solved, scatter, inner));
     if preset.cohesion().is_some() {
         reasons.extend(range::of_zone(problem, solved));

@@ -1,6 +1,6 @@
 //! Whether the force is a constant where the bodies are apart, but for its noise.
 //!
-//! The noise there may be correlated from row to row: n rows count as n/τ. False alarms: slope 1 in 1000, levels 1 in 1000.
+//! The noise there may be correlated from row to row: n rows count as n/τ. False alarms: slope 3 in 1000, levels 1 in 1000.
 
 use super::super::chance::beyond_t;
 use super::super::problem::{Problem, Target};
@@ -8,18 +8,27 @@ use super::super::scatter::Scatter;
 use super::super::solve::Solved;
 use super::super::verdict::Reason;
 use super::ROUNDING;
+use super::scores::score;
 use crate::measured::Abscissa;
 use crate::units::number::short;
+use nalgebra::DMatrix;
 
-/// The share of right fits that each test flags.
+/// The share of right fits that the test of levels flags.
 const FALSE_ALARM: f64 = 1e-3;
+/// And that of slopes, which move the work of adhesion by more of its errors than they have themselves.
+const OF_SLOPES: f64 = 3e-3;
 /// Rows apart of a branch, at least.
 const FEWEST: usize = 8;
 /// Rows apart that count as fewer are a drift, not noise: it is the same in contact, and nothing says how large.
-const COUNTED: f64 = 5.0;
+const COUNTED: f64 = 4.0;
 
 /// What the rows apart say against the fit.
-pub(super) fn of_apart(problem: &Problem, solved: &Solved, scatter: &Scatter) -> Vec<Reason> {
+pub(super) fn of_apart(
+    problem: &Problem,
+    solved: &Solved,
+    scatter: &Scatter,
+    inner: Option<&DMatrix<f64>>,
+) -> Vec<Reason> {
     let mut reasons = Vec::new();
     let tau = scatter.correlation.rows();
     let counted = scatter.apart as f64 / tau;
@@ -34,41 +43,27 @@ pub(super) fn of_apart(problem: &Problem, solved: &Solved, scatter: &Scatter) ->
             ),
         ));
     }
-    reasons.extend(slope(problem, solved, tau));
+    reasons.extend(slope(problem, solved, scatter, inner));
     reasons.extend(levels(problem, solved, tau));
     reasons
 }
 
-/// A slope over x.
-fn slope(problem: &Problem, solved: &Solved, tau: f64) -> Option<Reason> {
-    if problem.abscissa == Abscissa::Radius || problem.parameters.iter().any(|p| p.target == Target::Tilt) {
+/// A slope over x: in all rows, since those apart alone tell it by a short lever.
+fn slope(
+    problem: &Problem,
+    solved: &Solved,
+    scatter: &Scatter,
+    inner: Option<&DMatrix<f64>>,
+) -> Option<Reason> {
+    let is_free = problem.parameters.iter().any(|p| p.target == Target::Tilt);
+    if problem.abscissa == Abscissa::Radius || is_free || !problem.data.iter().any(|datum| datum.free) {
         return None;
     }
-    let [mut xx, mut xr, mut rr, mut count] = [0.0; 4];
-    for branch in 0..problem.branches() {
-        let rows = problem.rows(solved, branch, true, 0);
-        let n = rows.len() as f64;
-        if rows.len() < FEWEST {
-            continue;
-        }
-        let x = |at: usize| problem.data[rows[at].index].point.x;
-        let mean_x = (0..rows.len()).map(x).sum::<f64>() / n;
-        let mean_r = rows.iter().map(|row| row.residual).sum::<f64>() / n;
-        for (at, row) in rows.iter().enumerate() {
-            let (x, r) = (x(at) - mean_x, row.residual - mean_r);
-            (xx, xr, rr) = (xx + x * x, xr + x * r, rr + r * r);
-        }
-        count += n - 1.0;
-    }
-    let degrees = count / tau - 1.0;
-    if !(xx > 0.0 && rr > ROUNDING * ROUNDING * count && degrees >= 1.0) {
-        return None;
-    }
-    let r = xr / (xx * rr).sqrt();
-    let t = r * (degrees / (1.0 - r * r).max(f64::EPSILON)).sqrt();
-    (beyond_t(t, degrees) < FALSE_ALARM).then(|| {
+    let z = problem.tilted(&solved.minimum.parameters)?;
+    let [_, t] = score(problem, solved, scatter, inner?, &z, None)?;
+    (beyond_t(t, scatter.degrees) < OF_SLOPES).then(|| {
         let sentence = format!(
-            "the force has a slope over x where the bodies are apart ({} standard errors): free data.tilt",
+            "a force with a slope over x, in contact and apart, describes the points better ({} standard errors): free data.tilt",
             short(t.abs(), 2)
         );
         Reason::new("tilt", t, sentence)
