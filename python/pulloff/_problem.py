@@ -433,7 +433,7 @@ class Problem:
         x_range: Optional[Range] = None,
         force_range: Optional[Range] = None,
         separate: bool = False,
-        model: Optional[str] = None,
+        model: Union[str, Sequence[str], None] = None,
         robust: bool = True,
         sigma_x: Optional[float] = None,
         sigma_force: Optional[float] = None,
@@ -475,9 +475,10 @@ class Problem:
             Rows in this range alone are used, as they are in the data; None leaves an end open.
         separate : bool
             Whether approach and retraction have a work of adhesion each.
-        model : {"short-range", "dugdale"}, optional
+        model : {"short-range", "dugdale"} or a sequence of them, optional
             How the adhesion acts: at the edge of contact alone, or within a range, whose ``material.cohesive_strength`` is then free
-            too; ``material.adhesion`` of the problem when left out.
+            too; ``material.adhesion`` of the problem when left out. Of several models the best fit is returned, and
+            :attr:`Fit.models` says how the others compare.
         robust : bool
             Whether points far away count linearly, not squared.
         sigma_x, sigma_force : float, optional
@@ -515,7 +516,7 @@ class Problem:
             "free": [free] if isinstance(free, str) else None if free is None else list(free),
             "uncertain": None if uncertain is None else ",".join(f"{key}={error}" for key, error in uncertain.items()),
             "separate": separate,
-            "model": model,
+            "models": [model] if isinstance(model, str) else list(model or ()),
             "robust": robust,
             "sigma": (sigma_x, sigma_force),
             "x_range": range_of("x_range", x_range),
@@ -527,8 +528,8 @@ class Problem:
         }
         points = None if data is None else points_of(data, self._native.values().get("units") == "SI")
         with told(progress, "fit") as tell:
-            document, problem, ended, direction, residuals = _engine.fitted(self._native, points, wanted, tell)
-        result = Fit(document, self._of(problem, self._source, self._base), residuals)
+            document, problem, ended, direction, residuals, models = _engine.fitted(self._native, points, wanted, tell)
+        result = Fit(document, self._of(problem, self._source, self._base), residuals, models)
         if ended != "converged":
             raise NotConverged("the fit did not converge; result has the best values so far", result=result)
         if direction is not None:

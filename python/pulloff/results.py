@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Tuple
 
 from . import _engine
@@ -381,10 +382,14 @@ class Fit(Result):
 
     problem: Any
     """The :class:`pulloff.Problem` with the fitted values."""
+    models: Optional[Dict[str, Any]]
+    """Where several models were fitted: ``best``, the ``fits`` of all, ``pairs`` of the best and each other with what tells them apart,
+    and ``refused``, those that could not be fitted. None where one was."""
 
-    def __init__(self, document: _engine.Document, problem: Any, points: str) -> None:
+    def __init__(self, document: _engine.Document, problem: Any, points: str, models: Optional[str] = None) -> None:
         super().__init__(document)
         self.problem = problem
+        self.models = None if models is None else json.loads(models)
         self._points = points
 
     def __getattr__(self, name: str) -> Any:

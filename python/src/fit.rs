@@ -8,7 +8,7 @@ use pulloff_engine::fit::{FitError, Model, Options, fit_models};
 use pulloff_engine::measured::{Asked, Source, Span};
 use pulloff_engine::preset::{Invalid, Preset, Value as PresetValue, data as data_keys};
 use pulloff_engine::report;
-use pulloff_engine::report::fit::FitReport;
+use pulloff_engine::report::fit::{FitReport, ModelsReport};
 use pulloff_engine::report::residuals;
 use pulloff_engine::report::rows::{RowsError, Table};
 use pulloff_engine::report::speeds::{Pair, SpeedsError, SpeedsReport};
@@ -16,6 +16,9 @@ use pulloff_engine::text::quote;
 use pyo3::prelude::*;
 use serde_json::Value;
 use std::sync::Arc;
+
+/// What a fit comes to, in the order of [`fitted`].
+type Fitted = (Document, Problem, &'static str, Option<String>, String, Option<String>);
 
 /// The columns of a fit: a row for each value.
 const COLUMNS: [&str; 5] = ["key", "value", "standard_error", "start", "unit"];
@@ -58,7 +61,7 @@ pub struct Wanted {
     free: Option<Vec<String>>,
     uncertain: Option<String>,
     separate: bool,
-    model: Option<String>,
+    models: Vec<String>,
     robust: bool,
     sigma: [Option<f64>; 2],
     x_range: Option<[f64; 2]>,
@@ -153,7 +156,8 @@ pub fn speeds(
 }
 
 /// The fit of `problem` to `data`, the name and the text of a table, or to its own measured curve: the document, the fitted
-/// problem, how it ended, what is not determined, and the points beside it as CSV.
+/// problem, how it ended, what is not determined, the points beside it as CSV, and where several models were fitted the document that compares
+/// them.
 #[pyfunction]
 pub fn fitted(
     py: Python<'_>,
@@ -161,20 +165,23 @@ pub fn fitted(
     data: Option<(String, Vec<u8>)>,
     wanted: Wanted,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(Document, Problem, &'static str, Option<String>, String)> {
+) -> PyResult<Fitted> {
     let reading = [&wanted.columns, &wanted.segment, &wanted.free_part, &wanted.signs];
     let (name, preset) = attached(py, problem.get(), data, reading, wanted.skip, wanted.uncertain.as_ref())?;
     let refused = |error: &dyn std::fmt::Display| errors::of_data(py, &format!("{name}: {error}"));
     let options = wanted.options(&preset);
-    let models: Vec<Model> = match &wanted.model {
-        Some(word) => vec![Model::of(word).ok_or_else(|| {
+    let model = |word: &String| {
+        Model::of(word).ok_or_else(|| {
             let known = Model::ALL.map(Model::name).join(", ");
-            errors::of_data(py, &format!("model {word:?} is none of {known}"))
-        })?],
-        None => Vec::new(),
+            errors::of_data(py, &format!("model = \"{}\" is none of {known}", quote(word)))
+        })
     };
+    let models = wanted.models.iter().map(model).collect::<PyResult<Vec<Model>>>()?;
     let made = long(py, progress, |progress| fit_models(&preset, &models, &options, progress))?;
-    let made = made.and_then(|models| models.best().map(|(fit, _)| fit.clone()).ok_or(FitError::NoStart));
+    let made = made.and_then(|models| {
+        let fit = models.best().map(|(fit, _)| fit.clone()).ok_or(FitError::NoStart)?;
+        Ok((fit, models))
+    });
     let made = made.map_err(|error| match error {
         FitError::NoStart | FitError::Cancelled => errors::of_fit(py, &error.to_string()),
         FitError::NothingFree => errors::of_data(
@@ -186,8 +193,12 @@ pub fn fitted(
         }
         error => refused(&error),
     })?;
+    let (made, models) = made;
     let report = FitReport::new(&name, &made, wanted.poisson);
+    let compared = ModelsReport::new(&name, &models, wanted.poisson);
+    let compared = (models.fits.len() > 1).then(|| report::json(&compared)).transpose();
+    let compared = compared.map_err(|error| errors::of_fit(py, &error.to_string()))?;
     let (ended, direction) = (report.ended, report.direction.clone());
     let beside = residuals::csv(&report.residuals);
-    Ok((Document::new(report), Problem { preset: made.preset }, ended, direction, beside))
+    Ok((Document::new(report), Problem { preset: made.preset }, ended, direction, beside, compared))
 }

@@ -113,6 +113,23 @@ def test_ranges_and_segments():
             SPHERE.fit(whole, FREE, **wrong)
 
 
+def test_models_are_compared():
+    afar = SPHERE.replace({"material.effective_modulus": 0.9, "material.work_of_adhesion": 0.006})
+    noise = np.random.default_rng(3).normal(0.0, 2e-5, (2, 60))
+    data = points()
+    data = {"approach": data["approach"] + noise[0], "force": data["force"] + noise[1]}
+    one = afar.fit(data, FREE, model="short-range")
+    assert one.models is None and one.model == "short-range"
+    both = afar.fit(data, FREE, model=["short-range", "dugdale"])
+    assert both.models["best"] == "short-range" and both.parameters == one.parameters
+    assert [fit["model"] for fit in both.models["fits"]] == ["short-range", "dugdale"]
+    (pair,) = both.models["pairs"]
+    assert pair["models"] == ["short-range", "dugdale"] and isinstance(pair["told_apart"], bool)
+    for wrong in ("dmt", ["short-range", "dmt"]):
+        with pytest.raises(pulloff.DataError, match="dmt.* is none of short-range, dugdale"):
+            afar.fit(data, FREE, model=wrong)
+
+
 def test_what_a_fit_has():
     found = SPHERE.fit(points(), FREE, poisson=0.5, **SIGMA)
     beside = found.residuals
