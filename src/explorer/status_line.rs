@@ -125,6 +125,11 @@ fn next(model: &Model) -> String {
             let help = Id::Help.named();
             format!("Start, stable under {held} control. {next} runs to the first event, {help} helps")
         }
+        (true, NodeKind::Solved) if model.is_at_outer_end() => {
+            format!(
+                "What is held lies beyond the path: this is where it starts. {next} runs to the next event"
+            )
+        }
         (true, NodeKind::Solved) => {
             format!("Solved again {kept}, stable. {next} runs to the next event")
         }

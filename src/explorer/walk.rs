@@ -146,7 +146,7 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
         Action::Solve { state, rings: None, was_stable } => {
             let units = case.units();
             let value = request.control.value(state.approach / units.length, state.force / units.force);
-            walk.solve(value, state.contact_radius / units.length, *was_stable, &mut arrive)
+            solve(&walk, value, state.contact_radius / units.length, *was_stable, &mut arrive)
         }
     };
     let length = |r: f64| said(&case.shown, Quantity::Length, r * case.units().length);
@@ -184,6 +184,29 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
             })
         }
         WalkEnd::Failed(failure) => Outcome::Stopped(failure.to_string()),
+    }
+}
+
+/// The state at the value held; a walker that stood within the path and would be left far beyond it by other values, those of a fit, goes
+/// to where the path starts.
+fn solve(walk: &Walk<'_>, value: f64, from: f64, was_stable: bool, arrive: &mut Emit<'_>) -> WalkEnd {
+    /// A state is far beyond the start at so many times its contact radius: a little further out it is still seen beside the curve.
+    const BEYOND: f64 = 1.1;
+    let [start, _] = walk.range;
+    let mut solved = None;
+    let end = walk.solve(value, from, was_stable, &mut |reached| {
+        solved = Some(reached);
+        true
+    });
+    match solved {
+        Some(reached) if reached.state.contact_radius > BEYOND * start && from <= BEYOND * start => {
+            walk.move_to(start, &mut |reached| arrive(Reached { arrival: Arrival::Solved, ..reached }))
+        }
+        Some(reached) => {
+            arrive(reached);
+            end
+        }
+        None => end,
     }
 }
 
