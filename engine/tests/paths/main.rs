@@ -12,4 +12,5 @@ mod pulls;
 mod range;
 mod stability;
 mod walk;
+mod walks;
 mod zones;

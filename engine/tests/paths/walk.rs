@@ -19,7 +19,7 @@ use pulloff_engine::quasistatic::{Curve, Point};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-const STEPS: usize = 5000;
+pub const STEPS: usize = 5000;
 
 fn reduced(gap: Arc<dyn Gap>, gamma: f64) -> Reduced {
     let shape = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0, wavelength: 0.05 };
@@ -27,23 +27,23 @@ fn reduced(gap: Arc<dyn Gap>, gamma: f64) -> Reduced {
     Reduced { gap, ..problem }
 }
 
-fn curve(gap: Arc<dyn Gap>, gamma: f64, end: f64) -> Curve {
+pub fn curve(gap: Arc<dyn Gap>, gamma: f64, end: f64) -> Curve {
     let problem = reduced(gap, gamma);
     let basis = Arc::new(Exact::of(&problem, end).unwrap());
     Curve::of(problem, basis, end, 0.002).unwrap()
 }
 
 /// A walker that makes its way by keys.
-struct Walker<'a> {
-    curve: &'a Curve,
-    control: Control,
-    at: Option<(Point, At)>,
-    inward: bool,
-    range: [f64; 2],
+pub struct Walker<'a> {
+    pub curve: &'a Curve,
+    pub control: Control,
+    pub at: Option<(Point, At)>,
+    pub inward: bool,
+    pub range: [f64; 2],
 }
 
 impl Walker<'_> {
-    fn asked(
+    pub fn asked(
         &mut self,
         what: impl Fn(&Walk<'_>, &mut dyn FnMut(Reached) -> bool) -> WalkEnd,
     ) -> (WalkEnd, Vec<Reached>) {
@@ -72,7 +72,7 @@ impl Walker<'_> {
         (end, made)
     }
 
-    fn contacts(&self) -> Vec<[f64; 2]> {
+    pub fn contacts(&self) -> Vec<[f64; 2]> {
         let (point, _) = self.at.as_ref().unwrap();
         edges::contacts(&self.curve.equilibrium.scales, point).intervals()
     }
