@@ -7,13 +7,15 @@
 )]
 
 use crate::support::{random_gap, wavy};
+use pulloff_engine::annuli::{Contacts, Ground, points};
 use pulloff_engine::disc::{Exact, Table};
 use pulloff_engine::gap::formula::TypedGap;
+use pulloff_engine::gap::shapes::{Harmonic, Harmonics};
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::problem::Turn;
 use pulloff_engine::problem::{ContactKind, Control, Problem, Reduced};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::{EventKind, Losses, Path, Setting, cycle};
+use pulloff_engine::quasistatic::path::{Balance, EventKind, Losses, Path, Setting, Step, cycle};
 use pulloff_engine::quasistatic::walk::{Arrival, At, Reached, Walk, WalkEnd, edges};
 use pulloff_engine::quasistatic::{Curve, Point};
 use std::f64::consts::TAU;
@@ -165,8 +167,6 @@ fn by_hand_the_rings_of_weak_adhesion_are_walked() {
 /// The eigenvalues of the J of each control at a walked state say what its slopes say.
 #[test]
 fn stability_is_that_of_the_eigenvalues() {
-    use pulloff_engine::annuli::Ground;
-    use pulloff_engine::quasistatic::path::Balance;
     let gamma = 1e-4;
     let curve = curve(wavy(0.0025, 0.05), gamma, 0.4);
     let ground = Ground::of(wavy(0.0025, 0.05), 0.7).unwrap();
@@ -188,7 +188,7 @@ fn stability_is_that_of_the_eigenvalues() {
                     lane: None,
                     pinned: None,
                 };
-                let points = pulloff_engine::annuli::points(&ground, &contacts);
+                let points = points(&ground, &contacts);
                 let value = control.value(reached.state.approach, reached.state.force);
                 let held = balance.held(&contacts, &points, value).unwrap();
                 assert!(held.excess.amax() < 1e-8 * gamma.sqrt());
@@ -297,6 +297,52 @@ fn corners_of_the_gap_are_passed_by_hand() {
     let worst = walks(&curve(gap, 1e-4, 0.3), Control::Displacement, &found);
     println!("{worst:?}");
     assert!(worst[..3].iter().all(|error| *error < 1e-9) && worst[3] < 1e-7, "{worst:?}");
+}
+
+/// Near a cusp under force: a step from beyond both limit points ends at the first, where a longer one would pass both.
+#[test]
+fn of_two_limit_points_within_a_step_the_first_is_met() {
+    let wave = Harmonic {
+        amplitude: 2.902_120_838_197_131_4e-4,
+        wavelength: 0.049_264_039_446_009_815,
+        phase: 0.115_150_946_176_080_95,
+    };
+    let gap: Arc<dyn Gap> = Arc::new(Harmonics::new(1.0, vec![wave]).unwrap());
+    let gamma = 4.409_940_577_548_066e-5;
+    let curve = curve(Arc::clone(&gap), gamma, 0.3);
+    let mut radii: Vec<f64> =
+        curve.limit_points(Control::Force).iter().map(|limit| limit.contact_radius).collect();
+    radii.sort_by(f64::total_cmp);
+    let width = |pair: &&[f64]| pair[1] - pair[0];
+    let pair = radii.windows(2).min_by(|a, b| width(a).total_cmp(&width(b))).unwrap();
+    let ground = Ground::of(gap, 0.4).unwrap();
+    let balance = Balance {
+        ground: &ground,
+        work_of_adhesion: gamma,
+        control: Control::Force,
+        contact: ContactKind::OneDisc,
+        progress: &Unwatched,
+        lane: None,
+        pinned: None,
+    };
+    let mut passed = 0;
+    for share in [0.2, 0.5, 1.0, 2.0] {
+        let away = share * width(&pair);
+        let start = curve.equilibrium.explicit(pair[1] + away).unwrap();
+        let [_, force, s] = curve.equilibrium.quantities(start.y());
+        let contacts = Contacts::of_disc(s);
+        let held = balance.held(&contacts, &points(&ground, &contacts), force).unwrap();
+        let from = balance.point(held, -1.0).unwrap();
+        let way = (2.0 * away + width(&pair)) / from.scales.edges[0];
+        let length = way / from.tangent[0].abs();
+        let ends = Step::new(&balance, &from).taken(length);
+        let mut taken = balance.step(&from, length, None, &|_| true).unwrap();
+        passed += usize::from(ends.is_some_and(|end| end.along_control() * from.along_control() > 0.0));
+        assert!(taken.to_limit().unwrap(), "{share}");
+        let met = taken.end.contacts().disc;
+        assert!((met - pair[1]).abs() < 1e-9, "{share}: {met} {pair:?}");
+    }
+    assert!(passed > 0, "{pair:?}");
 }
 
 fn random(numbers: std::ops::Range<u64>) {

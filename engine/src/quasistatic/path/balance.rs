@@ -286,8 +286,13 @@ impl Balance<'_> {
                 return found;
             }
         }
+        self.crests(held).into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap))
+    }
+
+    /// The minima of the gap outside the contacts that could touch, from the axis outward.
+    pub fn crests(&self, held: &Held) -> Vec<Crest> {
         let around = Around::new(self.ground, &held.state, held.approach);
-        around.crests(to).into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap))
+        around.crests(self.ground.can_touch_up_to(held.approach))
     }
 }
 

@@ -29,7 +29,7 @@ pub(super) enum End {
 }
 
 /// A path of any contacts while it runs.
-pub(super) struct Course<'a, 'b> {
+pub(in crate::quasistatic) struct Course<'a, 'b> {
     pub balance: &'a Balance<'b>,
     pub setting: &'a Setting<'a>,
     /// Where the control turns round; `None` on the way down alone.
@@ -66,37 +66,47 @@ pub fn cycle(
         Turn::Approach(approach) => BEYOND * ground.can_touch_up_to(approach) <= ground.reach(),
         _ => true,
     };
-    on_ground(table, reach, &far_enough, progress, &|ground| cycle_on(ground, gamma, turn, setting, progress))
+    let path = |ground: &Ground| cycle_on(ground, gamma, turn, setting, progress);
+    on_ground(table, at_least(table, reach), &far_enough, progress, &path, &highest)
 }
 
-/// A path on as much of the gap as it needs: `reach` at first, more where it comes to the end of that or is not `far_enough`.
+/// How far a gap is looked at for `reach`.
+pub(super) fn at_least(table: &Table, reach: f64) -> f64 {
+    let reach = reach.max(2.0 * table.gap().feature_length().unwrap_or(0.0)).max(0.05);
+    if matches!(table.gap().form(), Form::Any) { reach.max(LENGTHS) } else { reach }
+}
+
+/// What is found on as much of the gap as it needs: `reach` at first, more where it comes to the end of that or is not `far_enough`; with
+/// the largest approach of what is found.
 ///
 /// # Errors
 /// [`PathError`].
-pub(super) fn on_ground(
+pub(in crate::quasistatic) fn on_ground<T>(
     table: &Arc<Table>,
-    reach: f64,
+    mut reach: f64,
     far_enough: &dyn Fn(&Ground) -> bool,
     progress: &dyn Progress,
-    path: &dyn Fn(&Ground) -> Result<Path, PathError>,
-) -> Result<Path, PathError> {
-    let mut reach = reach.max(2.0 * table.gap().feature_length().unwrap_or(0.0)).max(0.05);
-    if matches!(table.gap().form(), Form::Any) {
-        reach = reach.max(LENGTHS);
-    }
-    for _ in 0..40 {
+    find: &dyn Fn(&Ground) -> Result<T, PathError>,
+    highest: &dyn Fn(&T) -> f64,
+) -> Result<T, PathError> {
+    /// Times the gap may be looked at further out for its least value.
+    const FURTHER: usize = 6;
+    for round in 0..40 {
         let ground = Ground::new(Arc::clone(table), reach, progress)?;
         let whole = ground.reach() >= table.end() * (1.0 - 1e-9);
         if !far_enough(&ground) && !whole {
             reach = 1.5 * ground.reach();
             continue;
         }
-        match path(&ground) {
+        match find(&ground) {
             Err(
                 PathError::BeyondGap { .. }
                 | PathError::RadiusBeyondGap { .. }
                 | PathError::State(AnnuliError::BeyondGap { .. }),
             ) if !whole => {
+                reach = 2.0 * ground.reach();
+            }
+            Err(PathError::NeverTouches { .. }) if !whole && round < FURTHER => {
                 reach = 2.0 * ground.reach();
             }
             // A crest further out would have touched unseen.
@@ -110,7 +120,7 @@ pub(super) fn on_ground(
 }
 
 /// The largest approach of a path.
-fn highest(path: &Path) -> f64 {
+pub(super) fn highest(path: &Path) -> f64 {
     path.states.iter().map(|state| state.approach).fold(f64::NEG_INFINITY, f64::max)
 }
 
@@ -133,8 +143,7 @@ pub fn cycle_on(
     let growing = setting.closing_below(gamma).unwrap_or(gamma);
     let lane = lane(ground, growing, setting.control);
     let balance = balance(ground, growing, setting, lane.as_ref(), progress);
-    let record = Record::new(setting, Direction::Loading, progress);
-    Course { balance: &balance, setting, turn: Some(turn), end: 0.0, record, steps: 0 }.whole(turn, gamma)
+    Course { turn: Some(turn), ..Course::new(&balance, setting, Direction::Loading) }.whole(turn, gamma)
 }
 
 /// The equilibria of one disc that adheres.
@@ -157,7 +166,7 @@ pub(super) fn balance<'a>(
 }
 
 /// The place of the least gap; the axis where it is one of several. `None` where there is none, or `progress` said stop.
-pub fn first_crest(ground: &Ground, progress: &dyn Progress) -> Option<Crest> {
+fn first_crest(ground: &Ground, progress: &dyn Progress) -> Option<Crest> {
     /// Radii at which the gap is looked at between two questions.
     const TOGETHER: usize = 64;
     let reach = ground.reach();
@@ -202,6 +211,14 @@ pub(super) fn beyond(error: PathError, approach: f64, force: f64) -> PathError {
     }
 }
 
+impl<'a, 'b> Course<'a, 'b> {
+    /// One that has not begun, to no turn and no end.
+    pub fn new(balance: &'a Balance<'b>, setting: &'a Setting<'a>, direction: Direction) -> Self {
+        let record = Record::new(setting, direction, balance.progress);
+        Self { balance, setting, turn: None, end: 0.0, record, steps: 0 }
+    }
+}
+
 impl Course<'_, '_> {
     pub(super) fn state(&self, held: &Held) -> PathState {
         let Record { direction, piece, control, .. } = self.record;
@@ -238,10 +255,10 @@ impl Course<'_, '_> {
     ///
     /// # Errors
     /// [`PathError`] where the bodies do not touch, or not before the turn.
-    pub(super) fn first_crest(&self, turn: Turn) -> Result<(Crest, f64), PathError> {
+    pub fn first_crest(&self) -> Result<(Crest, f64), PathError> {
         let (balance, setting) = (self.balance, self.setting);
         let ground = balance.ground;
-        if let Turn::Radius(radius) = turn
+        if let Some(Turn::Radius(radius)) = self.turn
             && radius > ground.reach()
         {
             return Err(PathError::RadiusBeyondGap { radius, known: ground.reach() });
@@ -263,6 +280,7 @@ impl Course<'_, '_> {
             Control::Force => 0.0,
             Control::Displacement | Control::Stiffness(_) => crest.gap,
         };
+        let Some(turn) = self.turn else { return Ok((crest, first)) };
         let least = match turn {
             Turn::Control(_) => first,
             Turn::Approach(_) if setting.control == Control::Displacement => first,
@@ -281,7 +299,7 @@ impl Course<'_, '_> {
 
     fn whole(mut self, turn: Turn, gamma: f64) -> Result<Path, PathError> {
         let balance = self.balance;
-        let (crest, first) = self.first_crest(turn)?;
+        let (crest, first) = self.first_crest()?;
         if balance.work_of_adhesion == 0.0 {
             return self.without_adhesion(crest, turn);
         }
@@ -430,7 +448,7 @@ impl Course<'_, '_> {
     }
 
     /// The first touch and what it jumps to.
-    fn first_touch(&mut self, crest: Crest, value: f64) -> Result<Held, PathError> {
+    pub fn first_touch(&mut self, crest: Crest, value: f64) -> Result<Held, PathError> {
         let start = self.balance.seeded(&Contacts::default(), crest.radius, value)?;
         let mut passed = vec![Passed { kind: PassedKind::Touch, radius: crest.radius }];
         let held = self
@@ -443,7 +461,7 @@ impl Course<'_, '_> {
     }
 
     /// A jump and its event; `None` where the bodies came apart.
-    fn jump(
+    pub fn jump(
         &mut self,
         kind: EventKind,
         before: &Held,
@@ -491,9 +509,7 @@ mod tests {
         let setting = Setting::new(control);
         let lane = on_lane.then(|| Lane::new(ground, gamma, control));
         let balance = balance(ground, gamma, &setting, lane.as_ref(), &Unwatched);
-        let record = Record::new(&setting, Direction::Loading, &Unwatched);
-        let course =
-            Course { balance: &balance, setting: &setting, turn: Some(turn), end: 0.0, record, steps: 0 };
+        let course = Course { turn: Some(turn), ..Course::new(&balance, &setting, Direction::Loading) };
         course.whole(turn, gamma).unwrap()
     }
 

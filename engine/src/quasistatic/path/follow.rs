@@ -1,22 +1,27 @@
-//! Following stable states to what ends them: a limit point, a touch, the turn; past corners of the gap; with the areas on the way.
+//! Following stable states to what ends them: a limit point, a touch, the turn; with the areas on the way.
 
 use super::balance::{Balance, Held};
 use super::course::{Course, End};
 use super::error::PathError;
 use super::event::Direction;
 use super::point::{Point, Step};
+use super::stepped::{Side, Stepped};
 use crate::annuli::ground::gauss;
-use crate::annuli::{AnnuliError, Around, Crest, MOST_POINTS_IN_ALL, points};
+use crate::annuli::{AnnuliError, MOST_POINTS_IN_ALL, points};
 use crate::problem::{ContactKind, Control};
 use crate::quasistatic::energy::Losses;
 
 /// Steps of a path at most.
 const STEPS: usize = 200_000;
 
-/// The first step of a stretch, the longest and the shortest, in the units of the arc length.
+/// The first step of a stretch, in the units of the arc length.
 const FIRST: f64 = 0.02;
-const LONGEST: f64 = 0.15;
-const SHORTEST: f64 = 1e-9;
+
+/// The longest step of many, in the units of the arc length.
+pub const LONGEST: f64 = 0.15;
+
+/// How much longer than the one before a step may be.
+pub const GROWTH: f64 = 1.5;
 
 /// The way of a step is known where a state lies on it to this, in the units of the arc length: with it the balance of loops closes
 /// within 1e-8 of their losses.
@@ -28,63 +33,42 @@ const NODES_AT_CORNERS: usize = 12;
 /// With this share of the most points a step may ask for more.
 const NEARLY: f64 = 0.8;
 
-/// A gap that is nothing, in waves.
-const ROUNDING: f64 = 1e-11;
-
-/// Where a step is singular.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Side {
-    Smooth,
-    From,
-    Towards,
-}
-
 impl Course<'_, '_> {
     /// Follows stable states from `held` to what ends them.
     pub(super) fn stretch(&mut self, held: &Held) -> Result<(End, Held), PathError> {
-        let sense = self.record.direction.sense();
+        let (balance, sense) = (self.balance, self.record.direction.sense());
         let lost = PathError::Lost { control_value: held.control_value };
-        let mut point = self.balance.point(held.clone(), sense).ok_or(lost)?;
+        let mut point = balance.point(held.clone(), sense).ok_or(lost)?;
         let (mut length, mut bend) = (FIRST, None);
         loop {
             self.counted(&point.held)?;
-            if let Some((edge, way)) = self.corner_ahead(&point, length) {
-                let (end, next) = self.past_corner(&point, edge, way)?;
-                if let Some(end) = end {
-                    return Ok((end, next.held));
-                }
-                (point, length, bend) = (next.rescaled(self.balance), FIRST, None);
-                continue;
+            let taken = balance.step(&point, length, bend, &|next| !self.goes_back(next));
+            let mut taken = taken.ok_or_else(|| self.stopped(&point.held))?;
+            let to_held = &taken.end.held;
+            let forth = (to_held.control_value - point.held.control_value) * sense > 0.0;
+            if taken.side == Side::From && !(forth && Balance::least_eigenvalue(to_held) > 0.0) {
+                // The limit point sits on the corner.
+                return Ok((End::Limit(taken.end.along_edges()), point.held));
             }
-            let step = Step::new(self.balance, &point).bent(bend.clone());
-            let Some(next) = step.taken(length) else {
-                length *= 0.5;
-                if length < SHORTEST {
-                    return Err(self.stopped(&point.held));
+            length = taken.length;
+            let end = self.ended(&mut taken)?;
+            let Stepped { step, length: taken, end: next, side } = taken;
+            if side == Side::Smooth {
+                for extreme in self.extremes(&step, &point, (taken, &next)) {
+                    self.record(&extreme.held);
                 }
-                continue;
-            };
-            if self.crosses(&point, &next) || self.goes_back(&next) {
-                // Faster than its tangent said, or on other equilibria: shorter steps see it coming.
-                length *= 0.5;
-                if length < SHORTEST {
-                    return Err(self.stopped(&point.held));
-                }
-                continue;
-            }
-            let (length_taken, next, end) = self.ended(&step, &point, length, next)?;
-            for extreme in self.extremes(&step, &point, (length_taken, &next)) {
-                self.record(&extreme.held);
             }
             if self.setting.losses == Losses::Twice {
-                self.record.area += self.area_of(&step, length_taken, &next, Side::Smooth);
+                self.record.area += self.area_of(&step, taken, &next, side);
             }
             self.record(&next.held);
             if let Some(end) = end {
                 return Ok((end, next.held));
             }
-            (point, bend) = step.left_at(length_taken, next);
-            length = (1.5 * length).min(LONGEST);
+            ((point, bend), length) = match side {
+                Side::Smooth => (step.left_at(taken, next), (GROWTH * length).min(LONGEST)),
+                _ => ((next.rescaled(balance), None), FIRST),
+            };
         }
     }
 
@@ -111,100 +95,7 @@ impl Course<'_, '_> {
         /// A part of the tangent that is nothing.
         const NOTHING: f64 = 1e-9;
         let sense = self.record.direction.sense();
-        at.tangent.rows(0, at.held.excess.len()).iter().any(|part| part * sense < -NOTHING)
-    }
-
-    /// Whether an edge meets a corner of the gap between two points, one that it has not just left.
-    fn crosses(&self, from: &Point, to: &Point) -> bool {
-        let margin = 1e-7 * self.balance.ground.wave;
-        let edges = from.contacts().edges().into_iter().zip(to.contacts().edges());
-        edges.into_iter().any(|(a, b)| {
-            let (lo, hi) = (a.radius.min(b.radius), a.radius.max(b.radius));
-            self.balance
-                .ground
-                .stops()
-                .iter()
-                .any(|stop| *stop > lo && *stop < hi && (stop - a.radius).abs() > margin)
-        })
-    }
-
-    /// The edge that meets a corner of the gap within a step of this length, and how far it is, in waves.
-    fn corner_ahead(&self, point: &Point, length: f64) -> Option<(usize, f64)> {
-        /// An edge that has just left a corner is not led back to it, nor beyond what a step is.
-        const LEFT: f64 = 1e-7;
-        let ground = self.balance.ground;
-        let (wave, corners) = (ground.wave, ground.stops());
-        let edges = point.contacts().edges();
-        let moving = edges.iter().enumerate().filter(|(_, edge)| !self.balance.is_pinned(edge.radius));
-        let ahead = moving.filter_map(|(i, edge)| {
-            let speed = point.tangent[i];
-            let outward = edge.sign * speed > 0.0;
-            let margin = LEFT * wave;
-            let corner = if outward {
-                corners.iter().find(|r| **r > edge.radius + margin)?
-            } else {
-                corners.iter().rev().find(|r| **r < edge.radius - margin)?
-            };
-            let way = (corner - edge.radius).abs() / point.scales.edges[i];
-            (way <= 1.2 * (speed.abs() * length).max(2e-3)).then_some((i, way, way / speed.abs()))
-        });
-        ahead.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(i, way, _)| (i, way))
-    }
-
-    /// Leads an edge to a corner of the gap and a little beyond, by its own way: where the contact covers a corner κ goes like the root of
-    /// the distance from it.
-    fn past_corner(
-        &mut self,
-        from: &Point,
-        edge: usize,
-        way: f64,
-    ) -> Result<(Option<End>, Point), PathError> {
-        /// How far beyond, in waves.
-        const BEYOND_CORNER: f64 = 1e-3;
-        let lost = || PathError::Lost { control_value: from.held.control_value };
-        let sense = self.record.direction.sense();
-        let step = Step::of_edge(self.balance, from, edge);
-        let (mut at, mut target) = (None, way);
-        for _ in 0..20 {
-            at = step.to(target, &step.line(target).map(|x| x.clamp(-0.2, 0.2)));
-            if at.is_some() {
-                break;
-            }
-            target *= 0.5;
-        }
-        let (next, _) = at.ok_or_else(lost)?;
-        let (length, corner, end) = self.ended(&step, from, target, next)?;
-        if self.setting.losses == Losses::Twice {
-            self.record.area += self.area_of(&step, length, &corner, Side::Towards);
-        }
-        self.record(&corner.held);
-        if end.is_some() || target < way {
-            return Ok((end, corner));
-        }
-        let corner = corner.rescaled(self.balance);
-        let step = Step::of_edge(self.balance, &corner, edge);
-        let (mut beyond, mut length) = (None, BEYOND_CORNER);
-        for _ in 0..20 {
-            beyond = step.to(length, &step.line(length).map(|x| x.clamp(-0.02, 0.02)));
-            if beyond.is_some() {
-                break;
-            }
-            length *= 0.5;
-        }
-        let (next, _) = beyond.ok_or_else(lost)?;
-        let forth = (next.held.control_value - corner.held.control_value) * sense;
-        if forth <= 0.0 || Balance::least_eigenvalue(&next.held) <= 0.0 {
-            // The limit point sits on the corner.
-            let edges = next.held.excess.len();
-            let null = next.tangent.rows(0, edges).into_owned();
-            return Ok((Some(End::Limit(null)), corner));
-        }
-        let (length, next, end) = self.ended(&step, &corner, length, next)?;
-        if self.setting.losses == Losses::Twice {
-            self.record.area += self.area_of(&step, length, &next, Side::From);
-        }
-        self.record(&next.held);
-        Ok((end, next))
+        at.along_edges().iter().any(|part| part * sense < -NOTHING)
     }
 
     /// Counts a step, and asks whether to go on.
@@ -256,85 +147,30 @@ impl Course<'_, '_> {
     }
 
     /// The first event on a step, which then ends there.
-    fn ended(
-        &self,
-        step: &Step<'_, '_>,
-        from: &Point,
-        mut length: f64,
-        mut next: Point,
-    ) -> Result<(f64, Point, Option<End>), PathError> {
-        let sense = self.record.direction.sense();
-        let lost = || PathError::Lost { control_value: from.held.control_value };
-        let mut end = None;
-        if next.along_control() * sense <= 0.0 {
-            let mut slope = |point: &Point| Some(point.along_control() * sense);
-            (length, next) =
-                step.located((length, &next), from.along_control() * sense, &mut slope).ok_or_else(lost)?;
-            let edges = next.held.excess.len();
-            end = Some(End::Limit(next.tangent.rows(0, edges).into_owned()));
-        }
+    fn ended(&self, taken: &mut Stepped<'_, '_>) -> Result<Option<End>, PathError> {
+        let from = taken.step.from();
+        let mut end = taken.to_limit()?.then(|| End::Limit(taken.end.along_edges()));
         if self.record.direction == Direction::Unloading {
             let mut over = |point: &Point| self.balance.nearest_to_moving(&point.held).map(|(_, over)| over);
-            if over(&next).is_some_and(|over| over > 0.0) {
-                let at_start = over(from).ok_or_else(lost)?;
+            if over(&taken.end).is_some_and(|over| over > 0.0) {
+                let lost = PathError::Lost { control_value: from.held.control_value };
+                let at_start = over(from).ok_or(lost)?;
                 if at_start >= 0.0 {
-                    return Ok((0.0, from.clone(), Some(End::Free)));
+                    (taken.length, taken.end) = (0.0, from.clone());
+                } else {
+                    taken.to_root(at_start, &mut over)?;
                 }
-                (length, next) = step.located((length, &next), at_start, &mut over).ok_or_else(lost)?;
                 end = Some(End::Free);
             }
-            return Ok((length, next, end));
+            return Ok(end);
         }
-        let crest;
-        (length, next, crest) = self.touching(step, from, length, next)?;
-        end = crest.map(End::Touch).or(end);
-        if let Some(turn) = self.turn.filter(|_| self.has_turned(&next.held)) {
-            let mut left = |point: &Point| Some(self.measure(&point.held) - turn.value());
-            let at_start = self.measure(&from.held) - turn.value();
-            (length, next) = step.located((length, &next), at_start, &mut left).ok_or_else(lost)?;
+        end = taken.to_touch(false)?.map(End::Touch).or(end);
+        if let Some(turn) = self.turn.filter(|_| self.has_turned(&taken.end.held)) {
+            let left = |point: &Point| self.measure(&point.held) - turn.value();
+            taken.to_root(left(from), &mut |point| Some(left(point)))?;
             end = Some(End::Turn);
         }
-        Ok((length, next, end))
-    }
-
-    /// The first crest that touches on a step, which then ends there.
-    pub(super) fn touching(
-        &self,
-        step: &Step<'_, '_>,
-        from: &Point,
-        mut length: f64,
-        mut next: Point,
-    ) -> Result<(f64, Point, Option<Crest>), PathError> {
-        let lost = || PathError::Lost { control_value: from.held.control_value };
-        let mut touched = None;
-        let ground = self.balance.ground;
-        // The crest that touches first: each is brought to its own touch. What is left there of the one before is rounding.
-        let mut overlap = 0.0;
-        for _ in 0..8 {
-            let crest = self.balance.least_gap(&next.held).filter(|crest| crest.gap < overlap);
-            let Some(crest) = crest else { break };
-            overlap = -ROUNDING * ground.wave;
-            let mut at = crest;
-            let mut reach = ground.wave / 14.0;
-            let mut gap = |point: &Point| {
-                let around = Around::new(ground, &point.held.state, point.held.approach);
-                at = if crest.radius > 0.0 {
-                    around.minimum([(at.radius - reach).max(0.0), at.radius + reach])
-                } else {
-                    Crest { radius: 0.0, gap: around.gap(0.0) }
-                };
-                reach = ground.wave / 28.0;
-                Some(at.gap)
-            };
-            let at_start = gap(from).unwrap_or(f64::NAN);
-            if at_start.is_nan() || at_start <= 0.0 {
-                // Rounding: the start of the step touches.
-                return Ok((0.0, from.clone(), Some(at)));
-            }
-            (length, next) = step.located((length, &next), at_start, &mut gap).ok_or_else(lost)?;
-            touched = Some(at);
-        }
-        Ok((length, next, touched))
+        Ok(end)
     }
 
     /// ∫ (dΠ/dc) dc over a step, in the root of the distance from a corner.

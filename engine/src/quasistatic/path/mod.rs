@@ -14,7 +14,8 @@
 //! | file | what lives there |
 //! |---|---|
 //! | [`balance`] | equilibrium of given contacts at a control value, stability |
-//! | [`point`] | steps along the equilibria, places on them |
+//! | [`point`] | points of the equilibria, places beside them |
+//! | [`stepped`] | steps along the equilibria, past corners, to what ends them |
 //! | [`jump`] | where edges land that run at held control |
 //! | [`event`] | events and states |
 //! | [`error`] | why there is none, and what is to be known about one |
@@ -43,6 +44,7 @@ mod one_disc;
 pub mod point;
 mod record;
 pub mod setting;
+pub mod stepped;
 mod unload;
 mod zero;
 pub mod zone;
@@ -52,9 +54,11 @@ pub use balance::{Balance, Held, NotFound};
 pub use course::{cycle, cycle_on};
 pub use error::{PathError, Warning};
 pub use event::{Direction, Event, EventKind, Passed, PassedKind, PathState};
+pub use follow::{GROWTH, LONGEST};
 pub use jump::{EVEN, Mobility};
 pub use lane::Lane;
 pub use point::{Point, Step};
 pub use setting::{Asked, DeadBand, Path, PathStop, Setting, Totals, TurnReached, WhyNot};
+pub use stepped::{Side, Stepped};
 pub use unload::unload;
 pub use zone::{Zones, cycle_in_zone, start_in_zone, unload_in_zone};

@@ -27,6 +27,8 @@ pub struct Point {
     pub tangent: DVector<f64>,
     /// ℓ of every edge, and c₀.
     pub scales: Scales,
+    /// Newton's rounds that led to it.
+    pub rounds: usize,
 }
 
 /// Units of the arc length.
@@ -42,6 +44,11 @@ impl Point {
     /// The part of the tangent that is the control's.
     pub fn along_control(&self) -> f64 {
         self.tangent[self.tangent.len() - 1]
+    }
+
+    /// The part that is the edges'.
+    pub fn along_edges(&self) -> DVector<f64> {
+        self.tangent.rows(0, self.held.excess.len()).into_owned()
     }
 
     /// The contacts.
@@ -78,16 +85,29 @@ impl Balance<'_> {
 
     /// The point of edges in equilibrium, its tangent such that the control goes up (`sense` 1) or down (−1).
     pub fn point(&self, held: Held, sense: f64) -> Option<Point> {
+        let n = held.excess.len();
+        self.point_along(held, &|_| DVector::from_fn(n + 1, |i, _| if i == n { sense } else { 0.0 }))
+    }
+
+    /// The same with its tangent on the side of `along`, which is asked for in the units of the arc length.
+    pub fn point_along(&self, held: Held, along: &dyn Fn(&Scales) -> DVector<f64>) -> Option<Point> {
         let scales = self.scales(&held.state.contacts);
         let n = held.excess.len();
-        let mut along = DVector::zeros(n + 1);
-        along[n] = sense;
-        let tangent = Self::direction(&held, &along, &scales)?;
-        Some(Point { held, tangent, scales })
+        let mut right = DVector::zeros(n + 1);
+        right[n] = 1.0;
+        let found = Self::bordered(&held, &along(&scales), &scales).lu().solve(&right)?;
+        let norm = found.norm();
+        let tangent = (norm.is_finite() && norm > 0.0).then(|| found / norm)?;
+        Some(Point { held, tangent, scales, rounds: 0 })
+    }
+
+    /// Whether the equations of a point, closed by its tangent, have a positive determinant: one sign along a curve.
+    pub fn is_positive(point: &Point) -> bool {
+        Self::bordered(&point.held, &point.tangent, &point.scales).determinant() > 0.0
     }
 
     /// dδ and dP along the tangent of a point, in the units of the arc length.
-    pub(super) fn slopes(&self, point: &Point) -> [f64; 2] {
+    pub fn slopes(&self, point: &Point) -> [f64; 2] {
         self.changes(&point.held, &point.tangent, &point.scales)
     }
 
@@ -108,16 +128,6 @@ impl Balance<'_> {
             Control::Stiffness(k) => (k * by_control - by_edges) / (k + held),
         };
         [approach, by_edges + held * approach]
-    }
-
-    /// The unit tangent at `held` on the side of `along`.
-    fn direction(held: &Held, along: &DVector<f64>, scales: &Scales) -> Option<DVector<f64>> {
-        let n = held.excess.len();
-        let mut right = DVector::zeros(n + 1);
-        right[n] = 1.0;
-        let found = Self::bordered(held, along, scales).lu().solve(&right)?;
-        let norm = found.norm();
-        (norm.is_finite() && norm > 0.0).then(|| found / norm)
     }
 
     /// J and ∂κ/∂c in the units of the arc length over the row `along`.
@@ -172,6 +182,16 @@ impl<'a, 'b> Step<'a, 'b> {
         Self { balance, from, points: points(balance.ground, from.contacts()), row, bend: None }
     }
 
+    /// Where it starts.
+    pub fn from(&self) -> &'a Point {
+        self.from
+    }
+
+    /// What holds the contacts on it.
+    pub fn balance(&self) -> &'a Balance<'b> {
+        self.balance
+    }
+
     /// The unit of the control in its length.
     pub fn unit(&self) -> f64 {
         self.from.scales.control
@@ -188,11 +208,6 @@ impl<'a, 'b> Step<'a, 'b> {
         &point.tangent / point.tangent.dot(&self.row)
     }
 
-    /// The length of a step to a point.
-    pub fn length_to(&self, point: &Point) -> f64 {
-        self.row.dot(&self.offset(point))
-    }
-
     /// The point at the distance `length` along the tangent of the start, beginning at the sum of the start and `guess` in the units of
     /// the arc length; with the tangent scaled to 1 along that of the start, times which dℓ is.
     pub fn to(&self, length: f64, guess: &DVector<f64>) -> Option<(Point, DVector<f64>)> {
@@ -204,7 +219,7 @@ impl<'a, 'b> Step<'a, 'b> {
         let n = self.from.held.excess.len();
         let mut offset = guess.clone();
         let mut last = f64::INFINITY;
-        for _ in 0..ITERATIONS {
+        for rounds in 1..=ITERATIONS {
             let (held, lu, right) = self.equations(&offset, length)?;
             let step = lu.solve(&right)?;
             let size = step.amax();
@@ -216,7 +231,7 @@ impl<'a, 'b> Step<'a, 'b> {
                 unit[n] = 1.0;
                 let rate = lu.solve(&unit)?;
                 let tangent = &rate / rate.norm();
-                return Some((Point { held, tangent, scales: self.from.scales.clone() }, rate));
+                return Some((Point { held, tangent, scales: self.from.scales.clone(), rounds }, rate));
             }
             if size > 2.0 * last.max(1e-3) {
                 return None;

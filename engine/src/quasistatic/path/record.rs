@@ -28,7 +28,7 @@ const SMALLEST: f64 = 1e-6;
 const TOGETHER: usize = 256;
 
 /// A path while it runs.
-pub(super) struct Record<'a> {
+pub(in crate::quasistatic) struct Record<'a> {
     pub control: Control,
     pub contact: ContactKind,
     pub losses: Losses,

@@ -8,7 +8,7 @@
 //! no memory: the way down is that of the loop.
 
 use super::balance::{Balance, Held};
-use super::course::{Course, balance, cycle_on, lane, on_ground};
+use super::course::{Course, at_least, balance, cycle_on, highest, lane, on_ground};
 use super::error::PathError;
 use super::event::{Direction, EventKind, PathState};
 use super::lane::Lane;
@@ -119,7 +119,7 @@ fn with_rings(
     let equilibrium = &curve.equilibrium;
     let gamma = equilibrium.problem.work_of_adhesion;
     let far_enough = |ground: &Ground| BEYOND * ground.can_touch_up_to(start.approach) <= ground.reach();
-    on_ground(&equilibrium.table, BEYOND * start.contact_radius, &far_enough, progress, &|ground| {
+    let down = |ground: &Ground| {
         if gamma == 0.0 {
             let whole = cycle_on(ground, gamma, Turn::Control(value), setting, progress)?;
             return Ok(Path { asked, ..way_back(whole) });
@@ -129,11 +129,9 @@ fn with_rings(
         let held = match grown(&balance, setting, start.contact_radius, value) {
             // The bodies press at the crest and open the disc: nothing contains it. Loading from apart comes to what there is.
             Err(lost @ PathError::NoLanding { .. }) => {
-                let record = Record::new(setting, Direction::Loading, progress);
-                let turn = Turn::Control(value);
-                let mut up =
-                    Course { balance: &balance, setting, turn: Some(turn), end: 0.0, record, steps: 0 };
-                match up.first_crest(turn) {
+                let turn = Some(Turn::Control(value));
+                let mut up = Course { turn, ..Course::new(&balance, setting, Direction::Loading) };
+                match up.first_crest() {
                     Ok((crest, first)) => up.loaded(crest, first)?,
                     Err(PathError::TurnBeforeTouch { .. }) => return Err(lost),
                     Err(error) => return Err(error),
@@ -141,12 +139,13 @@ fn with_rings(
             }
             found => found?,
         };
-        let record = Record::new(setting, Direction::Unloading, progress);
-        let mut course = Course { balance: &balance, setting, turn: None, end: to, record, steps: 0 };
+        let mut course = Course { end: to, ..Course::new(&balance, setting, Direction::Unloading) };
         let first = course.state(&held);
         course.record.begun(opening(first, to_open - gamma));
         course.down(held, to_open, &|record, stop| record.finished(asked, None, None, stop))
-    })
+    };
+    let reach = at_least(&equilibrium.table, BEYOND * start.contact_radius);
+    on_ground(&equilibrium.table, reach, &far_enough, progress, &down, &highest)
 }
 
 /// The contact that grows at the held control from a disc beside which bodies overlap.

@@ -10,6 +10,7 @@ use super::error::PathError;
 use super::event::{Direction, Event, EventKind, PathState};
 use super::point::Step;
 use super::setting::{Path, PathStop, TurnReached};
+use super::stepped::{Side, Stepped};
 use crate::annuli::{Around, Contacts, Crest};
 use crate::disc::chebyshev;
 use crate::problem::{Control, Turn};
@@ -93,7 +94,7 @@ impl Course<'_, '_> {
     }
 
     /// The contacts with one more that has begun at a crest, a little beyond the approach at which it touches.
-    fn begun(&mut self, contacts: &Contacts, crest: f64, delta: f64) -> Result<Held, PathError> {
+    pub fn begun(&mut self, contacts: &Contacts, crest: f64, delta: f64) -> Result<Held, PathError> {
         let mut delta = delta + self.lift();
         match self.turn {
             Some(Turn::Approach(turn)) => delta = delta.min(turn),
@@ -134,7 +135,9 @@ impl Course<'_, '_> {
                 }
                 continue;
             };
-            let (_, next, crest) = self.touching(&step, &point, length, next)?;
+            let mut taken = Stepped { step, length, end: next, side: Side::Smooth };
+            let crest = taken.to_touch(false)?;
+            let next = taken.end;
             // A gap that closes does so before that touch, or is looked at again after it.
             let closed = self.closing(&next.held, crest.as_ref().map(|_| next.held.approach));
             if let Some((gap, merged)) = closed.filter(|(_, merged)| !self.has_turned(merged)) {
@@ -149,9 +152,9 @@ impl Course<'_, '_> {
             if let Some(turn) = self.turn.filter(|_| self.has_turned(&next.held)) {
                 let mut left = |point: &super::point::Point| Some(self.measure(&point.held) - turn.value());
                 let at_start = self.measure(&point.held) - turn.value();
-                let length = step.length_to(&next);
-                let (_, end) =
-                    step.located((length, &next), at_start, &mut left).ok_or_else(|| lost(&point.held))?;
+                let (_, end) = (taken.step)
+                    .located((taken.length, &next), at_start, &mut left)
+                    .ok_or_else(|| lost(&point.held))?;
                 self.record(&end.held);
                 // Reached to rounding, whatever its last digit.
                 return Ok(end.held);

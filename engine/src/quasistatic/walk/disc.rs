@@ -2,7 +2,6 @@
 
 use super::arrival::{Ahead, Arrival, Emit, WalkEnd, WalkFailure};
 use super::land::Jumped;
-use super::touch::ROUNDING;
 use super::walker::{At, ROOM, Walk};
 use crate::continuation::Tracer;
 use crate::disc::Place;
@@ -25,6 +24,9 @@ const NEAR: f64 = 0.5;
 
 /// Within this share of its radius the walker stands on a stop.
 const LEFT: f64 = 1e-12;
+
+/// A gap that is nothing, in waves.
+const ROUNDING: f64 = 1e-11;
 
 /// How often the place of a touch is narrowed.
 const ROUNDS: usize = 80;

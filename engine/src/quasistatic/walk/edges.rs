@@ -1,32 +1,27 @@
-//! Any number of edges as a system of equations for the continuation.
+//! Any number of edges as a walk keeps them.
 //!
-//! Unknowns y = (δ/δ₀, P/P₀, e₁/s₀, e₂/s₀, …), the edges from the axis outward, and the equations
-//!
-//! ```text
-//! κ_i − √γ = 0 at every edge,        P − P(e, δ) = 0
-//! ```
-//!
-//! A disc alone has the unknowns of [`Equilibrium`]. Whether there is a disc follows from the number of edges, which it makes odd.
+//! Unknowns y = (δ/δ₀, P/P₀, e₁/s₀, e₂/s₀, …), the edges from the axis outward, with the unit tangent dy/dℓ along their equilibria and its
+//! derivative. A disc alone has the unknowns of [`Equilibrium`]. Whether there is a disc follows from the number of edges, which it
+//! makes odd.
 
-use crate::annuli::{Around, Contacts, Ground, Resolution, Wanted, points};
-use crate::continuation::{Linearization, System, Vector};
+use crate::annuli::{Around, Contacts, Ground, points};
+use crate::continuation::{Column, Columns, Vector};
 use crate::disc::Table;
 use crate::elementary::sin;
 use crate::gap::{Gap, wave_index};
-use crate::problem::{ContactKind, Control};
-use crate::progress::Unwatched;
+use crate::problem::Control;
 use crate::quasistatic::admissible::{Admissibility, Crest, Judge};
 use crate::quasistatic::equilibrium::{Equilibrium, Scales};
-use crate::quasistatic::path::balance::keeps_widths;
-use crate::quasistatic::path::{Balance, Held};
+use crate::quasistatic::path::{self, Balance, Held, Step};
 use crate::quasistatic::{Point, Stability, State, Stiffness};
+use nalgebra::DVector;
 use std::f64::consts::PI;
 
 /// δ and P stand before the edges.
 const BEFORE: usize = 2;
 
-/// What an iterate must leave of every width.
-const LEFT: f64 = 0.2;
+/// The distance by which tangents tell how a curve bends, in the units of its arc length.
+const BESIDE: f64 = 1e-3;
 
 /// A slope of the approach along the curve that a located limit point leaves.
 const ROUNDING: f64 = 1e-9;
@@ -57,6 +52,11 @@ pub fn device(scales: &Scales, point: &Point) -> [f64; 2] {
     [point.y()[0] * scales.approach, point.y()[1] * scales.force]
 }
 
+/// The change of a control that goes with one of the unknowns.
+pub(super) fn of_control(control: Control, scales: &Scales, change: &Column<'_>) -> f64 {
+    control.value(change[0] * scales.approach, change[1] * scales.force)
+}
+
 /// The slopes that decide the stability of a state with rings: where all eigenvalues of J at a held approach are positive, a device of
 /// stiffness k holds it when dP/dδ > −k; where one is not, none does.
 pub fn stability(lowest: f64, stiffness: &Stiffness) -> Stability {
@@ -67,110 +67,75 @@ pub fn stability(lowest: f64, stiffness: &Stiffness) -> Stability {
     }
 }
 
-/// The equations of the edges of contacts that are near to `base`.
-#[derive(Debug)]
-pub struct Edges<'a> {
-    /// The gap.
-    pub ground: &'a Ground,
-    /// γ.
-    pub work_of_adhesion: f64,
-    /// The units of the unknowns.
-    pub scales: Scales,
-    base: Contacts,
-    points: Resolution,
+/// The edges of a point at its value of the control of `balance`; `None` where there is no state.
+pub(super) fn held(balance: &Balance<'_>, scales: &Scales, point: &Point) -> Option<Held> {
+    let contacts = contacts(scales, point);
+    let [delta, force] = device(scales, point);
+    balance.held(&contacts, &points(balance.ground, &contacts), balance.control.value(delta, force)).ok()
 }
 
-impl<'a> Edges<'a> {
-    /// Near `base`, whose points on the rings are held.
-    pub fn near(ground: &'a Ground, equilibrium: &Equilibrium, base: Contacts) -> Self {
-        let points = points(ground, &base);
-        let work_of_adhesion = equilibrium.problem.work_of_adhesion;
-        Self { ground, work_of_adhesion, scales: equilibrium.scales, base, points }
-    }
-
-    /// The row of a control: row · y is the controlled quantity.
-    pub fn control_row(&self, control: Control) -> Vector {
-        let mut row = Vector::zeros(self.unknowns());
-        let Scales { approach, force, .. } = self.scales;
-        match control {
-            Control::Displacement => row[0] = approach,
-            Control::Force => row[1] = force,
-            Control::Stiffness(k) => (row[0], row[1]) = (approach, force / k),
-        }
-        row
-    }
-
-    /// The point of edges in equilibrium, its tangent such that the contacts shrink; `None` where the curve is singular.
-    pub fn point(&self, held: &Held) -> Option<Point> {
-        let Scales { approach, force, contact_radius } = self.scales;
-        let edges = held.state.contacts.edges();
-        let radii = edges.iter().map(|edge| edge.radius / contact_radius);
-        let y = [held.approach / approach, held.force / force].into_iter().chain(radii);
-        let y = Vector::from_iterator(self.unknowns(), y);
-        let mut at = Linearization::new(self.unknowns());
-        self.linearize(&y, &mut at)?;
-        let inward = [0.0, 0.0].into_iter().chain(edges.iter().map(|edge| -edge.sign * edge.radius));
-        Point::new(self, &y, &at, &Vector::from_iterator(self.unknowns(), inward))
-    }
-
-    /// The edges of a point, held at its value of `control`, with what goes with them; `None` where there is no state.
-    pub fn held(&self, point: &Point, control: Control) -> Option<Held> {
-        let contacts = contacts(&self.scales, point);
-        let [delta, force] = device(&self.scales, point);
-        let work_of_adhesion = self.work_of_adhesion;
-        let balance = Balance {
-            ground: self.ground,
-            work_of_adhesion,
-            control,
-            contact: ContactKind::Rings,
-            progress: &Unwatched,
-            lane: None,
-            pinned: None,
-        };
-        balance.held(&contacts, &points(self.ground, &contacts), control.value(delta, force)).ok()
-    }
+/// A point of the equilibria where the walk left off at `point`, with the tangent on the same side.
+pub(super) fn resumed(balance: &Balance<'_>, scales: &Scales, point: &Point) -> Option<path::Point> {
+    let held = held(balance, scales, point)?;
+    let (along, edges) = (point.tangent(), held.state.contacts.edges());
+    let control = of_control(balance.control, scales, &along);
+    balance.point_along(held, &|units| {
+        DVector::from_fn(edges.len() + 1, |i, _| match edges.get(i) {
+            Some(edge) => edge.sign * along[BEFORE + i] * scales.contact_radius / units.edges[i],
+            None => control / units.control,
+        })
+    })
 }
 
-impl System for Edges<'_> {
-    fn unknowns(&self) -> usize {
-        BEFORE + self.base.edge_count()
-    }
+/// The point of edges in equilibrium on which the contacts shrink; `None` where the curve is singular.
+pub(super) fn shrinking(balance: &Balance<'_>, held: Held) -> Option<path::Point> {
+    let edges = held.state.contacts.edges();
+    balance.point_along(held, &|units| {
+        let by_edge = |i: usize| edges.get(i).map_or(0.0, |edge| -edge.radius * units.edges[i]);
+        DVector::from_fn(edges.len() + 1, |i, _| by_edge(i))
+    })
+}
 
-    fn linearize(&self, y: &Vector, at: &mut Linearization) -> Option<()> {
-        let Scales { approach: d0, force: p0, contact_radius: s0 } = self.scales;
-        let radii: Vec<f64> = y.iter().skip(BEFORE).map(|e| e * s0).collect();
-        let contacts = self.base.with_edges(&radii);
-        if !keeps_widths(&self.base, &contacts, LEFT) {
-            return None;
+/// How the contacts grow along the tangent of a point, every edge outward of its contact, in the scale of radii.
+pub(super) fn growth(point: &Point) -> DVector<f64> {
+    let along = point.tangent();
+    let signs = of_edges(&point.y().as_slice()[BEFORE..]).edges();
+    DVector::from_fn(signs.len(), |i, _| signs[i].sign * along[BEFORE + i])
+}
+
+/// The derivatives of the unknowns along the equilibria, of unit length, and that length for one of the arc.
+pub(super) fn direction(balance: &Balance<'_>, scales: &Scales, point: &path::Point) -> (Vector, f64) {
+    let [delta, force] = balance.slopes(point);
+    let edges = point.contacts().edges();
+    let edges = edges.iter().zip(&point.scales.edges).zip(&point.tangent);
+    let edges = edges.map(|((edge, unit), along)| edge.sign * along * unit / scales.contact_radius);
+    let along: Vec<f64> = [delta / scales.approach, force / scales.force].into_iter().chain(edges).collect();
+    let along = Vector::from(along);
+    let speed = along.norm();
+    (along.map(|x| x / speed), speed)
+}
+
+/// A point of the equilibria as a walk keeps it.
+pub(super) fn kept(balance: &Balance<'_>, scales: &Scales, point: &path::Point) -> Point {
+    let edges = point.contacts().edges();
+    let n = BEFORE + edges.len();
+    let before = [point.held.approach / scales.approach, point.held.force / scales.force];
+    let y: Vec<f64> =
+        before.into_iter().chain(edges.iter().map(|edge| edge.radius / scales.contact_radius)).collect();
+    let (tangent, speed) = direction(balance, scales, point);
+    let step = Step::new(balance, point);
+    let beside = [BESIDE, -BESIDE].into_iter().find_map(|h| Some((h, step.to(h, &step.line(h))?.0)));
+    let bend: Vec<f64> = match beside {
+        Some((h, beside)) => {
+            let (there, _) = direction(balance, scales, &beside);
+            there.iter().zip(&tangent).map(|(there, here)| (there - here) / (h * speed)).collect()
         }
-        let (delta, force) = (y[0] * d0, y[1] * p0);
-        let state = self.ground.state_with(&contacts, &self.points, Wanted::Rates).ok()?;
-        let jacobian = state.jacobian(delta, self.ground.slope(contacts.disc));
-        let edges = contacts.edges();
-        let kappa = state.intensities(delta);
-        let (root, last) = (self.work_of_adhesion.sqrt(), edges.len());
-        at.jacobian.fill(0.0);
-        for (i, [constant, slope]) in state.intensity.iter().enumerate() {
-            at.residual[i] = kappa[i] - root;
-            // The parts that cancel.
-            at.scale[i] = constant.abs() + (slope * delta).abs() + root;
-            at.jacobian[(i, 0)] = slope * d0;
-            for (j, edge) in edges.iter().enumerate() {
-                at.jacobian[(i, BEFORE + j)] = jacobian[(i, j)] * edge.sign * s0;
-            }
-        }
-        let [p, slope] = state.force;
-        at.residual[last] = (force - p - slope * delta) / p0;
-        at.scale[last] = (p.abs() + (slope * delta).abs() + force.abs()).max(f64::MIN_POSITIVE) / p0;
-        at.jacobian[(last, 0)] = -slope * d0 / p0;
-        at.jacobian[(last, 1)] = 1.0;
-        for (j, edge) in edges.iter().enumerate() {
-            let by_edge = 4.0 * PI * edge.radius * kappa[j] * state.intensity[j][1] * edge.sign;
-            at.jacobian[(last, BEFORE + j)] = -by_edge * s0 / p0;
-        }
-        at.kept.clear();
-        Some(())
-    }
+        None => vec![0.0; n],
+    };
+    let columns = [y, tangent.iter().copied().collect(), bend].concat();
+    let mut kept = Point::of(Columns::from_vec(columns), Balance::is_positive(point));
+    kept.rounds = point.rounds;
+    kept
 }
 
 /// What is to be known of a state with rings.
@@ -186,6 +151,13 @@ pub struct Judged {
     pub admissibility: Admissibility,
     /// Decimal digits of the edges.
     pub digits: f64,
+}
+
+/// δ, P, U and the outermost edge of edges in equilibrium.
+pub(super) fn state(held: &Held, gamma: f64) -> State {
+    let (approach, force) = (held.approach, held.force);
+    let contact_radius = held.state.contacts.outermost();
+    State { contact_radius, approach, force, energy: held.state.energy(approach, gamma) }
 }
 
 /// What is to be known of `point`, whose edges are `held` at its approach.
@@ -210,12 +182,7 @@ pub fn judged(equilibrium: &Equilibrium, ground: &Ground, point: &Point, held: &
         area_slope: per_approach(area),
     };
     Judged {
-        state: State {
-            contact_radius: contacts.outermost(),
-            approach: held.approach,
-            force: held.force,
-            energy: held.state.energy(held.approach, gamma),
-        },
+        state: state(held, gamma),
         stability: stability(Balance::least_eigenvalue(held), &stiffness),
         stiffness,
         admissibility: admissibility(equilibrium, ground, held),

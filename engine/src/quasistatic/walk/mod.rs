@@ -10,23 +10,21 @@
 //! | [`walker`] | where a walker stands |
 //! | [`arrival`] | what it arrives at |
 //! | `disc` | steps and jumps of one disc |
-//! | [`edges`] | any number of edges as a system of equations |
+//! | [`edges`] | any number of edges as a walk keeps them |
 //! | `rings` | steps with rings |
-//! | `corner` | steps past corners of the gap |
-//! | `touch` | where a crest touches |
 //! | `land` | where edges land that run |
 
 pub mod arrival;
-mod corner;
 mod disc;
 pub mod edges;
 mod land;
 mod rings;
-mod touch;
 pub mod walker;
 
 pub use arrival::{Ahead, Arrival, Emit, Reached, WalkEnd, WalkFailure};
 pub use walker::{At, ROOM, Walk};
+
+use super::Event;
 
 impl Walk<'_> {
     /// So many steps of the length asked for, or of a `run` of the length that the curve allows; stops at a limit point of the control and
@@ -56,10 +54,11 @@ impl Walk<'_> {
                 None => return self.disc_jump(emit),
             }
         };
-        let adheres = self.curve.equilibrium.problem.work_of_adhesion > 0.0;
-        let arrival = if adheres { Arrival::Jump(Box::new(jumped.event)) } else { Arrival::Step };
-        let reached = match &jumped.held {
-            Some(held) => self.landed(&jumped.ground, arrival, held)?,
+        // What it passed depends on how fast edges move, and is not kept.
+        let event = jumped.event.map(|event| Box::new(Event { passed: Vec::new(), ..event }));
+        let arrival = event.map_or(Arrival::Step, Arrival::Jump);
+        let reached = match jumped.held {
+            Some(held) => self.landed(&self.running(&jumped.ground), arrival, held)?,
             None if self.has_rings() => self
                 .of_rings(&jumped.ground, arrival, from.clone())
                 .ok_or(WalkFailure::NoEquilibrium("before the jump"))?,

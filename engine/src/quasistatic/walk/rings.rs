@@ -1,31 +1,19 @@
-//! Steps along the equilibria of any number of contacts, by arc length in all edges, δ and P.
+//! Steps along the equilibria of any number of contacts, as a path takes them.
 
-use super::arrival::{Arrival, Emit, WalkEnd, WalkFailure};
-use super::corner::on_corner;
-use super::edges::{self, Edges};
-use super::touch::{self, Between};
+use super::arrival::{Arrival, Emit, Reached, WalkEnd, WalkFailure};
+use super::edges;
 use super::walker::{At, ROOM, Walk};
 use crate::annuli::{Contacts, Ground};
-use crate::continuation::{Settings, Tracer, Vector};
 use crate::problem::Control;
 use crate::quasistatic::Point;
-use crate::quasistatic::path::NotFound;
-
-/// The longest step of an edge, in waves.
-const LONGEST: f64 = 0.2;
-
-/// How often a step that begins at a limit point is halved until the control goes on.
-const HALVINGS: usize = 20;
-
-/// An event nearer to the start of a step than this share of it is the one that the walker stands on.
-const START: f64 = 1e-9;
+use crate::quasistatic::path::{self, GROWTH, LONGEST, NotFound, PathError, Side};
 
 /// Where a step with rings ends.
 struct Stepped {
     point: Point,
     arrival: Arrival,
-    /// The length that the next step may have.
-    length: f64,
+    /// The length that the next step may have, in the units of a path.
+    length: Option<f64>,
 }
 
 impl Walk<'_> {
@@ -38,8 +26,7 @@ impl Walk<'_> {
         let scales = &self.equilibrium().scales;
         let turned = |point: Point| if self.inward { point } else { point.reversed() };
         let mut here = turned(self.begun("walk")?.clone());
-        let mut at = self.at;
-        let mut length = self.length;
+        let (mut at, mut length) = (self.at, None);
         let [start, end] = self.range;
         let outermost = edges::contacts(scales, &here).outermost();
         let mut ground = self.ground(outermost, edges::device(scales, &here)[0])?;
@@ -55,8 +42,7 @@ impl Walk<'_> {
             if let Some(end) = closing(&contacts, narrow) {
                 return Ok(end);
             }
-            let from = Length { length: if run { length } else { self.length }, run };
-            let stepped = match self.ring_step(&ground, &here, at, from) {
+            let stepped = match self.ring_step(&ground, &here, at, length, run) {
                 Ok(stepped) => stepped,
                 // Near its end a branch is steep.
                 Err(failure) => return closing(&contacts, 10.0 * narrow).ok_or(failure),
@@ -101,85 +87,38 @@ impl Walk<'_> {
         ground: &Ground,
         here: &Point,
         at: At,
-        wanted: Length,
+        length: Option<f64>,
+        run: bool,
     ) -> Result<Stepped, WalkFailure> {
-        let equilibrium = self.equilibrium();
-        let contacts = edges::contacts(&equilibrium.scales, here);
-        let edges = Edges::near(ground, equilibrium, contacts.clone());
-        let row = edges.control_row(self.control);
-        let mut settings = Settings::new(here.y().len());
-        let scale = equilibrium.scales.contact_radius;
-        settings.largest_increment.iter_mut().skip(2).for_each(|most| *most = LONGEST * ground.wave / scale);
-        if !wanted.run {
-            settings.longest = wanted.length;
+        let scales = &self.equilibrium().scales;
+        let balance = self.balance(ground, self.control);
+        let lost = || WalkFailure::Edges("the equilibria could not be followed further".to_owned());
+        let from = edges::resumed(&balance, scales, here).ok_or_else(lost)?;
+        // A step asked for by hand has the length of a step of one disc.
+        let asked = self.length / edges::direction(&balance, scales, &from).1;
+        let wanted = if run { length.unwrap_or(asked).min(LONGEST) } else { asked };
+        // From a limit point to the side on which its bend says that the control goes on: a step that ends elsewhere passes another.
+        let bend = edges::of_control(self.control, scales, &here.curvature());
+        let goes_on = |end: &path::Point| at != At::Limit || end.along_control() * bend > 0.0;
+        let mut taken = balance.step(&from, wanted, None, &goes_on).ok_or_else(lost)?;
+        let whole = taken.length;
+        let mut arrival = Arrival::Step;
+        let said = |error: PathError| WalkFailure::Edges(error.to_string());
+        if at != At::Limit && taken.to_limit().map_err(said)? {
+            arrival = Arrival::Limit(None);
         }
-        let mut tracer = Tracer::new(&edges, settings);
-        tracer.length = wanted.length;
-        let led = self.past_corner(&edges, here, tracer.length)?;
-        let next = match &led {
-            Some(led) => led.clone(),
-            None => Self::smooth_step(&mut tracer, here, at, &row)?,
-        };
-        let chord: Vector = next.y() - here.y();
-        let share = |point: &Point| chord.dot(&(point.y() - here.y())) / chord.norm_squared();
-        let mut first: Option<(f64, Point, Arrival)> = None;
-        if at != At::Limit {
-            let found = tracer.brackets(&[here.clone(), next.clone()], &row).unwrap_or_default();
-            if let Some(bracket) = found.first() {
-                let located = tracer.limit_point(bracket, &row);
-                let located = located.map_err(|failure| WalkFailure::Edges(failure.to_string()))?;
-                let point = located.point.after(here);
-                first = Some((share(&point), point, Arrival::Limit(None)));
+        if let Some(crest) = taken.to_touch(true).map_err(said)? {
+            arrival = Arrival::Touch(crest.radius);
+        }
+        if arrival == Arrival::Step && taken.side == Side::Towards {
+            let beyond = balance.beyond_corner(&taken.end);
+            let turns = |end: &path::Point| end.along_control() * taken.end.along_control() < 0.0;
+            if beyond.is_some_and(|beyond| turns(&beyond.end)) {
+                arrival = Arrival::Limit(None);
             }
         }
-        let touched = touch::first_touch(&edges, &mut tracer, [here, &next]);
-        if let Some((Between { share, point }, radius)) = touched
-            && share > START
-            && first.as_ref().is_none_or(|(other, ..)| share < *other)
-        {
-            first = Some((share, point.after(here), Arrival::Touch(radius)));
-        }
-        let length = tracer.length;
-        Ok(match first {
-            Some((_, point, arrival)) => Stepped { point, arrival, length },
-            None if led.is_some() && self.turns_at(ground, &next, &row) => {
-                Stepped { point: next, arrival: Arrival::Limit(None), length }
-            }
-            None => Stepped { point: next, arrival: Arrival::Step, length },
-        })
-    }
-
-    /// A step where the curve is smooth; from a limit point to the side on which its bend says that the control goes on, for a step that
-    /// ends elsewhere passes another.
-    fn smooth_step(
-        tracer: &mut Tracer<'_>,
-        here: &Point,
-        at: At,
-        row: &Vector,
-    ) -> Result<Point, WalkFailure> {
-        let mut next = tracer.step(here)?;
-        if at == At::Limit {
-            let bend = row.dot(&here.curvature());
-            for _ in 0..HALVINGS {
-                if next.slope(row) * bend > 0.0 {
-                    break;
-                }
-                tracer.length = 0.5 * next.length;
-                next = tracer.step(here)?;
-            }
-        }
-        Ok(next)
-    }
-
-    /// Whether the control turns on the corner on which an edge of `point` stands.
-    fn turns_at(&self, ground: &Ground, point: &Point, row: &Vector) -> bool {
-        let base = edges::contacts(&self.equilibrium().scales, point);
-        if !on_corner(ground, &base) {
-            return false;
-        }
-        let edges = Edges::near(ground, self.equilibrium(), base);
-        let beyond = self.past_corner(&edges, point, 0.0).ok().flatten();
-        beyond.is_some_and(|beyond| beyond.slope(row) * point.slope(row) < 0.0)
+        let length = if taken.side == Side::Smooth { Some(GROWTH * whole) } else { length };
+        Ok(Stepped { point: edges::kept(&balance, scales, &taken.end).after(here), arrival, length })
     }
 
     /// Goes to the state at this value of the control with the same contacts, from the edges `from` of the problem before it changed.
@@ -193,22 +132,16 @@ impl Walk<'_> {
         }
     }
 
-    fn try_solve_rings(&self, value: f64, from: &Contacts) -> Result<super::arrival::Reached, WalkFailure> {
+    fn try_solve_rings(&self, value: f64, from: &Contacts) -> Result<Reached, WalkFailure> {
         let delta = if self.control == Control::Displacement { value } else { 0.0 };
         let ground = self.ground(from.outermost(), delta)?;
-        let held = self.balance(&ground, self.control).solve(from, value).map_err(|error| match error {
+        let balance = self.balance(&ground, self.control);
+        let held = balance.solve(from, value).map_err(|error| match error {
             NotFound::State(error) => WalkFailure::Edges(error.to_string()),
             NotFound::Singular | NotFound::Unfinished { .. } => WalkFailure::NotSolved,
         })?;
-        self.landed(&ground, Arrival::Solved, &held)
+        self.landed(&balance, Arrival::Solved, held)
     }
-}
-
-/// How long a step may be.
-#[derive(Clone, Copy)]
-struct Length {
-    length: f64,
-    run: bool,
 }
 
 /// The end of the branch, where a ring or a gap between contacts is narrower than `narrow`.

@@ -5,9 +5,9 @@ use crate::problem::{ContactKind, Control};
 use crate::progress::Unwatched;
 use crate::quasistatic::curve::Curve;
 use crate::quasistatic::equilibrium::Equilibrium;
-use crate::quasistatic::path::Balance;
+use crate::quasistatic::path::course::on_ground;
+use crate::quasistatic::path::{Balance, PathError};
 use crate::quasistatic::{Point, walk::arrival::WalkFailure, walk::edges};
-use std::sync::Arc;
 
 /// A walk leaves the range of the curve by at most this factor in the contact radius.
 pub const ROOM: f64 = 3.0;
@@ -67,17 +67,22 @@ impl Walk<'_> {
 
     /// The gap out to where, with an outermost edge at `radius` and the approach `delta`, something could touch.
     pub(super) fn ground(&self, radius: f64, delta: f64) -> Result<Ground, WalkFailure> {
-        let table = &self.equilibrium().table;
-        let mut reach = BEYOND * radius.max(self.range[0]);
-        loop {
-            let ground = Ground::new(Arc::clone(table), reach, &Unwatched);
-            let ground = ground.map_err(|error| WalkFailure::Edges(error.to_string()))?;
-            let whole = ground.reach() >= table.end() * (1.0 - 1e-9);
-            if whole || BEYOND * ground.can_touch_up_to(delta).max(radius) <= ground.reach() {
-                return Ok(ground);
-            }
-            reach = 1.5 * ground.reach();
-        }
+        let ground = self.on_ground(radius, delta, &|ground| Ok(ground.clone()), &|_| delta);
+        ground.map_err(|error| WalkFailure::Edges(error.to_string()))
+    }
+
+    /// What is found on it, with its largest approach, or on more where it takes that.
+    pub(super) fn on_ground<T>(
+        &self,
+        radius: f64,
+        delta: f64,
+        find: &dyn Fn(&Ground) -> Result<T, PathError>,
+        highest: &dyn Fn(&T) -> f64,
+    ) -> Result<T, PathError> {
+        let far_enough =
+            |ground: &Ground| BEYOND * ground.can_touch_up_to(delta).max(radius) <= ground.reach();
+        let reach = BEYOND * radius.max(self.range[0]);
+        on_ground(&self.equilibrium().table, reach, &far_enough, &Unwatched, find, highest)
     }
 
     /// The equilibrium of contacts on `ground` under `control`.

@@ -1,0 +1,248 @@
+//! One step along equilibria, past corners of the gap, and what ends it: a limit point of the control, or a touch.
+//!
+//! Where a contact covers a corner of the gap κ goes like the root of the distance from it. Arc length is no measure there: the way of
+//! the edge is, by which it is led to the corner and a little beyond.
+
+use super::balance::Balance;
+use super::error::PathError;
+use super::point::{Point, Step};
+use crate::annuli::{Around, Contacts, Crest};
+use nalgebra::DVector;
+
+/// The shortest step, in the units of the arc length.
+const SHORTEST: f64 = 1e-9;
+
+/// An edge this near to a corner, in waves, stands on it.
+const ON: f64 = 1e-7;
+
+/// How far beyond a corner the first state lies, in waves.
+const BEYOND: f64 = 1e-3;
+
+/// A step is led to a corner that lies less than this many times as far as it goes, or this many waves.
+const AHEAD: f64 = 1.2;
+const NEAREST: f64 = 2e-3;
+
+/// How often a step at a corner is halved.
+const HALVINGS: usize = 20;
+
+/// A gap that is nothing, in waves.
+const ROUNDING: f64 = 1e-11;
+
+/// Crests that may touch one after the other within a step.
+const CRESTS: usize = 8;
+
+/// A slope of the control whose least value within a step is below this share of those at its ends may change its sign there twice. It
+/// is looked at in steps of this length at least.
+const GRAZING: f64 = 0.05;
+const LONG: f64 = 2e-3;
+
+/// Where a step is singular.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Nowhere.
+    Smooth,
+    /// At its start, on a corner of the gap.
+    From,
+    /// At its end, on a corner of the gap or on the way there.
+    Towards,
+}
+
+/// A step that was taken.
+pub struct Stepped<'a, 'b> {
+    /// Along what.
+    pub step: Step<'a, 'b>,
+    /// How far, in its own measure.
+    pub length: f64,
+    /// Where it ends.
+    pub end: Point,
+    /// Where it is singular.
+    pub side: Side,
+}
+
+impl<'b> Balance<'b> {
+    /// The step from `from`, of the length asked for where no rule makes it shorter; `None` where even the shortest breaks one. `fits`
+    /// says whether it may end at a point.
+    pub fn step<'a>(
+        &'a self,
+        from: &'a Point,
+        mut length: f64,
+        bend: Option<DVector<f64>>,
+        fits: &dyn Fn(&Point) -> bool,
+    ) -> Option<Stepped<'a, 'b>> {
+        if let Some((edge, way, side)) = self.corner_ahead(from, length) {
+            return self.led(from, edge, way, side);
+        }
+        let step = Step::new(self, from).bent(bend);
+        // Faster than its tangent said, or on other equilibria: shorter steps see it coming.
+        let taken = |length: f64| step.taken(length).filter(|end| !self.crosses(from, end) && fits(end));
+        while length >= SHORTEST {
+            if let Some(end) = taken(length) {
+                let nearer = Some(length).filter(|length| *length > LONG);
+                let nearer = nearer.and_then(|length| step.grazes(length, &end));
+                if let Some((length, end)) = nearer.and_then(|length| Some((length, taken(length)?))) {
+                    return Some(Stepped { step, length, end, side: Side::Smooth });
+                }
+                return Some(Stepped { step, length, end, side: Side::Smooth });
+            }
+            length *= 0.5;
+        }
+        None
+    }
+
+    /// The step on which one edge goes so far, in waves, to a corner or from it.
+    fn led<'a>(&'a self, from: &'a Point, edge: usize, way: f64, side: Side) -> Option<Stepped<'a, 'b>> {
+        let step = Step::of_edge(self, from, edge);
+        let most = if side == Side::From { 0.02 } else { 0.2 };
+        let mut lengths = std::iter::successors(Some(way), |length| Some(0.5 * length)).take(HALVINGS);
+        let (length, end) = lengths.find_map(|length| {
+            let guess = step.line(length).map(|x| x.clamp(-most, most));
+            step.to(length, &guess).map(|(end, _)| (length, end))
+        })?;
+        Some(Stepped { step, length, end, side })
+    }
+
+    /// The edge that stands on a corner of the gap.
+    pub fn on_corner(&self, contacts: &Contacts) -> Option<usize> {
+        let (corners, margin) = (self.ground.stops(), ON * self.ground.wave);
+        let is_on =
+            |radius: f64| !self.is_pinned(radius) && corners.iter().any(|r| (r - radius).abs() <= margin);
+        contacts.edges().iter().position(|edge| is_on(edge.radius))
+    }
+
+    /// The step away from a corner on which an edge of `from` stands; `None` where none does, or there is no state beyond.
+    pub fn beyond_corner<'a>(&'a self, from: &'a Point) -> Option<Stepped<'a, 'b>> {
+        self.led(from, self.on_corner(from.contacts())?, BEYOND, Side::From)
+    }
+
+    /// The edge that stands on a corner of the gap or meets one within a step of this length, and how far it is led, in waves.
+    fn corner_ahead(&self, point: &Point, length: f64) -> Option<(usize, f64, Side)> {
+        let ground = self.ground;
+        let corners = ground.stops();
+        if corners.is_empty() {
+            return None;
+        }
+        if let Some(edge) = self.on_corner(point.contacts()) {
+            return Some((edge, BEYOND, Side::From));
+        }
+        let edges = point.contacts().edges();
+        let moving = edges.iter().enumerate().filter(|(_, edge)| !self.is_pinned(edge.radius));
+        let ahead = moving.filter_map(|(i, edge)| {
+            let speed = point.tangent[i];
+            let corner = if edge.sign * speed > 0.0 {
+                corners.iter().find(|r| **r > edge.radius)?
+            } else {
+                corners.iter().rev().find(|r| **r < edge.radius)?
+            };
+            let way = (corner - edge.radius).abs() / point.scales.edges[i];
+            let near = way <= AHEAD * (speed.abs() * length).max(NEAREST);
+            near.then_some((i, way, way / speed.abs()))
+        });
+        ahead.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(i, way, _)| (i, way, Side::Towards))
+    }
+
+    /// Whether an edge meets a corner of the gap between two points, one on which it does not stand at first.
+    fn crosses(&self, from: &Point, to: &Point) -> bool {
+        let (corners, margin) = (self.ground.stops(), ON * self.ground.wave);
+        let edges = from.contacts().edges().into_iter().zip(to.contacts().edges());
+        edges.into_iter().any(|(a, b)| {
+            let (lo, hi) = (a.radius.min(b.radius), a.radius.max(b.radius));
+            corners.iter().any(|r| *r > lo && *r < hi && (r - a.radius).abs() > margin)
+        })
+    }
+
+    /// The gap at a point near a crest, least there; `reach` is half the width in which it is followed.
+    fn near(&self, point: &Point, crest: Crest, reach: f64) -> Crest {
+        let around = Around::new(self.ground, &point.held.state, point.held.approach);
+        if crest.radius > 0.0 {
+            around.minimum([(crest.radius - reach).max(0.0), crest.radius + reach])
+        } else {
+            Crest { radius: 0.0, gap: around.gap(0.0) }
+        }
+    }
+}
+
+impl Step<'_, '_> {
+    /// Where on the step up to `end` the slope of the control is least, if it may change its sign there and back; by the cubic with
+    /// the control and its slope at both ends.
+    fn grazes(&self, length: f64, end: &Point) -> Option<f64> {
+        let last = end.tangent.len() - 1;
+        let [first, second] = [self.line(1.0)[last], self.rate_of(end)[last]];
+        let mean = self.offset(end)[last] / length;
+        let sign = first.signum();
+        let bend = sign * (3.0 * (first + second) - 6.0 * mean);
+        let fall = sign * (4.0 * first + 2.0 * second - 6.0 * mean);
+        let at = 0.5 * fall / bend;
+        let least = sign * first - 0.5 * fall * at;
+        let may = first * second > 0.0 && bend > 0.0 && at > 0.0 && at < 1.0;
+        (may && least < GRAZING * first.abs().max(second.abs())).then_some(at * length)
+    }
+}
+
+impl Stepped<'_, '_> {
+    /// Ends the step where the control turns on it; whether it does.
+    ///
+    /// # Errors
+    /// [`PathError::Lost`].
+    pub fn to_limit(&mut self) -> Result<bool, PathError> {
+        let slope = |point: &Point| point.along_control();
+        let at_start = slope(self.step.from());
+        if at_start * slope(&self.end) > 0.0 {
+            return Ok(false);
+        }
+        self.to_root(at_start, &mut |point| Some(slope(point)))?;
+        Ok(true)
+    }
+
+    /// Ends the step where `measure` vanishes, which is `at_start` at its start and of the other sign at its end.
+    ///
+    /// # Errors
+    /// [`PathError::Lost`].
+    pub fn to_root(
+        &mut self,
+        at_start: f64,
+        measure: &mut dyn FnMut(&Point) -> Option<f64>,
+    ) -> Result<(), PathError> {
+        let lost = PathError::Lost { control_value: self.step.from().held.control_value };
+        (self.length, self.end) =
+            self.step.located((self.length, &self.end), at_start, measure).ok_or(lost)?;
+        Ok(())
+    }
+
+    /// Ends the step where the first crest touches on it. Where a walk goes on `past` touches, a crest that touches or overlaps at the
+    /// start is left out.
+    ///
+    /// # Errors
+    /// [`PathError::Lost`].
+    pub fn to_touch(&mut self, past: bool) -> Result<Option<Crest>, PathError> {
+        let (balance, from) = (self.step.balance(), self.step.from());
+        let wave = balance.ground.wave;
+        let at_start = |crest: Crest| balance.near(from, crest, wave / 14.0);
+        let mut touched = None;
+        // The crest that touches first: each is brought to its own touch. What is left there of the one before is rounding.
+        let mut overlap = 0.0;
+        for _ in 0..CRESTS {
+            let crest = if past {
+                let mut crests = balance.crests(&self.end.held);
+                crests.retain(|crest| crest.gap < overlap && at_start(*crest).gap > ROUNDING * wave);
+                crests.into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap))
+            } else {
+                balance.least_gap(&self.end.held).filter(|crest| crest.gap < overlap)
+            };
+            let Some(crest) = crest else { break };
+            overlap = -ROUNDING * wave;
+            let mut at = at_start(crest);
+            let first = at.gap;
+            if first.is_nan() || first <= 0.0 {
+                // Rounding: the start of the step touches.
+                (self.length, self.end) = (0.0, from.clone());
+                return Ok(Some(at));
+            }
+            self.to_root(first, &mut |point| {
+                at = balance.near(point, at, wave / 28.0);
+                Some(at.gap)
+            })?;
+            touched = Some(at);
+        }
+        Ok(touched)
+    }
+}
