@@ -98,11 +98,11 @@ pub fn sum4(series: &[f64], x: f64x4) -> f64x4 {
     series.first().map_or(f64x4::ZERO, |c| x * b1 - b2 + f64x4::splat(*c))
 }
 
-/// f at eight places.
-pub fn sum8(series: &[f64], x: &[f64; 8]) -> [f64; 8] {
-    let (mut b1, mut b2) = ([0.0; 8], [0.0; 8]);
+/// f at some places.
+pub fn sums<const N: usize>(series: &[f64], x: &[f64; N]) -> [f64; N] {
+    let (mut b1, mut b2) = ([0.0; N], [0.0; N]);
     for c in series.iter().skip(1).rev() {
-        for i in 0..8 {
+        for i in 0..N {
             let b = 2.0 * x[i] * b1[i] - b2[i] + c;
             b2[i] = b1[i];
             b1[i] = b;
@@ -353,7 +353,7 @@ mod tests {
             assert!(
                 close(sum(&series, x), f(x)) && close(sum4(&series, f64x4::splat(x)).to_array()[2], f(x))
             );
-            assert!(close(sum8(&series, &[x; 8])[5], f(x)));
+            assert!(close(sums(&series, &[x; 8])[5], f(x)));
             assert!(
                 (sum(&slope, x) - exact).abs() < 1e-12
                     && (sum_and_slope(&series, x)[1] - exact).abs() < 1e-12

@@ -172,6 +172,24 @@ impl Panels {
         [chebyshev::sum(&panel.value, at.x), chebyshev::sum(&panel.area, at.x)]
     }
 
+    /// g, ∫g and dg/da at some radii; on one panel their series are summed side by side.
+    pub fn values_at<const N: usize>(&self, radii: &[f64; N]) -> [[f64; 3]; N] {
+        let index = self.place(radii[0]).panel;
+        let panel = &*self.list[index];
+        let is_inside = |a: &f64| *a <= panel.span.hi && (*a > panel.span.lo || index == 0);
+        if self.law.is_some() || !radii.iter().all(is_inside) {
+            return radii.map(|a| {
+                let at = self.place(a);
+                let [value, area] = self.value_and_area(at);
+                [value, area, self.weighted_slope(at) / self.list[at.panel].weight(at.x)]
+            });
+        }
+        let x = radii.map(|a| panel.place(a));
+        let [value, area, slope] =
+            [&panel.value, &panel.area, &panel.slope].map(|series| chebyshev::sums(series, &x));
+        std::array::from_fn(|i| [value[i], area[i], slope[i] / panel.weight(x[i])])
+    }
+
     /// g at a place.
     pub fn value(&self, at: Place) -> f64 {
         let panel = &*self.list[at.panel];
@@ -335,7 +353,7 @@ impl Panels {
             return radii.map(|a| law.slope(a));
         }
         let x = radii.map(|a| of.place(a));
-        let slopes = chebyshev::sum8(&of.slope, &x);
+        let slopes = chebyshev::sums(&of.slope, &x);
         std::array::from_fn(|i| slopes[i] / of.weight(x[i]))
     }
 
@@ -346,7 +364,7 @@ impl Panels {
             return [radii.map(|a| law.value(a)), radii.map(|a| law.area(a))];
         }
         let x = radii.map(|a| of.place(a));
-        [chebyshev::sum8(&of.value, &x), chebyshev::sum8(&of.area, &x)]
+        [chebyshev::sums(&of.value, &x), chebyshev::sums(&of.area, &x)]
     }
 }
 

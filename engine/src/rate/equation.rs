@@ -43,7 +43,7 @@ impl Edge {
 }
 
 /// A disc whose bodies are held by a device.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Held {
     /// s.
     pub contact_radius: f64,
@@ -66,10 +66,12 @@ pub struct Held {
 impl Held {
     /// The disc of the radius `s` at the control value `c`.
     pub fn new(panels: &Panels, control: Control, s: f64, c: f64) -> Self {
-        let place = panels.place(s);
-        let panel = &panels.list()[place.panel];
-        let [value, area] = panels.value_and_area(place);
-        let slope = panels.weighted_slope(place) / panel.weight(place.x);
+        let [values] = panels.values_at(&[s]);
+        Self::of(values, control, s, c)
+    }
+
+    /// The same of g, ∫g and g' at its radius.
+    fn of([value, area, slope]: [f64; 3], control: Control, s: f64, c: f64) -> Self {
         let approach = match control {
             Control::Displacement => c,
             Control::Force => (0.5 * c + area) / s,
@@ -111,7 +113,7 @@ impl Held {
 }
 
 /// A moment of a stretch, with what the integrator needs there.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct At {
     /// t.
     pub time: f64,
@@ -197,14 +199,30 @@ impl<'a> Equation<'a> {
 
     /// The moment at ξ and y; `None` where the disc would have no radius there, or one beyond the table.
     pub fn at(&self, xi: f64, y: f64) -> Option<At> {
-        let (sense, ls, lt) = (self.motion.sense(), self.radius, self.unit_of_time);
-        let s = self.radius + sense * ls * y;
-        if s.is_nan() || s <= 0.0 || s > self.panels.reach() {
+        self.at_all(&[xi], &[y]).map(|[at]| at)
+    }
+
+    /// Several moments at once.
+    pub fn at_all<const N: usize>(&self, xi: &[f64; N], y: &[f64; N]) -> Option<[At; N]> {
+        let (sense, reach) = (self.motion.sense(), self.panels.reach());
+        let radii = y.map(|y| self.radius + sense * self.radius * y);
+        if !radii.iter().all(|s| *s > 0.0 && *s <= reach) {
             return None;
         }
+        let values = self.panels.values_at(&radii);
+        let mut all = [At::default(); N];
+        for (i, at) in all.iter_mut().enumerate() {
+            *at = self.moment([xi[i], y[i]], radii[i], values[i])?;
+        }
+        Some(all)
+    }
+
+    /// The moment at ξ and y, where the radius is s and g, ∫g and g' are `values`.
+    fn moment(&self, [xi, y]: [f64; 2], s: f64, values: [f64; 3]) -> Option<At> {
+        let (sense, ls, lt) = (self.motion.sense(), self.radius, self.unit_of_time);
         let passed = lt * (xi - y);
         let control = self.value + self.rate * passed;
-        let held = Held::new(self.panels, self.control, s, control);
+        let held = Held::of(values, self.control, s, control);
         let root = (TAU * self.adhesion * s).sqrt();
         let kappa = held.opening / root;
         let kappa_by_s = (held.slope - held.by_radius) / root - 0.5 * kappa / s;
