@@ -12,9 +12,10 @@
 use super::distance::Nearest;
 use super::least_squares::LeastSquares;
 use super::path::{Foot, Place};
-use super::problem::{ADHESION, Datum, Instrument, Parameter, Paths, Problem, Target};
+use super::problem::{ADHESION, Datum, Instrument, Parameter, Paths, Problem, START, Target};
 use super::track::Mover;
 use crate::measured::Segment;
+use crate::preset::edge;
 use crate::preset::schema::RANGE_KEYS;
 use nalgebra::{DMatrix, DVector};
 
@@ -42,6 +43,9 @@ fn mover(target: &Target) -> Option<(Mover, Option<Segment>)> {
         Target::Key(key) if key == "path.control.stiffness" => Some((Mover::Stiffness, None)),
         Target::Key(key) if key == RANGE_KEYS[0] => Some((Mover::Strength, None)),
         Target::Key(key) if key == RANGE_KEYS[1] => Some((Mover::Extent, None)),
+        Target::Key(key) if key == edge::REFERENCE_SPEED => Some((Mover::Speed, None)),
+        Target::Key(key) if key == edge::EXPONENT => Some((Mover::Exponent, None)),
+        Target::Key(key) if key == START => Some((Mover::Start, None)),
         Target::Adhesion(segment) => Some((Mover::Adhesion, Some(*segment))),
         _ => None,
     }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`least_squares`] | Levenberg and Marquardt with Huber's loss |
 //! | [`way`] | the ways of a device along a curve with snaps |
+//! | [`mover`] | what moves a path by a closed form |
 //! | `track` | what the arcs of a path run along: equilibria over the contact radius or over the edge of a zone |
 //! | [`path`] | the curve that points lie on: equilibria and jumps |
 //! | [`distance`] | the signed distance of a point from it |
@@ -44,6 +45,7 @@ pub mod intervals;
 pub mod judge;
 pub mod least_squares;
 pub mod models;
+pub mod mover;
 pub mod options;
 pub mod path;
 pub mod pose;

@@ -276,12 +276,14 @@ impl Path {
     pub fn moves(&self, mover: Mover, along: f64, at: Place) -> Option<Place> {
         let [_, force, s] = at;
         let compliance = self.eye.compliance;
-        if mover == Mover::Stiffness {
-            return Some([-compliance * force, 0.0, 0.0]);
+        // x is δ + P/k.
+        let own = if mover == Mover::Stiffness { -compliance * force } else { 0.0 };
+        if mover == Mover::Stiffness && !matches!(self.track, Track::Pull(_)) {
+            return Some([own, 0.0, 0.0]);
         }
         if !matches!(self.track, Track::Edge(_)) {
-            let moved = self.track.moves(mover, along / self.eye.units.length)?;
-            return Some(self.place(moved));
+            let [x, force, s] = self.place(self.track.moves(mover, along / self.eye.units.length)?);
+            return Some([x + own, force, s]);
         }
         let [e, gamma] = self.material;
         let root = (TAU * gamma * s / e).sqrt();
@@ -289,7 +291,14 @@ impl Path {
             Mover::Modulus => [0.5 * root, force + e * s * root],
             Mover::Adhesion => [-0.5 * root, -e * s * root],
             Mover::Range => self.of_range(s, root),
-            Mover::Stiffness | Mover::Strength | Mover::Extent => return None,
+            Mover::Stiffness
+            | Mover::Strength
+            | Mover::Extent
+            | Mover::Speed
+            | Mover::Exponent
+            | Mover::Start => {
+                return None;
+            }
         };
         let x = if self.eye.abscissa == Abscissa::Radius { 0.0 } else { delta + compliance * force };
         Some([x, force, 0.0])

@@ -282,7 +282,7 @@ fn reach(branches: &Branches, data: &[Datum]) -> Reach {
     let first = last.map_or(&[][..], |branch| &branch.attached[..TURN.min(branch.attached.len())]);
     let middle = |of: fn(&Point) -> f64| median(first.iter().map(of).collect()).unwrap_or(f64::NAN);
     let turn = [middle(|point| point.x), middle(|point| point.force)];
-    Reach { most, turn, radius: None, length: branches.ranges[0] }
+    Reach { most, turn, radius: None, length: branches.ranges[0], noise: 0.0 }
 }
 
 /// A parameter at its start.

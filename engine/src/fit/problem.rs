@@ -239,6 +239,17 @@ impl Problem {
         instrument
     }
 
+    /// The noise of the points as a share of their ranges.
+    fn noise(&self) -> f64 {
+        let share = |sigma: f64, of: fn(&Point) -> f64| {
+            let values = self.data.iter().map(|datum| of(&datum.point));
+            let [lo, hi] =
+                values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);
+            if hi > lo { sigma / (hi - lo) } else { 0.0 }
+        };
+        share(self.sigma[0], |point| point.x).min(share(self.sigma[1], |point| point.force))
+    }
+
     /// The path of a branch at `u`, beginning at the radius `radius` where that is given.
     fn path(&self, u: &[f64], segment: Segment, radius: Option<f64>) -> Option<Path> {
         let instrument = self.instrument_at(u);
@@ -250,6 +261,7 @@ impl Problem {
             most: [x - shift, force - apart(x), s],
             turn: [turn[0] - shift, turn[1] - apart(turn[0])],
             radius: radius.or(self.reach.radius),
+            noise: self.noise(),
             ..self.reach
         };
         let way = if self.loops && segment == Segment::Approach { Way::Up } else { Way::Down };

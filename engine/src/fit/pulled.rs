@@ -8,16 +8,21 @@
 //! edge does not move, and the snaps, where the control does not, are smooth. Between the moments of the integrator the path is a cubic. Over
 //! what runs along, the largest q less q, it runs inward as the other paths do. Reduced units.
 
+use super::mover::Mover;
 use crate::disc::Table;
 use crate::gap::Gap;
 use crate::preset::Preset;
 use crate::problem::{Control, Part, Reduced, Start};
 use crate::progress::Unwatched;
+use crate::rate::variation::{ADHESION, EXPONENT, Moved, RATE, START, STIFFNESS};
 use crate::rate::{Edge, EdgeLaw, Moment, Puller, Settings};
 use std::f64::consts::TAU;
 
-/// The error of a step of the integrator, as a share of the radius: far below that of any instrument.
-const TOLERANCE: f64 = 1e-8;
+/// The error of a step of the integrator as a share of the noise, and its least and largest as a share of the radius.
+const OF_NOISE: f64 = 1e-3;
+const TOLERANCE: [f64; 2] = [1e-8, 1e-5];
+/// States between which a derivative is a polynomial.
+const AROUND: usize = 4;
 /// Moments nearer to each other than this, of the whole way, are one.
 const ONE: f64 = 1e-9;
 
@@ -30,9 +35,13 @@ pub(super) struct TrackState {
     pub(super) slopes: [f64; 3],
 }
 
-/// The states of a pull, from its start to the last contact.
+/// The states of a pull, from its start to the last contact, and how each moves with the values.
 #[derive(Debug, Clone)]
-pub(super) struct Trail(Vec<TrackState>);
+pub(super) struct Trail {
+    states: Vec<TrackState>,
+    moved: Vec<Moved>,
+    held: Control,
+}
 
 /// Whether `preset` is fitted to a pull: its edge has a law, its device a rate, and the start is a contact radius.
 pub(super) fn is_pulled(preset: &Preset) -> bool {
@@ -43,7 +52,12 @@ pub(super) fn is_pulled(preset: &Preset) -> bool {
 
 impl Trail {
     /// The pull of `preset` until the bodies are apart; `None` where it is none, or cannot be followed.
-    pub(super) fn of(preset: &Preset, reduced: &Reduced, table: &Table, held: Control) -> Option<Self> {
+    pub(super) fn of(
+        preset: &Preset,
+        reduced: &Reduced,
+        table: &Table,
+        (held, noise): (Control, f64),
+    ) -> Option<Self> {
         let units = reduced.units;
         let Start::ContactRadius(start) = preset.path.start else { return None };
         let (rate, speed) = (preset.edge.rate?, preset.edge.reference_speed?);
@@ -51,6 +65,7 @@ impl Trail {
         let closing = preset.edge.closing_work_of_adhesion.map(|gamma| gamma / units.work_of_adhesion);
         let unit = if held == Control::Force { units.force } else { units.length };
         let rate = rate / unit * (units.length / speed);
+        let tolerance = (OF_NOISE * noise).clamp(TOLERANCE[0], TOLERANCE[1]);
         let puller = Puller {
             table,
             control: held,
@@ -62,7 +77,7 @@ impl Trail {
             start: (start / units.length).min(reduced.largest_contact()),
             wave: reduced.gap.feature_length(),
             rise: None,
-            settings: Settings { tolerance: TOLERANCE, ..Settings::default() },
+            settings: Settings { tolerance, derivatives: true, ..Settings::default() },
         };
         let pull = puller.pull(&[Part::Apart { rate }], &Unwatched).ok()?;
         let last = pull.moments.iter().rfind(|moment| moment.contact_radius > 0.0)?;
@@ -73,29 +88,31 @@ impl Trail {
         };
         let end = q(last);
         let mut states: Vec<TrackState> = Vec::new();
-        for moment in pull.moments.iter().filter(|moment| moment.contact_radius > 0.0) {
+        let mut moved = Vec::new();
+        for (moment, by) in pull.moments.iter().zip(&pull.moved) {
             let along = end - q(moment);
             if states.last().is_none_or(|before| before.along - along > ONE * end) {
                 states.push(state(moment, along, held, [rate, rate / way, first.contact_radius]));
+                moved.push(*by);
             }
         }
         let is_known = states.iter().all(|state| state.at.iter().chain(&state.slopes).all(|x| x.is_finite()));
-        (states.len() > 1 && is_known).then_some(Self(states))
+        (states.len() >= AROUND && is_known).then_some(Self { states, moved, held })
     }
 
     /// Its states, running inward.
     pub(super) fn states(&self) -> &[TrackState] {
-        &self.0
+        &self.states
     }
 
     /// What runs along, at its start and at its end.
     pub(super) fn ends(&self) -> [f64; 2] {
-        [self.0[0].along, self.0[self.0.len() - 1].along]
+        [self.states[0].along, self.states[self.states.len() - 1].along]
     }
 
     /// The state at `along`, or at the end that is beyond.
     pub(super) fn state(&self, along: f64) -> TrackState {
-        let states = &self.0;
+        let states = &self.states;
         let [outer, inner] = self.ends();
         let along = along.clamp(inner, outer);
         let at = states.partition_point(|state| state.along >= along).clamp(1, states.len() - 1);
@@ -112,6 +129,43 @@ impl Trail {
         };
         let found = [0, 1, 2].map(cubic);
         TrackState { along, at: found.map(|[value, _]| value), slopes: found.map(|[_, slope]| slope) }
+    }
+}
+
+impl Trail {
+    /// How s, δ and P at `along` change for each unit of the logarithm of a value, but for a way along the path; `None` where that is not known.
+    pub(super) fn moves(&self, mover: Mover, along: f64) -> Option<[f64; 3]> {
+        let states = &self.states;
+        let at = states.partition_point(|state| state.along >= along);
+        let first = at.saturating_sub(AROUND / 2).min(states.len() - AROUND);
+        let around = first..first + AROUND;
+        let along = along.clamp(states[states.len() - 1].along, states[0].along);
+        let of = |value: usize| {
+            let mut sum = [0.0; 3];
+            for i in around.clone() {
+                let share = |j: usize| (along - states[j].along) / (states[i].along - states[j].along);
+                let weight: f64 = around.clone().filter(|j| *j != i).map(share).product();
+                sum.iter_mut().zip(self.moved[i][value]).for_each(|(sum, x)| *sum += weight * x);
+            }
+            sum
+        };
+        let moved = match mover {
+            Mover::Adhesion => of(ADHESION),
+            Mover::Speed => of(RATE).map(|x| -x),
+            Mover::Exponent => of(EXPONENT),
+            Mover::Start => of(START),
+            Mover::Stiffness => of(STIFFNESS),
+            // γ, k and the rate of a force are in units of E*, and so is P.
+            Mover::Modulus => {
+                let (adhesion, stiffness, rate) = (of(ADHESION), of(STIFFNESS), of(RATE));
+                let is_force = f64::from(u8::from(self.held == Control::Force));
+                let force = self.state(along).at[2];
+                let own = |k: usize| if k == 2 { force } else { 0.0 };
+                std::array::from_fn(|k| own(k) - adhesion[k] - stiffness[k] - is_force * rate[k])
+            }
+            Mover::Strength | Mover::Extent | Mover::Range => return None,
+        };
+        moved.iter().all(|x| x.is_finite()).then_some(moved)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::least_squares::{Ending, LeastSquares, Minimum, Settings};
 use super::problem::Problem;
+use super::pulled::is_pulled;
 use crate::measured::branches::median;
 use crate::progress::Progress;
 use nalgebra::DVector;
@@ -78,7 +79,8 @@ fn solve_all(
     /// A scale changed by less than this share is the same.
     const SAME: f64 = 1e-3;
     const SCALES: usize = 12;
-    /// The tolerance until then, and in the end where there are many rows: a ten-thousandth of an error.
+    /// The tolerance until then, and in the end where there are many rows, or a pull is known to a share of the noise: a ten-thousandth
+    /// of an error.
     const ROUGH: f64 = 1e-4;
     const FINE_OF_MANY: f64 = 1e-7;
     /// A way of so many standard errors along the best direction is none.
@@ -88,7 +90,8 @@ fn solve_all(
     let mut u = start.to_vec();
     let mut left = rounds;
     // Nothing is known better than the scale: only once that has settled the end is found to all digits.
-    let fine = if problem.data.len() > MANY { FINE_OF_MANY } else { Settings::default().tolerance };
+    let is_rough = problem.data.len() > MANY || is_pulled(&problem.preset);
+    let fine = if is_rough { FINE_OF_MANY } else { Settings::default().tolerance };
     let mut tolerance = if robust { ROUGH } else { fine };
     for turn in 0..SCALES {
         let huber = if robust { HUBER * scale } else { f64::INFINITY };

@@ -390,7 +390,7 @@ fn a_range_of_the_adhesion_moves_the_curve_as_maugis_says() {
         ),
     )
     .unwrap();
-    let reach = Reach { most: [1.0, 1.0, 2.0], turn: [1.0, 1.0], radius: Some(2.0), length: 1.0 };
+    let reach = Reach { most: [1.0, 1.0, 2.0], turn: [1.0, 1.0], radius: Some(2.0), length: 1.0, noise: 0.0 };
     let path = Path::new(&preset, Abscissa::Approach, &reach, Way::Down).unwrap();
     let (at, _) = path.at(1.0).unwrap();
     assert!((at[1] / (-1.5 * PI) - 1.0).abs() < 1e-12, "{at:?}");

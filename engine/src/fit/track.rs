@@ -2,6 +2,7 @@
 //!
 //! All in reduced units.
 
+pub use super::mover::Mover;
 use super::pulled::{TrackState, Trail, is_pulled};
 use crate::case;
 use crate::disc::{Basis, Exact, Local, Place, Solution, Table};
@@ -26,23 +27,6 @@ const HALVINGS: usize = 40;
 /// Beyond this `λ_M` the zone is so thin that the pull-off force is that of none to 0.0007 of it, and no fit goes.
 pub(super) const LARGEST_MAUGIS: f64 = 15.0;
 
-/// What moves a path at a held contact radius by a closed form.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mover {
-    /// E*.
-    Modulus,
-    /// γ.
-    Adhesion,
-    /// k.
-    Stiffness,
-    /// σ₀ of an adhesion with a range, γ held.
-    Strength,
-    /// `h_c` of it, γ held.
-    Extent,
-    /// 1/σ₀², of an adhesion that is a tension σ₀ up to the separation γ/σ₀, where it is 0: not by its logarithm.
-    Range,
-}
-
 /// What a path must reach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
@@ -54,6 +38,8 @@ pub struct Reach {
     pub radius: Option<f64>,
     /// The length by which a gap without one of its own is reduced.
     pub length: f64,
+    /// The noise of the points as a share of their range: a path that is off by much less is as good.
+    pub noise: f64,
 }
 
 /// How δ and P are seen.
@@ -120,7 +106,7 @@ impl Track {
             return Self::in_zone(&table, (law, holds_range, radius), eye, reach, held);
         }
         if is_pulled(preset) {
-            let trail = Trail::of(preset, &reduced, &table, held)?;
+            let trail = Trail::of(preset, &reduced, &table, (held, reach.noise))?;
             return Some(Self::Pull(Arc::new(trail)));
         }
         let outermost = match reach.radius {
@@ -294,7 +280,11 @@ impl Track {
 
     /// How s, δ and P change for each unit of the logarithm of a value, what runs along held; `None` where no closed form says it.
     pub(super) fn moves(&self, mover: Mover, along: f64) -> Option<[f64; 3]> {
-        let Self::Zone { zones, law, holds_range, .. } = self else { return None };
+        let (zones, law, holds_range) = match self {
+            Self::Edge(_) => return None,
+            Self::Pull(trail) => return trail.moves(mover, along),
+            Self::Zone { zones, law, holds_range, .. } => (zones, law, holds_range),
+        };
         let solution = &*zones.solution;
         let place = solution.place(along.min(solution.reach()))?;
         let [by_strength, by_range] = zones.moves(place);
@@ -313,7 +303,7 @@ impl Track {
             Mover::Adhesion => of(0.0, 1.0),
             Mover::Strength => of(1.0, -1.0),
             Mover::Extent => of(-1.0, 1.0),
-            Mover::Stiffness | Mover::Range => return None,
+            Mover::Stiffness | Mover::Range | Mover::Speed | Mover::Exponent | Mover::Start => return None,
         })
     }
 }
@@ -331,8 +321,13 @@ pub(super) fn begins(preset: &Preset, abscissa: Abscissa, x: f64, length: f64) -
     let eye = Eye { units: reduced.units, abscissa, compliance };
     let table = case::table(&preset.gap, &reduced, 1.0, &preset.units, &Unwatched).ok()?;
     let basis = Exact::new(table, 1e-3);
-    let reach =
-        Reach { most: [x, f64::NEG_INFINITY, f64::NEG_INFINITY], turn: [x, 0.0], radius: None, length };
+    let reach = Reach {
+        most: [x, f64::NEG_INFINITY, f64::NEG_INFINITY],
+        turn: [x, 0.0],
+        radius: None,
+        length,
+        noise: 0.0,
+    };
     let mut hi = outermost(&reduced, &basis, &reach, &eye)?;
     let mut lo = 0.5 * hi;
     for _ in 0..HALVINGS {

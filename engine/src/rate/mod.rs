@@ -10,6 +10,7 @@
 //! | [`radau`] | the weights of the integrator |
 //! | [`step`] | one implicit step |
 //! | [`caps`] | how far a step may go: limit points |
+//! | [`variation`] | how a pull moves with its values |
 //! | [`stretch`] | a stretch on which the edge goes one way |
 //! | [`record`] | moments, sums, least forces |
 //! | [`snaps`] | the snaps among them |
@@ -34,6 +35,7 @@ pub mod step;
 pub mod stretch;
 #[cfg(test)]
 mod tests;
+pub mod variation;
 
 pub use equation::Edge;
 pub use error::RateError;

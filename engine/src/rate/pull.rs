@@ -13,7 +13,7 @@ use super::caps::{Caps, Folds};
 use super::equation::{Edge, Equation, Held};
 use super::error::RateError;
 use super::law::Motion;
-use super::record::{Least, Moment, Record};
+use super::record::{Least, Moment, Moved, Record};
 use super::settings::Settings;
 use super::snaps::{Snap, snaps};
 use super::stretch::{End, Stretch};
@@ -73,6 +73,8 @@ pub struct Pull {
     pub balance: f64,
     /// Moments in order.
     pub moments: Vec<Moment>,
+    /// How s, δ and P of the moments in contact change with the values, where that was asked for.
+    pub moved: Vec<Moved>,
     /// Where the edge closed: the largest contact it closed to, with its approach.
     pub closed_to: Option<[f64; 2]>,
     /// How far G still was from equilibrium at the end of each hold, as |G/γ − 1|.
@@ -147,6 +149,9 @@ impl Puller<'_> {
                 let below = (self.edge.closing / self.edge.opening - ratio).max(0.0);
                 holds.push((ratio - 1.0).max(below));
             }
+        }
+        if !matches!(programme, [Part::Apart { .. }]) {
+            going.record.moved.clear();
         }
         Ok(going.finished(start, elastic, holds))
     }
@@ -343,6 +348,7 @@ impl Going<'_> {
             dissipated,
             balance,
             moments: self.record.moments,
+            moved: self.record.moved,
             closed_to: self.closed_to,
             holds,
             steps: self.record.steps,

@@ -26,6 +26,12 @@ pub struct Moment {
     pub dissipated: f64,
 }
 
+/// By how many values a pull is varied: γ, n, V, k and s₀.
+pub const VALUES: usize = 5;
+
+/// How s, δ and P of a moment change with the logarithm of each value; a way along the path is free in it.
+pub type Moved = [[f64; 3]; VALUES];
+
 /// A least force of a pull, and what the force rises to before the next one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Least {
@@ -40,6 +46,8 @@ pub struct Least {
 pub struct Record {
     /// The moments, in order.
     pub moments: Vec<Moment>,
+    /// How they change with the values, where that is asked for.
+    pub moved: Vec<Moved>,
     /// The least forces.
     pub least: Vec<Least>,
     /// What the edge has dissipated, over E* times the unit of length cubed.

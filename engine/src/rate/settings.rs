@@ -23,6 +23,8 @@ pub struct Settings {
     pub gone: f64,
     /// Steps of a stretch, the rejected ones counted.
     pub steps: usize,
+    /// Whether the derivatives of the moments by the values are found too, of a pull that is one ramp to the last contact.
+    pub derivatives: bool,
 }
 
 impl Default for Settings {
@@ -39,6 +41,7 @@ impl Default for Settings {
             of_rest: 0.25,
             gone: 1e-6,
             steps: 200_000,
+            derivatives: false,
         }
     }
 }

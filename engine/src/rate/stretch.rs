@@ -8,9 +8,10 @@ use super::equation::{At, Equation};
 use super::error::RateError;
 use super::law::Motion;
 use super::radau::{NODES, STAGES, interpolated};
-use super::record::Record;
+use super::record::{Moment, Record};
 use super::settings::Settings;
 use super::step::{self, Step, landed};
+use super::variation::Variation;
 use crate::progress::Progress;
 
 /// Why a stretch ends.
@@ -75,6 +76,13 @@ impl Stretch<'_> {
             self.equation.at(0.0, 0.0).ok_or(RateError::Lost { contact_radius: self.equation.radius })?;
         let mut here = Here { xi: 0.0, y: 0.0, at: begin };
         record.began(self.equation.motion, &here.at);
+        let mut variation = self.settings.derivatives.then(|| Variation::new(self.equation, &begin.held));
+        if let Some(variation) = &variation {
+            // This moment, and the rest before it.
+            let of = |moment: &Moment| variation.resting(moment);
+            let resting: Vec<_> = record.moments.iter().skip(record.moved.len()).map(of).collect();
+            record.moved.extend(resting);
+        }
         let mut h = FIRST;
         let mut last: Option<Step> = None;
         for count in 0..self.settings.steps {
@@ -122,6 +130,9 @@ impl Stretch<'_> {
                 continue;
             };
             record.step(&here.at, &step, &|h| self.step(&here, h, Some(&step)));
+            if let Some(variation) = &mut variation {
+                record.moved.extend(variation.step(&step));
+            }
             here = Here { xi: here.xi + step.length, y: step.y, at: *step.end() };
             if let Some(end) = end {
                 return Ok((here.at, end));

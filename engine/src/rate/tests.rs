@@ -2,6 +2,7 @@
 
 use super::law::EdgeLaw;
 use super::pull::{Pull, Puller};
+use super::record::Moment;
 use super::{Edge, Settings};
 use crate::disc::Table;
 use crate::gap::Shape;
@@ -160,4 +161,109 @@ fn a_dead_load_is_borne_as_long_as_the_law_says() {
             assert!((time / law / ratio - 1.0).abs() < 0.01, "{exponent} {over}: {} {ratio}", time / law);
         }
     }
+}
+
+/// s, c, δ and P where one of them, by its number, has the value `at`, of the polynomial through the six moments around.
+fn polynomial(moments: &[Moment], number: usize, at: f64) -> Option<[f64; 4]> {
+    let of = |moment: &Moment| [moment.contact_radius, moment.control, moment.approach, moment.force];
+    let next = moments.iter().position(|moment| of(moment)[number] < at)?;
+    let around = moments.get(next.checked_sub(3)?..next + 3)?;
+    let mut sum = [0.0; 4];
+    for (i, here) in around.iter().enumerate() {
+        let others = around.iter().enumerate().filter(|(j, _)| *j != i);
+        let share = |other: &Moment| (at - of(other)[number]) / (of(here)[number] - of(other)[number]);
+        let weight: f64 = others.map(|(_, other)| share(other)).product();
+        sum.iter_mut().zip(of(here)).for_each(|(sum, x)| *sum += weight * x);
+    }
+    Some(sum)
+}
+
+/// What the variational equation says is how pulls beside each other differ: at held control while the edge is slow, at held radius then.
+#[test]
+fn pulls_beside_each_other_differ_as_their_derivatives_say() {
+    use super::variation::{START, STIFFNESS, VALUES};
+    const STEP: f64 = 1e-3;
+    let mut wrong = Vec::new();
+    let settings =
+        Settings { tolerance: 1e-12, derivatives: true, of_panel: 0.1, of_wave: 0.02, ..Settings::default() };
+    let sphere = table(Shape::Sphere { radius_of_curvature: 1.0 });
+    let waves = wavy();
+    for (table, device, closing, exponent, rate) in [
+        (&sphere, Control::Displacement, 1.0, 0.5, 1e-3),
+        (&sphere, Control::Stiffness(0.3), 0.6, 0.5, 0.3),
+        (&sphere, Control::Force, 1.0, 0.3, 1e-2),
+        (&waves, Control::Stiffness(2.0), 1.0, 0.8, 0.1),
+    ] {
+        let control = |by: f64| match device {
+            Control::Stiffness(k) => Control::Stiffness(k * by.exp()),
+            other => other,
+        };
+        let pulled = |by: [f64; VALUES]| {
+            let [gamma, n, v, k, s] = by;
+            let law = EdgeLaw::symmetric(exponent * n.exp());
+            let edge = Edge { law, opening: GAMMA * gamma.exp(), closing: closing * GAMMA };
+            let (control, start, wave) = (control(k), 0.4 * s.exp(), table.gap().feature_length());
+            let puller = Puller { table, control, edge, start, wave, rise: None, settings };
+            puller.pull(&[Part::Apart { rate: rate * v.exp() }], &Unwatched).unwrap()
+        };
+        let here = pulled([0.0; VALUES]);
+        let begin = here.moments.iter().position(|moment| moment.speed > 0.0).unwrap();
+        for value in 0..VALUES {
+            // Of fourth order in the step; where a slow pull begins its start is soon forgotten.
+            let step = if value == START { 0.25 * STEP } else { STEP };
+            let beside = [-2.0, -1.0, 1.0, 2.0].map(|share| {
+                let mut values = [0.0; VALUES];
+                values[value] = share * step;
+                pulled(values)
+            });
+            let [mut worst, mut most, mut count] = [0.0_f64; 3];
+            for (moment, moved) in here.moments.iter().zip(&here.moved).skip(begin) {
+                let s = moment.contact_radius;
+                // The rest of a dead load falls for ever.
+                if s < 0.02 {
+                    break;
+                }
+                let number = usize::from(s > 0.37);
+                let held = [s, moment.control][number];
+                let at = |pull: &Pull, by: f64| {
+                    let moving = pull.moments.iter().position(|moment| moment.speed > 0.0)?;
+                    polynomial(&pull.moments[moving..], number, held + by)
+                };
+                let Some([a, b, c, d]) = beside
+                    .iter()
+                    .map(|pull| at(pull, 0.0))
+                    .collect::<Option<Vec<_>>>()
+                    .and_then(|all| <[[f64; 4]; 4]>::try_from(all).ok())
+                else {
+                    continue;
+                };
+                let way = 1e-5 * held.abs();
+                let (Some(less), Some(more)) = (at(&here, -way), at(&here, way)) else { continue };
+                let [by_s, by_delta, by_force] = moved[value];
+                let spring = if value == STIFFNESS
+                    && let Control::Stiffness(k) = device
+                {
+                    moment.force / k
+                } else {
+                    0.0
+                };
+                let along = [by_s, device.value(by_delta, by_force) - spring][number];
+                for (k, told, unit) in [(0, by_s, 0.4), (2, by_delta, 0.05), (3, by_force, 0.02)] {
+                    let difference = (8.0 * (c[k] - b[k]) - (d[k] - a[k])) / (12.0 * step);
+                    let way = (more[k] - less[k]) / (2.0 * way) * along;
+                    // Of a way along the pull most is taken away again.
+                    let size = unit + told.abs() + way.abs();
+                    worst = worst.max((told - way - difference).abs() / size);
+                    most = most.max(difference.abs() / size);
+                }
+                count += 1.0;
+            }
+            println!("{device:?} {value}: {worst:e} of {most:e}, {count}");
+            // The polynomials are known to 1e-8, which is divided by the step.
+            if count < 30.0 || worst > 1e-4 {
+                wrong.push(format!("{device:?} {value}: {worst:e} of {most:e}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }

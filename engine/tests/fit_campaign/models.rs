@@ -24,7 +24,7 @@ const MOVED: [(&str, Mover); 4] = [
 ];
 
 fn path(preset: &Preset, abscissa: Abscissa) -> Path {
-    let reach = Reach { most: [0.1, 0.1, 0.3], turn: [0.1, 0.1], radius: Some(0.4), length: 1.0 };
+    let reach = Reach { most: [0.1, 0.1, 0.3], turn: [0.1, 0.1], radius: Some(0.4), length: 1.0, noise: 0.0 };
     Path::new(preset, abscissa, &reach, Way::Down).unwrap()
 }
 
