@@ -476,6 +476,13 @@ impl Model {
         measure(end, control, &node.state) >= end.value() - slack
     }
 
+    /// Whether the walker stands where the curve starts.
+    pub fn is_at_start(&self) -> bool {
+        let start = self.curve.as_ref().map(|curve| curve.case.start);
+        let here = self.walker().map(|node| node.state.contact_radius);
+        start.zip(here).is_some_and(|(start, here)| (here - start).abs() <= 1e-9 * start)
+    }
+
     /// The jumps of the walk that led to the walker, with the number of their node.
     pub fn walked_events(&self) -> Vec<(usize, EventReport)> {
         let mut made = 0;

@@ -125,7 +125,7 @@ fn next(model: &Model) -> String {
             let help = Id::Help.named();
             format!("Start, stable under {held} control. {next} runs to the first event, {help} helps")
         }
-        (true, NodeKind::Solved) if model.is_at_outer_end() => {
+        (true, NodeKind::Solved) if model.is_at_start() => {
             format!(
                 "What is held lies beyond the path: this is where it starts. {next} runs to the next event"
             )

@@ -46,20 +46,17 @@ pub fn palette(line: &str, first: &[Id], model: &Model, files: Files<'_>) -> Vec
     if line.matches('"').count() % 2 == 1 {
         return Vec::new();
     }
-    match words.split_first() {
-        None if word.is_empty() => commands(first, model),
-        Some((name, words)) if called(name).is_some() => {
-            let Some(row) = called(name) else { return Vec::new() };
-            // Behind a word that is all there is nothing more.
-            if !words.is_empty() && !row.takes.goes_on {
-                return Vec::new();
-            }
-            let offers = (row.takes.offers)(&Typing { model, words, word, files });
-            let entries = offers.iter().map(|offer| Entry::offer(before, offer));
-            ranked(entries.collect(), |entry| rank(&entry.line[start..], &entry.says, "", word))
-        }
-        _ => anything(line.trim(), model, files),
+    let Some((name, words)) = words.split_first() else {
+        return if word.is_empty() { commands(first, model) } else { anything(word, model, files) };
+    };
+    let Some(row) = called(name) else { return anything(line.trim(), model, files) };
+    // Behind a word that is all there is nothing more.
+    if !words.is_empty() && !row.takes.goes_on {
+        return Vec::new();
     }
+    let offers = (row.takes.offers)(&Typing { model, words, word, files });
+    let entries = offers.iter().map(|offer| Entry::offer(before, offer));
+    ranked(entries.collect(), |entry| rank(&entry.line[start..], &entry.says, "", word))
 }
 
 /// All commands, those of `first` before the others.

@@ -56,7 +56,9 @@ impl App {
                     self.typed.at = self.typed.lines.len();
                     self.changed(&mut prompt, input);
                 } else {
+                    // The list is of what stands before the cursor.
                     prompt.input = input;
+                    self.list(&mut prompt);
                 }
             }
         }
@@ -74,20 +76,25 @@ impl App {
         }
     }
 
-    /// Another text: the list is what it could become, and what was wrong with the last is forgotten.
-    fn changed(&self, prompt: &mut Prompt, input: Input) {
-        let head: String = input.value().chars().take(input.cursor()).collect();
+    /// Lists what the text before the cursor could become.
+    fn list(&self, prompt: &mut Prompt) {
+        let head: String = prompt.input.value().chars().take(prompt.input.cursor()).collect();
         let files = |folder: &str| self.files(folder);
         let first: Vec<Id> = status::offered(self).into_iter().map(|(id, _)| id).collect();
         prompt.entries = palette(&head, &first, &self.model, &files);
         // A line that is a command is run as it stands.
-        let is_command = parse(input.value()).is_ok();
+        let is_command = parse(prompt.input.value()).is_ok();
         prompt.selected = (!is_command && !prompt.entries.is_empty()).then_some(0);
+    }
+
+    /// Another text: what was wrong with the last is forgotten.
+    fn changed(&self, prompt: &mut Prompt, input: Input) {
         let is_help = prompt.purpose == Purpose::Line { is_help: true } && input.value().is_empty();
         prompt.note = if is_help { now(self).join("  ") } else { note(input.value()) };
         prompt.input = input;
         prompt.error = None;
         prompt.fault = None;
+        self.list(prompt);
     }
 
     /// The list of a line that stands there, when more is known: names of presets.
@@ -100,9 +107,11 @@ impl App {
         }) else {
             return;
         };
-        let (input, selected) = (prompt.input.clone(), prompt.selected);
-        self.changed(&mut prompt, input);
-        prompt.selected = selected.filter(|at| *at < prompt.entries.len());
+        // The entry that is selected stays so, wherever it stands now.
+        let selected = prompt.selected.and_then(|at| prompt.entries.get(at)).map(|entry| entry.line.clone());
+        self.list(&mut prompt);
+        prompt.selected =
+            selected.and_then(|line| prompt.entries.iter().position(|entry| entry.line == line));
         self.overlay = Some(Overlay::Prompt(prompt));
     }
 
@@ -135,7 +144,8 @@ impl App {
     fn obey_line(&mut self, mut prompt: Prompt) -> Vec<Effect> {
         let mut line = prompt.input.value().to_owned();
         if let Some(entry) = prompt.selected.and_then(|at| prompt.entries.get(at)) {
-            if !entry.is_whole {
+            // What stands behind the cursor is not dropped.
+            if !entry.is_whole || prompt.input.cursor() < line.chars().count() {
                 self.take_entry(&mut prompt);
                 self.overlay = Some(Overlay::Prompt(prompt));
                 return Vec::new();

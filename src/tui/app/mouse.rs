@@ -76,6 +76,8 @@ impl App {
                 }
                 None => Vec::new(),
             },
+            // Above the list are lines typed before, which no wheel brings back.
+            (Some(Overlay::Prompt(prompt)), Some(true)) if prompt.selected.is_none() => Vec::new(),
             (Some(Overlay::Choose(_) | Overlay::Help(_) | Overlay::Prompt(_)), Some(up)) => {
                 self.key(if up { KeyCode::Up } else { KeyCode::Down }.into())
             }

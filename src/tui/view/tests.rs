@@ -574,23 +574,6 @@ fn escape_and_the_next_key_arriving_together_are_both_heard() {
 }
 
 #[test]
-fn values_that_would_leave_the_walker_far_beyond_the_path_set_it_to_its_start() {
-    let mut screen = Screen::new("lens");
-    let radius = |screen: &Screen| {
-        let node = screen.app.model.history.current().unwrap();
-        node.state.in_units(node.setting.units()).contact_radius
-    };
-    screen.keys("  ");
-    let before = radius(&screen);
-    // Those that a fit finds: the far end of the spring is held, where the contact would be 130 µm wide.
-    screen.keys(":set material.effective_modulus=\"1 MPa\" material.work_of_adhesion=\"50 mJ/m^2\"\r");
-    assert!((radius(&screen) - 100e-6).abs() < 1e-12, "{}", radius(&screen));
-    assert!(screen.text(120, 40).contains("lies beyond the path"), "{}", screen.text(120, 40));
-    screen.keys("u");
-    assert!((radius(&screen) - before).abs() < 1e-15);
-}
-
-#[test]
 fn the_footer_shows_only_what_can_be_done() {
     let mut screen = Screen::new("wavy-sphere");
     assert!(!screen.text(120, 40).contains("x jump"));

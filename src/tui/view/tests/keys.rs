@@ -153,3 +153,25 @@ fn a_pin_has_a_column_in_result_and_the_change_in_per_cent() {
     assert!((100.0 * (now - pin) / pin.abs() - change).abs() < 0.4, "{row}");
     assert!(pin.abs() < now.abs() && change < 0.0, "a larger pull: {row}");
 }
+
+#[test]
+fn values_that_would_leave_the_walker_far_beyond_the_path_set_it_to_its_start() {
+    let mut screen = Screen::new("lens");
+    let radius = |screen: &Screen| {
+        let node = screen.app.model.history.current().unwrap();
+        node.state.in_units(node.setting.units()).contact_radius
+    };
+    screen.keys("  ");
+    let before = radius(&screen);
+    // Those that a fit finds: the far end of the spring is held, where the contact would be 130 µm wide.
+    screen.keys(":set material.effective_modulus=\"1 MPa\" material.work_of_adhesion=\"50 mJ/m^2\"\r");
+    assert!((radius(&screen) - 100e-6).abs() < 1e-12, "{}", radius(&screen));
+    assert!(screen.text(120, 40).contains("lies beyond the path"), "{}", screen.text(120, 40));
+    screen.keys("u");
+    assert!((radius(&screen) - before).abs() < 1e-15);
+    // A little beyond the start it is left where it is, and nothing else is said of it.
+    let mut screen = Screen::new("lens");
+    screen.keys(":set material.effective_modulus=\"2.9 MPa\"\r");
+    assert!(radius(&screen) > 100.01e-6 && radius(&screen) < 110e-6, "{}", radius(&screen));
+    assert!(!screen.text(120, 40).contains("lies beyond the path"), "{}", screen.text(120, 40));
+}

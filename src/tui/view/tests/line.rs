@@ -79,6 +79,14 @@ fn tab_takes_an_entry_and_up_brings_lines_back() {
     screen.press(KeyCode::Home);
     screen.keys("step\t");
     assert_eq!(line(&screen), "step 5");
+    // Nor does Enter run an entry without it.
+    screen.keys("\x1b: 5");
+    screen.press(KeyCode::Home);
+    let states = screen.app.model.history.nodes().len();
+    screen.keys("ste\r");
+    assert_eq!((line(&screen), screen.app.model.history.nodes().len()), ("step 5".to_owned(), states));
+    screen.keys("\r");
+    assert_eq!(screen.app.model.history.nodes().len(), states + 5);
 }
 
 #[test]
