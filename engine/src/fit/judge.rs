@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `contact` | does the curve go through the points in contact |
 //! | `apart` | is the force a constant where the bodies are apart |
-//! | `scores` | would a gap of another exponent fit better, or an adhesion with a range |
+//! | `scores` | would a tilted baseline fit better, a gap of another exponent, or an adhesion with a range |
 //! | `edge` | how fast the edge goes |
 //! | `rate` | does the work of adhesion grow with the speed of the edge |
 //! | `untold` | could the points tell that it does |
@@ -83,7 +83,8 @@ pub(super) fn reasons(
 ) -> Vec<Reason> {
     let mut reasons: Vec<Reason> = clipped.map(|clipped| of_clipped(preset, clipped)).into_iter().collect();
     reasons.extend(contact::of_contact(problem, solved, scatter, inner));
-    reasons.extend(apart::of_apart(problem, solved, scatter, inner));
+    reasons.extend(apart::of_apart(problem, solved, scatter));
+    reasons.extend(scores::of_tilt(problem, solved, scatter, inner));
     reasons.extend(scores::of_shape(problem, solved, scatter, inner));
     if preset.cohesion().is_some() {
         reasons.extend(range::of_zone(problem, solved));

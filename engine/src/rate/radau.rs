@@ -108,38 +108,6 @@ pub fn interpolated(values: &[f64; STAGES], theta: f64) -> f64 {
     sum
 }
 
-/// x of A x = b for several b, by elimination with pivots; `None` where there is none.
-pub fn solved<const N: usize>(
-    mut a: [[f64; STAGES]; STAGES],
-    mut b: [[f64; N]; STAGES],
-) -> Option<[[f64; N]; STAGES]> {
-    fn less<const M: usize>(from: &mut [f64; M], factor: f64, row: &[f64; M]) {
-        from.iter_mut().zip(row).for_each(|(from, x)| *from -= factor * x);
-    }
-    for k in 0..STAGES {
-        let pivot = (k..STAGES).max_by(|i, j| a[*i][k].abs().total_cmp(&a[*j][k].abs()))?;
-        if a[pivot][k] == 0.0 || !a[pivot][k].is_finite() {
-            return None;
-        }
-        a.swap(k, pivot);
-        b.swap(k, pivot);
-        let (row, right) = (a[k], b[k]);
-        for i in k + 1..STAGES {
-            let factor = a[i][k] / row[k];
-            less(&mut a[i], factor, &row);
-            less(&mut b[i], factor, &right);
-        }
-    }
-    for k in (0..STAGES).rev() {
-        let mut x = b[k];
-        for i in k + 1..STAGES {
-            less(&mut x, a[k][i], &b[i]);
-        }
-        b[k] = x.map(|x| x / a[k][k]);
-    }
-    Some(b)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -157,13 +125,6 @@ mod tests {
         // Order 9 of the last row, and no more.
         let last = |k: i32| dot(&WEIGHTS[4], &NODES.map(|c| c.powi(k))) - 1.0 / f64::from(k + 1);
         assert!((5..9).all(|k| last(k).abs() < 2e-16) && last(9).abs() > 1e-7);
-        let right = WEIGHTS.map(|row| [dot(&row, &NODES), row[0]]);
-        let found = solved(WEIGHTS, right).unwrap();
-        for i in 0..STAGES {
-            assert!((found[i][0] - NODES[i]).abs() < 1e-14);
-            assert!((found[i][1] - f64::from(u8::from(i == 0))).abs() < 1e-14);
-        }
-        assert_eq!(solved([[0.0; STAGES]; STAGES], [[1.0]; STAGES]), None);
         let of = |x: f64| 1.0 - 2.0 * x + 3.0 * x.powi(4);
         assert!((interpolated(&NODES.map(of), 1.7) - of(1.7)).abs() < 1e-13);
     }

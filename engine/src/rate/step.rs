@@ -8,8 +8,9 @@
 //! ```
 
 use super::equation::{At, Equation};
-use super::radau::{ERROR_WEIGHTS, NODES, REAL_EIGENVALUE, STAGES, WEIGHTS, dot, solved};
+use super::radau::{ERROR_WEIGHTS, NODES, REAL_EIGENVALUE, STAGES, WEIGHTS, dot};
 use super::settings::Settings;
+use nalgebra::{SMatrix, SVector};
 
 /// A step that was solved.
 #[derive(Debug, Clone, Copy)]
@@ -69,27 +70,29 @@ pub fn solve(
     for _ in 0..settings.newton {
         let ways: [f64; STAGES] = std::array::from_fn(|i| y + h * dot(&WEIGHTS[i], &p));
         let mut nodes = equation.at_all(&NODES.map(|c| xi + c * h), &ways)?;
-        let mut matrix = [[0.0; STAGES]; STAGES];
-        let mut right = [[0.0]; STAGES];
+        let mut matrix = SMatrix::<f64, STAGES, STAGES>::zeros();
+        let mut right = SVector::<f64, STAGES>::zeros();
         let mut inverse = [false; STAGES];
         for (i, node) in nodes.iter().enumerate() {
             let steepness = (h * WEIGHTS[i][i] * node.phi_by_y).abs();
             inverse[i] = steepness.is_nan() || steepness >= 1.0;
             let (by_y, own) = if inverse[i] {
                 let [drive, slope] = equation.drive_of(p[i]);
-                right[i] = [node.drive - drive];
+                right[i] = node.drive - drive;
                 (node.drive_by_y, -slope)
             } else {
-                right[i] = [p[i] - node.phi];
+                right[i] = p[i] - node.phi;
                 (-node.phi_by_y, 1.0)
             };
-            matrix[i] = WEIGHTS[i].map(|weight| h * weight * by_y);
-            matrix[i][i] += own;
+            for (j, weight) in WEIGHTS[i].iter().enumerate() {
+                matrix[(i, j)] = h * weight * by_y;
+            }
+            matrix[(i, i)] += own;
         }
-        let change = solved(matrix, right)?;
+        let change = matrix.lu().solve(&right)?;
         let mut size = 0.0_f64;
         for (i, p) in p.iter_mut().enumerate() {
-            let mut next = *p - change[i][0];
+            let mut next = *p - change[i];
             if next.is_nan() {
                 return None;
             }

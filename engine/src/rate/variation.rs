@@ -8,12 +8,13 @@
 //! derivatives of the numbers that the pull has, whatever their error. One stretch of an edge that opens, and the rest before it.
 
 use super::equation::{At, Equation, Held};
-use super::radau::{STAGES, WEIGHTS, solved};
+use super::radau::{STAGES, WEIGHTS};
 use super::record::Moment;
 pub use super::record::{Moved, VALUES};
 use super::step::Step;
 use crate::elementary::ln;
 use crate::problem::Control;
+use nalgebra::SMatrix;
 use std::f64::consts::TAU;
 
 /// The place of γ among them.
@@ -121,22 +122,26 @@ impl<'a> Variation<'a> {
     /// The changes of the moments of a step; not numbers where there are none.
     pub fn step(&mut self, step: &Step) -> [Moved; STAGES] {
         let h = step.length;
-        let (mut matrix, mut right) = ([[0.0; STAGES]; STAGES], [[0.0; VALUES]; STAGES]);
+        let mut matrix = SMatrix::<f64, STAGES, STAGES>::zeros();
+        let mut right = SMatrix::<f64, STAGES, VALUES>::zeros();
         for (i, node) in step.nodes.iter().enumerate() {
             // A row that is steep would drown the others.
             let share = 1.0 / (1.0 + (h * WEIGHTS[i][i] * node.phi_by_y).abs());
             let steepness = share * node.phi_by_y;
-            matrix[i] = WEIGHTS[i].map(|weight| -h * weight * steepness);
-            matrix[i][i] += share;
-            let of_phi = self.of_phi(node);
-            right[i] = std::array::from_fn(|value| share * of_phi[value] + steepness * self.eta[value]);
+            for (j, weight) in WEIGHTS[i].iter().enumerate() {
+                matrix[(i, j)] = -h * weight * steepness;
+            }
+            matrix[(i, i)] += share;
+            for (value, of_phi) in self.of_phi(node).into_iter().enumerate() {
+                right[(i, value)] = share * of_phi + steepness * self.eta[value];
+            }
         }
-        let Some(slopes) = solved(matrix, right) else {
+        let Some(slopes) = matrix.lu().solve(&right) else {
             self.eta = [f64::NAN; VALUES];
             return [[[f64::NAN; 3]; VALUES]; STAGES];
         };
         let eta = |i: usize| -> [f64; VALUES] {
-            let along = |value: usize| (0..STAGES).map(|j| WEIGHTS[i][j] * slopes[j][value]).sum::<f64>();
+            let along = |value: usize| (0..STAGES).map(|j| WEIGHTS[i][j] * slopes[(j, value)]).sum::<f64>();
             std::array::from_fn(|value| self.eta[value] + h * along(value))
         };
         let etas: [[f64; VALUES]; STAGES] = std::array::from_fn(eta);

@@ -1,34 +1,24 @@
 //! Whether the force is a constant where the bodies are apart, but for its noise.
 //!
-//! The noise there may be correlated from row to row: n rows count as n/τ. False alarms: slope 3 in 1000, levels 1 in 1000.
+//! The noise there may be correlated from row to row: n rows count as n/τ. False alarms: 1 in 1000.
 
 use super::super::chance::beyond_t;
-use super::super::problem::{Problem, Target};
+use super::super::problem::Problem;
 use super::super::scatter::Scatter;
 use super::super::solve::Solved;
 use super::super::verdict::Reason;
 use super::ROUNDING;
-use super::scores::score;
-use crate::measured::Abscissa;
 use crate::units::number::short;
-use nalgebra::DMatrix;
 
-/// The share of right fits that the test of levels flags.
+/// The share of right fits that are flagged.
 const FALSE_ALARM: f64 = 1e-3;
-/// And that of slopes, which move the work of adhesion by more of its errors than they have themselves.
-const OF_SLOPES: f64 = 3e-3;
 /// Rows apart of a branch, at least.
 const FEWEST: usize = 8;
 /// Rows apart that count as fewer are a drift, not noise: it is the same in contact, and nothing says how large.
 const COUNTED: f64 = 4.0;
 
 /// What the rows apart say against the fit.
-pub(super) fn of_apart(
-    problem: &Problem,
-    solved: &Solved,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-) -> Vec<Reason> {
+pub(super) fn of_apart(problem: &Problem, solved: &Solved, scatter: &Scatter) -> Vec<Reason> {
     let mut reasons = Vec::new();
     let tau = scatter.correlation.rows();
     let counted = scatter.apart as f64 / tau;
@@ -43,31 +33,8 @@ pub(super) fn of_apart(
             ),
         ));
     }
-    reasons.extend(slope(problem, solved, scatter, inner));
     reasons.extend(levels(problem, solved, tau));
     reasons
-}
-
-/// A slope over x: in all rows, since those apart alone tell it by a short lever.
-fn slope(
-    problem: &Problem,
-    solved: &Solved,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-) -> Option<Reason> {
-    let is_free = problem.parameters.iter().any(|p| p.target == Target::Tilt);
-    if problem.abscissa == Abscissa::Radius || is_free || !problem.data.iter().any(|datum| datum.free) {
-        return None;
-    }
-    let z = problem.tilted(&solved.minimum.parameters)?;
-    let [_, t] = score(problem, solved, scatter, inner?, &z, None)?;
-    (beyond_t(t, scatter.degrees) < OF_SLOPES).then(|| {
-        let sentence = format!(
-            "a force with a slope over x, in contact and apart, describes the points better ({} standard errors): free data.tilt",
-            short(t.abs(), 2)
-        );
-        Reason::new("tilt", t, sentence)
-    })
 }
 
 /// Forces that differ between the branches.

@@ -1,4 +1,4 @@
-//! Whether another law would fit better: a gap that is no paraboloid, an adhesion that has a range.
+//! Whether another law would fit better: a baseline with a slope, a gap that is no paraboloid, an adhesion that has a range.
 //!
 //! ```text
 //! r(n) = r + z n,     n = −z⊥ᵀr/|z⊥|²,     t = n |z⊥|/s,     |z⊥|² = zᵀz − (Jᵀz)ᵀ (JᵀJ)⁻¹ Jᵀz
@@ -7,7 +7,7 @@
 //! n is what the law has more than the model, 0 where the model holds; z is how the residuals change with it. What the free values take
 //! of it is left out by z⊥, so the test sees what a trend in fitted values does not. s is the noise of neighbours, or that of the rows by
 //! which z is told, whichever is more. C. R. Rao, Proc.
-//! Camb. Phil. Soc. 44, 50 (1948). False alarms: 1 in 1000.
+//! Camb. Phil. Soc. 44, 50 (1948). False alarms: 1 in 1000, of slopes 3.
 
 use super::super::chance::beyond_t;
 use super::super::least_squares::LeastSquares;
@@ -20,7 +20,7 @@ use super::ROUNDING;
 use crate::elementary::pow;
 use crate::gap::Shape;
 use crate::gap::shapes::PowerLaw;
-use crate::measured::Segment;
+use crate::measured::{Abscissa, Segment};
 use crate::problem::Groups;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
@@ -28,6 +28,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// The share of right fits that each test flags.
 const FALSE_ALARM: f64 = 1e-3;
+/// That of slopes, which move the work of adhesion by more of its errors than they have themselves.
+const FALSE_SLOPES: f64 = 3e-3;
 /// Residuals count as so many s at most.
 const MOST: f64 = 3.0;
 pub(super) const MOST_OF_NEIGHBOURS: f64 = 4.0;
@@ -67,6 +69,28 @@ pub(super) fn score(
     let variance = variance * scatter.correlation.rows();
     let t = n * left / variance.sqrt();
     (left > 1e-9 * z.norm_squared() && t.is_finite()).then_some([n, t])
+}
+
+/// A force with a slope over x. Rows apart alone would tell it by a short lever.
+pub(super) fn of_tilt(
+    problem: &Problem,
+    solved: &Solved,
+    scatter: &Scatter,
+    inner: Option<&DMatrix<f64>>,
+) -> Option<Reason> {
+    let is_free = problem.parameters.iter().any(|parameter| parameter.target == Target::Tilt);
+    if problem.abscissa == Abscissa::Radius || is_free || !problem.data.iter().any(|datum| datum.free) {
+        return None;
+    }
+    let z = problem.tilted(&solved.minimum.parameters)?;
+    let [_, t] = score(problem, solved, scatter, inner?, &z, None)?;
+    (beyond_t(t, scatter.degrees) < FALSE_SLOPES).then(|| {
+        let sentence = format!(
+            "a force with a slope over x, in contact and apart, describes the points better ({} standard errors): free data.tilt",
+            short(t.abs(), 2)
+        );
+        Reason::new("tilt", t, sentence)
+    })
 }
 
 /// A gap that is no paraboloid: h goes with r^(2 + n).

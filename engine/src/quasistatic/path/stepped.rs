@@ -26,7 +26,7 @@ const NEAREST: f64 = 2e-3;
 const HALVINGS: usize = 20;
 
 /// A gap that is nothing, in waves.
-const ROUNDING: f64 = 1e-11;
+pub const ROUNDING: f64 = 1e-11;
 
 /// Crests that may touch one after the other within a step.
 const CRESTS: usize = 8;

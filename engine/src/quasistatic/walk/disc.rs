@@ -11,6 +11,7 @@ use crate::progress::Unwatched;
 use crate::quasistatic::curve::{Curve, settings};
 use crate::quasistatic::jump::{self, Run};
 use crate::quasistatic::monotone::{Limit, Monotone, Turn};
+use crate::quasistatic::path::stepped::ROUNDING;
 use crate::quasistatic::path::{Event, Losses};
 use crate::quasistatic::{Point, energy, landscape};
 use crate::ritz::{self, NewtonSettings};
@@ -24,9 +25,6 @@ const NEAR: f64 = 0.5;
 
 /// Within this share of its radius the walker stands on a stop.
 const LEFT: f64 = 1e-12;
-
-/// A gap that is nothing, in waves.
-const ROUNDING: f64 = 1e-11;
 
 /// How often the place of a touch is narrowed.
 const ROUNDS: usize = 80;
