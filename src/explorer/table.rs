@@ -16,7 +16,7 @@ use super::script::arguments::{
     takes, theory, travelled, view,
 };
 use super::script::offers::{
-    CONTROLS, assignments_of, axes_of, branches_of, curves, documents, names, pins_of, places, presets,
+    assignments_of, axes_of, branches_of, controls, curves, documents, names, pins_of, places, presets,
     quantities, theories, views, words,
 };
 use super::update::files::save_back;

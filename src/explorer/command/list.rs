@@ -45,9 +45,9 @@ macro_rules! each_command {
             "the branches of the walk: what each ended with, and back to it"
             { takes: takes("branch", branch).listing(branches_of) }
         Restart "restart" "Home" "start" walker_or_no_curve Curve Yes "start again" { words: "reset", run: restart }
-        Control "control" "c" "control" always Curve Yes "control the displacement, the force, or a spring's far end"
-            { words: "spring stiffness load grips device", run: change_control,
-            takes: takes("control", |rest| rest.assigned("a control", "path.control")).offering(|_| words(CONTROLS)) }
+        Control "control" "c" "control" always Curve Yes "what the device prescribes: displacement, force, or stiffness"
+            { words: "device", run: change_control,
+            takes: takes("control", |rest| rest.assigned("a control", "path.control")).offering(controls) }
     }
     "Change the problem" {
         Less "less" "<" "less" parameter InOrder Selected("KEY=VALUE")

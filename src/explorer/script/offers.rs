@@ -22,7 +22,9 @@ use pulloff_engine::units::Quantity;
 pub(super) const PICTURES: [Picture; 2] = [Picture::Figure(None), Picture::Screen];
 
 /// What a device can prescribe.
-pub const CONTROLS: [&str; 3] = ["displacement", "force", "stiffness="];
+const CONTROLS: [&str; 3] = ["displacement", "force", "stiffness="];
+/// And what each is.
+pub const DEVICES: [&str; 3] = ["fixed grips hold δ", "a dead load holds P", "a spring holds its far end"];
 
 /// The names of what is in a folder, which is named with its last `/`, as a line names them; folders end with `/`.
 pub type Files<'a> = &'a dyn Fn(&str) -> Vec<String>;
@@ -58,6 +60,10 @@ impl Offer {
 /// Words that say what they are.
 pub fn words<'a>(words: impl IntoIterator<Item = &'a str>) -> Vec<Offer> {
     words.into_iter().map(|word| Offer::new(word, "")).collect()
+}
+
+pub(in crate::explorer) fn controls(_: &Typing<'_>) -> Vec<Offer> {
+    CONTROLS.iter().zip(DEVICES).map(|(word, says)| Offer::new(*word, says)).collect()
 }
 
 pub(in crate::explorer) fn places(_: &Typing<'_>) -> Vec<Offer> {

@@ -171,6 +171,8 @@ mod tests {
             ("A 0.003", "set gap.amplitude=0.003", true),
             ("A=0.003", "set gap.amplitude=0.003", true),
             ("wavelength", "set gap.wavelength=", false),
+            ("spring", "control stiffness=", false),
+            ("dead load", "control force", true),
             ("half step", "halve-step", true),
             ("set gap.am", "set gap.amplitude=", false),
             ("set gap.amplitude=1 path.contr", "set gap.amplitude=1 path.control=", false),

@@ -1,7 +1,7 @@
 //! A list to choose from: the arrows go through it, text typed keeps the lines that have it.
 
 use super::state::App;
-use crate::explorer::script::offers::Typing;
+use crate::explorer::script::offers::{DEVICES, Typing};
 use crate::explorer::script::parse;
 use crate::explorer::table::{Row as CommandRow, row_of};
 use crate::explorer::{Command, Effect, Id, Panel, reach};
@@ -95,11 +95,12 @@ impl App {
             _ => 0,
         };
         let set = |word: &str| Action::Command(Command::Set { key: row.key.clone(), text: word.to_owned() });
+        let [grips, load, spring] = DEVICES;
         let items = vec![
-            Item::new("displacement  fixed grips hold \u{3b4}", set("displacement")),
-            Item::new("force         a dead load holds P", set("force")),
+            Item::new(format!("displacement  {grips}"), set("displacement")),
+            Item::new(format!("force         {load}"), set("force")),
             Item::new(
-                "stiffness ... a spring holds its far end",
+                format!("stiffness ... {spring}"),
                 Action::Prompt(Box::new(self.value_prompt(row, value))),
             ),
         ];
