@@ -3,7 +3,7 @@
 //! ```text
 //! σ_P = median |P_i − P_{i+1}| / 0.954                 of the free part, for normal noise
 //! σ_P = √(Σ (P_i − P_{i+1})² / 2n)                     of a force in steps, whose median is a whole number of them; at least a step/√12
-//! σ_P = median |P_i − line through neighbours| / …      without one, of the rows in contact
+//! σ_P = median |P_i − line through neighbours| / …      without one, of the rows in contact, over x; of radii with times over these
 //! σ_x = max(last digit, median |x_{i−1} − 2x_i + x_{i+1}| / 1.652)    both at least 1e-4 of their range
 //! ```
 
@@ -25,15 +25,25 @@ pub(super) fn noise(
 ) -> Noise {
     let (mut forces, mut ways, mut radii) = (Vec::new(), Vec::new(), Vec::new());
     let mut in_contact = Vec::new();
+    let mut has_clock = false;
     for (branch, in_order) in list {
         // Nothing is known of radii where the bodies are apart: in contact they vary slowly with what they are measured with.
         let touching =
-            in_order.iter().filter(|point| if of_radius { point.x > 0.0 } else { point.radius > 0.0 });
-        let with = |point: &Point| if of_radius { [point.force, point.x] } else { [point.x, point.radius] };
-        let (x, s): (Vec<f64>, Vec<f64>) = touching.map(with).map(|[x, s]| (x, s)).unzip();
-        radii.extend(scatter_over(&x, &s));
-        let (x, force): (Vec<f64>, Vec<f64>) = branch.attached.iter().map(|p| (p.x, p.force)).unzip();
-        in_contact.extend(scatter_over(&x, &force));
+            || in_order.iter().filter(|point| if of_radius { point.x > 0.0 } else { point.radius > 0.0 });
+        let over = |x: fn(&Point) -> f64, y: fn(&Point) -> f64| {
+            let (x, y): (Vec<f64>, Vec<f64>) = touching().map(|point| (x(point), y(point))).unzip();
+            scatter_over(&x, &y)
+        };
+        if of_radius && touching().all(|point| point.time.is_finite()) {
+            // A clock has no noise: over time the radius and the force tell each their own.
+            has_clock = true;
+            radii.extend(over(|point| point.time, |point| point.x));
+            in_contact.extend(over(|point| point.time, |point| point.force));
+        } else {
+            radii.extend(if of_radius { over(|p| p.force, |p| p.x) } else { over(|p| p.x, |p| p.radius) });
+            let (x, force): (Vec<f64>, Vec<f64>) = branch.attached.iter().map(|p| (p.x, p.force)).unzip();
+            in_contact.extend(scatter_over(&x, &force));
+        }
         let mut rows: Vec<usize> = branch.free.iter().map(|point| point.row).collect();
         rows.sort_unstable();
         let free: Vec<&Point> =
@@ -52,8 +62,8 @@ pub(super) fn noise(
         median(forces).map(|off| off / 0.954)
     };
     let apart = of_forces.filter(|_| is_known);
-    // Of radii alone the scatter has that of the force in it: both cannot be told where neither is known.
-    let known = apart.is_some() || given[1].is_some();
+    // Of radii over forces the scatter has that of the force in it: both cannot be told where neither is known.
+    let known = apart.is_some() || given[1].is_some() || has_clock;
     let of_ways = || median(ways).map(|way| way / 1.652);
     let ways = if of_radius { radius.filter(|_| known) } else { of_ways() };
     let of = |found: Option<f64>, origin| found.map(|found| (found, origin));

@@ -1,7 +1,7 @@
 //! Other models than that of adhesion at the edge alone: how their paths move with their values, and which the points tell apart.
 
 use super::bodies::State;
-use super::device::{By, Peel};
+use super::device::{By, Peel, Sample};
 use super::kinds::{DOUBTFUL, Made, plain};
 use super::record::{Random, Record, Seen};
 use super::trial::{Outcome, fitted, made, options, outcome, preset};
@@ -116,6 +116,9 @@ fn a_range_that_the_points_do_not_show_is_not_determined() {
     assert!(ranged.direction.as_ref().is_some_and(|why| why.contains("how far the adhesion reaches")));
 }
 
+/// Rows after the last contact.
+const APART: u32 = 40;
+
 /// A pull of a soft ball on glass, and a preset that knows its rate and device, with guesses of the rest.
 struct Pulled {
     peel: Peel,
@@ -126,7 +129,16 @@ struct Pulled {
 impl Pulled {
     fn new(peel: Peel, seen: Seen, [rows, noise]: [f64; 2], seed: u64) -> Self {
         let mut random = Random::new(seed);
-        let samples = peel.samples(rows as usize, 0.1, By::Time);
+        let mut samples = peel.samples(rows as usize, 0.1, By::Time);
+        let (last, before) = (samples[samples.len() - 1], samples[samples.len() - 2]);
+        // The device goes on, the bodies apart.
+        samples.extend((1..=APART).map(|i| {
+            let further = f64::from(i);
+            let [time, position] = [[last.time, before.time], [last.position, before.position]]
+                .map(|[last, before]| last + further * (last - before));
+            let state = State { approach: position, force: 0.0, radius: 0.0 };
+            Sample { time, position, state, ..last }
+        }));
         let most = |of: &dyn Fn(&State) -> f64| {
             samples.iter().map(|sample| of(&sample.state).abs()).fold(0.0, f64::max)
         };
@@ -139,7 +151,8 @@ impl Pulled {
         );
         let mut record = Record::of(&samples, seen).noisy(force, &mut random);
         record.has_times = true;
-        let record = record.changed(|_, at, force| [at + x * random.normal(), force]);
+        let record =
+            record.changed(|_, at, force| [if at == 0.0 { 0.0 } else { at + x * random.normal() }, force]);
         let preset = format!(
             "format = 1\nunits = \"SI\"\n[material]\neffective_modulus = {:e}\nwork_of_adhesion = {:e}\n[edge]\nreference_speed = {:e}\n\
              exponent = 0.4\n[gap]\nshape = \"sphere\"\nradius_of_curvature = {:e}\n[path]\ncontrol = {{ stiffness = {:e} }}\nrate = {:e}\n\
@@ -185,27 +198,38 @@ const LENS: Peel = Peel {
     begin: 6e-4,
 };
 
-/// Sets whose pulls are fitted.
-fn laws(numbers: Range<u64>) -> [usize; 2] {
-    let (mut held, mut all) = (0, 0);
+/// How often γ, v₀ and n of sets lie in their intervals, and the root of the mean square of what n is off.
+fn laws(seen: Seen, numbers: Range<u64>) -> ([usize; 3], f64) {
+    let (mut held, mut square) = ([0; 3], 0.0);
+    let count = (numbers.end - numbers.start) as f64;
     for number in numbers {
-        let found =
-            Pulled::new(LENS, Seen::Radius, [300.0, 0.003], number).fitted(&["gamma", "v0", "edge.exponent"]);
-        println!("{number}: {} {:?} {:?} {:?}", found.verdict, found.reasons, found.found, found.said.last());
-        let [_, _, n] = &found.found[..] else { panic!("{found:#?}") };
-        assert!((n.value - 0.5).abs() < 0.03, "{found:#?}");
-        all += 1;
-        held += usize::from(found.found.iter().all(|found| found.inside == Some(true)));
+        let found = Pulled::new(LENS, seen, [300.0, 0.003], number).fitted(&["gamma", "v0", "edge.exponent"]);
+        let told: Vec<_> = found.found.iter().map(|found| (found.value, found.off)).collect();
+        println!("{number}: {} {:?} {told:?}", found.verdict, found.reasons);
+        assert!(found.is_trusted() && found.off() < 4.0, "{found:#?}");
+        held.iter_mut()
+            .zip(&found.found)
+            .for_each(|(held, of)| *held += usize::from(of.inside == Some(true)));
+        square += (found.found[2].value - LENS.exponent).powi(2) / count;
     }
-    [held, all]
+    (held, square.sqrt())
 }
 
 #[test]
-#[ignore = "an hour without optimization; from the guesses here the first set ends as not determined"]
+#[ignore = "minutes without optimization; three of them are below"]
 fn the_laws_of_thirty_pulls_lie_within_their_errors() {
-    let [held, all] = laws(0..30);
-    println!("{held} of {all}");
-    assert!(held >= 25, "{held} of {all}");
+    // Fewer than 26 of 30 in a 95 % interval are a chance of one in sixty. The force over the approach tells the law better than radii do.
+    for (seen, most) in [(Seen::Radius, 0.02), (Seen::Approach, 0.01)] {
+        let (held, off) = laws(seen, 0..30);
+        println!("{seen:?}: {held:?} of 30, n off by {off}");
+        assert!(held.iter().all(|held| *held >= 26) && off < most, "{seen:?}: {held:?} {off}");
+    }
+}
+
+#[test]
+fn the_laws_of_three_pulls_lie_within_their_errors() {
+    let (_, off) = laws(Seen::Approach, 30..33);
+    assert!(off < 0.01, "{off}");
 }
 
 #[test]
