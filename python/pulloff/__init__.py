@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import os
 from operator import index
-from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Tuple, Union
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from . import _engine
 from ._afm import AfmCurve, read_afm
@@ -46,7 +46,7 @@ from .errors import (
     StartError,
     UnstableStart,
 )
-from .results import Fit, Map, Path, Pull, Speeds, Stability, Sweep, Trace
+from .results import Fit, Map, Path, Pull, Speeds, Stability, Sweep, Together, Trace
 
 __version__ = _engine.__version__
 
@@ -82,8 +82,10 @@ __all__ = [
     "StartError",
     "Sweep",
     "Table",
+    "Together",
     "Trace",
     "UnstableStart",
+    "fit_together",
     "presets",
     "quantities",
     "read_afm",
@@ -111,6 +113,46 @@ class Quantity(NamedTuple):
 def quantities() -> List[Quantity]:
     """What a sweep can compute."""
     return [Quantity(*row) for row in _engine.quantities()]
+
+
+def fit_together(
+    problems: Sequence[Problem],
+    free: Union[str, Sequence[str], None] = None,
+    *,
+    robust: bool = True,
+    scan: bool = True,
+    progress: Progress = None,
+) -> Together:
+    """One law for several measured curves: the free values of material, gap, edge and path are those of all.
+
+    Parameters
+    ----------
+    problems : sequence of Problem
+        Two or more, each with its own measured curve in ``data.file`` and, where the edge has a speed, its own ``path.rate`` unless
+        the times of the curve say it. What ``data.*`` says is each one's own.
+    free : sequence of str, optional
+        The keys to fit; those of the first problem's ``data.free`` when left out.
+    robust : bool
+        Whether points far away count linearly, not squared.
+    scan : bool
+        Whether starts other than the problems' own values are tried.
+
+    Raises
+    ------
+    NotDetermined
+        The curves do not determine the values together; the sentence says which, and ``result`` is the fit.
+    FitError, DataError
+        It came to nothing; the points, or what is asked of them, are refused.
+    """
+    keys = [free] if isinstance(free, str) else None if free is None else list(free)
+    natives = [problem._native for problem in problems]
+    with told(progress, "fit") as tell:
+        document, native, direction = _engine.fitted_together(natives, keys, robust, scan, tell)
+    first = problems[0]
+    result = Together(document, first._of(native, first._source, first._base))
+    if direction is not None:
+        raise NotDetermined(direction, result=result)
+    return result
 
 
 def sweep(

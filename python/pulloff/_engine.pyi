@@ -60,6 +60,9 @@ def presets() -> Dict[str, str]: ...
 def fitted(
     problem: Problem, data: Optional[Tuple[str, bytes]], wanted: Dict[str, Any], progress: _Tell
 ) -> Tuple[Document, Problem, str, Optional[str], str, Optional[str]]: ...
+def fitted_together(
+    problems: List[Problem], free: Optional[List[str]], robust: bool, scan: bool, progress: _Tell
+) -> Tuple[Document, Problem, Optional[str]]: ...
 def speeds(
     problem: Problem,
     data: Optional[Tuple[str, bytes]],

@@ -475,9 +475,9 @@ class Problem:
             Rows in this range alone are used, as they are in the data; None leaves an end open.
         separate : bool
             Whether approach and retraction have a work of adhesion each.
-        model : {"short-range", "dugdale"} or a sequence of them, optional
-            How the adhesion acts: at the edge of contact alone, or within a range, whose ``material.cohesive_strength`` is then free
-            too; ``material.adhesion`` of the problem when left out. Of several models the best fit is returned, and
+        model : {"short-range", "dugdale", "rate"} or a sequence of them, optional
+            How the adhesion acts: at the edge of contact alone, within a range, whose ``material.cohesive_strength`` is then free
+            too, or so that it grows with the speed of the edge, the keys of ``edge`` free; ``material.adhesion`` of the problem when left out. Of several models the best fit is returned, and
             :attr:`Fit.models` says how the others compare.
         robust : bool
             Whether points far away count linearly, not squared.

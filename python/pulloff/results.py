@@ -369,8 +369,8 @@ class Map(Result):
         return ax
 
 
-class Fit(Result):
-    """A problem fitted to a measured curve; each column has the shape (values,)."""
+class _Fitted(Result):
+    """Fitted values; each column has the shape (values,)."""
 
     key: Texts
     value: Floats
@@ -382,15 +382,10 @@ class Fit(Result):
 
     problem: Any
     """The :class:`pulloff.Problem` with the fitted values."""
-    models: Optional[Dict[str, Any]]
-    """Where several models were fitted: ``best``, the ``fits`` of all, ``pairs`` of the best and each other with what tells them apart,
-    and ``refused``, those that could not be fitted. None where one was."""
 
-    def __init__(self, document: _engine.Document, problem: Any, points: str, models: Optional[str] = None) -> None:
+    def __init__(self, document: _engine.Document, problem: Any) -> None:
         super().__init__(document)
         self.problem = problem
-        self.models = None if models is None else json.loads(models)
-        self._points = points
 
     def __getattr__(self, name: str) -> Any:
         # What else the document says: chi_squared, correlations, sigma.
@@ -406,6 +401,51 @@ class Fit(Result):
         return dict(zip(self.key.tolist(), self.value.tolist()))
 
     @property
+    def errors(self) -> Dict[str, float]:
+        """Their standard errors, which hold only where :attr:`verdict` is ``"describes"``."""
+        return dict(zip(self.key.tolist(), self.standard_error.tolist()))
+
+    @property
+    def verdict(self) -> str:
+        """``"describes"``, ``"does-not-describe"``, ``"not-determined"`` or ``"not-converged"``."""
+        return str(self._said()["verdict"])
+
+    def __eq__(self, other: object) -> bool:
+        return super().__eq__(other) and (not isinstance(other, _Fitted) or self.problem == other.problem)
+
+    __hash__ = None
+
+
+class Together(_Fitted):
+    """One law fitted to several measured curves."""
+
+    @property
+    def collapse(self) -> Dict[str, Any]:
+        """Whether the curves follow one law: ``collapses``, ``chi_squared``, ``values``, ``chance`` and ``sentence``."""
+        return dict(self._said()["collapse"])
+
+    @property
+    def runs(self) -> List[Dict[str, Any]]:
+        """Each curve: its ``fit`` under the one law, as :class:`Fit` says it, and the values that it has ``alone``."""
+        return list(self._said()["runs"])
+
+    def _title(self) -> str:
+        return f"{len(self.runs)} curves, {self.verdict}: {self.collapse['sentence']}"
+
+
+class Fit(_Fitted):
+    """A problem fitted to a measured curve."""
+
+    models: Optional[Dict[str, Any]]
+    """Where several models were fitted: ``best``, the ``fits`` of all, ``pairs`` of the best and each other with what tells them apart,
+    and ``refused``, those that could not be fitted. None where one was."""
+
+    def __init__(self, document: _engine.Document, problem: Any, points: str, models: Optional[str] = None) -> None:
+        super().__init__(document, problem)
+        self.models = None if models is None else json.loads(models)
+        self._points = points
+
+    @property
     def rows(self) -> Dict[str, Any]:
         """How many rows there are by branch, ``"approach"`` and ``"retraction"``, and part: ``"contact"``, ``"free"``, within the
         ``"jump"``, and ``"dropped"``; and of ``"pause"``."""
@@ -418,19 +458,9 @@ class Fit(Result):
         return Table(_columns_of(self._points))
 
     @property
-    def errors(self) -> Dict[str, float]:
-        """Their standard errors, which hold only where :attr:`verdict` is ``"describes"``."""
-        return dict(zip(self.key.tolist(), self.standard_error.tolist()))
-
-    @property
     def intervals(self) -> Dict[str, Optional[List[float]]]:
         """Their 95 % intervals by Student's t; None where they are not determined, or the model does not describe the points."""
         return {of["key"]: of["interval"] if of["error_holds"] else None for of in self._said()["parameters"]}
-
-    @property
-    def verdict(self) -> str:
-        """``"describes"``, ``"does-not-describe"``, ``"not-determined"`` or ``"not-converged"``."""
-        return str(self._said()["verdict"])
 
     @property
     def reasons(self) -> List[Dict[str, Any]]:
@@ -466,11 +496,6 @@ class Fit(Result):
     def _unit(self, quantity: str, symbol: str) -> str:
         unit = {"length": "m", "force": "N"}[quantity] if self.problem.to_dict().get("units") == "SI" else None
         return f"{symbol} ({unit})" if unit else symbol
-
-    def __eq__(self, other: object) -> bool:
-        return super().__eq__(other) and (not isinstance(other, Fit) or self.problem == other.problem)
-
-    __hash__ = None
 
     def _title(self) -> str:
         said = self._said()

@@ -4,11 +4,11 @@ use crate::document::{Document, Report};
 use crate::errors;
 use crate::problem::Problem;
 use crate::running::long;
-use pulloff_engine::fit::{FitError, Model, Options, fit_models};
+use pulloff_engine::fit::{FitError, Model, Options, fit_models, fit_together};
 use pulloff_engine::measured::{Asked, Source, Span};
 use pulloff_engine::preset::{Invalid, Preset, Value as PresetValue, data as data_keys};
 use pulloff_engine::report;
-use pulloff_engine::report::fit::{FitReport, ModelsReport};
+use pulloff_engine::report::fit::{FitReport, ModelsReport, ParameterReport, TogetherReport};
 use pulloff_engine::report::residuals;
 use pulloff_engine::report::rows::{RowsError, Table};
 use pulloff_engine::report::speeds::{Pair, SpeedsError, SpeedsReport};
@@ -23,23 +23,42 @@ type Fitted = (Document, Problem, &'static str, Option<String>, String, Option<S
 /// The columns of a fit: a row for each value.
 const COLUMNS: [&str; 5] = ["key", "value", "standard_error", "start", "unit"];
 
+/// A row for each value.
+fn table(values: &[ParameterReport]) -> Table {
+    let rows = values.iter().map(|parameter| {
+        let error = parameter.standard_error.map_or(Value::Null, Value::from);
+        vec![
+            parameter.key.clone().into(),
+            parameter.value.into(),
+            error,
+            parameter.start.into(),
+            parameter.unit.into(),
+        ]
+    });
+    Table { columns: COLUMNS.map(str::to_owned).to_vec(), rows: rows.collect() }
+}
+
+impl Report for TogetherReport {
+    fn json(&self) -> Result<String, serde_json::Error> {
+        report::json(self)
+    }
+
+    fn table(&self) -> Result<Table, RowsError> {
+        Ok(table(&self.law))
+    }
+
+    fn warnings(&self) -> &[String] {
+        self.doubts.as_slice()
+    }
+}
+
 impl Report for FitReport {
     fn json(&self) -> Result<String, serde_json::Error> {
         report::json(self)
     }
 
     fn table(&self) -> Result<Table, RowsError> {
-        let rows = self.parameters.iter().map(|parameter| {
-            let error = parameter.standard_error.map_or(Value::Null, Value::from);
-            vec![
-                parameter.key.clone().into(),
-                parameter.value.into(),
-                error,
-                parameter.start.into(),
-                parameter.unit.into(),
-            ]
-        });
-        Ok(Table { columns: COLUMNS.map(str::to_owned).to_vec(), rows: rows.collect() })
+        Ok(table(&self.parameters))
     }
 
     fn warnings(&self) -> &[String] {
@@ -168,7 +187,6 @@ pub fn fitted(
 ) -> PyResult<Fitted> {
     let reading = [&wanted.columns, &wanted.segment, &wanted.free_part, &wanted.signs];
     let (name, preset) = attached(py, problem.get(), data, reading, wanted.skip, wanted.uncertain.as_ref())?;
-    let refused = |error: &dyn std::fmt::Display| errors::of_data(py, &format!("{name}: {error}"));
     let options = wanted.options(&preset);
     let model = |word: &String| {
         Model::of(word).ok_or_else(|| {
@@ -182,7 +200,19 @@ pub fn fitted(
         let fit = models.best().map(|(fit, _)| fit.clone()).ok_or(FitError::NoStart)?;
         Ok((fit, models))
     });
-    let made = made.map_err(|error| match error {
+    let (made, models) = made.map_err(|error| of_fit(py, &name, &error))?;
+    let report = FitReport::new(&name, &made, wanted.poisson);
+    let compared = ModelsReport::new(&name, &models, wanted.poisson);
+    let compared = (models.fits.len() > 1).then(|| report::json(&compared)).transpose();
+    let compared = compared.map_err(|error| errors::of_fit(py, &error.to_string()))?;
+    let (ended, direction) = (report.ended, report.direction.clone());
+    let beside = residuals::csv(&report.residuals);
+    Ok((Document::new(report), Problem { preset: made.preset }, ended, direction, beside, compared))
+}
+
+/// Why the points called `name` could not be fitted.
+fn of_fit(py: Python<'_>, name: &str, error: &FitError) -> PyErr {
+    match error {
         FitError::NoStart | FitError::Cancelled => errors::of_fit(py, &error.to_string()),
         FitError::NothingFree => errors::of_data(
             py,
@@ -191,14 +221,38 @@ pub fn fitted(
         FitError::NoData => {
             errors::of_data(py, "the problem has no measured curve of its own: give data, or set data.file")
         }
-        error => refused(&error),
-    })?;
-    let (made, models) = made;
-    let report = FitReport::new(&name, &made, wanted.poisson);
-    let compared = ModelsReport::new(&name, &models, wanted.poisson);
-    let compared = (models.fits.len() > 1).then(|| report::json(&compared)).transpose();
-    let compared = compared.map_err(|error| errors::of_fit(py, &error.to_string()))?;
-    let (ended, direction) = (report.ended, report.direction.clone());
-    let beside = residuals::csv(&report.residuals);
-    Ok((Document::new(report), Problem { preset: made.preset }, ended, direction, beside, compared))
+        error => errors::of_data(py, &format!("{name}: {error}")),
+    }
+}
+
+/// One law fitted to the own measured curves of `problems`: the document, the first problem with the law, and what is not determined.
+#[pyfunction]
+pub fn fitted_together(
+    py: Python<'_>,
+    problems: Vec<Bound<'_, Problem>>,
+    free: Option<Vec<String>>,
+    robust: bool,
+    scan: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(Document, Problem, Option<String>)> {
+    let presets: Vec<Preset> = problems.iter().map(|problem| problem.get().preset.clone()).collect();
+    let Some(first) = presets.get(1).and(presets.first()) else {
+        let text = format!("one law is fitted to two problems or more, and {} is given", presets.len());
+        return Err(errors::of_data(py, &text));
+    };
+    let free = free.unwrap_or_else(|| first.data.free().map(str::to_owned).collect());
+    let name = |run: usize| {
+        presets[run]
+            .data
+            .source
+            .as_ref()
+            .map_or_else(|| format!("problem {run}"), |source| source.name.clone())
+    };
+    let options = Options { free, robust, scan, ..Options::default() };
+    let made = long(py, progress, |progress| fit_together(&presets, &options, progress))?;
+    let made = made.map_err(|(run, error)| of_fit(py, &name(run), &error))?;
+    let names: Vec<String> = (0..presets.len()).map(name).collect();
+    let report = TogetherReport::new(&names, &made);
+    let direction = report.direction.clone();
+    Ok((Document::new(report), Problem { preset: made.preset }, direction))
 }

@@ -32,6 +32,7 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<problem::Problem>()?;
     module.add_function(wrap_pyfunction!(problem::presets, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fitted, module)?)?;
+    module.add_function(wrap_pyfunction!(fit::fitted_together, module)?)?;
     module.add_function(wrap_pyfunction!(fit::speeds, module)?)?;
     module.add_function(wrap_pyfunction!(problem::between, module)?)?;
     module.add_function(wrap_pyfunction!(problem::unit_of, module)?)?;

@@ -4,9 +4,11 @@ mod done;
 mod files;
 mod summary;
 mod table;
+mod together;
 
 use self::done::Done;
 use self::table::Table;
+use self::together::Several;
 use super::console::{Console, Messages};
 use super::format::{self, Format, FormatArgument};
 use super::jobs::Jobs;
@@ -23,6 +25,7 @@ use clap::{Args, ValueEnum};
 use pulloff_engine::fit::{FitError, Model, Models, Options, fit_models};
 use pulloff_engine::measured::asked::AskedError;
 use pulloff_engine::measured::{Asked, Span};
+use pulloff_engine::preset::edge::RATE;
 use pulloff_engine::preset::{Preset, Value, data, write};
 use pulloff_engine::progress::Progress;
 use pulloff_engine::text::{quote, show_path};
@@ -56,9 +59,12 @@ pub struct Arguments {
     #[arg(long, value_name = "KEY", value_parser = ["material.work_of_adhesion", "work_of_adhesion", "gamma"])]
     separate: Option<String>,
     /// Fit this model instead of material.adhesion: short-range, at the edge of contact alone; or dugdale, with a range, whose
-    /// `material.cohesive_strength` is then free. Of several, on one file of points, it is said which the points speak for
+    /// `material.cohesive_strength` is then free; or rate, by which adhesion grows with the speed of the edge, the keys of edge
+    /// free. Of several, on one file of points, it is said which the points speak for
     #[arg(long, value_name = "MODEL,...", value_delimiter = ',', value_parser = models())]
     model: Vec<Model>,
+    #[command(flatten)]
+    several: Several,
     #[command(flatten)]
     reading: Reading,
     /// Use rows in this range alone, as they are in the file: x=LO..HI or force=LO..HI (repeatable)
@@ -135,6 +141,17 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let sinks = arguments.sinks(&files, &loaded)?;
     let stop = Stop::catch()?;
     let said = arguments.said()?;
+    let rates = arguments.several.rates(&files, &loaded.preset)?;
+    if arguments.several.together {
+        return together::run(
+            arguments,
+            (&files, &loaded, &options),
+            (&said, &rates),
+            &console,
+            &sinks,
+            &stop,
+        );
+    }
     let mut done = Done::new(arguments, &console, sinks);
     let left = done.left(&files);
     let many = files.len() > 1;
@@ -143,6 +160,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         // Of many files each is a share of the whole, which is soon done.
         let bar = (!many).then(|| messages.bar(Some(&stop)));
         let progress = bar.as_ref().map_or(&stop as &dyn Progress, |bar| bar);
+        let said = of_file(&said, files.iter().position(|file| file == path), &rates);
         Some(one(path, &loaded, &said, (&options, &arguments.model), progress))
     };
     let bar = console.bar(None);
@@ -164,6 +182,33 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     done.end(many, &loaded, &stop)
 }
 
+/// What is said of one file, with its rate.
+fn of_file(
+    said: &[(&'static str, Value)],
+    number: Option<usize>,
+    rates: &[f64],
+) -> Vec<(&'static str, Value)> {
+    let rate = rates.get(number.unwrap_or(0)).or(rates.first().filter(|_| rates.len() == 1));
+    said.iter().cloned().chain(rate.map(|rate| (RATE, Value::Number(*rate)))).collect()
+}
+
+/// The preset with the points of a file, or with its own.
+fn with_points(path: &Path, loaded: &Loaded, said: &[(&'static str, Value)]) -> Result<Preset, Failure> {
+    let mut preset = loaded.preset.clone();
+    let other = Some(path).filter(|path| own(&preset).as_deref() != Some(path));
+    attach(&mut preset, other, said)?;
+    Ok(preset)
+}
+
+/// Why a file could not be fitted.
+fn refused(path: &Path, error: &FitError) -> Failure {
+    let named = format!("{}: {error}", show_path(path));
+    match error {
+        FitError::NoStart | FitError::Cancelled => Failure::Incomplete(named),
+        _ => Failure::Usage(named),
+    }
+}
+
 /// The fit to one file, or to the curve of the preset itself.
 fn one(
     path: &Path,
@@ -172,14 +217,8 @@ fn one(
     (options, models): (&Options, &[Model]),
     progress: &dyn Progress,
 ) -> Result<Models, Failure> {
-    let named = |error: &dyn std::fmt::Display| format!("{}: {error}", show_path(path));
-    let mut preset = loaded.preset.clone();
-    let other = Some(path).filter(|path| own(&preset).as_deref() != Some(path));
-    attach(&mut preset, other, said)?;
-    fit_models(&preset, models, options, progress).map_err(|error| match error {
-        FitError::NoStart | FitError::Cancelled => Failure::Incomplete(named(&error)),
-        error => Failure::Usage(named(&error)),
-    })
+    let preset = with_points(path, loaded, said)?;
+    fit_models(&preset, models, options, progress).map_err(|error| refused(path, &error))
 }
 
 impl Arguments {
@@ -195,6 +234,13 @@ impl Arguments {
             return Err(Failure::Usage(format!(
                 "--model: several models are compared on one file of points, and {} are given",
                 files.len()
+            )));
+        }
+        if self.several.together && (files.len() < 2 || self.model.len() > 1) {
+            return Err(Failure::Usage(format!(
+                "--together: one law and one model is fitted to two files or more, and {} files and {} models are given",
+                files.len(),
+                self.model.len().max(1)
             )));
         }
         if files.is_empty() {
@@ -223,7 +269,8 @@ impl Arguments {
         let inputs = files.iter().fold(inputs, |inputs, file| inputs.with("the points", file));
         let output = self.destination.path();
         let is_fitted = format::ending(output).is_some_and(|ending| ending == "toml");
-        let of_one = [(OUTPUT, is_fitted), ("--residuals", self.residuals.is_some())];
+        let of_one =
+            [(OUTPUT, is_fitted && !self.several.together), ("--residuals", self.residuals.is_some())];
         if let Some((option, _)) = of_one.into_iter().find(|(_, is_given)| *is_given && files.len() > 1) {
             return Err(Failure::Usage(format!(
                 "{option}: is of one file of points, and {} are given",
@@ -312,9 +359,9 @@ impl Arguments {
     fn fingerprint(&self, preset: &Preset) -> String {
         let Self { free, uncertain, changes, separate, model, reading, range, sigma_x, sigma_force, .. } =
             self;
-        let Self { robust, no_scan, .. } = self;
+        let Self { robust, no_scan, several: Several { rate, .. }, .. } = self;
         let said = format!(
-            "{free:?} {uncertain:?} {changes:?} {separate:?} {model:?} {reading:?} {range:?} {sigma_x:?} {sigma_force:?} {robust:?} {no_scan}"
+            "{free:?} {uncertain:?} {changes:?} {separate:?} {model:?} {reading:?} {range:?} {sigma_x:?} {sigma_force:?} {robust:?} {no_scan} {rate:?}"
         );
         sha256(format!("{said}\n{}", write(preset)).as_bytes())
     }

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
+use crate::fit::{SOFT, SPEEDS, pulled};
 use crate::support::home::{Ended, Home};
 use pulloff_engine::preset::{self, Files, read, read_in};
 use pulloff_engine::sweep::Spec;
@@ -50,8 +51,8 @@ fn blocks(page: &Path, language: &str) -> Vec<String> {
     text.split(&fence).skip(1).map(|rest| rest.split_once("\n```").unwrap().0.to_owned() + "\n").collect()
 }
 
-/// A folder with what a page takes for granted.
-fn folder(page: &str) -> Home {
+/// A folder with what a page and a block of it take for granted.
+fn folder(page: &str, block: &str) -> Home {
     let home = Home::new();
     home.file("SPEC.toml", SPEC);
     let cluster = fs::read_to_string(root().join("examples/cluster/sweep.toml")).unwrap();
@@ -65,6 +66,12 @@ fn folder(page: &str) -> Home {
         let lens = fs::read_to_string(root().join("presets/lens.toml")).unwrap();
         home.file("mine.toml", &lens.replace("shipped:lens.csv", "curve.csv"));
         home.file("curve.csv", &fs::read_to_string(root().join("presets/data/lens.csv")).unwrap());
+    }
+    if block.contains("slow.csv") {
+        home.file("soft.toml", SOFT);
+        for (rate, file) in SPEEDS {
+            pulled(&home, "soft.toml", rate, file);
+        }
     }
     home
 }
@@ -82,7 +89,7 @@ fn every_command_of_the_book_does_what_it_says() {
     let mut count = 0;
     for page in pages() {
         let name = page.file_name().unwrap().to_str().unwrap();
-        let all = blocks(&page, "sh").into_iter().map(|block| (folder(name), block));
+        let all = blocks(&page, "sh").into_iter().map(|block| (folder(name, &block), block));
         for (home, command) in all.flat_map(|(home, block)| commands(&block, home)) {
             count += 1;
             let path = format!("{}:/usr/bin:/bin", program.display());

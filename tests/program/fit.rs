@@ -5,6 +5,7 @@
 use crate::support::home::Home;
 use rustix::process::Signal;
 use serde_json::Value;
+use std::fmt::Write as _;
 use std::fs;
 
 const LENS: &str = include_str!("../../presets/data/lens.csv");
@@ -106,6 +107,96 @@ fn models_are_compared() {
     assert!(ended.err.contains("on one file of points"), "{}", ended.err);
     let ended = home.run(&["fit", "lens", "--model", "hertz"]);
     assert!(ended.status == 2 && ended.err.contains("dugdale"), "{}", ended.err);
+}
+
+/// A soft ball whose edge has a law.
+pub const SOFT: &str = "format = 1
+units = \"SI\"
+[material]
+effective_modulus = \"1.5 MPa\"
+work_of_adhesion = \"45 mJ/m^2\"
+[edge]
+reference_speed = \"1 um/s\"
+exponent = 0.5
+[gap]
+shape = \"sphere\"
+radius_of_curvature = \"10 mm\"
+[path]
+control = \"displacement\"
+start_contact_radius = \"600 um\"
+";
+
+/// Rates, and the files of pulls at them.
+pub const SPEEDS: [(&str, &str); 3] =
+    [("0.1um/s", "slow.csv"), ("1um/s", "middle.csv"), ("10um/s", "fast.csv")];
+
+/// The pull of a preset at a rate, 120 rows even in time and 30 after it, each as far beside the curve as a sine of its number takes it.
+pub fn pulled(home: &Home, preset: &str, rate: &str, file: &str) {
+    let ended = home.run(&["pull", preset, "--rate", rate, "--rows", "moments", "--format", "csv"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let cells = |line: &str| line.split(',').map(|cell| cell.parse().unwrap()).collect::<Vec<f64>>();
+    let moments: Vec<Vec<f64>> = ended.out.lines().skip(1).map(cells).collect();
+    let moments: Vec<[f64; 3]> =
+        moments.iter().filter(|row| row[3] > 0.0).map(|row| [row[1], row[4], row[5]]).collect();
+    let [end, from, _] = [moments[moments.len() - 1][0], moments[0][1], 0.0];
+    let speed = (from - moments[moments.len() - 1][1]) / end;
+    let most = moments.iter().map(|[.., force]| force.abs()).fold(0.0, f64::max);
+    let mut text = "time [s], approach [m], force [N]\n".to_owned();
+    for i in 0..150_u32 {
+        let time = f64::from(i) / 120.0 * end;
+        let after = moments.partition_point(|[at, ..]| *at <= time);
+        let force = moments.get(after).map_or(0.0, |[at, _, force]| {
+            let [before, _, first] = moments[after - 1];
+            first + (time - before) / (at - before) * (force - first)
+        });
+        let [one, other] = [f64::from(i).powi(2), f64::from(i).powi(3)].map(|x| (1.7 * x).sin());
+        let (approach, force) = (from - speed * time + 3e-8 * one, force + 4e-3 * most * other);
+        writeln!(text, "{time}, {approach}, {force}").unwrap();
+    }
+    home.file(file, &text);
+}
+
+#[test]
+fn three_speeds_are_fitted_together() {
+    let home = Home::new();
+    home.file("soft.toml", SOFT);
+    home.file("sticky.toml", &SOFT.replace("45 mJ", "54 mJ"));
+    for (rate, file) in SPEEDS {
+        pulled(&home, "soft.toml", rate, file);
+    }
+    pulled(&home, "sticky.toml", "10um/s", "other.csv");
+    let fit = |files: &[&str], more: &[&str]| {
+        let free = ["soft.toml", "--together", "--free", "gamma,v0,edge.exponent"];
+        home.run(&[&["fit"], files, &free, more].concat())
+    };
+    // The times say the rates.
+    let ended = fit(&["slow.csv", "middle.csv", "fast.csv"], &["--format=json", "-o", "law.toml"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let document: Value = serde_json::from_str(&ended.out).unwrap();
+    assert_eq!((&document["document"], &document["verdict"]), (&"fit-together".into(), &"describes".into()));
+    assert_eq!(document["collapse"]["collapses"], true, "{}", document["collapse"]);
+    let law = document["law"].as_array().unwrap();
+    for (of, (key, truth)) in law.iter().zip([
+        ("material.work_of_adhesion", 0.045),
+        ("edge.reference_speed", 1e-6),
+        ("edge.exponent", 0.5),
+    ]) {
+        let [value, error] = ["value", "standard_error"].map(|name| of[name].as_f64().unwrap());
+        assert!(of["key"] == key && (value - truth).abs() < 4.0 * error && error < 0.2 * truth, "{of}");
+    }
+    assert_eq!(document["runs"].as_array().unwrap().len(), 3);
+    let written = home.text("law.toml");
+    assert!(written.contains("reference_speed") && !written.contains("exponent = 0.5\n"), "{written}");
+    // One of another work of adhesion does not follow the law.
+    let ended = fit(&["slow.csv", "other.csv"], &[]);
+    assert_eq!(ended.status, 4, "{}", ended.err);
+    assert!(ended.out.contains("the runs do NOT follow one law"), "{}", ended.out);
+    let ended = fit(&["slow.csv"], &[]);
+    assert!(ended.status == 2 && ended.err.contains("two files or more"), "{}", ended.err);
+    let ended = fit(&["slow.csv", "fast.csv"], &["--rate", "1um/s,2um/s,3um/s"]);
+    assert!(ended.status == 2 && ended.err.contains("3 rates are given for 2 files"), "{}", ended.err);
+    let ended = fit(&["slow.csv", "fast.csv"], &["--residuals", "r.csv"]);
+    assert!(ended.status == 2 && ended.err.contains("--together"), "{}", ended.err);
 }
 
 /// The rows of this part, of one branch or of both.

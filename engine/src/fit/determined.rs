@@ -70,36 +70,13 @@ pub fn determined(problem: &Problem, solved: &Solved, scatter: &Scatter, robust:
     // What is known before counts as points do.
     let known = problem.of_priors() * factor.sqrt();
     let rows = at.jacobian.nrows();
-    let mut white = at.jacobian.clone().resize_vertically(rows + known.nrows(), 0.0);
-    white.view_mut((rows, 0), known.shape()).copy_from(&known);
-    let lengths: Vec<f64> = white.column_iter().map(|column| column.norm()).collect();
-    for (mut column, length) in white.column_iter_mut().zip(&lengths) {
-        if *length > 0.0 {
-            column /= *length;
-        }
-    }
-    let of_known = white.rows(rows, known.nrows()).into_owned();
-    let svd = white.svd(false, true);
-    let (Some(v), true) = (svd.v_t.as_ref(), p > 0) else {
-        return none;
-    };
-    let (most, least) = (svd.singular_values.max(), svd.singular_values.min());
-    let condition = if least > 0.0 { most / least } else { f64::INFINITY };
-    let weakest = svd.singular_values.imin();
-    // A direction in which the points say little is still known where a value is given with an error.
-    let given = (of_known * v.row(weakest).transpose()).norm_squared() > HALF * least * least;
-    let most = if given { LARGEST_WITH_GIVEN } else { LARGEST_CONDITION };
-    let refused = condition.is_nan() || condition > most || lengths.contains(&0.0);
-    if refused {
-        let direction: Vec<f64> =
-            (0..p).map(|j| if lengths[j] > 0.0 { v[(weakest, j)] / lengths[j] } else { 1.0 }).collect();
-        let words = words(problem, at, u, &direction);
+    let mut all = at.jacobian.clone().resize_vertically(rows + known.nrows(), 0.0);
+    all.view_mut((rows, 0), known.shape()).copy_from(&known);
+    let Some(White { condition, inner, weakest, .. }) = White::of(all, known.nrows()) else { return none };
+    let Some(inner) = inner else {
+        let words = words(&problem.preset, &problem.parameters, at, u, &weakest);
         return Determined { condition, direction: Some(words), ..none };
-    }
-    let inner = DMatrix::from_fn(p, p, |i, j| {
-        let sum: f64 = (0..p).map(|k| v[(k, i)] * v[(k, j)] / svd.singular_values[k].powi(2)).sum();
-        sum / (lengths[i] * lengths[j])
-    });
+    };
     let Sandwich { points, bread, noisy, spread } =
         sandwich(problem, solved, &inner, &scatter.correlation, robust);
     let known = problem.of_priors();
@@ -137,6 +114,51 @@ pub fn determined(problem: &Problem, solved: &Solved, scatter: &Scatter, robust:
     }
 }
 
+/// A Jacobian with columns of length 1.
+pub(super) struct White {
+    pub(super) condition: f64,
+    /// (JᵀJ)⁻¹; `None` where the condition is too large.
+    pub(super) inner: Option<DMatrix<f64>>,
+    /// How many directions it tells.
+    pub(super) rank: usize,
+    /// The direction of which it says least.
+    pub(super) weakest: Vec<f64>,
+}
+
+impl White {
+    /// Of a Jacobian whose last `known` rows are of what is known before; `None` without columns.
+    pub(super) fn of(mut jacobian: DMatrix<f64>, known: usize) -> Option<Self> {
+        let p = jacobian.ncols();
+        let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
+        for (mut column, length) in jacobian.column_iter_mut().zip(&lengths) {
+            if *length > 0.0 {
+                column /= *length;
+            }
+        }
+        let of_known = jacobian.rows(jacobian.nrows() - known, known).into_owned();
+        let svd = jacobian.svd(false, true);
+        let v = svd.v_t.filter(|_| p > 0)?;
+        let values = svd.singular_values;
+        let (most, least) = (values.max(), values.min());
+        let condition = if least > 0.0 { most / least } else { f64::INFINITY };
+        let weakest = values.imin();
+        // A direction in which the points say little is still known where a value is given with an error.
+        let given = (of_known * v.row(weakest).transpose()).norm_squared() > HALF * least * least;
+        let most = if given { LARGEST_WITH_GIVEN } else { LARGEST_CONDITION };
+        let refused = condition.is_nan() || condition > most || lengths.contains(&0.0);
+        let rank = values.iter().filter(|value| **value * LARGEST_CONDITION >= values.max()).count();
+        let inner = (!refused).then(|| {
+            DMatrix::from_fn(p, p, |i, j| {
+                let sum: f64 = (0..p).map(|k| v[(k, i)] * v[(k, j)] / values[k].powi(2)).sum();
+                sum / (lengths[i] * lengths[j])
+            })
+        });
+        let weakest =
+            (0..p).map(|j| if lengths[j] > 0.0 { v[(weakest, j)] / lengths[j] } else { 1.0 }).collect();
+        Some(Self { condition, inner, rank, weakest })
+    }
+}
+
 /// The standard deviation in σ by which all rows apart are off together, where the force is in steps:
 ///
 /// ```text
@@ -159,17 +181,17 @@ fn rounding(problem: &Problem, scatter: &Scatter, rows: usize) -> DVector<f64> {
 }
 
 /// What the covariance is made of.
-struct Sandwich {
+pub(super) struct Sandwich {
     /// `JᵀVRVJ`.
-    points: DMatrix<f64>,
+    pub(super) points: DMatrix<f64>,
     /// `JᵀΦJ`.
-    bread: DMatrix<f64>,
+    pub(super) bread: DMatrix<f64>,
     /// VJ.
     noisy: DMatrix<f64>,
     spread: Spread,
 }
 
-fn sandwich(
+pub(super) fn sandwich(
     problem: &Problem,
     solved: &Solved,
     inner: &DMatrix<f64>,
@@ -231,8 +253,13 @@ fn level(residuals: &[f64], p: usize, robust: bool) -> f64 {
 }
 
 /// `R +10 %, E* -4.7 %, γ -9.1 % together move the curve by less than its noise: fix one of them (only γ·R and E*·√R)`.
-fn words(problem: &Problem, at: &Evaluated, u: &[f64], direction: &[f64]) -> String {
-    let parameters = &problem.parameters;
+pub(super) fn words(
+    preset: &Preset,
+    parameters: &[Parameter],
+    at: &Evaluated,
+    u: &[f64],
+    direction: &[f64],
+) -> String {
     let largest = direction.iter().fold(0.0_f64, |most, d| most.max(d.abs()));
     // A length of the gap is what people know best; it leads where it does not lag.
     let leads = |j: &usize| {
@@ -247,14 +274,14 @@ fn words(problem: &Problem, at: &Evaluated, u: &[f64], direction: &[f64]) -> Str
         None => 1.0 / largest,
     };
     let moves: Vec<f64> = direction.iter().map(|d| d * unit).collect();
-    let name = |j: usize| letter(&problem.preset, &parameters[j].key());
+    let name = |j: usize| letter(preset, &parameters[j].key());
     let mut order: Vec<usize> = (0..moves.len()).collect();
     order.sort_by_key(|j| Some(*j) != lead);
     let share = |j: usize| moves[j].abs() / (largest * unit.abs());
     let told: Vec<String> = order
         .iter()
         .filter(|j| share(**j) > 0.01)
-        .map(|&j| format!("{} {}", name(j), change(&problem.preset, &parameters[j], u[j], moves[j])))
+        .map(|&j| format!("{} {}", name(j), change(preset, &parameters[j], u[j], moves[j])))
         .collect();
     let moved = &at.jacobian * DVector::from_vec(moves.clone());
     let noise = match moved.amax() {

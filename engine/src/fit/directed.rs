@@ -4,7 +4,7 @@ use super::options::{FitError, Options};
 use super::run::{Fit, fit_branches};
 use crate::measured::asked::signs_text;
 use crate::measured::points::Turned;
-use crate::measured::{Asked, Points};
+use crate::measured::{Asked, Branches, Points};
 use crate::preset::Preset;
 use crate::progress::{Part, Progress};
 use crate::units::number::short;
@@ -28,6 +28,14 @@ const CLEAR: f64 = 20.0;
 /// # Errors
 /// [`FitError`].
 pub fn fit_own(preset: &Preset, options: &Options, progress: &dyn Progress) -> Result<Fit, FitError> {
+    let (points, asked) = seen(preset, options)?;
+    let mut found = fit(preset, &points, &Options { asked, ..options.clone() }, progress)?;
+    found.notes.splice(0..0, preset.notes_of_reading().map_err(FitError::Data)?);
+    Ok(found)
+}
+
+/// The points of a preset's own measured curve, and what is used of them.
+fn seen(preset: &Preset, options: &Options) -> Result<(Points, Asked), FitError> {
     let (source, reading) = (preset.data.source.as_ref().ok_or(FitError::NoData)?, preset.reading());
     let points = source.points(&reading).map_err(FitError::Data)?;
     let said = source.asked(&reading).map_err(FitError::Data)?;
@@ -38,9 +46,15 @@ pub fn fit_own(preset: &Preset, options: &Options, progress: &dyn Progress) -> R
         turned: said.turned,
         ..options.asked
     };
-    let mut found = fit(preset, &points, &Options { asked, ..options.clone() }, progress)?;
-    found.notes.splice(0..0, preset.notes_of_reading().map_err(FitError::Data)?);
-    Ok(found)
+    Ok((points, asked))
+}
+
+/// Its branches.
+pub(super) fn branches_of(preset: &Preset, options: &Options) -> Result<Branches, FitError> {
+    let (points, asked) = seen(preset, options)?;
+    let mut branches = points.branches(&asked)?;
+    branches.notes.splice(0..0, preset.notes_of_reading().map_err(FitError::Data)?);
+    Ok(branches)
 }
 
 /// Fits the free keys of `preset`, its device and what lies between the instrument and it among them, to `points`. Where

@@ -92,7 +92,7 @@ pub fn profile(
 }
 
 /// How much more the loss rises than that of normal residuals: the root of mean ψ² over mean ψ'.
-fn stretch(problem: &Problem, solved: &Solved) -> f64 {
+pub(super) fn stretch(problem: &Problem, solved: &Solved) -> f64 {
     let real = problem.real(&solved.minimum.at.residuals);
     let psi: f64 = real.iter().map(|r| (r / solved.scale).clamp(-HUBER, HUBER).powi(2)).sum();
     let inside = real.iter().filter(|r| r.abs() <= HUBER * solved.scale).count().max(1);

@@ -29,6 +29,7 @@
 //! | [`rows`] | what a fit makes of the rows of a file, counted |
 //! | [`run`] | all of it, in order |
 //! | [`models`] | several models beside each other |
+//! | [`together`] | one law for several curves, and whether they follow it |
 //! | `directed` | the same, in the direction in which the columns run |
 //!
 //! Distances are measured to the curve itself and not along one axis: a residual P − P(x) jumps with the values where the
@@ -59,6 +60,7 @@ pub mod scatter;
 pub mod solve;
 mod spread;
 pub mod start;
+pub mod together;
 pub mod track;
 mod uncertain;
 pub mod verdict;
@@ -70,6 +72,7 @@ pub use models::{Model, Models, fit_models};
 pub use options::{FitError, Options};
 pub use rows::{BranchRows, Rows};
 pub use run::Fit;
+pub use together::{Together, fit_together};
 pub use verdict::{Reason, Verdict};
 
 #[cfg(test)]

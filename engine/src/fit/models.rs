@@ -14,14 +14,17 @@ use super::run::Fit;
 use super::verdict::Verdict;
 use crate::elementary::cbrt;
 use crate::measured::Origin;
-use crate::preset::Preset;
 use crate::preset::schema::RANGE_KEYS;
+use crate::preset::{Preset, Value, data, edge};
 use crate::problem::{Adhesion, Stated};
 use crate::progress::{Part, Progress};
+use crate::units::UnitSystem;
 use crate::units::number::short;
 use serde::Serialize;
 use std::f64::consts::PI;
 
+/// What a law of the edge's speed has free.
+const LAW_KEYS: [&str; 2] = [edge::REFERENCE_SPEED, edge::EXPONENT];
 /// A difference of A that tells two models apart.
 const APART: f64 = 10.0;
 /// Residuals count as so many s at most.
@@ -36,11 +39,13 @@ pub enum Model {
     ShortRange,
     /// A constant tension within a range.
     Dugdale,
+    /// Adhesion at the edge alone that grows with the speed of the edge.
+    Rate,
 }
 
 impl Model {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::ShortRange, Self::Dugdale];
+    pub const ALL: [Self; 3] = [Self::ShortRange, Self::Dugdale, Self::Rate];
 
     /// Its word.
     #[must_use]
@@ -48,6 +53,7 @@ impl Model {
         match self {
             Self::ShortRange => Adhesion::NAMES[0],
             Self::Dugdale => Adhesion::NAMES[1],
+            Self::Rate => "rate",
         }
     }
 
@@ -57,29 +63,43 @@ impl Model {
         Self::ALL.into_iter().find(|model| model.name() == word)
     }
 
-    /// `preset` with this model, and what is free in it beside `free`: the tension of adhesion with a range, unless its range is.
-    fn laid(self, preset: &Preset, free: &[String]) -> (Preset, Vec<String>) {
+    /// `preset` with this model, and what is free in it beside `free`: the tension of adhesion with a range, unless its range is, or the law
+    /// of an edge's speed.
+    #[must_use]
+    pub fn laid(self, preset: &Preset, free: &[String]) -> (Preset, Vec<String>) {
         let mut laid = preset.clone();
         let row = |key: &str| preset.row(key).map_or_else(String::new, |row| row.label.to_string());
-        let is_free = |key: &str| free.iter().any(|name| name == key || *name == row(key));
-        let mut free: Vec<String> = match self {
-            Self::ShortRange => {
-                let of_range = |name: &String| RANGE_KEYS.iter().any(|key| name == key || *name == row(key));
-                free.iter().filter(|name| !of_range(name)).cloned().collect()
-            }
-            Self::Dugdale => free.to_vec(),
+        let is_of = |keys: &[&str], name: &String| keys.iter().any(|key| name == key || *name == row(key));
+        let others: &[&[&str]] = match self {
+            Self::ShortRange => &[&RANGE_KEYS, &LAW_KEYS],
+            Self::Dugdale => &[&LAW_KEYS],
+            Self::Rate => &[&RANGE_KEYS],
         };
-        let asks = RANGE_KEYS.iter().any(|key| is_free(key));
+        let is_other = |name: &&String| others.iter().any(|keys| is_of(keys, name));
+        let mut free: Vec<String> = free.iter().filter(|name| !is_other(name)).cloned().collect();
         match (self, preset.material.adhesion) {
-            (Self::ShortRange, _) => laid.material.adhesion = Adhesion::ShortRange,
+            (Self::ShortRange | Self::Rate, _) => laid.material.adhesion = Adhesion::ShortRange,
             (Self::Dugdale, Adhesion::Dugdale(Stated::Strength(_) | Stated::Range(_))) => {}
             (Self::Dugdale, _) => {
                 laid.material.adhesion = Adhesion::Dugdale(Stated::Strength(guess(preset)));
             }
         }
-        if self == Self::Dugdale && !asks {
-            let key = usize::from(matches!(laid.material.adhesion, Adhesion::Dugdale(Stated::Range(_))));
-            free.push(RANGE_KEYS[key].to_owned());
+        match self {
+            Self::ShortRange => {}
+            Self::Dugdale if free.iter().any(|name| is_of(&RANGE_KEYS, name)) => {}
+            Self::Dugdale => {
+                let key = usize::from(matches!(laid.material.adhesion, Adhesion::Dugdale(Stated::Range(_))));
+                free.push(RANGE_KEYS[key].to_owned());
+            }
+            Self::Rate => {
+                // A scan around the rate of the device finds the law: these only say that there is one.
+                let speed = if matches!(preset.units, UnitSystem::Si(_)) { 1e-6 } else { 1.0 };
+                laid.edge.reference_speed = laid.edge.reference_speed.or(Some(speed));
+                laid.edge.exponent = laid.edge.exponent.or(Some(0.5));
+                if !free.iter().any(|name| is_of(&LAW_KEYS, name)) {
+                    free.extend(LAW_KEYS.map(str::to_owned));
+                }
+            }
         }
         (laid, free)
     }
@@ -160,9 +180,15 @@ pub fn fit_models(
             models.iter().map(of).collect()
         }
     };
+    // A pull is fitted to the retraction: to compare it all have the same rows.
+    let of_retraction = models.len() > 1 && models.contains(&Model::Rate);
     let count = laid.len() as f64;
     let mut fits: Vec<Fitted> = Vec::new();
-    for (i, (model, laid, free)) in laid.into_iter().enumerate() {
+    for (i, (model, mut laid, free)) in laid.into_iter().enumerate() {
+        if of_retraction && laid.data.source.is_some() {
+            let retraction = Value::Text(data::SEGMENTS[1].to_owned());
+            laid.set(data::SEGMENT, retraction).map_err(|invalid| FitError::Data(invalid.to_string()))?;
+        }
         let mut options = Options { free: free.clone(), ..options.clone() };
         // One is judged by the noise of the other.
         if let Some(first) = fits.iter().find_map(|fitted| fitted.fit.as_ref().ok())

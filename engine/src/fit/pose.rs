@@ -18,6 +18,8 @@ use crate::units::{Quantity, number::said};
 const PER_PARAMETER: usize = 3;
 /// Rows by which the beginning of a retraction is known.
 const TURN: usize = 5;
+/// Rates that differ by less than this share are one.
+const EVEN: f64 = 0.05;
 /// δ₀ and P₀ begin with a unit of their ranges.
 const LEAST_UNIT: f64 = f64::MIN_POSITIVE;
 
@@ -118,16 +120,23 @@ fn pulled(
     }
     let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
     let attached: Vec<&Point> = retraction.flat_map(|branch| &branch.attached).collect();
-    if bare.edge.rate.is_none() {
-        let is_way = branches.abscissa == Abscissa::Position || bare.path.control == Control::Displacement;
-        if branches.abscissa == Abscissa::Radius || !is_way {
-            return Err(refused("which this file has not"));
+    // What the times of a file say is of that file, and what the preset says of no file in particular.
+    let is_way = branches.abscissa == Abscissa::Position
+        || bare.path.control == Control::Displacement && branches.abscissa == Abscissa::Approach;
+    let timed = if is_way { even_rate(&attached) } else { None };
+    match (timed, bare.edge.rate) {
+        (None, None) if is_way => return Err(refused("which go at an even rate")),
+        (None, None) => return Err(refused("which this file has not")),
+        (None, Some(_)) => {}
+        (Some(rate), stated) => {
+            let text = |rate| said(&bare.units, Quantity::Speed, rate);
+            let instead = match stated.filter(|stated| (stated / rate - 1.0).abs() > EVEN) {
+                Some(stated) => format!(", not {}", text(stated)),
+                None => String::new(),
+            };
+            notes.push(format!("the times say path.rate = {}{instead}", text(rate)));
+            bare.edge.rate = Some(rate);
         }
-        let rate = even_rate(&attached).ok_or_else(|| refused("which go at an even rate"))?;
-        let quantity =
-            if bare.path.control == Control::Force { Quantity::ForceRate } else { Quantity::Speed };
-        notes.push(format!("the times say path.rate = {}", said(&bare.units, quantity, rate)));
-        bare.edge.rate = Some(rate);
     }
     let first = &attached[..TURN.min(attached.len())];
     let middle =
@@ -144,8 +153,6 @@ fn pulled(
 
 /// The rate of x over the times of a retraction; `None` where it is not even or not known.
 fn even_rate(points: &[&Point]) -> Option<f64> {
-    /// Rates of both halves that differ by less than this share are one.
-    const EVEN: f64 = 0.05;
     let rate = |of: &[&Point]| {
         let (first, last) = (of.first()?, of.last()?);
         let rate = (first.x - last.x) / (last.time - first.time);

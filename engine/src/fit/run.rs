@@ -5,7 +5,7 @@ use super::determined::{Determined, determined};
 use super::fitted::Fitted;
 use super::intervals::{FEW_DEGREES, block, bootstrap, profile};
 use super::judge::{doubts, of_sparse, of_spring, reasons, unseen};
-use super::least_squares::{Ending, LeastSquares};
+use super::least_squares::{Ending, Evaluated, LeastSquares, Minimum};
 use super::options::{FitError, Options, letter};
 use super::pose::posed;
 use super::problem::{ADHESION, Datum, Instrument, Parameter, Prior, Problem, Target};
@@ -151,38 +151,150 @@ pub fn residuals_own(preset: &Preset) -> Result<(Abscissa, Vec<Residual>), FitEr
     Ok((branches.abscissa, beside(&problem, &residuals, scale)))
 }
 
-/// The problem of a fit, where its starts ended, and its minimum.
-fn posed_and_solved(
-    preset: &Preset,
-    branches: &Branches,
-    options: &Options,
-    notes: &mut Vec<String>,
-    progress: &dyn Progress,
-) -> Result<(Problem, Vec<Tried>, Solved), FitError> {
-    let mut problem = posed(preset, branches, options, notes)?;
-    // Without rows apart neighbours say how well the force is known, never the residuals themselves.
-    let of_neighbours = branches.noise.from[1] == Origin::Neighbours;
-    // Nor are both told apart of radii, but by the slope of the curve.
-    let of_both = branches.abscissa == Abscissa::Radius && branches.noise.from[0] == Origin::Assumed;
-    let least = of_neighbours
-        .then_some([if of_both { problem.sigma[0] } else { f64::INFINITY }, FLOOR * branches.ranges[1]]);
-    let found = |problem: &mut Problem| -> Result<_, FitError> {
-        let (u, starts) = start(problem, options.scan, options.robust, &Part::new(progress, [0.0, 0.8]))
-            .ok_or(FitError::NoStart)?;
-        Ok((starts, last(problem, &u, options.robust, least, &Part::new(progress, [0.8, 0.85]))?))
-    };
-    let (mut starts, mut solved) = found(&mut problem)?;
-    if let Some(why) = problem.overlapping(&solved.minimum.parameters) {
-        problem = problem.without_loading(why, notes)?;
-        (starts, solved) = found(&mut problem)?;
+/// What is fitted to the branches of one file, where its starts ended, and its minimum.
+pub(super) struct Posed<'a> {
+    preset: &'a Preset,
+    branches: &'a Branches,
+    options: &'a Options,
+    pub(super) problem: Problem,
+    starts: Vec<Tried>,
+    pub(super) solved: Solved,
+    notes: Vec<String>,
+}
+
+impl<'a> Posed<'a> {
+    /// Poses and solves the fit of the free keys of `preset` to `branches`.
+    pub(super) fn new(
+        preset: &'a Preset,
+        branches: &'a Branches,
+        options: &'a Options,
+        progress: &dyn Progress,
+    ) -> Result<Self, FitError> {
+        let mut notes = branches.notes.clone();
+        let mut problem = posed(preset, branches, options, &mut notes)?;
+        // Without rows apart neighbours say how well the force is known, never the residuals themselves.
+        let of_neighbours = branches.noise.from[1] == Origin::Neighbours;
+        // Nor are both told apart of radii, but by the slope of the curve.
+        let of_both = branches.abscissa == Abscissa::Radius && branches.noise.from[0] == Origin::Assumed;
+        let least = of_neighbours
+            .then_some([if of_both { problem.sigma[0] } else { f64::INFINITY }, FLOOR * branches.ranges[1]]);
+        let found = |problem: &mut Problem| -> Result<_, FitError> {
+            let (u, starts) = start(problem, options.scan, options.robust, &Part::new(progress, [0.0, 0.8]))
+                .ok_or(FitError::NoStart)?;
+            Ok((starts, last(problem, &u, options.robust, least, &Part::new(progress, [0.8, 0.85]))?))
+        };
+        let (mut starts, mut solved) = found(&mut problem)?;
+        if let Some(why) = problem.overlapping(&solved.minimum.parameters) {
+            problem = problem.without_loading(why, &mut notes)?;
+            (starts, solved) = found(&mut problem)?;
+        }
+        if branches.noise.from[1] == Origin::Apart {
+            solved = of_correlated(&mut problem, solved, options.robust, progress);
+        }
+        if preset.data.uncertain.is_empty() {
+            solved = of_tare(&mut problem, solved, options.robust, (&mut notes, progress));
+        }
+        if branches.baseline.is_none() {
+            notes.push(
+                "there is no free part: the baseline is held, and neighbouring rows tell sigma of the force"
+                    .to_owned(),
+            );
+        }
+        Ok(Self { preset, branches, options, problem, starts, solved, notes })
     }
-    if branches.noise.from[1] == Origin::Apart {
-        solved = of_correlated(&mut problem, solved, options.robust, progress);
+
+    /// Counts residuals in the noise that the curve has beside this fit.
+    pub(super) fn in_own_noise(&mut self) {
+        let scale = self.solved.scale;
+        let Minimum { at: Evaluated { residuals, jacobian }, cost, .. } = &mut self.solved.minimum;
+        *residuals /= scale;
+        *jacobian /= scale;
+        *cost /= scale * scale;
+        self.solved.scale = 1.0;
+        self.problem.sigma = self.problem.sigma.map(|sigma| sigma * scale);
     }
-    if preset.data.uncertain.is_empty() {
-        solved = of_tare(&mut problem, solved, options.robust, (notes, progress));
+
+    /// The fit of which `what` is determined, by its points `alone` or by others too.
+    pub(super) fn fit(
+        self,
+        mut what: Determined,
+        scatter: Scatter,
+        alone: bool,
+        progress: &dyn Progress,
+    ) -> Result<Fit, FitError> {
+        let Self { preset, branches, options, problem, starts, solved, mut notes } = self;
+        let u = &solved.minimum.parameters;
+        notes.extend(growth(&problem, u, &what));
+        let unseen = unseen(&problem, &solved, (&what, &scatter), options.robust, progress);
+        let is_unseen = unseen.is_some();
+        if let Some(direction) = unseen {
+            what = Determined {
+                errors: None,
+                degrees: None,
+                correlations: None,
+                direction: Some(direction),
+                ..what
+            };
+        }
+        let priors = given(&problem, &what.shares, &mut notes);
+        let real = problem.real(&solved.minimum.at.residuals);
+        let rows = real.len() as f64 / scatter.correlation.rows();
+        let degrees = match &what.degrees {
+            Some(degrees) => degrees.min(),
+            None => (rows - problem.taken() as f64).max(1.0),
+        };
+        let mut fitted = values(&problem, u, what.errors.as_ref().zip(what.degrees.as_ref()));
+        let bootstrapped = match &what.errors {
+            Some(errors) if alone => {
+                let wanted = Options { bootstrap: options.bootstrap.or(of_few(degrees)), ..options.clone() };
+                intervals(&problem, &solved, &wanted, errors, &mut fitted, &Part::new(progress, [0.85, 0.95]))
+            }
+            _ => None,
+        };
+        let found = problem.preset_at(u, Segment::Retraction).ok_or(FitError::NoStart)?;
+        let ending = match solved.minimum.ending {
+            _ if progress.stop() => Ending::Cancelled,
+            // A range that shrinks without end has no minimum.
+            Ending::Rounds if is_unseen => Ending::Converged,
+            ending => ending,
+        };
+        let mut reasons = reasons(&problem, &solved, &scatter, &found, what.inner.as_ref(), branches.clipped);
+        reasons.extend(of_sparse(branches, preset));
+        let is_known = [Origin::Given, Origin::Apart].contains(&branches.noise.from[1]);
+        let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
+        let warnings =
+            doubts(&problem, &solved, &scatter, what.inner.as_ref(), &fitted, (&reasons, is_known));
+        let fitted_preset = laid(preset, &problem, (&found, &problem.instrument_at(u)), &mut notes);
+        let lists =
+            |c: nalgebra::DMatrix<f64>| c.row_iter().map(|row| row.iter().copied().collect()).collect();
+        let left = real.len().saturating_sub(problem.taken()).max(1) as f64;
+        Ok(Fit {
+            verdict: verdict(ending, what.errors.is_some(), &reasons),
+            reasons,
+            abscissa: branches.abscissa,
+            correlations: what.correlations.map(lists),
+            chi_squared: real.iter().map(|r| r * r).sum::<f64>() / left,
+            chi_squared_of: [false, true].map(|free| of_part(&problem, &solved, free)),
+            degrees,
+            priors,
+            rows: Rows::of(&problem, branches),
+            outliers: residuals.iter().filter(|residual| residual.outlier).count(),
+            condition: what.condition,
+            direction: what.direction,
+            ending,
+            starts,
+            snaps: problem.paths(u).map_or(0, |paths| paths.of(Segment::Retraction).snaps),
+            noise: Noise { sigma: problem.sigma, ..branches.noise },
+            bootstrapped,
+            notes,
+            warnings,
+            scatter,
+            preset: fitted_preset,
+            instrument: problem.instrument_at(u),
+            residuals,
+            parameters: fitted,
+        })
     }
-    Ok((problem, starts, solved))
 }
 
 /// Fits the free keys of `preset` to `branches`.
@@ -192,88 +304,15 @@ pub(super) fn fit_branches(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Fit, FitError> {
-    let mut notes = branches.notes.clone();
-    let (problem, starts, solved) = posed_and_solved(preset, branches, options, &mut notes, progress)?;
-    if branches.baseline.is_none() {
-        notes.push(
-            "there is no free part: the baseline is held, and neighbouring rows tell sigma of the force"
-                .to_owned(),
-        );
-    }
-    let u = &solved.minimum.parameters;
-    let scatter = problem.scatter(&solved);
-    let mut what = determined(&problem, &solved, &scatter, options.robust);
-    notes.extend(growth(&problem, u, &what));
-    let unseen = unseen(&problem, &solved, (&what, &scatter), options.robust, progress);
-    let is_unseen = unseen.is_some();
-    if let Some(direction) = unseen {
-        what = Determined {
-            errors: None,
-            degrees: None,
-            correlations: None,
-            direction: Some(direction),
-            ..what
-        };
-    }
-    let priors = given(&problem, &what.shares, &mut notes);
-    let real = problem.real(&solved.minimum.at.residuals);
-    let rows = real.len() as f64 / scatter.correlation.rows();
-    let degrees = match &what.degrees {
-        Some(degrees) => degrees.min(),
-        None => (rows - problem.taken() as f64).max(1.0),
-    };
-    let mut fitted = values(&problem, u, what.errors.as_ref().zip(what.degrees.as_ref()));
-    let bootstrapped = match &what.errors {
-        Some(errors) => {
-            let wanted = Options { bootstrap: options.bootstrap.or(of_few(degrees)), ..options.clone() };
-            intervals(&problem, &solved, &wanted, errors, &mut fitted, &Part::new(progress, [0.85, 0.95]))
-        }
-        None => None,
-    };
+    let mut posed = Posed::new(preset, branches, options, progress)?;
+    let Posed { problem, solved, .. } = &posed;
+    let scatter = problem.scatter(solved);
+    let what = determined(problem, solved, &scatter, options.robust);
     if what.errors.is_some() {
-        notes.extend(of_spring(&problem, &solved, options.robust, &Part::new(progress, [0.95, 1.0])));
+        let of_spring = of_spring(problem, solved, options.robust, &Part::new(progress, [0.95, 1.0]));
+        posed.notes.extend(of_spring);
     }
-    let found = problem.preset_at(u, Segment::Retraction).ok_or(FitError::NoStart)?;
-    let ending = match solved.minimum.ending {
-        _ if progress.stop() => Ending::Cancelled,
-        // A range that shrinks without end has no minimum.
-        Ending::Rounds if is_unseen => Ending::Converged,
-        ending => ending,
-    };
-    let mut reasons = reasons(&problem, &solved, &scatter, &found, what.inner.as_ref(), branches.clipped);
-    reasons.extend(of_sparse(branches, preset));
-    let is_known = [Origin::Given, Origin::Apart].contains(&branches.noise.from[1]);
-    let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
-    let warnings = doubts(&problem, &solved, &scatter, what.inner.as_ref(), &fitted, (&reasons, is_known));
-    let fitted_preset = laid(preset, &problem, (&found, &problem.instrument_at(u)), &mut notes);
-    let lists = |c: nalgebra::DMatrix<f64>| c.row_iter().map(|row| row.iter().copied().collect()).collect();
-    let left = real.len().saturating_sub(problem.taken()).max(1) as f64;
-    Ok(Fit {
-        verdict: verdict(ending, what.errors.is_some(), &reasons),
-        reasons,
-        abscissa: branches.abscissa,
-        correlations: what.correlations.map(lists),
-        chi_squared: real.iter().map(|r| r * r).sum::<f64>() / left,
-        chi_squared_of: [false, true].map(|free| of_part(&problem, &solved, free)),
-        degrees,
-        priors,
-        rows: Rows::of(&problem, branches),
-        outliers: residuals.iter().filter(|residual| residual.outlier).count(),
-        condition: what.condition,
-        direction: what.direction,
-        ending,
-        starts,
-        snaps: problem.paths(u).map_or(0, |paths| paths.of(Segment::Retraction).snaps),
-        noise: Noise { sigma: problem.sigma, ..branches.noise },
-        bootstrapped,
-        notes,
-        warnings,
-        scatter,
-        preset: fitted_preset,
-        instrument: problem.instrument_at(u),
-        residuals,
-        parameters: fitted,
-    })
+    posed.fit(what, scatter, true, progress)
 }
 
 /// What was known before, and a sentence where it decides how well a value is known.
@@ -450,7 +489,11 @@ fn intervals(
 }
 
 /// The values with their errors, and the degrees of freedom of these.
-fn values(problem: &Problem, u: &[f64], known: Option<(&DVector<f64>, &DVector<f64>)>) -> Vec<Fitted> {
+pub(super) fn values(
+    problem: &Problem,
+    u: &[f64],
+    known: Option<(&DVector<f64>, &DVector<f64>)>,
+) -> Vec<Fitted> {
     /// The share of truths outside of an interval.
     const OUTSIDE: f64 = 0.05;
     let of = |(j, parameter): (usize, &Parameter)| {

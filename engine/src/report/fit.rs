@@ -3,14 +3,16 @@
 use super::number::{exact, short, significant};
 use super::residuals::{ResidualRow, rows};
 use super::table::aligned;
-use crate::fit::fitted::quantity;
+use crate::fit::fitted::{Fitted, quantity};
 use crate::fit::intervals::FEW_DEGREES;
 use crate::fit::least_squares::Ending;
 use crate::fit::models::{Model, Models, Pair};
 use crate::fit::options::letter;
 use crate::fit::run::{Fit, Given};
+use crate::fit::together::{Collapse, Together};
 use crate::fit::{Reason, Rows, Verdict};
 use crate::measured::{Abscissa, Origin};
+use crate::preset::Preset;
 use crate::units::{Quantity, UnitSystem};
 use serde::Serialize;
 use std::fmt::Write;
@@ -25,7 +27,7 @@ pub struct FitReport {
     pub document: &'static str,
     /// The file of the points.
     pub file: String,
-    /// How the adhesion acts: the word of `material.adhesion`.
+    /// How the adhesion acts: the word of `material.adhesion`, or `rate` where its growth with the speed of the edge is fitted.
     pub model: &'static str,
     /// What it comes to: whether the values and their errors may be believed.
     pub verdict: Verdict,
@@ -124,6 +126,133 @@ pub struct ParameterReport {
     quantity: Quantity,
 }
 
+impl ParameterReport {
+    /// A value fitted to a problem like `preset`; whether its error `holds`.
+    fn new(preset: &Preset, fitted: &Fitted, holds: bool) -> Self {
+        let quantity = quantity(preset, &fitted.key);
+        let is_si = matches!(preset.units, UnitSystem::Si(_));
+        Self {
+            key: fitted.key.clone(),
+            value: fitted.value,
+            standard_error: fitted.standard_error,
+            degrees_of_freedom: fitted.degrees,
+            error_holds: holds && fitted.standard_error.is_some(),
+            interval: fitted.interval,
+            start: fitted.start,
+            unit: quantity.si().filter(|_| is_si).unwrap_or(""),
+            profile_interval: fitted.profile,
+            bootstrap_error: fitted.bootstrap.map(|found| found.error),
+            bootstrap_interval: fitted.bootstrap.map(|found| found.interval),
+            letter: letter(preset, &fitted.key),
+            quantity,
+        }
+    }
+
+    /// The value, its error, in parentheses where it does not hold, and their unit.
+    fn cells(&self, units: &UnitSystem) -> [String; 3] {
+        let shown = |x: f64, digits| significant(units.shown(self.quantity, x).number, digits);
+        let error = self.standard_error.map_or_else(
+            || "-".to_owned(),
+            |error| if self.error_holds { shown(error, 2) } else { format!("({})", shown(error, 2)) },
+        );
+        let unit = units.unit(self.quantity).map_or_else(String::new, crate::units::Unit::ascii);
+        [shown(self.value, 6), error, unit]
+    }
+}
+
+/// One law fitted to several curves.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct TogetherReport {
+    /// The version of all documents.
+    pub schema: u32,
+    /// Which document it is.
+    pub document: &'static str,
+    /// What it comes to: whether the law and its errors may be believed.
+    pub verdict: Verdict,
+    /// The values of the law.
+    pub law: Vec<ParameterReport>,
+    /// What the curves do not determine, in words.
+    pub direction: Option<String>,
+    /// Whether they follow one law.
+    pub collapse: Collapse,
+    /// The curves.
+    pub runs: Vec<RunReport>,
+    /// What is to be doubted of each.
+    #[serde(skip)]
+    pub doubts: Vec<String>,
+    #[serde(skip)]
+    shown: UnitSystem,
+}
+
+/// One curve among several.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct RunReport {
+    /// Under the one law, with the errors of all curves.
+    pub fit: FitReport,
+    /// The law that it alone would have.
+    pub alone: Vec<ParameterReport>,
+}
+
+impl TogetherReport {
+    /// The document of `together`, fitted to `files`.
+    #[must_use]
+    pub fn new(files: &[String], together: &Together) -> Self {
+        let runs = together.runs.iter().zip(files).map(|(run, file)| {
+            let alone =
+                run.alone.iter().map(|fitted| ParameterReport::new(&run.fit.preset, fitted, true)).collect();
+            RunReport { fit: FitReport::new(file, &run.fit, None), alone }
+        });
+        let runs: Vec<RunReport> = runs.collect();
+        let holds = together.verdict == Verdict::Describes;
+        let of_law = |fitted| ParameterReport::new(&together.preset, fitted, holds);
+        let of_run = |run: &RunReport| {
+            run.fit.doubts.iter().map(|doubt| format!("{}: {doubt}", run.fit.file)).collect()
+        };
+        Self {
+            schema: super::SCHEMA,
+            document: "fit-together",
+            verdict: together.verdict,
+            law: together.law.iter().map(of_law).collect(),
+            direction: together.direction.clone(),
+            collapse: together.collapse.clone(),
+            doubts: runs.iter().flat_map(|run| -> Vec<String> { of_run(run) }).collect(),
+            runs,
+            shown: together.preset.units.clone(),
+        }
+    }
+
+    /// Each curve, and below them the law.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        for run in &self.runs {
+            let _ = writeln!(text, "{}", run.fit.text());
+        }
+        let _ = writeln!(text, "together: {}", self.verdict.sentence());
+        let _ = writeln!(text, "{}", self.collapse.sentence);
+        if let Some(direction) = &self.direction {
+            let _ = writeln!(text, "not determined: {direction}");
+        }
+        let names = self.runs.iter().flat_map(|run| [run.fit.file.clone(), "error".to_owned()]);
+        let first = ["key", "", "all", "error", ""].map(str::to_owned);
+        let mut rows = vec![first.into_iter().chain(names).collect::<Vec<_>>()];
+        for of_law in &self.law {
+            let [value, error, unit] = of_law.cells(&self.shown);
+            let mut row = vec![of_law.key.clone(), of_law.letter.clone(), value, error, unit];
+            for run in &self.runs {
+                let alone = run.alone.iter().find(|alone| alone.key == of_law.key);
+                let cells = alone.map(|alone| alone.cells(&self.shown)).unwrap_or_default();
+                row.extend(cells.into_iter().take(2));
+            }
+            rows.push(row);
+        }
+        let _ = write!(text, "\n{}", aligned(&rows, 2));
+        text
+    }
+}
+
 /// Several models fitted to the same points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -213,29 +342,9 @@ impl FitReport {
     #[must_use]
     pub fn new(file: &str, fit: &Fit, poisson: Option<f64>) -> Self {
         let units = &fit.preset.units;
-        let is_si = matches!(units, UnitSystem::Si(_));
-        let parameters: Vec<ParameterReport> = fit
-            .parameters
-            .iter()
-            .map(|fitted| {
-                let quantity = quantity(&fit.preset, &fitted.key);
-                ParameterReport {
-                    key: fitted.key.clone(),
-                    value: fitted.value,
-                    standard_error: fitted.standard_error,
-                    degrees_of_freedom: fitted.degrees,
-                    error_holds: fit.verdict == Verdict::Describes && fitted.standard_error.is_some(),
-                    interval: fitted.interval,
-                    start: fitted.start,
-                    unit: quantity.si().filter(|_| is_si).unwrap_or(""),
-                    profile_interval: fitted.profile,
-                    bootstrap_error: fitted.bootstrap.map(|found| found.error),
-                    bootstrap_interval: fitted.bootstrap.map(|found| found.interval),
-                    letter: letter(&fit.preset, &fitted.key),
-                    quantity,
-                }
-            })
-            .collect();
+        let holds = fit.verdict == Verdict::Describes;
+        let parameters: Vec<ParameterReport> =
+            fit.parameters.iter().map(|fitted| ParameterReport::new(&fit.preset, fitted, holds)).collect();
         let modulus = parameters.iter().find(|parameter| parameter.key == "material.effective_modulus");
         let youngs_modulus = poisson.map(|nu| {
             let factor = 1.0 - nu * nu;
@@ -256,7 +365,11 @@ impl FitReport {
             schema: super::SCHEMA,
             document: "fit",
             file: file.to_owned(),
-            model: fit.preset.material.adhesion.name(),
+            model: if parameters.iter().any(|of| of.key.starts_with("edge.")) {
+                Model::Rate.name()
+            } else {
+                fit.preset.material.adhesion.name()
+            },
             verdict: fit.verdict,
             reasons: fit.reasons.clone(),
             parameters,
@@ -336,25 +449,12 @@ impl FitReport {
     /// The values with their errors and intervals.
     fn values(&self, text: &mut String) {
         let units = &self.shown;
-        let shown = |quantity, x: f64| units.shown(quantity, x);
-        let number = |quantity, x| significant(shown(quantity, x).number, 6);
+        let number = |quantity, x: f64| significant(units.shown(quantity, x).number, 6);
         let mut rows = vec![["key", "", "value", "error", "start", ""].map(str::to_owned).to_vec()];
         for parameter in &self.parameters {
-            let unit = units.unit(parameter.quantity).map_or_else(String::new, crate::units::Unit::ascii);
-            rows.push(vec![
-                parameter.key.clone(),
-                parameter.letter.clone(),
-                number(parameter.quantity, parameter.value),
-                parameter.standard_error.map_or_else(
-                    || "-".to_owned(),
-                    |error| {
-                        let error = significant(shown(parameter.quantity, error).number, 2);
-                        if parameter.error_holds { error } else { format!("({error})") }
-                    },
-                ),
-                number(parameter.quantity, parameter.start),
-                unit,
-            ]);
+            let [value, error, unit] = parameter.cells(units);
+            let start = number(parameter.quantity, parameter.start);
+            rows.push(vec![parameter.key.clone(), parameter.letter.clone(), value, error, start, unit]);
         }
         text.push('\n');
         text.push_str(&aligned(&rows, 2));

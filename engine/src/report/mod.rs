@@ -45,7 +45,7 @@ pub mod verify;
 pub mod walk;
 
 pub use crate::units::number;
-pub use fit::{FitReport, ModelsReport};
+pub use fit::{FitReport, ModelsReport, TogetherReport};
 pub use map::MapReport;
 pub use overlap::OverlapReport;
 pub use path::PathReport;

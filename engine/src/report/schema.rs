@@ -5,7 +5,7 @@
 use super::walk::WalkReport;
 use super::{
     FitReport, MapReport, ModelsReport, PathReport, PullReport, SCHEMA, SpeedsReport, StabilityReport,
-    TraceReport, VerifyReport,
+    TogetherReport, TraceReport, VerifyReport,
 };
 use schemars::generate::SchemaSettings;
 use schemars::transform::{RecursiveTransform, Transform};
@@ -51,6 +51,7 @@ fn schemas_are_those_of_the_documents() {
         ("walk", text::<WalkReport>("walk")),
         ("fit", text::<FitReport>("fit")),
         ("fit-models", text::<ModelsReport>("fit-models")),
+        ("fit-together", text::<TogetherReport>("fit-together")),
         ("verify", text::<VerifyReport>("verify")),
     ];
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/schema");

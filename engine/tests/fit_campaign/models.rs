@@ -6,9 +6,10 @@ use super::kinds::{DOUBTFUL, Made, plain};
 use super::record::{Random, Record, Seen};
 use super::trial::{Outcome, fitted, made, options, outcome, preset};
 use pulloff_engine::fit::path::Path;
+use pulloff_engine::fit::together::Run;
 use pulloff_engine::fit::track::{Mover, Reach};
 use pulloff_engine::fit::way::Way;
-use pulloff_engine::fit::{Model, fit_models};
+use pulloff_engine::fit::{Model, Together, Verdict, fit_models, fit_together};
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{Preset, Value, read};
 use pulloff_engine::problem::Groups;
@@ -108,7 +109,9 @@ fn adhesion_of_a_range_is_found_with_its_model() {
 #[test]
 fn a_range_that_the_points_do_not_show_is_not_determined() {
     let made = plain(3);
-    let found = fit_models(&preset(&made), &Model::ALL, &options(&made.free), &Unwatched).unwrap();
+    let found =
+        fit_models(&preset(&made), &[Model::ShortRange, Model::Dugdale], &options(&made.free), &Unwatched)
+            .unwrap();
     assert_eq!(found.fits[found.best.unwrap()].model, Some(Model::ShortRange), "{:#?}", found.pairs);
     let ranged = found.fits[1].fit.as_ref().unwrap();
     println!("{:?} {:?} {:?} {:?}", found.pairs, ranged.verdict, ranged.direction, ranged.parameters);
@@ -168,7 +171,8 @@ impl Pulled {
         Self { peel, text: record.text(), preset }
     }
 
-    fn fitted(&self, free: &[&'static str]) -> Outcome {
+    /// What is fitted, `free` with its truths.
+    fn made(&self, free: &[&'static str]) -> Made {
         let Peel { modulus, adhesion, exponent, reference, .. } = self.peel;
         let all = [
             ("E*", "material.effective_modulus", modulus),
@@ -181,7 +185,11 @@ impl Pulled {
         if !free.contains(&"E*") {
             preset = preset.replace("effective_modulus = ", &format!("effective_modulus = {modulus:e} # "));
         }
-        let made = Made { text: self.text.clone(), preset, free: free.to_vec(), truth: truth.collect() };
+        Made { text: self.text.clone(), preset, free: free.to_vec(), truth: truth.collect() }
+    }
+
+    fn fitted(&self, free: &[&'static str]) -> Outcome {
+        let made = self.made(free);
         outcome(0, &made, &fitted(&made, &options(&made.free)))
     }
 }
@@ -242,4 +250,62 @@ fn a_modulus_is_right_where_the_edge_has_its_speed() {
         Pulled::new(LENS, Seen::Position, [300.0, 0.003], 8).fitted(&["gamma", "v0", "edge.exponent"]);
     println!("{found:#?}");
     assert!(found.off() < 4.0, "{found:#?}");
+}
+
+#[test]
+fn the_speed_of_an_edge_is_told_from_adhesion_that_has_none() {
+    const MODELS: [Model; 2] = [Model::ShortRange, Model::Rate];
+    let made = Pulled::new(LENS, Seen::Approach, [300.0, 0.003], 9).made(&["gamma"]);
+    let found = fit_models(&preset(&made), &MODELS, &options(&made.free), &Unwatched).unwrap();
+    let ([pair], [_, law]) = (&found.pairs[..], &found.fits[..]) else { panic!("{found:#?}") };
+    assert!(pair.told_apart && pair.models[0] == Model::Rate, "{pair:?}");
+    let fit = law.fit.as_ref().unwrap();
+    assert_eq!(fit.verdict, Verdict::Describes, "{:?}", fit.reasons);
+    let n = fit.parameters.iter().find(|of| of.key == "edge.exponent").unwrap();
+    assert!((n.value - LENS.exponent).abs() < 4.0 * n.standard_error.unwrap(), "{n:?}");
+    // Nothing says at which rate it is pulled.
+    let found = fit_models(&preset(&plain(3)), &MODELS, &options(&["E*", "gamma"]), &Unwatched).unwrap();
+    assert_eq!(found.best, Some(0));
+    assert!(found.fits[1].fit.as_ref().is_err_and(|error| error.to_string().contains("path.rate")));
+}
+
+/// Three pulls, two decades apart, fitted together; the last of a body of another work of adhesion, so many times that of the others.
+fn three(other: f64, seed: u64) -> Together {
+    const FREE: [&str; 3] = ["gamma", "v0", "edge.exponent"];
+    let speeds = [1e-7, 1e-6, 1e-5];
+    let of = |(i, speed): (usize, f64)| {
+        let adhesion = if i == 2 { other * LENS.adhesion } else { LENS.adhesion };
+        let peel = Peel { adhesion, speed, ..LENS };
+        preset(&Pulled::new(peel, Seen::Approach, [300.0, 0.003], seed + i as u64).made(&FREE))
+    };
+    let presets: Vec<Preset> = speeds.into_iter().enumerate().map(of).collect();
+    let begun = std::time::Instant::now();
+    let found = fit_together(&presets, &options(&FREE), &Unwatched).unwrap();
+    println!("{:?}", begun.elapsed());
+    for run in &found.runs {
+        println!("{:?} {:?}", run.fit.verdict, run.fit.reasons);
+        for alone in &run.alone {
+            println!("  alone {} {} +- {:?}", alone.key, alone.value, alone.standard_error);
+        }
+    }
+    println!("{} {:?} {:?}", found.collapse.sentence, found.direction, found.law);
+    found
+}
+
+#[test]
+fn three_speeds_have_one_law_better_known_than_that_of_each() {
+    for seed in [100, 200] {
+        let found = three(1.0, seed);
+        assert!(found.collapse.collapses && found.verdict == Verdict::Describes, "{found:#?}");
+        for (of, truth) in found.law.iter().zip([LENS.adhesion, LENS.reference, LENS.exponent]) {
+            let error = of.standard_error.unwrap();
+            assert!((of.value - truth).abs() < 4.0 * error, "{of:?} {truth}");
+            let of_one =
+                |run: &Run| run.alone.iter().find(|alone| alone.key == of.key).unwrap().standard_error;
+            let least = found.runs.iter().filter_map(of_one).fold(f64::INFINITY, f64::min);
+            assert!(error < 0.6 * least, "{}: {error} {least}", of.key);
+        }
+    }
+    let found = three(1.2, 300);
+    assert!(!found.collapse.collapses && found.verdict == Verdict::DoesNotDescribe, "{:?}", found.collapse);
 }

@@ -128,7 +128,7 @@ impl<'a> Done<'a> {
 }
 
 /// The end of a command whose worst fit ended so.
-fn ended(worst: Status, accepts: bool, console: &Console) -> Result<ExitCode, Failure> {
+pub(super) fn ended(worst: Status, accepts: bool, console: &Console) -> Result<ExitCode, Failure> {
     match worst {
         Status::Done => console.end(),
         Status::Doubtful => {
@@ -158,7 +158,7 @@ fn failed(file: String, failure: &Failure) -> [Vec<String>; 2] {
 }
 
 /// How good a fit of this verdict is.
-fn status_of(verdict: &str) -> Status {
+pub(super) fn status_of(verdict: &str) -> Status {
     match Verdict::of(verdict) {
         Some(Verdict::Describes) => Status::Done,
         Some(Verdict::DoesNotDescribe) => Status::NotDescribed,
