@@ -9,6 +9,7 @@ use crate::explorer::fitting::Distances;
 use crate::explorer::map_axes::MapAxes;
 use crate::explorer::maps::MapData;
 use crate::explorer::profile::{Ask, Inside};
+use crate::explorer::pulls::PullData;
 use crate::explorer::reach::no_spring;
 use crate::explorer::{Axes, CurveData, Overlays, Staged, View};
 use crate::figure::measured::Points;
@@ -27,6 +28,7 @@ use pulloff_engine::quasistatic::Losses;
 use pulloff_engine::quasistatic::jump::Run;
 use pulloff_engine::report::PathReport;
 use pulloff_engine::report::path::Extent;
+use pulloff_engine::report::pull::missing;
 use pulloff_engine::units::Quantity;
 use pulloff_engine::units::number::said;
 use std::path::{Path, PathBuf};
@@ -175,6 +177,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let map = || MapData::of(&preset, &MapAxes::usual(&preset), &Unwatched);
     let found = (view == View::Map).then(map).flatten();
     let map = found.as_ref().map(MapData::report);
+    let shows_pull = view.is_curve() || view == View::ForceTime;
+    let pull =
+        (shows_pull && missing(&preset).is_none()).then(|| PullData::of(&preset, &Unwatched)).flatten();
     let overlays = Overlays { smooth: true, exact: arguments.theory, envelope: arguments.theory };
     let axes = if arguments.raw { Axes::Raw } else { Axes::Reduced };
     let measured = Points::of(&preset).and_then(Result::ok);
@@ -185,6 +190,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         distances: distances.as_ref(),
         inside: inside.as_ref(),
         cycle: cycle.as_ref(),
+        pull: pull.as_ref(),
         map,
         axes,
         ..Subject::alone(&curve, overlays)
@@ -275,6 +281,7 @@ impl Arguments {
         let view = self.view.0;
         let why = match view {
             View::ForcePosition => no_spring(preset),
+            View::ForceTime => missing(preset).map(|why| why.to_string()),
             View::Residuals if preset.data.source.is_none() => Some(
                 "there are no measured points: --measured FILE or data.file of the preset names them"
                     .to_owned(),

@@ -11,16 +11,18 @@ use super::model::Model;
 use super::onset::SnapsFrom;
 use super::pinned::PinCurve;
 use super::profile::Inside;
+use super::pulls::PullData;
 use super::studies::StudyData;
 
 /// The kinds, in the order in which they are told of.
-pub static KINDS: [Kind; 9] = [
+pub static KINDS: [Kind; 10] = [
     Kind::of::<Fitted>(),
     Kind::of::<PinCurve>(),
     Kind::of::<StudyData>(),
     Kind::of::<Admissibility>(),
     Kind::of::<Inside>(),
     Kind::of::<LoopData>(),
+    Kind::of::<PullData>(),
     Kind::of::<MapData>(),
     Kind::of::<Distances>(),
     Kind::of::<SnapsFrom>(),

@@ -29,6 +29,7 @@
 //! | [`background`], [`backgrounds`], [`results`] | results that belong to the values: how one is wanted, computed and kept; the list of them; what there is |
 //! | [`admissibility`], `pinned` | which states of the curve are admissible; the curves of pins |
 //! | [`loops`] | the loop of loading and unloading with rings of contact |
+//! | [`pulls`] | the pull at the rate of the preset |
 //! | [`onset`] | the smallest amplitude at which a problem snaps |
 //! | [`maps`], [`map_axes`], [`studies`], [`study`], `study_table` | the map of two numbers, its axes; a quantity over one, and its documents |
 //! | [`fitting`], `fit` | the distances of measured points; a fit |
@@ -83,6 +84,7 @@ pub mod pins;
 pub mod profile;
 pub mod progress;
 mod prune;
+pub mod pulls;
 pub mod reach;
 pub mod requests;
 pub mod results;

@@ -7,6 +7,7 @@ use super::study::study_range;
 use super::view::{Home, View};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
+use pulloff_engine::report::pull::missing;
 
 /// Why a view has nothing to show now; `None` where it has, or will have once it is computed.
 pub fn why_not(model: &Model, view: View) -> Option<String> {
@@ -26,6 +27,7 @@ pub fn why_not(model: &Model, view: View) -> Option<String> {
             let cycle = model.cycle().filter(|cycle| cycle.is_of_preset(&model.preset));
             cycle.and_then(|cycle| Some(format!("no loop: {}", cycle.report.as_ref().err()?.text)))
         }
+        View::ForceTime => missing(&model.preset).map(|why| why.to_string()),
         View::Map => (model.preset.material.work_of_adhesion <= 0.0)
             .then(|| "a gap without adhesion has no limit points".to_owned()),
         View::Residuals => model

@@ -3,7 +3,9 @@
 use super::command::Id;
 use super::model::{Level, Model, Walking};
 use super::node::{Node, NodeKind};
+use super::view::View;
 use pulloff_engine::gap::{Gap, wave_index};
+use pulloff_engine::preset::edge;
 use pulloff_engine::problem::{Begin, Control};
 use pulloff_engine::quasistatic::EventKind;
 use pulloff_engine::report::number::{loss, short, significant, with_unit};
@@ -108,6 +110,9 @@ fn next(model: &Model) -> String {
     if node.is_limit(control) {
         return limit_hint(model, node);
     }
+    if let Some(said) = asks_of_pull(model).then(|| model.pull_said()).flatten() {
+        return said;
+    }
     let [next, step] = [Id::NextEvent, Id::Step].map(Id::named);
     if !model.inward && model.is_at_outer_end() && node.stability.under(control) {
         let turn = Id::Reverse.named();
@@ -148,6 +153,12 @@ fn next(model: &Model) -> String {
             )
         }
     }
+}
+
+/// Whether the pull is what is looked at: its chart, or a value that it alone depends on.
+fn asks_of_pull(model: &Model) -> bool {
+    let is_of_edge = |key: &str| edge::KEYS.contains(&key);
+    model.view == View::ForceTime || model.selected_knob().is_some_and(|(row, _)| is_of_edge(&row.key))
 }
 
 /// What a jump came to, or what is pending where a crest touches.

@@ -65,6 +65,8 @@ pub enum View {
     Map,
     /// The distances of the measured points from the curve.
     Residuals,
+    /// P over the time, in the pull at the rate of the preset.
+    ForceTime,
     /// P minus that of the pinned curves and of theory, at equal s and at equal δ.
     Differences,
     /// The states walked, as a table.
@@ -75,7 +77,7 @@ pub enum View {
 
 impl View {
     /// All, in the order in which they follow each other.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::ForceApproach,
         Self::ForcePosition,
         Self::ForceRadius,
@@ -90,6 +92,7 @@ impl View {
         Self::Stability,
         Self::Map,
         Self::Residuals,
+        Self::ForceTime,
         Self::Differences,
         Self::Walk,
         Self::Study,
@@ -112,6 +115,7 @@ impl View {
             Self::Stability => "stability",
             Self::Map => "map",
             Self::Residuals => "residuals",
+            Self::ForceTime => "force-time",
             Self::Differences => "differences",
             Self::Walk => "walk",
             Self::Study => "study",
@@ -135,6 +139,7 @@ impl View {
             Self::Stability => "the adhesion at which each state is a limit point",
             Self::Map => "where snaps begin, over two numbers",
             Self::Residuals => "how far each measured point is from the curve",
+            Self::ForceTime => "the force P over the time, pulled at path.rate",
             Self::Differences => "P minus that of pins and theory",
             Self::Walk => "the states walked, as a table",
             Self::Study => "a quantity over the range of the selected value",
@@ -192,12 +197,13 @@ impl View {
     /// What is shown beside it where there is room, the most telling first.
     pub fn companions(self) -> [Self; 3] {
         use View::{
-            Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, ForcePosition, ForceRadius, Gap,
-            Map, Pressure, RadiusApproach, Residuals, Stability, Study, Unloading, Walk,
+            Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, ForcePosition, ForceRadius,
+            ForceTime, Gap, Map, Pressure, RadiusApproach, Residuals, Stability, Study, Unloading, Walk,
         };
         match self {
             ForceApproach | ForcePosition => [ForceRadius, Contact, Energy],
             ForceRadius => [ForceApproach, Contact, Energy],
+            ForceTime => [ForceApproach, ForceRadius, Energy],
             Cycle => [ContactMap, ForceApproach, Pressure],
             ContactMap => [Cycle, ForceApproach, ForceRadius],
             Contact => [Gap, Pressure, ForceApproach],
@@ -251,13 +257,20 @@ impl Home {
     /// Its views, the main one first.
     pub fn views(self) -> &'static [View] {
         use View::{
-            Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, ForcePosition, ForceRadius, Gap,
-            Map, Pressure, RadiusApproach, Residuals, Stability, Study, Unloading, Walk,
+            Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, ForcePosition, ForceRadius,
+            ForceTime, Gap, Map, Pressure, RadiusApproach, Residuals, Stability, Study, Unloading, Walk,
         };
         match self {
-            Self::Curve => {
-                &[ForceApproach, ForceRadius, ForcePosition, RadiusApproach, Unloading, Cycle, Differences]
-            }
+            Self::Curve => &[
+                ForceApproach,
+                ForceRadius,
+                ForcePosition,
+                RadiusApproach,
+                ForceTime,
+                Unloading,
+                Cycle,
+                Differences,
+            ],
             Self::Inside => &[Gap, Pressure, Contact, Energy, ContactMap],
             Self::Map => &[Study, Map, Stability],
             Self::Data => &[Residuals, Walk],

@@ -2,6 +2,7 @@
 
 use super::bounds::Bounds;
 use super::parts::{Figure, Line, Mark, Role, Sign};
+use super::pull::over_curve;
 use super::scale::Scale;
 use super::subject::Subject;
 use super::walk::{branches, events_before, walk};
@@ -25,12 +26,14 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let pinned = pins(subject, view, &mut figure);
     figure.lines.extend(pieces(&subject.curve.points, &points));
     inadmissible(subject, scale, view, &mut figure);
+    let width = Bounds::of(points.iter().copied()).x;
+    let pulled = over_curve(subject, scale, view, &mut figure, width);
     limit_marks(subject, scale, view, &mut figure);
     device(subject, scale, view, &mut figure);
     walk(subject, scale, view, &mut figure);
     // The walker may have left the range of the curve: the figure follows it there.
     let walker = figure.marks.last().filter(|mark| mark.sign == Sign::Walker).map(|mark| mark.at);
-    figure.bounds = Bounds::of(points.into_iter().chain(walker).chain(pinned));
+    figure.bounds = Bounds::of(points.into_iter().chain(walker).chain(pinned).chain(pulled));
     figure
 }
 

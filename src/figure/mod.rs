@@ -13,6 +13,7 @@
 //! | [`walk`] | the states walked, the jumps, the walker |
 //! | [`unloading`] | the quasi-static path with what it dissipates, Fig. 10 |
 //! | [`loops`] | the whole loop of loading and unloading, with what it dissipates |
+//! | [`pull`] | the pull at a rate over the curve, and P over the time |
 //! | [`contact_map`] | the contacts over the way of the control |
 //! | [`differences`] | P minus that of the others |
 //! | [`stability`] | the law of stability over the contact radius |
@@ -38,6 +39,7 @@ pub mod map;
 pub mod measured;
 pub mod parts;
 pub mod places;
+pub mod pull;
 pub mod range;
 pub mod reading;
 pub mod residuals;
@@ -67,6 +69,7 @@ impl Subject<'_> {
             }
             View::Unloading => unloading::figure(self),
             View::Cycle => loops::figure(self),
+            View::ForceTime => pull::figure(self),
             View::ContactMap => contact_map::figure(self),
             View::Stability => stability::figure(self),
             View::Map => stability::map(self),

@@ -31,6 +31,8 @@ pub enum Role {
     Barrier,
     /// The line of the loading device through the walker.
     Device,
+    /// A pull at a rate.
+    Pull,
     Walk,
     /// The curve of the selected event, over its line.
     Chosen,

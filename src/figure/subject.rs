@@ -8,6 +8,7 @@ use crate::explorer::maps::MapData;
 use crate::explorer::model::is_on_curve;
 use crate::explorer::pins::{Pin, name_among};
 use crate::explorer::profile::Inside;
+use crate::explorer::pulls::PullData;
 use crate::explorer::studies::StudyData;
 use crate::explorer::study::study_range;
 use crate::explorer::{Axes, CurveData, Model, Node, Overlays, View, device};
@@ -31,6 +32,8 @@ pub struct Subject<'a> {
     pub path: Option<&'a PathReport>,
     /// The loop of loading and unloading, where there is one.
     pub cycle: Option<&'a PathReport>,
+    /// The pull at the rate of the preset, where there is one.
+    pub pull: Option<&'a PullData>,
     /// The map of two numbers, or why there is none, where it is known.
     pub map: Option<Result<&'a MapReport, &'a str>>,
     /// The number of the selected event on the path.
@@ -60,6 +63,7 @@ impl<'a> Subject<'a> {
             device: device::line(model),
             path: model.path(),
             cycle: model.cycle().and_then(|cycle| cycle.report()),
+            pull: model.pull(),
             map: model.results.found::<MapData>().map(MapData::report),
             event: model.log().entries.get(model.event).and_then(|entry| entry.number),
             measured: Points::of(&model.preset).and_then(Result::ok),
@@ -82,6 +86,7 @@ impl<'a> Subject<'a> {
             device: None,
             path: curve.report.as_ref(),
             cycle: None,
+            pull: None,
             map: None,
             event: None,
             measured: None,

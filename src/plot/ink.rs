@@ -70,6 +70,7 @@ pub fn stroke(role: Role) -> Stroke {
         Role::Contact => stroke(BLACK, 2.0, ""),
         Role::Barrier => stroke(VERMILLION, 0.8, "2.5 1"),
         Role::Device => stroke(GREY, 0.8, "2 1 6 1"),
+        Role::Pull => stroke(ORANGE, 1.5, "14 2"),
         Role::Walk | Role::Chosen => stroke(BLACK, 0.8, ""),
         Role::Jump => stroke(VERMILLION, 0.8, ""),
         Role::Unchanged => stroke(GREY, 0.8, "1 2.5"),
@@ -134,7 +135,7 @@ mod tests {
         let curve = [Role::Smooth, Role::Envelope, Role::Exact, Role::Unstable, Role::Stable];
         let more = [Role::Branch, Role::Inadmissible, Role::Device, Role::Undeformed, Role::Barrier]
             .into_iter()
-            .chain([Role::Loading, Role::Unloading]);
+            .chain([Role::Loading, Role::Unloading, Role::Pull]);
         let looks: Vec<(String, &str)> = curve
             .into_iter()
             .chain(more)

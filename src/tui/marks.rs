@@ -36,6 +36,7 @@ pub fn look(role: Role, theme: Theme) -> Stroke {
         Role::Unloading => of(styles.loops, Beneath, false, 'u'),
         Role::Inadmissible => of(styles.warning, Tints, false, '!'),
         Role::Contact => of(styles.walk, Shares, false, 'c'),
+        Role::Pull => of(styles.pull, Tints, false, 'p'),
         Role::Walk | Role::Chosen => of(styles.walk, Tints, false, 'w'),
         Role::Barrier | Role::Level => of(styles.aid, Beneath, true, '='),
         Role::Device => of(styles.aid, Beneath, true, ':'),
@@ -54,6 +55,7 @@ pub fn look(role: Role, theme: Theme) -> Stroke {
             | Role::Loading
             | Role::Unloading
             | Role::Inadmissible
+            | Role::Pull
     );
     let letter =
         (is_lettered && (theme.has_few_colours() || theme.charts == Charts::Ascii)).then_some(stroke.symbol);

@@ -100,6 +100,8 @@ pub struct Styles {
     pub envelope: Style,
     /// The loop of loading and unloading.
     pub loops: Style,
+    /// A pull at a rate.
+    pub pull: Style,
     /// The pinned curves, by number.
     pub pins: [Style; 6],
 }
@@ -145,6 +147,7 @@ static ANY: Styles = Styles {
     exact: hue(136),
     envelope: hue(30),
     loops: hue(62),
+    pull: hue(64).add_modifier(Modifier::BOLD),
     pins: [hue(202), hue(169), hue(100), hue(29), hue(160), hue(99)],
 };
 
@@ -174,6 +177,7 @@ static DARK: Styles = Styles {
     exact: hue(223),
     envelope: hue(79),
     loops: hue(110),
+    pull: hue(119).add_modifier(Modifier::BOLD),
     pins: [hue(214), hue(176), hue(228), hue(43), hue(203), hue(159)],
 };
 
@@ -202,6 +206,7 @@ static LIGHT: Styles = Styles {
     exact: hue(94),
     envelope: hue(23),
     loops: hue(61),
+    pull: hue(64).add_modifier(Modifier::BOLD),
     pins: [hue(166), hue(126), hue(58), hue(29), hue(88), hue(30)],
 };
 
@@ -230,6 +235,7 @@ static FEW_DARK: Styles = Styles {
     exact: ink(Blue),
     envelope: ink(Blue).add_modifier(Modifier::BOLD),
     loops: PLAIN,
+    pull: ink(Green).add_modifier(Modifier::BOLD),
     pins: [
         ink(Yellow),
         ink(Magenta),
@@ -276,6 +282,7 @@ static MONO: Styles = Styles {
     exact: PLAIN,
     envelope: PLAIN,
     loops: PLAIN,
+    pull: BOLD,
     pins: [PLAIN; 6],
 };
 
@@ -454,7 +461,12 @@ mod tests {
     fn coloured(styles: &Styles) -> Vec<(Color, &'static str)> {
         let Styles { frame, selected_frame, dim, error, key, curve, smooth, walk, jump, .. } = *styles;
         let Styles { landing, lost, aid, warning, mark, walker, stray, nearest, .. } = *styles;
-        let lines = [(styles.exact, "exact"), (styles.envelope, "envelope"), (styles.loops, "loops")];
+        let lines = [
+            (styles.exact, "exact"),
+            (styles.envelope, "envelope"),
+            (styles.loops, "loops"),
+            (styles.pull, "pull"),
+        ];
         let named = [
             (frame, "frame"),
             (selected_frame, "selected frame"),

@@ -129,15 +129,24 @@ pub struct FailureReport {
 /// A moment as a row of CSV.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MomentRow {
-    rate: Option<f64>,
-    time: f64,
-    control: f64,
-    contact_radius: f64,
-    approach: f64,
-    force: f64,
-    speed: f64,
-    energy_release_rate: f64,
-    dissipated: f64,
+    /// The rate of the control; none where `path.steps` says what is done.
+    pub rate: Option<f64>,
+    /// t, from the start of the pull.
+    pub time: f64,
+    /// δ, P, or Δ = δ + P/k.
+    pub control: f64,
+    /// s.
+    pub contact_radius: f64,
+    /// δ.
+    pub approach: f64,
+    /// P.
+    pub force: f64,
+    /// −ds/dt.
+    pub speed: f64,
+    /// G.
+    pub energy_release_rate: f64,
+    /// What the edge has dissipated so far.
+    pub dissipated: f64,
 }
 
 /// A run as a row of CSV.
@@ -519,6 +528,12 @@ pub(super) fn law(preset: &Preset) -> Result<(EdgeLaw, f64), PullError> {
         closing_exponent: spec.closing_exponent.unwrap_or(exponent),
     };
     Ok((law, speed))
+}
+
+/// Why a preset does not say how it is pulled; `None` where it does.
+#[must_use]
+pub fn missing(preset: &Preset) -> Option<PullError> {
+    law(preset).err().or_else(|| programmes(preset, &Asked::default()).err())
 }
 
 /// What is done in a run, with its rate where it has one alone.

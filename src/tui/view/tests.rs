@@ -14,6 +14,7 @@ mod jobs;
 mod keys;
 mod line;
 mod looks;
+mod rate;
 mod reach;
 
 /// Dark, and in ASCII.
@@ -141,6 +142,7 @@ fn every_state_is_drawn_at_every_size() {
 fn whole_screens_as_text() {
     let mut screen = Screen::new("wavy-sphere");
     insta::assert_snapshot!("start_80x24", screen.text(80, 24));
+    insta::assert_snapshot!("pull_80x24", rate::pulled().text(80, 24));
     screen.keys("n");
     insta::assert_snapshot!("limit_point_80x24", screen.text(80, 24));
     screen.keys("x");

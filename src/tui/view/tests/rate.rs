@@ -1,0 +1,104 @@
+//! The pull at the rate of the preset, on the screen.
+
+use super::Screen;
+use crate::explorer::View;
+use crate::explorer::pulls::PullData;
+use crate::figure::{Figure, Role, Sign, Subject};
+use pulloff_engine::preset::edge::RATE;
+use pulloff_engine::progress::Unwatched;
+use pulloff_engine::report::PullReport;
+use pulloff_engine::report::pull::Asked;
+use std::sync::Arc;
+
+/// Fig. 9 from s = 0.5, pulled at v₀.
+pub fn pulled() -> Screen {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":set path.start_contact_radius=0.5\r:set edge.exponent=0.5\r:set path.rate=1\r");
+    screen
+}
+
+fn figure(screen: &Screen, view: View) -> Figure {
+    Subject::of(&screen.app.model).unwrap().figure(view)
+}
+
+fn pull(screen: &Screen) -> Option<&PullData> {
+    screen.app.model.results.shown()
+}
+
+/// The least P/Pc of the pull in a view.
+fn least(figure: &Figure) -> f64 {
+    let of_pull = figure.lines.iter().filter(|line| line.role == Role::Pull);
+    of_pull.flat_map(|line| &line.points).fold(f64::INFINITY, |least, (_, force)| least.min(*force))
+}
+
+#[test]
+fn the_pull_lies_over_the_curve_with_the_largest_pull_of_the_command() {
+    let mut screen = pulled();
+    let report = PullReport::compute(&screen.app.model.preset, &Asked::default(), &Unwatched).unwrap();
+    assert_eq!(report.runs, pull(&screen).unwrap().report.as_ref().unwrap().runs);
+    let critical = report.head.problem.critical_force.unwrap();
+    assert!((report.runs[0].peak.force / critical + 2.729_97).abs() < 5e-6);
+    for view in [View::ForceApproach, View::ForceRadius, View::ForceTime] {
+        let figure = figure(&screen, view);
+        assert!((least(&figure) + 2.729_97).abs() < 1e-3, "{view:?} {}", least(&figure));
+        assert!(figure.bounds.y[0] < -2.73, "{view:?} {:?}", figure.bounds);
+    }
+    let over_time = figure(&screen, View::ForceTime);
+    let peak = over_time.marks.iter().find(|mark| mark.sign == Sign::LargestPull).unwrap();
+    assert_eq!(peak.at, (report.runs[0].peak.time, report.runs[0].peak.force / critical));
+    assert_eq!(over_time.marks.iter().filter(|mark| mark.sign == Sign::Minimum).count(), 5);
+    screen.keys(":view force-time\r");
+    let drawn = screen.text(160, 45);
+    assert!(drawn.contains("P/Pc over t") && drawn.contains("P/Pc -2.730"), "{drawn}");
+    let said = "At 1 v₀ the largest pull is 2.73 P_c, 1.12 times the smooth sphere's; 6 of 8 jumps leave a tension \
+                peak; the edge reaches 11.6 v₀";
+    assert!(drawn.contains(said), "{drawn}");
+}
+
+#[test]
+fn a_turned_rate_is_pulled_anew_over_the_same_curve() {
+    let mut screen = pulled();
+    let curve = screen.app.model.curve.clone().unwrap();
+    let before = least(&figure(&screen, View::ForceApproach));
+    let knobs = screen.app.model.knobs();
+    screen.app.model.parameter = knobs.iter().position(|(row, _)| row.key == RATE).unwrap();
+    screen.keys(">");
+    assert!(Arc::ptr_eq(&curve, screen.app.model.curve.as_ref().unwrap()));
+    let rate = pull(&screen).unwrap().run().unwrap().rate.unwrap();
+    assert!((rate - 2.154_43).abs() < 1e-9, "{rate}");
+    let after = least(&figure(&screen, View::ForceApproach));
+    assert!(after < before - 0.3, "{before} {after}");
+    assert!(screen.text(160, 45).contains("At 2.15 v₀ the largest pull is 3.3 P_c, 1.1 times"));
+    // So does any other value.
+    screen.keys(":set gap.amplitude=0.001\r");
+    assert!(least(&figure(&screen, View::ForceApproach)) > after);
+    // Under a dead load a rate is a force in a time.
+    screen.keys(":set path.control=force\r");
+    assert!(pull(&screen).unwrap().report.is_ok());
+    let figure = figure(&screen, View::ForceTime);
+    assert!(figure.missing.is_none() && least(&figure).is_finite());
+}
+
+#[test]
+fn where_the_law_ends_is_said_before_the_numbers() {
+    let mut screen = pulled();
+    screen.keys(":set edge.highest_ratio=1.5\r:view force-time\r");
+    assert!(screen.text(160, 45).contains("G/gamma reaches "));
+}
+
+#[test]
+fn without_a_rate_nothing_is_pulled() {
+    let mut screen = Screen::new("wavy-sphere");
+    // The last takes a rate back.
+    for keys in ["", ":set edge.exponent=0.5\r", ":set path.rate=1\ru"] {
+        screen.keys(keys);
+        assert!(pull(&screen).is_none(), "{keys}");
+        for view in [View::ForceApproach, View::ForceRadius, View::ForceTime] {
+            assert!(!figure(&screen, view).lines.iter().any(|line| line.role == Role::Pull));
+        }
+        assert!(crate::explorer::reach::why_not(&screen.app.model, View::ForceTime).is_some(), "{keys}");
+    }
+    screen.keys(":view force-time\r");
+    let drawn = screen.text(160, 45);
+    assert!(drawn.contains("no rate is given: set path.rate or path.steps"), "{drawn}");
+}
