@@ -11,6 +11,7 @@ use crate::explorer::maps::MapData;
 use crate::explorer::profile::{Ask, Inside};
 use crate::explorer::pulls::PullData;
 use crate::explorer::reach::no_spring;
+use crate::explorer::speeds::{SpeedsData, untimed};
 use crate::explorer::{Axes, CurveData, Overlays, Staged, View};
 use crate::figure::measured::Points;
 use crate::figure::range::RangeError;
@@ -185,9 +186,11 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let measured = Points::of(&preset).and_then(Result::ok);
     let distances =
         (view == View::Residuals && preset.data.source.is_some()).then(|| Distances::of(&preset).found);
+    let speeds = (view == View::Speeds).then(|| SpeedsData::of(&preset, &Unwatched)).flatten();
     let subject = Subject {
         measured,
         distances: distances.as_ref(),
+        speeds: speeds.as_ref(),
         inside: inside.as_ref(),
         cycle: cycle.as_ref(),
         pull: pull.as_ref(),
@@ -282,10 +285,11 @@ impl Arguments {
         let why = match view {
             View::ForcePosition => no_spring(preset),
             View::ForceTime => missing(preset).map(|why| why.to_string()),
-            View::Residuals if preset.data.source.is_none() => Some(
+            View::Residuals | View::Speeds if preset.data.source.is_none() => Some(
                 "there are no measured points: --measured FILE or data.file of the preset names them"
                     .to_owned(),
             ),
+            View::Speeds => untimed(preset),
             _ => None,
         };
         why.map_or(Ok(()), |why| Err(Failure::Usage(format!("--view {}: {why}", view.name()))))

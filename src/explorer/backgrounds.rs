@@ -12,10 +12,11 @@ use super::onset::SnapsFrom;
 use super::pinned::PinCurve;
 use super::profile::Inside;
 use super::pulls::PullData;
+use super::speeds::SpeedsData;
 use super::studies::StudyData;
 
 /// The kinds, in the order in which they are told of.
-pub static KINDS: [Kind; 10] = [
+pub static KINDS: [Kind; 11] = [
     Kind::of::<Fitted>(),
     Kind::of::<PinCurve>(),
     Kind::of::<StudyData>(),
@@ -25,6 +26,7 @@ pub static KINDS: [Kind; 10] = [
     Kind::of::<PullData>(),
     Kind::of::<MapData>(),
     Kind::of::<Distances>(),
+    Kind::of::<SpeedsData>(),
     Kind::of::<SnapsFrom>(),
 ];
 

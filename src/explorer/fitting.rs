@@ -7,6 +7,9 @@ use pulloff_engine::fit::run::{Residual, residuals_own};
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{Preset, data};
 
+/// What is said where there are none to be looked at.
+pub const NO_POINTS: &str = "no measured curve: :data FILE lays one behind the chart";
+
 /// The distances of the points from the curve of a preset, in σ.
 #[derive(Debug, Clone)]
 pub struct Distances {

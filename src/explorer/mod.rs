@@ -33,6 +33,7 @@
 //! | [`onset`] | the smallest amplitude at which a problem snaps |
 //! | [`maps`], [`map_axes`], [`studies`], [`study`], `study_table` | the map of two numbers, its axes; a quantity over one, and its documents |
 //! | [`fitting`], `fit` | the distances of measured points; a fit |
+//! | [`speeds`] | G of measured rows, and how fast the edge goes there |
 //! | [`device`] | the line of the loading device through the walker |
 //! | [`profile`] | pressure, gap and potential of one state |
 //! | [`walk`] | steps, runs and jumps along the curve |
@@ -92,6 +93,7 @@ mod saves;
 pub mod script;
 pub mod session;
 pub mod setting;
+pub mod speeds;
 pub mod status_line;
 pub mod studies;
 pub mod study;

@@ -104,9 +104,9 @@ impl PullData {
             smooth.map(|force| format!(", {} times the smooth sphere's", three(run.peak.force / force)));
         let peaks = run.tension_peaks.len();
         let seen = (!of_force && (1..=jumps).contains(&peaks))
-            .then(|| format!("; {peaks} of {jumps} jumps leave a tension peak"));
+            .then(|| format!("; {peaks} of {jumps} jumps leave a peak"));
         Some(format!(
-            "{rate} the largest pull is {peak}{}{}; the edge reaches {}",
+            "{rate}: largest pull {peak}{}{}; the edge reaches {}",
             smooth.unwrap_or_default(),
             seen.unwrap_or_default(),
             over(run.top_edge_speed)

@@ -1,8 +1,10 @@
 //! Which views have something to show now, why the others have not, and the way from one to the next.
 
 use super::command::Id;
+use super::fitting::NO_POINTS;
 use super::model::{Level, Model};
 use super::node::Node;
+use super::speeds::untimed;
 use super::study::study_range;
 use super::view::{Home, View};
 use pulloff_engine::preset::Preset;
@@ -30,12 +32,8 @@ pub fn why_not(model: &Model, view: View) -> Option<String> {
         View::ForceTime => missing(&model.preset).map(|why| why.to_string()),
         View::Map => (model.preset.material.work_of_adhesion <= 0.0)
             .then(|| "a gap without adhesion has no limit points".to_owned()),
-        View::Residuals => model
-            .preset
-            .data
-            .source
-            .is_none()
-            .then(|| "no measured curve: :data FILE lays one behind the chart".to_owned()),
+        View::Residuals => model.preset.data.source.is_none().then(|| NO_POINTS.to_owned()),
+        View::Speeds => untimed(&model.preset),
         View::Differences => (!has_others(model)).then(|| {
             format!(
                 "nothing to compare with: {} pins a curve, {} draws theory",

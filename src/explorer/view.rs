@@ -67,6 +67,8 @@ pub enum View {
     Residuals,
     /// P over the time, in the pull at the rate of the preset.
     ForceTime,
+    /// G of the measured rows over the speed of the edge.
+    Speeds,
     /// P minus that of the pinned curves and of theory, at equal s and at equal δ.
     Differences,
     /// The states walked, as a table.
@@ -77,7 +79,7 @@ pub enum View {
 
 impl View {
     /// All, in the order in which they follow each other.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::ForceApproach,
         Self::ForcePosition,
         Self::ForceRadius,
@@ -93,6 +95,7 @@ impl View {
         Self::Map,
         Self::Residuals,
         Self::ForceTime,
+        Self::Speeds,
         Self::Differences,
         Self::Walk,
         Self::Study,
@@ -116,6 +119,7 @@ impl View {
             Self::Map => "map",
             Self::Residuals => "residuals",
             Self::ForceTime => "force-time",
+            Self::Speeds => "speeds",
             Self::Differences => "differences",
             Self::Walk => "walk",
             Self::Study => "study",
@@ -140,6 +144,7 @@ impl View {
             Self::Map => "where snaps begin, over two numbers",
             Self::Residuals => "how far each measured point is from the curve",
             Self::ForceTime => "the force P over the time, pulled at path.rate",
+            Self::Speeds => "the energy release rate of measured rows over the speed of the edge",
             Self::Differences => "P minus that of pins and theory",
             Self::Walk => "the states walked, as a table",
             Self::Study => "a quantity over the range of the selected value",
@@ -198,7 +203,8 @@ impl View {
     pub fn companions(self) -> [Self; 3] {
         use View::{
             Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, ForcePosition, ForceRadius,
-            ForceTime, Gap, Map, Pressure, RadiusApproach, Residuals, Stability, Study, Unloading, Walk,
+            ForceTime, Gap, Map, Pressure, RadiusApproach, Residuals, Speeds, Stability, Study, Unloading,
+            Walk,
         };
         match self {
             ForceApproach | ForcePosition => [ForceRadius, Contact, Energy],
@@ -209,7 +215,7 @@ impl View {
             Contact => [Gap, Pressure, ForceApproach],
             Stability => [RadiusApproach, ForceApproach, Unloading],
             Map => [Stability, ForceApproach, Unloading],
-            Residuals => [ForceApproach, ForceRadius, Pressure],
+            Residuals | Speeds => [ForceApproach, ForceRadius, Pressure],
             Study => [ForceApproach, Unloading, ForceRadius],
             Differences => [ForceApproach, ForceRadius, RadiusApproach],
             Gap => [Pressure, Contact, ForceApproach],
@@ -258,7 +264,8 @@ impl Home {
     pub fn views(self) -> &'static [View] {
         use View::{
             Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, ForcePosition, ForceRadius,
-            ForceTime, Gap, Map, Pressure, RadiusApproach, Residuals, Stability, Study, Unloading, Walk,
+            ForceTime, Gap, Map, Pressure, RadiusApproach, Residuals, Speeds, Stability, Study, Unloading,
+            Walk,
         };
         match self {
             Self::Curve => &[
@@ -273,7 +280,7 @@ impl Home {
             ],
             Self::Inside => &[Gap, Pressure, Contact, Energy, ContactMap],
             Self::Map => &[Study, Map, Stability],
-            Self::Data => &[Residuals, Walk],
+            Self::Data => &[Residuals, Speeds, Walk],
         }
     }
 

@@ -25,6 +25,7 @@
 //! | `contact` | its contact from above |
 //! | [`measured`] | measured points behind a curve |
 //! | [`residuals`] | how far those points are from it |
+//! | [`speeds`] | their energy release rate over the speed of the edge |
 //! | [`shape`] | the undeformed gap of a preset, to choose a shape by |
 //! | [`reading`] | what a point of a figure means: the cross-hair's coordinates, the state near to it |
 
@@ -45,6 +46,7 @@ pub mod reading;
 pub mod residuals;
 pub mod scale;
 pub mod shape;
+pub mod speeds;
 pub mod stability;
 pub mod state;
 pub mod study;
@@ -74,6 +76,7 @@ impl Subject<'_> {
             View::Stability => stability::figure(self),
             View::Map => stability::map(self),
             View::Residuals => residuals::figure(self),
+            View::Speeds => speeds::figure(self),
             View::Differences => differences::figure(self),
             View::Walk => walk::table(),
             View::Study => study::figure(self),

@@ -7,6 +7,7 @@ use super::bounds::Bounds;
 use super::measured::DRAWN;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
 use super::subject::Subject;
+use crate::explorer::fitting::NO_POINTS;
 use pulloff_engine::fit::run::Residual;
 use pulloff_engine::measured::{Abscissa, Segment};
 
@@ -30,7 +31,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
             return figure;
         }
         None if subject.preset.data.source.is_none() => {
-            figure.missing = Some("no measured curve: :data FILE lays one behind the chart".to_owned());
+            figure.missing = Some(NO_POINTS.to_owned());
             return figure;
         }
         None => {

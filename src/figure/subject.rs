@@ -9,6 +9,7 @@ use crate::explorer::model::is_on_curve;
 use crate::explorer::pins::{Pin, name_among};
 use crate::explorer::profile::Inside;
 use crate::explorer::pulls::PullData;
+use crate::explorer::speeds::SpeedsData;
 use crate::explorer::studies::StudyData;
 use crate::explorer::study::study_range;
 use crate::explorer::{Axes, CurveData, Model, Node, Overlays, View, device};
@@ -42,6 +43,8 @@ pub struct Subject<'a> {
     pub measured: Option<Points>,
     /// Their distances from the curve, or why there are none, where they are known.
     pub distances: Option<&'a Result<(Abscissa, Vec<Residual>), String>>,
+    /// Their energy release rate and the speed of the edge, where they are known.
+    pub speeds: Option<&'a SpeedsData>,
     /// The study of the selected value, or why there is none, where it is known.
     pub study: Option<Result<&'a StudyData, String>>,
     pub pins: &'a [Pin],
@@ -68,6 +71,7 @@ impl<'a> Subject<'a> {
             event: model.log().entries.get(model.event).and_then(|entry| entry.number),
             measured: Points::of(&model.preset).and_then(Result::ok),
             distances: model.results.found::<Distances>().map(|distances| &distances.found),
+            speeds: model.results.found(),
             study: study(model),
             pins: model.pins.all(),
             preset: &model.preset,
@@ -91,6 +95,7 @@ impl<'a> Subject<'a> {
             event: None,
             measured: None,
             distances: None,
+            speeds: None,
             study: None,
             pins: &[],
             preset: &curve.setting.preset,

@@ -517,7 +517,10 @@ fn energy(units: &UnitSystem, x: f64) -> String {
 }
 
 /// The law of the edge of a preset, and v₀ in its units.
-pub(super) fn law(preset: &Preset) -> Result<(EdgeLaw, f64), PullError> {
+///
+/// # Errors
+/// [`PullError::NoLaw`].
+pub fn law(preset: &Preset) -> Result<(EdgeLaw, f64), PullError> {
     let spec = &preset.edge;
     let exponent = spec.exponent.ok_or(PullError::NoLaw { key: edge::EXPONENT })?;
     let unit = (preset.units == UnitSystem::Reduced).then_some(1.0);

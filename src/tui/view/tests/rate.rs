@@ -3,6 +3,7 @@
 use super::Screen;
 use crate::explorer::View;
 use crate::explorer::pulls::PullData;
+use crate::explorer::speeds::SpeedsData;
 use crate::figure::{Figure, Role, Sign, Subject};
 use pulloff_engine::preset::edge::RATE;
 use pulloff_engine::progress::Unwatched;
@@ -50,9 +51,8 @@ fn the_pull_lies_over_the_curve_with_the_largest_pull_of_the_command() {
     screen.keys(":view force-time\r");
     let drawn = screen.text(160, 45);
     assert!(drawn.contains("P/Pc over t") && drawn.contains("P/Pc -2.730"), "{drawn}");
-    let said = "At 1 v₀ the largest pull is 2.73 P_c, 1.12 times the smooth sphere's; 6 of 8 jumps leave a tension \
-                peak; the edge reaches 11.6 v₀";
-    assert!(drawn.contains(said), "{drawn}");
+    let said = "At 1 v₀: largest pull 2.73 P_c, 1.12 times the smooth sphere's; 6 of 8 jumps leave a peak; the edge reaches 11.6 v₀";
+    assert!(screen.text(120, 40).contains(said), "{drawn}");
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn a_turned_rate_is_pulled_anew_over_the_same_curve() {
     assert!((rate - 2.154_43).abs() < 1e-9, "{rate}");
     let after = least(&figure(&screen, View::ForceApproach));
     assert!(after < before - 0.3, "{before} {after}");
-    assert!(screen.text(160, 45).contains("At 2.15 v₀ the largest pull is 3.3 P_c, 1.1 times"));
+    assert!(screen.text(160, 45).contains("At 2.15 v₀: largest pull 3.3 P_c, 1.1 times"));
     // So does any other value.
     screen.keys(":set gap.amplitude=0.001\r");
     assert!(least(&figure(&screen, View::ForceApproach)) > after);
@@ -101,4 +101,41 @@ fn without_a_rate_nothing_is_pulled() {
     screen.keys(":view force-time\r");
     let drawn = screen.text(160, 45);
     assert!(drawn.contains("no rate is given: set path.rate or path.steps"), "{drawn}");
+}
+
+#[test]
+fn measured_rows_lie_on_the_law_of_their_edge() {
+    let mut screen = Screen::new("fig-3-jkr");
+    screen.keys(":set edge.exponent=0.5\r:set path.rate=0.1\r");
+    let run = pull(&screen).unwrap().run().unwrap();
+    // As an instrument has them, whose clock goes on between two rows.
+    let mut next = 0.0;
+    let rows = run.moments.iter().filter(|at| {
+        let is_due = at.contact_radius > 0.0 && at.time >= next;
+        next = if is_due { at.time + 5e-3 } else { next };
+        is_due
+    });
+    let rows = rows.map(|at| format!("{:e},{:e},{:e},retraction\n", at.contact_radius, at.force, at.time));
+    let text = std::iter::once("contact radius,force,time,segment\n".to_owned()).chain(rows);
+    let path = screen.folder.path().join("made.csv");
+    std::fs::write(&path, text.collect::<String>()).unwrap();
+    let why = |screen: &Screen| crate::explorer::reach::why_not(&screen.app.model, View::Speeds);
+    assert!(why(&screen).unwrap().starts_with("no measured curve"));
+    screen.keys(&format!(":data {}\r", path.display()));
+    assert_eq!(why(&screen), None);
+    assert!(screen.app.model.results.found::<SpeedsData>().is_none(), "nobody looks");
+    screen.keys("gd:view speeds\r");
+    let shown = figure(&screen, View::Speeds);
+    let [law] = &shown.lines[..] else { panic!("{:?}", shown.lines) };
+    assert!(shown.marks.len() > 50, "{}", shown.marks.len());
+    for mark in &shown.marks {
+        let next =
+            law.points[1..].iter().position(|at| at.0 >= mark.at.0).map_or(law.points.len() - 1, |at| at + 1);
+        let [a, b] = [law.points[next - 1], law.points[next]];
+        let on_line = a.1 + (b.1 - a.1) * (mark.at.0 - a.0) / (b.0 - a.0);
+        assert!((mark.at.1 - on_line).abs() < 0.03, "{mark:?} {on_line}");
+    }
+    // What the law is does not matter to what is measured.
+    screen.keys(":set edge.exponent=0.6\r");
+    assert_eq!(figure(&screen, View::Speeds).marks, shown.marks);
 }
