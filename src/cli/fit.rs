@@ -55,7 +55,7 @@ pub struct Arguments {
     /// preset's data.uncertain when left out
     #[arg(long, value_name = "KEY=ERROR,...", value_delimiter = ',', allow_hyphen_values = true)]
     uncertain: Option<Vec<String>>,
-    /// Fit this key for approach and retraction apart
+    /// Fit this key for approach and retraction apart: between them the edge is pinned
     #[arg(long, value_name = "KEY", value_parser = ["material.work_of_adhesion", "work_of_adhesion", "gamma"])]
     separate: Option<String>,
     /// Fit this model instead of material.adhesion: short-range, at the edge of contact alone; or dugdale, with a range, whose

@@ -182,10 +182,16 @@ pub(super) fn doubts(
         && (approach.value - retraction.value).abs()
             > f64::max(2.0 * hypot(a, b), DIFFERENT * retraction.value)
     {
+        let more = approach.value > retraction.value;
         doubts.push(
-            "the works of adhesion of approach and retraction differ by more than their errors: not a quasi-static loop, but \
-             rate or ageing"
-                .to_owned(),
+            if more {
+                "the approach has a larger work of adhesion than the retraction, by more than their errors: nothing that is only pressed \
+                 and pulled does that"
+            } else {
+                "the works of adhesion of approach and retraction differ by more than their errors: between them the edge is pinned \
+                 (material.closing_work_of_adhesion), or it has a speed, or the bodies age"
+            }
+            .to_owned(),
         );
     }
     for fitted in adhesions {

@@ -147,11 +147,13 @@ impl Factored {
     /// The damped step.
     fn step(&self, mu: f64, scales: &DVector<f64>) -> Option<DVector<f64>> {
         let (rows, p) = self.r.shape();
+        // A column of nothing: the parameter stays where it is, whatever its scale.
+        let scale = |j: usize| if scales[j] > 0.0 { scales[j] } else { 1.0 };
         let stacked = DMatrix::from_fn(rows + p, p, |i, j| {
             if i < rows {
                 self.r[(i, j)]
             } else if i - rows == j {
-                mu.sqrt() * scales[j]
+                mu.sqrt() * scale(j)
             } else {
                 0.0
             }
@@ -208,8 +210,7 @@ pub fn minimize_from<P: LeastSquares>(
         }
         let factored = Factored::of(&at, counts, c);
         for (scale, length) in scales.iter_mut().zip(factored.lengths.iter()) {
-            // A column of nothing: the parameter stays where it is.
-            *scale = f64::max(*scale, if *length > 0.0 { *length } else { f64::MIN_POSITIVE });
+            *scale = f64::max(*scale, *length);
         }
         loop {
             let Some(step) = factored.step(mu, &scales) else {

@@ -150,6 +150,14 @@ impl Path {
         Some(path)
     }
 
+    /// Begins with an edge that is pinned: from where `before` ends, at the same contact radius, to where this path begins. P and x move along a
+    /// straight line at a held radius.
+    pub(super) fn pinned_after(&mut self, before: &Self) {
+        let ends = [before, &*self].map(|path| path.corner(path.outermost, [1.0; 2]).at);
+        self.pieces.insert(0, Piece::Line(ends));
+        self.draw();
+    }
+
     /// The smallest radius at which the disc would overlap a crest outside, on this path up to the radius `to`: rings of contact take
     /// another one then.
     #[must_use]

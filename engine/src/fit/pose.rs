@@ -49,6 +49,12 @@ pub fn posed(
         targets.push(Target::Key(START.to_owned()));
     } else {
         bare.edge.rate = None;
+        if options.separate && !has_waves {
+            let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
+            let attached: Vec<&Point> = retraction.flat_map(|branch| &branch.attached).collect();
+            bare.path.start = begun(&bare, branches, &attached, preset.data.offset)?;
+            targets.push(Target::Key(START.to_owned()));
+        }
     }
     let loops = has_waves && data.iter().any(|datum| datum.segment == Segment::Approach);
     let known = known(preset, branches, options)?;
@@ -138,15 +144,25 @@ fn pulled(
             bare.edge.rate = Some(rate);
         }
     }
+    begun(bare, branches, &attached, bare.data.offset)
+}
+
+/// The contact radius at which the points of a retraction begin, as the first guesses have it.
+fn begun(
+    preset: &Preset,
+    branches: &Branches,
+    attached: &[&Point],
+    offset: Option<f64>,
+) -> Result<Start, FitError> {
     let first = &attached[..TURN.min(attached.len())];
     let middle =
         |of: fn(&Point) -> f64| median(first.iter().map(|point| of(point)).collect()).unwrap_or(f64::NAN);
-    let offset = bare.data.offset.unwrap_or(0.0);
     let seen = middle(|point| point.radius);
     let start = if seen.is_finite() && branches.abscissa != Abscissa::Radius {
         Some(seen)
     } else {
-        begins(bare, branches.abscissa, middle(|point| point.x) - offset, branches.ranges[0])
+        let x = middle(|point| point.x) - offset.unwrap_or(0.0);
+        begins(preset, branches.abscissa, x, branches.ranges[0])
     };
     start.filter(|start| *start > 0.0).map(Start::ContactRadius).ok_or(FitError::NoStart)
 }

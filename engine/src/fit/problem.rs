@@ -265,7 +265,24 @@ impl Problem {
             ..self.reach
         };
         let way = if self.loops && segment == Segment::Approach { Way::Up } else { Way::Down };
-        Path::new(&self.preset_at(u, segment)?, self.abscissa, &reach, way)
+        let preset = self.preset_at(u, segment)?;
+        // A pinned edge stands where the approach has left it.
+        let reach = match preset.path.start {
+            Start::ContactRadius(radius) if self.pins() => Reach { radius: Some(radius), ..reach },
+            _ => reach,
+        };
+        Path::new(&preset, self.abscissa, &reach, way)
+    }
+
+    /// Whether the branches have works of adhesion of their own, and the edge is pinned between them.
+    #[must_use]
+    pub(super) fn pins(&self) -> bool {
+        self.splits() && self.parameters.iter().any(|p| p.target == Target::Key(START.to_owned()))
+    }
+
+    /// Whether they have works of adhesion of their own.
+    pub(super) fn splits(&self) -> bool {
+        self.parameters.iter().any(|p| matches!(p.target, Target::Adhesion(_)))
     }
 
     /// The paths at `u`.
@@ -281,9 +298,12 @@ impl Problem {
 
     fn paths_from(&self, u: &[f64], radius: &dyn Fn(Segment) -> Option<f64>) -> Option<Paths> {
         let of = |segment| self.path(u, segment, radius(segment));
-        let separate = self.parameters.iter().any(|p| matches!(p.target, Target::Adhesion(_)));
-        let approach = if separate || self.loops { Some(of(Segment::Approach)?) } else { None };
-        Some(Paths { retraction: of(Segment::Retraction)?, approach })
+        let approach = if self.splits() || self.loops { Some(of(Segment::Approach)?) } else { None };
+        let mut retraction = of(Segment::Retraction)?;
+        if let Some(approach) = approach.as_ref().filter(|_| self.pins()) {
+            retraction.pinned_after(approach);
+        }
+        Some(Paths { retraction, approach })
     }
 
     /// A point as the model has it, in units of noise.

@@ -2,7 +2,7 @@
 
 use super::options::FitError;
 use super::path::Foot;
-use super::problem::{Problem, Target};
+use super::problem::Problem;
 use crate::measured::Segment;
 use crate::units::{Quantity, number::said};
 
@@ -32,8 +32,7 @@ impl Problem {
     pub(super) fn without_loading(mut self, why: String, notes: &mut Vec<String>) -> Result<Self, FitError> {
         let before = self.data.len();
         self.data.retain(|datum| datum.segment == Segment::Retraction);
-        let separate = self.parameters.iter().any(|p| matches!(p.target, Target::Adhesion(_)));
-        if self.data.is_empty() || separate {
+        if self.data.is_empty() || self.splits() {
             return Err(FitError::Loading(why));
         }
         notes.push(format!(

@@ -20,7 +20,7 @@ use crate::elementary::{ln, pow};
 use crate::measured::branches::FLOOR;
 use crate::measured::{Abscissa, Branches, Noise, Origin, Segment};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
-use crate::preset::{Preset, edge};
+use crate::preset::{Preset, Value, edge};
 use crate::progress::{Part, Progress};
 use crate::units::{
     Quantity,
@@ -264,7 +264,8 @@ impl<'a> Posed<'a> {
         let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
         let warnings =
             doubts(&problem, &solved, &scatter, what.inner.as_ref(), &fitted, (&reasons, is_known));
-        let fitted_preset = laid(preset, &problem, (&found, &problem.instrument_at(u)), &mut notes);
+        let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
+        let fitted_preset = laid(preset, &problem, (&found, closing, &problem.instrument_at(u)), &mut notes);
         let lists =
             |c: nalgebra::DMatrix<f64>| c.row_iter().map(|row| row.iter().copied().collect()).collect();
         let left = real.len().saturating_sub(problem.taken()).max(1) as f64;
@@ -514,7 +515,7 @@ pub(super) fn values(
 fn laid(
     preset: &Preset,
     problem: &Problem,
-    (found, instrument): (&Preset, &Instrument),
+    (found, closing, instrument): (&Preset, Option<f64>, &Instrument),
     notes: &mut Vec<String>,
 ) -> Preset {
     let mut laid = preset.clone();
@@ -528,11 +529,14 @@ fn laid(
         .map(|(parameter, prior)| written(parameter, prior))
         .collect();
     laid.data.uncertain = known.join(",");
+    let opening = found.material.work_of_adhesion;
     for parameter in &problem.parameters {
         let (key, value) = match &parameter.target {
             Target::Key(key) => (key.as_str(), found.get(key)),
             Target::Adhesion(Segment::Retraction) => (ADHESION, found.get(ADHESION)),
-            Target::Adhesion(_) => continue,
+            Target::Adhesion(_) => {
+                (edge::CLOSING_ADHESION, closing.filter(|closing| *closing <= opening).map(Value::from))
+            }
             Target::Offset => (OFFSET, Some(instrument.offset.into())),
             // One that no rows show is known no better by the next fit: it stays as it was given.
             Target::Baseline if !problem.data.iter().any(|datum| datum.free) => continue,

@@ -36,6 +36,10 @@ const FEW_ROUNDS: usize = 4;
 pub const BEST: usize = 5;
 const ROUNDS: usize = 40;
 
+/// Ends of which no value differs by more than this are one, and starts of which one does by more than that are two.
+const ONE: f64 = 0.01;
+const OTHER: f64 = 0.2;
+
 /// A start that was run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tried {
@@ -192,12 +196,13 @@ impl Problem {
         Some(list)
     }
 
-    /// The contact radius at which a pull begins, where that is free, as the values have it at the first points.
+    /// The contact radius at which a pull begins, or an edge is pinned, where that is free, as the values have it at the first points.
     fn begun(&self, u: &mut [f64]) {
         let Some(&j) = self.index(|target| target.key() == START).first() else { return };
         let at = self.instrument_at(u);
         let x = self.reach.turn[0] - if self.abscissa == Abscissa::Radius { 0.0 } else { at.offset };
-        let preset = self.preset_at(u, Segment::Retraction);
+        let before = if self.splits() { Segment::Approach } else { Segment::Retraction };
+        let preset = self.preset_at(u, before);
         if let Some(s) = preset.and_then(|preset| begins(&preset, self.abscissa, x, self.reach.length)) {
             u[j] = self.parameters[j].inner(s);
         }
@@ -294,18 +299,31 @@ pub fn start(
     let mut best: Option<(f64, Vec<f64>)> = None;
     let mut tried = Vec::new();
     let count = ranked.len() as f64;
+    let is_pulled = is_pulled(&problem.preset);
+    let mut from: Vec<Vec<f64>> = Vec::new();
     for (i, (before, u)) in ranked.into_iter().enumerate() {
         progress.report(0.6 + 0.4 * i as f64 / count);
         let solved = solve(&run, &u, robust, ROUNDS, progress);
+        let begun = u.clone();
         let end = solved.map_or((before, u), |Solved { minimum, .. }| {
             let distance = run.distance(&minimum.parameters).unwrap_or(before);
             (distance, minimum.parameters)
         });
         let snaps = run.paths(&end.1).map_or(0, |paths| paths.of(Segment::Retraction).snaps);
         tried.push(Tried { distance: end.0, snaps });
+        // Each step of a pull is one more pull: what two starts far from each other lead to is the end.
+        let apart = |u: &[f64], v: &[f64]| u.iter().zip(v).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let is_end = |best: &(f64, Vec<f64>)| {
+            apart(&best.1, &end.1) < ONE && from.iter().any(|u| apart(u, &begun) > OTHER)
+        };
+        let is_last = is_pulled && best.as_ref().is_some_and(is_end);
         if best.as_ref().is_none_or(|best| end.0 < best.0) {
             best = Some(end);
         }
+        if is_last {
+            break;
+        }
+        from.push(begun);
     }
     best.map(|(_, u)| (u, tried))
 }
