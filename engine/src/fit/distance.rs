@@ -142,7 +142,12 @@ impl<'a> Scaled<'a> {
                 continue;
             }
             let (along, from) = (minus(pair[1], pair[0]), minus(m, pair[0]));
-            let share = (dot(from, along) / dot(along, along)).clamp(0.0, 1.0);
+            let square = dot(along, along);
+            if square == 0.0 {
+                // A line between equal states has no direction: the arc that begins there has.
+                continue;
+            }
+            let share = (dot(from, along) / square).clamp(0.0, 1.0);
             let off = sum(1.0, from, if share.is_finite() { -share } else { 0.0 }, along);
             let distance = dot(off, off);
             if distance < best.0 || (distance <= best.0 && i < best.1) {

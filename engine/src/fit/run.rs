@@ -8,7 +8,7 @@ use super::judge::{doubts, of_sparse, of_spring, reasons, unseen};
 use super::least_squares::{Ending, Evaluated, LeastSquares, Minimum};
 use super::options::{FitError, Options, letter};
 use super::pose::posed;
-use super::problem::{ADHESION, Datum, Instrument, Parameter, Prior, Problem, Target};
+use super::problem::{ADHESION, Datum, Instrument, Parameter, Prior, Problem, START, Target};
 use super::pulled::is_pulled;
 use super::rows::Rows;
 use super::scatter::Scatter;
@@ -188,6 +188,12 @@ impl<'a> Posed<'a> {
             problem = problem.without_loading(why, &mut notes)?;
             (starts, solved) = found(&mut problem)?;
         }
+        if let Some(j) = unpinned(&problem, &solved) {
+            let mut u = solved.minimum.parameters;
+            problem = problem.holding(j, u.remove(j)).ok_or(FitError::NoStart)?;
+            solved = last(&mut problem, &u, options.robust, least, &Part::new(progress, [0.8, 0.85]))?;
+            notes.push("no rows tell that the edge is pinned between approach and retraction".to_owned());
+        }
         if branches.noise.from[1] == Origin::Apart {
             solved = of_correlated(&mut problem, solved, options.robust, progress);
         }
@@ -296,6 +302,14 @@ impl<'a> Posed<'a> {
             parameters: fitted,
         })
     }
+}
+
+/// The number of the contact radius at which an edge is pinned, where the points tell less of it than a tenth: the works of adhesion of both branches
+/// are one then, and no line is between them.
+fn unpinned(problem: &Problem, solved: &Solved) -> Option<usize> {
+    const LEAST: f64 = 10.0;
+    let j = problem.parameters.iter().position(|parameter| parameter.target == Target::Key(START.to_owned()));
+    j.filter(|j| problem.pins() && solved.minimum.at.jacobian.column(*j).norm() < LEAST * solved.scale)
 }
 
 /// Fits the free keys of `preset` to `branches`.

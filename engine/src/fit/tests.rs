@@ -360,6 +360,12 @@ fn an_edge_is_pinned_between_two_works_of_adhesion() {
     // One alone does not describe it.
     let one = run(&preset(SPHERE, 1.5, 0.02, ""), &points, &[E, W]);
     assert_eq!(one.verdict, Verdict::DoesNotDescribe);
+    // Where both are one nothing is pinned.
+    let start = preset("shape='sphere'\nradius_of_curvature=1.0", 1.4, 0.015, "");
+    let same = super::fit(&start, &noisy(3, false), &options, &Unwatched).unwrap();
+    close(&same, &[1.0, 0.02, 0.02], 0.1);
+    assert_eq!(same.verdict, Verdict::Describes, "{:?} {:?}", same.reasons, same.direction);
+    assert!(same.parameters.iter().all(|of| of.key != START), "{:?}", same.parameters);
 }
 
 #[test]
