@@ -544,7 +544,10 @@ fn laid(
         .collect();
     laid.data.uncertain = known.join(",");
     let opening = found.material.work_of_adhesion;
-    for parameter in &problem.parameters {
+    // A closing edge gains at most what an opening one costs: that must be there before.
+    let is_closing = |of: &&Parameter| of.target == Target::Adhesion(Segment::Approach);
+    let all = || problem.parameters.iter();
+    for parameter in all().filter(|of| !is_closing(of)).chain(all().filter(is_closing)) {
         let (key, value) = match &parameter.target {
             Target::Key(key) => (key.as_str(), found.get(key)),
             Target::Adhesion(Segment::Retraction) => (ADHESION, found.get(ADHESION)),

@@ -348,7 +348,7 @@ fn an_edge_is_pinned_between_two_works_of_adhesion() {
     points.force.iter_mut().for_each(|p| *p += 5e-4 * normal.next());
     let free = vec![E.to_owned(), W.to_owned()];
     let options = Options { free, separate: true, ..Options::default() };
-    let fit = fit(&preset(SPHERE, 1.5, 0.02, ""), &points, &options, &Unwatched).unwrap();
+    let fit = fit(&preset(SPHERE, 1.5, 0.007, ""), &points, &options, &Unwatched).unwrap();
     let keys: Vec<&str> = fit.parameters.iter().map(|fitted| fitted.key.as_str()).collect();
     assert_eq!(keys[1..4], [&*format!("{W}.approach"), &format!("{W}.retraction"), START]);
     close(&fit, &[1.3, 0.01, 0.03, MOST], 0.02);
