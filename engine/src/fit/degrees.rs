@@ -18,7 +18,7 @@ use super::spread::Spread;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 /// What squares that count up to 2.5 deviations lose of the degrees of freedom.
-const LOST: f64 = 1.04;
+pub(super) const LOST: f64 = 1.04;
 /// The change of ρ by which a derivative is taken is at most this share of 1 − ρ.
 const SHARE: f64 = 0.3;
 

@@ -53,6 +53,12 @@ fn seen(preset: &Preset, options: &Options) -> Result<(Points, Asked), FitError>
 pub(super) fn branches_of(preset: &Preset, options: &Options) -> Result<Branches, FitError> {
     let (points, asked) = seen(preset, options)?;
     let mut branches = points.branches(&asked)?;
+    if branches.or.is_some() {
+        branches.notes.push(format!(
+            "the points leave in doubt which way their columns run: {} is taken. --signs, or data.signs, says it",
+            signs_text(branches.turned)
+        ));
+    }
     branches.notes.splice(0..0, preset.notes_of_reading().map_err(FitError::Data)?);
     Ok(branches)
 }

@@ -64,7 +64,7 @@ pub fn profile(
     const TIMES: usize = 12;
     let u = &solved.minimum.parameters;
     let settings = Settings { huber: if robust { HUBER * solved.scale } else { f64::INFINITY }, ..WARM };
-    let scale = if robust { solved.scale * stretch(problem, solved) } else { rms(problem, solved) };
+    let scale = noise(problem, solved, robust);
     let end = |side: f64| {
         let mut others = without(u, j);
         // √Δχ² over the distance is nearly a straight line.
@@ -91,8 +91,13 @@ pub fn profile(
     Some([end(-1.0)?, end(1.0)?])
 }
 
+/// The noise of the residuals in σ by which a rise of the cost is judged.
+pub(super) fn noise(problem: &Problem, solved: &Solved, robust: bool) -> f64 {
+    if robust { solved.scale * stretch(problem, solved) } else { rms(problem, solved) }
+}
+
 /// How much more the loss rises than that of normal residuals: the root of mean ψ² over mean ψ'.
-pub(super) fn stretch(problem: &Problem, solved: &Solved) -> f64 {
+fn stretch(problem: &Problem, solved: &Solved) -> f64 {
     let real = problem.real(&solved.minimum.at.residuals);
     let psi: f64 = real.iter().map(|r| (r / solved.scale).clamp(-HUBER, HUBER).powi(2)).sum();
     let inside = real.iter().filter(|r| r.abs() <= HUBER * solved.scale).count().max(1);

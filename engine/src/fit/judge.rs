@@ -185,8 +185,8 @@ pub(super) fn doubts(
         let more = approach.value > retraction.value;
         doubts.push(
             if more {
-                "the approach has a larger work of adhesion than the retraction, by more than their errors: nothing that is only pressed \
-                 and pulled does that"
+                "the approach has the larger work of adhesion, by more than the errors: a closing edge gains at most what an opening \
+                 one costs"
             } else {
                 "the works of adhesion of approach and retraction differ by more than their errors: between them the edge is pinned \
                  (material.closing_work_of_adhesion), or it has a speed, or the bodies age"

@@ -109,7 +109,8 @@ pub fn weight(r: f64, c: f64) -> f64 {
     if r.abs() <= c { 1.0 } else { c / r.abs() }
 }
 
-fn cost(residuals: &DVector<f64>, counts: Option<&[f64]>, c: f64) -> f64 {
+/// Σ m ρ.
+pub(super) fn cost(residuals: &DVector<f64>, counts: Option<&[f64]>, c: f64) -> f64 {
     let count = |i: usize| counts.map_or(1.0, |counts| counts[i]);
     residuals.iter().enumerate().map(|(i, r)| count(i) * loss(*r, c)).sum()
 }

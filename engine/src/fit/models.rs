@@ -185,7 +185,7 @@ pub fn fit_models(
     let count = laid.len() as f64;
     let mut fits: Vec<Fitted> = Vec::new();
     for (i, (model, mut laid, free)) in laid.into_iter().enumerate() {
-        if of_retraction && laid.data.source.is_some() {
+        if of_retraction && laid.data.source.is_some() && laid.data.segment.is_none() {
             let retraction = Value::Text(data::SEGMENTS[1].to_owned());
             laid.set(data::SEGMENT, retraction).map_err(|invalid| FitError::Data(invalid.to_string()))?;
         }

@@ -133,6 +133,9 @@ fn pulled(
     match (timed, bare.edge.rate) {
         (None, None) if is_way => return Err(refused("which go at an even rate")),
         (None, None) => return Err(refused("which this file has not")),
+        (None, Some(_)) if is_way && attached.iter().any(|point| point.time.is_finite()) => {
+            notes.push("the times do not say one even rate: path.rate is taken as it is given".to_owned());
+        }
         (None, Some(_)) => {}
         (Some(rate), stated) => {
             let text = |rate| said(&bare.units, Quantity::Speed, rate);

@@ -5,7 +5,7 @@ use super::determined::{Determined, determined};
 use super::fitted::Fitted;
 use super::intervals::{FEW_DEGREES, block, bootstrap, profile};
 use super::judge::{doubts, of_sparse, of_spring, reasons, unseen};
-use super::least_squares::{Ending, Evaluated, LeastSquares, Minimum};
+use super::least_squares::{Ending, LeastSquares};
 use super::options::{FitError, Options, letter};
 use super::pose::posed;
 use super::problem::{ADHESION, Datum, Instrument, Parameter, Prior, Problem, START, Target};
@@ -152,6 +152,7 @@ pub fn residuals_own(preset: &Preset) -> Result<(Abscissa, Vec<Residual>), FitEr
 }
 
 /// What is fitted to the branches of one file, where its starts ended, and its minimum.
+#[derive(Clone)]
 pub(super) struct Posed<'a> {
     preset: &'a Preset,
     branches: &'a Branches,
@@ -207,17 +208,6 @@ impl<'a> Posed<'a> {
             );
         }
         Ok(Self { preset, branches, options, problem, starts, solved, notes })
-    }
-
-    /// Counts residuals in the noise that the curve has beside this fit.
-    pub(super) fn in_own_noise(&mut self) {
-        let scale = self.solved.scale;
-        let Minimum { at: Evaluated { residuals, jacobian }, cost, .. } = &mut self.solved.minimum;
-        *residuals /= scale;
-        *jacobian /= scale;
-        *cost /= scale * scale;
-        self.solved.scale = 1.0;
-        self.problem.sigma = self.problem.sigma.map(|sigma| sigma * scale);
     }
 
     /// The fit of which `what` is determined, by its points `alone` or by others too.

@@ -12,6 +12,9 @@ pub const HUBER: f64 = 1.5;
 /// The least scale, in σ: below it everything is rounding.
 pub const LEAST_SCALE: f64 = 1e-3;
 
+/// A way of so many standard errors along the best direction is none.
+pub(super) const NOTHING: f64 = 1e-3;
+
 /// A fit.
 #[derive(Debug, Clone)]
 pub struct Solved {
@@ -83,8 +86,6 @@ fn solve_all(
     /// of an error.
     const ROUGH: f64 = 1e-4;
     const FINE_OF_MANY: f64 = 1e-7;
-    /// A way of so many standard errors along the best direction is none.
-    const NOTHING: f64 = 1e-3;
     let mut at = problem.evaluate(start)?;
     let mut scale = problem.scale(&at.residuals);
     let mut u = start.to_vec();

@@ -5,33 +5,34 @@
 //! D = Σ_i (C_i − C_i⁰) 2/(τ_i κ_i²)     F = D/q     q = Σ p_i⁰ − p     ν = Σ n_i/τ_i − p
 //! ```
 //!
-//! with `C_i` the cost of the rows of curve i under one law and `C_i⁰` under its own, both in units of its noise, τ rows that count as one, κ² by how much
-//! Huber's loss rises less than squares do, and p⁰ the values that a curve alone determines. Runs that do not collapse on one law have a D that
+//! with `C_i` the cost of the rows of curve i under one law and `C_i⁰` under its own, τ rows that count as one, κ the noise
+//! of its residuals beside its own law, by what they count, and p⁰ the values that a curve alone determines. Runs that do not collapse on one law have a D that
 //! chance hardly has: F beyond its quantile. The covariance is that of `determined`, its sums taken over all curves.
 
 use super::chance::beyond_f;
-use super::determined::{Determined, Sandwich, White, determined, sandwich, words};
+use super::degrees::LOST;
+use super::determined::{Determined, White, determined, sandwich, words};
 use super::directed::branches_of;
 use super::fitted::Fitted;
-use super::intervals::stretch;
-use super::least_squares::{Evaluated, LeastSquares, Minimum, Settings, minimize};
+use super::intervals::noise;
+use super::least_squares::{Evaluated, LeastSquares, Minimum, Settings, cost, minimize};
 use super::options::{FitError, Options};
 use super::problem::{Parameter, Problem, START, Target};
-use super::run::{Fit, Posed, values};
+use super::run::{Fit, Posed};
 use super::scatter::Scatter;
-use super::solve::{HUBER, Solved};
+use super::solve::{HUBER, NOTHING, Solved};
 use super::verdict::{Reason, Verdict};
-use crate::measured::Branches;
+use crate::measured::{Branches, Source};
 use crate::preset::Preset;
 use crate::progress::{Part, Progress};
+use crate::units::UnitSystem;
 use crate::units::number::short;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
+use std::ops::Range;
 
 /// The chance below which runs do not follow one law.
 const CHANCE: f64 = 1e-3;
-/// What Huber's squares lose of the degrees of freedom; see `degrees`.
-const LOST: f64 = 1.04;
 
 /// Several curves under one law.
 #[derive(Debug, Clone)]
@@ -55,8 +56,8 @@ pub struct Together {
 pub struct Run {
     /// Under the one law.
     pub fit: Fit,
-    /// The law that this curve alone would have.
-    pub alone: Vec<Fitted>,
+    /// Under the law that this curve alone would have.
+    pub alone: Fit,
 }
 
 /// Whether runs follow one law.
@@ -75,57 +76,82 @@ pub struct Collapse {
     pub sentence: String,
 }
 
-/// The curves as one problem: the places of each one's values in those of all.
+/// The curves as one problem, the residuals of each in the noise that it has beside its own law.
 struct Joint<'a> {
-    runs: Vec<(&'a Problem, Vec<usize>)>,
+    curves: Vec<Curve<'a>>,
     count: usize,
+    robust: bool,
+}
+
+struct Curve<'a> {
+    problem: &'a Problem,
+    /// Its minimum under its own law.
+    alone: &'a Solved,
+    /// The places of its values among those of all.
+    places: Vec<usize>,
+}
+
+impl Curve<'_> {
+    /// One over its noise, in σ.
+    fn weight(&self) -> f64 {
+        1.0 / self.alone.scale
+    }
+
+    /// The rows and columns of its values.
+    fn part(&self, of: &DMatrix<f64>) -> DMatrix<f64> {
+        let places = &self.places;
+        DMatrix::from_fn(places.len(), places.len(), |i, j| of[(places[i], places[j])])
+    }
+
+    /// Its values, of those of all.
+    fn own(&self, u: &[f64]) -> Vec<f64> {
+        self.places.iter().map(|place| u[*place]).collect()
+    }
 }
 
 /// Whether a value is that of all curves.
-fn is_shared(target: &Target) -> bool {
-    matches!(target, Target::Key(key) if key != START) || matches!(target, Target::Adhesion(_))
-}
-
-/// The same of a fitted one.
-fn is_of_law(fitted: &Fitted) -> bool {
-    !fitted.key.starts_with("data.") && fitted.key != START
+fn is_of_law(key: &str) -> bool {
+    !key.starts_with("data.") && key != START
 }
 
 impl<'a> Joint<'a> {
-    fn of(problems: &[&'a Problem]) -> Self {
-        let mut shared: Vec<&Target> = Vec::new();
-        for Parameter { target, .. } in problems.iter().flat_map(|problem| &problem.parameters) {
-            if is_shared(target) && !shared.contains(&target) {
-                shared.push(target);
+    fn of(posed: &'a [Posed<'_>], robust: bool) -> Self {
+        let parameters = posed.iter().flat_map(|posed| &posed.problem.parameters);
+        let mut law: Vec<&Target> = Vec::new();
+        for Parameter { target, .. } in parameters {
+            if is_of_law(&target.key()) && !law.contains(&target) {
+                law.push(target);
             }
         }
-        let mut count = shared.len();
+        let mut count = law.len();
         let mut place = |target: &Target| {
-            shared.iter().position(|own| *own == target).unwrap_or_else(|| {
+            law.iter().position(|own| *own == target).unwrap_or_else(|| {
                 count += 1;
                 count - 1
             })
         };
-        let places = |problem: &&'a Problem| {
-            (*problem, problem.parameters.iter().map(|parameter| place(&parameter.target)).collect())
+        let of = |posed: &'a Posed<'_>| Curve {
+            problem: &posed.problem,
+            alone: &posed.solved,
+            places: posed.problem.parameters.iter().map(|parameter| place(&parameter.target)).collect(),
         };
-        let runs: Vec<_> = problems.iter().map(places).collect();
-        Self { runs, count }
+        let curves: Vec<_> = posed.iter().map(of).collect();
+        Self { curves, count, robust }
     }
 
-    /// The values of one curve.
-    fn own(&self, run: usize, u: &[f64]) -> Vec<f64> {
-        self.runs[run].1.iter().map(|place| u[*place]).collect()
+    /// Residuals beyond it count linearly.
+    fn huber(&self) -> f64 {
+        if self.robust { HUBER } else { f64::INFINITY }
     }
 
     /// The values, each as the first curve that has it does.
     fn parameters(&self) -> Vec<Parameter> {
         let of_place = |place: usize| {
-            let has = |(problem, places): &(&Problem, Vec<usize>)| {
-                let j = places.iter().position(|own| *own == place)?;
-                Some(problem.parameters[j].clone())
+            let has = |curve: &Curve| {
+                let j = curve.places.iter().position(|own| *own == place)?;
+                Some(curve.problem.parameters[j].clone())
             };
-            self.runs.iter().find_map(has)
+            self.curves.iter().find_map(has)
         };
         (0..self.count).filter_map(of_place).collect()
     }
@@ -133,7 +159,7 @@ impl<'a> Joint<'a> {
     /// What is known before of the values, each once: of a value of all, as the first curve has it.
     fn priors(&self) -> Vec<(usize, f64, f64)> {
         let mut priors: Vec<(usize, f64, f64)> = Vec::new();
-        for (problem, places) in &self.runs {
+        for Curve { problem, places, .. } in &self.curves {
             for prior in &problem.priors {
                 let place = places[prior.parameter];
                 if priors.iter().all(|(known, ..)| *known != place) {
@@ -145,36 +171,28 @@ impl<'a> Joint<'a> {
     }
 
     /// Rows of each curve among all.
-    fn blocks(&self) -> Vec<std::ops::Range<usize>> {
+    fn blocks(&self) -> Vec<Range<usize>> {
         let mut from = 0;
-        let block = |(problem, _): &(&Problem, Vec<usize>)| {
-            let block = from..from + problem.data.len() * problem.per_point();
+        let block = |curve: &Curve| {
+            let block = from..from + curve.problem.data.len() * curve.problem.per_point();
             from = block.end;
             block
         };
-        self.runs.iter().map(block).collect()
+        self.curves.iter().map(block).collect()
     }
 
-    /// One curve at the minimum of all.
-    fn solved(&self, run: usize, minimum: &Minimum) -> Solved {
-        let (problem, places) = &self.runs[run];
-        let block = self.blocks()[run].clone();
-        let residuals = minimum.at.residuals.rows(block.start, block.len()).into_owned();
-        let jacobian = DMatrix::from_fn(block.len(), places.len(), |i, j| {
-            minimum.at.jacobian[(block.start + i, places[j])]
+    /// One curve at the minimum of all, its residuals in σ again.
+    fn solved(&self, (curve, block): (&Curve, &Range<usize>), minimum: &Minimum) -> Solved {
+        let scale = curve.alone.scale;
+        let residuals = minimum.at.residuals.rows(block.start, block.len()) * scale;
+        let jacobian = DMatrix::from_fn(block.len(), curve.places.len(), |i, j| {
+            minimum.at.jacobian[(block.start + i, curve.places[j])] * scale
         });
-        let scale = problem.scale(&residuals);
-        let cost = cost(&problem.real(&residuals));
-        let parameters = self.own(run, &minimum.parameters);
+        let cost = cost(&residuals, None, self.huber() * scale);
+        let parameters = curve.own(&minimum.parameters);
         let at = Evaluated { residuals, jacobian };
         Solved { minimum: Minimum { parameters, at, cost, ..minimum.clone() }, scale }
     }
-}
-
-/// Σ of Huber's loss, in units of the noise.
-fn cost(residuals: &[f64]) -> f64 {
-    let of = |r: &f64| if r.abs() <= HUBER { 0.5 * r * r } else { HUBER * r.abs() - 0.5 * HUBER * HUBER };
-    residuals.iter().map(of).sum()
 }
 
 impl LeastSquares for Joint<'_> {
@@ -183,9 +201,9 @@ impl LeastSquares for Joint<'_> {
     fn look(&self, u: &[f64]) -> Option<(DVector<f64>, Self::Look)> {
         let mut all: Vec<f64> = Vec::new();
         let mut looks = Vec::new();
-        for (run, (problem, _)) in self.runs.iter().enumerate() {
-            let (residuals, look) = problem.look(&self.own(run, u))?;
-            all.extend(residuals.iter());
+        for curve in &self.curves {
+            let (residuals, look) = curve.problem.look(&curve.own(u))?;
+            all.extend(residuals.iter().map(|r| r * curve.weight()));
             looks.push(look);
         }
         all.extend(self.priors().iter().map(|(place, mean, sigma)| (u[*place] - mean) / sigma));
@@ -196,10 +214,10 @@ impl LeastSquares for Joint<'_> {
         let (blocks, priors) = (self.blocks(), self.priors());
         let rows = blocks.last().map_or(0, |block| block.end);
         let mut jacobian = DMatrix::zeros(rows + priors.len(), self.count);
-        for (run, (problem, places)) in self.runs.iter().enumerate() {
-            let own = problem.derivatives(&self.own(run, u), &looks[run])?;
-            for (j, place) in places.iter().enumerate() {
-                jacobian.view_mut((blocks[run].start, *place), (own.nrows(), 1)).copy_from(&own.column(j));
+        for ((curve, block), look) in self.curves.iter().zip(&blocks).zip(looks) {
+            let own = curve.problem.derivatives(&curve.own(u), look)? * curve.weight();
+            for (j, place) in curve.places.iter().enumerate() {
+                jacobian.view_mut((block.start, *place), (own.nrows(), 1)).copy_from(&own.column(j));
             }
         }
         for (i, (place, _, sigma)) in priors.iter().enumerate() {
@@ -221,95 +239,102 @@ pub fn fit_together(
     if options.free.is_empty() {
         return Err((0, FitError::NothingFree));
     }
-    let Some(first) = presets.first() else { return Err((0, FitError::NoData)) };
     let numbered = |run: usize| move |error| (run, error);
-    let branches: Vec<Branches> = presets
-        .iter()
-        .enumerate()
-        .map(|(run, preset)| branches_of(preset, options).map_err(numbered(run)))
-        .collect::<Result<_, _>>()?;
+    for run in 0..presets.len() {
+        belongs(presets, run).map_err(numbered(run))?;
+    }
+    // What is asked of the errors of one curve says nothing of those of all.
+    let options = &Options { profile: false, bootstrap: None, ..options.clone() };
+    let branches = |(run, preset)| branches_of(preset, options).map_err(numbered(run));
+    let branches: Vec<Branches> = presets.iter().enumerate().map(branches).collect::<Result<_, _>>()?;
     let mut posed = Vec::new();
     for (run, (preset, branches)) in presets.iter().zip(&branches).enumerate() {
         let share = |run: usize| 0.9 * run as f64 / presets.len() as f64;
         let part = Part::new(progress, [share(run), share(run + 1)]);
         posed.push(Posed::new(preset, branches, options, &part).map_err(numbered(run))?);
     }
-    // The noise of each curve is what it has beside its own law.
-    for posed in &mut posed {
-        posed.in_own_noise();
-    }
-    let problems: Vec<&Problem> = posed.iter().map(|posed| &posed.problem).collect();
-    let joint = Joint::of(&problems);
-    let alone: Vec<&Solved> = posed.iter().map(|posed| &posed.solved).collect();
-    let minimum = least(&joint, &alone, progress).ok_or((0, FitError::NoStart))?;
-    let solved: Vec<Solved> = (0..problems.len()).map(|run| joint.solved(run, &minimum)).collect();
+    let joint = Joint::of(&posed, options.robust);
+    let minimum = least(&joint, progress).ok_or((0, FitError::NoStart))?;
+    let blocks = joint.blocks();
+    let solved: Vec<Solved> = joint.curves.iter().zip(&blocks).map(|of| joint.solved(of, &minimum)).collect();
     let scatters: Vec<Scatter> =
-        problems.iter().zip(&alone).map(|(problem, alone)| problem.scatter(alone)).collect();
-    let known = known(&joint, (&solved, &scatters), &minimum, options.robust);
-    let collapse = collapse(&joint, (&alone, &solved), &scatters);
-    let of_run = |run: usize| known.of(&joint.runs[run].1);
-    let told: Vec<Determined> = (0..problems.len()).map(of_run).collect();
-    let own = |run: usize| {
-        let what = determined(problems[run], alone[run], &scatters[run], options.robust);
-        let known = what.errors.as_ref().zip(what.degrees.as_ref());
-        let mut own = values(problems[run], &alone[run].minimum.parameters, known);
-        own.retain(is_of_law);
-        own
-    };
-    let own: Vec<Vec<Fitted>> = (0..problems.len()).map(own).collect();
+        joint.curves.iter().zip(&solved).map(|(curve, solved)| curve.problem.scatter(solved)).collect();
+    let known = known(&joint, (&solved, &scatters), &minimum);
+    let collapse = collapse(&joint, &solved, &scatters);
     let mut runs = Vec::new();
-    for (run, ((mut posed, solved), (what, (scatter, alone)))) in
-        posed.into_iter().zip(solved).zip(told.into_iter().zip(scatters.into_iter().zip(own))).enumerate()
-    {
-        posed.solved = solved;
-        let fit = posed.fit(what, scatter, false, progress).map_err(numbered(run))?;
+    for (run, (solved, scatter)) in solved.into_iter().zip(scatters).enumerate() {
+        let alone = posed[run].clone();
+        let own = alone.problem.scatter(&alone.solved);
+        let what = determined(&alone.problem, &alone.solved, &own, options.robust);
+        let alone = alone.fit(what, own, false, progress).map_err(numbered(run))?;
+        let what = known.of(&joint.curves[run]);
+        let mut under_law = posed[run].clone();
+        under_law.solved = solved;
+        let mut fit = under_law.fit(what, scatter, false, progress).map_err(numbered(run))?;
+        if !collapse.collapses {
+            fit.reasons.push(Reason::new("collapse", collapse.chi_squared, collapse.sentence.clone()));
+            fit.verdict = fit.verdict.max(Verdict::DoesNotDescribe);
+        }
         runs.push(Run { fit, alone });
     }
-    let worst = runs.iter().map(|run| run.fit.verdict).max().unwrap_or(Verdict::NotConverged);
-    let verdict = if collapse.collapses { worst } else { worst.max(Verdict::DoesNotDescribe) };
-    if !collapse.collapses {
-        for run in &mut runs {
-            let reason = Reason::new("collapse", collapse.chi_squared, collapse.sentence.clone());
-            run.fit.reasons.push(reason);
-            run.fit.verdict = run.fit.verdict.max(Verdict::DoesNotDescribe);
-        }
-    }
     let mut law: Vec<Fitted> = Vec::new();
-    for fitted in runs.iter().flat_map(|run| &run.fit.parameters) {
-        if is_of_law(fitted) && law.iter().all(|known| known.key != fitted.key) {
+    for fitted in runs.iter().flat_map(|run| run.fit.parameters.iter()) {
+        if is_of_law(&fitted.key) && law.iter().all(|known| known.key != fitted.key) {
             law.push(fitted.clone());
         }
     }
-    let preset = runs.first().map_or_else(|| first.clone(), |run| run.fit.preset.clone());
+    let verdict = runs.iter().map(|run| run.fit.verdict).max().unwrap_or(Verdict::NotConverged);
+    let preset = runs.first().map(|run| run.fit.preset.clone()).ok_or((0, FitError::NoData))?;
     Ok(Together { verdict, law, direction: known.direction, collapse, runs, preset })
 }
 
+/// Whether a curve can be fitted with those before it: their numbers are in the same units, and none of them has the same points.
+fn belongs(presets: &[Preset], run: usize) -> Result<(), FitError> {
+    let (before, preset) = (&presets[..run], &presets[run]);
+    let is_si = |preset: &Preset| matches!(preset.units, UnitSystem::Si(_));
+    if before.iter().any(|other| is_si(other) != is_si(preset)) {
+        return Err(FitError::Data("one problem is in SI and another in reduced units".to_owned()));
+    }
+    let has_same = |other: &Preset| {
+        let is_same = |of: &Source| other.data.source.as_deref().is_some_and(|own| own.has_bytes_of(of));
+        preset.data.source.as_deref().is_some_and(is_same) && other.reading() == preset.reading()
+    };
+    if before.iter().any(has_same) {
+        return Err(FitError::Data("the same points are given twice, and would count twice".to_owned()));
+    }
+    Ok(())
+}
+
 /// The minimum of all curves, from the law of each and the own values that each has alone: the two best are run to their ends.
-fn least(joint: &Joint, alone: &[&Solved], progress: &dyn Progress) -> Option<Minimum> {
+fn least(joint: &Joint, progress: &dyn Progress) -> Option<Minimum> {
     const STARTS: usize = 2;
     const ROUNDS: usize = 100;
     const TOLERANCE: f64 = 1e-7;
-    let mut start = vec![f64::NAN; joint.count];
-    for ((_, places), alone) in joint.runs.iter().zip(alone) {
-        for (place, u) in places.iter().zip(&alone.minimum.parameters) {
-            start[*place] = *u;
-        }
-    }
-    let with_law_of = |run: usize| {
-        let ((problem, places), mut u) = (&joint.runs[run], start.clone());
-        for (j, place) in places.iter().enumerate() {
-            if is_shared(&problem.parameters[j].target) {
-                u[*place] = alone[run].minimum.parameters[j];
+    let lay = |curve: &Curve, u: &mut [f64], law_alone: bool| {
+        for (j, place) in curve.places.iter().enumerate() {
+            if !law_alone || is_of_law(&curve.problem.parameters[j].key()) {
+                u[*place] = curve.alone.minimum.parameters[j];
             }
         }
-        let residuals = joint.residuals(&u)?;
-        Some((cost(residuals.as_slice()), u))
     };
-    let mut starts: Vec<(f64, Vec<f64>)> = (0..alone.len()).filter_map(with_law_of).collect();
+    let mut start = vec![f64::NAN; joint.count];
+    joint.curves.iter().for_each(|curve| lay(curve, &mut start, false));
+    let with_law_of = |curve: &Curve| {
+        let mut u = start.clone();
+        lay(curve, &mut u, true);
+        let residuals = joint.residuals(&u)?;
+        Some((cost(&residuals, None, joint.huber()), u))
+    };
+    let mut starts: Vec<(f64, Vec<f64>)> = joint.curves.iter().filter_map(with_law_of).collect();
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
     starts.truncate(STARTS);
-    let settings =
-        Settings { rounds: ROUNDS, tolerance: TOLERANCE, huber: HUBER, nothing: 5e-7, ..Settings::default() };
+    let settings = Settings {
+        rounds: ROUNDS,
+        tolerance: TOLERANCE,
+        huber: joint.huber(),
+        nothing: 0.5 * NOTHING * NOTHING,
+        ..Settings::default()
+    };
     let found = starts.iter().filter_map(|(_, u)| minimize(joint, u, &settings, progress));
     found.min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
@@ -323,36 +348,34 @@ struct Known {
     degrees: f64,
 }
 
-fn known(
-    joint: &Joint,
-    (solved, scatters): (&[Solved], &[Scatter]),
-    minimum: &Minimum,
-    robust: bool,
-) -> Known {
+fn known(joint: &Joint, (solved, scatters): (&[Solved], &[Scatter]), minimum: &Minimum) -> Known {
     let p = joint.count;
-    let of_rows = |((problem, _), (solved, scatter)): (&(&Problem, _), (&Solved, &Scatter))| {
-        problem.real(&solved.minimum.at.residuals).len() as f64 / scatter.correlation.rows()
+    let all = || joint.curves.iter().zip(solved.iter().zip(scatters));
+    let of_rows = |(curve, (solved, scatter)): (&Curve, (&Solved, &Scatter))| {
+        curve.problem.real(&solved.minimum.at.residuals).len() as f64 / scatter.correlation.rows()
     };
-    let rows: f64 = joint.runs.iter().zip(solved.iter().zip(scatters)).map(of_rows).sum();
-    let degrees = ((rows - p as f64) / LOST).max(1.0);
+    let lost = if joint.robust { LOST } else { 1.0 };
+    let degrees = ((all().map(of_rows).sum::<f64>() - p as f64) / lost).max(1.0);
     let none = |condition, direction| Known { condition, direction, covariance: None, degrees };
     let jacobian = minimum.at.jacobian.clone();
     let Some(White { condition, inner, weakest, .. }) = White::of(jacobian, joint.priors().len()) else {
         return none(f64::INFINITY, None);
     };
     let Some(inner) = inner else {
-        let (first, _) = &joint.runs[0];
-        let words = words(&first.preset, &joint.parameters(), &minimum.at, &minimum.parameters, &weakest);
+        let preset = &joint.curves[0].problem.preset;
+        let words = words(preset, &joint.parameters(), &minimum.at, &minimum.parameters, &weakest);
         return none(condition, Some(words));
     };
     let [mut points, mut bread] = [DMatrix::<f64>::zeros(p, p), DMatrix::zeros(p, p)];
-    for ((problem, places), (solved, scatter)) in joint.runs.iter().zip(solved.iter().zip(scatters)) {
-        let Sandwich { points: of_points, bread: of_bread, .. } =
-            sandwich(problem, solved, &part(&inner, places), &scatter.correlation, robust);
-        for (i, a) in places.iter().enumerate() {
-            for (j, b) in places.iter().enumerate() {
-                points[(*a, *b)] += of_points[(i, j)];
-                bread[(*a, *b)] += of_bread[(i, j)];
+    for (curve, (solved, scatter)) in all() {
+        let own = curve.part(&inner) * curve.weight().powi(2);
+        let sandwich = sandwich(curve.problem, solved, &own, &scatter.correlation, joint.robust);
+        // Rows and columns each are so many times smaller, and so is the noise of the points.
+        let (of_points, of_bread) = (curve.weight().powi(4), curve.weight().powi(2));
+        for (i, a) in curve.places.iter().enumerate() {
+            for (j, b) in curve.places.iter().enumerate() {
+                points[(*a, *b)] += of_points * sandwich.points[(i, j)];
+                bread[(*a, *b)] += of_bread * sandwich.bread[(i, j)];
             }
         }
     }
@@ -365,18 +388,14 @@ fn known(
     Known { condition, direction: None, covariance: Some([covariance, inner]), degrees }
 }
 
-/// The rows and columns of `places`.
-fn part(of: &DMatrix<f64>, places: &[usize]) -> DMatrix<f64> {
-    DMatrix::from_fn(places.len(), places.len(), |i, j| of[(places[i], places[j])])
-}
-
 impl Known {
-    /// As one curve has it, its values at `places`.
-    fn of(&self, places: &[usize]) -> Determined {
+    /// As one curve has it.
+    fn of(&self, curve: &Curve) -> Determined {
         let [covariance, inner] = match &self.covariance {
-            Some(both) => both.each_ref().map(|of| Some(part(of, places))),
+            Some(both) => both.each_ref().map(|of| Some(curve.part(of))),
             None => [None, None],
         };
+        let inner = inner.map(|inner| inner * curve.weight().powi(2));
         let errors = covariance.as_ref().map(|covariance| covariance.diagonal().map(f64::sqrt));
         let correlations = covariance.as_ref().zip(errors.as_ref()).map(|(covariance, errors)| {
             DMatrix::from_fn(errors.len(), errors.len(), |i, j| covariance[(i, j)] / (errors[i] * errors[j]))
@@ -393,16 +412,19 @@ impl Known {
     }
 }
 
-/// Whether the curves, each fitted `alone` and all of them together, follow one law.
-fn collapse(joint: &Joint, (alone, together): (&[&Solved], &[Solved]), scatters: &[Scatter]) -> Collapse {
+/// Whether the curves follow one law, under which they are `together`.
+fn collapse(joint: &Joint, together: &[Solved], scatters: &[Scatter]) -> Collapse {
     let (mut sum, mut rows, mut own) = (0.0, 0.0, 0);
-    for (run, (problem, _)) in joint.runs.iter().enumerate() {
-        let real = |solved: &Solved| problem.real(&solved.minimum.at.residuals);
-        let [one, other] = [&together[run], alone[run]].map(|solved| cost(&real(solved)));
-        let as_one = scatters[run].correlation.rows();
-        sum += 2.0 * (one - other) / (as_one * stretch(problem, alone[run]).powi(2));
-        rows += real(alone[run]).len() as f64 / as_one;
-        own += White::of(alone[run].minimum.at.jacobian.clone(), 0).map_or(0, |white| white.rank);
+    for ((curve, together), scatter) in joint.curves.iter().zip(together).zip(scatters) {
+        let Curve { problem, alone, .. } = curve;
+        let [one, other] = [together, alone].map(|solved| {
+            let residuals = DVector::from_vec(problem.real(&solved.minimum.at.residuals));
+            cost(&residuals, None, joint.huber() * alone.scale)
+        });
+        let as_one = scatter.correlation.rows();
+        sum += 2.0 * (one - other) / (as_one * noise(problem, alone, joint.robust).powi(2));
+        rows += problem.real(&alone.minimum.at.residuals).len() as f64 / as_one;
+        own += White::of(alone.minimum.at.jacobian.clone(), 0).map_or(0, |white| white.rank);
     }
     let chi_squared = sum.max(0.0);
     let values = own.saturating_sub(joint.count);
@@ -411,7 +433,7 @@ fn collapse(joint: &Joint, (alone, together): (&[&Solved], &[Solved]), scatters:
     let collapses = chance >= CHANCE;
     let much = format!(
         "one law for each of {} runs, {values} values more, makes chi squared smaller by {}",
-        joint.runs.len(),
+        joint.curves.len(),
         short(chi_squared, 3)
     );
     let sentence = if collapses {

@@ -25,7 +25,10 @@ pub(super) fn noise(
 ) -> Noise {
     let (mut forces, mut ways, mut radii) = (Vec::new(), Vec::new(), Vec::new());
     let mut in_contact = Vec::new();
-    let mut has_clock = false;
+    // Of radii; a clock has no noise: over time radius and force tell each their own.
+    let touches = |point: &&Point| point.x > 0.0;
+    let mut in_touch = list.iter().flat_map(|(_, in_order)| in_order).filter(touches).peekable();
+    let has_clock = of_radius && in_touch.peek().is_some() && in_touch.all(|point| point.time.is_finite());
     for (branch, in_order) in list {
         // Nothing is known of radii where the bodies are apart: in contact they vary slowly with what they are measured with.
         let touching =
@@ -34,9 +37,7 @@ pub(super) fn noise(
             let (x, y): (Vec<f64>, Vec<f64>) = touching().map(|point| (x(point), y(point))).unzip();
             scatter_over(&x, &y)
         };
-        if of_radius && touching().all(|point| point.time.is_finite()) {
-            // A clock has no noise: over time the radius and the force tell each their own.
-            has_clock = true;
+        if has_clock {
             radii.extend(over(|point| point.time, |point| point.x));
             in_contact.extend(over(|point| point.time, |point| point.force));
         } else {

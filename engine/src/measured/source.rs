@@ -109,9 +109,17 @@ impl Source {
     }
 }
 
+impl Source {
+    /// Whether it has the same text, whatever its name.
+    #[must_use]
+    pub fn has_bytes_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.bytes, &other.bytes) || self.bytes == other.bytes
+    }
+}
+
 impl PartialEq for Source {
     fn eq(&self, other: &Self) -> bool {
-        self.name == other.name && (Arc::ptr_eq(&self.bytes, &other.bytes) || self.bytes == other.bytes)
+        self.name == other.name && self.has_bytes_of(other)
     }
 }
 

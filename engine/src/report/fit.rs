@@ -191,6 +191,8 @@ pub struct TogetherReport {
 pub struct RunReport {
     /// Under the one law, with the errors of all curves.
     pub fit: FitReport,
+    /// What it alone comes to.
+    pub alone_verdict: Verdict,
     /// The law that it alone would have.
     pub alone: Vec<ParameterReport>,
 }
@@ -200,9 +202,10 @@ impl TogetherReport {
     #[must_use]
     pub fn new(files: &[String], together: &Together) -> Self {
         let runs = together.runs.iter().zip(files).map(|(run, file)| {
-            let alone =
-                run.alone.iter().map(|fitted| ParameterReport::new(&run.fit.preset, fitted, true)).collect();
-            RunReport { fit: FitReport::new(file, &run.fit, None), alone }
+            let mut alone = FitReport::new(file, &run.alone, None);
+            alone.parameters.retain(|of| together.law.iter().any(|law| law.key == of.key));
+            let fit = FitReport::new(file, &run.fit, None);
+            RunReport { fit, alone_verdict: alone.verdict, alone: alone.parameters }
         });
         let runs: Vec<RunReport> = runs.collect();
         let holds = together.verdict == Verdict::Describes;

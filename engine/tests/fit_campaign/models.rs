@@ -284,7 +284,7 @@ fn three(other: f64, seed: u64) -> Together {
     println!("{:?}", begun.elapsed());
     for run in &found.runs {
         println!("{:?} {:?}", run.fit.verdict, run.fit.reasons);
-        for alone in &run.alone {
+        for alone in &run.alone.parameters {
             println!("  alone {} {} +- {:?}", alone.key, alone.value, alone.standard_error);
         }
     }
@@ -300,12 +300,18 @@ fn three_speeds_have_one_law_better_known_than_that_of_each() {
         for (of, truth) in found.law.iter().zip([LENS.adhesion, LENS.reference, LENS.exponent]) {
             let error = of.standard_error.unwrap();
             assert!((of.value - truth).abs() < 4.0 * error, "{of:?} {truth}");
-            let of_one =
-                |run: &Run| run.alone.iter().find(|alone| alone.key == of.key).unwrap().standard_error;
+            let of_one = |run: &Run| {
+                run.alone.parameters.iter().find(|alone| alone.key == of.key).unwrap().standard_error
+            };
             let least = found.runs.iter().filter_map(of_one).fold(f64::INFINITY, f64::min);
             assert!(error < 0.6 * least, "{}: {error} {least}", of.key);
         }
     }
+    // Files that are given twice know no more than once.
+    let made = Pulled::new(LENS, Seen::Approach, [300.0, 0.003], 100).made(&["gamma"]);
+    let twice = [preset(&made), preset(&made)];
+    let error = fit_together(&twice, &options(&made.free), &Unwatched).unwrap_err();
+    assert!(error.0 == 1 && error.1.to_string().contains("given twice"), "{error:?}");
     let found = three(1.2, 300);
     assert!(!found.collapse.collapses && found.verdict == Verdict::DoesNotDescribe, "{:?}", found.collapse);
 }
