@@ -106,7 +106,7 @@ pub enum CaseError {
     },
     /// Adhesion with a range, in what knows none.
     #[error(
-        "material.adhesion = \"{word}\": only trace, unload, cycle and sweeps of them compute adhesion with a range; \
+        "material.adhesion = \"{word}\": the explorer, trace, unload, cycle, fit and sweeps compute adhesion with a range, this does not; \
          \"short-range\" is computed everywhere"
     )]
     HasRange {
@@ -276,11 +276,12 @@ impl Case {
         detail: Detail,
         progress: &dyn Progress,
     ) -> Result<Curve, CaseError> {
-        if self.cohesion.is_some() {
-            // Its states are on no curve of short-range adhesion.
-            return Err(CaseError::HasRange { word: self.adhesion.name() });
-        }
         let (basis, table) = (Arc::clone(&self.basis), Arc::clone(&self.table));
+        if self.cohesion.is_some() {
+            let zones = self.zones(progress)?;
+            return Curve::of_zones(self.reduced.clone(), basis, table, &zones, progress)
+                .map_err(|error| self.no_path(error, self.control));
+        }
         let curve = Curve::new(self.reduced.clone(), basis, table, ends, detail, progress);
         if progress.stop() {
             return Err(CaseError::Cancelled);
@@ -336,6 +337,23 @@ impl Case {
         unload(curve, setting, progress).map_err(|error| self.no_path(error, setting.control))
     }
 
+    /// The way down from the start, of adhesion with a range or without: [`unload_in_zone`](Self::unload_in_zone), else
+    /// [`unload`](Self::unload).
+    ///
+    /// # Errors
+    /// As [`Case::unload`].
+    pub fn down(
+        &self,
+        curve: &Curve,
+        setting: &Setting<'_>,
+        progress: &dyn Progress,
+    ) -> Result<Path, CaseError> {
+        match self.unload_in_zone(setting, progress)? {
+            Some(path) => Ok(path),
+            None => self.unload(curve, setting, progress),
+        }
+    }
+
     /// The whole loop, reduced: from apart to the first touch, up to `turn` (reduced; that of the preset, or the start of its
     /// unloading, where none is given) and down until the bodies are apart. `progress` is asked before each step with the share of the
     /// way that is done, roughly.
@@ -384,7 +402,9 @@ impl Case {
             .map_err(|error| self.no_path(error, self.control))
     }
 
-    pub(crate) fn no_path(&self, error: PathError, control: Control) -> CaseError {
+    /// The refusal of a path, with its numbers in the user's units.
+    #[must_use]
+    pub fn no_path(&self, error: PathError, control: Control) -> CaseError {
         refused_path(error, control, self.units(), &self.shown)
     }
 
@@ -450,7 +470,7 @@ impl Case {
         self.closing?;
         Some(
             "these are states of an opening edge: a closing one gains only material.closing_work_of_adhesion, and rests \
-             in between; unload, cycle, pull and sweeps of them compute that"
+             in between; the explorer, unload, cycle, pull and sweeps compute that"
                 .to_owned(),
         )
     }

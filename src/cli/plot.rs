@@ -23,10 +23,11 @@ use crate::store::stream;
 use crate::sweep::Results;
 use crate::sweep::record::statistic;
 use clap::{Args, ValueEnum};
+use pulloff_engine::case::Case;
 use pulloff_engine::preset::{Preset, data};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::Losses;
 use pulloff_engine::quasistatic::jump::Run;
+use pulloff_engine::quasistatic::{Losses, State};
 use pulloff_engine::report::PathReport;
 use pulloff_engine::report::path::Extent;
 use pulloff_engine::report::pull::missing;
@@ -326,12 +327,24 @@ fn inside(curve: &Arc<CurveData>, radius: Option<&str>, exact: bool) -> Result<I
             shown(case.start)
         )));
     }
-    let point = equilibrium.explicit(s).ok_or_else(|| {
-        Failure::Usage(format!("there is no equilibrium at the contact radius {}", shown(s)))
-    })?;
-    let state = equilibrium.state(&point);
+    let (state, zone) = if case.cohesion.is_some() {
+        let zones = Case { start: s, ..case.clone() }.zones(&Unwatched)?;
+        if let Some(fault) =
+            zones.fault(zones.start, &Unwatched).map_err(|error| case.no_path(error, case.control))?
+        {
+            return Err(case.no_path(fault, case.control).into());
+        }
+        let (at, edges) = (zones.solution.at(zones.start), zones.solution.edges(zones.start));
+        let energy = zones.solution.energy(zones.start);
+        (State { contact_radius: s, approach: at.approach, force: at.force, energy }, edges.zone)
+    } else {
+        let point = equilibrium.explicit(s).ok_or_else(|| {
+            Failure::Usage(format!("there is no equilibrium at the contact radius {}", shown(s)))
+        })?;
+        (equilibrium.state(&point), None)
+    };
     let curve = Arc::clone(curve);
-    Ok(Inside::of(&Ask { curve, state, rings: None, exact, barrier: Some(Run::Inward) }))
+    Ok(Inside::of(&Ask { curve, state, rings: None, zone, exact, barrier: Some(Run::Inward) }))
 }
 
 /// A contact radius as typed, in SI or reduced units.

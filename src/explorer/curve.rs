@@ -11,7 +11,7 @@ use super::setting::{Setting, same_curve};
 use super::theory::Theory;
 use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::Preset;
-use pulloff_engine::problem::{Control, Groups};
+use pulloff_engine::problem::{Begin, Control, Groups};
 use pulloff_engine::progress::Progress;
 use pulloff_engine::quasistatic::overlap::overlaps;
 use pulloff_engine::quasistatic::{
@@ -20,6 +20,8 @@ use pulloff_engine::quasistatic::{
 use pulloff_engine::report::{OverlapReport, PathReport};
 use std::sync::Arc;
 
+/// Decimal digits of states of adhesion with a range: their series are read to as many.
+const ZONE_DIGITS: f64 = 11.0;
 /// The controls whose limit points are shown under every control.
 const SHOWN: [Control; 2] = [Control::Displacement, Control::Force];
 
@@ -81,8 +83,10 @@ pub struct CurveData {
     pub limits: Vec<Limit>,
     /// The limit points of the other controls in the user's units, with their control.
     pub other_limits: Vec<(Control, CurvePoint)>,
-    /// The quasi-static path, reduced, or why there is none.
+    /// The quasi-static path down, reduced, or why there is none.
     pub unloading: Result<Path, String>,
+    /// The path of the device along which a walker goes where the states lie on no single curve, or why there is none.
+    pub along: Option<Result<Arc<Path>, String>>,
     pub report: Option<PathReport>,
     /// Whether what takes longer is known of the path too.
     checked: bool,
@@ -91,7 +95,7 @@ pub struct CurveData {
 impl ProblemCurve {
     /// Computes the curve of `preset`.
     pub fn compute(preset: &Preset, progress: &Staged<'_>) -> Result<Self, CaseError> {
-        let case = Case::prepare(preset, progress)?;
+        let case = Case::with_range(preset, progress)?;
         progress.enter(Stage::Curve(1));
         let mut curve = case.curve(progress)?;
         progress.enter(Stage::Limits);
@@ -101,22 +105,22 @@ impl ProblemCurve {
             }
             curve.hold(control);
         }
-        let start = curve.equilibrium.explicit(curve.outermost());
+        // Of adhesion with a range each state has been looked at, and the equations of the curve are not theirs.
+        let in_zone = case.cohesion.is_some();
+        let start = (!in_zone).then(|| curve.equilibrium.explicit(curve.outermost())).flatten();
+        let digits = if in_zone { ZONE_DIGITS } else { case.basis.trusted_digits(&case.reduced, case.start) };
+        let warnings = if in_zone { case.warnings_of_problem() } else { case.warnings(curve.outermost()) };
         Ok(Self {
             preset: preset.clone(),
             start: start.as_ref().map(|point| curve.equilibrium.admissibility(point, progress)),
-            inadmissible: None,
+            inadmissible: in_zone.then(Vec::new),
             theory: Theory::of(&case, &curve, progress).ok_or(CaseError::Cancelled)?,
             groups: Groups::of(&case.problem, preset.range_of_action(), preset.cohesion()),
-            digits: case.basis.trusted_digits(&case.reduced, case.start),
+            digits,
             stiffness: start.as_ref().map(|point| curve.equilibrium.state_and_stiffness(point).1),
             critical_force: case.critical_force().unwrap_or(0.0),
-            warnings: case
-                .warnings(curve.outermost())
-                .into_iter()
-                .chain(case.warning_of_dead_band())
-                .collect(),
-            notes: case.notes(curve.outermost()),
+            warnings,
+            notes: if in_zone { Vec::new() } else { case.notes(curve.outermost()) },
             curve,
             case,
         })
@@ -174,14 +178,24 @@ impl CurveData {
             })
             .collect();
         progress.enter(Stage::Events(0));
-        let unloading = match case.unload(&curve, &case.setting_of_unloading(), progress) {
-            Err(CaseError::Cancelled) => return Err(CaseError::Cancelled),
-            unloading => unloading.map_err(|error| error.to_string()),
+        let told = |path: Result<Path, CaseError>| match path {
+            Err(CaseError::Cancelled) => Err(CaseError::Cancelled),
+            path => Ok(path.map_err(|error| error.to_string())),
+        };
+        let unloading = told(case.down(&curve, &case.setting_of_unloading(), progress))?;
+        let along = if case.cohesion.is_none() && case.closing.is_none() {
+            None
+        } else if preset.path.begin == Begin::Disc {
+            Some(unloading.clone())
+        } else {
+            let turn = preset.path.turn;
+            let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, control));
+            Some(told(case.cycle(turn, &case.setting(), progress))?)
         };
         // If the path of an unstable start begins further out, the curve is drawn up to there.
         let start = unloading.as_ref().ok().and_then(|path| path.start()).filter(|start| start.rings() == 0);
         let start = start.map_or(0.0, |start| start.contact_radius);
-        let outward = if start > curve.outermost() * (1.0 + 1e-12) {
+        let outward = if case.cohesion.is_none() && start > curve.outermost() * (1.0 + 1e-12) {
             let (basis, table) = (Arc::clone(&case.basis), Arc::clone(&case.table));
             Curve::new(
                 case.reduced.clone(),
@@ -199,7 +213,14 @@ impl CurveData {
         let points = outward[..own].iter().chain(&curve.samples).map(shown).collect();
         let report = unloading.as_ref().ok().map(|path| PathReport::new(preset, &case, path));
         let setting = Arc::new(Setting::new(preset.clone(), curve.equilibrium.scales));
-        Ok(Self { base, case, setting, points, limits, other_limits, unloading, report, checked: false })
+        let along = along.map(|path| path.map(Arc::new));
+        let checked = case.cohesion.is_some();
+        Ok(Self { base, case, setting, points, limits, other_limits, unloading, along, report, checked })
+    }
+
+    /// The outer edge of the zone (reduced) in this state of the path, where adhesion has a range.
+    pub fn zone(&self, at: usize) -> Option<f64> {
+        self.along.as_ref()?.as_ref().ok()?.states.get(at)?.zone
     }
 
     /// δ, P and s of the limit points under the chosen control in the user's units, from the start inward.
@@ -219,6 +240,9 @@ impl CurveData {
     /// The same curve with the inadmissible states of it and of its path; `None` if `progress` said stop.
     #[must_use]
     pub fn checked(&self, progress: &dyn Progress) -> Option<Self> {
+        if self.is_checked() {
+            return Some(self.clone());
+        }
         let mut base = Arc::clone(&self.base);
         if base.inadmissible.is_none() {
             let overlaps = overlaps(&base.curve, progress)?;

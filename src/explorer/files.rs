@@ -239,10 +239,14 @@ fn text(content: &Content, as_json: bool) -> Result<String, Box<dyn std::error::
     Ok(match content {
         Content::Curve(curve) => {
             let (drawn, of) = (&curve.base.curve, &curve.base.curve.equilibrium);
-            let points: Vec<_> =
-                drawn.samples.iter().filter_map(|at| of.explicit(at.contact_radius)).collect();
+            let own = drawn.samples.iter().filter(|_| !drawn.is_of_zones());
+            let points: Vec<_> = own.filter_map(|at| of.explicit(at.contact_radius)).collect();
             let (preset, case) = (&curve.setting.preset, &curve.case);
-            let report = TraceReport::new(preset, case, drawn, &points, drawn.stop, &Unwatched)?;
+            let report = if drawn.is_of_zones() {
+                TraceReport::compute(preset)?
+            } else {
+                TraceReport::new(preset, case, drawn, &points, drawn.stop, &Unwatched)?
+            };
             if as_json { json(&report)? } else { report.csv()? }
         }
         Content::Walk(curve, walk) => {

@@ -150,6 +150,8 @@ impl Journal {
         let mut preset = walking.curve.setting.preset.clone();
         // Where a walk begins is no matter of the curve: only a restart asks for it.
         preset.path.begin = match (&walking.action, &self.replay) {
+            // A path is that of one beginning.
+            (Action::Begin, _) if walking.curve.along.is_some() => preset.path.begin,
             (Action::Begin, _) => Begin::Touch,
             (Action::MoveTo(s), _) if s.total_cmp(&walking.curve.case.start).is_eq() => Begin::Disc,
             (_, Some(replay)) => replay.preset.path.begin,

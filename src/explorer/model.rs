@@ -297,7 +297,9 @@ impl Model {
     pub fn shows_its_curve(&self) -> bool {
         self.curve.as_ref().is_some_and(|curve| {
             let [ours, its] = [&self.preset, &curve.setting.preset].map(|preset| &preset.path);
-            curve.base.is_of(&self.preset) && (ours.control, ours.contact) == (its.control, its.contact)
+            let same_way = curve.along.is_none() || (ours.begin, ours.turn) == (its.begin, its.turn);
+            let same_device = (ours.control, ours.contact) == (its.control, its.contact);
+            curve.base.is_of(&self.preset) && same_device && same_way
         })
     }
 
@@ -452,7 +454,9 @@ impl Model {
     /// Whether edges can run from here: at a limit point of the control, at a touch, or in an unstable state.
     pub fn can_jump(&self) -> bool {
         let (Some(node), Some(control)) = (self.walker(), self.control()) else { return false };
-        let runs = node.at(control) != At::Nothing || !node.stability.under(control);
+        // The states of a path are stable but for rounding.
+        let is_unstable = node.on_path.is_none() && !node.stability.under(control);
+        let runs = node.at(control) != At::Nothing || is_unstable;
         !node.is_apart() && runs
     }
 

@@ -52,6 +52,8 @@ pub struct Node {
     pub digits: f64,
     /// The relative difference of P from the exact solution of one disc at the same contact radius; not a number with rings.
     pub from_exact: f64,
+    /// The number of the state on the path along which the walker goes, from 0; `None` where it goes along the curve.
+    pub on_path: Option<usize>,
     /// Whether a walk of its own begins here: at the start, at a restart, at a selected event.
     pub begins: bool,
     /// The number of the walk request that made it: what one command made has one number.

@@ -11,6 +11,7 @@ use pulloff_engine::quasistatic::admissible::Judge;
 use pulloff_engine::quasistatic::jump::Run;
 use pulloff_engine::quasistatic::{Landscape, Profile, State};
 use pulloff_engine::theory::Exact;
+use pulloff_engine::zone::ZoneAt;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -29,6 +30,8 @@ pub struct Ask {
     pub state: State,
     /// Its contacts, reduced, where there is more than a disc.
     pub rings: Option<Contacts>,
+    /// The outer edge of its zone (reduced), where adhesion has a range.
+    pub zone: Option<f64>,
     /// Whether the exact pressure is wanted as well.
     pub exact: bool,
     /// The way in which the barrier is wanted; none holds the edge at a limit point.
@@ -40,7 +43,7 @@ impl Ask {
     pub fn is_like(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.curve.setting, &other.curve.setting)
             && (self.state, self.exact, self.barrier) == (other.state, other.exact, other.barrier)
-            && self.rings == other.rings
+            && (&self.rings, self.zone) == (&other.rings, other.zone)
     }
 
     fn control(&self) -> Control {
@@ -70,17 +73,28 @@ impl Inside {
     pub fn of(ask: &Ask) -> Self {
         let case = &ask.curve.case;
         let State { contact_radius: s, approach, .. } = ask.state;
-        let landscape = if ask.rings.is_some() { None } else { landscape(ask) };
+        // A landscape is that of one disc under one law.
+        let is_alone = ask.rings.is_none() && ask.curve.along.is_none();
+        let landscape = if is_alone { landscape(ask) } else { None };
         let rings = ask.rings.as_ref();
         let rings =
             rings.and_then(|contacts| Profile::of_contacts(&case.reduced, &case.table, contacts, approach));
         let judge = Judge::new(&case.reduced, &case.table);
+        let zone = case.cohesion.zip(ask.zone).and_then(|(cohesion, edge)| {
+            Profile::of_zone(
+                &case.reduced,
+                &case.table,
+                cohesion,
+                ZoneAt { edge, contact_radius: s, approach },
+            )
+        });
         Self {
             units: *case.units(),
             wave: case.reduced.gap.wavelength(),
             profile: rings
+                .or(zone)
                 .unwrap_or_else(|| Profile::of(&case.reduced, case.basis.as_ref(), &judge, s, approach)),
-            exact: if ask.exact && ask.rings.is_none() { exact_pressure(ask) } else { Vec::new() },
+            exact: if ask.exact && is_alone { exact_pressure(ask) } else { Vec::new() },
             barrier: landscape.as_ref().zip(ask.barrier).and_then(|(landscape, run)| landscape.barrier(run)),
             landscape,
         }
@@ -101,6 +115,7 @@ impl Background for Inside {
             curve: Arc::clone(curve),
             state: node.state,
             rings: node.has_rings().then(|| node.contacts()),
+            zone: node.on_path.and_then(|at| curve.zone(at)),
             exact: model.overlays.exact,
             barrier: (!node.is_limit(curve.case.control)).then_some(run),
         })

@@ -11,10 +11,17 @@ use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::pull::missing;
 
+/// Why adhesion with a range has no such view.
+pub const OF_SHORT_RANGE: &str = "with a range of the adhesion one radius does not say which state it is: this is drawn of short-range \
+                                  adhesion alone";
+
 /// Why a view has nothing to show now; `None` where it has, or will have once it is computed.
 pub fn why_not(model: &Model, view: View) -> Option<String> {
     let node = model.history.current();
     match view {
+        View::Stability | View::Differences | View::Energy if model.preset.cohesion().is_some() => {
+            Some(OF_SHORT_RANGE.to_owned())
+        }
         View::ForceApproach | View::ForceRadius | View::RadiusApproach | View::Stability => None,
         View::ForcePosition => no_spring(&model.preset),
         View::Pressure | View::Gap | View::Contact | View::Energy => {

@@ -65,7 +65,7 @@ fn fault(node: &Node) -> Option<String> {
 
 /// What happens instead of a state that one disc cannot be in.
 fn real_path() -> String {
-    "the real path has rings: begin = apart leads along it, as pulloff cycle does".to_owned()
+    "the real path has rings: path.begin = touch leads along it, as pulloff cycle does".to_owned()
 }
 
 fn next(model: &Model) -> String {
@@ -171,8 +171,14 @@ fn happened(model: &Model, node: &Node) -> Option<String> {
                 with_unit(&node.setting.preset.units, Quantity::Energy, lost * units.energy, false, loss)
             )
         });
+        let next = Id::NextEvent.named();
         return Some(match event.kind {
-            EventKind::LastContact => {
+            EventKind::Turn => format!("Here the control turns round: {next} goes on down"),
+            EventKind::Depin => format!("Here the edge, which rested, begins to move: {next} goes on"),
+            EventKind::LastContact if event.after.is_some() => {
+                format!("Contact has ended, and the zone still holds: {next} goes on")
+            }
+            EventKind::LastContact | EventKind::SnapOff => {
                 format!("Last contact: the bodies are apart{}. {}", lost.unwrap_or_default(), back_or_anew())
             }
             _ => {
@@ -243,6 +249,9 @@ fn limit_hint(model: &Model, node: &Node) -> String {
     // The edge runs over the unstable part: walking the same way leads onto it.
     let runs_inward = ahead.after.is_none_or(|after| after.contact_radius < node.state.contact_radius);
     let part = if runs_inward == model.inward { "unstable" } else { "stable" };
+    if model.curve.as_ref().is_some_and(|curve| curve.along.is_some()) {
+        return format!("{name}: {next} or {jump} {lands}");
+    }
     // The log has the losses of its events.
     let lost = lost.filter(|_| model.log().here().is_none()).unwrap_or_default();
     format!("{name}: {next} or {jump} {lands}{lost}; {step} goes on, {part}")

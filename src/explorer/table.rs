@@ -24,7 +24,7 @@ use super::update::places::to_largest_pull;
 use super::update::selection::{arrow, cancel, next_panel};
 use super::update::travel::travel;
 use super::update::values::{change_control, turn};
-use super::update::walk::{next_event, restart, run_or_stop, scale_length, scale_pace, walk};
+use super::update::walk::{next_event, restart, reverse, run_or_stop, scale_length, scale_pace, walk};
 use super::view::Panel;
 use super::walk::Action;
 use super::{look, reach};

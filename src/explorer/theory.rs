@@ -66,12 +66,15 @@ impl Theory {
         let inward = steps(0.0, end - to).map(|less| end - less).skip(1);
         let fine: Vec<f64> = steps(from, start).chain(own).chain(inward).chain([to]).collect();
         let (jkr, exact) = (case.smooth(), Exact::of(&case.problem));
+        // The exact solutions are those of adhesion without a range.
+        let (fine, envelope) =
+            if case.cohesion.is_some() { (Vec::new(), None) } else { (fine, envelope(case, &smooth)) };
         Some(Self {
             smooth: jkr.map_or_else(|| Some(Vec::new()), |jkr| along(&jkr, &smooth, progress))?,
             smooth_name: jkr.as_ref().map_or("no radius", Disc::name),
             exact: along(&*exact, &fine, progress)?,
             exact_name: exact.name(),
-            envelope: envelope(case, &smooth),
+            envelope,
         })
     }
 }

@@ -9,9 +9,10 @@ use super::node::{Node, NodeKind};
 use super::setting::Setting;
 use pulloff_engine::case::Case;
 use pulloff_engine::problem::{Control, Turn};
+use pulloff_engine::quasistatic::path::Direction;
 pub(super) use pulloff_engine::quasistatic::walk::ROOM;
 use pulloff_engine::quasistatic::walk::{
-    Ahead, Arrival, At, Emit, Reached, Walk, WalkEnd, WalkFailure, edges,
+    Ahead, Along, Arrival, At, Emit, Reached, Walk, WalkEnd, WalkFailure, edges,
 };
 use pulloff_engine::quasistatic::{Admissibility, Point, Stability, State, Stiffness};
 use pulloff_engine::report::problem::control_name;
@@ -78,6 +79,8 @@ pub struct Request {
     pub curve: Arc<CurveData>,
     /// Where the walker stands; none only for moves.
     pub from: Option<Point>,
+    /// The number of the state on the path, where it goes along one.
+    pub on_path: Option<usize>,
     /// What it stands on.
     pub at: At,
     /// What is controlled (reduced).
@@ -102,6 +105,7 @@ pub struct Made {
     pub admissibility: Admissibility,
     pub digits: f64,
     pub from_exact: f64,
+    pub on_path: Option<usize>,
     pub begins: bool,
 }
 
@@ -131,6 +135,7 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     };
     let mut arrive = |reached: Reached| emit(made(request, reached));
     let end = match &request.action {
+        _ if request.curve.along.is_some() => along(request, &mut arrive),
         Action::Steps(count) => walk.steps(*count, false, &mut arrive),
         Action::ToLimit | Action::ToEvent(None) => walk.steps(RUN_POINTS, true, &mut arrive),
         Action::ToEvent(Some(end)) => to_end(&walk, *end, &mut arrive),
@@ -157,6 +162,12 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
         WalkEnd::Done => Outcome::Done,
         WalkEnd::AtLimit | WalkEnd::AtTouch => Outcome::AtLimit,
         WalkEnd::Paused => Outcome::Paused,
+        WalkEnd::PathEnds => Outcome::Ended(match &request.curve.along {
+            Some(Ok(path)) => {
+                format!("the path ends here: {}", path.stop.in_units(case.units()).words(&case.shown))
+            }
+            _ => "the path ends here".to_owned(),
+        }),
         WalkEnd::AtEnd => Outcome::Ended("the end contact radius is reached; b turns round".to_owned()),
         WalkEnd::EdgesMeet(radius) => Outcome::Ended(format!(
             "the branch ends here: two edges meet at r {}; {} turns round",
@@ -184,6 +195,37 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
             })
         }
         WalkEnd::Failed(failure) => Outcome::Stopped(failure.to_string()),
+    }
+}
+
+/// The same where the states lie on no single curve: along the path of the device.
+fn along(request: &Request, arrive: &mut Emit<'_>) -> WalkEnd {
+    let (curve, case) = (&request.curve, &request.curve.case);
+    let path = match &curve.along {
+        Some(Ok(path)) => path,
+        Some(Err(reason)) => return WalkEnd::Failed(WalkFailure::Edges(reason.clone())),
+        None => return WalkEnd::Failed(WalkFailure::NoState("walk")),
+    };
+    let along = Along {
+        path,
+        scales: &curve.setting.scales,
+        digits: curve.base.digits,
+        from: request.on_path,
+        length: request.length,
+    };
+    let direction = if request.inward { Direction::Unloading } else { Direction::Loading };
+    match &request.action {
+        Action::Steps(count) | Action::Run(count) => along.steps(*count, arrive),
+        Action::ToLimit | Action::ToEvent(_) => along.steps(RUN_POINTS, arrive),
+        Action::Jump => along.jump(arrive),
+        Action::Begin => along.begin(arrive),
+        Action::MoveTo(s) => along.move_to(*s, direction, arrive),
+        Action::MoveToEvent { event, .. } => along.before(*event, arrive),
+        Action::Solve { state, .. } => {
+            let units = case.units();
+            let value = request.control.value(state.approach / units.length, state.force / units.force);
+            along.solve(value, state.contact_radius / units.length, direction, arrive)
+        }
     }
 }
 
@@ -285,17 +327,19 @@ pub fn from_exact(case: &Case, state: &State) -> f64 {
 }
 
 fn made(request: &Request, reached: Reached) -> Made {
-    let Reached { arrival, point, state, stability, stiffness, admissibility, digits } = reached;
+    let Reached { arrival, point, state, stability, stiffness, admissibility, digits, on_path } = reached;
     let (kind, ahead) = match arrival {
         Arrival::Step => (NodeKind::Step, None),
         Arrival::Limit(ahead) => (NodeKind::Limit, ahead),
-        Arrival::Touch(_) if request.action == Action::Begin => (NodeKind::Start, None),
+        Arrival::Touch(_) | Arrival::Moved if request.action == Action::Begin => (NodeKind::Start, None),
         Arrival::Touch(radius) => (NodeKind::Touch(radius), None),
         Arrival::Jump(event) => (NodeKind::Jump(event), None),
         Arrival::Moved => (NodeKind::Moved, None),
         Arrival::Solved => (NodeKind::Solved, None),
     };
-    let exact = if edges::has_rings(&point) { f64::NAN } else { from_exact(&request.curve.case, &state) };
+    // The exact solution is that of one disc, whose edge opens.
+    let is_beside = on_path.is_some() || edges::has_rings(&point);
+    let exact = if is_beside { f64::NAN } else { from_exact(&request.curve.case, &state) };
     Made {
         setting: Arc::clone(&request.curve.setting),
         stability,
@@ -303,6 +347,7 @@ fn made(request: &Request, reached: Reached) -> Made {
         admissibility,
         digits,
         from_exact: exact,
+        on_path,
         begins: matches!(request.action, Action::MoveTo(_) | Action::MoveToEvent { .. } | Action::Begin),
         kind,
         ahead,

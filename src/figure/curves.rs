@@ -39,7 +39,9 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
 
 /// The loop, loading and unloading apart: of each contact its edges, where radii are shown.
 fn cycle(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
-    let Some(report) = subject.cycle else { return };
+    // The way of an edge that rests lies off the curve.
+    let rests = subject.curve.case.closing.is_some();
+    let Some(report) = subject.cycle.or(subject.path.filter(|_| rests)) else { return };
     let pieces = report.states.chunk_by(|a, b| {
         (a.piece, a.direction, a.state.contacts.len()) == (b.piece, b.direction, b.state.contacts.len())
     });

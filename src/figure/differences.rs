@@ -7,6 +7,7 @@ use super::bounds::Bounds;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
 use super::subject::Subject;
 use crate::explorer::curve::CurvePoint;
+use crate::explorer::reach::OF_SHORT_RANGE;
 use pulloff_engine::disc::solution::Solution;
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::significant;
@@ -32,6 +33,10 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     let y = Axis { symbol: format!("Δ{}", force.symbol), ..force };
     let title = format!("{} over {}, broken: at equal δ", y.title(), x.symbol);
     let mut figure = Figure::empty(title, x, y);
+    if subject.curve.case.cohesion.is_some() {
+        figure.missing = Some(OF_SHORT_RANGE.to_owned());
+        return figure;
+    }
     let ours = Ours::of(subject);
     let place = |[s, difference]: [f64; 2]| (scale.radius(s), scale.force(difference));
     let others = others(subject, &mut figure.notes);
@@ -93,6 +98,10 @@ fn others<'a>(subject: &Subject<'a>, notes: &mut Vec<String>) -> Vec<Other<'a>> 
     }
     let mut pinned = Vec::new();
     for pin in subject.pins {
+        if pin.curve.case.cohesion.is_some() {
+            notes.push(format!("{} has a range of adhesion", pin.number));
+            continue;
+        }
         if discriminant(&pin.preset().units) != discriminant(&subject.preset.units) {
             notes.push(format!("{} has other units", pin.number));
             continue;

@@ -25,6 +25,8 @@ pub enum Role {
     /// A computed profile or landscape: pressure, deformed gap, potential.
     Body,
     Contact,
+    /// The zone in which adhesion with a range pulls.
+    Zone,
     /// The edges of contacts over the control.
     Edges,
     /// From the walker's level up to the barrier.

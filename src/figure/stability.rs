@@ -7,6 +7,7 @@ use super::bounds::Bounds;
 use super::map;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
 use super::subject::Subject;
+use crate::explorer::reach::OF_SHORT_RANGE;
 use pulloff_engine::problem::Control;
 use pulloff_engine::stability::Law;
 use pulloff_engine::stability::law::adhesion_of;
@@ -40,6 +41,10 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     let of = if is_one_disc { "" } else { ", of the exact equation of one disc" };
     let title = format!("limit points under {under}: adhesion over contact radius{of}");
     let mut figure = Figure::empty(title, scale.radius_axis("s"), y);
+    if case.cohesion.is_some() {
+        figure.missing = Some(OF_SHORT_RANGE.to_owned());
+        return figure;
+    }
     let Ok(panels) = case.table.up_to(case.start) else {
         figure.missing = Some("the gap cannot be tabulated".to_owned());
         return figure;

@@ -45,7 +45,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let radii = subject.curve.points.iter().map(|at| scale.radius(at.contact_radius));
     let widest = if subject.walk.is_empty() { 0.0 } else { radii.fold(0.0, f64::max) };
     let radius = scale.radius(inside.profile.contact_radius * inside.units.length);
-    let drawing = Drawing { scale, inside, widest: widest.max(radius) };
+    let drawing = Drawing { scale, inside, widest: widest.max(radius), along: subject.curve.along.is_some() };
     figure.title = format!("{}, {} {}", figure.title, scale.radius_axis("s").symbol, significant(radius, 4));
     if view == View::Contact {
         figure.title.push_str(", half of it");
@@ -75,6 +75,8 @@ struct Drawing<'a> {
     inside: &'a Inside,
     /// The largest contact radius to be seen, on its axis.
     widest: f64,
+    /// Whether the states lie on no single curve.
+    along: bool,
 }
 
 impl Drawing<'_> {
@@ -105,10 +107,22 @@ impl Drawing<'_> {
         contact::lay(figure, &self.contacts(), &self.tensions(), crests, reach);
     }
 
-    /// Where in the contacts the pressure is negative, on their axis: from and to.
+    /// The zone outside the contact, on its axis.
+    fn zone(&self) -> Option<[f64; 2]> {
+        let profile = &self.inside.profile;
+        Some([profile.contact_radius, profile.zone?].map(|r| self.radius(r)))
+    }
+
+    /// Where in the contacts, and in the zone, the pressure is negative, on their axis: from and to.
     fn tensions(&self) -> Vec<[f64; 2]> {
         let inside = &self.inside.profile.inside;
-        let mut all = Vec::new();
+        let mut all: Vec<[f64; 2]> = self
+            .inside
+            .profile
+            .zone
+            .map(|edge| [self.inside.profile.contact_radius, edge])
+            .into_iter()
+            .collect();
         for [inner, outer] in &self.inside.profile.contacts {
             let within = inside.iter().filter(|at| at.radius >= *inner && at.radius <= *outer);
             let places: Vec<(f64, f64)> = within.map(|at| (at.radius, at.pressure)).collect();
@@ -146,7 +160,10 @@ impl Drawing<'_> {
                 (*inner == 0.0 || at.0 >= inner + margin) && at.0 <= outer - margin && at.0 >= *inner
             })
         };
-        let seen = computed.iter().chain(&exact).filter(is_seen).copied();
+        let zone = self.zone().unwrap_or([f64::INFINITY; 2]);
+        let in_zone = |at: &&(f64, f64)| zone[0] <= at.0 && at.0 <= zone[1];
+        let seen = computed.iter().chain(&exact).filter(is_seen);
+        let seen = seen.chain(computed.iter().filter(in_zone)).copied();
         figure.bounds = Bounds::of(seen.chain([(0.0, 0.0), (self.widest, 0.0)]));
         figure.lines.push(Line::new(Role::Zero, "", vec![(0.0, 0.0), (edge, 0.0)]));
         if !exact.is_empty() {
@@ -155,6 +172,10 @@ impl Drawing<'_> {
         for [inner, outer] in &contacts {
             let of = computed.iter().filter(|at| at.0 >= *inner && at.0 <= *outer).copied().collect();
             figure.lines.push(Line::new(Role::Body, "pressure", of));
+        }
+        let pulled: Vec<(f64, f64)> = computed.iter().filter(in_zone).copied().collect();
+        if !pulled.is_empty() {
+            figure.lines.push(Line::new(Role::Zone, "zone", pulled));
         }
         let crests = self.crests(0.0, self.inside.profile.contact_radius);
         figure.marks.extend(crests.map(|r| Mark { sign: Sign::Crest, at: (self.radius(r), 0.0) }));
@@ -204,6 +225,9 @@ impl Drawing<'_> {
         let touching = contacts.iter().map(|[inner, outer]| vec![(*inner, 0.0), (*outer, 0.0)]);
         figure.lines.extend(touching.map(|points| Line::new(Role::Contact, "contact", points)));
         figure.lines.extend(lines(Role::Body, "gap", &deformed));
+        if let Some(ends) = self.zone() {
+            figure.lines.push(Line::new(Role::Zone, "zone", part(&deformed, ends)));
+        }
         figure.marks.extend(crests);
         self.edges(figure);
     }
@@ -214,6 +238,8 @@ impl Drawing<'_> {
                 || self.inside.profile.contacts.iter().any(|at| at[0] > 0.0);
             let why = if rings {
                 "with rings there is no single radius"
+            } else if self.along {
+                "it is that of one law of the edge: not of adhesion with a range, nor of an edge that rests"
             } else {
                 "the state lies outside the curve"
             };

@@ -68,6 +68,7 @@ pub fn stroke(role: Role) -> Stroke {
         Role::Edges => stroke(BLUE, 1.0, ""),
         Role::Body => stroke(BLUE, 1.4, ""),
         Role::Contact => stroke(BLACK, 2.0, ""),
+        Role::Zone => stroke(ORANGE, 2.0, "4 1"),
         Role::Barrier => stroke(VERMILLION, 0.8, "2.5 1"),
         Role::Device => stroke(GREY, 0.8, "2 1 6 1"),
         Role::Pull => stroke(ORANGE, 1.5, "14 2"),

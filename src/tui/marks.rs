@@ -38,6 +38,7 @@ pub fn look(role: Role, theme: Theme) -> Stroke {
         Role::Contact => of(styles.walk, Shares, false, 'c'),
         Role::Pull => of(styles.pull, Tints, false, 'p'),
         Role::Walk | Role::Chosen => of(styles.walk, Tints, false, 'w'),
+        Role::Zone => of(styles.jump, Tints, false, 'z'),
         Role::Barrier | Role::Level => of(styles.aid, Beneath, true, '='),
         Role::Device => of(styles.aid, Beneath, true, ':'),
         Role::Jump => of(styles.jump, Beneath, true, 'j'),
@@ -72,6 +73,7 @@ pub fn glyph(role: Role, theme: Theme) -> String {
     let tells = matches!(
         role,
         Role::Contact
+            | Role::Zone
             | Role::Jump
             | Role::Walk
             | Role::Chosen

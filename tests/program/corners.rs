@@ -84,6 +84,7 @@ fn walked(preset: &Preset, back: bool) -> (Vec<f64>, Outcome, f64) {
         id: 0,
         action: Action::Steps(5),
         from: drawn.equilibrium.explicit(from),
+        on_path: None,
         at: At::Nothing,
         control: curve.case.control,
         inward: !back,

@@ -53,6 +53,7 @@ fn jumps(preset: &Preset) -> [usize; 3] {
             action: Action::Jump,
             curve: Arc::clone(&curve),
             from: curve.base.curve.equilibrium.explicit(limit.contact_radius),
+            on_path: None,
             at: At::Limit,
             control: curve.case.control,
             inward,

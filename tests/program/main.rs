@@ -11,6 +11,7 @@ mod corners;
 mod cycle;
 mod device;
 mod explorer;
+mod explorer_along;
 mod explorer_data;
 mod explorer_fit;
 mod explorer_knobs;

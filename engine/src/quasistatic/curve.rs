@@ -2,6 +2,7 @@
 
 use super::equilibrium::{Equilibrium, Point, Scales, Stability, State, unknown};
 use super::monotone::{Limit, Monotone};
+use super::path::{PathError, Zones};
 use crate::continuation::{Branch, End, Settings, Stop, Tracer};
 use crate::disc::exact::outer_side;
 use crate::disc::{Basis, Local, Place, Solution, Table};
@@ -89,6 +90,8 @@ pub struct Curve {
     pub samples: Vec<Sample>,
     /// Why it ends.
     pub stop: CurveStop,
+    /// The radii of the solution at which it begins and ends: contact radii, or outer edges of zones.
+    ends: [f64; 2],
     /// The stretches held, by control: those of the whole solution.
     held: Vec<Arc<Monotone>>,
 }
@@ -195,8 +198,45 @@ impl Curve {
             }
         }
         let scales = Scales::of(samples.iter().map(|s| [s.approach, s.force, s.contact_radius]));
+        let ends = [from, samples.last()?.contact_radius];
         let equilibrium = Equilibrium { problem, basis, table, scales };
-        Some(Self { equilibrium, solution, samples, stop, held: Vec::new() })
+        Some(Self { equilibrium, solution, samples, stop, ends, held: Vec::new() })
+    }
+
+    /// The curve of adhesion with a range from the largest of `zones` inward, as far as each state is one disc in one zone. What it
+    /// solves is none of its equilibria, which have no zone; its samples have the radii of the contact, 0 where there is none.
+    ///
+    /// # Errors
+    /// [`PathError`] where no state is one, or that cannot be known.
+    pub fn of_zones(
+        problem: Reduced,
+        basis: Arc<dyn Basis>,
+        table: Arc<Table>,
+        zones: &Zones,
+        progress: &dyn Progress,
+    ) -> Result<Self, PathError> {
+        /// The smallest zone, as a share of the largest.
+        const SMALLEST: f64 = 1e-3;
+        let solution = Arc::clone(&zones.solution);
+        let start = solution.at(zones.start).contact_radius;
+        let mut ends = [start; 2];
+        let mut samples = Vec::new();
+        for place in places(&*solution, start, SMALLEST * start, Detail::Drawn) {
+            if let Some(fault) = zones.fault(place, progress)? {
+                if samples.is_empty() {
+                    return Err(fault);
+                }
+                break;
+            }
+            let at = solution.at(place);
+            ends[1] = at.contact_radius;
+            let Local { approach, force, .. } = at;
+            let contact_radius = solution.edges(place).contact_radius;
+            samples.push(Sample { contact_radius, approach, force, slopes: at.stability() });
+        }
+        let scales = Scales::of(samples.iter().map(|s| [s.approach, s.force, s.contact_radius]));
+        let equilibrium = Equilibrium { problem, basis, table, scales };
+        Ok(Self { equilibrium, solution, samples, stop: CurveStop::End, ends, held: Vec::new() })
     }
 
     /// The same with a table of the gap of its own.
@@ -213,6 +253,12 @@ impl Curve {
         Self::new(problem, basis, table, [self.outermost(), self.innermost()], Detail::Borders, progress)
     }
 
+    /// Whether its states are those of adhesion with a range.
+    pub fn is_of_zones(&self) -> bool {
+        let last = self.solution.len().checked_sub(1);
+        last.is_some_and(|panel| self.solution.edges(Place { panel, x: 1.0 }).zone.is_some())
+    }
+
     /// The largest contact radius of the curve.
     pub fn outermost(&self) -> f64 {
         self.samples.first().map_or(0.0, |at| at.contact_radius)
@@ -227,7 +273,8 @@ impl Curve {
     /// could be added.
     pub fn reach(&mut self, to: f64) -> bool {
         let to = to.min(self.equilibrium.problem.largest_contact());
-        if to <= self.solution.reach() {
+        // A solution of the equations that the curve has is none of zones.
+        if to <= self.solution.reach() || self.is_of_zones() {
             return false;
         }
         let Equilibrium { problem, basis, .. } = &self.equilibrium;
@@ -256,11 +303,13 @@ impl Curve {
 
     /// The limit points of `control` on the curve, to rounding, from the start inward.
     pub fn limit_points(&self, control: Control) -> Vec<Limit> {
-        let (lo, hi) = (self.innermost(), self.outermost());
+        let [hi, lo] = self.ends;
         let monotone = self.monotone(control);
         let on_curve =
             monotone.limits.iter().rev().filter(|at| lo <= at.contact_radius && at.contact_radius <= hi);
-        on_curve.copied().collect()
+        let contact = |at: &Limit| self.solution.edges(at.place).contact_radius;
+        let in_zones = self.is_of_zones();
+        on_curve.map(|at| if in_zones { Limit { contact_radius: contact(at), ..*at } } else { *at }).collect()
     }
 
     /// The radii of the corners of the curve, where the slope of the gap jumps, ascending.

@@ -14,8 +14,9 @@ use crate::annuli::{Around, Contacts, Ground, Wanted};
 use crate::disc::{Basis, Table};
 use crate::elementary::sin;
 use crate::gap::{Gap, wave_index};
-use crate::problem::Reduced;
+use crate::problem::{Cohesion, Reduced};
 use crate::progress::Unwatched;
+use crate::zone::{Zone, ZoneAt};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -60,6 +61,8 @@ pub struct Profile {
     pub inside: Vec<Inside>,
     /// The gap outside the contacts, from the axis outward, as far as it is known: 0 at their edges.
     pub outside: Vec<Outside>,
+    /// The outer edge of the zone in which adhesion with a range pulls; `None` where it has none.
+    pub zone: Option<f64>,
     /// The crest outside at which the bodies come nearest; `None` where the gap only grows.
     pub nearest: Option<Crest>,
 }
@@ -81,7 +84,52 @@ impl Profile {
         let outside =
             outside.map(|((&radius, undeformed), gap)| Outside { radius, gap, undeformed }).collect();
         let nearest = judge.nearest_crest(s, delta, &Unwatched);
-        Self { contact_radius: s, contacts: vec![[0.0, s]], approach: delta, inside, outside, nearest }
+        Self {
+            contact_radius: s,
+            contacts: vec![[0.0, s]],
+            approach: delta,
+            inside,
+            outside,
+            zone: None,
+            nearest,
+        }
+    }
+
+    /// The profile of one disc in one zone, or of a zone without contact; the pressure out to the edge of the zone. `None` where the gap is
+    /// not known as far.
+    pub fn of_zone(problem: &Reduced, table: &Arc<Table>, cohesion: Cohesion, at: ZoneAt) -> Option<Self> {
+        let ZoneAt { edge, contact_radius: s, approach } = at;
+        let outer = radii(edge, problem.gap.feature_length());
+        let reach = outer.last().copied().unwrap_or(edge);
+        let ground = Ground::new(Arc::clone(table), reach, &Unwatched).ok()?;
+        let zone = Zone::new(Arc::clone(&ground.gap), Arc::clone(&ground.panels), cohesion);
+        let [few, most] = POINTS;
+        let count = |width: f64| (POINTS_PER_WAVE * width / ground.wave).clamp(few, most).ceil();
+        // Dense towards both ends.
+        let between = |lo: f64, hi: f64| {
+            let count = count(hi - lo);
+            std::iter::successors(Some(0.0), |j| Some(j + 1.0))
+                .take_while(move |j| *j <= count)
+                .map(move |j| lo + (hi - lo) * sin(FRAC_PI_2 * j / count).powi(2))
+        };
+        let pressed = |radius: f64| Inside { radius, pressure: zone.pressure_at(at, radius) };
+        let disc = between(0.0, s).filter(|r| s > 0.0 && *r < s);
+        let inside = disc.chain(between(s, edge).filter(|r| *r < edge)).map(pressed).collect();
+        let opened = |radius: f64| Outside {
+            radius,
+            gap: zone.gap_at(at, radius),
+            undeformed: problem.gap.jet(radius).value,
+        };
+        let outside = between(s, edge).chain(outer.into_iter().skip(1).filter(|r| *r <= ground.reach()));
+        Some(Self {
+            contact_radius: s,
+            contacts: if s > 0.0 { vec![[0.0, s]] } else { Vec::new() },
+            approach,
+            inside,
+            outside: outside.map(opened).filter(|at| at.gap.is_finite()).collect(),
+            zone: Some(edge),
+            nearest: None,
+        })
     }
 
     /// The profile of a disc and rings, or of rings alone, at the approach `delta`; `None` where there is no such state.
@@ -139,6 +187,7 @@ impl Profile {
             approach: delta,
             inside,
             outside,
+            zone: None,
             nearest,
         })
     }

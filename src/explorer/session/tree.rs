@@ -57,6 +57,9 @@ pub(super) struct Saved {
     known_to: Option<Real>,
     digits: Real,
     from_exact: Real,
+    /// The number of the state on the path along which it was walked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    on_path: Option<usize>,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     begins: bool,
     request: u64,
@@ -97,7 +100,10 @@ struct LeapEnd {
     area: Real,
     held_stiffness: Real,
     stable: bool,
+    slopes: [Real; 2],
     control_value: Real,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    zone: Option<Real>,
 }
 
 impl LeapEnd {
@@ -108,14 +114,17 @@ impl LeapEnd {
             area: Real(state.contact_area),
             held_stiffness: Real(state.held_stiffness),
             stable: state.stable,
+            slopes: reals([state.slopes.approach, state.slopes.force]),
             control_value: Real(state.control_value),
+            zone: state.zone.map(Real),
         }
     }
 
     fn back(self, direction: Direction) -> PathState {
         let State { contact_radius, approach, force, energy } = state_in(self.state);
+        let [by_approach, by_force] = floats(self.slopes);
         PathState {
-            zone: None,
+            zone: self.zone.map(|edge| edge.0),
             contact_radius,
             approach,
             force,
@@ -124,6 +133,7 @@ impl LeapEnd {
             contact_area: self.area.0,
             held_stiffness: self.held_stiffness.0,
             stable: self.stable,
+            slopes: Stability { approach: by_approach, force: by_force },
             control_value: self.control_value.0,
             direction,
             piece: 0,
@@ -228,6 +238,7 @@ impl Saved {
             known_to: admissibility.known_to.map(Real),
             digits: Real(node.digits),
             from_exact: Real(node.from_exact),
+            on_path: node.on_path,
             begins: node.begins,
             request: node.request,
         }
@@ -245,7 +256,10 @@ impl Saved {
         let scales = &setting.scales;
         let [approach, force] = edges::device(scales, &point);
         let contacts = edges::contacts(scales, &point);
-        contacts.check().ok()?;
+        // In a zone alone there is no contact.
+        if self.on_path.is_none() || contacts.outermost() > 0.0 {
+            contacts.check().ok()?;
+        }
         let contact_radius = contacts.outermost();
         let stability = match self.slopes {
             Some(slopes) => {
@@ -278,6 +292,7 @@ impl Saved {
             },
             digits: self.digits.0,
             from_exact: self.from_exact.0,
+            on_path: self.on_path,
             begins: self.begins,
             request: self.request,
         };

@@ -83,6 +83,10 @@ pub(super) fn go_to_event(model: &mut Model) -> Vec<Effect> {
         return Vec::new();
     };
     let Some(curve) = model.curve.clone() else { return Vec::new() };
+    if let (Some(number), true) = (entry.number, curve.along.is_some()) {
+        model.inward = entry.event.direction == "unloading";
+        return walk(model, Action::MoveToEvent { event: number - 1, limit: 0 });
+    }
     let before = entry.event.before.as_ref().filter(|before| matches!(before.contacts[..], [[0.0, _]]));
     let (Some(number), Some(before)) = (entry.number, before) else {
         // The state before the jump, as it was walked.

@@ -9,6 +9,7 @@ use crate::explorer::requests::{stop, stop_walk, want_curve};
 use crate::explorer::status_line::{back_or_anew, of_before};
 use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
 use pulloff_engine::problem::Begin;
+use pulloff_engine::quasistatic::path::Direction;
 use pulloff_engine::quasistatic::walk::At;
 use pulloff_engine::report::number::{short, significant, with_unit};
 use pulloff_engine::units::Quantity;
@@ -47,6 +48,11 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
     }
     let at = node.map_or(At::Nothing, |node| node.at(control));
     let from = node.map(|node| node.point.clone());
+    let on_path = node.and_then(|node| node.on_path);
+    if curve.along.is_some() && matches!(action, Action::Steps(_)) && model.can_jump() {
+        return model
+            .refuse(format!("the path goes on behind the jump: {} lets it happen", Id::Jump.named()));
+    }
     let begins = node.is_some_and(|node| node.begins && !node.is_limit(control));
     let id = model.number();
     let wanted = if let Action::Steps(count) = action { Some(count) } else { None };
@@ -56,7 +62,18 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
     let inward = model.inward && !(begins && action == Action::Jump);
     let length = model.length;
     model.journal.walks(action.clone(), Arc::clone(&curve), model.inward, length);
-    vec![Effect::Walk(Box::new(Request { id, action, curve, from, at, control, inward, length, pace: None }))]
+    vec![Effect::Walk(Box::new(Request {
+        id,
+        action,
+        curve,
+        from,
+        on_path,
+        at,
+        control,
+        inward,
+        length,
+        pace: None,
+    }))]
 }
 
 /// On to the next event of the path: what is pending happens, and where the path ends outward it turns round.
@@ -80,6 +97,19 @@ pub(in crate::explorer) fn next_event(model: &mut Model) -> Vec<Effect> {
     }
     let end = (!model.inward).then(|| model.outer_end()).flatten();
     walk(model, Action::ToEvent(end))
+}
+
+/// Turns the walk round; along a path it goes as the device does.
+pub(in crate::explorer) fn reverse(model: &mut Model) {
+    if model.curve.as_ref().is_some_and(|curve| curve.along.is_some()) {
+        let text = format!(
+            "the walk goes along the path, which turns where path.turn_* says; {} takes steps back",
+            Id::Undo.named()
+        );
+        model.tell(Level::Info, text);
+    } else {
+        model.inward = !model.inward;
+    }
 }
 
 /// The same, at the pace.
@@ -174,6 +204,9 @@ pub(super) fn walked(
     let is_unsolved = matches!(outcome, Outcome::Stopped(_))
         && model.history.current().is_some_and(|node| !model.is_on_curve(node));
     model.journal.ended(&outcome, is_unsolved);
+    if model.history.current().is_some_and(|node| node.on_path.is_some()) {
+        model.journal.turned(model.inward);
+    }
     match outcome {
         Outcome::Done => {}
         Outcome::AtLimit => {
@@ -246,11 +279,21 @@ fn append(model: &mut Model, request: u64, state: Made) {
         admissibility: state.admissibility,
         digits: state.digits,
         from_exact: state.from_exact,
+        on_path: state.on_path,
         begins: state.begins,
         request,
     };
+    if let Some(inward) = on_path_inward(model, node.on_path) {
+        model.inward = inward;
+    }
     // A knob turned further is one change: the states in between are kept, but undo leads before them.
     if beside { model.history.push_beside(node) } else { model.history.push(node) }
+}
+
+/// Which way the path goes at a state of it.
+fn on_path_inward(model: &Model, at: Option<usize>) -> Option<bool> {
+    let path = model.curve.as_ref()?.along.as_ref()?.as_ref().ok()?;
+    Some(path.states.get(at?)?.direction == Direction::Unloading)
 }
 
 /// A state that could not be solved for the new values stays, marked, with the reason.
@@ -272,6 +315,9 @@ pub(in crate::explorer) fn restart(model: &mut Model) -> Vec<Effect> {
     }
     if model.preset.path.begin == Begin::Touch {
         model.inward = false;
+        return walk(model, Action::Begin);
+    }
+    if model.curve.as_ref().is_some_and(|curve| curve.along.is_some()) {
         return walk(model, Action::Begin);
     }
     model
@@ -298,12 +344,13 @@ pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) -> Option<Ve
     let preset = &curve.setting.preset;
     let apart = preset.path.begin == Begin::Touch;
     let (source, preset) = (model.source.clone(), preset.clone());
-    let effects = apart.then(|| {
-        model.inward = false;
+    let along = curve.along.is_some();
+    let effects = (apart || along).then(|| {
+        model.inward = !apart;
         walk(model, Action::Begin)
     });
     model.journal.begin(source, preset);
-    if !apart {
+    if !apart && !along {
         begin_with_disc(model, curve);
     }
     effects
@@ -330,6 +377,7 @@ fn begin_with_disc(model: &mut Model, curve: &Arc<CurveData>) {
         admissibility,
         digits: curve.base.digits,
         from_exact: from_exact(&curve.case, &state),
+        on_path: None,
         begins: true,
         request: 0,
     });

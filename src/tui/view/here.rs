@@ -170,6 +170,8 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
     if let Some(wave) = wave {
         radius.extend(pair(theme, "  s/λ ", &significant(s / wave, 4)));
     }
+    let zone = node.on_path.filter(|_| model.is_on_curve(node));
+    let zone = zone.and_then(|at| model.curve.as_ref()?.zone(at));
     let mut flags = vec![Span::styled(" stable", theme.dim())];
     for [name, word] in stable(model, node) {
         let word = if word == "yes" { Span::raw(word) } else { Span::styled(word, theme.error()) };
@@ -186,6 +188,10 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
         Line::from(radius),
         Line::from(flags),
     ];
+    lines.extend(zone.map(|edge| {
+        let edge = shown(theme, node, Quantity::Length, edge * setting.units().length, 4);
+        Line::from(pair(theme, " zone to ", &edge).to_vec())
+    }));
     lines.extend(inadmissible(theme, node));
     lines.extend(contacts(theme, node));
     // A share of the range of every quantity, said where there is room.
@@ -201,7 +207,7 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
     last.extend(pair(theme, " digits ", &fixed(node.digits, 1)));
     lines.push(Line::from(last));
     // Where there is room: what the basis' own estimate is worth.
-    if !node.has_rings() {
+    if node.from_exact.is_finite() {
         lines.push(Line::from(pair(theme, " off exact ", &difference(node.from_exact)).to_vec()));
     }
     lines.extend(stiffness(theme, node));

@@ -41,7 +41,7 @@ fn rank(role: Role) -> u8 {
     match role {
         Role::Stable | Role::Body | Role::Edges | Role::Law | Role::Cusps => 0,
         Role::Unstable | Role::Landings => 1,
-        Role::Inadmissible | Role::Level | Role::Pull => 2,
+        Role::Inadmissible | Role::Level | Role::Pull | Role::Zone => 2,
         Role::Walk | Role::Chosen => 3,
         Role::Pin(_) => 5,
         Role::Smooth | Role::Exact | Role::Envelope => 6,

@@ -3,8 +3,8 @@
 use super::balance::Held;
 use crate::disc::{Edges, Local, Place, Solution};
 use crate::problem::Control;
-use crate::quasistatic::State;
 use crate::quasistatic::energy::{self, Losses};
+use crate::quasistatic::{Stability, State};
 use std::f64::consts::PI;
 
 /// Which way the control goes.
@@ -55,6 +55,8 @@ pub struct PathState {
     pub held_stiffness: f64,
     /// Whether the device holds it: not at a limit point, from which edges run.
     pub stable: bool,
+    /// dδ/ds and dP/ds along the equilibria of one disc, or by the outer edge of its zone; not numbers where there are rings.
+    pub slopes: Stability,
     /// c: δ, P or Δ.
     pub control_value: f64,
     /// Which way the control goes.
@@ -77,6 +79,7 @@ impl PathState {
             contact_area: contacts.area(),
             held_stiffness: held.state.force[1],
             stable: true,
+            slopes: Stability { approach: f64::NAN, force: f64::NAN },
             control_value: held.control_value,
             direction,
             piece,
@@ -85,7 +88,8 @@ impl PathState {
 
     /// The state of one disc at a place of its equilibria, under a device.
     pub fn of_disc(solution: &dyn Solution, place: Place, control: Control, direction: Direction) -> Self {
-        let Local { approach, force, .. } = solution.at(place);
+        let at = solution.at(place);
+        let Local { approach, force, .. } = at;
         let Edges { contact_radius: s, zone } = solution.edges(place);
         Self {
             contact_radius: s,
@@ -97,6 +101,7 @@ impl PathState {
             contact_area: PI * s * s,
             held_stiffness: 2.0 * s,
             stable: true,
+            slopes: at.stability(),
             control_value: control.value(approach, force),
             direction,
             piece: 0,

@@ -14,6 +14,7 @@ use super::stepped::{Side, Stepped};
 use crate::annuli::{Around, Contacts, Crest};
 use crate::disc::chebyshev;
 use crate::problem::{Control, Turn};
+use crate::quasistatic::Stability;
 
 /// A gap below so many waves may be about to close.
 const CLOSING: f64 = 0.02;
@@ -41,6 +42,7 @@ impl Course<'_, '_> {
             contact_area: 0.0,
             held_stiffness: 0.0,
             stable: true,
+            slopes: Stability { approach: f64::NAN, force: f64::NAN },
             control_value: self.setting.control.value(crest.gap, 0.0),
             direction: Direction::Loading,
             piece: 0,

@@ -44,6 +44,8 @@ pub enum WalkEnd {
     Paused,
     /// At the end contact radius.
     AtEnd,
+    /// At the end of the path along which it goes.
+    PathEnds,
     /// The branch ends: two edges meet at this radius, a length.
     EdgesMeet(f64),
     /// The branch ends: the width of the contact at this radius, a length, goes to nothing.
@@ -110,6 +112,8 @@ pub struct Reached {
     pub admissibility: Admissibility,
     /// Decimal digits of the edges.
     pub digits: f64,
+    /// Of a walk along a path, the number of the state on it, from 0.
+    pub on_path: Option<usize>,
 }
 
 /// Takes the states of a walk, and says whether it is to go on.

@@ -52,6 +52,7 @@ impl Walk<'_> {
             digits: equilibrium.basis.trusted_digits(&equilibrium.problem, state.contact_radius),
             state,
             point,
+            on_path: None,
         }
     }
 
@@ -62,7 +63,7 @@ impl Walk<'_> {
         let held = edges::held(&balance, &equilibrium.scales, &point)?;
         let judged = edges::judged(equilibrium, ground, &point, &held);
         let edges::Judged { state, stability, stiffness, admissibility, digits } = judged;
-        Some(Reached { arrival, point, state, stability, stiffness, admissibility, digits })
+        Some(Reached { arrival, point, state, stability, stiffness, admissibility, digits, on_path: None })
     }
 
     /// The landed edges as a state: one disc, or more.

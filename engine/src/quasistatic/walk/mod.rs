@@ -13,7 +13,9 @@
 //! | [`edges`] | any number of edges as a walk keeps them |
 //! | `rings` | steps with rings |
 //! | `land` | where edges land that run |
+//! | [`along`] | steps along a path that is known |
 
+pub mod along;
 pub mod arrival;
 mod disc;
 pub mod edges;
@@ -21,6 +23,7 @@ mod land;
 mod rings;
 pub mod walker;
 
+pub use along::Along;
 pub use arrival::{Ahead, Arrival, Emit, Reached, WalkEnd, WalkFailure};
 pub use walker::{At, ROOM, Walk};
 

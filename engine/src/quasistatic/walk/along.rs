@@ -1,0 +1,275 @@
+//! A walk along a path that is known, for bodies whose states lie on no single curve.
+//!
+//! With two works of adhesion an edge grows on one curve, recedes on another and rests in between; adhesion with a range has states without
+//! contact. A walker then goes from state to state of the path of the device, through its events.
+
+use super::arrival::{Ahead, Arrival, Emit, Reached, WalkEnd, WalkFailure};
+use super::edges;
+use crate::continuation::Columns;
+use crate::quasistatic::path::{Direction, EventKind};
+use crate::quasistatic::{Admissibility, Event, Path, PathState, Point, Scales, Stability, Stiffness};
+use std::f64::consts::TAU;
+
+/// Control values as near as this share of their range are one.
+const SAME: f64 = 1e-9;
+
+/// Where a walker on a path stands, and how it goes.
+#[derive(Debug, Clone, Copy)]
+pub struct Along<'a> {
+    /// The path.
+    pub path: &'a Path,
+    /// The units of the unknowns.
+    pub scales: &'a Scales,
+    /// Decimal digits of its states.
+    pub digits: f64,
+    /// The number of the state on which the walker stands, from 0; only moves need none.
+    pub from: Option<usize>,
+    /// The length of a step, in the scaled unknowns.
+    pub length: f64,
+}
+
+/// An event with the numbers of the states before and after it; of bodies that come apart the two are one.
+struct Passing<'a> {
+    event: &'a Event,
+    before: usize,
+    after: usize,
+}
+
+impl Passing<'_> {
+    /// Whether edges run, so that the walker waits before it.
+    fn is_jump(&self) -> bool {
+        self.after != self.before && !matches!(self.event.kind, EventKind::Turn) || self.event.after.is_none()
+    }
+}
+
+/// How the walker comes to the state before a jump.
+fn arrival(passing: &Passing<'_>) -> Arrival {
+    match (passing.event.kind, passing.event.radius) {
+        (EventKind::Touch, Some(radius)) => Arrival::Touch(radius),
+        _ => Arrival::Limit(Some(Ahead {
+            after: passing.event.after.as_ref().map(PathState::state),
+            dissipated: passing.event.dissipated,
+        })),
+    }
+}
+
+impl<'a> Along<'a> {
+    /// The events that begin in a state, in order.
+    fn events(&self) -> Vec<Passing<'a>> {
+        let states = &self.path.states;
+        let mut from = 0;
+        let mut passing = |event: &'a Event| {
+            let before = event.before.as_ref()?;
+            let is_before = |state: &PathState| {
+                let [a, b] = [state, before].map(|state| (state.approach, state.force));
+                state.piece == before.piece && a == b
+            };
+            let last = || states.iter().rposition(|state| state.piece == before.piece);
+            let at = (from..states.len()).find(|at| is_before(&states[*at])).or_else(last)?;
+            // What a state is pinned at it may be pinned at twice: the last of them is where it goes on.
+            let same = (at..states.len()).take_while(|at| is_before(&states[*at])).last();
+            let before = same.unwrap_or(at);
+            let has_next = states.get(before + 1).is_some_and(|next| next.piece != states[before].piece);
+            let after = if event.after.is_some() && has_next { before + 1 } else { before };
+            from = after;
+            Some(Passing { event, before, after })
+        };
+        self.path.events.iter().filter_map(&mut passing).collect()
+    }
+
+    /// The jump that waits where the walker stands.
+    fn waiting(&self) -> Option<Passing<'a>> {
+        self.events().into_iter().find(|passing| passing.is_jump() && Some(passing.before) == self.from)
+    }
+
+    /// So many steps, or as many of a run; stops where edges run and where the path turns, or a held edge begins to move.
+    pub fn steps(&self, count: usize, emit: &mut Emit<'_>) -> WalkEnd {
+        let states = &self.path.states;
+        let Some(mut at) = self.from else { return WalkEnd::Failed(WalkFailure::NoState("walk")) };
+        if let Some(passing) = self.waiting() {
+            // Edges may run at once where a held one is let go. The path goes on behind the jump alone.
+            emit(self.reached(at, arrival(&passing)));
+            return WalkEnd::AtLimit;
+        }
+        let ahead = self
+            .events()
+            .into_iter()
+            .find(|passing| passing.before > at || passing.before == at && passing.after > at);
+        let last = ahead.as_ref().map_or(states.len().saturating_sub(1), |passing| passing.before);
+        for _ in 0..count {
+            let mut gone = 0.0;
+            while at < last && gone < self.length {
+                gone += self.distance([at, at + 1]);
+                at += 1;
+            }
+            match &ahead {
+                Some(passing) if at == last && passing.is_jump() => {
+                    emit(self.reached(at, arrival(passing)));
+                    return WalkEnd::AtLimit;
+                }
+                Some(passing) if at == last => {
+                    emit(self.reached(passing.after, Arrival::Jump(Box::new(passing.event.clone()))));
+                    return WalkEnd::AtLimit;
+                }
+                None if at == last => {
+                    if gone > 0.0 {
+                        emit(self.reached(at, Arrival::Step));
+                    }
+                    return WalkEnd::PathEnds;
+                }
+                _ => {}
+            }
+            if !emit(self.reached(at, Arrival::Step)) {
+                return WalkEnd::Paused;
+            }
+        }
+        WalkEnd::Done
+    }
+
+    /// Lets the edges run that wait.
+    pub fn jump(&self, emit: &mut Emit<'_>) -> WalkEnd {
+        let Some(passing) = self.waiting() else { return WalkEnd::Failed(WalkFailure::Stable) };
+        emit(self.reached(passing.after, Arrival::Jump(Box::new(passing.event.clone()))));
+        WalkEnd::Done
+    }
+
+    /// Goes to where the path begins.
+    pub fn begin(&self, emit: &mut Emit<'_>) -> WalkEnd {
+        self.go(Some(0).filter(|_| !self.path.states.is_empty()), "where the path begins", emit)
+    }
+
+    /// Goes to the state before the event of this number, from 0.
+    pub fn before(&self, event: usize, emit: &mut Emit<'_>) -> WalkEnd {
+        let Some(event) = self.path.events.get(event) else {
+            return WalkEnd::Failed(WalkFailure::NoEquilibrium("before that event"));
+        };
+        let found = self.events().into_iter().find(|passing| std::ptr::eq(passing.event, event));
+        match found {
+            Some(passing) if passing.is_jump() => {
+                emit(self.reached(passing.before, arrival(&passing)));
+                WalkEnd::AtLimit
+            }
+            found => self.go(found.map(|passing| passing.before).or(Some(0)), "before that event", emit),
+        }
+    }
+
+    /// Goes to the state whose contact radius is nearest to `s`, on the way in `direction`.
+    pub fn move_to(&self, s: f64, direction: Direction, emit: &mut Emit<'_>) -> WalkEnd {
+        let found = self.nearest(direction, &|state| [(state.contact_radius - s).abs(), 0.0]);
+        self.go(found, "at that contact radius", emit)
+    }
+
+    /// Goes to the state at this value of the control on the way in `direction`; of several, as around a jump, to that of the contact radius
+    /// nearest to `s`.
+    pub fn solve(&self, value: f64, s: f64, direction: Direction, emit: &mut Emit<'_>) -> WalkEnd {
+        let values = self.path.states.iter().map(|state| state.control_value);
+        let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], c| [lo.min(c), hi.max(c)]);
+        let apart = |state: &PathState| {
+            let off = (state.control_value - value).abs();
+            [if off <= SAME * (range[1] - range[0]) { 0.0 } else { off }, (state.contact_radius - s).abs()]
+        };
+        let Some(at) = self.nearest(direction, &apart) else {
+            return WalkEnd::Failed(WalkFailure::NotSolved);
+        };
+        emit(self.reached(at, Arrival::Solved));
+        WalkEnd::Done
+    }
+
+    fn go(&self, at: Option<usize>, what: &'static str, emit: &mut Emit<'_>) -> WalkEnd {
+        let Some(at) = at else { return WalkEnd::Failed(WalkFailure::NoEquilibrium(what)) };
+        emit(self.reached(at, Arrival::Moved));
+        WalkEnd::Done
+    }
+
+    /// The state on the way in `direction` of which `measure` is least, or of the whole path where there is none on that way.
+    fn nearest(&self, direction: Direction, measure: &dyn Fn(&PathState) -> [f64; 2]) -> Option<usize> {
+        let states = || self.path.states.iter().enumerate();
+        let least = |a: &(usize, &PathState), b: &(usize, &PathState)| {
+            let [[a, beside_a], [b, beside_b]] = [a.1, b.1].map(measure);
+            a.total_cmp(&b).then(beside_a.total_cmp(&beside_b))
+        };
+        let there = states().filter(|(_, state)| state.direction == direction).min_by(least);
+        there.or_else(|| states().min_by(least)).map(|(at, _)| at)
+    }
+
+    /// The way from one state to another in the scaled unknowns.
+    fn distance(&self, ends: [usize; 2]) -> f64 {
+        let Scales { approach, force, contact_radius } = *self.scales;
+        let [a, b] = ends.map(|at| &self.path.states[at]);
+        let ways = [
+            (a.approach - b.approach) / approach,
+            (a.force - b.force) / force,
+            (a.contact_radius - b.contact_radius) / contact_radius,
+        ];
+        ways.iter().map(|way| way * way).sum::<f64>().sqrt()
+    }
+
+    /// Whether the edge rests between two neighbours.
+    fn rests(&self, at: usize) -> bool {
+        let states = &self.path.states;
+        states.get(at + 1).is_some_and(|next| {
+            let here = &states[at];
+            next.piece == here.piece
+                && next.contacts == here.contacts
+                && next.approach.total_cmp(&here.approach).is_ne()
+                && next.zone.is_none()
+        })
+    }
+
+    /// A state with what is to be known of it.
+    fn reached(&self, at: usize, arrival: Arrival) -> Reached {
+        let state = &self.path.states[at];
+        let Scales { approach, force, contact_radius } = *self.scales;
+        let (s, held) = (state.contact_radius, state.held_stiffness);
+        // A held edge answers as the contact itself does.
+        let slopes = if self.rests(at) { Stability { approach: 1.0, force: held } } else { state.slopes };
+        let area_slope = match (self.rests(at), state.zone) {
+            (true, _) => 0.0,
+            (false, None) => TAU * s / slopes.approach,
+            (false, Some(_)) => f64::NAN,
+        };
+        let stiffness = Stiffness { contact: held, tangent: slopes.force / slopes.approach, area_slope };
+        let edges = state.contacts.concat();
+        // The axis is no edge.
+        let mut radii: Vec<f64> = edges.into_iter().filter(|r| *r > 0.0).collect();
+        if radii.is_empty() {
+            radii.push(0.0);
+        }
+        let y = [state.approach / approach, state.force / force].into_iter();
+        let y: Vec<f64> = y.chain(radii.iter().map(|r| r / contact_radius)).collect();
+        let along = [slopes.approach / approach, slopes.force / force, 1.0 / contact_radius];
+        let size = along.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let mut tangent = vec![0.0; y.len()];
+        if y.len() == along.len() && size.is_finite() {
+            tangent = along.iter().map(|x| -x / size).collect();
+        }
+        let bend = vec![0.0; y.len()];
+        Reached {
+            arrival,
+            point: Point::of(Columns::from_vec([y, tangent, bend].concat()), true),
+            state: state.state(),
+            stability: if state.rings() > 0 {
+                edges::stability(1.0, &Stiffness { tangent: self.slope(at), ..stiffness })
+            } else {
+                slopes
+            },
+            stiffness,
+            // What a path holds has been looked at.
+            admissibility: Admissibility { nearest: None, least_pressure: None, holds: true, known_to: None },
+            digits: self.digits,
+            on_path: Some(at),
+        }
+    }
+
+    /// dP/dδ between neighbours on the path: its sign alone is used.
+    fn slope(&self, at: usize) -> f64 {
+        let states = &self.path.states;
+        let here = &states[at];
+        let beside = [at + 1, at.wrapping_sub(1)].into_iter().filter_map(|at| states.get(at));
+        let mut near = beside.filter(|other| other.piece == here.piece).map(|other| {
+            let [approach, force] = [other.approach - here.approach, other.force - here.force];
+            force / approach
+        });
+        near.find(|slope| slope.is_finite()).unwrap_or(f64::NAN)
+    }
+}

@@ -1,0 +1,166 @@
+//! Walks along the path of the device, where the states lie on no single curve: an edge that rests between two works of adhesion, and
+//! adhesion with a range.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
+
+use crate::support::session::Session;
+use pulloff::explorer::log::Mark;
+use pulloff::explorer::session::{Document, Ended, Snapshot};
+use pulloff::explorer::{Command, Id, NodeKind, View};
+use pulloff::figure::{Figure, Role, Subject};
+use pulloff_engine::quasistatic::EventKind;
+
+type Set = [(&'static str, &'static str)];
+
+const RESTS: &Set = &[("material.closing_work_of_adhesion", "0.002")];
+const RESTS_AFTER_LOADING: &Set = &[
+    ("material.closing_work_of_adhesion", "0.002"),
+    ("path.begin", "touch"),
+    ("path.turn_approach", "0.05"),
+];
+const RANGE: &Set = &[("material.adhesion", "dugdale"), ("material.cohesive_strength", "1")];
+const RANGE_FROM_APART: &Set = &[
+    ("material.adhesion", "dugdale"),
+    ("material.cohesive_strength", "1"),
+    ("path.begin", "touch"),
+    ("path.turn_approach", "0.02"),
+];
+
+fn session(set: &Set) -> Session {
+    let mut session = Session::new("fig-9-cycle");
+    for (key, value) in set {
+        session.set(key, value);
+    }
+    session.does(Id::Restart);
+    session
+}
+
+/// Walked to where the bodies are apart; how many events that took.
+fn to_the_end(session: &mut Session) -> usize {
+    let mut events = 0;
+    while !session.model.history.current().unwrap().is_apart() {
+        session.does(Id::NextEvent);
+        events += 1;
+        assert!(events < 60, "{}", session.status());
+    }
+    events
+}
+
+fn resume(session: &mut Session) {
+    let bytes = Document::new(&Snapshot::of(&session.model), Ended::Running, 7).json().unwrap();
+    let (model, effects) = Document::read(&bytes).unwrap().snapshot().unwrap().resume(None);
+    session.model = model;
+    session.driver.settle(&mut session.model, effects);
+}
+
+#[test]
+fn every_event_of_the_path_is_walked_once_and_none_besides() {
+    for set in [RESTS, RESTS_AFTER_LOADING, RANGE, RANGE_FROM_APART] {
+        let mut session = session(set);
+        to_the_end(&mut session);
+        let log = session.model.log();
+        let path = session.model.path().unwrap();
+        let done = log.entries.iter().filter(|entry| entry.mark == Mark::Done && entry.number.is_some());
+        assert_eq!((done.count(), log.entries.len()), (path.events.len(), path.events.len()), "{set:?}");
+        // What was lost on the way is what the path loses: each by its own sum.
+        let (lost, all) = (log.lost().0, path.totals.dissipated.unwrap());
+        assert!((lost - all).abs() <= 1e-9 * all, "{set:?}: {lost} {all}");
+        // A walk goes one way, and says so.
+        let walk = session.model.history.path();
+        let numbers: Vec<usize> = walk.iter().map(|(_, node)| node.on_path.unwrap()).collect();
+        assert!(numbers.windows(2).all(|pair| pair[0] <= pair[1]), "{set:?}: {numbers:?}");
+        assert!(session.model.inward, "{set:?}");
+    }
+}
+
+#[test]
+fn an_edge_that_rests_answers_as_the_contact_does_until_its_g_is_that_of_opening() {
+    let mut session = session(RESTS);
+    let start = session.model.walker().unwrap();
+    let (s, state) = (start.state.contact_radius, start.state);
+    // Held, dP/dδ is 2E*s (E* = 1), and no area opens.
+    assert!((start.stiffness.tangent - 2.0 * s).abs() <= 1e-12 * s && start.stiffness.area_slope == 0.0);
+    assert!(start.stability.under(start.control));
+    session.does(Id::NextEvent);
+    let NodeKind::Jump(event) = session.kind() else { panic!("{:?}", session.kind()) };
+    assert_eq!(event.kind, EventKind::Depin);
+    let free = session.model.walker().unwrap().state;
+    assert_eq!(free.contact_radius.to_bits(), s.to_bits());
+    let slope = (free.force - state.force) / (free.approach - state.approach);
+    assert!((slope - 2.0 * s).abs() <= 1e-9 * s, "{slope} {s}");
+    assert!(session.status().contains("rested"), "{}", session.status());
+}
+
+#[test]
+fn a_walk_along_a_path_is_kept_resumed_and_replayed() {
+    for set in [RESTS_AFTER_LOADING, RANGE_FROM_APART] {
+        let mut session = session(set);
+        session.all(&[Id::NextEvent, Id::NextEvent, Id::NextEvent]);
+        session.does(Command::Steps(2));
+        let last = session.model.walker().unwrap().clone();
+        let lines = session.model.script().unwrap();
+        resume(&mut session);
+        let back = session.model.walker().unwrap();
+        assert_eq!((back.state, back.on_path), (last.state, last.on_path), "{set:?}");
+        assert_eq!(back.stability.under(back.control), last.stability.under(last.control));
+        to_the_end(&mut session);
+        let mut again = Session::new("fig-9-cycle");
+        for line in &lines {
+            again.does(pulloff::explorer::script::parse(line).unwrap().unwrap());
+        }
+        assert_eq!(again.model.walker().unwrap().state, last.state, "{lines:?}");
+    }
+}
+
+#[test]
+fn steps_wait_for_a_jump_and_the_way_is_not_turned_round() {
+    let mut session = session(RANGE);
+    while session.kind() != NodeKind::Limit {
+        session.does(Id::NextEvent);
+    }
+    let here = session.model.walker().unwrap().state;
+    session.does(Id::Step);
+    assert_eq!(session.model.walker().unwrap().state, here);
+    assert!(session.status().contains("behind the jump"), "{}", session.status());
+    session.does(Id::Reverse);
+    assert!(session.model.inward && session.status().contains("path.turn"), "{}", session.status());
+    session.does(Id::Jump);
+    assert!(session.model.walker().unwrap().state.contact_radius < here.contact_radius);
+    session.does(Id::Undo);
+    assert_eq!(session.model.walker().unwrap().state, here);
+}
+
+#[test]
+fn another_value_leaves_the_walker_at_the_control_that_is_held() {
+    let mut session = session(RANGE);
+    session.all(&[Id::NextEvent, Id::NextEvent]).does(Command::Steps(3));
+    let before = session.model.walker().unwrap().state;
+    session.set("material.cohesive_strength", "1.05");
+    let after = session.model.walker().unwrap();
+    assert_eq!(after.kind, NodeKind::Solved);
+    // The states of a path lie as densely as it is drawn.
+    assert!((after.state.approach - before.approach).abs() < 2e-3, "{before:?} {:?}", after.state);
+    assert!((after.state.contact_radius - before.contact_radius).abs() < 0.01);
+}
+
+#[test]
+fn a_zone_pulls_with_its_strength_and_is_no_further_open_than_its_range() {
+    let mut session = session(RANGE);
+    session.does(Id::NextEvent);
+    let mut figure = |view| -> Figure {
+        session.does(Command::Show(view));
+        Subject::of(&session.model).unwrap().figure(view)
+    };
+    let zone = |figure: &Figure| {
+        let line = figure.lines.iter().find(|line| line.role == Role::Zone);
+        line.unwrap_or_else(|| panic!("{figure:?}")).points.clone()
+    };
+    // p/E*, with σ₀ = E*.
+    assert!(zone(&figure(View::Pressure)).iter().all(|(_, p)| (p + 1.0).abs() < 1e-9));
+    // gap/R: from 0 at the contact to h_c = γ/σ₀ at the edge of the zone.
+    let gap = zone(&figure(View::Gap));
+    let range = 0.003_978_873_577_297_383_6;
+    assert!(gap[0].1.abs() < 1e-9 && gap.windows(2).all(|pair| pair[0].1 <= pair[1].1), "{gap:?}");
+    assert!((gap[gap.len() - 1].1 - range).abs() < 1e-6 * range, "{gap:?}");
+    assert!(figure(View::Energy).missing.is_some() && figure(View::Stability).missing.is_some());
+}
