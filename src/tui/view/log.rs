@@ -2,7 +2,7 @@
 
 use super::parts::{is_selected, panel};
 use crate::explorer::log::{Entry, Log, Mark};
-use crate::explorer::{Axes, Inadmissible, Model, Panel, View};
+use crate::explorer::{Axes, Inadmissible, Model, Panel};
 use crate::figure::{Axis, Scale};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
@@ -225,8 +225,7 @@ const COLUMNS: [(u8, bool); 9] = [
 fn table(model: &Model, theme: Theme, entries: &[Entry], named: usize, room: usize) -> Vec<String> {
     let Some(curve) = model.curve.as_deref() else { return Vec::new() };
     let scale = Scale::of(curve, model.axes);
-    let [length, force] = scale.axes(View::ForceApproach);
-    let [radius, _] = scale.axes(View::ForceRadius);
+    let [length, force, radius] = scale.state_axes();
     let is_held = model.control().is_some_and(|control| control == Control::Force);
     let rows: Vec<[String; 9]> =
         entries.iter().map(|entry| cells(entry, scale, &model.preset.units, theme, is_held)).collect();

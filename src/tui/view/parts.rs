@@ -4,6 +4,7 @@ use crate::explorer::{Id, Panel};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
+use pulloff_engine::problem::Control;
 use ratatui::text::Span;
 use ratatui::widgets::Block;
 
@@ -25,6 +26,15 @@ pub(super) fn fitted(keymap: &Keymap, text: &str, more: &str, room: usize) -> St
     let rest = format!("{rest} {}: all", keymap.label(Id::Help));
     let kept: String = text.chars().take(room.saturating_sub(rest.chars().count())).collect();
     format!("{}{rest}", kept.trim_end())
+}
+
+/// What is held, as a symbol.
+pub(super) fn symbol(control: Control) -> &'static str {
+    match control {
+        Control::Displacement => "δ",
+        Control::Force => "P",
+        Control::Stiffness(_) => "k",
+    }
 }
 
 /// `key value` with the key dim.
