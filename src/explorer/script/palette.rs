@@ -66,7 +66,7 @@ fn commands(first: &[Id], model: &Model) -> Vec<Entry> {
     of_pane.chain(others).map(|row| Entry::command(row, model)).collect()
 }
 
-/// Whatever has all words of `text`.
+/// Whatever has all words of `text`, or else most of them.
 fn anything(text: &str, model: &Model, files: Files<'_>) -> Vec<Entry> {
     let wanted: Vec<&str> = text.split_whitespace().collect();
     let known =
@@ -77,12 +77,21 @@ fn anything(text: &str, model: &Model, files: Files<'_>) -> Vec<Entry> {
         let offers = (row.takes.offers)(&Typing { model, words: &[], word: last, files });
         offers.into_iter().map(move |offer| Entry::offer(&before, &offer))
     });
-    let all = ROWS.iter().map(|row| Entry::command(row, model)).chain(offered).collect();
     let mut found = of_key(&wanted, model);
-    found.extend(ranked(all, |entry| {
-        let ranks = wanted.iter().map(|word| rank(&entry.line, &entry.says, &known(&entry.line), word));
-        ranks.collect::<Option<Vec<u8>>>()?.into_iter().max()
-    }));
+    let all: Vec<Entry> = ROWS.iter().map(|row| Entry::command(row, model)).chain(offered).collect();
+    let all: Vec<Entry> =
+        all.into_iter().filter(|entry| found.iter().all(|key| key.line != entry.line)).collect();
+    // Where nothing has all words, whatever has most of them.
+    let most = if found.is_empty() { wanted.len() } else { 1 };
+    let rest = (0..most).map(|missing| {
+        ranked(all.clone(), |entry| {
+            let ranks =
+                wanted.iter().filter_map(|word| rank(&entry.line, &entry.says, &known(&entry.line), word));
+            let ranks: Vec<u8> = ranks.collect();
+            ranks.iter().max().copied().filter(|_| ranks.len() + missing >= wanted.len())
+        })
+    });
+    found.extend(rest.into_iter().find(|rest| !rest.is_empty()).unwrap_or_default());
     found
 }
 
@@ -174,6 +183,7 @@ mod tests {
             ("spring", "control stiffness=", false),
             ("dead load", "control force", true),
             ("half step", "halve-step", true),
+            ("own formula", "set gap.formula=", false),
             ("set gap.am", "set gap.amplitude=", false),
             ("set gap.amplitude=1 path.contr", "set gap.amplitude=1 path.control=", false),
             ("set gap.shape=po", "set gap.shape=power-law", true),
