@@ -59,6 +59,13 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
     vec![Effect::Walk(Box::new(Request { id, action, curve, from, at, control, inward, length, pace: None }))]
 }
 
+/// A step by a key, held since so many; at a limit point or a touch it has to be pressed again.
+pub(super) fn step(model: &mut Model, held: usize) -> Vec<Effect> {
+    let stands = model.walker().zip(model.control()).map(|(node, control)| node.at(control));
+    let is_pending = stands.is_some_and(|at| at != At::Nothing);
+    if held > 0 && is_pending { Vec::new() } else { walk(model, Action::Steps(1)) }
+}
+
 /// On to the next event of the path: what is pending happens, and where the path ends outward it turns round.
 pub(in crate::explorer) fn next_event(model: &mut Model) -> Vec<Effect> {
     if model.can_jump() {
