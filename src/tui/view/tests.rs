@@ -401,7 +401,16 @@ fn the_ring_elements_lie_over_the_exact_curve_and_go_again() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("#");
     let text = screen.text(120, 40);
-    assert!(text.contains("basis rings") && text.contains("now   pin 1 change"), "{text}");
+    assert!(text.contains("1 rings 200: A ") && text.contains("now   pin 1 change"), "{text}");
+    let said = " pin 1, of 200 ring elements and exact: largest pull off by ";
+    assert!(text.contains(said) && text.contains(" Newton iterations"), "{text}");
+    // On the chart where there is no Result, whatever is told meanwhile.
+    screen.keys("]");
+    let small = screen.text(80, 24);
+    assert!(
+        small.contains("1 rings 200: A ") && small.contains(" Newton") && !small.contains(said),
+        "{small}"
+    );
     let pin = &screen.app.model.pins.all()[0];
     let [rings, exact] = [&pin.curve, screen.app.model.curve.as_ref().unwrap()]
         .map(|curve| curve.report.as_ref().unwrap().totals.largest_pull.as_ref().unwrap().force);
@@ -411,7 +420,10 @@ fn the_ring_elements_lie_over_the_exact_curve_and_go_again() {
     assert!(screen.app.model.pins.is_empty());
     // Beside the rings it is the exact solution.
     screen.keys(":set basis.kind=rings\r#");
-    assert!(screen.text(120, 40).contains("basis exact"), "{}", screen.text(120, 40));
+    assert!(screen.text(120, 40).contains("1 exact: A "), "{}", screen.text(120, 40));
+    // Of other values it is another problem.
+    screen.keys("\u{1b}>");
+    assert!(!screen.text(120, 40).contains("1 exact: A "), "{}", screen.text(120, 40));
 }
 
 #[test]
