@@ -427,6 +427,31 @@ fn the_ring_elements_lie_over_the_exact_curve_and_go_again() {
 }
 
 #[test]
+fn a_log_of_many_events_says_how_many_are_left_out_and_keeps_the_current_one() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":open wavy-sphere gap.wavelength=0.02 gap.amplitude=0.001\r");
+    let log = |screen: &Screen| -> Vec<String> {
+        let text = screen.text(120, 40);
+        let lines = text.lines().skip_while(|line| !line.contains("Log ✓ done")).skip(1);
+        lines.take_while(|line| line.starts_with('│')).map(str::to_owned).collect()
+    };
+    let lines = log(&screen);
+    assert!(lines.len() == 9 && lines[0].contains("·1 ") && lines[8].ends_with("+7│"), "{lines:?}");
+    screen.keys(&"n".repeat(26));
+    let lines = log(&screen);
+    let here = lines.iter().position(|line| line.contains('@')).unwrap_or(0);
+    assert!(lines[0].contains('+') && here > 0, "{}", screen.text(120, 40));
+    // From the other end of the list too.
+    for key in [KeyCode::PageUp, KeyCode::PageUp, KeyCode::End] {
+        screen.app.model.panel = Panel::Log;
+        screen.press(key);
+        let lines = log(&screen);
+        assert!(lines.iter().any(|line| line.contains('@')), "{lines:?}");
+        assert!(lines.iter().any(|line| line.starts_with("│>")), "{lines:?}");
+    }
+}
+
+#[test]
 fn characters_tell_stable_and_unstable_parts_apart() {
     let mut screen = Screen::new("wavy-sphere");
     screen.app.theme = PLAIN;
