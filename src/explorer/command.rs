@@ -74,6 +74,8 @@ pub enum Command {
     /// A command without an argument.
     Plain(Id),
     Steps(usize),
+    /// A step by a key that may be held down: undo takes it back with so many before it.
+    HeldStep(usize),
     /// A run that ends after so many states, if it meets nothing before.
     RunOf(usize),
     /// The longest step by hand, in the scaled unknowns.
@@ -197,7 +199,7 @@ impl Command {
     pub fn id(&self) -> Id {
         match self {
             Self::Plain(id) | Self::Travel { id, .. } => *id,
-            Self::Steps(_) => Id::Step,
+            Self::Steps(_) | Self::HeldStep(_) => Id::Step,
             Self::RunOf(_) => Id::Run,
             Self::StepLength(_) => Id::StepLength,
             Self::SelectEvent(_) | Self::MoveTo(_) => Id::MoveTo,

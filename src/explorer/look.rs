@@ -168,7 +168,7 @@ pub(super) fn in_rings(model: &mut Model) {
     match model.pins.want(preset) {
         Ok(number) => {
             let text = if is_exact { "in ring elements" } else { "exactly" };
-            model.tell(Level::Info, format!("the same problem {text} as pin {number}; Result has both"));
+            model.tell(Level::Info, format!("the same problem {text} as pin {number}"));
         }
         Err(reason) => model.tell(Level::Error, reason),
     }

@@ -411,6 +411,7 @@ impl Model {
             inward: self.inward,
             length: self.length,
             settled: self.is_settled() || self.is_tried,
+            is_step: false,
             shelved: None,
         }
     }

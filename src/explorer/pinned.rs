@@ -5,6 +5,7 @@ use super::command::Id;
 use super::curve::CurveData;
 use super::effect::Effect;
 use super::model::{Level, Model};
+use super::pins::Elements;
 use super::progress::Staged;
 use pulloff_engine::preset::Preset;
 use std::sync::Arc;
@@ -14,31 +15,49 @@ use std::sync::Arc;
 pub struct PinCurve {
     pub number: usize,
     pub curve: Option<Arc<CurveData>>,
+    pub elements: Option<Elements>,
 }
 
 impl Background for PinCurve {
-    type Key = (usize, Preset);
+    /// Its number, its preset, and the curve on the screen beside it.
+    type Key = (usize, Preset, Option<Arc<CurveData>>);
     const NAME: &'static str = "pins";
     const ONLY_NEWEST: bool = true;
 
     fn wanted(model: &Model) -> Want<Self::Key> {
-        model.pins.awaited().first().cloned().map_or(Want::Not, Want::Now)
+        match model.pins.awaited().first().cloned() {
+            None => Want::Not,
+            // In a session that is resumed it is still to come.
+            Some(_) if model.curve.is_none() && model.is_computing() => Want::Later,
+            Some((number, preset)) => Want::Now((number, preset, model.curve.clone())),
+        }
     }
 
-    fn is_same(asked: &Self::Key, wanted: &Self::Key) -> bool {
-        asked == wanted
+    fn is_same((number, preset, _): &Self::Key, wanted: &Self::Key) -> bool {
+        (*number, preset) == (wanted.0, &wanted.1)
     }
 
-    fn compute((number, preset): &Self::Key, progress: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
-        let curve = CurveData::compute(preset, &Staged::new(&|_| progress.stop()));
+    fn compute((number, preset, beside): &Self::Key, progress: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+        let curve = CurveData::compute(preset, &Staged::new(&|_| progress.stop())).ok().map(Arc::new);
+        let elements =
+            curve.as_ref().zip(beside.as_ref()).and_then(|(curve, other)| Elements::of(curve, other));
         // Given up: another pin may have this number now.
-        (!progress.stop()).then(|| Self { number: *number, curve: curve.ok().map(Arc::new) })
+        (!progress.stop()).then(|| Self { number: *number, curve, elements })
     }
 
     fn came(model: &mut Model, found: Arc<Self>) -> Vec<Effect> {
-        let Self { number, curve } = &*found;
-        if model.pins.came(*number, curve.clone()) && curve.is_none() {
-            model.tell(Level::Error, format!("there is no curve for pin {number}"));
+        let Self { number, curve, elements } = &*found;
+        if !model.pins.came(*number, curve.clone().map(|curve| (curve, *elements))) {
+            return Vec::new();
+        }
+        match elements {
+            _ if curve.is_none() => model.tell(Level::Error, format!("there is no curve for pin {number}")),
+            Some(elements) => {
+                let which = format!("pin {number}, of {} ring elements and exact", elements.count);
+                let said = elements.said(&which, ["largest pull off by", "Newton iterations"]);
+                model.tell(Level::Info, said);
+            }
+            None => {}
         }
         Vec::new()
     }

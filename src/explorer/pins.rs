@@ -4,8 +4,12 @@
 
 use super::command::Id;
 use super::curve::CurveData;
+use pulloff_engine::case::Case;
+use pulloff_engine::preset::model::BasisSpec;
 use pulloff_engine::preset::{Preset, Row, Value};
-use pulloff_engine::report::number::short;
+use pulloff_engine::problem::Control;
+use pulloff_engine::report::number::{difference, short};
+use pulloff_engine::ritz::{NewtonSettings, solve};
 use pulloff_engine::units::UnitSystem;
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -23,6 +27,44 @@ pub struct Pin {
     pub number: usize,
     /// The curve, with the preset it was computed from.
     pub curve: Arc<CurveData>,
+    /// Where it or the curve beside it is of ring elements and the other is exact: how good they are.
+    pub elements: Option<Elements>,
+}
+
+/// The ring elements of the paper beside the exact solution of the same problem.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Elements {
+    /// N.
+    pub count: usize,
+    /// The largest pull over the exact one, less 1.
+    pub off: f64,
+    /// The iterations by which Newton and Raphson get from the exact contact radius of that state to theirs; `None` where they do not.
+    pub iterations: Option<usize>,
+}
+
+impl Elements {
+    /// Those of two curves of one problem, in ring elements and exact in either order.
+    pub fn of(a: &CurveData, b: &CurveData) -> Option<Self> {
+        let basis = |curve: &CurveData| curve.setting.preset.basis;
+        let (rings, exact) = if basis(a) == BasisSpec::Exact { (b, a) } else { (a, b) };
+        let BasisSpec::Rings { rings: count, .. } = basis(rings) else { return None };
+        if (Preset { basis: BasisSpec::Exact, ..rings.setting.preset.clone() }) != exact.setting.preset {
+            return None;
+        }
+        let [own, at] = [rings, exact].map(|curve| curve.report.as_ref()?.totals.largest_pull.as_ref());
+        let (own, at) = (own?, at?);
+        let Case { basis, reduced, .. } = &rings.case;
+        let [approach, s] = [own.approach, at.contact_radius].map(|x| x / reduced.units.length);
+        let found = solve(&**basis, reduced, Control::Displacement, approach, s, NewtonSettings::default());
+        let iterations = found.ok().map(|found| found.rounds);
+        Some(Self { count, off: own.force / at.force - 1.0, iterations })
+    }
+
+    /// In words: `which` of the two, and how off and iterations are called.
+    pub fn said(&self, which: &str, [off, iterations]: [&str; 2]) -> String {
+        let found = self.iterations.map_or(String::new(), |count| format!(", {count} {iterations}"));
+        format!("{which}: {off} {}{found}", difference(self.off))
+    }
 }
 
 impl Pin {
@@ -31,9 +73,16 @@ impl Pin {
         &self.curve.setting.preset
     }
 
-    /// What differs from `now`, as labels and values.
+    /// What differs from `now`, as labels and values; of ring elements how good they are.
     pub fn name(&self, now: &Preset) -> String {
-        name(self.preset(), now)
+        let elements = self.elements.filter(|_| self.preset().basis != now.basis);
+        let same = || Preset { basis: now.basis, title: now.title.clone(), ..self.preset().clone() } == *now;
+        let Some(elements) = elements.filter(|_| same()) else { return name(self.preset(), now) };
+        let which = match self.preset().basis {
+            BasisSpec::Rings { rings, .. } => format!("rings {rings}"),
+            BasisSpec::Exact => "exact".to_owned(),
+        };
+        elements.said(&which, ["A", "Newton"])
     }
 }
 
@@ -57,11 +106,11 @@ impl Pins {
     }
 
     /// The curve of an awaited pin has come; without one it is given up. False where it is no longer awaited.
-    pub fn came(&mut self, number: usize, curve: Option<Arc<CurveData>>) -> bool {
+    pub fn came(&mut self, number: usize, curve: Option<(Arc<CurveData>, Option<Elements>)>) -> bool {
         let Some(at) = self.awaited.iter().position(|(awaited, _)| *awaited == number) else { return false };
         self.awaited.remove(at);
-        if let Some(curve) = curve {
-            self.shown.push(Pin { number, curve });
+        if let Some((curve, elements)) = curve {
+            self.shown.push(Pin { number, curve, elements });
             self.shown.sort_by_key(|pin| pin.number);
         }
         true
@@ -92,7 +141,7 @@ impl Pins {
             return Err(format!("this curve is pinned already, as {}", pin.number));
         }
         let number = self.free()?;
-        self.shown.push(Pin { number, curve: Arc::clone(curve) });
+        self.shown.push(Pin { number, curve: Arc::clone(curve), elements: None });
         self.shown.sort_by_key(|pin| pin.number);
         Ok(number)
     }

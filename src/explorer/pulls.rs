@@ -78,7 +78,8 @@ impl PullData {
         self.report.as_ref().ok()?.runs.first()
     }
 
-    /// Its numbers as a sentence; `jumps` are those of the quasi-static path, the last contact among them.
+    /// Its numbers as a sentence, the largest pull first, which is to fit into 80 columns; `jumps` are those of the quasi-static
+    /// path, the last contact among them.
     fn sentence(&self, jumps: usize) -> Option<String> {
         let (run, report) = (self.run()?, self.report.as_ref().ok()?);
         let units = &self.preset.units;
@@ -90,23 +91,22 @@ impl PullData {
         let over = |x: f64| format!("{} v₀", three(x / speed));
         let shown = |rate: f64| with_unit(units, quantity, rate, false, three);
         let rate = match run.rate {
-            None => "As path.steps say".to_owned(),
-            Some(rate) if of_force => format!("At {}", shown(rate)),
-            Some(rate) if *units == UnitSystem::Reduced => format!("At {}", over(rate)),
-            Some(rate) => format!("At {} ({})", shown(rate), over(rate)),
+            None => "as path.steps say".to_owned(),
+            Some(rate) if of_force => format!("at {}", shown(rate)),
+            Some(rate) if *units == UnitSystem::Reduced => format!("at {}", over(rate)),
+            Some(rate) => format!("at {} ({})", shown(rate), over(rate)),
         };
         let peak = report.head.problem.critical_force.filter(|critical| *critical > 0.0).map_or_else(
             || with_unit(units, Quantity::Force, -run.peak.force, false, three),
             |critical| format!("{} P_c", three(-run.peak.force / critical)),
         );
         let smooth = self.smooth.filter(|force| *force < 0.0);
-        let smooth =
-            smooth.map(|force| format!(", {} times the smooth sphere's", three(run.peak.force / force)));
+        let smooth = smooth.map(|force| format!(", {} × smooth", three(run.peak.force / force)));
         let peaks = run.tension_peaks.len();
-        let seen = (!of_force && (1..=jumps).contains(&peaks))
-            .then(|| format!("; {peaks} of {jumps} jumps leave a peak"));
+        let seen =
+            (!of_force && (1..=jumps).contains(&peaks)).then(|| format!("; {peaks}/{jumps} jumps peak"));
         Some(format!(
-            "{rate}: largest pull {peak}{}{}; the edge reaches {}",
+            "Largest pull {peak} {rate}{}{}; edge to {}",
             smooth.unwrap_or_default(),
             seen.unwrap_or_default(),
             over(run.top_edge_speed)

@@ -49,13 +49,22 @@ pub fn hint(model: &Model) -> String {
     }
 }
 
+/// A reduced length of a state, in the user's units.
+fn length(node: &Node, length: f64) -> String {
+    let length = length * node.setting.units().length;
+    with_unit(&node.setting.preset.units, Quantity::Length, length, false, |r| significant(r, 4))
+}
+
+/// A reduced loss.
+fn energy(node: &Node, lost: f64) -> String {
+    let lost = lost * node.setting.units().energy;
+    with_unit(&node.setting.preset.units, Quantity::Energy, lost, false, loss)
+}
+
 /// Why a state cannot be, in words: the crest that would touch, or where the disc would have to pull.
 fn fault(node: &Node) -> Option<String> {
     let (radius, crest) = node.fault_radius()?;
-    let length = node.setting.units().length;
-    let radius = with_unit(&node.setting.preset.units, Quantity::Length, radius * length, false, |r| {
-        significant(r, 4)
-    });
+    let radius = length(node, radius);
     Some(match crest {
         Some(Some(number)) => format!("crest {number} at r {radius} would touch; {}", real_path()),
         Some(None) => format!("the crest at r {radius} would touch; {}", real_path()),
@@ -65,7 +74,7 @@ fn fault(node: &Node) -> Option<String> {
 
 /// What happens instead of a state that one disc cannot be in.
 fn real_path() -> String {
-    "the real path has rings: path.begin = touch leads along it, as pulloff cycle does".to_owned()
+    "the real path has rings: begin = touch leads along it, as pulloff cycle does".to_owned()
 }
 
 fn next(model: &Model) -> String {
@@ -84,7 +93,8 @@ fn next(model: &Model) -> String {
             );
         }
         let of = wanted.filter(|count| *count > 1).map_or_else(String::new, |count| format!(" of {count}"));
-        return format!("walking, {made}{of} states; {} stops", Id::Cancel.named());
+        let states = if made == 1 && of.is_empty() { "state" } else { "states" };
+        return format!("walking, {made}{of} {states}; {} stops", Id::Cancel.named());
     }
     if let NodeKind::Stale(reason) = &node.kind {
         return format!("not solved: {reason}; {} starts again", Id::Restart.named());
@@ -164,13 +174,7 @@ fn asks_of_pull(model: &Model) -> bool {
 /// What a jump came to, or what is pending where a crest touches.
 fn happened(model: &Model, node: &Node) -> Option<String> {
     if let NodeKind::Jump(event) = &node.kind {
-        let units = node.setting.units();
-        let lost = event.dissipated.map(|lost| {
-            format!(
-                ", lost {}",
-                with_unit(&node.setting.preset.units, Quantity::Energy, lost * units.energy, false, loss)
-            )
-        });
+        let lost = event.dissipated.map(|lost| format!(", lost {}", energy(node, lost)));
         let next = Id::NextEvent.named();
         return Some(match event.kind {
             EventKind::Turn => format!("Here the control turns round: {next} goes on down"),
@@ -192,17 +196,11 @@ fn happened(model: &Model, node: &Node) -> Option<String> {
         });
     }
     if let NodeKind::Touch(radius) = node.kind {
-        let radius = with_unit(
-            &node.setting.preset.units,
-            Quantity::Length,
-            radius * node.setting.units().length,
-            false,
-            |r| significant(r, 4),
-        );
+        let radius = length(node, radius);
         let [next, step] = [Id::NextEvent, Id::Step].map(Id::named);
         let name = event_here(model).map_or_else(String::new, |name| format!("{name}: "));
         return Some(format!(
-            "{name}a crest touches at r {radius}: {next} lets it run to a ring or a larger disc, {step} goes on without it, inadmissible"
+            "{name}a crest touches at r {radius}: {next} takes it in, {step} goes on without it, inadmissible"
         ));
     }
     None
@@ -221,31 +219,14 @@ fn limit_hint(model: &Model, node: &Node) -> String {
     let Some(ahead) = node.ahead else {
         return format!("{name}: {next} or {jump} lets the edge run, {step} goes on along the curve");
     };
-    let reduced = &node.setting.reduced;
-    let wave = ahead.after.and_then(|after| wave_index(after.contact_radius, reduced.gap.wavelength()));
-    let after = ahead.after.map(|after| after.in_units(&reduced.units));
-    let lands = match (after, wave) {
+    let wavelength = node.setting.reduced.gap.wavelength();
+    let wave = ahead.after.and_then(|after| wave_index(after.contact_radius, wavelength));
+    let lands = match (ahead.after, wave) {
         (None, _) => "lets the bodies come apart".to_owned(),
         (Some(_), Some(wave)) => format!("lets the edge snap to crest {wave}"),
-        (Some(after), None) => format!(
-            "lets the edge snap to s {}",
-            with_unit(&node.setting.preset.units, Quantity::Length, after.contact_radius, false, |s| {
-                significant(s, 4)
-            })
-        ),
+        (Some(after), None) => format!("lets the edge snap to s {}", length(node, after.contact_radius)),
     };
-    let lost = ahead.dissipated.map(|lost| {
-        format!(
-            " (loses {})",
-            with_unit(
-                &node.setting.preset.units,
-                Quantity::Energy,
-                lost * node.setting.units().energy,
-                false,
-                loss
-            )
-        )
-    });
+    let lost = ahead.dissipated.map(|lost| format!(" (loses {})", energy(node, lost)));
     // The edge runs over the unstable part: walking the same way leads onto it.
     let runs_inward = ahead.after.is_none_or(|after| after.contact_radius < node.state.contact_radius);
     let part = if runs_inward == model.inward { "unstable" } else { "stable" };

@@ -34,6 +34,8 @@ pub struct Place {
     pub length: f64,
     /// Whether the walker had been tried on these values.
     pub settled: bool,
+    /// Whether a single step led on from it, by which a key held down goes on.
+    pub is_step: bool,
     /// The session it belongs to, where that is another than the one after it.
     pub shelved: Option<Arc<Shelved>>,
 }
@@ -99,6 +101,16 @@ impl Undo {
     /// A walk begins: it is a command that changed something once it has made a state.
     pub(super) fn begins(&mut self, before: Place) {
         self.begun = Some(Arc::new(before));
+    }
+
+    /// A step goes on with so many before it, which become one; false where none was before.
+    pub(super) fn holds(&mut self, count: usize) -> bool {
+        let steps = self.past.iter().rev().take(count).take_while(|place| place.is_step).count();
+        self.past.truncate(self.past.len() + 1 - steps.max(1));
+        if steps > 0 {
+            (self.begun, self.future) = (None, Vec::new());
+        }
+        steps > 0
     }
 
     /// A walk made a state.

@@ -39,7 +39,7 @@ use selection::pick;
 use travel::{by_states, go_to, go_to_state, travel};
 use turns::{enqueue, gesture, is_blocked, recorded, waits};
 use values::{assign, set, try_out, turn, untry};
-use walk::{run, walk, walked};
+use walk::{run, step, walk, walked};
 
 /// Begins a session on a preset: its curve is asked for.
 pub fn open(loaded: Loaded) -> (Model, Vec<Effect>) {
@@ -112,6 +112,7 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::Plain(Id::Edit) => return select(model),
         Command::Plain(id) => return row_of(id).does(model),
         Command::Steps(count) => return walk(model, Action::Steps(count)),
+        Command::HeldStep(before) => return step(model, before),
         Command::RunOf(count) => return run(model, Action::Run(count)),
         Command::StepLength(length) => model.length = length.clamp(*LENGTHS.start(), *LENGTHS.end()),
         Command::SelectEvent(number) => return select_event(model, number),

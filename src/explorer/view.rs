@@ -5,6 +5,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use View::{
+    Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, ForcePosition, ForceRadius, ForceTime,
+    Gap, Map, Pressure, RadiusApproach, Residuals, Speeds, Stability, Study, Unloading, Walk,
+};
+
 /// The panels that can be selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -201,11 +206,6 @@ impl View {
 
     /// What is shown beside it where there is room, the most telling first.
     pub fn companions(self) -> [Self; 3] {
-        use View::{
-            Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, ForcePosition, ForceRadius,
-            ForceTime, Gap, Map, Pressure, RadiusApproach, Residuals, Speeds, Stability, Study, Unloading,
-            Walk,
-        };
         match self {
             ForceApproach | ForcePosition => [ForceRadius, Contact, Energy],
             ForceRadius => [ForceApproach, Contact, Energy],
@@ -262,11 +262,6 @@ impl Home {
 
     /// Its views, the main one first.
     pub fn views(self) -> &'static [View] {
-        use View::{
-            Contact, ContactMap, Cycle, Differences, Energy, ForceApproach, ForcePosition, ForceRadius,
-            ForceTime, Gap, Map, Pressure, RadiusApproach, Residuals, Speeds, Stability, Study, Unloading,
-            Walk,
-        };
         match self {
             Self::Curve => &[
                 ForceApproach,

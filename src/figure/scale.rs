@@ -95,6 +95,11 @@ impl<'a> Scale<'a> {
         }
     }
 
+    /// The axes of δ, P and s.
+    pub fn state_axes(self) -> [Axis; 3] {
+        [self.length_axis("δ"), self.force_axis(), self.radius_axis("s")]
+    }
+
     /// The axis of a radius of this name.
     pub fn radius_axis(self, name: &str) -> Axis {
         match self.wave {

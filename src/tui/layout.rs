@@ -269,6 +269,9 @@ mod tests {
             let inside = [regions.problem, regions.here, regions.result, regions.log];
             let inside = inside.map(|pane| pane.map(|pane| pane.height - 2));
             assert_eq!(inside, lines, "{size}");
+            // However many events there are.
+            let many = super::regions(Rect::new(0, 0, width, height), wants(99)).unwrap();
+            assert!(many.log.is_none_or(|log| log.height * 2 < height), "{size}");
             // Tab goes to what is drawn, and where only one is, to each.
             let alone = is_alone(Rect::new(0, 0, width, height), false);
             let panels = regions.panels(alone);

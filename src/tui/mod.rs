@@ -5,6 +5,7 @@
 //! | [`terminal`] | taking and giving back the terminal, signals, hang-ups, pacing |
 //! | [`keymap`] | command id → keys |
 //! | [`app`] | keys and pastes → commands; replies → model; what lies over the screen |
+//! | `held` | which presses come of a key held down |
 //! | `slow_notice` | notices for slow jobs |
 //! | [`overlay`] | prompts, choices, questions and the help, as data |
 //! | [`layout`] | which region goes where at which size |
@@ -20,6 +21,7 @@
 pub mod app;
 pub mod chart;
 pub mod copy;
+mod held;
 pub mod keymap;
 pub mod layout;
 pub mod look;
@@ -44,6 +46,7 @@ use crate::explorer::{Effect, Reply, Workers};
 use crate::fault;
 use crate::store::{Loaded, Store, temporary};
 use app::App;
+use held::Held as HeldKey;
 use keymap::Keymap;
 use look::Look;
 use pulloff_engine::text::sanitize;
@@ -183,7 +186,7 @@ fn converse<S: Sink>(
     submit: &dyn Fn(Vec<Effect>),
     keep: &mut dyn FnMut(&App),
 ) {
-    let mut notice = SlowNotice::default();
+    let (mut notice, mut held) = (SlowNotice::default(), HeldKey::default());
     let mut dirty = true;
     // Whether the first curve is still to come; its frame does not wait for the pace of a slow line.
     let mut awaits_curve = true;
@@ -203,6 +206,7 @@ fn converse<S: Sink>(
                 }
                 Incoming::Key(key) => {
                     fault::point(fault::UI);
+                    app.held = held.before(key, Instant::now());
                     app.key(key)
                 }
                 Incoming::Mouse(mouse) => app.mouse(mouse),

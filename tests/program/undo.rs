@@ -6,6 +6,7 @@ use crate::support::session::Session;
 use fastrand::Rng;
 use pulloff::explorer::export::ExportKind;
 use pulloff::explorer::script::{self, Permission, play};
+use pulloff::explorer::undo::Place;
 use pulloff::explorer::{Command, Effect, Id, Model, NodeKind, Panel, open, update};
 use pulloff::store::Store;
 use pulloff_engine::preset::{Preset, write};
@@ -98,6 +99,12 @@ fn back_and_forth(session: &mut Session) -> usize {
     count
 }
 
+/// The newest place of undo, and how many there are.
+fn newest(session: &Session) -> (Option<*const Place>, usize) {
+    let past = session.model.undo.past();
+    (past.last().map(Arc::as_ptr), past.len())
+}
+
 #[test]
 fn two_hundred_commands_typed_slowly_come_back_bit_for_bit() {
     for seed in 0..2 {
@@ -108,11 +115,16 @@ fn two_hundred_commands_typed_slowly_come_back_bit_for_bit() {
         let mut before = Vec::new();
         for _ in 0..200 {
             let last = told(&session);
-            let newest = session.model.undo.past().last().map(Arc::as_ptr);
-            session.does(any_command(&mut rng));
-            // What a turn goes on with is a command already.
-            let is_new = session.model.undo.past().last().map(Arc::as_ptr) != newest;
-            if told(&session) != last && is_new {
+            let (newest, count) = self::newest(&session);
+            session.does(match rng.u8(..6) {
+                0 => Command::HeldStep(rng.usize(1..3)),
+                _ => any_command(&mut rng),
+            });
+            // What a turn goes on with is a command already; steps of a key held become one.
+            let (now, left) = self::newest(&session);
+            if left < count {
+                before.truncate(before.len() + left - count);
+            } else if told(&session) != last && now != newest {
                 before.push(last);
             }
         }
@@ -196,6 +208,41 @@ fn each_value_is_a_command_of_its_own_and_redo_returns_each() {
     assert_eq!(told(&session), start);
     session.does(Id::Redo);
     assert_eq!(told(&session), turned);
+}
+
+#[test]
+fn steps_of_a_key_held_are_taken_back_together_and_end_at_a_limit_point() {
+    let mut session = Session::new("wavy-sphere");
+    let start = told(&session);
+    session.does(Command::Steps(1));
+    let first = told(&session);
+    // Pressed again, and held: the second repeat says so.
+    for command in [Command::Steps(1), Command::Steps(1), Command::HeldStep(2), Command::HeldStep(1)] {
+        session.does(command);
+    }
+    let end = told(&session);
+    session.does(Id::Undo);
+    assert_eq!(told(&session), first);
+    session.does(Id::Redo);
+    assert_eq!(told(&session), end);
+    session.does(Id::Undo).does(Id::Undo);
+    assert_eq!(told(&session), start);
+    // In a burst too.
+    burst(&mut session, &[Command::Steps(1), Command::HeldStep(1), Command::HeldStep(1)]);
+    assert_eq!(session.model.walker().unwrap().step, 3);
+    for _ in 0..40 {
+        session.does(Command::HeldStep(1));
+    }
+    assert_eq!(session.kind(), NodeKind::Limit);
+    session.does(Command::Steps(1));
+    assert_eq!(session.kind(), NodeKind::Step);
+    session.does(Id::Undo);
+    assert_eq!(session.kind(), NodeKind::Limit);
+    session.does(Id::Undo);
+    assert_eq!(told(&session), start);
+    // What came between is not joined.
+    session.does(Command::Steps(1)).does(Id::Halve).does(Command::HeldStep(2)).does(Id::Undo);
+    assert!(session.model.length < 0.02 && session.model.walker().unwrap().step == 1);
 }
 
 #[test]

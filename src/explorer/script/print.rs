@@ -41,7 +41,8 @@ pub fn line(command: &Command) -> Option<String> {
             let view = if view.is_empty() { String::new() } else { format!(" {view}") };
             format!(" {} {}{view}{}", picture.name(), quoted(path)?, replacing(*replace))
         }
-        Command::Set { .. }
+        Command::HeldStep(_)
+        | Command::Set { .. }
         | Command::Try { .. }
         | Command::TakeBack
         | Command::Turn { .. }

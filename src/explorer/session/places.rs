@@ -61,6 +61,7 @@ impl Places {
                 inward: saved.inward,
                 length: saved.length.0,
                 settled: saved.settled,
+                is_step: false,
                 shelved: None,
             })
         };

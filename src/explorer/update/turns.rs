@@ -5,14 +5,18 @@ use crate::explorer::effect::Effect;
 use crate::explorer::job::Job;
 use crate::explorer::model::{Awaits, Model};
 use crate::explorer::table::{Waits, is_available, row_of, why_unavailable};
+use crate::explorer::undo::Place;
 use pulloff_engine::preset::Key;
 
 /// Commands that may wait; more key presses than these are a held key.
 const QUEUE: usize = 1000;
 
+/// What turns the selected value.
+const TURNS: [Id; 6] = [Id::FineLess, Id::FineMore, Id::Less, Id::More, Id::MuchLess, Id::MuchMore];
+
 /// What a command waits for.
 pub(super) fn waits(command: &Command) -> Waits {
-    let is_control = |key: &str| key == "path.control";
+    let is_control = |key: &str| matches!(key, "path.control" | "control");
     match command {
         // Another control holds the force or approach that the values before it led to.
         Command::Set { key, .. } | Command::Turn { key, .. } if is_control(key) => Waits::Curve,
@@ -39,9 +43,7 @@ pub(super) fn is_blocked(model: &Model, command: &Command) -> bool {
 pub(super) fn enqueue(model: &mut Model, command: Command) -> Vec<Effect> {
     let command = match command {
         // A value is turned when its key is pressed: another may be selected when its turn comes.
-        Command::Plain(
-            id @ (Id::FineLess | Id::FineMore | Id::Less | Id::More | Id::MuchLess | Id::MuchMore),
-        ) => {
+        Command::Plain(id) if TURNS.contains(&id) => {
             if !is_available(model, id) {
                 return model.refuse(why_unavailable(model, id));
             }
@@ -58,21 +60,31 @@ pub(super) fn enqueue(model: &mut Model, command: Command) -> Vec<Effect> {
     Vec::new()
 }
 
-/// The value that a command turns: turns of one value that follow each other are taken back together.
-pub(super) fn gesture(model: &Model, command: &Command) -> Option<Key> {
+/// What is taken back together with the same before it.
+pub(super) enum Gesture {
+    /// The value that is turned.
+    Turn(Key),
+    /// A step, which goes on with so many before it.
+    Step(usize),
+}
+
+/// The gesture that a command is part of.
+pub(super) fn gesture(model: &Model, command: &Command) -> Option<Gesture> {
     match command {
-        Command::Turn { key, .. } => Some(key.clone()),
-        Command::Plain(Id::FineLess | Id::FineMore | Id::Less | Id::More | Id::MuchLess | Id::MuchMore) => {
-            model.selected_knob().map(|(row, _)| row.key.clone())
+        Command::Steps(1) | Command::Plain(Id::Step) => Some(Gesture::Step(0)),
+        Command::HeldStep(before) => Some(Gesture::Step(*before)),
+        Command::Turn { key, .. } => Some(Gesture::Turn(key.clone())),
+        Command::Plain(id) if TURNS.contains(id) => {
+            model.selected_knob().map(|(row, _)| Gesture::Turn(row.key.clone()))
         }
         _ => None,
     }
 }
 
-/// Does something that undo can take back, with the turns of `gesture` before it.
+/// Does something that undo can take back, with those of `gesture` before it.
 pub(super) fn recorded(
     model: &mut Model,
-    gesture: Option<Key>,
+    gesture: Option<Gesture>,
     act: impl FnOnce(&mut Model) -> Vec<Effect>,
 ) -> Vec<Effect> {
     let before = model.untried.as_ref().map_or_else(|| model.place(), |untried| untried.place.clone());
@@ -84,6 +96,8 @@ pub(super) fn recorded(
     if model.session != session || model.untried.is_some() {
         return effects;
     }
+    let step = if let Some(Gesture::Step(before)) = gesture { Some(before) } else { None };
+    let gesture = if let Some(Gesture::Turn(key)) = gesture { Some(key) } else { None };
     let goes_on = gesture.is_some() && model.undo.gesture == gesture;
     if !model.is_at(&before) {
         if goes_on {
@@ -94,8 +108,10 @@ pub(super) fn recorded(
         model.undo.gesture = gesture;
     } else if !goes_on {
         model.undo.gesture = None;
-        if model.walking.is_some_and(|now| !now.solves && Some(now.id) != walking) {
-            model.undo.begins(before);
+        if model.walking.is_some_and(|now| !now.solves && Some(now.id) != walking)
+            && !step.is_some_and(|count| model.undo.holds(count))
+        {
+            model.undo.begins(Place { is_step: step.is_some(), ..before });
         }
     }
     effects

@@ -76,6 +76,13 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
     }))]
 }
 
+/// A step by a key, held since so many; at a limit point or a touch it has to be pressed again.
+pub(super) fn step(model: &mut Model, held: usize) -> Vec<Effect> {
+    let at = model.walker().zip(model.control()).map(|(node, control)| node.at(control));
+    let stays = held > 0 && at.is_some_and(|at| at != At::Nothing);
+    if stays { Vec::new() } else { walk(model, Action::Steps(1)) }
+}
+
 /// On to the next event of the path: what is pending happens, and where the path ends outward it turns round.
 pub(in crate::explorer) fn next_event(model: &mut Model) -> Vec<Effect> {
     if model.can_jump() {

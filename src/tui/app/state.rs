@@ -53,6 +53,8 @@ pub struct App {
     pub screen: Rect,
     /// What is said of a background job that takes long enough to be shown.
     pub late: Option<String>,
+    /// How many presses before the last key belong to the same holding of it.
+    pub held: usize,
 }
 
 impl App {
@@ -76,6 +78,7 @@ impl App {
             clipboard: None,
             screen: Rect::ZERO,
             late: None,
+            held: 0,
         }
     }
 
@@ -278,7 +281,7 @@ impl App {
     /// Does a command, or asks for what it takes.
     pub(super) fn act(&mut self, id: Id) -> Vec<Effect> {
         match id {
-            Id::Step => self.run(Command::Steps(1)),
+            Id::Step => self.run(Command::HeldStep(self.held)),
             Id::Go => {
                 (self.going, self.model.message) = (true, None);
                 Vec::new()

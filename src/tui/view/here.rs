@@ -1,8 +1,8 @@
 //! The state on which the walker stands, and how it steps.
 
-use super::parts::{is_selected, pair, panel};
+use super::parts::{is_selected, pair, panel, symbol};
 use crate::explorer::node::{Node, NodeKind};
-use crate::explorer::{Id, Model, Panel, View};
+use crate::explorer::{Id, Model, Panel};
 use crate::figure::{Axis, Scale};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
@@ -49,8 +49,7 @@ pub fn line(app: &App, room: usize) -> Line<'static> {
         return Line::default();
     };
     let scale = Scale::of(curve, model.axes);
-    let [length, force] = scale.axes(View::ForceApproach);
-    let [radius, _] = scale.axes(View::ForceRadius);
+    let [length, force, radius] = scale.state_axes();
     let state = node.state.in_units(node.setting.units());
     let mut parts: Vec<Vec<Span<'static>>> = Vec::new();
     let shown = |axis: &Axis, x: f64, digits| {
@@ -103,22 +102,12 @@ pub fn line(app: &App, room: usize) -> Line<'static> {
 fn stable(model: &Model, node: &Node) -> Vec<[&'static str; 2]> {
     let spring = model.control().filter(|control| matches!(control, Control::Stiffness(_)));
     let word = |control| {
-        let name = match control {
-            Control::Displacement => "δ",
-            Control::Force => "P",
-            Control::Stiffness(_) => "k",
+        let word = match node.stability.under(control) {
+            _ if node.is_limit(control) => "LIMIT",
+            true => "yes",
+            false => "no",
         };
-        let is_stable = node.stability.under(control);
-        [
-            name,
-            if node.is_limit(control) {
-                "LIMIT"
-            } else if is_stable {
-                "yes"
-            } else {
-                "no"
-            },
-        ]
+        [symbol(control), word]
     };
     [Control::Displacement, Control::Force].into_iter().chain(spring).map(word).collect()
 }

@@ -6,7 +6,7 @@ use crate::tui::chart::Entry;
 use crate::tui::marks::{glyph, letter, look, style};
 use crate::tui::theme::Theme;
 
-/// What is in the window of a figure, the most important first: the curve, the walk, the marks, pins, theory, the rest.
+/// What is in the window of a figure, the most important first: the curve, pins, the walk, the marks, theory, the rest.
 pub fn legend(figure: &Figure, bounds: &Bounds, theme: Theme) -> Vec<Entry> {
     let mut words: Vec<(u8, Entry)> = Vec::new();
     let mut add = |rank: u8, entry: Entry| {
@@ -41,9 +41,9 @@ fn rank(role: Role) -> u8 {
     match role {
         Role::Stable | Role::Body | Role::Edges | Role::Law | Role::Cusps => 0,
         Role::Unstable | Role::Landings => 1,
-        Role::Inadmissible | Role::Level | Role::Pull | Role::Zone => 2,
-        Role::Walk | Role::Chosen => 3,
-        Role::Pin(_) => 5,
+        // Asked for, and often with numbers.
+        Role::Pin(_) => 2,
+        Role::Inadmissible | Role::Level | Role::Pull | Role::Zone | Role::Walk | Role::Chosen => 3,
         Role::Smooth | Role::Exact | Role::Envelope => 6,
         Role::Loading | Role::Unloading | Role::Barrier | Role::Device | Role::Contact => 8,
         _ => 9,

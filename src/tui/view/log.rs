@@ -2,7 +2,7 @@
 
 use super::parts::{is_selected, panel};
 use crate::explorer::log::{Entry, Log, Mark};
-use crate::explorer::{Axes, Inadmissible, Model, Panel, View};
+use crate::explorer::{Axes, Inadmissible, Model, Panel};
 use crate::figure::{Axis, Scale};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
@@ -48,19 +48,22 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         return;
     }
     let count = log.entries.len() + parts.len();
-    let first = first(&log, model, count, rows);
-    let hidden = count.saturating_sub(first + rows);
-    let more = if hidden > 0 { format!(" +{hidden}") } else { String::new() };
-    let texts = table(model, theme, &log.entries, first, room.saturating_sub(1 + more.len()));
+    let shown = shown(&log, model, count, rows);
+    let (first, last) = (shown.first().copied().unwrap_or(0), shown.last().map_or(0, |last| last + 1));
+    // How many lines are left out above and below.
+    let left_out = |count: usize| if count > 0 { format!(" +{count}") } else { String::new() };
+    let [above, below] = [first, count - last].map(left_out);
+    let width = room - above.len().max(below.len());
+    let texts = table(model, theme, &log.entries, first, width.saturating_sub(1));
     let units = &model.preset.units;
-    let texts = texts.into_iter().chain(parts.iter().map(|found| part(found, units, theme.ascii)));
-    let last = first + rows.min(count);
-    lines.extend(texts.enumerate().skip(first).take(rows).map(|(i, text)| {
+    let texts: Vec<String> =
+        texts.into_iter().chain(parts.iter().map(|found| part(found, units, theme.ascii))).collect();
+    lines.extend(shown.into_iter().filter_map(|i| Some((i, texts.get(i)?))).map(|(i, text)| {
         let chosen = i == model.event && selected;
         let mark = if chosen { '>' } else { ' ' };
-        let text = theme.whole_words(&theme.text(&format!("{mark}{text}")), room - more.len());
-        let width = room - more.len();
-        let text = if i + 1 == last { format!("{text:<width$}{more}") } else { text };
+        let text = theme.whole_words(&theme.text(&format!("{mark}{text}")), width);
+        let more = if i + 1 == last { &below } else { &above };
+        let text = if i == first || i + 1 == last { format!("{text:<width$}{more}") } else { text };
         let style = match log.entries.get(i).map(|entry| entry.mark) {
             _ if chosen => theme.selection(),
             Some(Mark::Here) => theme.strong(),
@@ -76,14 +79,22 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-/// The first line shown: the selected one is seen, and where that is another panel's matter, the one that is next.
-fn first(log: &Log, model: &Model, count: usize, rows: usize) -> usize {
+/// The lines shown: those about the selected one, and in any case the one where the walker stands, or that is next.
+fn shown(log: &Log, model: &Model, count: usize, rows: usize) -> Vec<usize> {
     let next = || log.entries.iter().rposition(|entry| entry.mark == Mark::Done).map_or(0, |done| done + 1);
-    let here = log.entries.iter().position(|entry| entry.mark == Mark::Here);
-    let shown = if model.panel == Panel::Log { model.event } else { here.unwrap_or_else(next) };
+    let here = log.entries.iter().position(|entry| entry.mark == Mark::Here).unwrap_or_else(next);
     // What is done just before stays in sight.
-    let above = if model.panel == Panel::Log { shown + 1 } else { shown + 2 };
-    above.saturating_sub(rows).min(count.saturating_sub(rows))
+    let above = if model.panel == Panel::Log { model.event + 1 } else { here + 2 };
+    let about = |rows: usize| {
+        let first = above.saturating_sub(rows).min(count.saturating_sub(rows));
+        first..count.min(first + rows)
+    };
+    if rows < 2 || here >= count || about(rows).contains(&here) {
+        return about(rows).collect();
+    }
+    let mut lines: Vec<usize> = about(rows - 1).chain([here]).collect();
+    lines.sort_unstable();
+    lines
 }
 
 /// The line in this row of the screen, in the pane `area`.
@@ -94,8 +105,7 @@ pub fn line_at(app: &App, area: Rect, row: u16) -> Option<usize> {
     let log = model.log();
     let count = log.entries.len() + model.shown_inadmissible().len();
     let below = usize::from(row.checked_sub(area.y + 1 + bar)?);
-    let line = first(&log, model, count, rows) + below;
-    (below < rows && line < count).then_some(line)
+    shown(&log, model, count, rows).get(below).copied()
 }
 
 /// An inadmissible part of the curve: no event, so it has no number.
@@ -225,8 +235,7 @@ const COLUMNS: [(u8, bool); 9] = [
 fn table(model: &Model, theme: Theme, entries: &[Entry], named: usize, room: usize) -> Vec<String> {
     let Some(curve) = model.curve.as_deref() else { return Vec::new() };
     let scale = Scale::of(curve, model.axes);
-    let [length, force] = scale.axes(View::ForceApproach);
-    let [radius, _] = scale.axes(View::ForceRadius);
+    let [length, force, radius] = scale.state_axes();
     let is_held = model.control().is_some_and(|control| control == Control::Force);
     let rows: Vec<[String; 9]> =
         entries.iter().map(|entry| cells(entry, scale, &model.preset.units, theme, is_held)).collect();

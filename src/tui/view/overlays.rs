@@ -2,6 +2,7 @@
 
 use super::charts;
 use super::parts::panel;
+use crate::explorer::script::parse;
 use crate::explorer::{View, Window};
 use crate::tui::app::App;
 use crate::tui::overlay::{Choose, Overlay, Prompt, Purpose};
@@ -10,7 +11,7 @@ use pulloff_engine::text::sanitize;
 use ratatui::Frame;
 use ratatui::layout::{Margin, Position, Rect};
 use ratatui::text::Line;
-use ratatui::widgets::{Clear, Paragraph, Wrap};
+use ratatui::widgets::{Block, Clear, Paragraph, Wrap};
 
 /// The widest prompt or list.
 const WIDEST: u16 = 160;
@@ -30,6 +31,13 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, overlay: &Overlay) {
         Overlay::Offer(offer) => draw_question(frame, area, app.theme, "Go on?", &offer.question),
         Overlay::Help(_) => {}
     }
+}
+
+/// Draws a box over what is there; gives back its inside.
+fn over(frame: &mut Frame<'_>, area: Rect, block: &Block<'_>) -> Rect {
+    frame.render_widget(Clear, area);
+    frame.render_widget(block, area);
+    block.inner(area)
 }
 
 /// A box of this size in the middle, as far as it fits.
@@ -92,7 +100,9 @@ fn entries(app: &App, prompt: &Prompt, rows: usize, width: usize) -> Vec<Line<'s
         })
         .collect();
     if lines.is_empty() && rows > 0 {
-        lines.push(Line::styled("  nothing has that", theme.dim()));
+        // A line that can be run needs no list.
+        let said = if parse(prompt.input.value()).is_ok() { "Enter runs it" } else { "nothing has that" };
+        lines.push(Line::styled(format!("  {said}"), theme.dim()));
     }
     lines.resize(rows, Line::default());
     lines
@@ -102,13 +112,11 @@ fn draw_prompt(frame: &mut Frame<'_>, area: Rect, app: &App, prompt: &Prompt) {
     let theme = app.theme;
     let (area, rows) = place_of_prompt(prompt, area);
     let mut block = panel(theme, &prompt.title, true);
-    let inner = block.inner(area);
     if rows > 0 {
         let at = prompt.selected.map_or_else(String::new, |at| format!("{} of ", at + 1));
         block = block.title_bottom(Line::from(format!("{at}{}", prompt.entries.len())).right_aligned());
     }
-    frame.render_widget(Clear, area);
-    frame.render_widget(block, area);
+    let inner = over(frame, area, &block);
     let width = usize::from(inner.width.saturating_sub(3)).max(1);
     let scroll = prompt.input.visual_scroll(width);
     let shown: String = prompt.input.value().chars().skip(scroll).take(width).collect();
@@ -164,11 +172,9 @@ fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose)
         "" => ", letters filter".to_owned(),
         filter => format!(", with \"{}\"", sanitize(filter, 20)),
     };
-    let block = panel(theme, &format!("{}: Enter takes{delete}, Esc closes{typed}", choose.title), true);
-    let inner = block.inner(area);
-    frame.render_widget(Clear, area);
-    frame.render_widget(block, area);
-    let mut inner = inner;
+    let title = format!("{}: Enter takes{delete}, Esc closes{typed}", choose.title);
+    let block = panel(theme, &theme.whole_words(&title, usize::from(area.width.saturating_sub(2))), true);
+    let mut inner = over(frame, area, &block);
     if let Some(figure) = &choose.picture
         && inner.width >= LIST + NARROWEST
     {
@@ -210,9 +216,7 @@ fn draw_question(frame: &mut Frame<'_>, area: Rect, theme: Theme, title: &str, q
     let lines = u16::try_from(question.chars().count() / 60).unwrap_or(u16::MAX);
     let area = middle(area, 70, 5u16.max(lines.saturating_add(3)));
     let block = panel(theme, title, true);
-    let inner = block.inner(area);
-    frame.render_widget(Clear, area);
-    frame.render_widget(block, area);
+    let inner = over(frame, area, &block);
     let text = Paragraph::new(theme.text(question)).wrap(Wrap { trim: true });
     frame.render_widget(text, inner);
 }

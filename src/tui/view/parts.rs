@@ -4,6 +4,7 @@ use crate::explorer::{Id, Panel};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
+use pulloff_engine::problem::Control;
 use ratatui::text::Span;
 use ratatui::widgets::Block;
 
@@ -16,15 +17,27 @@ pub(super) fn is_selected(app: &App, panel: Panel) -> bool {
     app.model.panel == panel && app.overlay.is_none()
 }
 
-/// `text` as far as there is room for it; where it is cut, or more is to be told, the key of the help, which has all.
+/// `text` as far as its words have room; where it is cut, or more is to be told, the key of the help, which has all.
 pub(super) fn fitted(keymap: &Keymap, text: &str, more: &str, room: usize) -> String {
     if more.is_empty() && text.chars().count() <= room {
         return text.to_owned();
     }
     let rest = if more.is_empty() { "...".to_owned() } else { format!("... {more}") };
     let rest = format!("{rest} {}: all", keymap.label(Id::Help));
-    let kept: String = text.chars().take(room.saturating_sub(rest.chars().count())).collect();
-    format!("{}{rest}", kept.trim_end())
+    let room = room.saturating_sub(rest.chars().count());
+    let kept: String = text.chars().take(room).collect();
+    let is_whole = text.chars().nth(room).is_none_or(char::is_whitespace);
+    let end = if is_whole { kept.len() } else { kept.rfind(' ').unwrap_or(kept.len()) };
+    format!("{}{rest}", kept[..end].trim_end())
+}
+
+/// What is held, as a symbol.
+pub(super) fn symbol(control: Control) -> &'static str {
+    match control {
+        Control::Displacement => "δ",
+        Control::Force => "P",
+        Control::Stiffness(_) => "k",
+    }
 }
 
 /// `key value` with the key dim.

@@ -1,6 +1,6 @@
 //! The parameters with their values, and the dimensionless groups that follow from them.
 
-use super::parts::{is_selected, pair, panel};
+use super::parts::{is_selected, pair, panel, symbol};
 use crate::explorer::fitting::is_free;
 use crate::explorer::{Id, Model, Panel};
 use crate::tui::app::App;
@@ -288,12 +288,7 @@ fn group_lines(
 
 /// From which amplitude on the problem snaps, under its control.
 fn onset(theme: Theme, model: &Model) -> Option<Line<'static>> {
-    let control = match model.preset.path.control {
-        Control::Displacement => "δ",
-        Control::Force => "P",
-        Control::Stiffness(_) => "k",
-    };
-    let text = format!("{} ({control})", short(model.snaps_from()?, 3));
+    let text = format!("{} ({})", short(model.snaps_from()?, 3), symbol(model.preset.path.control));
     Some(Line::from(pair(theme, " snaps from A/λ ", &text).to_vec()))
 }
 

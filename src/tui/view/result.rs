@@ -3,7 +3,7 @@
 use super::log::snaps;
 use super::parts::{is_selected, pair, panel};
 use crate::explorer::pins::Pin;
-use crate::explorer::{Model, Panel, View};
+use crate::explorer::{Model, Panel};
 use crate::figure::Scale;
 use crate::tui::app::App;
 use crate::tui::theme::Theme;
@@ -34,8 +34,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
 fn lines(theme: Theme, model: &Model, path: &PathReport) -> Vec<Line<'static>> {
     let Some(curve) = model.curve.as_deref() else { return Vec::new() };
     let scale = Scale::of(curve, model.axes);
-    let [length, force] = scale.axes(View::ForceApproach);
-    let [radius, _] = scale.axes(View::ForceRadius);
+    let [length, force, radius] = scale.state_axes();
     let shown = |symbol: &str, x: f64| pair(theme, &format!("{symbol} "), &significant(x, 4));
     let state = |at: &StateReport| {
         let approach = shown(&length.symbol, scale.length(at.approach));

@@ -72,7 +72,7 @@ pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
     let room = usize::from(status.width).saturating_sub(1);
     // The help has the status whole, and can be opened while nothing else is open.
     let text = match theme.text(&text) {
-        text if app.overlay.is_some() || is_reading => text,
+        text if app.overlay.is_some() || is_reading => theme.whole_words(&text, room),
         text => fitted(&app.keymap, &text, "", room),
     };
     let line = Line::styled(format!(" {text}"), style);

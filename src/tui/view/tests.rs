@@ -401,7 +401,16 @@ fn the_ring_elements_lie_over_the_exact_curve_and_go_again() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("#");
     let text = screen.text(120, 40);
-    assert!(text.contains("basis rings") && text.contains("now   pin 1 change"), "{text}");
+    assert!(text.contains("1 rings 200: A ") && text.contains("now   pin 1 change"), "{text}");
+    let said = " pin 1, of 200 ring elements and exact: largest pull off by ";
+    assert!(text.contains(said) && text.contains(" Newton iterations"), "{text}");
+    // On the chart where there is no Result, whatever is told meanwhile.
+    screen.keys("]");
+    let small = screen.text(80, 24);
+    assert!(
+        small.contains("1 rings 200: A ") && small.contains(" Newton") && !small.contains(said),
+        "{small}"
+    );
     let pin = &screen.app.model.pins.all()[0];
     let [rings, exact] = [&pin.curve, screen.app.model.curve.as_ref().unwrap()]
         .map(|curve| curve.report.as_ref().unwrap().totals.largest_pull.as_ref().unwrap().force);
@@ -411,7 +420,35 @@ fn the_ring_elements_lie_over_the_exact_curve_and_go_again() {
     assert!(screen.app.model.pins.is_empty());
     // Beside the rings it is the exact solution.
     screen.keys(":set basis.kind=rings\r#");
-    assert!(screen.text(120, 40).contains("basis exact"), "{}", screen.text(120, 40));
+    assert!(screen.text(120, 40).contains("1 exact: A "), "{}", screen.text(120, 40));
+    // Of other values it is another problem.
+    screen.keys("\u{1b}>");
+    assert!(!screen.text(120, 40).contains("1 exact: A "), "{}", screen.text(120, 40));
+}
+
+#[test]
+fn a_log_of_many_events_says_how_many_are_left_out_and_keeps_the_current_one() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":open wavy-sphere gap.wavelength=0.02 gap.amplitude=0.001\r");
+    let log = |screen: &Screen| -> Vec<String> {
+        let text = screen.text(120, 40);
+        let lines = text.lines().skip_while(|line| !line.contains("Log ✓ done")).skip(1);
+        lines.take_while(|line| line.starts_with('│')).map(str::to_owned).collect()
+    };
+    let lines = log(&screen);
+    assert!(lines.len() == 9 && lines[0].contains("·1 ") && lines[8].ends_with("+7│"), "{lines:?}");
+    screen.keys(&"n".repeat(26));
+    let lines = log(&screen);
+    let here = lines.iter().position(|line| line.contains('@')).unwrap_or(0);
+    assert!(lines[0].contains('+') && here > 0, "{}", screen.text(120, 40));
+    // From the other end of the list too.
+    for key in [KeyCode::PageUp, KeyCode::PageUp, KeyCode::End] {
+        screen.app.model.panel = Panel::Log;
+        screen.press(key);
+        let lines = log(&screen);
+        assert!(lines.iter().any(|line| line.contains('@')), "{lines:?}");
+        assert!(lines.iter().any(|line| line.starts_with("│>")), "{lines:?}");
+    }
 }
 
 #[test]

@@ -51,8 +51,8 @@ fn the_pull_lies_over_the_curve_with_the_largest_pull_of_the_command() {
     screen.keys(":view force-time\r");
     let drawn = screen.text(160, 45);
     assert!(drawn.contains("P/Pc over t") && drawn.contains("P/Pc -2.730"), "{drawn}");
-    let said = "At 1 v₀: largest pull 2.73 P_c, 1.12 times the smooth sphere's; 6 of 8 jumps leave a peak; the edge reaches 11.6 v₀";
-    assert!(screen.text(120, 40).contains(said), "{drawn}");
+    let said = "Largest pull 2.73 P_c at 1 v₀, 1.12 × smooth; 6/8 jumps peak; edge to 11.6 v₀";
+    assert!(screen.text(80, 24).contains(said), "{drawn}");
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn a_turned_rate_is_pulled_anew_over_the_same_curve() {
     assert!((rate - 2.154_43).abs() < 1e-9, "{rate}");
     let after = least(&figure(&screen, View::ForceApproach));
     assert!(after < before - 0.3, "{before} {after}");
-    assert!(screen.text(160, 45).contains("At 2.15 v₀: largest pull 3.3 P_c, 1.1 times"));
+    assert!(screen.text(160, 45).contains("Largest pull 3.3 P_c at 2.15 v₀, 1.1 × smooth"));
     // So does any other value.
     screen.keys(":set gap.amplitude=0.001\r");
     assert!(least(&figure(&screen, View::ForceApproach)) > after);
