@@ -32,6 +32,17 @@ pub(super) fn walker(model: &Model) -> Available {
     when(model.history.current().is_some(), || no_curve(model))
 }
 
+/// A state of a walk that may turn round: along a path it goes as the device does.
+pub(super) fn turns(model: &Model) -> Available {
+    walker(model)?;
+    when(model.curve.as_ref().is_none_or(|curve| curve.along.is_none()), || {
+        format!(
+            "the walk goes along the path, which turns where path.turn_* says; {} takes steps back",
+            Id::Undo.named()
+        )
+    })
+}
+
 /// A state of the walk, or no curve being computed: one that was given up or failed is computed again.
 pub(super) fn walker_or_no_curve(model: &Model) -> Available {
     if model.is_computing() { walker(model) } else { Ok(()) }

@@ -2,7 +2,8 @@
 //! page and the book's key table are read from it.
 
 use super::availability::{
-    Available, always, branches, curve, jump, parameter, pins, redo, undo, walker, walker_or_no_curve, zoomed,
+    Available, always, branches, curve, jump, parameter, pins, redo, turns, undo, walker, walker_or_no_curve,
+    zoomed,
 };
 use super::command::list::each_command;
 use super::command::{Command, Id, MOST_STEPS};
@@ -24,7 +25,7 @@ use super::update::places::to_largest_pull;
 use super::update::selection::{arrow, cancel, next_panel};
 use super::update::travel::travel;
 use super::update::values::{change_control, turn};
-use super::update::walk::{next_event, restart, reverse, run_or_stop, scale_length, scale_pace, walk};
+use super::update::walk::{next_event, restart, run_or_stop, scale_length, scale_pace, walk};
 use super::view::Panel;
 use super::walk::Action;
 use super::{look, reach};

@@ -30,8 +30,8 @@ macro_rules! each_command {
             "the walker to A, the largest pull of the path, where a dead load lets go; or to a contact radius, or to an event by its number, as a digit does"
             { run: to_largest_pull,
             takes: takes("A, event N, or a contact radius", destination).offering(|_| words(["A", "event"])) }
-        Reverse "reverse" "b" "back" walker InOrder Yes "turn round: steps and events are then those of the other way"
-            { words: "turn direction", look: reverse }
+        Reverse "reverse" "b" "back" turns InOrder Yes "turn round: steps and events are then those of the other way"
+            { words: "turn direction", look: |model| model.inward = !model.inward }
         Halve "halve-step" "[" "half step" always InOrder Yes "halve the step length" { look: |model| scale_length(model, 0.5) }
         Double "double-step" "]" "double step" always InOrder Yes "double the step length"
             { look: |model| scale_length(model, 2.0) }

@@ -106,19 +106,6 @@ pub(in crate::explorer) fn next_event(model: &mut Model) -> Vec<Effect> {
     walk(model, Action::ToEvent(end))
 }
 
-/// Turns the walk round; along a path it goes as the device does.
-pub(in crate::explorer) fn reverse(model: &mut Model) {
-    if model.curve.as_ref().is_some_and(|curve| curve.along.is_some()) {
-        let text = format!(
-            "the walk goes along the path, which turns where path.turn_* says; {} takes steps back",
-            Id::Undo.named()
-        );
-        model.tell(Level::Info, text);
-    } else {
-        model.inward = !model.inward;
-    }
-}
-
 /// The same, at the pace.
 pub(super) fn run(model: &mut Model, action: Action) -> Vec<Effect> {
     let mut effects = walk(model, action);
