@@ -54,8 +54,8 @@ impl Background for PinCurve {
             _ if curve.is_none() => model.tell(Level::Error, format!("there is no curve for pin {number}")),
             Some(elements) => {
                 let which = format!("pin {number}, of {} ring elements and exact", elements.count);
-                let words = ["largest pull off by", "Newton iterations"];
-                model.tell(Level::Info, elements.said(&which, words));
+                let said = elements.said(&which, ["largest pull off by", "Newton iterations"]);
+                model.tell(Level::Info, said);
             }
             None => {}
         }

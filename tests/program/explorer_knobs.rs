@@ -3,6 +3,7 @@
 
 use crate::support::session::Session;
 use pulloff::explorer::model::Level;
+use pulloff::explorer::script::parse;
 use pulloff::explorer::{Command, Effect, Id, NodeKind, Panel, Reply, Stage, answer, update};
 use pulloff_engine::preset::Value;
 use pulloff_engine::problem::Control;
@@ -213,4 +214,27 @@ fn the_walker_is_not_sent_further_than_a_walk_may_lead() {
         "{}",
         session.status()
     );
+}
+
+#[test]
+fn short_keys_are_the_last_part_of_a_key_or_its_symbol() {
+    let mut session = Session::new("wavy-sphere");
+    for (line, key, text) in [
+        ("set amplitude=0.002", "gap.amplitude", "0.002"),
+        ("set A=0.0021", "gap.amplitude", "0.0021"),
+        ("set γ=0.004 lambda=0.06", "material.work_of_adhesion", "0.004"),
+        ("set control=force", "path.control", "force"),
+    ] {
+        session.does(parse(line).unwrap().unwrap());
+        assert_eq!(session.model.preset.get(key).unwrap().to_string(), text, "{line}: {}", session.status());
+    }
+    // A letter of a formula is that letter.
+    let mut session = Session::new("formula");
+    session.does(parse("set A=0.003").unwrap().unwrap());
+    assert_eq!(session.model.preset.get("gap.parameters.A").unwrap().to_string(), "0.003");
+    session.does(parse("set B=0.003").unwrap().unwrap());
+    assert_eq!(session.status(), "unknown key B");
+    let mut session = Session::new("harmonics");
+    session.does(parse("set amplitude=0.003").unwrap().unwrap());
+    assert!(session.status().starts_with("amplitude is short for several: gap."), "{}", session.status());
 }

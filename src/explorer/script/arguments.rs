@@ -8,11 +8,13 @@ use crate::explorer::export::{ExportKind, Picture, ends_in};
 use crate::explorer::map_axes::CURVES;
 use crate::explorer::pins;
 use crate::explorer::view::{Home, Overlay, View};
+use pulloff_engine::preset::family::parameter_key;
 use pulloff_engine::preset::groups::{self, GROUPS};
-use pulloff_engine::preset::{Key, PARAMETERS, parameter};
+use pulloff_engine::preset::{Key, PARAMETERS, Parameter, Preset, parameter};
 use pulloff_engine::stability::COMPLIANCE;
 use pulloff_engine::sweep::Column;
-use pulloff_engine::text::{closest, closest_key, quote};
+use pulloff_engine::text::{closest, closest_key, greek, quote};
+use std::borrow::Cow;
 
 /// What a command takes.
 #[derive(Debug, Clone, Copy)]
@@ -129,8 +131,8 @@ impl<'a> Rest<'a> {
         find(&word.text).ok_or_else(|| unknown(word, what, known))
     }
 
-    fn assignments(&mut self) -> Result<Vec<Assignment>, Fault> {
-        std::iter::from_fn(|| self.next()).map(assignment).collect()
+    fn assignments(&mut self, key: fn(&str, usize) -> Result<Key, Fault>) -> Result<Vec<Assignment>, Fault> {
+        std::iter::from_fn(|| self.next()).map(|word| assignment(word, key)).collect()
     }
 }
 
@@ -173,9 +175,9 @@ pub(in crate::explorer) fn branch(rest: &mut Rest<'_>) -> Result<Command, Fault>
 }
 
 pub(in crate::explorer) fn assigned(rest: &mut Rest<'_>) -> Result<Command, Fault> {
-    let first = assignment(rest.need("KEY=VALUE")?)?;
+    let first = assignment(rest.need("KEY=VALUE")?, short)?;
     let mut all = vec![first];
-    all.extend(rest.assignments()?);
+    all.extend(rest.assignments(short)?);
     Ok(Command::Assign(all))
 }
 
@@ -208,7 +210,7 @@ pub(in crate::explorer) fn pin(rest: &mut Rest<'_>) -> Result<Command, Fault> {
 
 pub(in crate::explorer) fn preset(rest: &mut Rest<'_>) -> Result<Command, Fault> {
     let name = rest.need("a preset")?.text.clone();
-    let assignments = rest.assignments()?;
+    let assignments = rest.assignments(known)?;
     Ok(if assignments.is_empty() { Command::Open(name) } else { Command::OpenWith { name, assignments } })
 }
 
@@ -253,7 +255,10 @@ fn file(rest: &mut Rest<'_>, endings: &[&str]) -> Result<String, Fault> {
     Err(Fault::new(file.column, format!("the file must end in .{}", endings.join(" or ."))))
 }
 
-fn assignment(word: &Word) -> Result<Assignment, Fault> {
+/// Reads a key in a column.
+type ReadKey = fn(&str, usize) -> Result<Key, Fault>;
+
+fn assignment(word: &Word, read: ReadKey) -> Result<Assignment, Fault> {
     let Some((key, text)) = word.text.split_once('=') else {
         let what = format!(
             "\"{}\" is no KEY=VALUE, as in gap.amplitude=0.002; a value with spaces stands in quotes",
@@ -261,15 +266,57 @@ fn assignment(word: &Word) -> Result<Assignment, Fault> {
         );
         return Err(Fault::new(word.column, what));
     };
-    Ok((known(key, word.column)?, text.to_owned()))
+    Ok((read(key, word.column)?, text.to_owned()))
+}
+
+/// A key, a group, or a short name of one: the preset says of which.
+fn short(key: &str, column: usize) -> Result<Key, Fault> {
+    let is_short = PARAMETERS.iter().chain(&GROUPS).any(|row| is_called(row, key));
+    // A formula has letters of its own; to one or two of them too much is alike.
+    let is_letter = || parameter(&parameter_key(key)).is_some() && (key.len() <= 2 || meant(key).is_none());
+    if is_short || is_letter() { Ok(key.to_owned().into()) } else { known(key, column) }
+}
+
+/// The key that is most like an unknown one.
+fn meant(key: &str) -> Option<&'static str> {
+    closest_key(key, PARAMETERS.iter().chain(&GROUPS).map(|row| (&*row.key, &*row.label)))
+}
+
+/// Whether a row is called so: by its key, the last part of it, or the symbol that the screen has.
+fn is_called(row: &Parameter, name: &str) -> bool {
+    let last = row.key.rsplit('.').next().unwrap_or_default();
+    [&*row.key, last, &*row.label, &*greek(&row.label)].contains(&name)
+}
+
+/// The rows of a preset, and the groups.
+pub(super) fn settable(preset: &Preset) -> impl Iterator<Item = Parameter> {
+    preset.rows().map(Cow::into_owned).chain(GROUPS.iter().cloned())
+}
+
+/// Those that are called so: where some have a value in this preset, these.
+pub(super) fn rows_called(preset: &Preset, name: &str) -> Vec<Parameter> {
+    let rows = settable(preset).filter(|row| is_called(row, name));
+    let (own, others): (Vec<_>, Vec<_>) = rows.partition(|row| preset.get(&row.key).is_some());
+    if own.is_empty() { others } else { own }
+}
+
+/// The key of a preset that is called so, or why it is none or several.
+pub(in crate::explorer) fn key_called(preset: &Preset, name: &str) -> Result<Key, String> {
+    if parameter(name).is_some() || groups::row(name).is_some() {
+        return Ok(name.to_owned().into());
+    }
+    let keys: Vec<Key> = rows_called(preset, name).into_iter().map(|row| row.key).collect();
+    match &keys[..] {
+        [key] => Ok(key.clone()),
+        [] => Err(format!("unknown key {}", quote(name))),
+        several => Err(format!("{} is short for several: {}", quote(name), several.join(", "))),
+    }
 }
 
 /// A key or a group.
 fn known(key: &str, column: usize) -> Result<Key, Fault> {
     if parameter(key).is_none() && groups::row(key).is_none() {
-        let known = PARAMETERS.iter().chain(&GROUPS).map(|row| (&*row.key, &*row.label));
-        let meant = closest_key(key, known);
-        let hint = meant.map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
+        let hint = meant(key).map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
         return Err(Fault::new(column, format!("unknown key {}{hint}", quote(key))));
     }
     Ok(key.to_owned().into())

@@ -47,6 +47,7 @@ pub mod play;
 mod print;
 mod read;
 
+pub(super) use arguments::key_called;
 pub use fault::{Fault, LONGEST};
 /// The first line of a script that a session writes.
 pub(super) const HEAD: &str = "# A session of pulloff: `pulloff run` walks it again.";

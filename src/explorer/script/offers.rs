@@ -1,5 +1,6 @@
 //! What can be typed behind the name of a command, as the screen lists it.
 
+use super::arguments::settable;
 use super::lexer::quoted;
 use crate::explorer::branches;
 use crate::explorer::command::Command;
@@ -205,10 +206,8 @@ pub(in crate::explorer) fn assignments_of(typing: &Typing<'_>) -> Vec<Offer> {
     let preset = &typing.model.preset;
     let Some((key, _)) = typing.word.split_once('=') else {
         // Those that have or could have a value here.
-        let rows = preset.rows().filter(|row| row.key != "format");
-        let keys = rows.map(|row| Offer::new(format!("{}=", row.key), &*row.meaning));
-        let groups = GROUPS.iter().map(|row| Offer::new(format!("{}=", row.key), &*row.meaning));
-        return keys.chain(groups).collect();
+        let rows = settable(preset).filter(|row| row.key != "format");
+        return rows.map(|row| Offer::new(format!("{}=", row.key), &*row.meaning)).collect();
     };
     let values: &[&str] = match preset.row(key).map(|row| row.kind) {
         Some(Kind::Choice(words)) => words,

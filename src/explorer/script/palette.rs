@@ -1,11 +1,12 @@
 //! The one list behind a typed line: commands, charts, quantities, presets, files and keys, of which the text keeps those that have it.
 
+use super::arguments::rows_called;
 use super::offers::{Files, Offer, Typing};
 use super::parse::parse;
 use crate::explorer::command::Id;
 use crate::explorer::model::Model;
 use crate::explorer::table::{ROWS, Row, called};
-use pulloff_engine::preset::groups::GROUPS;
+use pulloff_engine::preset::Parameter;
 
 /// One line of the list.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -78,16 +79,14 @@ fn anything(text: &str, model: &Model, files: Files<'_>) -> Vec<Entry> {
         offers.into_iter().map(move |offer| Entry::offer(&before, &offer))
     });
     let mut found = of_key(&wanted, model);
-    let all: Vec<Entry> = ROWS.iter().map(|row| Entry::command(row, model)).chain(offered).collect();
-    let all: Vec<Entry> =
-        all.into_iter().filter(|entry| found.iter().all(|key| key.line != entry.line)).collect();
+    let all = ROWS.iter().map(|row| Entry::command(row, model)).chain(offered);
+    let all: Vec<Entry> = all.filter(|entry| found.iter().all(|key| key.line != entry.line)).collect();
     // Where nothing has all words, whatever has most of them.
     let most = if found.is_empty() { wanted.len() } else { 1 };
     let rest = (0..most).map(|missing| {
         ranked(all.clone(), |entry| {
-            let ranks =
-                wanted.iter().filter_map(|word| rank(&entry.line, &entry.says, &known(&entry.line), word));
-            let ranks: Vec<u8> = ranks.collect();
+            let of = |word: &&str| rank(&entry.line, &entry.says, &known(&entry.line), word);
+            let ranks: Vec<u8> = wanted.iter().filter_map(of).collect();
             ranks.iter().max().copied().filter(|_| ranks.len() + missing >= wanted.len())
         })
     });
@@ -102,13 +101,8 @@ fn of_key(wanted: &[&str], model: &Model) -> Vec<Entry> {
         [one] => one.split_once('=').unwrap_or((one, "")),
         _ => return Vec::new(),
     };
-    let is_called = |key: &str, label: &str| {
-        label == symbol || key == symbol || key.rsplit('.').next().is_some_and(|name| name == symbol)
-    };
-    let keys = model.preset.rows().map(|row| (row.key.clone(), row.label.clone(), row.meaning.clone()));
-    let groups = GROUPS.iter().map(|row| (row.key.clone(), row.label.clone(), row.meaning.clone()));
-    let called = keys.chain(groups).filter(|(key, label, _)| is_called(key, label));
-    called.map(|(key, _, meaning)| Entry::new(format!("set {key}={value}"), &*meaning)).collect()
+    let entry = |row: &Parameter| Entry::new(format!("set {}={value}", row.key), &*row.meaning);
+    rows_called(&model.preset, symbol).iter().map(entry).collect()
 }
 
 /// Those that have a rank, the best first, equals in their order.
@@ -179,6 +173,7 @@ mod tests {
             ("curves/fi", "data curves/first.csv", true),
             ("A 0.003", "set gap.amplitude=0.003", true),
             ("A=0.003", "set gap.amplitude=0.003", true),
+            ("γ 0.004", "set material.work_of_adhesion=0.004", true),
             ("wavelength", "set gap.wavelength=", false),
             ("spring", "control stiffness=", false),
             ("dead load", "control force", true),

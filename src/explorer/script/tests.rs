@@ -110,6 +110,8 @@ fn a_fault_names_line_column_word_and_what_is_allowed() {
         ("step 3 4", "t:1:8: step takes no \"4\" here"),
         ("set", "t:1:5: KEY=VALUE is missing"),
         ("set gap.amplitud=1", "t:1:5: unknown key gap.amplitud; did you mean gap.amplitude?"),
+        ("set amplitud=1", "t:1:5: unknown key amplitud; did you mean gap.amplitude?"),
+        ("open fig-9 amplitude=1", "t:1:12: unknown key amplitude; did you mean gap.amplitude?"),
         ("set gap.wavelength=3 um", "t:1:22: \"um\" is no KEY=VALUE"),
         (
             "export curv x.csv",

@@ -7,6 +7,7 @@ use crate::explorer::model::{Level, Model, Untried};
 use crate::explorer::nudge::{Amount, next_control, nudge};
 use crate::explorer::pins::{labelled, labelled_with};
 use crate::explorer::requests::{change, file, read, stop};
+use crate::explorer::script::key_called;
 use pulloff_engine::gap::shapes::Rows;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::family::is_parameter;
@@ -231,17 +232,19 @@ fn before_tried(model: &Model) -> &Preset {
 /// Other values for some keys, as one change; those of a file wait for who may read it.
 pub(super) fn assign(model: &mut Model, assignments: Vec<Assignment>) -> Vec<Effect> {
     let mut preset = before_tried(model).clone();
+    let whole = |(key, text): Assignment| Ok((key_called(&preset, &key)?, text));
+    let read: Result<Vec<Assignment>, String> = assignments.into_iter().map(whole).collect();
+    let assignments = match read {
+        Ok(assignments) => assignments,
+        Err(why) => return model.refuse(why),
+    };
     let is_file =
         |key: &str| preset.row(key).is_some_and(|row| matches!(row.kind, Kind::File | Kind::Points));
     if assignments.iter().any(|(key, _)| is_file(key)) {
         return vec![file(Job::Assign { preset: Box::new(preset), assignments })];
     }
     match assignments.iter().try_for_each(|(key, text)| preset.assign(key, text)) {
-        Ok(()) => {
-            model.untried = None;
-            tell_points(model, &preset);
-            change(model, preset)
-        }
+        Ok(()) => assigned(model, preset),
         Err(invalid) => model.refuse(invalid.to_string()),
     }
 }
@@ -268,7 +271,7 @@ pub(super) fn rows_came(model: &mut Model, rows: Arc<Rows>) -> Vec<Effect> {
     }
 }
 
-/// What came of assignments that read a file: a measured curve is told of, with what was found in it.
+/// What came of assignments, after a file was read or at once: a measured curve is told of, with what was found in it.
 pub(super) fn assigned(model: &mut Model, preset: Preset) -> Vec<Effect> {
     model.untried = None;
     tell_points(model, &preset);

@@ -61,9 +61,9 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
 
 /// A step by a key, held since so many; at a limit point or a touch it has to be pressed again.
 pub(super) fn step(model: &mut Model, held: usize) -> Vec<Effect> {
-    let stands = model.walker().zip(model.control()).map(|(node, control)| node.at(control));
-    let is_pending = stands.is_some_and(|at| at != At::Nothing);
-    if held > 0 && is_pending { Vec::new() } else { walk(model, Action::Steps(1)) }
+    let at = model.walker().zip(model.control()).map(|(node, control)| node.at(control));
+    let stays = held > 0 && at.is_some_and(|at| at != At::Nothing);
+    if stays { Vec::new() } else { walk(model, Action::Steps(1)) }
 }
 
 /// On to the next event of the path: what is pending happens, and where the path ends outward it turns round.
