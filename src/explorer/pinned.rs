@@ -53,7 +53,7 @@ impl Background for PinCurve {
         match elements {
             _ if curve.is_none() => model.tell(Level::Error, format!("there is no curve for pin {number}")),
             Some(elements) => {
-                let which = format!("pin {number}, of {} ring elements and exact", elements.count);
+                let which = format!("pin {number}, {} ring elements", elements.count);
                 let said = elements.said(&which, ["largest pull off by", "Newton iterations"]);
                 model.tell(Level::Info, said);
             }

@@ -272,8 +272,8 @@ fn assignment(word: &Word, read: ReadKey) -> Result<Assignment, Fault> {
 /// A key, a group, or a short name of one: the preset says of which.
 fn short(key: &str, column: usize) -> Result<Key, Fault> {
     let is_short = PARAMETERS.iter().chain(&GROUPS).any(|row| is_called(row, key));
-    // A formula has letters of its own.
-    let is_letter = || parameter(&parameter_key(key)).is_some() && meant(key).is_none();
+    // A formula has letters of its own; to one or two of them too much is alike.
+    let is_letter = || parameter(&parameter_key(key)).is_some() && (key.len() <= 2 || meant(key).is_none());
     if is_short || is_letter() { Ok(key.to_owned().into()) } else { known(key, column) }
 }
 

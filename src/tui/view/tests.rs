@@ -402,8 +402,10 @@ fn the_ring_elements_lie_over_the_exact_curve_and_go_again() {
     screen.keys("#");
     let text = screen.text(120, 40);
     assert!(text.contains("1 rings 200: A ") && text.contains("now   pin 1 change"), "{text}");
-    let said = " pin 1, of 200 ring elements and exact: largest pull off by ";
+    let said = " pin 1, 200 ring elements: largest pull off by ";
     assert!(text.contains(said) && text.contains(" Newton iterations"), "{text}");
+    let told = screen.text(80, 24);
+    assert!(told.contains(said) && told.contains(" Newton iterations"), "{told}");
     // On the chart where there is no Result, whatever is told meanwhile.
     screen.keys("]");
     let small = screen.text(80, 24);
