@@ -1,6 +1,6 @@
 //! The curves of pins that have none yet, computed one after the other.
 
-use super::background::{Background, Tell, Want, Watch};
+use super::background::{Background, Tell, Want, Watcher};
 use super::command::Id;
 use super::curve::CurveData;
 use super::effect::Effect;
@@ -29,7 +29,7 @@ impl Background for PinCurve {
         asked == wanted
     }
 
-    fn compute((number, preset): &Self::Key, progress: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+    fn compute((number, preset): &Self::Key, progress: Watcher<'_>, _: Tell<'_, Self>) -> Option<Self> {
         let curve = CurveData::compute(preset, &Staged::new(&|_| progress.stop()));
         // Given up: another pin may have this number now.
         (!progress.stop()).then(|| Self { number: *number, curve: curve.ok().map(Arc::new) })

@@ -13,7 +13,7 @@ pub(super) use pulloff_engine::quasistatic::walk::ROOM;
 use pulloff_engine::quasistatic::walk::{
     Ahead, Arrival, At, Emit, Reached, Walk, WalkEnd, WalkFailure, edges,
 };
-use pulloff_engine::quasistatic::{Admissibility, Point, Stability, State, Stiffness};
+use pulloff_engine::quasistatic::{Admissibility, Stability, State, StatePoint, Stiffness};
 use pulloff_engine::report::problem::control_name;
 use pulloff_engine::theory::Exact;
 use pulloff_engine::units::Quantity;
@@ -77,7 +77,7 @@ pub struct Request {
     /// The curve of the problem: its setting, and its limit points for jumps.
     pub curve: Arc<CurveData>,
     /// Where the walker stands; none only for moves.
-    pub from: Option<Point>,
+    pub from: Option<StatePoint>,
     /// What it stands on.
     pub at: At,
     /// What is controlled (reduced).
@@ -90,11 +90,11 @@ pub struct Request {
 
 /// One new state; the fields are as in [`Node`].
 #[derive(Debug, Clone)]
-pub struct Made {
+pub struct MadeState {
     pub kind: NodeKind,
     /// The problem it solves, which may be no longer the one on the screen.
     pub setting: Arc<Setting>,
-    pub point: Point,
+    pub point: StatePoint,
     pub state: State,
     pub stability: Stability,
     pub stiffness: Stiffness,
@@ -107,7 +107,7 @@ pub struct Made {
 
 /// The end of a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Outcome {
+pub enum WalkOutcome {
     Done,
     /// A limit point of the control, or a touch, was reached.
     AtLimit,
@@ -118,7 +118,7 @@ pub enum Outcome {
 }
 
 /// Does what `request` asks; each new state goes to `emit`, which says whether to go on.
-pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
+pub fn walk(request: &Request, emit: &mut dyn FnMut(MadeState) -> bool) -> WalkOutcome {
     let case = &request.curve.case;
     let walk = Walk {
         curve: &request.curve.base.curve,
@@ -139,7 +139,7 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
         Action::MoveTo(s) => walk.move_to(*s, &mut arrive),
         Action::MoveToEvent { limit, .. } => match request.curve.limits.get(*limit) {
             Some(limit) => walk.move_to_limit(limit.contact_radius, &mut arrive),
-            None => return Outcome::Stopped("the curve has changed meanwhile".to_owned()),
+            None => return WalkOutcome::Stopped("the curve has changed meanwhile".to_owned()),
         },
         Action::Begin => walk.first_touch(&mut arrive),
         Action::Solve { state, rings: Some(before), .. } => before.follow(&request.curve, state, &mut arrive),
@@ -152,38 +152,38 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     let length = |r: f64| said(&case.shown, Quantity::Length, r * case.units().length);
     match end {
         WalkEnd::Done if matches!(request.action, Action::ToLimit | Action::ToEvent(_)) => {
-            Outcome::Ended(format!("no limit point and no touch within {RUN_POINTS} steps"))
+            WalkOutcome::Ended(format!("no limit point and no touch within {RUN_POINTS} steps"))
         }
-        WalkEnd::Done => Outcome::Done,
-        WalkEnd::AtLimit | WalkEnd::AtTouch => Outcome::AtLimit,
-        WalkEnd::Paused => Outcome::Paused,
-        WalkEnd::AtEnd => Outcome::Ended("the end contact radius is reached; b turns round".to_owned()),
-        WalkEnd::EdgesMeet(radius) => Outcome::Ended(format!(
+        WalkEnd::Done => WalkOutcome::Done,
+        WalkEnd::AtLimit | WalkEnd::AtTouch => WalkOutcome::AtLimit,
+        WalkEnd::Paused => WalkOutcome::Paused,
+        WalkEnd::AtEnd => WalkOutcome::Ended("the end contact radius is reached; b turns round".to_owned()),
+        WalkEnd::EdgesMeet(radius) => WalkOutcome::Ended(format!(
             "the branch ends here: two edges meet at r {}; {} turns round",
             length(radius),
             Id::Reverse.named()
         )),
-        WalkEnd::Vanishes(radius) => Outcome::Ended(format!(
+        WalkEnd::Vanishes(radius) => WalkOutcome::Ended(format!(
             "the branch ends here: the contact at r {} shrinks to nothing; {} turns round",
             length(radius),
             Id::Reverse.named()
         )),
         WalkEnd::OutOfRange => {
-            Outcome::Ended("nothing found up to three times the start radius; b turns round".to_owned())
+            WalkOutcome::Ended("nothing found up to three times the start radius; b turns round".to_owned())
         }
         WalkEnd::Failed(WalkFailure::NotSolved) => {
             let held = match request.control {
                 Control::Stiffness(_) => "place of the spring's far end",
                 control => control_name(control),
             };
-            Outcome::Stopped(match request.action {
+            WalkOutcome::Stopped(match request.action {
                 Action::Solve { rings: Some(_), .. } => {
                     format!("no equilibrium of these contacts at this {held} near the old edges")
                 }
                 _ => format!("no equilibrium at this {held} near the old contact radius"),
             })
         }
-        WalkEnd::Failed(failure) => Outcome::Stopped(failure.to_string()),
+        WalkEnd::Failed(failure) => WalkOutcome::Stopped(failure.to_string()),
     }
 }
 
@@ -227,7 +227,7 @@ fn to_end(walk: &Walk<'_>, end: Turn, arrive: &mut Emit<'_>) -> WalkEnd {
     /// So near to the end the walker stands on it.
     const ON_IT: f64 = 1e-12;
     let over = |reached: &Reached| measure(end, walk.control, &reached.state) - end.value();
-    let (mut last, mut passing): (Option<Point>, Option<f64>) = (None, None);
+    let (mut last, mut passing): (Option<StatePoint>, Option<f64>) = (None, None);
     let ended = walk.steps(RUN_POINTS, true, &mut |reached| {
         if over(&reached) > 0.0 {
             passing = Some(reached.point.length);
@@ -284,7 +284,7 @@ pub fn from_exact(case: &Case, state: &State) -> f64 {
     (state.force - exact) / exact.abs()
 }
 
-fn made(request: &Request, reached: Reached) -> Made {
+fn made(request: &Request, reached: Reached) -> MadeState {
     let Reached { arrival, point, state, stability, stiffness, admissibility, digits } = reached;
     let (kind, ahead) = match arrival {
         Arrival::Step => (NodeKind::Step, None),
@@ -296,7 +296,7 @@ fn made(request: &Request, reached: Reached) -> Made {
         Arrival::Solved => (NodeKind::Solved, None),
     };
     let exact = if edges::has_rings(&point) { f64::NAN } else { from_exact(&request.curve.case, &state) };
-    Made {
+    MadeState {
         setting: Arc::clone(&request.curve.setting),
         stability,
         stiffness,

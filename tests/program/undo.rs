@@ -6,7 +6,7 @@ use crate::support::session::Session;
 use fastrand::Rng;
 use pulloff::explorer::export::ExportKind;
 use pulloff::explorer::script::{self, Permission, play};
-use pulloff::explorer::{Command, Effect, Id, Model, NodeKind, Panel, open, update};
+use pulloff::explorer::{Command, Effect, Id, Model, NodeKind, ScreenPanel, open, update};
 use pulloff::store::Store;
 use pulloff_engine::preset::{Preset, write};
 use std::sync::Arc;
@@ -206,7 +206,7 @@ fn a_burst_of_walks_and_undos_is_taken_in_its_order() {
     // Another line is selected before the turn comes: what is turned is what was selected at the key.
     let amplitude = session.model.preset.get("gap.amplitude");
     let all = [Id::NextEvent, Id::Down, Id::More, Id::Up, Id::More].map(Command::from);
-    assert_eq!(session.model.panel, Panel::Problem);
+    assert_eq!(session.model.panel, ScreenPanel::Problem);
     burst(&mut session, &all);
     assert_ne!(session.model.preset.get("gap.amplitude"), amplitude);
     burst(&mut session, &[Id::Undo.into()]);
