@@ -8,17 +8,17 @@ use divan::{Bencher, black_box};
 use pulloff::store::Store;
 use pulloff_engine::annuli::{Contacts, Ground, Wanted};
 use pulloff_engine::case::Case;
-use pulloff_engine::disc::{Basis, Evaluation, Exact, Order, Table};
+use pulloff_engine::disc::{Basis, Evaluation, ExactBasis, Order, Table};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::BasisSpec;
 use pulloff_engine::problem::Turn;
 use pulloff_engine::problem::{Control, Part, Problem};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::Detail;
-use pulloff_engine::quasistatic::path::{Losses, Setting, cycle};
-use pulloff_engine::rate::{Edge, EdgeLaw, Pull, Puller, Settings};
+use pulloff_engine::quasistatic::path::{Losses, PathSetting, cycle};
+use pulloff_engine::rate::{EdgeLaw, MovingEdge, Pull, PullSettings, Puller};
 use pulloff_engine::ritz::{Grading, Rings};
-use pulloff_engine::stability::{Axis, Family, Law};
+use pulloff_engine::stability::{Family, Law, MapAxis};
 use std::sync::Arc;
 
 /// The ring numbers.
@@ -81,7 +81,7 @@ fn trace(bencher: Bencher, rings: usize) {
 /// Every jump of the curve with its two losses.
 fn unload(bencher: Bencher, case: &Case, control: Control) {
     let curve = case.curve(&Unwatched).unwrap();
-    bencher.bench_local(|| case.unload(&curve, &Setting::one_disc(control), &Unwatched).unwrap());
+    bencher.bench_local(|| case.unload(&curve, &PathSetting::one_disc(control), &Unwatched).unwrap());
 }
 
 #[divan::bench(args = SIZES, max_time = 5)]
@@ -122,7 +122,7 @@ fn dense_curve(bencher: Bencher, rings: usize) {
 fn exact_dense_curve(bencher: Bencher) {
     let (problem, radii) = (problem(), dense_radii());
     bencher.bench_local(|| {
-        let basis = Exact::of(&problem, 0.5).unwrap();
+        let basis = ExactBasis::of(&problem, 0.5).unwrap();
         basis.equilibria(&problem, black_box(&radii), Order::State, &Unwatched)
     });
 }
@@ -150,7 +150,7 @@ fn events(bencher: Bencher, case: &Case) {
         for control in controls {
             curve.hold(control);
         }
-        let setting = |control| Setting { detail: Detail::Borders, ..Setting::new(control) };
+        let setting = |control| PathSetting { detail: Detail::Borders, ..PathSetting::new(control) };
         controls.map(|control| case.unload(&curve, &setting(control), &Unwatched).unwrap())
     });
 }
@@ -220,7 +220,7 @@ fn state_with_rings(bencher: Bencher, rings: u32) {
 fn whole_loop(bencher: Bencher, work_of_adhesion: f64, turn: f64) {
     let gap = problem().gap;
     let turn = Turn::Approach(turn);
-    let setting = Setting { losses: Losses::Once, ..Setting::new(Control::Displacement) };
+    let setting = PathSetting { losses: Losses::Once, ..PathSetting::new(Control::Displacement) };
     bencher.bench_local(|| {
         let table = Arc::new(Table::new(Arc::clone(&gap), 0.5, &Unwatched).unwrap());
         cycle(&table, black_box(work_of_adhesion), turn, &setting, &Unwatched).unwrap()
@@ -257,8 +257,8 @@ fn map_lines(bencher: Bencher, key: &str) {
     let store = Store::at("presets", &[]);
     let preset = store.load(&store.resolve("fig-9").unwrap(), &[] as &[&str]).unwrap().preset;
     let range = if key.contains("radius") { [0.02, 0.1] } else { [0.0, 0.0125] };
-    let x = Axis::new(key, range, false, 1.0).unwrap();
-    let y = Axis::new("groups.adhesion", [1e-3, 1.0], true, 1.0).unwrap();
+    let x = MapAxis::new(key, range, false, 1.0).unwrap();
+    let y = MapAxis::new("groups.adhesion", [1e-3, 1.0], true, 1.0).unwrap();
     bencher.bench_local(|| {
         Family::new(&preset, vec![x.clone(), y.clone()]).unwrap().map([32, 24], &Unwatched).unwrap()
     });
@@ -270,11 +270,11 @@ fn pulled(case: &Case, rate: f64, tolerance: f64) -> Pull {
     let puller = Puller {
         table: &case.table,
         control: Control::Displacement,
-        edge: Edge { law: EdgeLaw::symmetric(0.5), opening: gamma, closing: gamma },
+        edge: MovingEdge { law: EdgeLaw::symmetric(0.5), opening: gamma, closing: gamma },
         start: 0.5,
         wave: case.reduced.gap.feature_length(),
         rise: None,
-        settings: Settings { tolerance, ..Settings::default() },
+        settings: PullSettings { tolerance, ..PullSettings::default() },
     };
     puller.pull(&[Part::Apart { rate }], &Unwatched).unwrap()
 }

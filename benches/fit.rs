@@ -9,11 +9,11 @@ use divan::Bencher;
 use pulloff_engine::case::Case;
 use pulloff_engine::fit::{Options, fit};
 use pulloff_engine::gap::shapes::split_mix::SplitMix64;
-use pulloff_engine::measured::{Abscissa, Points, Segment, Spec, parse};
+use pulloff_engine::measured::{Abscissa, ColumnSpec, Points, Segment, parse};
 use pulloff_engine::preset::{Preset, read};
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::Setting;
+use pulloff_engine::quasistatic::path::PathSetting;
 use std::fmt::Write;
 
 /// Points of a fit.
@@ -44,7 +44,7 @@ fn preset(gap: &str) -> Preset {
 fn unloaded(preset: &Preset) -> Points {
     let case = Case::new(preset).unwrap();
     let curve = case.curve(&Unwatched).unwrap();
-    let unloading = case.unload(&curve, &Setting::one_disc(Control::Displacement), &Unwatched).unwrap();
+    let unloading = case.unload(&curve, &PathSetting::one_disc(Control::Displacement), &Unwatched).unwrap();
     let state = |s: f64| case.basis.equilibrium(&case.reduced, s).unwrap();
     let force = |delta: f64| {
         let piece = |[outer, inner]: &[f64; 2]| {
@@ -108,5 +108,5 @@ fn a_million_rows(bencher: Bencher) {
         let branch = if 2 * i < ROWS { "approach" } else { "retract" };
         writeln!(text, "{x:.4},{:.5},{branch}", 0.3 * x.sin()).unwrap();
     }
-    bencher.bench_local(|| parse(text.as_bytes(), &Spec::default()).unwrap());
+    bencher.bench_local(|| parse(text.as_bytes(), &ColumnSpec::default()).unwrap());
 }

@@ -14,7 +14,7 @@ use pulloff_engine::preset::{Preset, Value};
 use pulloff_engine::progress::Progress;
 use pulloff_engine::report::path::Extent;
 use pulloff_engine::report::{PathReport, StabilityReport, TraceReport};
-use pulloff_engine::sweep::{Column, measure::measure as row};
+use pulloff_engine::sweep::{QuantityColumn, measure::measure as row};
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
@@ -92,7 +92,8 @@ fn main() {
             "cycle_loss",
             "fitted_modulus",
         ];
-        let columns: Vec<Column> = wished.iter().filter_map(|name| Column::named(name).ok()).collect();
+        let columns: Vec<QuantityColumn> =
+            wished.iter().filter_map(|name| QuantityColumn::named(name).ok()).collect();
         measure("sweep's row of", &|progress| drop(row(&preset, &columns, progress)));
         if preset.data.source.is_some() {
             let free = ["material.effective_modulus", "material.work_of_adhesion"].map(str::to_owned);

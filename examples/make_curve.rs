@@ -88,13 +88,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pulloff_engine::measured::{Spec, parse};
+    use pulloff_engine::measured::{ColumnSpec, parse};
 
     const SHIPPED: &str = include_str!("../presets/data/lens.csv");
 
     #[test]
     fn the_shipped_file_is_the_one_made_here() {
-        let read = |text: &str| parse(text.as_bytes(), &Spec::default()).unwrap();
+        let read = |text: &str| parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
         let (shipped, made) = (read(SHIPPED), read(&curve()));
         assert_eq!(shipped.segments, made.segments);
         // The last digit may fall otherwise where the sine of the machine does.

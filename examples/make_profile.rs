@@ -66,7 +66,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pulloff_engine::gap::{shapes::Profile, shapes::Smoothing};
+    use pulloff_engine::gap::{shapes::ProfileGap, shapes::Smoothing};
     use pulloff_engine::preset::profile::parse;
 
     const SHIPPED: &str = include_str!("../presets/data/rough-sphere.csv");
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn reading_and_smoothing_bring_the_truth_back() {
         let (columns, _) = parse(SHIPPED.as_bytes()).unwrap().in_one_unit().unwrap();
-        let profile = Profile::new(&columns.radii, &columns.gaps, Smoothing::Auto).unwrap();
+        let profile = ProfileGap::new(&columns.radii, &columns.gaps, Smoothing::Auto).unwrap();
         assert!((profile.removed() / 2e-3 - 1.0).abs() < 0.1, "{}", profile.removed());
         let truth = truth().unwrap();
         // Up to the height of the apex: the phases of the waves give the true tip a slope, and the even curve rounds it.

@@ -60,7 +60,7 @@ pub struct Binding {
 
 /// What is wrong with a line.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Mistake {
+pub struct ConfigMistake {
     /// The line, from 1.
     pub line: usize,
     /// What is wrong, safe to show.
@@ -73,14 +73,14 @@ pub enum ConfigError {
     #[error(transparent)]
     File(#[from] FileError),
     /// Lines of it are wrong; at least one.
-    #[error("{name}:{}", Listed(.mistakes))]
-    Mistakes { name: String, mistakes: Vec<Mistake> },
+    #[error("{name}:{}", ListedMistakes(.mistakes))]
+    Mistakes { name: String, mistakes: Vec<ConfigMistake> },
 }
 
 /// The first mistake, and how many more there are.
-struct Listed<'a>(&'a [Mistake]);
+struct ListedMistakes<'a>(&'a [ConfigMistake]);
 
-impl fmt::Display for Listed<'_> {
+impl fmt::Display for ListedMistakes<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(first) = self.0.first() {
             write!(f, "{}: {}", first.line, first.what)?;
@@ -97,10 +97,10 @@ impl fmt::Display for Listed<'_> {
 const FEW: usize = 8;
 
 /// Reads a table into the settings.
-type Reader = fn(&mut Config, &DeTable<'_>, &mut Sheet<'_>);
+type TableReader = fn(&mut Config, &DeTable<'_>, &mut ConfigSheet<'_>);
 
 /// The tables of the file.
-const TABLES: [(&str, Reader); 2] = [("keys", keys), ("look", look)];
+const TABLES: [(&str, TableReader); 2] = [("keys", keys), ("look", look)];
 
 /// The file of this person, which need not exist; `None` where there is no home.
 #[must_use]
@@ -130,7 +130,7 @@ pub fn load_if_there(path: &Path) -> Result<Config, ConfigError> {
 /// The settings of a text; `name` names it in messages.
 pub fn read(name: &str, text: &str) -> Result<Config, ConfigError> {
     let mut config = Config { name: name.to_owned(), ..Config::default() };
-    let mut sheet = Sheet { text, mistakes: Vec::new() };
+    let mut sheet = ConfigSheet { text, mistakes: Vec::new() };
     match DeTable::parse(text) {
         Err(error) => {
             let at = error.span().map_or(0, |span| span.start);
@@ -160,19 +160,19 @@ pub fn read(name: &str, text: &str) -> Result<Config, ConfigError> {
 }
 
 /// The text, and what is wrong with it so far.
-struct Sheet<'a> {
+struct ConfigSheet<'a> {
     text: &'a str,
-    mistakes: Vec<Mistake>,
+    mistakes: Vec<ConfigMistake>,
 }
 
-impl Sheet<'_> {
+impl ConfigSheet<'_> {
     /// The line of a byte, from 1.
     fn line(&self, at: usize) -> usize {
         1 + self.text.bytes().take(at).filter(|byte| *byte == b'\n').count()
     }
 
     fn wrong(&mut self, at: usize, what: String) {
-        self.mistakes.push(Mistake { line: self.line(at), what });
+        self.mistakes.push(ConfigMistake { line: self.line(at), what });
     }
 
     fn unknown(&mut self, at: usize, what: &str, word: &str, known: &[&str]) {
@@ -187,7 +187,7 @@ impl Sheet<'_> {
 }
 
 /// `[keys]`: a command's name, and a key or a list of keys.
-fn keys(config: &mut Config, table: &DeTable<'_>, sheet: &mut Sheet<'_>) {
+fn keys(config: &mut Config, table: &DeTable<'_>, sheet: &mut ConfigSheet<'_>) {
     for (name, value) in table {
         let at = name.span().start;
         let Some(row) = ROWS.iter().find(|row| row.name == &**name.get_ref()) else {
@@ -214,7 +214,7 @@ fn keys(config: &mut Config, table: &DeTable<'_>, sheet: &mut Sheet<'_>) {
 }
 
 /// `[look]`: how the screen looks.
-fn look(config: &mut Config, table: &DeTable<'_>, sheet: &mut Sheet<'_>) {
+fn look(config: &mut Config, table: &DeTable<'_>, sheet: &mut ConfigSheet<'_>) {
     for (name, value) in table {
         let at = name.span().start;
         let Some((row, words)) = LOOK.iter().find(|(row, _)| *row == &**name.get_ref()) else {

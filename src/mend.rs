@@ -17,14 +17,14 @@ pub trait Mend {
 
 /// A fault in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Reason {
+pub struct WordedFault {
     /// The words.
     pub text: String,
     /// As [`Mend::can_be_mended`].
     pub can_be_mended: bool,
 }
 
-impl Reason {
+impl WordedFault {
     /// What the person can mend.
     pub fn mendable(text: impl Into<String>) -> Self {
         Self { text: text.into(), can_be_mended: true }
@@ -36,13 +36,13 @@ impl Reason {
     }
 }
 
-impl fmt::Display for Reason {
+impl fmt::Display for WordedFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text)
     }
 }
 
-impl Mend for Reason {
+impl Mend for WordedFault {
     fn can_be_mended(&self) -> bool {
         self.can_be_mended
     }

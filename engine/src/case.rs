@@ -4,11 +4,11 @@
 //! they all see the same numbers.
 
 use crate::continuation::Branch;
-use crate::disc::table::Kept;
-use crate::disc::{Basis, Exact, Panels, Table, TableError};
+use crate::disc::table::KeptTables;
+use crate::disc::{Basis, ExactBasis, Panels, Table, TableError};
 use crate::elementary::cbrt;
 use crate::gap::function::Scaled;
-use crate::gap::panels::Refused;
+use crate::gap::panels::Unresolved;
 use crate::gap::{Gap, Shape};
 use crate::preset::{BasisSpec, Material, Preset};
 use crate::problem::cohesion::TABOR_OVER_MAUGIS;
@@ -19,7 +19,7 @@ use crate::problem::{
 use crate::progress::{Progress, Unwatched};
 use crate::quasistatic::admissible::{Judge, falls};
 use crate::quasistatic::path::{
-    Losses, Path, PathError, Setting, Zones, cycle, cycle_in_zone, start_in_zone, unload, unload_in_zone,
+    Losses, Path, PathError, PathSetting, Zones, cycle, cycle_in_zone, start_in_zone, unload, unload_in_zone,
 };
 use crate::quasistatic::start::StartError;
 use crate::quasistatic::start::contact_radius;
@@ -172,7 +172,7 @@ impl Case {
                     error => CaseError::Basis(error),
                 })?
             }
-            BasisSpec::Exact => Arc::new(Exact::new(Arc::clone(&table), reach)),
+            BasisSpec::Exact => Arc::new(ExactBasis::new(Arc::clone(&table), reach)),
         };
         let cohesion = preset.cohesion().map(|law| law.reduced_by(units.length, units.pressure));
         let closing = preset.edge.closing_work_of_adhesion.map(|gamma| gamma / units.work_of_adhesion);
@@ -188,7 +188,7 @@ impl Case {
         };
         if preset.basis == BasisSpec::Exact {
             // From here on the start decides how far it reaches, however it was given.
-            basis = Arc::new(Exact::new(Arc::clone(&table), start));
+            basis = Arc::new(ExactBasis::new(Arc::clone(&table), start));
         }
         let end = preset.end_contact_radius(start * units.length) / units.length;
         if end >= start {
@@ -314,14 +314,14 @@ impl Case {
     }
 
     /// What a path is asked for: the device and the contacts of the preset, losses twice, states to draw.
-    pub fn setting(&self) -> Setting<'static> {
-        Setting { contact: self.contact, closing: self.closing, ..Setting::new(self.control) }
+    pub fn setting(&self) -> PathSetting<'static> {
+        PathSetting { contact: self.contact, closing: self.closing, ..PathSetting::new(self.control) }
     }
 
     /// The same for an unloading, which ring elements follow as one disc.
-    pub fn setting_of_unloading(&self) -> Setting<'static> {
+    pub fn setting_of_unloading(&self) -> PathSetting<'static> {
         let contact = if self.has_elements { ContactKind::OneDisc } else { self.contact };
-        Setting { contact, ..self.setting() }
+        PathSetting { contact, ..self.setting() }
     }
 
     /// The quasi-static unloading along `curve`, reduced; `progress` is asked often.
@@ -331,7 +331,7 @@ impl Case {
     pub fn unload(
         &self,
         curve: &Curve,
-        setting: &Setting<'_>,
+        setting: &PathSetting<'_>,
         progress: &dyn Progress,
     ) -> Result<Path, CaseError> {
         unload(curve, setting, progress).map_err(|error| self.no_path(error, setting.control))
@@ -345,7 +345,7 @@ impl Case {
     pub fn down(
         &self,
         curve: &Curve,
-        setting: &Setting<'_>,
+        setting: &PathSetting<'_>,
         progress: &dyn Progress,
     ) -> Result<Path, CaseError> {
         match self.unload_in_zone(setting, progress)? {
@@ -363,7 +363,7 @@ impl Case {
     pub fn cycle(
         &self,
         turn: Option<Turn>,
-        setting: &Setting<'_>,
+        setting: &PathSetting<'_>,
         progress: &dyn Progress,
     ) -> Result<Path, CaseError> {
         let turn = turn.or(self.turn).unwrap_or(Turn::Radius(self.start));
@@ -382,7 +382,7 @@ impl Case {
     /// As [`Case::unload`].
     pub fn unload_in_zone(
         &self,
-        setting: &Setting<'_>,
+        setting: &PathSetting<'_>,
         progress: &dyn Progress,
     ) -> Result<Option<Path>, CaseError> {
         let Some(law) = self.cohesion else { return Ok(None) };
@@ -416,11 +416,11 @@ impl Case {
         let gap: Arc<dyn Gap> = Arc::new(Scaled::new(profile, self.units().length));
         let problem = Reduced { gap, ..self.reduced.clone() };
         let table = Arc::new(Table::new(Arc::clone(&problem.gap), self.start, progress).ok()?);
-        let basis = Arc::new(Exact::new(Arc::clone(&table), self.start));
+        let basis = Arc::new(ExactBasis::new(Arc::clone(&table), self.start));
         let ends = [self.start, self.end];
         let curve = Curve::new(problem, basis, table, ends, Detail::Drawn, progress)?;
-        let setting = Setting { losses: Losses::Once, ..self.setting() };
-        let coarser = unload(&curve, &Setting { control: path.control, ..setting }, progress).ok();
+        let setting = PathSetting { losses: Losses::Once, ..self.setting() };
+        let coarser = unload(&curve, &PathSetting { control: path.control, ..setting }, progress).ok();
         if progress.stop() {
             return None;
         }
@@ -529,7 +529,7 @@ pub fn critical_force(preset: &Preset) -> Option<f64> {
 }
 
 /// The tables of the last gaps, by shape and unit of length.
-static TABLES: Kept<(Shape, u64)> = Mutex::new(Vec::new());
+static TABLES: KeptTables<(Shape, u64)> = Mutex::new(Vec::new());
 
 /// How far the table of a gap reaches to begin with.
 fn reach(reduced: &Reduced, wanted: Start) -> f64 {
@@ -560,7 +560,7 @@ fn refusal(error: TableError, length: f64, shown: &UnitSystem) -> CaseError {
         TableError::Cancelled => CaseError::Cancelled,
         TableError::TooFine(refused) => {
             let (radius, largest) = (refused.radius * length, refused.largest * length);
-            let error = TableError::TooFine(Refused { radius, largest, ..refused });
+            let error = TableError::TooFine(Unresolved { radius, largest, ..refused });
             CaseError::Table { error, shown: Box::new(shown.clone()) }
         }
     }

@@ -189,15 +189,15 @@ pub fn is_header(line: &str) -> bool {
 }
 
 /// A column as a header has it: its name, and its unit as written.
-pub type Head = (String, Option<String>);
+pub type ColumnHead = (String, Option<String>);
 
 /// The columns of a header: a unit stands in brackets or parentheses, or, where it is one of `dimensions`, behind a slash or a
 /// space.
 ///
 /// What stands in brackets is not parted, and belongs to the cell before it.
-pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<Head> {
-    let mut cells: Vec<Head> = Vec::new();
-    let mut at: Head = Default::default();
+pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<ColumnHead> {
+    let mut cells: Vec<ColumnHead> = Vec::new();
+    let mut at: ColumnHead = Default::default();
     let mut open: Option<(char, String)> = None;
     for c in line.chars() {
         match (&mut open, separator) {
@@ -231,7 +231,7 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
     if separator == Separator::Spaces {
         cells.retain(|(name, unit)| !name.is_empty() || unit.is_some());
     }
-    let apart = |(name, unit): Head| match unit {
+    let apart = |(name, unit): ColumnHead| match unit {
         Some(unit) => (bare(&name).to_owned(), Some(unit)),
         None => unbracketed(bare(&name), dimensions),
     };
@@ -241,7 +241,7 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
 /// A name with its unit behind a slash or a space, where that is one of `dimensions`: `r / um`, `height nm`.
 ///
 /// Another word there may be anything: `r/R` is a ratio.
-fn unbracketed(text: &str, dimensions: &[Dimension]) -> Head {
+fn unbracketed(text: &str, dimensions: &[Dimension]) -> ColumnHead {
     let is_unit = |unit: &str| Unit::parse(unit, 0).is_ok_and(|unit| dimensions.contains(&unit.dimension()));
     let parted = text.rsplit_once('/').or_else(|| text.rsplit_once(char::is_whitespace));
     match parted.map(|(name, unit)| (name.trim(), unit.trim())) {

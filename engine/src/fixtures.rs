@@ -1,6 +1,6 @@
 //! The presets that come with the program, for tests.
 
-use crate::gap::shapes::Rows;
+use crate::gap::shapes::ProfileRows;
 use crate::preset::measured::rows;
 use crate::preset::profile::parse;
 use crate::preset::read::read_in;
@@ -34,7 +34,7 @@ fn place(folder: Option<&Path>, name: &str) -> PathBuf {
 }
 
 /// The rows of a file.
-pub fn load(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
+pub fn load(folder: Option<&Path>, name: &str) -> Result<ProfileRows, String> {
     rows(folder, name, parse(&points(folder, name)?).map_err(|error| error.to_string())?)
 }
 

@@ -119,16 +119,18 @@ pub mod zone;
 
 pub use case::{Case, CaseError};
 pub use gap::formula::{Formula, FormulaParameter, TypedGap};
-pub use gap::shapes::{ExactSphere, Harmonic, Harmonics, Measured, PowerLaw, RandomWaves, Rows, Smoothing};
+pub use gap::shapes::{
+    ExactSphere, Harmonic, Harmonics, MeasuredGap, PowerLaw, ProfileRows, RandomWaves, Smoothing,
+};
 pub use gap::{Gap, Jet, Shape};
 pub use preset::{
     BasisSpec, Files, Invalid, Material, Mistake, PathSpec, Preset, ReadError, read, read_in, read_with,
 };
-pub use problem::{Adhesion, Cohesion, Control, Groups, Problem, Start, Stated, Units};
+pub use problem::{Adhesion, Cohesion, Control, Groups, Problem, Start, StatedCohesion, Units};
 pub use progress::{Progress, Unwatched};
 pub use quasistatic::{
-    Admissibility, Curve, CurveStop, Detail, Event, EventKind, Landscape, Limit, Losses, Path, PathState,
-    PathStop, Profile, Stability, State, Turn,
+    Admissibility, Curve, CurveStop, Detail, Event, EventKind, Extremum, Landscape, Limit, Losses, Path,
+    PathState, PathStop, Profile, Stability, State,
 };
 pub use report::path::Extent;
 pub use report::{

@@ -31,13 +31,13 @@ impl Progress for Unwatched {
 }
 
 /// One part of a longer computation: its share is a share of that part.
-pub(crate) struct Part<'a> {
+pub(crate) struct ProgressPart<'a> {
     whole: &'a dyn Progress,
     from: f64,
     to: f64,
 }
 
-impl<'a> Part<'a> {
+impl<'a> ProgressPart<'a> {
     /// The part of `whole` between these two shares.
     pub(crate) fn new(whole: &'a dyn Progress, [from, to]: [f64; 2]) -> Self {
         whole.report(from);
@@ -45,7 +45,7 @@ impl<'a> Part<'a> {
     }
 }
 
-impl Progress for Part<'_> {
+impl Progress for ProgressPart<'_> {
     fn report(&self, share: f64) {
         self.whole.report(self.from + (self.to - self.from) * share.clamp(0.0, 1.0));
     }

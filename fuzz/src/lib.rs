@@ -6,7 +6,7 @@ use pulloff::config;
 use pulloff_engine::gap::formula::Formula;
 use pulloff::explorer::script;
 use pulloff::explorer::session::{Document, Ended};
-use pulloff_engine::measured::{self, Spec};
+use pulloff_engine::measured::{self, ColumnSpec};
 use pulloff_engine::preset::profile::{self, ROW_RANGE};
 use pulloff_engine::text::is_unsafe;
 use pulloff::store::read;
@@ -69,7 +69,7 @@ pub fn csv(bytes: &[u8]) {
 /// A measured curve that is read has numbers alone, as many in each column.
 pub fn measured(bytes: &[u8]) {
     for columns in ["", "x=1,force=2"] {
-        match measured::parse(bytes, &Spec::parse(columns).expect("a form of ours")) {
+        match measured::parse(bytes, &ColumnSpec::parse(columns).expect("a form of ours")) {
             Err(error) => assert_shown_safely(&error),
             Ok(read) => {
                 let rows = read.columns[0].values.len();

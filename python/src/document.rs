@@ -3,7 +3,7 @@
 use crate::arrays::arrays_ready;
 use crate::errors::in_python;
 use numpy::PyArray1;
-use pulloff_engine::report::rows::{RowsError, Table};
+use pulloff_engine::report::rows::{ReportTable, RowsError};
 use pulloff_engine::report::{
     self, MapReport, PathReport, PullReport, SpeedsReport, StabilityReport, TraceReport,
 };
@@ -17,7 +17,7 @@ pub trait Report: Send + Sync {
     /// The document as JSON.
     fn json(&self) -> Result<String, serde_json::Error>;
     /// Its rows under the names of their columns.
-    fn table(&self) -> Result<Table, RowsError>;
+    fn table(&self) -> Result<ReportTable, RowsError>;
     /// What to be careful about.
     fn warnings(&self) -> &[String];
 }
@@ -29,7 +29,7 @@ macro_rules! reports {
                 report::json(self)
             }
 
-            fn table(&self) -> Result<Table, RowsError> {
+            fn table(&self) -> Result<ReportTable, RowsError> {
                 Self::table(self)
             }
 
@@ -53,7 +53,7 @@ reports!(
 #[pyclass(frozen, module = "pulloff._engine")]
 pub struct Document {
     report: Box<dyn Report>,
-    table: OnceLock<Table>,
+    table: OnceLock<ReportTable>,
 }
 
 impl Document {
@@ -62,7 +62,7 @@ impl Document {
         Self { report: Box::new(report), table: OnceLock::new() }
     }
 
-    fn table(&self) -> PyResult<&Table> {
+    fn table(&self) -> PyResult<&ReportTable> {
         if let Some(table) = self.table.get() {
             return Ok(table);
         }

@@ -1,7 +1,7 @@
 //! Errors of the engine as exceptions of the package: `pulloff.errors` has the classes, the engine has the sentences.
 
 use pulloff_engine::CaseError;
-use pulloff_engine::preset::{Invalid, Mistake, Origin, ReadError};
+use pulloff_engine::preset::{Invalid, Mistake, ReadError, ValueOrigin};
 use pulloff_engine::quasistatic::path::PathError;
 use pulloff_engine::report::map::MapError;
 use pulloff_engine::report::pull::PullError;
@@ -68,8 +68,8 @@ fn preset(py: Python<'_>, sentence: &str, mistakes: &[(Option<usize>, Option<&st
 /// A preset that cannot be read.
 pub fn of_reading(py: Python<'_>, error: &ReadError) -> PyErr {
     let line = |mistake: &Mistake| match &mistake.origin {
-        Origin::File { line, .. } => *line,
-        Origin::Assignment(_) => None,
+        ValueOrigin::File { line, .. } => *line,
+        ValueOrigin::Assignment(_) => None,
     };
     let mistakes: Vec<_> = error
         .mistakes
@@ -98,8 +98,8 @@ pub fn of_source(py: Python<'_>, sentence: &str) -> PyErr {
 pub fn of_spec(py: Python<'_>, error: &SpecError) -> PyErr {
     let attributes = PyDict::new(py);
     let line = match &error.origin {
-        Origin::File { line, .. } => *line,
-        Origin::Assignment(_) => None,
+        ValueOrigin::File { line, .. } => *line,
+        ValueOrigin::Assignment(_) => None,
     };
     match attributes.set_item("line", line) {
         Ok(()) => raise(py, "SpecError", &error.to_string(), &attributes),

@@ -5,13 +5,13 @@ use crate::errors;
 use crate::problem::Problem;
 use crate::running::long;
 use pulloff_engine::fit::{FitError, Model, Options, fit_models, fit_together};
-use pulloff_engine::measured::{Asked, Source, Span};
+use pulloff_engine::measured::{Asked, PointsFile, ValueRange};
 use pulloff_engine::preset::{Invalid, Preset, Value as PresetValue, data as data_keys};
 use pulloff_engine::report;
 use pulloff_engine::report::fit::{FitReport, ModelsReport, ParameterReport, TogetherReport};
 use pulloff_engine::report::residuals;
-use pulloff_engine::report::rows::{RowsError, Table};
-use pulloff_engine::report::speeds::{Pair, SpeedsError, SpeedsReport};
+use pulloff_engine::report::rows::{ReportTable, RowsError};
+use pulloff_engine::report::speeds::{MeasuredPair, SpeedsError, SpeedsReport};
 use pulloff_engine::text::quote;
 use pyo3::prelude::*;
 use serde_json::Value;
@@ -24,7 +24,7 @@ type Fitted = (Document, Problem, &'static str, Option<String>, String, Option<S
 const COLUMNS: [&str; 5] = ["key", "value", "standard_error", "start", "unit"];
 
 /// A row for each value.
-fn table(values: &[ParameterReport]) -> Table {
+fn table(values: &[ParameterReport]) -> ReportTable {
     let rows = values.iter().map(|parameter| {
         let error = parameter.standard_error.map_or(Value::Null, Value::from);
         vec![
@@ -35,7 +35,7 @@ fn table(values: &[ParameterReport]) -> Table {
             parameter.unit.into(),
         ]
     });
-    Table { columns: COLUMNS.map(str::to_owned).to_vec(), rows: rows.collect() }
+    ReportTable { columns: COLUMNS.map(str::to_owned).to_vec(), rows: rows.collect() }
 }
 
 impl Report for TogetherReport {
@@ -43,7 +43,7 @@ impl Report for TogetherReport {
         report::json(self)
     }
 
-    fn table(&self) -> Result<Table, RowsError> {
+    fn table(&self) -> Result<ReportTable, RowsError> {
         Ok(table(&self.law))
     }
 
@@ -57,7 +57,7 @@ impl Report for FitReport {
         report::json(self)
     }
 
-    fn table(&self) -> Result<Table, RowsError> {
+    fn table(&self) -> Result<ReportTable, RowsError> {
         Ok(table(&self.parameters))
     }
 
@@ -94,7 +94,7 @@ pub struct Wanted {
 impl Wanted {
     /// The options of a fit to the points of `preset`.
     fn options(&self, preset: &Preset) -> Options {
-        let span = |range: [f64; 2]| Span { lo: range[0], hi: range[1] };
+        let span = |range: [f64; 2]| ValueRange { lo: range[0], hi: range[1] };
         let asked = Asked {
             sigma: [self.sigma[0], self.sigma[1], None],
             x: self.x_range.map(span),
@@ -129,7 +129,7 @@ fn attached(
     let name = data.as_ref().map(|(name, _)| name.clone()).or(own).unwrap_or_else(|| "data".to_owned());
     let mut changes = Vec::new();
     if let Some((name, text)) = data {
-        let source = Source::new(name, None, text.into());
+        let source = PointsFile::new(name, None, text.into());
         changes.push((data_keys::FILE, PresetValue::Points(Arc::new(source))));
     }
     // With the file that they are of, not with the one before.
@@ -159,8 +159,8 @@ pub fn speeds(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Document> {
     let (name, preset) = attached(py, problem.get(), data, reading.each_ref(), skip, None)?;
-    let names = Pair::ALL.map(Pair::name);
-    let pair = Pair::ALL.into_iter().find(|pair| of.as_deref() == Some(pair.name()));
+    let names = MeasuredPair::ALL.map(MeasuredPair::name);
+    let pair = MeasuredPair::ALL.into_iter().find(|pair| of.as_deref() == Some(pair.name()));
     if let Some(of) = of.filter(|_| pair.is_none()) {
         return Err(errors::of_data(py, &format!("of = \"{}\" is none of {}", quote(&of), names.join(", "))));
     }

@@ -9,13 +9,13 @@ use pulloff::store::file::{LARGEST, read_bytes, read_text};
 use pulloff::store::{FILES, Overwrite, write_atomically};
 use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::disc::exact::FAR;
-use pulloff_engine::disc::{Basis, Exact, TableError, outside};
-use pulloff_engine::gap::panels::Refused;
-use pulloff_engine::gap::shapes::{Measured, Profile, Rows, Smoothing};
+use pulloff_engine::disc::{Basis, ExactBasis, TableError, outside};
+use pulloff_engine::gap::panels::Unresolved;
+use pulloff_engine::gap::shapes::{MeasuredGap, ProfileGap, ProfileRows, Smoothing};
 use pulloff_engine::gap::{Gap, Shape};
-use pulloff_engine::measured::{Role, Source};
+use pulloff_engine::measured::{ColumnRole, PointsFile};
 use pulloff_engine::preset::measured::SHIPPED_DATA;
-use pulloff_engine::preset::read::{Held, read_holding, read_in};
+use pulloff_engine::preset::read::{HeldFiles, read_holding, read_in};
 use pulloff_engine::preset::{Preset, Value, profile, shipped, write};
 use pulloff_engine::problem::Control;
 use pulloff_engine::problem::Turn;
@@ -23,9 +23,9 @@ use pulloff_engine::progress::Progress;
 use pulloff_engine::quasistatic::Losses;
 use pulloff_engine::report::map::Ordinate;
 use pulloff_engine::report::path::Extent;
-use pulloff_engine::report::pull::Asked;
+use pulloff_engine::report::pull::AskedPulls;
 use pulloff_engine::report::{MapReport, PathReport, PullReport, StabilityReport, TraceReport};
-use pulloff_engine::stability::{Axis, COMPLIANCE};
+use pulloff_engine::stability::{COMPLIANCE, MapAxis};
 use pulloff_engine::text::{closest, quote, show_path};
 use pulloff_engine::theory;
 use pulloff_engine::units::Unit;
@@ -149,14 +149,15 @@ impl Problem {
         r: PyReadonlyArray1<'_, f64>,
         h: PyReadonlyArray1<'_, f64>,
     ) -> PyResult<Self> {
-        let rows = Rows {
+        let rows = ProfileRows {
             name: "arrays".to_owned(),
             radii: r.as_slice()?.to_vec(),
             gaps: h.as_slice()?.to_vec(),
             unit: Unit::parse("m", 0).ok(),
-            ..Rows::default()
+            ..ProfileRows::default()
         };
-        let read = read_holding(FILES, "from_gap", text, Held { rows: Arc::new(rows), ..Held::default() });
+        let read =
+            read_holding(FILES, "from_gap", text, HeldFiles { rows: Arc::new(rows), ..HeldFiles::default() });
         Ok(Self { preset: read.map_err(|error| errors::of_reading(py, &error))? })
     }
 
@@ -197,14 +198,14 @@ impl Problem {
         )>,
         points: Option<(String, Option<PathBuf>, Vec<u8>)>,
     ) -> PyResult<Self> {
-        let mut held = Held::default();
+        let mut held = HeldFiles::default();
         if let Some((name, folder, radii, gaps, unit, notes)) = rows {
             let (radii, gaps) = (radii.as_slice()?.to_vec(), gaps.as_slice()?.to_vec());
             let unit = unit.and_then(|unit| Unit::parse(&unit, 0).ok());
-            held.rows = Arc::new(Rows { name, folder, radii, gaps, unit, notes });
+            held.rows = Arc::new(ProfileRows { name, folder, radii, gaps, unit, notes });
         }
         if let Some((name, folder, bytes)) = points {
-            held.points = Arc::new(Source::new(name, folder, bytes.into()));
+            held.points = Arc::new(PointsFile::new(name, folder, bytes.into()));
         }
         let read = read_holding(FILES, "the text", text, held);
         Ok(Self { preset: read.map_err(|error| errors::of_reading(py, &error))? })
@@ -216,7 +217,7 @@ impl Problem {
         if let Shape::Profile(measured) = &self.preset.gap
             && !measured.rows().name.starts_with(SHIPPED_DATA)
         {
-            preset.gap = Shape::Profile(Arc::new(Measured::clone(measured).named(rows.to_owned())));
+            preset.gap = Shape::Profile(Arc::new(MeasuredGap::clone(measured).named(rows.to_owned())));
         }
         if let Some(source) = self.preset.data.source.as_ref().filter(|s| !s.name.starts_with(SHIPPED_DATA)) {
             preset.data.source = Some(Arc::new(source.named(points.to_owned(), None)));
@@ -310,7 +311,7 @@ impl Problem {
         loads: Vec<f64>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Document> {
-        let asked = Asked { rates, loads };
+        let asked = AskedPulls { rates, loads };
         let made = long(py, progress, |progress| PullReport::compute(&self.preset, &asked, progress))?;
         made.map(Document::new).map_err(|error| errors::of_pull(py, &error))
     }
@@ -380,7 +381,7 @@ impl Problem {
 
 impl Problem {
     /// An axis of a map: a number of the preset, a group, or the compliance of the device.
-    fn axis(&self, py: Python<'_>, (key, from, to, log): &(String, f64, f64, bool)) -> PyResult<Axis> {
+    fn axis(&self, py: Python<'_>, (key, from, to, log): &(String, f64, f64, bool)) -> PyResult<MapAxis> {
         let is_number = self.preset.row(key).is_some_and(|row| row.kind.is_number());
         if key != COMPLIANCE && !is_number {
             let sentence = match self.preset.clone().set(key, 1.0.into()) {
@@ -392,7 +393,7 @@ impl Problem {
             return Err(errors::of_axis(py, &sentence));
         }
         let unit = self.preset.gap.length().unwrap_or(1.0) * self.preset.material.effective_modulus;
-        Axis::new(key, [*from, *to], *log, 1.0 / unit)
+        MapAxis::new(key, [*from, *to], *log, 1.0 / unit)
             .map_err(|error| errors::of_axis(py, &error.to_string()))
     }
 }
@@ -404,7 +405,7 @@ pub fn between(
     h: PyReadonlyArray1<'_, f64>,
     at: PyReadonlyArray1<'_, f64>,
 ) -> PyResult<Vec<f64>> {
-    let profile = Profile::new(r.as_slice()?, h.as_slice()?, Smoothing::None)
+    let profile = ProfileGap::new(r.as_slice()?, h.as_slice()?, Smoothing::None)
         .map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))?;
     Ok(at.as_slice()?.iter().map(|r| profile.jet(*r).value).collect())
 }
@@ -439,7 +440,7 @@ pub fn read_file(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyBytes>> 
 /// The SI unit of what a column of this name holds in a measured curve; nothing for a name that is not known or has a unit.
 #[pyfunction]
 pub fn unit_of(column: &str) -> &'static str {
-    Role::of_bare(column).and_then(Role::si).unwrap_or("")
+    ColumnRole::of_bare(column).and_then(ColumnRole::si).unwrap_or("")
 }
 
 /// What makes two problems the same: the text of the preset without the names of files, and what these hold.
@@ -456,7 +457,7 @@ impl Content {
         if let Shape::Profile(measured) = &preset.gap {
             let held = measured.rows();
             rows.extend(held.radii.iter().chain(&held.gaps).map(|x| x.to_bits()));
-            unnamed.gap = Shape::Profile(Arc::new(Measured::clone(measured).named("rows".to_owned())));
+            unnamed.gap = Shape::Profile(Arc::new(MeasuredGap::clone(measured).named("rows".to_owned())));
         }
         if let Some(source) = &preset.data.source {
             points = Arc::clone(&source.bytes);
@@ -494,12 +495,12 @@ impl Across {
             Err(TableError::Cancelled) => return Err(CaseError::Cancelled),
             Err(TableError::TooFine(refused)) => {
                 let (radius, largest) = (refused.radius * units.length, refused.largest * units.length);
-                let error = TableError::TooFine(Refused { radius, largest, ..refused });
+                let error = TableError::TooFine(Unresolved { radius, largest, ..refused });
                 return Err(CaseError::Table { error, shown: Box::new(case.shown.clone()) });
             }
             Ok(_) => {}
         }
-        let exact = Exact::new(Arc::clone(&case.table), s);
+        let exact = ExactBasis::new(Arc::clone(&case.table), s);
         let Some(at) = exact.equilibrium(&case.reduced, s) else { return Ok(None) };
         let delta = at.approach;
         let Ok(panels) = case.table.up_to(s) else { return Ok(None) };

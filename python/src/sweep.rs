@@ -10,14 +10,14 @@ use pulloff::store::file::{LARGEST, read_text};
 use pulloff::store::stream::is_stream;
 use pulloff::sweep::record::{COUNTS, statistic};
 use pulloff::sweep::run::rows;
-use pulloff::sweep::{Existing, Means, Output, OutputError, Results, Shard, ensemble, run};
+use pulloff::sweep::{Existing, Means, Output, OutputError, Shard, SweepResults, ensemble, run};
 use pulloff_engine::preset::read::read_in;
 use pulloff_engine::preset::{Preset, Value, shipped};
 use pulloff_engine::progress::Progress;
 use pulloff_engine::sweep::axis::SweepAxis;
 use pulloff_engine::sweep::ensemble::{STATISTICS, Statistics, at_points};
 use pulloff_engine::sweep::spec::{Design, points, values};
-use pulloff_engine::sweep::{Cell, Measured, QUANTITIES, Spec};
+use pulloff_engine::sweep::{Cell, MeasuredQuantities, QUANTITIES, Spec};
 use pulloff_engine::text::{quote, show_path};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -29,7 +29,7 @@ use std::time::Duration;
 /// The name, the SI unit and the meaning of every quantity.
 #[pyfunction]
 pub fn quantities() -> Vec<(&'static str, &'static str, &'static str, bool)> {
-    let row = |quantity: &'static pulloff_engine::sweep::Quantity| {
+    let row = |quantity: &'static pulloff_engine::sweep::SweepQuantity| {
         (quantity.name, quantity.unit.si().unwrap_or("1"), quantity.meaning, quantity.is_of_control())
     };
     QUANTITIES.iter().map(row).collect()
@@ -159,8 +159,8 @@ impl Progress for Stop {
 fn in_memory(spec: &Spec, shard: Shard, means: Means, listener: &Listener) -> Result<Rows, String> {
     let (stop, of) = (Stop(AtomicBool::new(false)), shard.len(spec.rows));
     let mut made = Rows { columns: vec![Vec::new(); spec.columns.len()], ..Rows::default() };
-    let make = |row: u64, measured: Measured| (row, measured);
-    let write = |item: Option<(u64, Measured)>| {
+    let make = |row: u64, measured: MeasuredQuantities| (row, measured);
+    let write = |item: Option<(u64, MeasuredQuantities)>| {
         if let Some((row, measured)) = item {
             made.numbers.push(row);
             for (at, column) in made.columns.iter_mut().enumerate() {
@@ -214,8 +214,8 @@ fn to_file(
 
 /// The rows of the results in a file.
 fn read_back(spec: &Spec, out: &Path) -> Result<Rows, String> {
-    let results = Results::open(out).map_err(|error| error.to_string())?;
-    let names: Vec<String> = spec.columns.iter().map(pulloff_engine::sweep::Column::name).collect();
+    let results = SweepResults::open(out).map_err(|error| error.to_string())?;
+    let names: Vec<String> = spec.columns.iter().map(pulloff_engine::sweep::QuantityColumn::name).collect();
     let names = std::iter::once("row").chain(names.iter().map(String::as_str)).chain(["error"]);
     let mut texts = results.texts(&names.collect::<Vec<_>>()).map_err(|error| error.to_string())?;
     let wrong = || format!("{}: was changed while it was written", show_path(out));

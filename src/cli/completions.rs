@@ -20,7 +20,7 @@ const PROGRAM: &str = "pulloff";
 
 /// The arguments of `pulloff completions`.
 #[derive(Debug, Args)]
-pub struct Arguments {
+pub struct CompletionsArguments {
     /// The shell
     shell: Shell,
 }
@@ -35,7 +35,7 @@ enum Shell {
 }
 
 /// Writes the text that a shell runs to complete the command line.
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &CompletionsArguments) -> Result<ExitCode, Failure> {
     let name = arguments.shell.to_possible_value();
     let shell = name.and_then(|name| Shells(shells::ALL).completer(name.get_name()));
     let mut text = Vec::new();

@@ -3,8 +3,8 @@
 use super::Failure;
 use super::console::{Console, Messages};
 use super::format::{Format, FormatArgument};
-use super::output::{Destination, Sink};
-use super::problem::Problem;
+use super::output::{Destination, OutputSink};
+use super::problem::ProblemArguments;
 use clap::Args;
 use pulloff_engine::preset::Preset;
 
@@ -12,7 +12,7 @@ use pulloff_engine::preset::Preset;
 #[derive(Debug, Args)]
 pub struct Computed {
     #[command(flatten)]
-    problem: Problem,
+    problem: ProblemArguments,
     #[command(flatten)]
     format: FormatArgument,
     #[command(flatten)]
@@ -26,7 +26,7 @@ pub struct Opened {
     pub console: Console,
     pub format: Format,
     pub preset: Preset,
-    pub sink: Sink,
+    pub sink: OutputSink,
 }
 
 impl Computed {

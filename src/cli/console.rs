@@ -1,7 +1,7 @@
 //! What goes to standard error: warnings, notes, questions, how far a command is; and what `--quiet` and `--strict` make of it.
 
 use super::Failure;
-use super::watch::{Bar, Lines, Stop};
+use super::watch::{Bar, Lines, StopSignal};
 use clap::Args;
 use std::cell::Cell;
 use std::io::{IsTerminal, Write};
@@ -27,7 +27,7 @@ pub struct Console {
 
 impl Messages {
     /// The share that is done.
-    pub fn bar(self, stop: Option<&Stop>) -> Bar<'_> {
+    pub fn bar(self, stop: Option<&StopSignal>) -> Bar<'_> {
         Bar::begin(stop, self.quiet)
     }
 
@@ -61,7 +61,7 @@ impl Console {
     }
 
     /// The share that is done.
-    pub fn bar<'a>(&self, stop: Option<&'a Stop>) -> Bar<'a> {
+    pub fn bar<'a>(&self, stop: Option<&'a StopSignal>) -> Bar<'a> {
         self.messages.bar(stop)
     }
 

@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::console::Console;
-use super::problem::Problem;
+use super::problem::ProblemArguments;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -26,7 +26,7 @@ pub struct Flags {
 
 /// Runs the explorer on a preset, or on the session `resume`: the newest where that is empty.
 pub fn run(
-    problem: &Problem,
+    problem: &ProblemArguments,
     resume: Option<&str>,
     config: Option<&Path>,
     flags: &Flags,
@@ -55,12 +55,12 @@ pub fn run(
 }
 
 /// The settings of a file asked for, or of the usual one, whose faults leave the defaults and a notice.
-pub(super) fn settings(asked: Option<&Path>) -> Result<crate::tui::Settings, Failure> {
+pub(super) fn settings(asked: Option<&Path>) -> Result<crate::tui::UserSettings, Failure> {
     use crate::config::{self, ConfigError};
-    use crate::tui::{Settings, keymap::Keymap, look::LookFile};
+    use crate::tui::{UserSettings, keymap::Keymap, look::LookFile};
     let ready = |config: Result<config::Config, ConfigError>| {
         config.and_then(|config| {
-            Ok(Settings { keymap: Keymap::of(&config)?, look: LookFile::of(&config), notice: None })
+            Ok(UserSettings { keymap: Keymap::of(&config)?, look: LookFile::of(&config), notice: None })
         })
     };
     if let Some(path) = asked {
@@ -68,9 +68,9 @@ pub(super) fn settings(asked: Option<&Path>) -> Result<crate::tui::Settings, Fai
     }
     let usual =
         config::path().map_or_else(|| Ok(config::Config::default()), |path| config::load_if_there(&path));
-    Ok(ready(usual).unwrap_or_else(|error| Settings {
+    Ok(ready(usual).unwrap_or_else(|error| UserSettings {
         notice: Some(format!("the settings are not used: {error}")),
-        ..Settings::default()
+        ..UserSettings::default()
     }))
 }
 
@@ -83,7 +83,7 @@ fn resumed(archive: &crate::explorer::archive::Archive, name: &str) -> Result<cr
 /// A preset; a session that was cut off is offered where no preset was asked for, and else only mentioned.
 fn fresh(
     archive: &crate::explorer::archive::Archive,
-    problem: &Problem,
+    problem: &ProblemArguments,
 ) -> Result<crate::tui::Opening, Failure> {
     use crate::explorer::archive::ago;
     use crate::tui::Opening;

@@ -1,10 +1,10 @@
 //! The exit statuses of the program, and what a command can fail with.
 
 use crate::explorer::archive::ArchiveError;
-use crate::mend::{Mend, Reason};
+use crate::mend::{Mend, WordedFault};
 use crate::print::DrawError;
 use crate::print::FormatError;
-use crate::store::data::PointsError;
+use crate::store::data::PointsFileError;
 use crate::store::file::FileError;
 use crate::store::{StoreError, WriteError};
 use crate::sweep::OutputError;
@@ -133,7 +133,7 @@ pub enum Failure {
     File(#[from] FileError),
     /// A measured curve cannot be read.
     #[error(transparent)]
-    Points(#[from] PointsError),
+    Points(#[from] PointsFileError),
     /// The result could not be written to a file.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -145,7 +145,7 @@ pub enum Failure {
     Csv(#[from] csv::Error),
     /// The results of a sweep make no map.
     #[error(transparent)]
-    Map(#[from] crate::plot::map::MapError),
+    Map(#[from] crate::plot::map::MapChartError),
     /// A map could not be computed.
     #[error(transparent)]
     Lines(#[from] MapError),
@@ -193,7 +193,7 @@ pub enum Failure {
         /// The line and the reason.
         text: String,
         /// The reason.
-        reason: Reason,
+        reason: WordedFault,
     },
     /// The spec of a sweep is bad, or cannot be read.
     #[error(transparent)]

@@ -2,10 +2,10 @@
 
 use super::Failure;
 use super::console::Messages;
-use super::output::{Inputs, OUTPUT, Outputs, Replacing, Sink, shown};
+use super::output::{Inputs, OUTPUT, OutputSink, Outputs, Replacing, shown};
 use crate::plot::{Width, adhesion, paper, svg, table};
 #[cfg(feature = "png")]
-use crate::print::Format;
+use crate::print::PictureFormat;
 use crate::store::stream;
 use clap::Args;
 use std::collections::BTreeMap;
@@ -15,7 +15,7 @@ use std::process::ExitCode;
 
 /// The arguments of `pulloff figures`.
 #[derive(Debug, Args)]
-pub struct Arguments {
+pub struct FiguresArguments {
     /// The folder they are written to: for each figure its numbers as CSV and its picture as SVG, and captions.md
     #[arg(short, long, value_name = "DIR", default_value = "figures")]
     output: PathBuf,
@@ -37,16 +37,16 @@ pub struct Arguments {
 const CAPTIONS: &str = "captions.md";
 
 /// Where the files of a figure go.
-struct Files {
-    numbers: Sink,
-    picture: Sink,
+struct FigureFiles {
+    numbers: OutputSink,
+    picture: OutputSink,
     #[cfg(feature = "png")]
-    png: Option<Sink>,
+    png: Option<OutputSink>,
     #[cfg(feature = "pdf")]
-    pdf: Option<Sink>,
+    pdf: Option<OutputSink>,
 }
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &FiguresArguments) -> Result<ExitCode, Failure> {
     let console = arguments.messages.open();
     let folder = &arguments.output;
     if stream::is_stream(folder) {
@@ -73,11 +73,11 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         files.picture.write(&picture)?;
         #[cfg(feature = "png")]
         if let Some(png) = &files.png {
-            png.write(Format::Png.bytes(&picture)?)?;
+            png.write(PictureFormat::Png.bytes(&picture)?)?;
         }
         #[cfg(feature = "pdf")]
         if let Some(pdf) = &files.pdf {
-            pdf.write(Format::Pdf.bytes(&picture)?)?;
+            pdf.write(PictureFormat::Pdf.bytes(&picture)?)?;
         }
         // Writing to a String cannot fail.
         let _ = write!(captions, "\n![{0}]({0}.svg)\n\n**{0}.** {1}\n", sheet.name, sheet.caption);
@@ -86,10 +86,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     console.end()
 }
 
-impl Arguments {
-    fn files(&self, outputs: &mut Outputs, name: &str) -> Result<Files, Failure> {
+impl FiguresArguments {
+    fn files(&self, outputs: &mut Outputs, name: &str) -> Result<FigureFiles, Failure> {
         let mut file = |ending: &str| outputs.file(OUTPUT, &self.output.join(name).with_extension(ending));
-        Ok(Files {
+        Ok(FigureFiles {
             numbers: file("csv")?,
             picture: file("svg")?,
             #[cfg(feature = "png")]

@@ -6,16 +6,16 @@ mod summary;
 mod table;
 mod together;
 
-use self::done::Done;
-use self::table::Table;
+use self::done::FinishedFits;
+use self::table::FitTable;
 use self::together::Several;
 use super::console::{Console, Messages};
 use super::format::{self, Format, FormatArgument};
 use super::jobs::Jobs;
-use super::measured::{Reading, attach, own, typed};
-use super::output::{Destination, Inputs, OUTPUT, Outputs, Sink, shown};
+use super::measured::{ReadingArguments, attach, own, typed};
+use super::output::{Destination, Inputs, OUTPUT, OutputSink, Outputs, shown};
 use super::problem::Changes;
-use super::watch::Stop;
+use super::watch::StopSignal;
 use super::{Failure, measured, problem};
 use crate::store::hash::sha256;
 use crate::store::{Loaded, stream};
@@ -24,7 +24,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use pulloff_engine::fit::{FitError, Model, Models, Options, fit_models};
 use pulloff_engine::measured::asked::AskedError;
-use pulloff_engine::measured::{Asked, Span};
+use pulloff_engine::measured::{Asked, ValueRange};
 use pulloff_engine::preset::edge::RATE;
 use pulloff_engine::preset::{Preset, Value, data, write};
 use pulloff_engine::progress::Progress;
@@ -38,7 +38,7 @@ const WINDOW: u64 = 256;
 
 /// The arguments of `pulloff fit`.
 #[derive(Debug, Args)]
-pub struct Arguments {
+pub struct FitArguments {
     /// Files with measured curves, and behind them a preset's name or file (ending in .toml), the wavy sphere when left out; or
     /// a preset alone that names its curve in data.file
     #[arg(required = true, value_name = "FILE... [PRESET]")]
@@ -66,7 +66,7 @@ pub struct Arguments {
     #[command(flatten)]
     several: Several,
     #[command(flatten)]
-    reading: Reading,
+    reading: ReadingArguments,
     /// Use rows in this range alone, as they are in the file: x=LO..HI or force=LO..HI (repeatable)
     #[arg(long, value_name = "x=LO..HI", allow_hyphen_values = true)]
     range: Vec<String>,
@@ -115,12 +115,12 @@ pub struct Arguments {
 }
 
 /// Where all goes that is written.
-struct Sinks {
-    report: Sink,
+struct FitSinks {
+    report: OutputSink,
     format: Format,
-    fitted: Option<Sink>,
-    residuals: Option<Sink>,
-    table: Option<Table>,
+    fitted: Option<OutputSink>,
+    residuals: Option<OutputSink>,
+    table: Option<FitTable>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
@@ -134,12 +134,12 @@ fn models() -> impl TypedValueParser<Value = Model> {
     PossibleValuesParser::new(Model::ALL.map(Model::name)).try_map(|word| Model::of(&word).ok_or("no model"))
 }
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &FitArguments) -> Result<ExitCode, Failure> {
     let messages = arguments.messages;
     let console = messages.open();
     let (files, loaded, options) = arguments.read(&console)?;
     let sinks = arguments.sinks(&files, &loaded)?;
-    let stop = Stop::catch()?;
+    let stop = StopSignal::catch()?;
     let said = arguments.said()?;
     let rates = arguments.several.rates(&files, &loaded.preset)?;
     if arguments.several.together {
@@ -152,7 +152,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             &stop,
         );
     }
-    let mut done = Done::new(arguments, &console, sinks);
+    let mut done = FinishedFits::new(arguments, &console, sinks);
     let left = done.left(&files);
     let many = files.len() > 1;
     let compute = |index: u64| {
@@ -221,11 +221,11 @@ fn one(
     fit_models(&preset, models, options, progress).map_err(|error| refused(path, &error))
 }
 
-impl Arguments {
+impl FitArguments {
     /// The files, the preset and what is asked for.
     fn read(&self, console: &Console) -> Result<(Vec<PathBuf>, Loaded, Options), Failure> {
         let (preset, mut files) = measured::apart(&self.paths);
-        let loaded = problem::Problem { preset, changes: self.changes.clone() }.load(console)?;
+        let loaded = problem::ProblemArguments { preset, changes: self.changes.clone() }.load(console)?;
         files = files::measured(files, console)?;
         if files.is_empty() {
             files.extend(own(&loaded.preset));
@@ -263,7 +263,7 @@ impl Arguments {
     }
 
     /// Looks at all outputs. What ends in .toml is the preset with the fitted values, and the report goes to standard output.
-    fn sinks(&self, files: &[PathBuf], loaded: &Loaded) -> Result<Sinks, Failure> {
+    fn sinks(&self, files: &[PathBuf], loaded: &Loaded) -> Result<FitSinks, Failure> {
         let preset = self.paths.last().map(Path::new);
         let inputs = Inputs::default().with_problem(preset, loaded);
         let inputs = files.iter().fold(inputs, |inputs, file| inputs.with("the points", file));
@@ -293,11 +293,16 @@ impl Arguments {
             }
             Some(file) => {
                 let sink = outputs.kept("--table", file)?;
-                Some(Table::open(file, sink, self.destination.replacing, &self.fingerprint(&loaded.preset))?)
+                Some(FitTable::open(
+                    file,
+                    sink,
+                    self.destination.replacing,
+                    &self.fingerprint(&loaded.preset),
+                )?)
             }
             None => None,
         };
-        Ok(Sinks { report, format, fitted, residuals, table })
+        Ok(FitSinks { report, format, fitted, residuals, table })
     }
 
     fn options(&self, preset: &Preset) -> Result<Options, Failure> {
@@ -329,7 +334,7 @@ impl Arguments {
                 }
             };
             let number = |text: &str| number("--range", key, text).map_err(|failure| failure.to_string());
-            let span = Span::parse(text, range, EXPECTED, &number).map_err(|error| match error {
+            let span = ValueRange::parse(text, range, EXPECTED, &number).map_err(|error| match error {
                 AskedError::Number(text) => Failure::Usage(text),
                 error => Failure::Usage(format!("--range: {error}")),
             });

@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::output::{OUTPUT, shown};
-use crate::print::Format as Figure;
+use crate::print::PictureFormat;
 use crate::store::stream;
 use clap::{Args, ValueEnum};
 use std::path::Path;
@@ -74,11 +74,11 @@ impl FormatArgument {
 
     /// The format of the figure that the ending of `file` names; `None` where it names none.
     /// Errors: As [`of`](Self::of); the build cannot write it.
-    pub fn of_figure(self, file: &Path) -> Result<Option<Figure>, Failure> {
+    pub fn of_figure(self, file: &Path) -> Result<Option<PictureFormat>, Failure> {
         let is_figure = ending(file).is_some_and(|ending| ["svg", "png", "pdf"].contains(&&*ending));
         match self.format {
             Some(_) if is_figure => Err(self.contradicts(file)),
-            _ if is_figure => Ok(Some(Figure::of(file)?)),
+            _ if is_figure => Ok(Some(PictureFormat::of(file)?)),
             _ => Ok(None),
         }
     }

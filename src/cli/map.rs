@@ -4,27 +4,27 @@ use super::Failure;
 use super::console::Messages;
 use super::format::{Format, FormatArgument};
 use super::output::{Destination, shown};
-use super::problem::Problem;
-use super::watch::Stop;
-use crate::plot::map::{Map, MapError};
+use super::problem::ProblemArguments;
+use super::watch::StopSignal;
+use crate::plot::map::{MapChart, MapChartError};
 use crate::plot::{Width, lines, svg};
-use crate::print::Format as Print;
+use crate::print::PictureFormat;
 use crate::store::stream;
-use crate::sweep::Results;
+use crate::sweep::SweepResults;
 use clap::Args;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::report::map::Ordinate;
 use pulloff_engine::report::{MapReport, json, table};
-use pulloff_engine::stability::{Axis, COMPLIANCE};
+use pulloff_engine::stability::{COMPLIANCE, MapAxis};
 use pulloff_engine::text::quote;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// The arguments of `pulloff map`.
 #[derive(Debug, Args)]
-pub struct Arguments {
+pub struct MapArguments {
     #[command(flatten)]
-    problem: Problem,
+    problem: ProblemArguments,
     /// The number on the x axis and its range: a key of the preset, a group, or compliance, which is 1/k from 0 (displacement)
     /// to inf (a dead load); log:FROM..TO for an axis of equal factors
     #[arg(long, value_name = "KEY=FROM..TO", allow_hyphen_values = true)]
@@ -34,7 +34,7 @@ pub struct Arguments {
     y_key: Option<String>,
     /// Instead of a number, the limit points over the x axis: their control, approach or force
     #[arg(long, value_enum, conflicts_with = "y_key")]
-    y: Option<Curve>,
+    y: Option<MapOrdinate>,
     /// Draw the lines over the map of a sweep over the same two keys
     #[arg(long, value_name = "RESULTS.csv", requires = "y_key")]
     over: Option<PathBuf>,
@@ -54,7 +54,7 @@ pub struct Arguments {
 
 /// What stands over a number.
 #[derive(Debug, Clone, Copy, PartialEq, clap::ValueEnum)]
-enum Curve {
+enum MapOrdinate {
     Control,
     Approach,
     Force,
@@ -65,12 +65,12 @@ const CELLS: [u32; 2] = [48, 36];
 
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Written {
+enum MapOutput {
     Rows(Format),
-    Figure(Print),
+    Figure(PictureFormat),
 }
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &MapArguments) -> Result<ExitCode, Failure> {
     let console = arguments.messages.open();
     let written = arguments.written()?;
     let loaded = arguments.problem.load(&console)?;
@@ -81,9 +81,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let x = axis("--x-key", &arguments.x_key, &preset)?;
     let y = match (&arguments.y_key, arguments.y) {
         (Some(key), _) => Ordinate::Key(axis("--y-key", key, &preset)?),
-        (None, Some(Curve::Approach)) => Ordinate::Approach,
-        (None, Some(Curve::Force)) => Ordinate::Force,
-        (None, Some(Curve::Control)) => Ordinate::Control,
+        (None, Some(MapOrdinate::Approach)) => Ordinate::Approach,
+        (None, Some(MapOrdinate::Force)) => Ordinate::Force,
+        (None, Some(MapOrdinate::Control)) => Ordinate::Control,
         (None, None) => {
             let what =
                 "map needs what stands over it: --y-key KEY=FROM..TO, or --y control, approach or force";
@@ -91,7 +91,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         }
     };
     let over = arguments.over(&preset, &x, &y)?;
-    let stop = Stop::catch()?;
+    let stop = StopSignal::catch()?;
     let report = MapReport::compute(&preset, x, &y, CELLS, &console.bar(Some(&stop)))?;
     console.warn(&report.notes);
     if let Some(onset) = &report.onset {
@@ -102,13 +102,13 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         )));
     }
     sink.write(match written {
-        Written::Rows(Format::Table) => table::rows(&report.table()?).into_bytes(),
-        Written::Rows(Format::Csv) => report.csv()?.into_bytes(),
-        Written::Rows(Format::Json) => json(&report)?.into_bytes(),
-        Written::Figure(print) => {
+        MapOutput::Rows(Format::Table) => table::rows(&report.table()?).into_bytes(),
+        MapOutput::Rows(Format::Csv) => report.csv()?.into_bytes(),
+        MapOutput::Rows(Format::Json) => json(&report)?.into_bytes(),
+        MapOutput::Figure(print) => {
             let figure = lines::figure(&report, &preset);
             let picture = match over {
-                Some(map) => Map { lines: figure.lines, ..map }.svg(arguments.width),
+                Some(map) => MapChart { lines: figure.lines, ..map }.svg(arguments.width),
                 None => svg::svg(&figure, arguments.width),
             };
             print.bytes(&picture)?
@@ -117,27 +117,27 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     console.end()
 }
 
-impl Arguments {
+impl MapArguments {
     /// By the ending of the file; a figure where results are drawn under it.
-    fn written(&self) -> Result<Written, Failure> {
+    fn written(&self) -> Result<MapOutput, Failure> {
         let file = self.destination.path();
         let figure = self.format.of_figure(file)?;
         let is_drawn = self.over.is_some() && self.format.format.is_none() && stream::is_stream(file);
-        if let Some(print) = figure.or(is_drawn.then_some(Print::Svg)) {
-            return Ok(Written::Figure(print));
+        if let Some(print) = figure.or(is_drawn.then_some(PictureFormat::Svg)) {
+            return Ok(MapOutput::Figure(print));
         }
         if self.over.is_some() {
             let what =
                 "--over: results of a sweep are drawn under the lines of a figure: -o FILE.svg, .png or .pdf";
             return Err(Failure::Usage(what.to_owned()));
         }
-        Ok(Written::Rows(self.format.beside_figures(file, Format::Csv)?))
+        Ok(MapOutput::Rows(self.format.beside_figures(file, Format::Csv)?))
     }
 
     /// The map of a sweep, whose axes must be those of the lines.
-    fn over(&self, preset: &Preset, x: &Axis, y: &Ordinate) -> Result<Option<Map>, Failure> {
+    fn over(&self, preset: &Preset, x: &MapAxis, y: &Ordinate) -> Result<Option<MapChart>, Failure> {
         let Some(path) = &self.over else { return Ok(None) };
-        let mut results = Results::open(path).map_err(MapError::from)?;
+        let mut results = SweepResults::open(path).map_err(MapChartError::from)?;
         // The lines are in the units of this preset; the sweep's may be shown in others.
         for column in &mut results.columns {
             let row = preset.row(&column.name);
@@ -154,12 +154,12 @@ impl Arguments {
                 y.name()
             )));
         }
-        Ok(Some(Map::of(&results, &results.axes, &self.quantity)?))
+        Ok(Some(MapChart::of(&results, &results.axes, &self.quantity)?))
     }
 }
 
 /// An axis as typed: KEY=FROM..TO, each end as an assignment of the key.
-fn axis(flag: &str, text: &str, preset: &Preset) -> Result<Axis, Failure> {
+fn axis(flag: &str, text: &str, preset: &Preset) -> Result<MapAxis, Failure> {
     let wrong = |what: &dyn std::fmt::Display| Failure::Usage(format!("{flag} {}: {what}", quote(text)));
     let expected = "expected KEY=FROM..TO or KEY=log:FROM..TO, such as groups.adhesion=log:0.001..1";
     let (key, range) = text.split_once('=').ok_or_else(|| wrong(&expected))?;
@@ -188,5 +188,5 @@ fn axis(flag: &str, text: &str, preset: &Preset) -> Result<Axis, Failure> {
         preset.number(&row, text.trim()).map_err(|invalid| wrong(&invalid))
     };
     let range = [number(from)?, number(to)?];
-    Axis::new(key, range, logarithmic, 1.0 / unit).map_err(|error| wrong(&error))
+    MapAxis::new(key, range, logarithmic, 1.0 / unit).map_err(|error| wrong(&error))
 }

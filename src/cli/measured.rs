@@ -4,7 +4,7 @@ use super::{Failure, problem};
 use crate::store::data::read_points;
 use crate::store::stream;
 use clap::{Args, ValueEnum};
-use pulloff_engine::measured::Spec;
+use pulloff_engine::measured::ColumnSpec;
 use pulloff_engine::preset::invalid::Invalid;
 use pulloff_engine::preset::{Preset, Value, data};
 use pulloff_engine::units::Quantity;
@@ -32,13 +32,13 @@ pub(super) fn attach(
 
 /// What a person says of the columns and rows of a measured curve.
 #[derive(Debug, Clone, Args)]
-pub(super) struct Reading {
+pub(super) struct ReadingArguments {
     /// What its columns are, by number or name, where the header does not say it: x=1,force=2 or position=Z [nm],force=F [nN]
     #[arg(long, value_name = "ROLE=COLUMN,...")]
     columns: Option<String>,
     /// Use one branch of it alone
     #[arg(long, value_enum)]
-    segment: Option<Branch>,
+    segment: Option<BranchChoice>,
     /// Which of its rows are apart, by x as it is in the file: x=LO..HI, or none where all are in contact
     #[arg(long, value_name = "x=LO..HI", allow_hyphen_values = true)]
     free_part: Option<String>,
@@ -51,12 +51,12 @@ pub(super) struct Reading {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, ValueEnum)]
-enum Branch {
+enum BranchChoice {
     Approach,
     Retraction,
 }
 
-impl Branch {
+impl BranchChoice {
     /// The word of `data.segment`.
     fn word(self) -> &'static str {
         match self {
@@ -66,11 +66,11 @@ impl Branch {
     }
 }
 
-impl Reading {
+impl ReadingArguments {
     /// What is said, with its keys, if it can be said of any file.
     pub(super) fn said(&self) -> Result<Vec<(&'static str, Value)>, Failure> {
         if let Some(text) = &self.columns {
-            Spec::parse(text).map_err(|error| Failure::Usage(format!("--columns: {error}")))?;
+            ColumnSpec::parse(text).map_err(|error| Failure::Usage(format!("--columns: {error}")))?;
         }
         let texts = [
             (data::COLUMNS, self.columns.clone()),

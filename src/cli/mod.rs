@@ -34,7 +34,7 @@ mod watch;
 pub use failure::{Failure, Status};
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use problem::Problem;
+use problem::ProblemArguments;
 use signal_hook::consts::SIGXFSZ;
 use signal_hook::flag;
 use std::io::Write;
@@ -47,9 +47,9 @@ use std::sync::Arc;
 #[command(name = "pulloff", version, args_conflicts_with_subcommands = true, max_term_width = 100)]
 struct Cli {
     #[command(subcommand)]
-    command: Option<Command>,
+    command: Option<ProgramCommand>,
     #[command(flatten)]
-    problem: Problem,
+    problem: ProblemArguments,
     /// Go on with a session that was left or cut off: the newest, or the one of this name
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "",
           conflicts_with_all = ["preset", "assignments", "control"])]
@@ -62,39 +62,39 @@ struct Cli {
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum ProgramCommand {
     /// Trace the equilibrium curve and write its points
-    Trace(trace::Arguments),
+    Trace(trace::TraceArguments),
     /// Unload quasi-statically and write every instability
     Unload(path::UnloadArguments),
     /// Load from the first touch to a turn and back until the bodies are apart, with rings of contact
     Cycle(path::CycleArguments),
     /// Pull one disc at a rate, with an edge that has a speed
-    Pull(pull::Arguments),
+    Pull(pull::PullArguments),
     /// Find where snaps begin: lines in two numbers of a preset, or its limit points over one
-    Map(map::Arguments),
+    Map(map::MapArguments),
     /// Fit values of a preset to measured curves
-    Fit(fit::Arguments),
+    Fit(fit::FitArguments),
     /// Compute the energy release rate of a measured curve beside the speed of its edge
-    Speeds(speeds::Arguments),
+    Speeds(speeds::SpeedsArguments),
     /// Draw a view as a figure for print
-    Plot(plot::Arguments),
+    Plot(plot::PlotArguments),
     /// Compute the figures of the paper again: pictures, numbers and captions
-    Figures(figures::Arguments),
+    Figures(figures::FiguresArguments),
     /// Compute one preset over many values of its keys, on all cores, into a CSV file
-    Sweep(sweep::Arguments),
+    Sweep(sweep::SweepArguments),
     /// Check this program's numbers against theory
-    Verify(verify::Arguments),
+    Verify(verify::VerifyArguments),
     /// Run a script of the explorer's commands
-    Run(run::Arguments),
+    Run(run::RunArguments),
     /// List, show and delete presets
     #[command(subcommand)]
-    Presets(presets::Command),
+    Presets(presets::PresetsCommand),
     /// List, show and delete sessions of the explorer
     #[command(subcommand)]
-    Sessions(sessions::Command),
+    Sessions(sessions::SessionsCommand),
     /// Write the completions of a shell to standard output
-    Completions(completions::Arguments),
+    Completions(completions::CompletionsArguments),
     /// Write the manual page to standard output
     Man,
 }
@@ -124,22 +124,22 @@ pub fn run() -> ExitCode {
     };
     let result = match &cli.command {
         None => explore::run(&cli.problem, cli.resume.as_deref(), cli.config.as_deref(), &cli.flags),
-        Some(Command::Trace(arguments)) => trace::run(arguments),
-        Some(Command::Unload(arguments)) => path::unload(arguments),
-        Some(Command::Cycle(arguments)) => path::cycle(arguments),
-        Some(Command::Pull(arguments)) => pull::run(arguments),
-        Some(Command::Map(arguments)) => map::run(arguments),
-        Some(Command::Fit(arguments)) => fit::run(arguments),
-        Some(Command::Speeds(arguments)) => speeds::run(arguments),
-        Some(Command::Plot(arguments)) => plot::run(arguments),
-        Some(Command::Figures(arguments)) => figures::run(arguments),
-        Some(Command::Sweep(arguments)) => sweep::run(arguments),
-        Some(Command::Verify(arguments)) => verify::run(arguments),
-        Some(Command::Run(arguments)) => run::run(arguments),
-        Some(Command::Completions(arguments)) => completions::run(arguments),
-        Some(Command::Man) => man::run(command()),
-        Some(Command::Presets(command)) => presets::run(command),
-        Some(Command::Sessions(command)) => sessions::run(command),
+        Some(ProgramCommand::Trace(arguments)) => trace::run(arguments),
+        Some(ProgramCommand::Unload(arguments)) => path::unload(arguments),
+        Some(ProgramCommand::Cycle(arguments)) => path::cycle(arguments),
+        Some(ProgramCommand::Pull(arguments)) => pull::run(arguments),
+        Some(ProgramCommand::Map(arguments)) => map::run(arguments),
+        Some(ProgramCommand::Fit(arguments)) => fit::run(arguments),
+        Some(ProgramCommand::Speeds(arguments)) => speeds::run(arguments),
+        Some(ProgramCommand::Plot(arguments)) => plot::run(arguments),
+        Some(ProgramCommand::Figures(arguments)) => figures::run(arguments),
+        Some(ProgramCommand::Sweep(arguments)) => sweep::run(arguments),
+        Some(ProgramCommand::Verify(arguments)) => verify::run(arguments),
+        Some(ProgramCommand::Run(arguments)) => run::run(arguments),
+        Some(ProgramCommand::Completions(arguments)) => completions::run(arguments),
+        Some(ProgramCommand::Man) => man::run(command()),
+        Some(ProgramCommand::Presets(command)) => presets::run(command),
+        Some(ProgramCommand::Sessions(command)) => sessions::run(command),
     };
     match result {
         Ok(code) => code,

@@ -2,13 +2,13 @@
 //!
 //! What exists is replaced only with `--overwrite`. No command writes over what it reads, and two outputs of a command are two
 //! files, whatever links lead to them, with `--overwrite` too. All this is asked before anything is computed: the inputs are
-//! gathered in [`Inputs`], each output is announced to [`Outputs`], which gives back the [`Sink`] to write to.
+//! gathered in [`Inputs`], each output is announced to [`Outputs`], which gives back the [`OutputSink`] to write to.
 //!
 //! A file is written whole or not at all; standard output, a pipe or a device straight.
 
 use super::Failure;
 use crate::store::atomic::{check, explained};
-use crate::store::place::Place;
+use crate::store::place::FilePlace;
 use crate::store::{Loaded, Overwrite, Source, WriteError, stream, write_atomically};
 use crate::sweep::sidecar;
 use clap::Args;
@@ -43,7 +43,7 @@ impl Destination {
     }
 
     /// The one output of a command that reads `inputs`.
-    pub fn sink(&self, inputs: Inputs) -> Result<Sink, Failure> {
+    pub fn sink(&self, inputs: Inputs) -> Result<OutputSink, Failure> {
         Outputs::beside(inputs, self.replacing).file(OUTPUT, self.path())
     }
 }
@@ -97,16 +97,16 @@ impl Inputs {
 /// The outputs of a command, each looked at when it is announced.
 #[derive(Debug)]
 pub struct Outputs {
-    inputs: Vec<(String, Place)>,
+    inputs: Vec<(String, FilePlace)>,
     /// The option, and the place.
-    announced: Vec<(String, Place)>,
+    announced: Vec<(String, FilePlace)>,
     overwrite: Overwrite,
 }
 
 impl Outputs {
     /// None yet, of a command that reads `inputs`.
     pub fn beside(inputs: Inputs, replacing: Replacing) -> Self {
-        let place = |(what, path): (String, PathBuf)| Place::read(&path).map(|place| (what, place));
+        let place = |(what, path): (String, PathBuf)| FilePlace::read(&path).map(|place| (what, place));
         Self {
             inputs: inputs.0.into_iter().filter_map(place).collect(),
             announced: Vec::new(),
@@ -116,13 +116,13 @@ impl Outputs {
 
     /// An output named by `option`.
     /// Errors: It is there already, without `--overwrite`; it is what [`kept`](Self::kept) refuses.
-    pub fn file(&mut self, option: &str, path: &Path) -> Result<Sink, Failure> {
+    pub fn file(&mut self, option: &str, path: &Path) -> Result<OutputSink, Failure> {
         self.announce(option, path, self.overwrite)?.checked()
     }
 
     /// An output that goes on with what is there, once its owner has looked at it.
     /// Errors: It is a file that is read, or another output; it cannot be written.
-    pub fn kept(&mut self, option: &str, path: &Path) -> Result<Sink, Failure> {
+    pub fn kept(&mut self, option: &str, path: &Path) -> Result<OutputSink, Failure> {
         self.announce(option, path, Overwrite::Always)?.checked()
     }
 
@@ -132,15 +132,15 @@ impl Outputs {
         self.announce(option, path, Overwrite::Never).map(drop)
     }
 
-    fn announce(&mut self, option: &str, path: &Path, overwrite: Overwrite) -> Result<Sink, Failure> {
-        let sink = Sink { option: option.to_owned(), path: path.to_owned(), overwrite };
+    fn announce(&mut self, option: &str, path: &Path, overwrite: Overwrite) -> Result<OutputSink, Failure> {
+        let sink = OutputSink { option: option.to_owned(), path: path.to_owned(), overwrite };
         let refused = |what: &str| Failure::Usage(format!("{} {what}", sink.name()));
-        if let Some(place) = Place::written(path) {
+        if let Some(place) = FilePlace::written(path) {
             if let Some((what, _)) = self.inputs.iter().find(|(_, input)| *input == place) {
                 return Err(refused(&format!("is the file of {what} that is read; write to another")));
             }
             // What is thrown away may be thrown away twice.
-            let is_null = Place::written(Path::new("/dev/null")).as_ref() == Some(&place);
+            let is_null = FilePlace::written(Path::new("/dev/null")).as_ref() == Some(&place);
             match self.announced.iter().find(|(_, other)| *other == place && !is_null) {
                 Some((other, _)) if other == option => {
                     return Err(refused("is written twice; name two files"));
@@ -157,13 +157,13 @@ impl Outputs {
 
 /// Where one output goes.
 #[derive(Debug, Clone)]
-pub struct Sink {
+pub struct OutputSink {
     option: String,
     path: PathBuf,
     overwrite: Overwrite,
 }
 
-impl Sink {
+impl OutputSink {
     /// The same, once it was looked at.
     fn checked(self) -> Result<Self, Failure> {
         if !stream::is_stream(&self.path) {
@@ -205,7 +205,7 @@ impl Sink {
 /// Writes `text`, which no option can send elsewhere, to standard output.
 pub fn print(text: impl AsRef<[u8]>) -> Result<(), Failure> {
     let path = PathBuf::from(stream::STANDARD);
-    Sink { option: OUTPUT.to_owned(), path, overwrite: Overwrite::Never }.write(text)
+    OutputSink { option: OUTPUT.to_owned(), path, overwrite: Overwrite::Never }.write(text)
 }
 
 /// A path as it can be shown.

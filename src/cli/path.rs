@@ -3,7 +3,7 @@
 use super::Failure;
 use super::computed::{Computed, Opened};
 use super::format::Format;
-use super::watch::Stop;
+use super::watch::StopSignal;
 use clap::{Args, ValueEnum};
 use pulloff_engine::case::CaseError;
 use pulloff_engine::preset::Preset;
@@ -41,15 +41,15 @@ struct PathArguments {
     #[arg(long)]
     no_area: bool,
     /// What the rows of a table or of CSV are; JSON has both
-    #[arg(long, value_enum, default_value_t = Rows::Events)]
-    rows: Rows,
+    #[arg(long, value_enum, default_value_t = PathRows::Events)]
+    rows: PathRows,
     #[command(flatten)]
     computed: Computed,
 }
 
 /// What a row is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Rows {
+enum PathRows {
     /// What happens, in order
     Events,
     /// The stable states, a row for each contact
@@ -123,7 +123,7 @@ impl PathArguments {
             opened.preset.path.contact = ContactKind::OneDisc;
         }
         let losses = if self.no_area { Losses::Once } else { Losses::Twice };
-        let stop = Stop::catch()?;
+        let stop = StopSignal::catch()?;
         let extent = Extent { losses, ..Extent::default() };
         let report = path(&opened.preset, turn, extent, &opened.console.bar(Some(&stop)))?;
         self.written(opened, &report)
@@ -134,12 +134,12 @@ impl PathArguments {
         console.warn(&report.warnings);
         let units = &report.head.units.shown;
         let text = match (format, self.rows) {
-            (Format::Table, Rows::Events) => path_table::path(report),
-            (Format::Table, Rows::States) => table::rows(&report.states_table()?),
+            (Format::Table, PathRows::Events) => path_table::path(report),
+            (Format::Table, PathRows::States) => table::rows(&report.states_table()?),
             (Format::Csv, rows) => {
                 let (columns, of_zone, table) = match rows {
-                    Rows::Events => (COLUMNS, ZONE_COLUMNS, report.table()?),
-                    Rows::States => (STATE_COLUMNS, STATE_ZONE_COLUMNS, report.states_table()?),
+                    PathRows::Events => (COLUMNS, ZONE_COLUMNS, report.table()?),
+                    PathRows::States => (STATE_COLUMNS, STATE_ZONE_COLUMNS, report.states_table()?),
                 };
                 let has_zone = report.states.iter().any(|at| at.state.zone_radius.is_some());
                 let columns = if has_zone { [columns, of_zone].concat() } else { columns.to_vec() };

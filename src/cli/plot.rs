@@ -2,31 +2,31 @@
 
 use super::Failure;
 use super::console::{Console, Messages};
-use super::measured::{Reading, attach, typed};
-use super::output::{Destination, Inputs, OUTPUT, Outputs, Sink, shown as shown_path};
-use super::problem::Problem;
+use super::measured::{ReadingArguments, attach, typed};
+use super::output::{Destination, Inputs, OUTPUT, OutputSink, Outputs, shown as shown_path};
+use super::problem::ProblemArguments;
 use crate::explorer::fitting::Distances;
 use crate::explorer::map_axes::MapAxes;
 use crate::explorer::maps::MapData;
-use crate::explorer::profile::{Ask, Inside};
+use crate::explorer::profile::{Ask, StateInside};
 use crate::explorer::pulls::PullData;
 use crate::explorer::reach::no_spring;
 use crate::explorer::speeds::{SpeedsData, untimed};
 use crate::explorer::{Axes, CurveData, Overlays, Staged, View};
-use crate::figure::measured::Points;
+use crate::figure::measured::MeasuredMarks;
 use crate::figure::range::RangeError;
 use crate::figure::{Figure, Range, Sign, Subject};
-use crate::plot::map::{Map, MapError};
+use crate::plot::map::{MapChart, MapChartError};
 use crate::plot::{Width, series, svg, table};
-use crate::print::{Format, FormatError};
+use crate::print::{FormatError, PictureFormat};
 use crate::store::stream;
-use crate::sweep::Results;
+use crate::sweep::SweepResults;
 use crate::sweep::record::statistic;
 use clap::{Args, ValueEnum};
 use pulloff_engine::case::Case;
 use pulloff_engine::preset::{Preset, data};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::jump::Run;
+use pulloff_engine::quasistatic::jump::EdgeDirection;
 use pulloff_engine::quasistatic::{Losses, State};
 use pulloff_engine::report::PathReport;
 use pulloff_engine::report::path::Extent;
@@ -39,9 +39,9 @@ use std::sync::{Arc, LazyLock};
 
 /// The arguments of `pulloff plot`.
 #[derive(Debug, Args)]
-pub struct Arguments {
+pub struct PlotArguments {
     #[command(flatten)]
-    problem: Problem,
+    problem: ProblemArguments,
     /// Draw the results of a sweep instead of a view of a preset: a curve over its axis, or a map over its two
     #[arg(long, value_name = "RESULTS.csv", conflicts_with_all = ["preset", "assignments", "control", "view", "theory", "raw", "contact_radius", "columns", "segment", "free_part", "signs", "skip"])]
     sweep: Option<PathBuf>,
@@ -50,7 +50,7 @@ pub struct Arguments {
     quantity: Option<String>,
     /// What is drawn
     #[arg(long, value_enum, default_value = "force-approach")]
-    view: Shown,
+    view: ViewName,
     /// Draw the exact solution and the envelope of Kesari and Lew as well, where they exist
     #[arg(long)]
     theory: bool,
@@ -70,7 +70,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", conflicts_with = "sweep")]
     measured: Option<PathBuf>,
     #[command(flatten)]
-    reading: Reading,
+    reading: ReadingArguments,
     /// The x of the measured curve at which the approach is zero
     #[arg(long, value_name = "LENGTH", conflicts_with = "sweep", allow_hyphen_values = true)]
     offset: Option<String>,
@@ -90,9 +90,9 @@ pub struct Arguments {
 }
 
 /// Where the figure and its data go.
-struct Sinks {
-    figure: Sink,
-    data: Option<Sink>,
+struct PlotSinks {
+    figure: OutputSink,
+    data: Option<OutputSink>,
 }
 
 /// The column of the results that is drawn when none is named.
@@ -100,14 +100,14 @@ const QUANTITY: &str = "enhancement";
 
 /// A view by the name the explorer gives it.
 #[derive(Debug, Clone, Copy)]
-struct Shown(View);
+struct ViewName(View);
 
-impl ValueEnum for Shown {
+impl ValueEnum for ViewName {
     fn value_variants<'a>() -> &'a [Self] {
         // Without a walk and a selection there is neither its table nor a study, which sweeps are for.
-        static ALL: LazyLock<Vec<Shown>> = LazyLock::new(|| {
+        static ALL: LazyLock<Vec<ViewName>> = LazyLock::new(|| {
             let all = View::ALL.into_iter().filter(|view| !matches!(view, View::Walk | View::Study));
-            all.map(Shown).collect()
+            all.map(ViewName).collect()
         });
         &ALL
     }
@@ -127,7 +127,7 @@ pub(super) fn width(text: &str) -> Result<Width, String> {
     .ok_or_else(|| format!("expected one-column, two-columns, or a width from {lo} to {hi} mm"))
 }
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &PlotArguments) -> Result<ExitCode, Failure> {
     let console = arguments.messages.open();
     let format = format(arguments.destination.path())?;
     if let Some(path) = &arguments.sweep {
@@ -184,7 +184,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         (shows_pull && missing(&preset).is_none()).then(|| PullData::of(&preset, &Unwatched)).flatten();
     let overlays = Overlays { smooth: true, exact: arguments.theory, envelope: arguments.theory };
     let axes = if arguments.raw { Axes::Raw } else { Axes::Reduced };
-    let measured = Points::of(&preset).and_then(Result::ok);
+    let measured = MeasuredMarks::of(&preset).and_then(Result::ok);
     let distances =
         (view == View::Residuals && preset.data.source.is_some()).then(|| Distances::of(&preset).found);
     let speeds = (view == View::Speeds).then(|| SpeedsData::of(&preset, &Unwatched)).flatten();
@@ -216,7 +216,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     console.end()
 }
 
-impl Arguments {
+impl PlotArguments {
     /// Gives the preset the measured curve that is asked for, and says what was found in its own.
     fn lay_points(&self, console: &Console, preset: &mut Preset) -> Result<(), Failure> {
         attach(preset, self.measured.as_deref(), &self.reading.said()?)?;
@@ -239,7 +239,7 @@ impl Arguments {
 
     /// The picture of the results of a sweep, and its data where they are wanted.
     fn of_sweep(&self, path: &Path) -> Result<(String, Option<String>), Failure> {
-        let results = Results::open(path).map_err(MapError::from)?;
+        let results = SweepResults::open(path).map_err(MapChartError::from)?;
         let quantity = self.quantity.as_deref().unwrap_or(QUANTITY);
         let axis = match &results.axes[..] {
             [] => {
@@ -258,7 +258,7 @@ impl Arguments {
                 }
                 let median = statistic(quantity, "q50");
                 let column = if results.has_statistics_of(quantity) { &median } else { quantity };
-                return Ok((Map::of(&results, axes, column)?.svg(self.width), None));
+                return Ok((MapChart::of(&results, axes, column)?.svg(self.width), None));
             }
         };
         let figure = self.part(series::figure(&results, axis, quantity)?)?;
@@ -297,7 +297,7 @@ impl Arguments {
     }
 
     /// Where all goes that is written.
-    fn sinks(&self, inputs: Inputs) -> Result<Sinks, Failure> {
+    fn sinks(&self, inputs: Inputs) -> Result<PlotSinks, Failure> {
         let mut outputs = Outputs::beside(inputs, self.destination.replacing);
         let path = self.destination.path();
         let figure = outputs.file(OUTPUT, path)?;
@@ -306,12 +306,12 @@ impl Arguments {
             return Err(Failure::Usage(what.to_owned()));
         }
         let beside = self.data.then(|| outputs.file("--data", &path.with_extension("csv")));
-        Ok(Sinks { figure, data: beside.transpose()? })
+        Ok(PlotSinks { figure, data: beside.transpose()? })
     }
 }
 
 /// The inside of the state of this contact radius, or of the start.
-fn inside(curve: &Arc<CurveData>, radius: Option<&str>, exact: bool) -> Result<Inside, Failure> {
+fn inside(curve: &Arc<CurveData>, radius: Option<&str>, exact: bool) -> Result<StateInside, Failure> {
     let (case, equilibrium) = (&curve.case, &curve.base.curve.equilibrium);
     let unit = case.units().length;
     let shown = |s: f64| said(&curve.setting.preset.units, Quantity::Length, s * unit);
@@ -344,7 +344,7 @@ fn inside(curve: &Arc<CurveData>, radius: Option<&str>, exact: bool) -> Result<I
         (equilibrium.state(&point), None)
     };
     let curve = Arc::clone(curve);
-    Ok(Inside::of(&Ask { curve, state, rings: None, zone, exact, barrier: Some(Run::Inward) }))
+    Ok(StateInside::of(&Ask { curve, state, rings: None, zone, exact, barrier: Some(EdgeDirection::Inward) }))
 }
 
 /// A contact radius as typed, in SI or reduced units.
@@ -353,9 +353,9 @@ fn length(preset: &Preset, text: &str) -> Result<f64, Failure> {
 }
 
 /// The format that is asked for; standard output and descriptors have no ending.
-fn format(path: &Path) -> Result<Format, Failure> {
-    match Format::of(path) {
-        Err(FormatError::Ending(_)) if stream::is_stream(path) => Ok(Format::Svg),
+fn format(path: &Path) -> Result<PictureFormat, Failure> {
+    match PictureFormat::of(path) {
+        Err(FormatError::Ending(_)) if stream::is_stream(path) => Ok(PictureFormat::Svg),
         format => Ok(format?),
     }
 }

@@ -13,7 +13,7 @@ use std::process::ExitCode;
 
 /// The subcommands of `pulloff presets`.
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub enum PresetsCommand {
     /// List the shipped presets and your own
     List,
     /// Write a preset's file to standard output
@@ -36,10 +36,10 @@ pub enum Command {
 /// Longest title in a list.
 const TITLE: usize = 100;
 
-pub fn run(command: &Command) -> Result<ExitCode, Failure> {
+pub fn run(command: &PresetsCommand) -> Result<ExitCode, Failure> {
     let store = store();
     match command {
-        Command::List => {
+        PresetsCommand::List => {
             let listing = store.list();
             let width = listing.presets.iter().map(|entry| entry.name.chars().count()).max().unwrap_or(0);
             let mut text = String::new();
@@ -57,13 +57,13 @@ pub fn run(command: &Command) -> Result<ExitCode, Failure> {
             }
             output::print(text)?;
         }
-        Command::Show { name } => {
+        PresetsCommand::Show { name } => {
             let source = super::problem::source(&store, name)?;
             // Loaded first: a file that is no preset is an error, not text to print.
             let loaded = store.load(&source, &[] as &[&str])?;
             output::print(loaded.text)?;
         }
-        Command::Delete { name, yes } => {
+        PresetsCommand::Delete { name, yes } => {
             let path = store.own(name)?;
             if !yes {
                 ask(&format!("Delete {} for good?", show_path(&path)))?;
@@ -71,7 +71,7 @@ pub fn run(command: &Command) -> Result<ExitCode, Failure> {
             store.delete(name)?;
             let _ = writeln!(std::io::stderr(), "pulloff: deleted {}", show_path(&path));
         }
-        Command::Path => match store.folder() {
+        PresetsCommand::Path => match store.folder() {
             Some(folder) => output::print(format!("{}\n", show_path(folder)))?,
             None => return Err(Failure::Usage("no home folder is known: set XDG_CONFIG_HOME".to_owned())),
         },

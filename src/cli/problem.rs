@@ -33,7 +33,7 @@ pub(super) const SUBCOMMANDS: [&str; 17] = [
 
 /// Which problem, as the explorer and every computing command take it.
 #[derive(Debug, Args)]
-pub struct Problem {
+pub struct ProblemArguments {
     /// A preset's name, or a preset file (with a '/' or ending in .toml; - is standard input); the wavy sphere when left out
     #[arg(value_name = "PRESET|FILE.toml")]
     pub preset: Option<OsString>,
@@ -72,7 +72,7 @@ impl Changes {
     }
 }
 
-impl Problem {
+impl ProblemArguments {
     /// The preset with the changes; what they did that their text does not show is told.
     pub fn load(&self, console: &Console) -> Result<Loaded, Failure> {
         let store = store();

@@ -3,11 +3,11 @@
 use super::Failure;
 use super::computed::{Computed, Opened};
 use super::format::Format;
-use super::watch::Stop;
+use super::watch::StopSignal;
 use clap::{Args, ValueEnum};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::edge::RATE;
-use pulloff_engine::report::pull::{Asked, COLUMNS, FAILURE_COLUMNS, MOMENT_COLUMNS};
+use pulloff_engine::report::pull::{AskedPulls, COLUMNS, FAILURE_COLUMNS, MOMENT_COLUMNS};
 use pulloff_engine::report::{PullReport, columns, json, table};
 use pulloff_engine::text::quote;
 use std::process::ExitCode;
@@ -20,7 +20,7 @@ const RATES: usize = 10_000;
 
 /// The arguments of `pulloff pull`.
 #[derive(Debug, Args)]
-pub struct Arguments {
+pub struct PullArguments {
     /// Pull at this rate of what is controlled until the bodies are apart (repeatable; instead of path.rate and path.steps);
     /// log:FROM..TO:COUNT for rates of equal factors
     #[arg(long, value_name = "RATE")]
@@ -29,48 +29,48 @@ pub struct Arguments {
     #[arg(long, value_name = "FORCE", allow_hyphen_values = true)]
     hold_force: Vec<String>,
     /// What the rows of a table or of CSV are; JSON has the runs
-    #[arg(long, value_enum, default_value_t = Rows::Runs)]
-    rows: Rows,
+    #[arg(long, value_enum, default_value_t = PullRows::Runs)]
+    rows: PullRows,
     #[command(flatten)]
     computed: Computed,
 }
 
 /// What a row is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Rows {
+enum PullRows {
     /// The pulls, or the dead loads where nothing is pulled
     Runs,
     /// Every moment of every pull
     Moments,
 }
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &PullArguments) -> Result<ExitCode, Failure> {
     let Opened { console, format, preset, sink } = arguments.computed.open(Format::Table)?;
     let preset = &preset;
-    let mut asked = Asked::default();
+    let mut asked = AskedPulls::default();
     for text in &arguments.rate {
         asked.rates.extend(rates(preset, text)?);
     }
     for text in &arguments.hold_force {
         asked.loads.push(number(preset, "--hold-force", FORCE, text)?);
     }
-    if arguments.rows == Rows::Moments && asked.rates.is_empty() && !asked.loads.is_empty() {
+    if arguments.rows == PullRows::Moments && asked.rates.is_empty() && !asked.loads.is_empty() {
         return Err(Failure::Usage("--rows moments: a dead load has no moments; give --rate too".to_owned()));
     }
-    let stop = Stop::catch()?;
+    let stop = StopSignal::catch()?;
     let report = PullReport::compute(preset, &asked, &console.bar(Some(&stop)))?;
     console.warn(&report.warnings);
     if format == Format::Csv {
         let columns = match (arguments.rows, report.runs.is_empty()) {
-            (Rows::Moments, _) => MOMENT_COLUMNS,
-            (Rows::Runs, true) => FAILURE_COLUMNS,
-            (Rows::Runs, false) => COLUMNS,
+            (PullRows::Moments, _) => MOMENT_COLUMNS,
+            (PullRows::Runs, true) => FAILURE_COLUMNS,
+            (PullRows::Runs, false) => COLUMNS,
         };
         console.note(columns::units(columns, preset.path.control, &preset.units).as_deref());
     }
-    let rows = || if arguments.rows == Rows::Moments { report.moments() } else { report.table() };
+    let rows = || if arguments.rows == PullRows::Moments { report.moments() } else { report.table() };
     sink.write(match format {
-        Format::Table if arguments.rows == Rows::Runs => report.text(),
+        Format::Table if arguments.rows == PullRows::Runs => report.text(),
         Format::Table => table::rows(&rows()?),
         Format::Csv => rows()?.csv()?,
         Format::Json => json(&report)?,

@@ -3,14 +3,14 @@
 use super::Failure;
 use super::console::Messages;
 use super::output::{Inputs, Outputs, Replacing};
-use super::problem::{Changes, Problem, store};
+use super::problem::{Changes, ProblemArguments, store};
 use crate::explorer::command::{Command, by_name};
 use crate::explorer::export::{Page, Picture};
 use crate::explorer::files::target;
 use crate::explorer::script::{self, Permission, ScriptLine, play};
 use crate::explorer::{Inline, Model, open};
 use crate::plot::picture::picture;
-use crate::store::place::Place;
+use crate::store::place::FilePlace;
 use crate::store::stream::{self, STANDARD};
 use crate::store::{Loaded, Store};
 use crate::tui::copy::screen;
@@ -23,7 +23,7 @@ use std::process::ExitCode;
 
 /// The arguments of `pulloff run`.
 #[derive(Debug, Args)]
-pub struct Arguments {
+pub struct RunArguments {
     /// The script, one command a line; - reads standard input
     script: PathBuf,
     /// The preset it begins with, by name or file; - reads standard input; the wavy sphere when left out
@@ -46,7 +46,7 @@ pub struct Arguments {
 /// Longest account of a line.
 const ACCOUNT: usize = 200;
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     if arguments.script == Path::new(STANDARD)
         && arguments.preset.as_ref().is_some_and(|name| name == STANDARD)
     {
@@ -61,7 +61,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         let text = format!("{name}: opens a preset of its own: --preset, --set and --control would be lost");
         return Err(Failure::Usage(text));
     }
-    let problem = Problem { preset: arguments.preset.clone(), changes: arguments.changes.clone() };
+    let problem = ProblemArguments { preset: arguments.preset.clone(), changes: arguments.changes.clone() };
     let loaded = problem.load(&console)?;
     let inputs = problem.inputs(&loaded).with("the script", &arguments.script);
     look(&name, &lines, inputs, arguments.replacing)?;
@@ -97,7 +97,7 @@ fn look(name: &str, lines: &[ScriptLine], inputs: Inputs, replacing: Replacing) 
         let option = format!("{name}:{}: {}", line.number, line.command.id().name());
         let path = target(path);
         // What a line of the same script wrote, another replaces where it says so.
-        let place = Place::written(&path);
+        let place = FilePlace::written(&path);
         if *replace && written.contains(&place) {
             continue;
         }

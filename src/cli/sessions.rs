@@ -5,7 +5,7 @@ use super::console::ask;
 use super::format::{Format, FormatArgument};
 use super::output;
 use crate::explorer::archive::{Archive, ArchiveError, ago};
-use crate::explorer::session::{Document, Summary};
+use crate::explorer::session::{Document, SessionSummary};
 use clap::Subcommand;
 use pulloff_engine::report::number::significant;
 use pulloff_engine::text::{sanitize, show_path};
@@ -15,7 +15,7 @@ use std::time::UNIX_EPOCH;
 
 /// The subcommands of `pulloff sessions`.
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub enum SessionsCommand {
     /// List the sessions, the newest first
     List,
     /// Say what a session holds
@@ -42,11 +42,11 @@ pub enum Command {
 const NAME: usize = 24;
 const REASON: usize = 90;
 
-pub fn run(command: &Command) -> Result<ExitCode, Failure> {
+pub fn run(command: &SessionsCommand) -> Result<ExitCode, Failure> {
     let archive = Archive::open();
     match command {
-        Command::List => output::print(list(&archive)?)?,
-        Command::Show { name, format } => output::print(match format.format {
+        SessionsCommand::List => output::print(list(&archive)?)?,
+        SessionsCommand::Show { name, format } => output::print(match format.format {
             Some(Format::Json) => {
                 let bytes = archive.bytes(name)?;
                 // Read first: a file that is no session is an error, not text to print.
@@ -59,7 +59,7 @@ pub fn run(command: &Command) -> Result<ExitCode, Failure> {
             }
             Some(Format::Table) | None => shown(&archive, name)?.into_bytes(),
         })?,
-        Command::Delete { names, yes } => {
+        SessionsCommand::Delete { names, yes } => {
             for name in names {
                 if !yes {
                     ask(&format!("Delete the session {} for good?", sanitize(name, NAME)))?;
@@ -67,7 +67,7 @@ pub fn run(command: &Command) -> Result<ExitCode, Failure> {
                 archive.delete(name)?;
             }
         }
-        Command::Path => match archive.folder() {
+        SessionsCommand::Path => match archive.folder() {
             Some(folder) => output::print(format!("{}\n", show_path(folder)))?,
             None => return Err(ArchiveError::NoFolder.into()),
         },
@@ -92,7 +92,7 @@ fn list(archive: &Archive) -> Result<String, Failure> {
     Ok(text)
 }
 
-fn line(summary: &Summary) -> String {
+fn line(summary: &SessionSummary) -> String {
     let unsaved = if summary.unsaved { ", preset not saved" } else { "" };
     let steps = if summary.steps == 1 { "1 step" } else { "steps" };
     let steps = if summary.steps == 1 { steps.to_owned() } else { format!("{} {steps}", summary.steps) };

@@ -3,12 +3,12 @@
 use super::Failure;
 use super::console::Messages;
 use super::format::{Format, FormatArgument};
-use super::measured::{Reading, apart, attach};
+use super::measured::{ReadingArguments, apart, attach};
 use super::output::Destination;
-use super::problem::{Changes, Problem};
-use super::watch::Stop;
+use super::problem::{Changes, ProblemArguments};
+use super::watch::StopSignal;
 use clap::Args;
-use pulloff_engine::report::speeds::{COLUMNS, Pair, SpeedsError};
+use pulloff_engine::report::speeds::{COLUMNS, MeasuredPair, SpeedsError};
 use pulloff_engine::report::{SpeedsReport, columns, json, table};
 use pulloff_engine::text::show_path;
 use std::ffi::OsString;
@@ -17,18 +17,18 @@ use std::process::ExitCode;
 
 /// The arguments of `pulloff speeds`.
 #[derive(Debug, Args)]
-pub struct Arguments {
+pub struct SpeedsArguments {
     /// A file with a measured curve, and behind it a preset's name or file (ending in .toml), the wavy sphere when left out; or a
     /// preset alone that names its curve in data.file
     #[arg(required = true, num_args = 1..=2, value_name = "FILE [PRESET]")]
     paths: Vec<OsString>,
     /// What G is computed from: force and radius when left out, or force and approach of a file without contact radii
-    #[arg(long, value_name = "COLUMNS", value_parser = Pair::ALL.map(Pair::name))]
+    #[arg(long, value_name = "COLUMNS", value_parser = MeasuredPair::ALL.map(MeasuredPair::name))]
     from: Option<String>,
     #[command(flatten)]
     changes: Changes,
     #[command(flatten)]
-    reading: Reading,
+    reading: ReadingArguments,
     #[command(flatten)]
     format: FormatArgument,
     #[command(flatten)]
@@ -37,7 +37,7 @@ pub struct Arguments {
     messages: Messages,
 }
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &SpeedsArguments) -> Result<ExitCode, Failure> {
     let console = arguments.messages.open();
     let format = arguments.format.of(arguments.destination.path(), Format::Table)?;
     let (preset, files) = apart(&arguments.paths);
@@ -48,15 +48,15 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             return Err(Failure::Usage(format!("{}: neither a preset nor its file", show_path(other))));
         }
     };
-    let problem = Problem { preset, changes: arguments.changes.clone() };
+    let problem = ProblemArguments { preset, changes: arguments.changes.clone() };
     let mut loaded = problem.load(&console)?;
     let inputs = problem.inputs(&loaded);
     let inputs = file.map_or(inputs.clone(), |file| inputs.with("the points", file));
     let sink = arguments.destination.sink(inputs)?;
     attach(&mut loaded.preset, file.map(PathBuf::as_path), &arguments.reading.said()?)?;
     let preset = &loaded.preset;
-    let stop = Stop::catch()?;
-    let pair = Pair::ALL.into_iter().find(|pair| arguments.from.as_deref() == Some(pair.name()));
+    let stop = StopSignal::catch()?;
+    let pair = MeasuredPair::ALL.into_iter().find(|pair| arguments.from.as_deref() == Some(pair.name()));
     let report =
         SpeedsReport::compute(preset, pair, &console.bar(Some(&stop))).map_err(|error| match error {
             SpeedsError::Case(error) => error.into(),

@@ -4,14 +4,14 @@ use super::Failure;
 use super::console::{Console, Messages};
 use super::format::{self, Format};
 use super::jobs::Jobs;
-use super::output::{self, Inputs, OUTPUT, Outputs, Replacing, Sink};
+use super::output::{self, Inputs, OUTPUT, OutputSink, Outputs, Replacing};
 use super::problem::Changes;
-use super::sweep_status::{Reporter, Subject};
-use super::watch::Stop;
+use super::sweep_status::{Reporter, StatusSubject};
+use super::watch::StopSignal;
 use crate::store::stream;
-use crate::sweep::output::Faults;
+use crate::sweep::output::FaultCounts;
 use crate::sweep::{
-    Existing, Means, Output, OutputError, Shard, Summary, check, ensemble, run as compute, sidecar, spec,
+    Existing, Means, Output, OutputError, RunSummary, Shard, check, ensemble, run as compute, sidecar, spec,
 };
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -29,23 +29,23 @@ use std::time::{Duration, Instant};
 /// The arguments of `pulloff sweep`.
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
-pub struct Arguments {
+pub struct SweepArguments {
     #[command(subcommand)]
-    command: Option<Command>,
+    command: Option<SweepCommand>,
     #[command(flatten)]
     sweep: Option<Sweep>,
 }
 
 /// The subcommands of `pulloff sweep`.
 #[derive(Debug, Subcommand)]
-enum Command {
+enum SweepCommand {
     /// Join the results of all shards of a sweep
     Merge {
         /// The results of each shard, in any order
         #[arg(required = true, value_name = "PART.csv")]
         parts: Vec<PathBuf>,
         #[command(flatten)]
-        results: Results,
+        results: ResultsArguments,
         #[command(flatten)]
         messages: Messages,
     },
@@ -63,7 +63,7 @@ enum Command {
 
 /// Where the rows go.
 #[derive(Debug, Args)]
-struct Results {
+struct ResultsArguments {
     /// Write to this file; where it holds a part of the same rows, a sweep goes on with it; - is standard output
     #[arg(short, long, value_name = "RESULTS.csv")]
     output: PathBuf,
@@ -82,7 +82,7 @@ struct Sweep {
     #[command(flatten)]
     changes: Changes,
     #[command(flatten)]
-    results: Results,
+    results: ResultsArguments,
     #[command(flatten)]
     jobs: Jobs,
     /// Compute the part i of n alone, such as 3/8
@@ -104,14 +104,16 @@ struct Sweep {
 /// How often a sweep that waits for another looks whether it has ended.
 const PAUSE: Duration = Duration::from_millis(200);
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
     match (&arguments.command, &arguments.sweep) {
-        (Some(Command::Quantities), _) => {
+        (Some(SweepCommand::Quantities), _) => {
             output::print(quantities())?;
             Ok(ExitCode::SUCCESS)
         }
-        (Some(Command::Merge { parts, results, messages }), _) => merged(parts, results, &messages.open()),
-        (Some(Command::Check { results, messages }), _) => checked(results, &messages.open()),
+        (Some(SweepCommand::Merge { parts, results, messages }), _) => {
+            merged(parts, results, &messages.open())
+        }
+        (Some(SweepCommand::Check { results, messages }), _) => checked(results, &messages.open()),
         (None, Some(sweep)) => sweep.run(),
         // clap asks for the arguments first.
         (None, None) => Err(Failure::Usage("sweep needs SPEC.toml and -o RESULTS.csv".to_owned())),
@@ -135,8 +137,8 @@ fn time(text: &str) -> Result<Duration, String> {
 }
 
 /// Joins parts.
-fn merged(parts: &[PathBuf], results: &Results, console: &Console) -> Result<ExitCode, Failure> {
-    let Results { output, .. } = results;
+fn merged(parts: &[PathBuf], results: &ResultsArguments, console: &Console) -> Result<ExitCode, Failure> {
+    let ResultsArguments { output, .. } = results;
     let parts: Vec<PathBuf> = parts.iter().map(|part| ensemble::found_rows(part)).collect();
     let rows = &ensemble::joined_rows(&parts, output);
     let inputs = parts.iter().fold(Inputs::default(), |inputs, part| inputs.with_results(part));
@@ -158,7 +160,7 @@ fn merged(parts: &[PathBuf], results: &Results, console: &Console) -> Result<Exi
 }
 
 /// Warns of rows with an error.
-fn with_an_error(faults: &Faults, console: &Console) {
+fn with_an_error(faults: &FaultCounts, console: &Console) {
     if faults.total() > 0 {
         let reasons: Vec<String> = faults.reasons.iter().map(|(reason, n)| format!("{n} {reason}")).collect();
         console.warn(&[format!("{} with an error: {}", faults.total(), reasons.join(", "))]);
@@ -202,7 +204,7 @@ fn checked(results: &Path, console: &Console) -> Result<ExitCode, Failure> {
     fruitful(!found.is_failure(), console)
 }
 
-impl Results {
+impl ResultsArguments {
     fn existing(&self) -> Existing {
         if self.replacing.overwrite { Existing::Overwrite } else { Existing::GoOn }
     }
@@ -243,7 +245,7 @@ impl Sweep {
             self.results.two_files()?;
         }
         let rows_in = ensemble::file_of_rows(&self.results.output, &loaded.spec);
-        let subject = Subject {
+        let subject = StatusSubject {
             results: output::shown(&rows_in),
             identity: spec::identity(&loaded.spec),
             shard: self.shard,
@@ -255,7 +257,7 @@ impl Sweep {
             ensemble::may_write(&self.results.output, &spec, self.results.existing())?;
         }
         let results = self.open(&rows_in, &spec, &console)?;
-        let stop = Stop::catch()?;
+        let stop = StopSignal::catch()?;
         let jobs = self.jobs.count();
         let [before, of] = [results.rows, self.shard.len(spec.rows)];
         let mut status = Reporter::begin(status, subject, [before, of])?;
@@ -299,10 +301,10 @@ impl Sweep {
     /// Looks at all outputs; the status where there is one.
     fn look(
         &self,
-        loaded: &spec::Loaded,
-        subject: &Subject,
+        loaded: &spec::LoadedSpec,
+        subject: &StatusSubject,
         rows_in: &Path,
-    ) -> Result<Option<Sink>, Failure> {
+    ) -> Result<Option<OutputSink>, Failure> {
         let inputs = Inputs::default().with("the spec", &self.spec);
         let inputs = loaded.preset.iter().fold(inputs, |inputs, file| inputs.with("the preset", file));
         let inputs = spec::presets(&loaded.spec).fold(inputs, |inputs, preset| inputs.with_data(&preset));
@@ -313,7 +315,7 @@ impl Sweep {
         {
             return Err(Failure::Usage(format!("--set {key}: is an axis of this sweep", key = quote(key))));
         }
-        let Results { output, replacing } = &self.results;
+        let ResultsArguments { output, replacing } = &self.results;
         let mut outputs = Outputs::beside(inputs, *replacing);
         outputs.kept(OUTPUT, output)?;
         if !stream::is_stream(output) {
@@ -344,7 +346,7 @@ impl Sweep {
     }
 
     /// The summary on standard error.
-    fn tell(&self, spec: &Spec, summary: &Summary, jobs: usize, took: Duration, console: &Console) {
+    fn tell(&self, spec: &Spec, summary: &RunSummary, jobs: usize, took: Duration, console: &Console) {
         let rows = summary.before + summary.now;
         let kept =
             if summary.before > 0 { format!(" ({} from before)", summary.before) } else { String::new() };

@@ -2,10 +2,10 @@
 
 use super::Failure;
 use super::format::{self, Format};
-use super::output::{Outputs, Replacing, Sink, shown};
+use super::output::{OutputSink, Outputs, Replacing, shown};
 use crate::store::file::{LARGEST, read_text};
 use crate::store::stream;
-use crate::sweep::{Shard, Summary};
+use crate::sweep::{RunSummary, Shard};
 use serde::Serialize;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ const PAUSE: Duration = Duration::from_secs(1);
 
 /// What the file says.
 #[derive(Debug, Serialize)]
-struct Status<'a> {
+struct StatusFile<'a> {
     schema: u32,
     /// `running`, `complete` or `stopped`.
     state: &'a str,
@@ -37,14 +37,14 @@ struct Status<'a> {
 
 /// Of what a status file tells.
 #[derive(Debug, Clone)]
-pub struct Subject {
+pub struct StatusSubject {
     /// How messages call the results.
     pub results: String,
     pub identity: String,
     pub shard: Shard,
 }
 
-impl Subject {
+impl StatusSubject {
     /// Whether `text` is a status of this very part of this very sweep, whatever its rows.
     fn is_of(&self, text: &str) -> bool {
         let Ok(status) = serde_json::from_str::<serde_json::Value>(text) else { return false };
@@ -54,7 +54,12 @@ impl Subject {
 
     /// Looks at the file of the status before anything is computed.
     /// Errors: There is another file, and it is not to be replaced.
-    pub fn sink(&self, file: &Path, outputs: &mut Outputs, replacing: Replacing) -> Result<Sink, Failure> {
+    pub fn sink(
+        &self,
+        file: &Path,
+        outputs: &mut Outputs,
+        replacing: Replacing,
+    ) -> Result<OutputSink, Failure> {
         let refused = |what: &str| Failure::Usage(format!("--status {}: {what}", shown(file)));
         format::only("--status", file, Format::Json)?;
         if stream::is_stream(file) {
@@ -74,8 +79,8 @@ impl Subject {
 /// The file, while a sweep runs.
 #[derive(Debug)]
 pub struct Reporter {
-    sink: Option<Sink>,
-    subject: Subject,
+    sink: Option<OutputSink>,
+    subject: StatusSubject,
     of: u64,
     before: u64,
     begun: Instant,
@@ -87,7 +92,11 @@ pub struct Reporter {
 impl Reporter {
     /// Begins the file, where one is wanted.
     /// Errors: It cannot be written.
-    pub fn begin(sink: Option<Sink>, subject: Subject, [before, of]: [u64; 2]) -> Result<Self, Failure> {
+    pub fn begin(
+        sink: Option<OutputSink>,
+        subject: StatusSubject,
+        [before, of]: [u64; 2],
+    ) -> Result<Self, Failure> {
         let now = Instant::now();
         let reporter = Self { sink, subject, of, before, begun: now, written: now, trouble: None };
         if let Some(sink) = &reporter.sink {
@@ -99,7 +108,7 @@ impl Reporter {
     fn text(&self, state: &str, rows: u64, with_error: u64) -> String {
         let seconds = self.begun.elapsed().as_secs_f64();
         let now = rows.saturating_sub(self.before);
-        let status = Status {
+        let status = StatusFile {
             schema: 1,
             state,
             results: &self.subject.results,
@@ -124,7 +133,7 @@ impl Reporter {
     }
 
     /// The run is over.
-    pub fn end(&mut self, summary: &Summary) {
+    pub fn end(&mut self, summary: &RunSummary) {
         let state = if summary.is_complete() { "complete" } else { "stopped" };
         self.replace(state, summary.before + summary.now, summary.faults.total());
     }

@@ -3,7 +3,7 @@
 use super::Failure;
 use super::computed::{Computed, Opened};
 use super::format::Format;
-use super::watch::Stop;
+use super::watch::StopSignal;
 use clap::Args;
 use pulloff_engine::quasistatic::CurveStop;
 use pulloff_engine::report::trace::{COLUMNS, EXACT_COLUMNS, OUT_OF_RANGE, ZONE_COLUMNS};
@@ -13,7 +13,7 @@ use std::process::ExitCode;
 
 /// The arguments of `pulloff trace`.
 #[derive(Debug, Args)]
-pub struct Arguments {
+pub struct TraceArguments {
     /// Add the exact solution at the same contact radius, and the relative difference of the force
     #[arg(long)]
     theory: bool,
@@ -21,9 +21,9 @@ pub struct Arguments {
     computed: Computed,
 }
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &TraceArguments) -> Result<ExitCode, Failure> {
     let Opened { console, format, preset, sink } = arguments.computed.open(Format::Csv)?;
-    let stop = Stop::catch()?;
+    let stop = StopSignal::catch()?;
     let mut report = TraceReport::compute_while(&preset, &console.bar(Some(&stop)))?;
     if arguments.theory {
         report = report.beside(&Exact::of(&preset.problem()));

@@ -5,12 +5,12 @@ use super::format::{Format, FormatArgument};
 use super::output::{Destination, Inputs};
 use clap::Args;
 use pulloff_engine::report::{VerifyReport, json, table};
-use pulloff_engine::verify::{Settings, verify};
+use pulloff_engine::verify::{VerifySettings, verify};
 use std::process::ExitCode;
 
 /// The arguments of `pulloff verify`.
 #[derive(Debug, Args)]
-pub struct Arguments {
+pub struct VerifyArguments {
     /// Only the rows whose heading or name contains this
     #[arg(long, value_name = "PATTERN")]
     only: Option<String>,
@@ -20,10 +20,10 @@ pub struct Arguments {
     destination: Destination,
 }
 
-pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+pub fn run(arguments: &VerifyArguments) -> Result<ExitCode, Failure> {
     let format = arguments.format.of(arguments.destination.path(), Format::Table)?;
     let sink = arguments.destination.sink(Inputs::default())?;
-    let groups = verify(&Settings::default())?;
+    let groups = verify(&VerifySettings::default())?;
     let report = VerifyReport::new(&groups, arguments.only.as_deref());
     if report.total == 0 {
         let headings: Vec<&str> = groups.iter().map(|group| group.title.as_str()).collect();
@@ -56,7 +56,7 @@ mod tests {
     #[test]
     fn one_row_that_fails_is_exit_status_one() {
         // Too few rings for the waves of Fig. 9: they cannot follow its curve.
-        let groups = verify(&Settings { rings: 40 }).unwrap();
+        let groups = verify(&VerifySettings { rings: 40 }).unwrap();
         let report = VerifyReport::new(&groups, None);
         assert!(report.passed < report.total);
         let failure = verdict(&report).unwrap_err();

@@ -29,11 +29,11 @@ fn number(signal: &AtomicUsize) -> Option<u8> {
 }
 
 /// The signals that stop a command: the first lets it keep what is done, the second ends it at once.
-pub struct Stop {
+pub struct StopSignal {
     signal: Arc<AtomicUsize>,
 }
 
-impl Stop {
+impl StopSignal {
     /// Catches them from now on.
     pub fn catch() -> Result<Self, Failure> {
         let signal = Arc::clone(CAUGHT.get_or_init(Arc::default));
@@ -56,7 +56,7 @@ impl Stop {
     }
 }
 
-impl Progress for Stop {
+impl Progress for StopSignal {
     fn stop(&self) -> bool {
         self.signal().is_some()
     }
@@ -66,13 +66,13 @@ impl Progress for Stop {
 pub struct Bar<'a> {
     begun: Instant,
     shown: OnceCell<ProgressBar>,
-    stop: Option<&'a Stop>,
+    stop: Option<&'a StopSignal>,
     hidden: bool,
 }
 
 impl<'a> Bar<'a> {
     /// For a command that begins now. Without `stop` a signal ends the program, as ever.
-    pub fn begin(stop: Option<&'a Stop>, hidden: bool) -> Self {
+    pub fn begin(stop: Option<&'a StopSignal>, hidden: bool) -> Self {
         Self { begun: Instant::now(), shown: OnceCell::new(), stop, hidden }
     }
 }

@@ -1,6 +1,6 @@
 //! Which states of the curve on the screen are admissible, found once no newer curve is computed.
 
-use super::background::{Background, Tell, Want, Watch};
+use super::background::{Background, Tell, Want, Watcher};
 use super::command::Id;
 use super::curve::CurveData;
 use super::effect::Effect;
@@ -9,9 +9,9 @@ use std::sync::Arc;
 
 /// The same curve with what is not admissible on it.
 #[derive(Debug, Clone)]
-pub struct Admissibility(Arc<CurveData>);
+pub struct AdmissibilityData(Arc<CurveData>);
 
-impl Background for Admissibility {
+impl Background for AdmissibilityData {
     type Key = Arc<CurveData>;
     const NAME: &'static str = "check";
     const ONLY_NEWEST: bool = true;
@@ -25,7 +25,7 @@ impl Background for Admissibility {
         Arc::ptr_eq(asked, wanted)
     }
 
-    fn compute(curve: &Self::Key, progress: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+    fn compute(curve: &Self::Key, progress: Watcher<'_>, _: Tell<'_, Self>) -> Option<Self> {
         curve.checked(progress).map(|curve| Self(Arc::new(curve)))
     }
 

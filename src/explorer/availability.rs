@@ -5,7 +5,7 @@ use super::command::Id;
 use super::model::Model;
 use super::node::Node;
 use super::status_line::back_or_anew;
-use super::view::{Panel, Window};
+use super::view::{ScreenPanel, Window};
 
 /// Why a command cannot be done, in words.
 pub type Available = Result<(), String>;
@@ -90,7 +90,7 @@ pub(super) fn pins(model: &Model) -> Available {
 /// A selected value.
 pub(super) fn parameter(model: &Model) -> Available {
     let why = || format!("select a value first: {} goes to Problem", Id::NextPanel.named());
-    when(model.panel == Panel::Problem, why)
+    when(model.panel == ScreenPanel::Problem, why)
 }
 
 /// A view that shows a part of its chart only.

@@ -5,7 +5,7 @@
 
 use super::effect::Effect;
 use super::model::{Level, Model};
-use super::results::{Found, Shared, Task};
+use super::results::{AnyResult, Found, Task};
 use pulloff_engine::progress::Progress;
 use std::fmt;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ pub enum Want<K> {
 }
 
 /// Whoever watches a computation.
-pub type Watch<'a> = &'a (dyn Progress + Sync);
+pub type Watcher<'a> = &'a (dyn Progress + Sync);
 /// Whoever is told what is done so far.
 pub type Tell<'a, R> = &'a mut dyn FnMut(R);
 
@@ -47,7 +47,7 @@ pub trait Background: fmt::Debug + Send + Sync + Sized + 'static {
     /// Whether two keys have the same answer.
     fn is_same(asked: &Self::Key, wanted: &Self::Key) -> bool;
     /// Computes it, and tells of what is done so far; `None` where it was stopped.
-    fn compute(key: &Self::Key, progress: Watch<'_>, told: Tell<'_, Self>) -> Option<Self>;
+    fn compute(key: &Self::Key, progress: Watcher<'_>, told: Tell<'_, Self>) -> Option<Self>;
 
     /// Whether this is the answer, so that nothing need be asked.
     fn is_of(&self, _: &Self::Key) -> bool {
@@ -73,7 +73,7 @@ pub trait Background: fmt::Debug + Send + Sync + Sized + 'static {
 
 /// A kind of result, whatever it is.
 #[derive(Debug, Clone, Copy)]
-pub struct Kind {
+pub struct ResultKind {
     pub name: &'static str,
     pub changes_values: bool,
     /// Asks for it where it is wanted, and stops it where it is wanted no longer.
@@ -84,7 +84,7 @@ pub struct Kind {
     pub give_up: fn(&mut Model) -> Option<Vec<Effect>>,
 }
 
-impl Kind {
+impl ResultKind {
     /// That of a result.
     pub const fn of<R: Background>() -> Self {
         Self {
@@ -134,8 +134,8 @@ pub(super) fn ask<R: Background>(model: &mut Model, key: R::Key) -> Effect {
     let id = model.number();
     let (name, patience, is_for_scripts) = (R::NAME, R::PATIENCE, R::is_for_scripts(&key));
     model.results.slot_mut::<R>().asked = Some((id, Arc::new(key.clone())));
-    let share = |found: R| -> Shared { Arc::new(found) };
-    let work = move |progress: &(dyn Progress + Sync), told: &mut dyn FnMut(Shared)| {
+    let share = |found: R| -> AnyResult { Arc::new(found) };
+    let work = move |progress: &(dyn Progress + Sync), told: &mut dyn FnMut(AnyResult)| {
         R::compute(&key, progress, &mut |part| told(share(part))).map(share)
     };
     Effect::Compute(Task { name, id, patience, is_for_scripts, work: Arc::new(work) })

@@ -1,33 +1,33 @@
 //! All results that are computed in the background. Of several under way the first is told of, and given up first.
 
-use super::admissibility::Admissibility;
-use super::background::Kind;
+use super::admissibility::AdmissibilityData;
+use super::background::ResultKind;
 use super::effect::Effect;
-use super::fit::Fitted;
+use super::fit::FitProgress;
 use super::fitting::Distances;
 use super::loops::LoopData;
 use super::maps::MapData;
 use super::model::Model;
 use super::onset::SnapsFrom;
 use super::pinned::PinCurve;
-use super::profile::Inside;
+use super::profile::StateInside;
 use super::pulls::PullData;
 use super::speeds::SpeedsData;
 use super::studies::StudyData;
 
 /// The kinds, in the order in which they are told of.
-pub static KINDS: [Kind; 11] = [
-    Kind::of::<Fitted>(),
-    Kind::of::<PinCurve>(),
-    Kind::of::<StudyData>(),
-    Kind::of::<Admissibility>(),
-    Kind::of::<Inside>(),
-    Kind::of::<LoopData>(),
-    Kind::of::<PullData>(),
-    Kind::of::<MapData>(),
-    Kind::of::<Distances>(),
-    Kind::of::<SpeedsData>(),
-    Kind::of::<SnapsFrom>(),
+pub static KINDS: [ResultKind; 11] = [
+    ResultKind::of::<FitProgress>(),
+    ResultKind::of::<PinCurve>(),
+    ResultKind::of::<StudyData>(),
+    ResultKind::of::<AdmissibilityData>(),
+    ResultKind::of::<StateInside>(),
+    ResultKind::of::<LoopData>(),
+    ResultKind::of::<PullData>(),
+    ResultKind::of::<MapData>(),
+    ResultKind::of::<Distances>(),
+    ResultKind::of::<SpeedsData>(),
+    ResultKind::of::<SnapsFrom>(),
 ];
 
 /// Asks for all that is wanted now.
@@ -36,7 +36,7 @@ pub(super) fn want_all(model: &mut Model) -> Vec<Effect> {
 }
 
 /// The kind of a name.
-pub(super) fn kind_of(name: &str) -> Option<&'static Kind> {
+pub(super) fn kind_of(name: &str) -> Option<&'static ResultKind> {
     KINDS.iter().find(|kind| kind.name == name)
 }
 
@@ -85,7 +85,7 @@ mod tests {
         };
         assert!(asked(&effects), "{effects:?}");
         assert!(says(&model, "checking admissibility"));
-        let number = model.results.under_way::<Admissibility>().unwrap();
+        let number = model.results.under_way::<AdmissibilityData>().unwrap();
         let effects = update(&mut model, Id::Cancel.into());
         assert!(
             matches!(effects.as_slice(), [Effect::Stop { name: "check", id }] if *id == number),

@@ -9,14 +9,14 @@ pub const MOST: usize = 40;
 
 /// A branch.
 #[derive(Debug, Clone)]
-pub struct Branch<'a> {
+pub struct WalkBranch<'a> {
     pub end: usize,
     pub is_here: bool,
     /// Its states from the fork to its end; of the current branch, all.
     pub nodes: Vec<&'a Node>,
 }
 
-impl<'a> Branch<'a> {
+impl<'a> WalkBranch<'a> {
     /// Its last node.
     pub fn last(&self) -> Option<&'a Node> {
         self.nodes.last().copied()
@@ -24,7 +24,7 @@ impl<'a> Branch<'a> {
 }
 
 /// The branches of a walk, the newest first.
-pub fn branches(history: &History) -> Vec<Branch<'_>> {
+pub fn branches(history: &History) -> Vec<WalkBranch<'_>> {
     let nodes: Vec<&Node> = history.nodes().collect();
     let children = children(&nodes);
     let mut is_ours = vec![false; nodes.len()];
@@ -45,7 +45,7 @@ pub fn branches(history: &History) -> Vec<Branch<'_>> {
                 at = nodes[number].parent.filter(|_| !parted && !nodes[number].begins);
             }
             way.reverse();
-            Branch { end, is_here: history.cursor() == Some(end), nodes: way }
+            WalkBranch { end, is_here: history.cursor() == Some(end), nodes: way }
         })
         .collect()
 }

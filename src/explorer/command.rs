@@ -11,9 +11,9 @@ mod named;
 use list::each_command;
 pub use named::{by_name, spelled};
 
-use super::view::{Home, Overlay, Panel, View};
+use super::view::{Home, Overlay, ScreenPanel, View};
 use pulloff_engine::preset::Key;
-use pulloff_engine::sweep::Column;
+use pulloff_engine::sweep::QuantityColumn;
 use std::path::PathBuf;
 
 /// Makes [`Id`] of the list.
@@ -101,7 +101,7 @@ pub enum Command {
         folder: Option<PathBuf>,
     },
     Pick {
-        panel: Panel,
+        panel: ScreenPanel,
         line: Option<usize>,
     },
     /// Go to the state of this contact radius, in the user's units.
@@ -123,7 +123,7 @@ pub enum Command {
     /// Go to this place.
     Go(Home),
     /// Show this quantity over the range of the selected value.
-    Study(Column),
+    Study(QuantityColumn),
     /// Draw this theory over the curve, or no longer.
     Overlay(Overlay),
     /// So many commands taken back ([`Id::Undo`]) or done again ([`Id::Redo`]).

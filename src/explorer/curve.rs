@@ -6,7 +6,7 @@
 //!
 //! Which states are admissible takes longer than both, and is added to a curve that is on the screen already.
 
-use super::progress::{Stage, Staged};
+use super::progress::{CurveStage, Staged};
 use super::setting::{Setting, same_curve};
 use super::theory::Theory;
 use pulloff_engine::case::{Case, CaseError};
@@ -96,9 +96,9 @@ impl ProblemCurve {
     /// Computes the curve of `preset`.
     pub fn compute(preset: &Preset, progress: &Staged<'_>) -> Result<Self, CaseError> {
         let case = Case::with_range(preset, progress)?;
-        progress.enter(Stage::Curve(1));
+        progress.enter(CurveStage::Curve(1));
         let mut curve = case.curve(progress)?;
-        progress.enter(Stage::Limits);
+        progress.enter(CurveStage::Limits);
         for control in SHOWN {
             if progress.stop() {
                 return Err(CaseError::Cancelled);
@@ -177,7 +177,7 @@ impl CurveData {
                 (limit.control, shown(&Sample { contact_radius, approach, force, slopes }))
             })
             .collect();
-        progress.enter(Stage::Events(0));
+        progress.enter(CurveStage::Events(0));
         let told = |path: Result<Path, CaseError>| match path {
             Err(CaseError::Cancelled) => Err(CaseError::Cancelled),
             path => Ok(path.map_err(|error| error.to_string())),

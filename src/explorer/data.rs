@@ -3,7 +3,7 @@
 
 use super::command::Assignment;
 use crate::store::FILES;
-use pulloff_engine::measured::{ReadError, Seen, Spec, columns, parse};
+use pulloff_engine::measured::{ColumnSpec, CurveReadError, SeenColumn, columns, parse};
 use pulloff_engine::preset::{Preset, data};
 use pulloff_engine::text::{is_unsafe, show_name, show_path};
 use std::fs;
@@ -35,7 +35,7 @@ pub struct Foreign {
     /// Its name, safe to show.
     pub shown: String,
     /// Its columns.
-    pub seen: Vec<Seen>,
+    pub seen: Vec<SeenColumn>,
 }
 
 impl Foreign {
@@ -46,13 +46,13 @@ impl Foreign {
         let folder = preset.data.source.as_ref().and_then(|source| source.folder.as_deref());
         let bytes = (FILES.points)(folder, name).ok()?;
         let said = value(data::COLUMNS).unwrap_or(&preset.data.columns);
-        match parse(&bytes, &Spec::parse(said).ok()?) {
+        match parse(&bytes, &ColumnSpec::parse(said).ok()?) {
             Err(
-                ReadError::Unknown { .. }
-                | ReadError::Lacks { .. }
-                | ReadError::NoColumn { .. }
-                | ReadError::Signal { .. }
-                | ReadError::Unit { .. },
+                CurveReadError::Unknown { .. }
+                | CurveReadError::Lacks { .. }
+                | CurveReadError::NoColumn { .. }
+                | CurveReadError::Signal { .. }
+                | CurveReadError::Unit { .. },
             ) => {}
             _ => return None,
         }

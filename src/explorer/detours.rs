@@ -10,10 +10,10 @@ use super::script;
 const LONGEST: usize = 4000;
 
 /// A line, and how many states it made; `None` where that is not known.
-pub type Made = (String, Option<usize>);
+pub type MadeLine = (String, Option<usize>);
 
 /// What a line does, as far as that matters here.
-enum Kind {
+enum LineKind {
     /// Steps, which can be shortened.
     Steps,
     /// Another walk, which is left out whole or not at all.
@@ -28,32 +28,32 @@ enum Kind {
     Needs,
 }
 
-fn kind(line: &str) -> Kind {
+fn kind(line: &str) -> LineKind {
     let words: Vec<&str> = line.split(' ').collect();
     match (Id::called(words[0]), &words[1..]) {
-        (Some(Id::Step), _) => Kind::Steps,
-        (Some(Id::Run | Id::NextEvent | Id::Jump), _) => Kind::Walk,
-        (Some(Id::Reverse | Id::StepLength), _) => Kind::Way,
-        (Some(Id::Undo), [count, "states"]) => count.parse().map_or(Kind::Needs, Kind::Undo),
-        (Some(Id::Undo | Id::Redo | Id::Branches), _) => Kind::Needs,
-        _ => Kind::Values,
+        (Some(Id::Step), _) => LineKind::Steps,
+        (Some(Id::Run | Id::NextEvent | Id::Jump), _) => LineKind::Walk,
+        (Some(Id::Reverse | Id::StepLength), _) => LineKind::Way,
+        (Some(Id::Undo), [count, "states"]) => count.parse().map_or(LineKind::Needs, LineKind::Undo),
+        (Some(Id::Undo | Id::Redo | Id::Branches), _) => LineKind::Needs,
+        _ => LineKind::Values,
     }
 }
 
 /// The lines without what was taken back for good.
-pub fn without_detours(lines: &[Made]) -> Vec<String> {
+pub fn without_detours(lines: &[MadeLine]) -> Vec<String> {
     let all = || lines.iter().map(|(line, _)| line.clone()).collect();
     if lines.iter().filter_map(|(_, made)| *made).sum::<usize>() > LONGEST {
         return all();
     }
-    let mut kept: Vec<(String, Option<usize>, Kind)> = Vec::new();
+    let mut kept: Vec<(String, Option<usize>, LineKind)> = Vec::new();
     for (line, made) in lines {
         let kind = kind(line);
-        if matches!(kind, Kind::Needs) {
+        if matches!(kind, LineKind::Needs) {
             return all();
         }
         match kind {
-            Kind::Undo(count) if take_back(&mut kept, count) => {}
+            LineKind::Undo(count) if take_back(&mut kept, count) => {}
             kind => kept.push((line.clone(), *made, kind)),
         }
     }
@@ -61,7 +61,7 @@ pub fn without_detours(lines: &[Made]) -> Vec<String> {
 }
 
 /// Leaves out what made the last `count` states; false, and nothing is changed, where that cannot be told.
-fn take_back(kept: &mut Vec<(String, Option<usize>, Kind)>, count: usize) -> bool {
+fn take_back(kept: &mut Vec<(String, Option<usize>, LineKind)>, count: usize) -> bool {
     let mut left = count;
     let mut out = Vec::new();
     let mut shortened = None;
@@ -70,12 +70,12 @@ fn take_back(kept: &mut Vec<(String, Option<usize>, Kind)>, count: usize) -> boo
             break;
         }
         match (kind, made) {
-            (Kind::Way, _) => {}
-            (Kind::Steps | Kind::Walk, Some(made)) if *made <= left => {
+            (LineKind::Way, _) => {}
+            (LineKind::Steps | LineKind::Walk, Some(made)) if *made <= left => {
                 left -= made;
                 out.push(at);
             }
-            (Kind::Steps, Some(made)) => {
+            (LineKind::Steps, Some(made)) => {
                 shortened = Some((at, made - left));
                 left = 0;
             }
@@ -88,7 +88,7 @@ fn take_back(kept: &mut Vec<(String, Option<usize>, Kind)>, count: usize) -> boo
     if let Some((at, steps)) = shortened
         && let Some(line) = script::line(&Command::Steps(steps))
     {
-        kept[at] = (line, Some(steps), Kind::Steps);
+        kept[at] = (line, Some(steps), LineKind::Steps);
     }
     // From the last on: the places before stay.
     for at in out {
@@ -102,7 +102,8 @@ mod tests {
     use super::*;
 
     fn without(lines: &[(&str, usize)]) -> Vec<String> {
-        let lines: Vec<Made> = lines.iter().map(|(line, made)| ((*line).to_owned(), Some(*made))).collect();
+        let lines: Vec<MadeLine> =
+            lines.iter().map(|(line, made)| ((*line).to_owned(), Some(*made))).collect();
         without_detours(&lines)
     }
 

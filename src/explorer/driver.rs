@@ -11,14 +11,14 @@ use super::files;
 use super::job::Job;
 use super::model::Model;
 use super::node::NodeKind;
-use super::progress::{Pace, Staged, for_good};
+use super::progress::{ProgressPace, Staged, for_good};
 use super::results::Task;
 use super::saves::Saves;
 use super::update::answer;
 use super::walk::{self, Request};
 use super::watch::Watch;
 use crate::fault;
-use crate::mend::Reason;
+use crate::mend::WordedFault;
 use crate::store::Store;
 use pulloff_engine::case::CaseError;
 use pulloff_engine::progress::Unwatched;
@@ -85,7 +85,7 @@ fn compute(wish: &Wish, progress: &Staged<'_>) -> Option<Reply> {
     match result {
         Err(CaseError::Cancelled) => None,
         result => {
-            let result = result.map(Arc::new).map_err(|error| Reason::of("", &error));
+            let result = result.map(Arc::new).map_err(|error| WordedFault::of("", &error));
             Some(Reply::Curve { id: wish.id, result })
         }
     }
@@ -99,9 +99,9 @@ const CHUNK: Duration = Duration::from_millis(30);
 /// Runs effects on threads of their own; replies go to one function.
 #[derive(Debug)]
 pub struct Workers {
-    curve: Arc<Slot<Box<Wish>>>,
+    curve: Arc<RequestSlot<Box<Wish>>>,
     /// A lane for each kind of result, in the order of the list.
-    lanes: Vec<Arc<Lane>>,
+    lanes: Vec<Arc<ResultLane>>,
     walks: Sender<Box<Request>>,
     files: Sender<Box<Job>>,
     walking: Arc<Watch>,
@@ -110,21 +110,21 @@ pub struct Workers {
 
 /// The lane of a kind of result.
 #[derive(Debug)]
-struct Lane {
-    slot: Slot<Task>,
+struct ResultLane {
+    slot: RequestSlot<Task>,
     /// Results up to this number are to end.
     stopped: AtomicU64,
 }
 
 /// Holds the newest request only.
 #[derive(Debug)]
-struct Slot<T> {
+struct RequestSlot<T> {
     wish: Mutex<Option<T>>,
     filled: Condvar,
     waiting: AtomicBool,
 }
 
-impl<T> Slot<T> {
+impl<T> RequestSlot<T> {
     fn empty() -> Self {
         Self { wish: Mutex::new(None), filled: Condvar::new(), waiting: AtomicBool::new(false) }
     }
@@ -157,7 +157,7 @@ impl Workers {
         store: Store,
         reply: impl Fn(Reply) + Send + Clone + 'static,
     ) -> Result<Self, std::io::Error> {
-        let (curve, given_up) = (Arc::new(Slot::empty()), Arc::new(AtomicU64::new(0)));
+        let (curve, given_up) = (Arc::new(RequestSlot::empty()), Arc::new(AtomicU64::new(0)));
         let walking = Arc::new(Watch::default());
         let (walks, requests) = channel();
         let (files, jobs) = channel();
@@ -165,7 +165,7 @@ impl Workers {
         thread::Builder::new().name("curve".to_owned()).spawn(move || curves(&slot, &give_up, &send))?;
         let mut lanes = Vec::new();
         for kind in &KINDS {
-            let lane = Arc::new(Lane { slot: Slot::empty(), stopped: AtomicU64::new(0) });
+            let lane = Arc::new(ResultLane { slot: RequestSlot::empty(), stopped: AtomicU64::new(0) });
             lanes.push(Arc::clone(&lane));
             let send = reply.clone();
             thread::Builder::new().name(kind.name.to_owned()).spawn(move || results(&lane, &send))?;
@@ -177,7 +177,7 @@ impl Workers {
     }
 
     /// The lane of a kind.
-    fn lane(&self, name: &str) -> Option<&Lane> {
+    fn lane(&self, name: &str) -> Option<&ResultLane> {
         let at = KINDS.iter().position(|kind| kind.name == name)?;
         self.lanes.get(at).map(|lane| &**lane)
     }
@@ -218,7 +218,7 @@ impl Workers {
     }
 }
 
-fn curves(slot: &Slot<Box<Wish>>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
+fn curves(slot: &RequestSlot<Box<Wish>>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
     let mut last: Option<Arc<ProblemCurve>> = None;
     loop {
         let mut wish = slot.take();
@@ -227,7 +227,7 @@ fn curves(slot: &Slot<Box<Wish>>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
         let known = last.take_if(|base| wish.base.is_none() && base.is_of(&wish.preset));
         wish.base = wish.base.or(known);
         let begun = Instant::now();
-        let pace = RefCell::new(Pace::begin());
+        let pace = RefCell::new(ProgressPace::begin());
         let id = wish.id;
         let outdated = for_good(|| slot.waiting.load(Ordering::Acquire) && begun.elapsed() <= PATIENCE);
         let stop = |stage| {
@@ -246,7 +246,7 @@ fn curves(slot: &Slot<Box<Wish>>, given_up: &AtomicU64, reply: &dyn Fn(Reply)) {
 }
 
 /// Computes results of one kind, each until a newer one waits or it is stopped.
-fn results(lane: &Lane, reply: &dyn Fn(Reply)) {
+fn results(lane: &ResultLane, reply: &dyn Fn(Reply)) {
     loop {
         let task = lane.slot.take();
         let begun = Instant::now();
@@ -266,7 +266,7 @@ fn walk_lane(requests: &Receiver<Box<Request>>, watch: &Watch, reply: &dyn Fn(Re
         let id = request.id;
         let is_paced = request.pace.is_some();
         if is_paced && watch.is_stopped(id) {
-            reply(Reply::Walked { id, made: Vec::new(), outcome: Some(walk::Outcome::Paused) });
+            reply(Reply::Walked { id, made: Vec::new(), outcome: Some(walk::WalkOutcome::Paused) });
             continue;
         }
         let mut made = Vec::new();

@@ -2,10 +2,10 @@
 
 use super::curve::{CurveData, ProblemCurve};
 use super::job::{Done, Job};
-use super::progress::Stage;
+use super::progress::CurveStage;
 use super::results::{Found, Task};
-use super::walk::{Made, Outcome, Request};
-use crate::mend::Reason;
+use super::walk::{MadeState, Request, WalkOutcome};
+use crate::mend::WordedFault;
 use pulloff_engine::preset::Preset;
 use std::sync::Arc;
 
@@ -45,19 +45,19 @@ pub struct Wish {
 pub enum Reply {
     Curve {
         id: u64,
-        result: Result<Arc<CurveData>, Reason>,
+        result: Result<Arc<CurveData>, WordedFault>,
     },
     Stage {
         id: u64,
-        stage: Stage,
+        stage: CurveStage,
     },
     /// A result, or as much of it as is done.
     Found(Found),
     Walked {
         id: u64,
-        made: Vec<Made>,
+        made: Vec<MadeState>,
         /// How it ended; `None` while it goes on.
-        outcome: Option<Outcome>,
+        outcome: Option<WalkOutcome>,
     },
     /// A message about the session for the person.
     Notice(String),

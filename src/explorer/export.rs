@@ -1,7 +1,7 @@
 //! What can be written to a file: the kinds of export and the endings of their files.
 
 use super::view::View;
-use crate::print::Format;
+use crate::print::PictureFormat;
 use std::path::Path;
 
 /// What can be exported.
@@ -68,7 +68,7 @@ impl Picture {
     pub fn endings(self) -> &'static [&'static str] {
         match self {
             Self::Screen => &["txt"],
-            Self::Figure(_) => Format::ENDINGS,
+            Self::Figure(_) => PictureFormat::ENDINGS,
         }
     }
 }

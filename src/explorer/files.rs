@@ -8,8 +8,8 @@ use super::job::{Content, Done, Job};
 use super::journal::Beginning;
 use super::walk_table::changed_keys;
 use super::{data, script, study_table, walk_table};
-use crate::mend::Reason;
-use crate::print::Format;
+use crate::mend::WordedFault;
+use crate::print::PictureFormat;
 use crate::store::{Fingerprint, Listed, Overwrite, Source, Store, StoreError, WriteError, write_atomically};
 use pulloff_engine::preset::changes::{changes, differences};
 use pulloff_engine::preset::{Invalid, Preset, Value, data as data_keys};
@@ -23,12 +23,13 @@ use std::sync::Arc;
 
 impl Page {
     /// The bytes of its file `path`.
-    fn bytes(&self, path: &str) -> Result<Vec<u8>, Reason> {
+    fn bytes(&self, path: &str) -> Result<Vec<u8>, WordedFault> {
         match self {
             Self::Screen(text) => Ok(text.as_bytes().to_vec()),
             Self::Figure(svg) => {
-                let format = Format::of(Path::new(path)).map_err(|error| Reason::of("", &error))?;
-                format.bytes(svg).map_err(|error| Reason::of("", &error))
+                let format =
+                    PictureFormat::of(Path::new(path)).map_err(|error| WordedFault::of("", &error))?;
+                format.bytes(svg).map_err(|error| WordedFault::of("", &error))
             }
         }
     }
@@ -58,7 +59,7 @@ pub fn run(store: &Store, job: Job) -> Done {
                     Done::Assigned(preset)
                 }
                 Err(invalid) => {
-                    let reason = Reason::mendable(invalid.to_string());
+                    let reason = WordedFault::mendable(invalid.to_string());
                     match Foreign::of(&preset, &assignments) {
                         Some(foreign) => Done::Foreign(Box::new(foreign), reason),
                         None => Done::Failed(reason),
@@ -70,32 +71,35 @@ pub fn run(store: &Store, job: Job) -> Done {
             let assignments: Vec<String> =
                 assignments.iter().map(|(key, text)| format!("{key}={text}")).collect();
             let loaded = store.resolve(&name).and_then(|source| store.load(&source, &assignments));
-            loaded.map_or_else(|e| Done::Failed(Reason::of("", &e)), |loaded| Done::Opened(Box::new(loaded)))
+            loaded.map_or_else(
+                |e| Done::Failed(WordedFault::of("", &e)),
+                |loaded| Done::Opened(Box::new(loaded)),
+            )
         }
         Job::Delete(name) => match store.delete(&name) {
             Ok(path) => Done::Deleted(show_path(&path), Box::new(store.list())),
-            Err(error) => Done::Failed(Reason::of("not deleted: ", &error)),
+            Err(error) => Done::Failed(WordedFault::of("not deleted: ", &error)),
         },
         Job::Browse { key, folder, own } => match data::list(folder.as_deref(), own.as_deref()) {
             Ok(folder) => Done::Browsed(key, Box::new(folder)),
-            Err(reason) => Done::Failed(Reason::mendable(reason)),
+            Err(reason) => Done::Failed(WordedFault::mendable(reason)),
         },
         Job::Read { folder, name } => {
             let path = target(&name).to_string_lossy().into_owned();
             match crate::store::load(folder.as_deref(), &path) {
                 Ok(rows) => Done::Read(Arc::new(rows)),
-                Err(reason) => Done::Failed(Reason::mendable(reason)),
+                Err(reason) => Done::Failed(WordedFault::mendable(reason)),
             }
         }
         Job::Save { source, preset, overwrite } => {
             let Some(path) = source.path() else {
                 let why = "the preset has no file of its own; save it under a name";
-                return Done::Failed(Reason::mendable(why));
+                return Done::Failed(WordedFault::mendable(why));
             };
             match crate::store::save_file(path, &preset, Some(&source), overwrite) {
                 Ok(fingerprint) => Done::Saved { source, fingerprint, preset },
                 Err(StoreError::Write(WriteError::Changed { .. })) => Done::Conflict,
-                Err(error) => Done::Failed(Reason::of("not saved: ", &error)),
+                Err(error) => Done::Failed(WordedFault::of("not saved: ", &error)),
             }
         }
         Job::SaveAs { name, preset, replace, with_data, from } => {
@@ -106,7 +110,7 @@ pub fn run(store: &Store, job: Job) -> Done {
                 Err(WriteError::Exists { .. }) => Done::PageExists(page, path),
                 result => exported(path, result),
             },
-            Err(reason) => Done::Failed(Reason::of("not exported: ", &reason)),
+            Err(reason) => Done::Failed(WordedFault::of("not exported: ", &reason)),
         },
         Job::Export { content, path, replace } => export(store, &content, path, replace),
     }
@@ -133,24 +137,23 @@ fn save_as(
     match saved {
         Ok((source, fingerprint, preset)) => Done::Saved { source, fingerprint, preset },
         Err(StoreError::Write(WriteError::Exists { .. })) => Done::NameTaken(name, with_data),
-        Err(error) => Done::Failed(Reason::of("not saved: ", &error)),
+        Err(error) => Done::Failed(WordedFault::of("not saved: ", &error)),
     }
 }
 
 fn export(store: &Store, content: &Content, path: String, replace: bool) -> Done {
     let as_json = Path::new(&path).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
     let text = match content {
-        Content::Script(start, lines) => script_text(store, start, lines).map_err(Reason::mendable),
+        Content::Script(start, lines) => script_text(store, start, lines).map_err(WordedFault::mendable),
         Content::Study(study, start) if ends_in(&path, &["toml"]) => named(store, start)
             .map(|(name, over)| study_table::spec(study, &name, &over))
-            .map_err(Reason::mendable),
-        numbers => {
-            text(numbers, as_json).map_err(|error| Reason { text: error.to_string(), can_be_mended: false })
-        }
+            .map_err(WordedFault::mendable),
+        numbers => text(numbers, as_json)
+            .map_err(|error| WordedFault { text: error.to_string(), can_be_mended: false }),
     };
     let text = match text {
         Ok(text) => text,
-        Err(reason) => return Done::Failed(Reason::of("not exported: ", &reason)),
+        Err(reason) => return Done::Failed(WordedFault::of("not exported: ", &reason)),
     };
     match put(&path, text.as_bytes(), replace) {
         Err(WriteError::Exists { .. }) => Done::FileExists(content.document(), path),
@@ -166,7 +169,7 @@ fn put(path: &str, bytes: &[u8], replace: bool) -> Result<Fingerprint, WriteErro
 fn exported(path: String, result: Result<Fingerprint, WriteError>) -> Done {
     match result {
         Ok(_) => Done::Exported(path),
-        Err(error) => Done::Failed(Reason::of("not exported: ", &error)),
+        Err(error) => Done::Failed(WordedFault::of("not exported: ", &error)),
     }
 }
 

@@ -1,12 +1,12 @@
 //! The commands about a fit: which keys it may change, its beginning and what comes of it.
 
-use super::background::{Background, Tell, Want, Watch, ask, asked, stop};
+use super::background::{Background, Tell, Want, Watcher, ask, asked, stop};
 use super::command::Id;
 use super::effect::Effect;
 use super::fitting::named;
 use super::model::{Level, Model};
 use super::requests::change;
-use crate::mend::Reason;
+use crate::mend::WordedFault;
 use pulloff_engine::fit::least_squares::Ending;
 use pulloff_engine::fit::{Fit, FitError, Options, Verdict, fit_own};
 use pulloff_engine::measured::Abscissa;
@@ -38,17 +38,17 @@ pub(super) fn mark(model: &mut Model) -> Vec<Effect> {
 
 /// What is done of a fit.
 #[derive(Debug, Clone)]
-pub enum Fitted {
+pub enum FitProgress {
     /// So many per cent.
     Percent(u8),
-    Done(Result<Arc<Fit>, Reason>),
+    Done(Result<Arc<Fit>, WordedFault>),
 }
 
 /// Tells of a fit how far it has come.
 struct Told<'a> {
     percent: Cell<u8>,
     progress: &'a dyn Progress,
-    tell: RefCell<&'a mut dyn FnMut(Fitted)>,
+    tell: RefCell<&'a mut dyn FnMut(FitProgress)>,
 }
 
 impl Progress for Told<'_> {
@@ -58,7 +58,7 @@ impl Progress for Told<'_> {
         let percent = (share.clamp(0.0, 1.0) * 100.0) as u8;
         if percent >= self.percent.get() + 5 {
             self.percent.set(percent);
-            (self.tell.borrow_mut())(Fitted::Percent(percent));
+            (self.tell.borrow_mut())(FitProgress::Percent(percent));
         }
     }
 
@@ -67,7 +67,7 @@ impl Progress for Told<'_> {
     }
 }
 
-impl Background for Fitted {
+impl Background for FitProgress {
     type Key = Preset;
     const NAME: &'static str = "fit";
     const CHANGES_VALUES: bool = true;
@@ -81,13 +81,13 @@ impl Background for Fitted {
         asked == wanted
     }
 
-    fn compute(preset: &Preset, progress: Watch<'_>, told: Tell<'_, Self>) -> Option<Self> {
+    fn compute(preset: &Preset, progress: Watcher<'_>, told: Tell<'_, Self>) -> Option<Self> {
         let free = preset.data.free().map(str::to_owned).collect();
         let options = Options { free, ..Options::default() };
         let watch = Told { percent: Cell::new(0), progress, tell: RefCell::new(told) };
         let found = fit_own(preset, &options, &watch).map(Arc::new).map_err(|error| {
             let can_be_mended = !matches!(error, FitError::NoStart | FitError::Cancelled);
-            Reason { text: format!("not fitted: {error}"), can_be_mended }
+            WordedFault { text: format!("not fitted: {error}"), can_be_mended }
         });
         Some(Self::Done(found))
     }
@@ -115,7 +115,7 @@ impl Background for Fitted {
 
 /// Asks for a fit of the values as they are; ends one that is under way with the best so far.
 pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
-    if let Some(stops) = stop::<Fitted>(model) {
+    if let Some(stops) = stop::<FitProgress>(model) {
         return vec![stops];
     }
     if model.preset.data.source.is_some() && model.preset.data.free().next().is_none() {
@@ -124,7 +124,7 @@ pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
         return model.refuse(text);
     }
     let preset = model.preset.clone();
-    vec![ask::<Fitted>(model, preset)]
+    vec![ask::<FitProgress>(model, preset)]
 }
 
 /// Takes what a fit found.

@@ -1,6 +1,6 @@
 //! The measured curve and the model: how far each point is from the curve, and which keys a fit may change.
 
-use super::background::{Background, Tell, Want, Watch};
+use super::background::{Background, Tell, Want, Watcher};
 use super::model::Model;
 use super::view::View;
 use pulloff_engine::fit::run::{Residual, residuals_own};
@@ -42,7 +42,7 @@ impl Background for Distances {
         self.preset == *wanted
     }
 
-    fn compute(preset: &Preset, _: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+    fn compute(preset: &Preset, _: Watcher<'_>, _: Tell<'_, Self>) -> Option<Self> {
         Some(Self::of(preset))
     }
 }

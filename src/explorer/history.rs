@@ -18,7 +18,7 @@ struct TreeNode {
 
 /// A place to come back to: a node, and the child last gone to from there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Mark {
+pub struct Bookmark {
     cursor: Option<usize>,
     forward: Option<usize>,
     numbering: u64,
@@ -240,14 +240,14 @@ impl History {
     }
 
     /// Where the walker stands.
-    pub fn mark(&self) -> Mark {
-        Mark { cursor: self.cursor, forward: self.redo_target(), numbering: self.numbering }
+    pub fn mark(&self) -> Bookmark {
+        Bookmark { cursor: self.cursor, forward: self.redo_target(), numbering: self.numbering }
     }
 
     /// Stands where it stood, as if nothing had been walked since; the nodes made since are kept.
     ///
     /// Where nodes were numbered anew since, it stays where it is.
-    pub fn return_to(&mut self, mark: Mark) {
+    pub fn return_to(&mut self, mark: Bookmark) {
         let Some(at) = mark.cursor.filter(|_| mark.numbering == self.numbering) else { return };
         self.stand(at);
         self.set_forward_to(at, mark.forward);

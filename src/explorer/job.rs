@@ -7,9 +7,9 @@ use super::export::{ExportKind, Page};
 use super::journal::Beginning;
 use super::node::Node;
 use super::studies::StudyData;
-use crate::mend::Reason;
+use crate::mend::WordedFault;
 use crate::store::{Fingerprint, Listing, Loaded, Overwrite, Source};
-use pulloff_engine::gap::shapes::Rows;
+use pulloff_engine::gap::shapes::ProfileRows;
 use pulloff_engine::preset::{Key, Preset};
 use pulloff_engine::report::path::EventReport;
 use std::path::PathBuf;
@@ -104,8 +104,8 @@ pub enum Done {
     Browsed(Key, Box<Folder>),
     Assigned(Box<Preset>),
     /// A measured curve whose columns must be named, and why.
-    Foreign(Box<Foreign>, Reason),
-    Read(Arc<Rows>),
+    Foreign(Box<Foreign>, WordedFault),
+    Read(Arc<ProfileRows>),
     Opened(Box<Loaded>),
     /// A preset was deleted: its file, safe to show, and what is left.
     Deleted(String, Box<Listing>),
@@ -121,5 +121,5 @@ pub enum Done {
     Exported(String),
     FileExists(ExportKind, String),
     PageExists(Page, String),
-    Failed(Reason),
+    Failed(WordedFault),
 }

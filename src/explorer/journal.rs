@@ -11,7 +11,7 @@ use super::curve::CurveData;
 use super::detours::without_detours;
 use super::node::{Node, NodeKind};
 use super::script;
-use super::walk::{Action, Outcome};
+use super::walk::{Action, WalkOutcome};
 use crate::store::Source;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::changes::changes;
@@ -33,7 +33,7 @@ pub struct Journal {
     replay: Option<Box<Replay>>,
     /// The steps of the last line, if further steps can be added to it.
     steps: Option<usize>,
-    walking: Option<Walking>,
+    walking: Option<OpenWalk>,
     /// Why the lines no longer lead to the current state.
     broken: Option<String>,
 }
@@ -55,7 +55,7 @@ pub struct Replay {
 
 /// A walk that is not over.
 #[derive(Debug, Clone)]
-struct Walking {
+struct OpenWalk {
     action: Action,
     curve: Arc<CurveData>,
     inward: bool,
@@ -65,7 +65,7 @@ struct Walking {
 
 /// What is kept of a journal in a session: all but a walk that is not over.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Kept {
+pub struct KeptJournal {
     pub lines: Arc<Vec<String>>,
     pub start: Option<Beginning>,
     pub replay: Option<Replay>,
@@ -75,16 +75,22 @@ pub struct Kept {
 
 impl Journal {
     /// What a session keeps of it.
-    pub fn kept(&self) -> Kept {
+    pub fn kept(&self) -> KeptJournal {
         let mut over = self.clone();
         over.abandoned();
         let Self { lines, start, replay, steps, broken, .. } = over;
-        Kept { lines, start: start.map(|start| *start), replay: replay.map(|replay| *replay), steps, broken }
+        KeptJournal {
+            lines,
+            start: start.map(|start| *start),
+            replay: replay.map(|replay| *replay),
+            steps,
+            broken,
+        }
     }
 
     /// The journal of a session that goes on.
-    pub fn of(kept: Kept) -> Self {
-        let Kept { lines, start, replay, steps, broken } = kept;
+    pub fn of(kept: KeptJournal) -> Self {
+        let KeptJournal { lines, start, replay, steps, broken } = kept;
         let bytes = lines.iter().map(String::len).sum();
         let (start, replay) = (start.map(Box::new), replay.map(Box::new));
         let states = Arc::new(vec![None; lines.len()]);
@@ -130,7 +136,7 @@ impl Journal {
     }
 
     pub(super) fn walks(&mut self, action: Action, curve: Arc<CurveData>, inward: bool, length: f64) {
-        self.walking = Some(Walking { action, curve, inward, length, made: 0 });
+        self.walking = Some(OpenWalk { action, curve, inward, length, made: 0 });
     }
 
     pub(super) fn made(&mut self, states: usize) {
@@ -141,11 +147,11 @@ impl Journal {
 
     /// The walk is abandoned: its further states are ignored.
     pub(super) fn abandoned(&mut self) {
-        self.ended(&Outcome::Paused, false);
+        self.ended(&WalkOutcome::Paused, false);
     }
 
     /// The walk is over; `is_stale` if it leaves the state marked as not solved.
-    pub(super) fn ended(&mut self, outcome: &Outcome, is_stale: bool) {
+    pub(super) fn ended(&mut self, outcome: &WalkOutcome, is_stale: bool) {
         let Some(walking) = self.walking.take() else { return };
         let mut preset = walking.curve.setting.preset.clone();
         // Where a walk begins is no matter of the curve: only a restart asks for it.
@@ -170,13 +176,13 @@ impl Journal {
             Action::Steps(_) => {
                 self.sync(preset, way, false);
                 // Beyond a limit point, or the end, a further step is a walk of its own.
-                self.step(walking.made, matches!(outcome, Outcome::Done | Outcome::Paused));
+                self.step(walking.made, matches!(outcome, WalkOutcome::Done | WalkOutcome::Paused));
             }
             Action::ToLimit | Action::ToEvent(_) | Action::Run(_) => {
                 self.sync(preset, way, false);
                 let is_over = match outcome {
-                    Outcome::AtLimit => true,
-                    Outcome::Ended(_) => !matches!(walking.action, Action::Run(_)),
+                    WalkOutcome::AtLimit => true,
+                    WalkOutcome::Ended(_) => !matches!(walking.action, Action::Run(_)),
                     _ => false,
                 };
                 self.write(&match (is_over, walking.action) {

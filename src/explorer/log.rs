@@ -14,7 +14,7 @@ const SAME: f64 = 1e-6;
 
 /// Whether an event has happened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mark {
+pub enum EventMark {
     Done,
     /// The walker stands where it begins.
     Here,
@@ -23,8 +23,8 @@ pub enum Mark {
 
 /// One line of the log.
 #[derive(Debug, Clone)]
-pub struct Entry {
-    pub mark: Mark,
+pub struct LogEntry {
+    pub mark: EventMark,
     /// Its number on the path, from 1; none of what was walked off it.
     pub number: Option<usize>,
     pub event: EventReport,
@@ -35,13 +35,13 @@ pub struct Entry {
 /// The events of the path and of the walk, in order.
 #[derive(Debug, Clone, Default)]
 pub struct Log {
-    pub entries: Vec<Entry>,
+    pub entries: Vec<LogEntry>,
 }
 
 impl Log {
     /// The energy lost so far, and whether a loss without bound is among it.
     pub fn lost(&self) -> (f64, bool) {
-        let done = self.entries.iter().filter(|entry| entry.mark == Mark::Done);
+        let done = self.entries.iter().filter(|entry| entry.mark == EventMark::Done);
         done.fold((0.0, false), |(sum, unbounded), entry| match entry.event.dissipated {
             Some(lost) => (sum + lost, unbounded),
             None => (sum, true),
@@ -54,8 +54,8 @@ impl Log {
     }
 
     /// The event where the walker stands.
-    pub fn here(&self) -> Option<&Entry> {
-        self.entries.iter().find(|entry| entry.mark == Mark::Here)
+    pub fn here(&self) -> Option<&LogEntry> {
+        self.entries.iter().find(|entry| entry.mark == EventMark::Here)
     }
 }
 
@@ -111,7 +111,7 @@ impl Model {
             done.iter_mut().take(self.passed_before(events, node)).for_each(|done| *done = Some(None));
         }
         // What was walked and is no event of the path stands behind the last one that was.
-        let mut strays: Vec<(usize, Entry)> = Vec::new();
+        let mut strays: Vec<(usize, LogEntry)> = Vec::new();
         let mut last = done.iter().rposition(Option::is_some).map_or(0, |at| at + 1);
         for (number, event) in self.walked_events() {
             if !of_curve.iter().any(|(of_curve, _)| *of_curve == number) {
@@ -123,7 +123,10 @@ impl Model {
                     last = at + 1;
                 }
                 None => {
-                    strays.push((last, Entry { mark: Mark::Done, number: None, event, node: Some(number) }));
+                    strays.push((
+                        last,
+                        LogEntry { mark: EventMark::Done, number: None, event, node: Some(number) },
+                    ));
                 }
             }
         }
@@ -156,11 +159,11 @@ impl Model {
                 entries.push(entry);
             }
             let mark = match (at == Some(index), done[index]) {
-                (true, _) => Mark::Here,
-                (false, Some(_)) => Mark::Done,
-                (false, None) => Mark::Ahead,
+                (true, _) => EventMark::Here,
+                (false, Some(_)) => EventMark::Done,
+                (false, None) => EventMark::Ahead,
             };
-            entries.push(Entry {
+            entries.push(LogEntry {
                 mark,
                 number: Some(index + 1),
                 event: event.clone(),

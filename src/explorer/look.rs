@@ -6,7 +6,7 @@ use super::effect::Effect;
 use super::map_axes::{MapAxes, can_be_axis};
 use super::model::{Level, Model};
 use super::reach::{pick_walk_line, walk_line};
-use super::view::{Axes, Overlay, Panel, View, Window};
+use super::view::{Axes, Overlay, ScreenPanel, View, Window};
 use pulloff_engine::preset::Key;
 
 /// One press brings the chart closer by this factor.
@@ -90,7 +90,7 @@ pub(super) fn cross_hair(model: &mut Model) {
     model.cross = if model.cross.is_some() { None } else { Some(MIDDLE) };
     if model.cross.is_some() {
         // In this panel the arrow keys move it.
-        model.panel = Panel::Charts;
+        model.panel = ScreenPanel::Charts;
     }
 }
 

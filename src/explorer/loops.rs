@@ -3,18 +3,18 @@
 //! It takes longer than the curve, which never waits for it. While values are turned the loop on the screen may be that of
 //! values before: it says so.
 
-use super::background::{Background, Tell, Want, Watch};
+use super::background::{Background, Tell, Want, Watcher};
 use super::curve::CurveData;
 use super::effect::Effect;
 use super::model::Model;
 use super::setting::same_curve;
 use super::view::View;
-use crate::mend::Reason;
+use crate::mend::WordedFault;
 use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Begin;
 use pulloff_engine::quasistatic::admissible::falls;
-use pulloff_engine::quasistatic::path::{Losses, Setting};
+use pulloff_engine::quasistatic::path::{Losses, PathSetting};
 use pulloff_engine::report::PathReport;
 use std::sync::Arc;
 use std::time::Duration;
@@ -34,7 +34,7 @@ pub struct LoopKey {
 #[derive(Debug, Clone)]
 pub struct LoopData {
     pub preset: Preset,
-    pub report: Result<PathReport, Reason>,
+    pub report: Result<PathReport, WordedFault>,
 }
 
 impl Background for LoopData {
@@ -68,16 +68,16 @@ impl Background for LoopData {
         key.is_shown
     }
 
-    fn compute(key: &LoopKey, progress: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+    fn compute(key: &LoopKey, progress: Watcher<'_>, _: Tell<'_, Self>) -> Option<Self> {
         let base = &key.curve.case;
         let units = base.units();
         let turn = key.preset.path.turn;
         let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, base.control));
         let case = Case { turn, ..base.clone() };
-        let setting = Setting { losses: Losses::Once, ..case.setting() };
+        let setting = PathSetting { losses: Losses::Once, ..case.setting() };
         let report = match case.cycle(None, &setting, progress) {
             Err(CaseError::Cancelled) => return None,
-            Err(error) => Err(Reason::of("", &error)),
+            Err(error) => Err(WordedFault::of("", &error)),
             Ok(cycle) => Ok(PathReport::new(&key.preset, &case, &cycle)),
         };
         Some(Self { preset: key.preset.clone(), report })

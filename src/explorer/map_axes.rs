@@ -4,7 +4,7 @@ use pulloff_engine::gap::Gap;
 use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{Key, Parameter, Preset};
 use pulloff_engine::report::map::Ordinate;
-use pulloff_engine::stability::{Axis, COMPLIANCE};
+use pulloff_engine::stability::{COMPLIANCE, MapAxis};
 use serde::{Deserialize, Serialize};
 
 /// The groups on the axes, for a gap with one wave.
@@ -68,7 +68,7 @@ impl MapAxes {
 
     /// The axes with their ranges about the values of `preset`.
     /// Errors: In words.
-    pub(super) fn ranges(&self, preset: &Preset) -> Result<(Axis, Ordinate), String> {
+    pub(super) fn ranges(&self, preset: &Preset) -> Result<(MapAxis, Ordinate), String> {
         let x = range(preset, &self.x)?;
         let curve = CURVES.iter().find(|(name, _)| *name == self.y).map(|(_, curve)| curve.clone());
         let y = curve.map_or_else(|| range(preset, &self.y).map(Ordinate::Key), Ok)?;
@@ -91,12 +91,12 @@ pub fn can_be_axis(row: &Parameter) -> bool {
 }
 
 /// An axis of `key` about the value that `preset` has.
-fn range(preset: &Preset, key: &str) -> Result<Axis, String> {
+fn range(preset: &Preset, key: &str) -> Result<MapAxis, String> {
     let axis =
-        |range, logarithmic| Axis::new(key, range, logarithmic, 1.0).map_err(|error| error.to_string());
+        |range, logarithmic| MapAxis::new(key, range, logarithmic, 1.0).map_err(|error| error.to_string());
     if key == COMPLIANCE {
         let unit = preset.gap.reference_length() * preset.material.effective_modulus;
-        return Axis::new(key, [0.0, f64::INFINITY], false, 1.0 / unit).map_err(|error| error.to_string());
+        return MapAxis::new(key, [0.0, f64::INFINITY], false, 1.0 / unit).map_err(|error| error.to_string());
     }
     let Some(row) = preset.row(key) else {
         // With the nearest name.

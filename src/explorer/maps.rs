@@ -2,11 +2,11 @@
 //!
 //! Turning one of its numbers moves the preset on it and asks for nothing.
 
-use super::background::{Background, Tell, Want, Watch};
+use super::background::{Background, Tell, Want, Watcher};
 use super::map_axes::MapAxes;
 use super::model::Model;
 use super::view::View;
-use crate::mend::Reason;
+use crate::mend::WordedFault;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::progress::Progress;
 use pulloff_engine::report::MapReport;
@@ -24,7 +24,7 @@ pub type MapKey = (Preset, MapAxes);
 pub struct MapData {
     pub preset: Preset,
     pub axes: MapAxes,
-    report: Result<MapReport, Reason>,
+    report: Result<MapReport, WordedFault>,
 }
 
 impl Background for MapData {
@@ -47,7 +47,7 @@ impl Background for MapData {
         self.is_over(preset, axes)
     }
 
-    fn compute((preset, axes): &MapKey, progress: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+    fn compute((preset, axes): &MapKey, progress: Watcher<'_>, _: Tell<'_, Self>) -> Option<Self> {
         Self::of(preset, axes, progress)
     }
 }
@@ -60,12 +60,12 @@ impl MapData {
             match axes.ranges(preset) {
                 Ok((x, y)) => match MapReport::compute(preset, x, &y, CELLS, progress) {
                     Err(MapError::Cancelled) => return None,
-                    found => found.map_err(|error| Reason::of("", &error)),
+                    found => found.map_err(|error| WordedFault::of("", &error)),
                 },
-                Err(why) => Err(Reason::mendable(why)),
+                Err(why) => Err(WordedFault::mendable(why)),
             }
         } else {
-            Err(Reason::mendable("a gap without adhesion has no limit points to follow"))
+            Err(WordedFault::mendable("a gap without adhesion has no limit points to follow"))
         };
         Some(Self { preset: preset.clone(), axes: axes.clone(), report })
     }

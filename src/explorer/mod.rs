@@ -115,6 +115,6 @@ pub use history::History;
 pub use journal::Journal;
 pub use model::{Level, Model};
 pub use node::{Node, NodeKind};
-pub use progress::{Stage, Staged};
+pub use progress::{CurveStage, Staged};
 pub use update::{answer, open, update};
-pub use view::{Axes, Home, Overlay, Overlays, Panel, View, Window};
+pub use view::{Axes, Home, Overlay, Overlays, ScreenPanel, View, Window};

@@ -3,18 +3,18 @@
 use super::command::{Command, FIRST_LENGTH, FIRST_PACE};
 use super::curve::{CurveData, Inadmissible};
 use super::data::Folder;
-use super::history::{History, Mark};
+use super::history::{Bookmark, History};
 use super::journal::Journal;
 use super::map_axes::MapAxes;
 use super::node::{Node, NodeKind};
 use super::pins::Pins;
-use super::progress::Stage;
+use super::progress::CurveStage;
 use super::results::Results;
 use super::setting::same_curve;
-use super::undo::{Place, Undo};
-use super::view::{Axes, Home, Overlay, Overlays, Panel, View, Window};
+use super::undo::{SessionPlace, Undo};
+use super::view::{Axes, Home, Overlay, Overlays, ScreenPanel, View, Window};
 use super::walk::measure;
-use crate::mend::Reason;
+use crate::mend::WordedFault;
 use crate::store::{Fingerprint, Listing, Loaded, Source};
 use pulloff_engine::fit::Fit;
 use pulloff_engine::preset::groups::GROUPS;
@@ -24,7 +24,7 @@ use pulloff_engine::quasistatic::Path;
 use pulloff_engine::quasistatic::walk::At;
 use pulloff_engine::report::path::EventReport;
 use pulloff_engine::sweep::quantity::Under;
-use pulloff_engine::sweep::{Column, QUANTITIES};
+use pulloff_engine::sweep::{QUANTITIES, QuantityColumn};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -95,7 +95,7 @@ pub enum Level {
 
 impl Level {
     /// That of something that could not be done for this reason.
-    pub fn of(reason: &Reason) -> Self {
+    pub fn of(reason: &WordedFault) -> Self {
         if reason.can_be_mended { Self::Error } else { Self::Failure }
     }
 
@@ -128,7 +128,7 @@ pub struct Model {
     /// The number of the newest curve that came, failed or was given up.
     pub curve_shown: u64,
     /// Progress of the curve being computed, once that takes long.
-    pub stage: Option<Stage>,
+    pub stage: Option<CurveStage>,
     /// What is computed in the background.
     pub results: Results,
     /// What stands on the axes of the map; `None` for what is usual.
@@ -136,7 +136,7 @@ pub struct Model {
     /// The last fit that was taken; the values may be others by now.
     pub fit: Option<Arc<Fit>>,
     /// The quantity that is studied.
-    pub studied: Column,
+    pub studied: QuantityColumn,
     /// The last stiffness of the device, in the user's units.
     pub stiffness: Option<f64>,
     /// Whether the line of the device is drawn; `None` where only that of a spring is.
@@ -156,7 +156,7 @@ pub struct Model {
     pub queue: VecDeque<Command>,
     /// What they wait for besides.
     pub awaits: Awaits,
-    pub panel: Panel,
+    pub panel: ScreenPanel,
     pub parameter: usize,
     pub event: usize,
     /// The selected line of the table of states; `None` follows the walker.
@@ -186,8 +186,8 @@ pub struct Model {
 /// What there was before values were tried.
 #[derive(Debug, Clone)]
 pub struct Untried {
-    pub place: Place,
-    pub mark: Mark,
+    pub place: SessionPlace,
+    pub mark: Bookmark,
     pub journal: Journal,
 }
 
@@ -220,7 +220,7 @@ impl Model {
             results: Results::default(),
             map_axes: None,
             fit: None,
-            studied: Column { quantity: &QUANTITIES[0], under: Under::Own },
+            studied: QuantityColumn { quantity: &QUANTITIES[0], under: Under::Own },
             stiffness,
             device: None,
             history: History::default(),
@@ -233,7 +233,7 @@ impl Model {
             walking: None,
             queue: VecDeque::new(),
             awaits: Awaits::Nothing,
-            panel: Panel::Problem,
+            panel: ScreenPanel::Problem,
             parameter: 0,
             event: 0,
             walk_line: None,
@@ -404,8 +404,8 @@ impl Model {
     }
 
     /// Where the session stands, for undo.
-    pub fn place(&self) -> Place {
-        Place {
+    pub fn place(&self) -> SessionPlace {
+        SessionPlace {
             preset: self.preset.clone(),
             node: self.history.id(),
             inward: self.inward,
@@ -417,7 +417,7 @@ impl Model {
     }
 
     /// Whether the session stands at `place`.
-    pub fn is_at(&self, place: &Place) -> bool {
+    pub fn is_at(&self, place: &SessionPlace) -> bool {
         let own = (self.history.id(), self.inward, self.length.to_bits());
         place.shelved.is_none()
             && own == (place.node, place.inward, place.length.to_bits())
@@ -425,7 +425,7 @@ impl Model {
     }
 
     /// Whether any of `places` is another than where the session stands.
-    pub(super) fn can_travel(&self, places: &[Arc<Place>]) -> bool {
+    pub(super) fn can_travel(&self, places: &[Arc<SessionPlace>]) -> bool {
         places.iter().rev().any(|place| !self.is_at(place))
     }
 

@@ -4,7 +4,7 @@ use super::setting::Setting;
 use pulloff_engine::annuli::Contacts;
 use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::walk::{Ahead, At, edges};
-use pulloff_engine::quasistatic::{Admissibility, Event, Point, Stability, State, Stiffness};
+use pulloff_engine::quasistatic::{Admissibility, Event, Stability, State, StatePoint, Stiffness};
 use std::sync::Arc;
 
 /// How a node came about.
@@ -36,7 +36,7 @@ pub struct Node {
     /// The control it was reached under (reduced).
     pub control: Control,
     /// The point of the curve, in the scales of its setting.
-    pub point: Point,
+    pub point: StatePoint,
     /// The state, reduced; its contact radius is the outermost edge.
     pub state: State,
     /// The slopes that decide the stability, reduced.

@@ -1,6 +1,6 @@
 //! The smallest A/λ at which a problem snaps at all, found behind its curve and kept while only the amplitude is turned.
 
-use super::background::{Background, Tell, Want, Watch};
+use super::background::{Background, Tell, Want, Watcher};
 use super::model::Model;
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::Preset;
@@ -32,7 +32,7 @@ impl Background for SnapsFrom {
         is_alike(&self.preset, wanted)
     }
 
-    fn compute(preset: &Preset, progress: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+    fn compute(preset: &Preset, progress: Watcher<'_>, _: Tell<'_, Self>) -> Option<Self> {
         // A start that some amplitude does not have is the curve's to tell.
         let onset = Onset::of(preset, progress).ok().flatten();
         let amplitude_over_wavelength = onset.map(|onset| onset.amplitude_over_wavelength);

@@ -1,6 +1,6 @@
 //! The curves of pins that have none yet, computed one after the other.
 
-use super::background::{Background, Tell, Want, Watch};
+use super::background::{Background, Tell, Want, Watcher};
 use super::command::Id;
 use super::curve::CurveData;
 use super::effect::Effect;
@@ -37,7 +37,11 @@ impl Background for PinCurve {
         (*number, preset) == (wanted.0, &wanted.1)
     }
 
-    fn compute((number, preset, beside): &Self::Key, progress: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+    fn compute(
+        (number, preset, beside): &Self::Key,
+        progress: Watcher<'_>,
+        _: Tell<'_, Self>,
+    ) -> Option<Self> {
         let curve = CurveData::compute(preset, &Staged::new(&|_| progress.stop())).ok().map(Arc::new);
         let elements =
             curve.as_ref().zip(beside.as_ref()).and_then(|(curve, other)| Elements::of(curve, other));

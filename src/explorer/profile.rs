@@ -1,6 +1,6 @@
 //! The inside of the walker's state, computed by a worker: pressure, gap and potential, for the views that show them.
 
-use super::background::{Background, Tell, Want, Watch};
+use super::background::{Background, Tell, Want, Watcher};
 use super::curve::CurveData;
 use super::model::Model;
 use super::view::View;
@@ -8,7 +8,7 @@ use pulloff_engine::annuli::Contacts;
 use pulloff_engine::gap::Gap;
 use pulloff_engine::problem::{Control, Units};
 use pulloff_engine::quasistatic::admissible::Judge;
-use pulloff_engine::quasistatic::jump::Run;
+use pulloff_engine::quasistatic::jump::EdgeDirection;
 use pulloff_engine::quasistatic::{Landscape, Profile, State};
 use pulloff_engine::theory::Exact;
 use pulloff_engine::zone::ZoneAt;
@@ -35,7 +35,7 @@ pub struct Ask {
     /// Whether the exact pressure is wanted as well.
     pub exact: bool,
     /// The way in which the barrier is wanted; none holds the edge at a limit point.
-    pub barrier: Option<Run>,
+    pub barrier: Option<EdgeDirection>,
 }
 
 impl Ask {
@@ -53,7 +53,7 @@ impl Ask {
 
 /// The inside of one state, reduced.
 #[derive(Debug, Clone)]
-pub struct Inside {
+pub struct StateInside {
     /// Factors to the user's units.
     pub units: Units,
     /// λ, where the gap has one wave alone.
@@ -68,7 +68,7 @@ pub struct Inside {
     pub barrier: Option<f64>,
 }
 
-impl Inside {
+impl StateInside {
     /// Computes what `ask` wants.
     pub fn of(ask: &Ask) -> Self {
         let case = &ask.curve.case;
@@ -101,7 +101,7 @@ impl Inside {
     }
 }
 
-impl Background for Inside {
+impl Background for StateInside {
     type Key = Ask;
     const NAME: &'static str = "profile";
 
@@ -110,7 +110,7 @@ impl Background for Inside {
         let is_shown = model.shown_views().into_iter().any(View::is_state);
         let node = model.walker().filter(|node| is_shown && !node.is_apart());
         let (Some(node), Some(curve)) = (node, &model.curve) else { return Want::Not };
-        let run = if model.inward { Run::Inward } else { Run::Outward };
+        let run = if model.inward { EdgeDirection::Inward } else { EdgeDirection::Outward };
         Want::Now(Ask {
             curve: Arc::clone(curve),
             state: node.state,
@@ -125,7 +125,7 @@ impl Background for Inside {
         asked.is_like(wanted)
     }
 
-    fn compute(ask: &Ask, _: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+    fn compute(ask: &Ask, _: Watcher<'_>, _: Tell<'_, Self>) -> Option<Self> {
         Some(Self::of(ask))
     }
 
@@ -137,7 +137,7 @@ impl Background for Inside {
 
 impl Model {
     /// The inside of the walker's state, or of the one before while that is computed.
-    pub fn shown_profile(&self) -> Option<&Inside> {
+    pub fn shown_profile(&self) -> Option<&StateInside> {
         self.results.shown()
     }
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 /// What a curve is at; it passes these in order, without those that are known.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Stage {
+pub enum CurveStage {
     /// The basis is built: the share done, from 0 to 1.
     Basis(f64),
     /// The equilibria are computed: the number of this one, from 1.
@@ -17,7 +17,7 @@ pub enum Stage {
     Events(usize),
 }
 
-impl Stage {
+impl CurveStage {
     /// In words, short.
     pub fn text(self) -> String {
         // Never 100 %: a part is complete only when the next has begun.
@@ -32,14 +32,14 @@ impl Stage {
 
 /// Tells the stages of a curve, one for each question of the engine.
 pub struct Staged<'a> {
-    stage: Cell<Stage>,
-    stop: &'a dyn Fn(Stage) -> bool,
+    stage: Cell<CurveStage>,
+    stop: &'a dyn Fn(CurveStage) -> bool,
 }
 
 impl<'a> Staged<'a> {
     /// Tells them to `stop`, which says whether to end the computation.
-    pub fn new(stop: &'a dyn Fn(Stage) -> bool) -> Self {
-        Self { stage: Cell::new(Stage::Basis(0.0)), stop }
+    pub fn new(stop: &'a dyn Fn(CurveStage) -> bool) -> Self {
+        Self { stage: Cell::new(CurveStage::Basis(0.0)), stop }
     }
 
     /// Tells nobody, and goes on to the end.
@@ -48,23 +48,23 @@ impl<'a> Staged<'a> {
     }
 
     /// Begins a stage.
-    pub fn enter(&self, stage: Stage) {
+    pub fn enter(&self, stage: CurveStage) {
         self.stage.set(stage);
     }
 }
 
 impl Progress for Staged<'_> {
     fn report(&self, share: f64) {
-        if let Stage::Basis(_) = self.stage.get() {
-            self.stage.set(Stage::Basis(share));
+        if let CurveStage::Basis(_) = self.stage.get() {
+            self.stage.set(CurveStage::Basis(share));
         }
     }
 
     fn stop(&self) -> bool {
         let stage = self.stage.get();
         self.stage.set(match stage {
-            Stage::Curve(number) => Stage::Curve(number + 1),
-            Stage::Events(found) => Stage::Events(found + 1),
+            CurveStage::Curve(number) => CurveStage::Curve(number + 1),
+            CurveStage::Events(found) => CurveStage::Events(found + 1),
             stage => stage,
         });
         (self.stop)(stage)
@@ -82,9 +82,9 @@ pub fn for_good(stop: impl Fn() -> bool) -> impl Fn() -> bool {
 
 /// When a computation is told of: not while it is short, and seldom enough to be read.
 #[derive(Debug)]
-pub struct Pace {
+pub struct ProgressPace {
     begun: Instant,
-    told: Option<(Instant, Stage)>,
+    told: Option<(Instant, CurveStage)>,
 }
 
 /// Shorter computations report nothing.
@@ -92,14 +92,14 @@ const SHORT: Duration = Duration::from_millis(100);
 /// Least time between two reports.
 const BETWEEN: Duration = Duration::from_millis(250);
 
-impl Pace {
+impl ProgressPace {
     /// For a computation that begins now.
     pub fn begin() -> Self {
         Self { begun: Instant::now(), told: None }
     }
 
     /// Whether `stage` is to be told now; another part of the computation may be a long one, so it is told at once.
-    pub fn is_due(&mut self, stage: Stage) -> bool {
+    pub fn is_due(&mut self, stage: CurveStage) -> bool {
         let is_due = match self.told {
             None => self.begun.elapsed() >= SHORT,
             Some((at, last)) => at.elapsed() >= BETWEEN || discriminant(&last) != discriminant(&stage),
@@ -132,18 +132,18 @@ mod tests {
         let curve = CurveData::compute(&preset, &Staged::new(&hear));
         let told = heard.into_inner();
         assert!(!curve.unwrap().points.is_empty());
-        let part = |stage: &Stage| match stage {
-            Stage::Basis(_) => 0,
-            Stage::Curve(_) => 1,
-            Stage::Limits => 2,
-            Stage::Events(_) => 3,
+        let part = |stage: &CurveStage| match stage {
+            CurveStage::Basis(_) => 0,
+            CurveStage::Curve(_) => 1,
+            CurveStage::Limits => 2,
+            CurveStage::Events(_) => 3,
         };
         assert!(told.is_sorted_by_key(part), "{told:?}");
         let counted: Vec<_> = told.iter().filter(|stage| part(stage) == 1).copied().collect();
-        let expected: Vec<_> = (1..=counted.len()).map(Stage::Curve).collect();
+        let expected: Vec<_> = (1..=counted.len()).map(CurveStage::Curve).collect();
         assert!(counted == expected && !counted.is_empty(), "{counted:?}");
         assert!(told.iter().any(|stage| part(stage) == 0), "the rings are built in blocks");
-        assert!(told.contains(&Stage::Limits) && told.contains(&Stage::Events(5)));
-        assert_eq!(Stage::Basis(0.999).text(), "basis 99 %");
+        assert!(told.contains(&CurveStage::Limits) && told.contains(&CurveStage::Events(5)));
+        assert_eq!(CurveStage::Basis(0.999).text(), "basis 99 %");
     }
 }

@@ -1,9 +1,9 @@
 //! The pull at the rate of the preset, computed in the background where its edge has a law.
 
-use super::background::{Background, Tell, Want, Watch};
+use super::background::{Background, Tell, Want, Watcher};
 use super::model::Model;
 use super::setting::same_curve;
-use crate::mend::Reason;
+use crate::mend::WordedFault;
 use pulloff_engine::case::CaseError;
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::Preset;
@@ -11,7 +11,7 @@ use pulloff_engine::problem::{Control, Start};
 use pulloff_engine::progress::Progress;
 use pulloff_engine::report::PullReport;
 use pulloff_engine::report::number::{short, with_unit};
-use pulloff_engine::report::pull::{Asked, PullError, RunReport, missing};
+use pulloff_engine::report::pull::{AskedPulls, PullError, RunReport, missing};
 use pulloff_engine::units::{Quantity, UnitSystem};
 use std::time::Duration;
 
@@ -19,7 +19,7 @@ use std::time::Duration;
 #[derive(Debug, Clone)]
 pub struct PullData {
     pub preset: Preset,
-    pub report: Result<PullReport, Reason>,
+    pub report: Result<PullReport, WordedFault>,
     /// The least force on the smooth sphere of the same R, pulled from the same contact radius; none without R, and on that sphere itself.
     pub smooth: Option<f64>,
 }
@@ -49,7 +49,7 @@ impl Background for PullData {
         Self::is_same(&self.preset, wanted)
     }
 
-    fn compute(preset: &Preset, progress: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+    fn compute(preset: &Preset, progress: Watcher<'_>, _: Tell<'_, Self>) -> Option<Self> {
         Self::of(preset, progress)
     }
 }
@@ -57,10 +57,10 @@ impl Background for PullData {
 impl PullData {
     /// Pulls as the preset says; `None` where that was stopped.
     pub fn of(preset: &Preset, progress: &dyn Progress) -> Option<Self> {
-        let pulled = |preset: &Preset| PullReport::compute(preset, &Asked::default(), progress);
+        let pulled = |preset: &Preset| PullReport::compute(preset, &AskedPulls::default(), progress);
         let report = match pulled(preset) {
             Err(PullError::Case(CaseError::Cancelled)) => return None,
-            report => report.map_err(|error| Reason::of("", &error)),
+            report => report.map_err(|error| WordedFault::of("", &error)),
         };
         let start = report.as_ref().ok().and_then(|report| report.runs.first()).map(|run| &run.start);
         let smooth = start.zip(preset.gap.radius_of_curvature()).and_then(|(start, radius_of_curvature)| {

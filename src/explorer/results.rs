@@ -7,27 +7,27 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
-pub(super) type Shared = Arc<dyn Any + Send + Sync>;
+pub(super) type AnyResult = Arc<dyn Any + Send + Sync>;
 
 /// A question, and the last answer.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Slot {
-    pub asked: Option<(u64, Shared)>,
-    pub found: Option<(u64, Shared)>,
+pub(super) struct AnswerSlot {
+    pub asked: Option<(u64, AnyResult)>,
+    pub found: Option<(u64, AnyResult)>,
     /// The number of the last question that was answered whole, or given up.
     pub over: u64,
 }
 
 /// All results of a session.
 #[derive(Debug, Clone, Default)]
-pub struct Results(BTreeMap<TypeId, Slot>);
+pub struct Results(BTreeMap<TypeId, AnswerSlot>);
 
 impl Results {
-    pub(super) fn slot<R: 'static>(&self) -> Option<&Slot> {
+    pub(super) fn slot<R: 'static>(&self) -> Option<&AnswerSlot> {
         self.0.get(&TypeId::of::<R>())
     }
 
-    pub(super) fn slot_mut<R: 'static>(&mut self) -> &mut Slot {
+    pub(super) fn slot_mut<R: 'static>(&mut self) -> &mut AnswerSlot {
         self.0.entry(TypeId::of::<R>()).or_default()
     }
 
@@ -74,10 +74,11 @@ pub struct Task {
     pub patience: Duration,
     /// Whether it is done where nobody looks.
     pub is_for_scripts: bool,
-    pub(super) work: Arc<Work>,
+    pub(super) work: Arc<Computation>,
 }
 
-pub(super) type Work = dyn Fn(&(dyn Progress + Sync), &mut dyn FnMut(Shared)) -> Option<Shared> + Send + Sync;
+pub(super) type Computation =
+    dyn Fn(&(dyn Progress + Sync), &mut dyn FnMut(AnyResult)) -> Option<AnyResult> + Send + Sync;
 
 impl fmt::Debug for Task {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -91,7 +92,7 @@ pub struct Found {
     pub name: &'static str,
     pub id: u64,
     pub(super) is_whole: bool,
-    pub(super) what: Shared,
+    pub(super) what: AnyResult,
 }
 
 impl Task {

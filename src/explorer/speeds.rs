@@ -1,6 +1,6 @@
 //! The energy release rate of measured rows and the speed of the edge there, computed in the background where they are looked at.
 
-use super::background::{Background, Tell, Want, Watch};
+use super::background::{Background, Tell, Want, Watcher};
 use super::fitting::NO_POINTS;
 use super::model::Model;
 use super::view::View;
@@ -44,7 +44,7 @@ impl Background for SpeedsData {
         Self::is_same(&self.preset, wanted)
     }
 
-    fn compute(preset: &Preset, progress: Watch<'_>, _: Tell<'_, Self>) -> Option<Self> {
+    fn compute(preset: &Preset, progress: Watcher<'_>, _: Tell<'_, Self>) -> Option<Self> {
         Self::of(preset, progress)
     }
 }

@@ -11,7 +11,7 @@ use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Progress;
 use pulloff_engine::report::slow::SlowPulls;
 use pulloff_engine::sweep::measure::measure;
-use pulloff_engine::sweep::{Cell, Column, Fault};
+use pulloff_engine::sweep::{Cell, Fault, QuantityColumn};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -43,7 +43,7 @@ const OTHERS: usize = 40;
 
 /// What became of one value.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Outcome {
+pub enum StudyOutcome {
     /// It is still to be computed.
     Waits,
     Found(Cell),
@@ -56,7 +56,7 @@ pub enum Outcome {
 pub struct StudyWish {
     pub preset: Preset,
     pub key: Key,
-    pub column: Column,
+    pub column: QuantityColumn,
     /// The values, ascending.
     pub values: Vec<Value>,
 }
@@ -67,7 +67,7 @@ pub struct StudyData {
     /// What was asked for.
     pub wish: StudyWish,
     /// What became of each value.
-    pub outcomes: Vec<Outcome>,
+    pub outcomes: Vec<StudyOutcome>,
     /// What other surfaces give at each value, one after the other; no number where there is none.
     pub others: Vec<Vec<f64>>,
     /// What the largest pull comes to at low rates, where it is studied over the rate.
@@ -173,8 +173,8 @@ impl StudyWish {
     }
 
     /// What becomes of the value at `index` on the surface of this number; `None` when `progress` said stop.
-    fn outcome(&self, surface: usize, index: usize, progress: &dyn Progress) -> Option<Outcome> {
-        let missing = |fault: Fault| Outcome::Missing(fault.to_string());
+    fn outcome(&self, surface: usize, index: usize, progress: &dyn Progress) -> Option<StudyOutcome> {
+        let missing = |fault: Fault| StudyOutcome::Missing(fault.to_string());
         let mut preset = self.with_surface(surface);
         let value = self.values.get(index).cloned()?;
         if let Err(invalid) = preset.set(&self.key, value) {
@@ -185,9 +185,9 @@ impl StudyWish {
             Err(payload) => return Some(missing(Fault::of_panic(payload.as_ref()))),
         };
         Some(match (measured.cells.first(), measured.fault) {
-            (Some(Some(cell)), _) => Outcome::Found(*cell),
+            (Some(Some(cell)), _) => StudyOutcome::Found(*cell),
             (_, Some(fault)) => missing(fault),
-            _ => Outcome::Missing("it is not defined here".to_owned()),
+            _ => StudyOutcome::Missing("it is not defined here".to_owned()),
         })
     }
 
@@ -201,7 +201,7 @@ impl StudyWish {
         told: &mut dyn FnMut(StudyData),
     ) -> Option<StudyData> {
         let count = self.values.len();
-        let outcomes = vec![Outcome::Waits; count];
+        let outcomes = vec![StudyOutcome::Waits; count];
         let is_law = self.key == RATE && self.column.quantity.name == PEAK_FORCE;
         let slow = if is_law { SlowPulls::of(&self.preset, progress).ok().flatten() } else { None };
         let others = vec![Vec::new(); count];
@@ -246,17 +246,17 @@ impl StudyWish {
 
 impl StudyData {
     /// Takes what another surface gives at the value at `index`.
-    fn came(&mut self, surface: usize, index: usize, outcome: &Outcome) {
+    fn came(&mut self, surface: usize, index: usize, outcome: &StudyOutcome) {
         let found = &mut self.others[index];
         if found.len() < surface {
             found.resize(surface, f64::NAN);
         }
         found[surface - 1] = match outcome {
-            Outcome::Found(Cell::Number(x)) => *x,
+            StudyOutcome::Found(Cell::Number(x)) => *x,
             // Exact for every count.
             #[expect(clippy::cast_precision_loss)]
-            Outcome::Found(Cell::Count(n)) => *n as f64,
-            Outcome::Waits | Outcome::Missing(_) => f64::NAN,
+            StudyOutcome::Found(Cell::Count(n)) => *n as f64,
+            StudyOutcome::Waits | StudyOutcome::Missing(_) => f64::NAN,
         };
     }
 
@@ -272,7 +272,7 @@ impl StudyData {
 
     /// How many values are done.
     pub fn done(&self) -> usize {
-        self.outcomes.iter().filter(|outcome| **outcome != Outcome::Waits).count()
+        self.outcomes.iter().filter(|outcome| **outcome != StudyOutcome::Waits).count()
     }
 
     /// The value computed that is nearest to `x`, and its place in the list.
@@ -353,7 +353,7 @@ mod tests {
     fn a_study_is_a_row_each_whatever_the_threads_and_ends_when_told() {
         let preset = preset(&[]);
         let (key, values) = range(&preset, &row(&preset, "gap.amplitude")).unwrap();
-        let column = Column::named("largest_pull").unwrap();
+        let column = QuantityColumn::named("largest_pull").unwrap();
         let wish = StudyWish { preset: preset.clone(), key: key.clone(), column, values };
         let [one, three] = [1, 3].map(|threads| wish.run(threads, &Unwatched, &mut |_| {}).unwrap());
         assert_eq!(one.outcomes, three.outcomes);
@@ -361,7 +361,7 @@ mod tests {
         let own = measure(&preset, &[column], &Unwatched).unwrap();
         let (at, x) = one.nearest(0.0025).unwrap();
         assert_eq!(x.to_bits(), 0.0025_f64.to_bits());
-        assert_eq!(one.outcomes[at], Outcome::Found(own.cells[0].unwrap()));
+        assert_eq!(one.outcomes[at], StudyOutcome::Found(own.cells[0].unwrap()));
         assert!(wish.run(2, &|| true, &mut |_| {}).is_none());
         assert_eq!((one.surfaces(), wish.others()), (0, 0));
         // Its value may move within the range, and nothing else.
@@ -383,7 +383,7 @@ mod tests {
             preset.assign(key, text).unwrap();
         }
         let values = [0.003, 0.004, 0.006].map(Value::from).to_vec();
-        let column = Column::named("enhancement").unwrap();
+        let column = QuantityColumn::named("enhancement").unwrap();
         let key = Key::Borrowed("material.work_of_adhesion");
         let wish = StudyWish { preset: preset.clone(), key, column, values };
         let [one, three] = [1, 3].map(|threads| wish.run(threads, &Unwatched, &mut |_| {}).unwrap());

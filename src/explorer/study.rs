@@ -1,6 +1,6 @@
 //! The study of the selected value, computed while it is looked at.
 
-use super::background::{Background, Tell, Want, Watch};
+use super::background::{Background, Tell, Want, Watcher};
 use super::command::Id;
 use super::model::Model;
 use super::studies::{StudyData, StudyWish, range, threads};
@@ -35,7 +35,7 @@ impl Background for StudyData {
         self.wish.is_like(wanted)
     }
 
-    fn compute(key: &StudyWish, progress: Watch<'_>, told: Tell<'_, Self>) -> Option<Self> {
+    fn compute(key: &StudyWish, progress: Watcher<'_>, told: Tell<'_, Self>) -> Option<Self> {
         key.run(threads(), progress, told)
     }
 

@@ -1,10 +1,10 @@
 //! A study as documents: its values as CSV, and the spec of a sweep that repeats it.
 
 use super::command::Assignment;
-use super::studies::{Outcome, StudyData, number};
+use super::studies::{StudyData, StudyOutcome, number};
 use pulloff_engine::report::rows::{RowsError, csv as written};
 use pulloff_engine::sweep::Cell;
-use pulloff_engine::sweep::axis::{Points, SweepAxis, overrides};
+use pulloff_engine::sweep::axis::{AxisValues, SweepAxis, overrides};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -14,10 +14,10 @@ pub(super) fn csv(study: &StudyData) -> Result<String, RowsError> {
     let columns = [&*key, &*name, "fault"];
     let rows = study.wish.values.iter().zip(&study.outcomes).map(|(value, outcome)| {
         let [found, fault] = match outcome {
-            Outcome::Waits => [Value::Null, Value::Null],
-            Outcome::Missing(why) => [Value::Null, Value::from(why.as_str())],
-            Outcome::Found(Cell::Number(x)) => [Value::from(*x), Value::Null],
-            Outcome::Found(Cell::Count(n)) => [Value::from(*n), Value::Null],
+            StudyOutcome::Waits => [Value::Null, Value::Null],
+            StudyOutcome::Missing(why) => [Value::Null, Value::from(why.as_str())],
+            StudyOutcome::Found(Cell::Number(x)) => [Value::from(*x), Value::Null],
+            StudyOutcome::Found(Cell::Count(n)) => [Value::from(*n), Value::Null],
         };
         let value = match value {
             pulloff_engine::preset::Value::Integer(n) => Value::from(*n),
@@ -37,7 +37,7 @@ pub(super) fn spec(study: &StudyData, name: &str, over: &[Assignment]) -> String
     let over = over.iter().filter(|(key, _)| !overrides(&wish.key, key));
     let over: Vec<String> = over.map(|(key, value)| text(&format!("{key}={value}"))).collect();
     let set = if over.is_empty() { String::new() } else { format!("set = [{}]\n", over.join(", ")) };
-    let axis = SweepAxis { key: wish.key.to_string(), points: Points::Values(wish.values.clone()) };
+    let axis = SweepAxis { key: wish.key.to_string(), points: AxisValues::Values(wish.values.clone()) };
     format!(
         "preset = {}\n{set}quantities = [{}]\n\n[[axis]]\nkey = {}\n{}\n",
         text(name),

@@ -26,14 +26,14 @@ use super::update::selection::{arrow, cancel, next_panel};
 use super::update::travel::travel;
 use super::update::values::{change_control, turn};
 use super::update::walk::{next_event, restart, run_or_stop, scale_length, scale_pace, walk};
-use super::view::Panel;
+use super::view::ScreenPanel;
 use super::walk::Action;
 use super::{look, reach};
 use pulloff_engine::preset::data;
 
 /// One row of the table.
 #[derive(Debug, Clone, Copy)]
-pub struct Row {
+pub struct CommandRow {
     pub id: Id,
     pub name: &'static str,
     pub section: &'static str,
@@ -80,7 +80,7 @@ pub enum Script {
     Screen,
 }
 
-impl Row {
+impl CommandRow {
     /// A command that does nothing by itself.
     pub const PLAIN: Self = Self {
         id: Id::Cancel,
@@ -112,8 +112,8 @@ macro_rules! rows {
         $help:literal { $($field:ident: $value:expr),* }
     )* })*) => {
         /// The rows in the order of the help, which is that of [`Id`].
-        pub static ROWS: &[Row] = &[$($(
-            Row {
+        pub static ROWS: &[CommandRow] = &[$($(
+            CommandRow {
                 id: Id::$id,
                 name: $name,
                 section: $section,
@@ -124,7 +124,7 @@ macro_rules! rows {
                 waits: Waits::$waits,
                 script: Script::$script$(($what))?,
                 $($field: $value,)*
-                ..Row::PLAIN
+                ..CommandRow::PLAIN
             },
         )*)*];
     };
@@ -133,12 +133,12 @@ macro_rules! rows {
 each_command!(rows);
 
 /// The row of a command.
-pub fn row_of(id: Id) -> &'static Row {
+pub fn row_of(id: Id) -> &'static CommandRow {
     &ROWS[id as usize]
 }
 
 /// The row of a name.
-pub fn called(name: &str) -> Option<&'static Row> {
+pub fn called(name: &str) -> Option<&'static CommandRow> {
     Id::called(name).map(row_of)
 }
 

@@ -5,7 +5,7 @@ use pulloff_engine::gap::Shape;
 use pulloff_engine::progress::Progress;
 use pulloff_engine::quasistatic::Curve;
 use pulloff_engine::theory::guduru::Guduru;
-use pulloff_engine::theory::kesari_lew::{KesariLew, Side};
+use pulloff_engine::theory::kesari_lew::{EnvelopeSide, KesariLew};
 use pulloff_engine::theory::{Disc, Exact};
 
 /// Points of a smooth curve, so many that its difference from a wavy one shows the waves.
@@ -17,17 +17,17 @@ const BEYOND: [f64; 2] = [1.1, 0.1];
 const BEYOND_POINTS: u32 = 16;
 
 /// δ, P and s of one state, in the user's units.
-pub type Place = [f64; 3];
+pub type TheoryState = [f64; 3];
 
 /// Theory over the radii of a curve and a little beyond, in the user's units.
 #[derive(Debug, Clone)]
 pub struct Theory {
     /// The smooth sphere of the same curvature and adhesion; empty without a radius of curvature.
-    pub smooth: Vec<Place>,
+    pub smooth: Vec<TheoryState>,
     /// Its name: Hertz or JKR; without a sphere what is missing.
     pub smooth_name: &'static str,
     /// The exact solution of the gap, as fine as the curve.
-    pub exact: Vec<Place>,
+    pub exact: Vec<TheoryState>,
     pub exact_name: &'static str,
     /// The envelope of small waves; none without adhesion, and for wavy spheres alone.
     pub envelope: Option<Envelope>,
@@ -37,9 +37,9 @@ pub struct Theory {
 #[derive(Debug, Clone)]
 pub struct Envelope {
     /// The side along which a disc peels.
-    pub unloading: Vec<Place>,
+    pub unloading: Vec<TheoryState>,
     /// The side along which it grows.
-    pub loading: Vec<Place>,
+    pub loading: Vec<TheoryState>,
     /// The peak of the pull, `P_off/P_c`.
     pub peak: f64,
     /// n = s/λ at the peak: with n ≥ 5 the peak is good to 2 %, with n ≥ 20 to 0.2 %.
@@ -80,7 +80,7 @@ impl Theory {
 }
 
 /// The states of these radii; `None` when `progress` said stop.
-fn along(disc: &dyn Disc, radii: &[f64], progress: &dyn Progress) -> Option<Vec<Place>> {
+fn along(disc: &dyn Disc, radii: &[f64], progress: &dyn Progress) -> Option<Vec<TheoryState>> {
     // Without its energy a state costs one transform of the gap.
     let place = |&s: &f64| {
         let state = disc.equilibrium(s, 0.0);
@@ -111,8 +111,8 @@ fn envelope(case: &Case, radii: &[f64]) -> Option<Envelope> {
             .collect()
     };
     Some(Envelope {
-        unloading: side(Side::Unloading),
-        loading: side(Side::Loading),
+        unloading: side(EnvelopeSide::Unloading),
+        loading: side(EnvelopeSide::Loading),
         peak: envelope.pull_off_ratio(),
         waves: envelope.waves(),
     })

@@ -26,7 +26,7 @@ pub struct Shelved {
 
 /// Where the session stood.
 #[derive(Debug, Clone)]
-pub struct Place {
+pub struct SessionPlace {
     pub preset: Preset,
     /// The lasting number of the walker's state.
     pub node: Option<u64>,
@@ -40,7 +40,7 @@ pub struct Place {
     pub shelved: Option<Arc<Shelved>>,
 }
 
-impl Place {
+impl SessionPlace {
     /// Whether both are the same but for whether the state has been tried.
     pub fn is_like(&self, other: &Self) -> bool {
         self.shelved.is_none()
@@ -53,33 +53,33 @@ impl Place {
 /// The places before the commands done, and those after the ones taken back; the newest last. A clone is cheap.
 #[derive(Debug, Clone, Default)]
 pub struct Undo {
-    past: Vec<Arc<Place>>,
-    future: Vec<Arc<Place>>,
+    past: Vec<Arc<SessionPlace>>,
+    future: Vec<Arc<SessionPlace>>,
     /// Before a walk that has made no state yet.
-    begun: Option<Arc<Place>>,
+    begun: Option<Arc<SessionPlace>>,
     /// The value that the last command turned.
     pub(super) gesture: Option<Key>,
 }
 
 impl Undo {
     /// The undo of a session that goes on: the places before it, the newest last, and those taken back.
-    pub fn of(past: Vec<Place>, future: Vec<Place>) -> Self {
+    pub fn of(past: Vec<SessionPlace>, future: Vec<SessionPlace>) -> Self {
         let [past, future] = [past, future].map(|places| places.into_iter().map(Arc::new).collect());
         Self { past, future, ..Self::default() }
     }
 
     /// The places before the commands done, the newest last.
-    pub fn past(&self) -> &[Arc<Place>] {
+    pub fn past(&self) -> &[Arc<SessionPlace>] {
         &self.past
     }
 
     /// The places of the commands taken back, the next one last.
-    pub fn future(&self) -> &[Arc<Place>] {
+    pub fn future(&self) -> &[Arc<SessionPlace>] {
         &self.future
     }
 
     /// A command changed something; `before` is where it began.
-    pub(super) fn did(&mut self, before: Place) {
+    pub(super) fn did(&mut self, before: SessionPlace) {
         self.begun = None;
         self.future.clear();
         self.add(Arc::new(before));
@@ -90,7 +90,7 @@ impl Undo {
         self.future.clear();
     }
 
-    fn add(&mut self, place: Arc<Place>) {
+    fn add(&mut self, place: Arc<SessionPlace>) {
         self.past.push(place);
         let opened = self.past.iter().rev().enumerate().filter(|(_, place)| place.shelved.is_some());
         let first = opened.map(|(at, _)| self.past.len() - at).nth(MOST_OPENED);
@@ -99,7 +99,7 @@ impl Undo {
     }
 
     /// A walk begins: it is a command that changed something once it has made a state.
-    pub(super) fn begins(&mut self, before: Place) {
+    pub(super) fn begins(&mut self, before: SessionPlace) {
         self.begun = Some(Arc::new(before));
     }
 
@@ -123,7 +123,7 @@ impl Undo {
 
     /// Takes the place before the last command (or after the next one), for which `swap` gives what is kept the other way.
     /// Places like `here` are passed over: the command came to nothing.
-    pub(super) fn take(&mut self, back: bool, here: &Place) -> Option<Arc<Place>> {
+    pub(super) fn take(&mut self, back: bool, here: &SessionPlace) -> Option<Arc<SessionPlace>> {
         (self.begun, self.gesture) = (None, None);
         let from = if back { &mut self.past } else { &mut self.future };
         let at = from.iter().rposition(|place| !place.is_like(here))?;
@@ -132,14 +132,14 @@ impl Undo {
     }
 
     /// Keeps `place` for the way back from where [`take`](Self::take) led.
-    pub(super) fn keep(&mut self, back: bool, place: Place) {
+    pub(super) fn keep(&mut self, back: bool, place: SessionPlace) {
         let place = Arc::new(place);
         if back { self.future.push(place) } else { self.add(place) }
     }
 
     /// The lasting numbers of the states of the session shown that it needs.
     pub(super) fn nodes(&self) -> Vec<u64> {
-        let own = |places: &[Arc<Place>]| -> Vec<u64> {
+        let own = |places: &[Arc<SessionPlace>]| -> Vec<u64> {
             let own = places.iter().rev().take_while(|place| place.shelved.is_none());
             own.filter_map(|place| place.node).collect()
         };

@@ -28,7 +28,7 @@ use super::job::{Done, Job};
 use super::model::{Awaits, Level, Model};
 use super::requests::{browse, file, want_curve};
 use super::table::{Waits, is_available, row_of, why_unavailable};
-use super::view::{Panel, View};
+use super::view::{ScreenPanel, View};
 use super::walk::Action;
 use super::{look, reach};
 use crate::store::{Loaded, Overwrite};
@@ -183,12 +183,12 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
 fn select(model: &mut Model) -> Vec<Effect> {
     match model.panel {
         // Chosen in the list of a curve that will have gone, or in the middle of a walk.
-        Panel::Log if model.is_busy() => {
+        ScreenPanel::Log if model.is_busy() => {
             let number = model.log().entries.get(model.event).and_then(|entry| entry.number);
             number.map_or_else(Vec::new, |number| update(model, Command::SelectEvent(number)))
         }
-        Panel::Log => go_to_event(model),
-        Panel::Charts if model.view.is_table() => go_to_line(model),
+        ScreenPanel::Log => go_to_event(model),
+        ScreenPanel::Charts if model.view.is_table() => go_to_line(model),
         _ => Vec::new(),
     }
 }

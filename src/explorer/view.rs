@@ -13,7 +13,7 @@ use View::{
 /// The panels that can be selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Panel {
+pub enum ScreenPanel {
     Problem,
     /// The state on which the walker stands.
     Here,
@@ -23,7 +23,7 @@ pub enum Panel {
     Log,
 }
 
-impl Panel {
+impl ScreenPanel {
     /// All, in the order of the Tab key.
     pub const ALL: [Self; 5] = [Self::Problem, Self::Here, Self::Result, Self::Charts, Self::Log];
 }

@@ -14,7 +14,7 @@ pub(super) use pulloff_engine::quasistatic::walk::ROOM;
 use pulloff_engine::quasistatic::walk::{
     Ahead, Along, Arrival, At, Emit, Reached, Walk, WalkEnd, WalkFailure, edges,
 };
-use pulloff_engine::quasistatic::{Admissibility, Point, Stability, State, Stiffness};
+use pulloff_engine::quasistatic::{Admissibility, Stability, State, StatePoint, Stiffness};
 use pulloff_engine::report::problem::control_name;
 use pulloff_engine::theory::Exact;
 use pulloff_engine::units::Quantity;
@@ -78,7 +78,7 @@ pub struct Request {
     /// The curve of the problem: its setting, and its limit points for jumps.
     pub curve: Arc<CurveData>,
     /// Where the walker stands; none only for moves.
-    pub from: Option<Point>,
+    pub from: Option<StatePoint>,
     /// The number of the state on the path, where it goes along one.
     pub on_path: Option<usize>,
     /// What it stands on.
@@ -93,11 +93,11 @@ pub struct Request {
 
 /// One new state; the fields are as in [`Node`].
 #[derive(Debug, Clone)]
-pub struct Made {
+pub struct MadeState {
     pub kind: NodeKind,
     /// The problem it solves, which may be no longer the one on the screen.
     pub setting: Arc<Setting>,
-    pub point: Point,
+    pub point: StatePoint,
     pub state: State,
     pub stability: Stability,
     pub stiffness: Stiffness,
@@ -111,7 +111,7 @@ pub struct Made {
 
 /// The end of a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Outcome {
+pub enum WalkOutcome {
     Done,
     /// A limit point of the control, or a touch, was reached.
     AtLimit,
@@ -122,7 +122,7 @@ pub enum Outcome {
 }
 
 /// Does what `request` asks; each new state goes to `emit`, which says whether to go on.
-pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
+pub fn walk(request: &Request, emit: &mut dyn FnMut(MadeState) -> bool) -> WalkOutcome {
     let case = &request.curve.case;
     let walk = Walk {
         curve: &request.curve.base.curve,
@@ -144,7 +144,7 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
         Action::MoveTo(s) => walk.move_to(*s, &mut arrive),
         Action::MoveToEvent { limit, .. } => match request.curve.limits.get(*limit) {
             Some(limit) => walk.move_to_limit(limit.contact_radius, &mut arrive),
-            None => return Outcome::Stopped("the curve has changed meanwhile".to_owned()),
+            None => return WalkOutcome::Stopped("the curve has changed meanwhile".to_owned()),
         },
         Action::Begin => walk.first_touch(&mut arrive),
         Action::Solve { state, rings: Some(before), .. } => before.follow(&request.curve, state, &mut arrive),
@@ -157,44 +157,44 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Made) -> bool) -> Outcome {
     let length = |r: f64| said(&case.shown, Quantity::Length, r * case.units().length);
     match end {
         WalkEnd::Done if matches!(request.action, Action::ToLimit | Action::ToEvent(_)) => {
-            Outcome::Ended(format!("no limit point and no touch within {RUN_POINTS} steps"))
+            WalkOutcome::Ended(format!("no limit point and no touch within {RUN_POINTS} steps"))
         }
-        WalkEnd::Done => Outcome::Done,
-        WalkEnd::AtLimit | WalkEnd::AtTouch => Outcome::AtLimit,
-        WalkEnd::Paused => Outcome::Paused,
-        WalkEnd::PathEnds => Outcome::Ended(match &request.curve.along {
+        WalkEnd::Done => WalkOutcome::Done,
+        WalkEnd::AtLimit | WalkEnd::AtTouch => WalkOutcome::AtLimit,
+        WalkEnd::Paused => WalkOutcome::Paused,
+        WalkEnd::PathEnds => WalkOutcome::Ended(match &request.curve.along {
             Some(Ok(path)) => {
                 format!("the path ends here: {}", path.stop.in_units(case.units()).words(&case.shown))
             }
             _ => "the path ends here".to_owned(),
         }),
-        WalkEnd::AtEnd => Outcome::Ended("the end contact radius is reached; b turns round".to_owned()),
-        WalkEnd::EdgesMeet(radius) => Outcome::Ended(format!(
+        WalkEnd::AtEnd => WalkOutcome::Ended("the end contact radius is reached; b turns round".to_owned()),
+        WalkEnd::EdgesMeet(radius) => WalkOutcome::Ended(format!(
             "the branch ends here: two edges meet at r {}; {} turns round",
             length(radius),
             Id::Reverse.named()
         )),
-        WalkEnd::Vanishes(radius) => Outcome::Ended(format!(
+        WalkEnd::Vanishes(radius) => WalkOutcome::Ended(format!(
             "the branch ends here: the contact at r {} shrinks to nothing; {} turns round",
             length(radius),
             Id::Reverse.named()
         )),
         WalkEnd::OutOfRange => {
-            Outcome::Ended("nothing found up to three times the start radius; b turns round".to_owned())
+            WalkOutcome::Ended("nothing found up to three times the start radius; b turns round".to_owned())
         }
         WalkEnd::Failed(WalkFailure::NotSolved) => {
             let held = match request.control {
                 Control::Stiffness(_) => "place of the spring's far end",
                 control => control_name(control),
             };
-            Outcome::Stopped(match request.action {
+            WalkOutcome::Stopped(match request.action {
                 Action::Solve { rings: Some(_), .. } => {
                     format!("no equilibrium of these contacts at this {held} near the old edges")
                 }
                 _ => format!("no equilibrium at this {held} near the old contact radius"),
             })
         }
-        WalkEnd::Failed(failure) => Outcome::Stopped(failure.to_string()),
+        WalkEnd::Failed(failure) => WalkOutcome::Stopped(failure.to_string()),
     }
 }
 
@@ -269,7 +269,7 @@ fn to_end(walk: &Walk<'_>, end: Turn, arrive: &mut Emit<'_>) -> WalkEnd {
     /// So near to the end the walker stands on it.
     const ON_IT: f64 = 1e-12;
     let over = |reached: &Reached| measure(end, walk.control, &reached.state) - end.value();
-    let (mut last, mut passing): (Option<Point>, Option<f64>) = (None, None);
+    let (mut last, mut passing): (Option<StatePoint>, Option<f64>) = (None, None);
     let ended = walk.steps(RUN_POINTS, true, &mut |reached| {
         if over(&reached) > 0.0 {
             passing = Some(reached.point.length);
@@ -326,7 +326,7 @@ pub fn from_exact(case: &Case, state: &State) -> f64 {
     (state.force - exact) / exact.abs()
 }
 
-fn made(request: &Request, reached: Reached) -> Made {
+fn made(request: &Request, reached: Reached) -> MadeState {
     let Reached { arrival, point, state, stability, stiffness, admissibility, digits, on_path } = reached;
     let (kind, ahead) = match arrival {
         Arrival::Step => (NodeKind::Step, None),
@@ -340,7 +340,7 @@ fn made(request: &Request, reached: Reached) -> Made {
     // The exact solution is that of one disc, whose edge opens.
     let is_beside = on_path.is_some() || edges::has_rings(&point);
     let exact = if is_beside { f64::NAN } else { from_exact(&request.curve.case, &state) };
-    Made {
+    MadeState {
         setting: Arc::clone(&request.curve.setting),
         stability,
         stiffness,

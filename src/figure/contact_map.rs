@@ -33,7 +33,7 @@ fn blank(control: Control, scale: Scale<'_>) -> Figure {
 /// The contacts of the loop of `report` over these divisors.
 pub fn contact_map(report: &PathReport, scale: Scale<'_>) -> Figure {
     let mut figure = blank(report.control, scale);
-    let way = Way::of(report, scale);
+    let way = ControlWay::of(report, scale);
     let same = |a: &PathStateReport, b: &PathStateReport| {
         (a.piece, a.direction, a.state.contacts.len()) == (b.piece, b.direction, b.state.contacts.len())
     };
@@ -69,14 +69,14 @@ pub fn contact_map(report: &PathReport, scale: Scale<'_>) -> Figure {
 
 /// Where the control stands on the way that it has gone.
 #[derive(Clone, Copy)]
-struct Way<'a> {
+struct ControlWay<'a> {
     scale: Scale<'a>,
     is_force: bool,
     first: f64,
     turn: f64,
 }
 
-impl<'a> Way<'a> {
+impl<'a> ControlWay<'a> {
     fn of(report: &PathReport, scale: Scale<'a>) -> Self {
         let value = |kind: &str| report.events.iter().find(|event| event.kind == kind);
         let first = value("first-touch").or(report.events.first()).map_or(0.0, |event| event.control);
@@ -95,7 +95,7 @@ impl<'a> Way<'a> {
 }
 
 /// The outermost edge on a jump, upright: the control is held.
-fn jump(event: &EventReport, way: Way<'_>, scale: Scale<'_>) -> Line {
+fn jump(event: &EventReport, way: ControlWay<'_>, scale: Scale<'_>) -> Line {
     let x = way.at(event.direction, event.control);
     let edge = |state: &Option<StateReport>| {
         (x, scale.radius(state.as_ref().map_or(0.0, |state| state.contact_radius)))
@@ -104,7 +104,7 @@ fn jump(event: &EventReport, way: Way<'_>, scale: Scale<'_>) -> Line {
 }
 
 /// Where a crest touches, contacts merge or split, and the bodies come apart.
-fn mark(event: &EventReport, way: Way<'_>, scale: Scale<'_>) -> Option<Mark> {
+fn mark(event: &EventReport, way: ControlWay<'_>, scale: Scale<'_>) -> Option<Mark> {
     let (sign, radius) = match event.kind {
         "last-contact" => {
             (Sign::LastContact(event.number), event.before.as_ref().map(|state| state.contact_radius))

@@ -18,7 +18,7 @@ use std::mem::discriminant;
 const HALVINGS: usize = 50;
 
 /// Another curve: δ, P and s of its states in the user's units, from the outermost inward.
-struct Other<'a> {
+struct OtherCurve<'a> {
     role: Role,
     name: String,
     states: Vec<[f64; 3]>,
@@ -71,7 +71,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
 }
 
 /// The curves to compare with; a pin whose numbers have other units is left out, and said.
-fn others<'a>(subject: &Subject<'a>, notes: &mut Vec<String>) -> Vec<Other<'a>> {
+fn others<'a>(subject: &Subject<'a>, notes: &mut Vec<String>) -> Vec<OtherCurve<'a>> {
     let theory = &subject.curve.base.theory;
     let overlays = subject.overlays;
     let (curve, unit) = (&subject.curve.base.curve, subject.curve.case.units().length);
@@ -81,7 +81,7 @@ fn others<'a>(subject: &Subject<'a>, notes: &mut Vec<String>) -> Vec<Other<'a>> 
         // Theory goes on beyond our curve, where other branches have the same δ.
         let states: Vec<_> = states.iter().copied().filter(|at| ours.contains(&at[2])).collect();
         if !states.is_empty() {
-            all.push(Other { role, name: name.to_owned(), states, force });
+            all.push(OtherCurve { role, name: name.to_owned(), states, force });
         }
     };
     let problem = &subject.curve.case.problem;
@@ -111,7 +111,7 @@ fn others<'a>(subject: &Subject<'a>, notes: &mut Vec<String>) -> Vec<Other<'a>> 
         let name = format!("{} {}", pin.number, pin.name(subject.preset));
         let (solution, units) = (&pin.curve.base.curve.solution, pin.curve.case.units());
         let force = move |s: f64| Some(solution.at(solution.place(s / units.length)?).force * units.force);
-        pinned.push(Other { role: Role::Pin(pin.number), name, states, force: Box::new(force) });
+        pinned.push(OtherCurve { role: Role::Pin(pin.number), name, states, force: Box::new(force) });
     }
     all.extend(pinned);
     all

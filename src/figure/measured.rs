@@ -12,9 +12,9 @@ pub const DRAWN: usize = 3000;
 
 /// Measured points as δ, P and s in base units, not a number where one is not measured.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Points(Vec<(Sign, [f64; 3])>);
+pub struct MeasuredMarks(Vec<(Sign, [f64; 3])>);
 
-impl Points {
+impl MeasuredMarks {
     /// The points of a preset's measured curve, less its offset δ₀ and its baseline P₀; `None` without a curve.
     /// Errors: Why there are none, in words.
     pub fn of(preset: &Preset) -> Option<Result<Self, String>> {

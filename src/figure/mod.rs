@@ -56,9 +56,9 @@ pub mod walk;
 
 pub use crate::explorer::View;
 pub use bounds::Bounds;
-pub use parts::{Area, Axis, Figure, Line, Mark, Meaning, Role, Run, Sign};
+pub use parts::{Area, Axis, AxisScale, Figure, Line, Mark, Meaning, Role, Sign};
 pub use range::Range;
-pub use reading::{Nearest, nearest};
+pub use reading::{NearestState, nearest};
 pub use scale::Scale;
 pub use subject::Subject;
 

@@ -170,21 +170,21 @@ pub struct Axis {
     pub unit: &'static str,
     /// The unit of its values where the problem is in SI; empty elsewhere.
     pub shown: String,
-    pub run: Run,
+    pub run: AxisScale,
 }
 
 /// How an axis runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Run {
+pub enum AxisScale {
     #[default]
     Linear,
     /// Equal factors; what is not positive is not drawn.
     Logarithmic,
-    /// As [`Run::Linear`], but between whole numbers there is nothing.
+    /// As [`AxisScale::Linear`], but between whole numbers there is nothing.
     Counted,
 }
 
-impl Run {
+impl AxisScale {
     /// Where a value stands on the axis, in steps of it; no number where it has no place.
     fn place(self, value: f64) -> f64 {
         match self {
@@ -204,12 +204,12 @@ impl Run {
 impl Axis {
     /// An axis of a pure number.
     pub fn pure(symbol: String) -> Self {
-        Self { symbol, unit: "", shown: String::new(), run: Run::Linear }
+        Self { symbol, unit: "", shown: String::new(), run: AxisScale::Linear }
     }
 
     /// The same axis, running so.
     #[must_use]
-    pub fn running(self, run: Run) -> Self {
+    pub fn running(self, run: AxisScale) -> Self {
         Self { run, ..self }
     }
 

@@ -38,7 +38,7 @@ pub enum What {
 
 /// A state near to a point of a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Nearest {
+pub struct NearestState {
     pub at: (f64, f64),
     pub what: What,
     /// δ, in the user's units.
@@ -49,7 +49,7 @@ pub struct Nearest {
     pub contact_radius: f64,
 }
 
-impl Nearest {
+impl NearestState {
     /// The state in words.
     pub fn text(&self, units: &UnitSystem) -> String {
         let shown = |quantity, x| with_unit(units, quantity, x, false, |x| significant(x, 5));
@@ -81,7 +81,7 @@ impl What {
 
 /// The state nearest to `at` in a window of these bounds, limit points and landings first; `None` if the view shows
 /// no states.
-pub fn nearest(subject: &Subject<'_>, view: View, bounds: &Bounds, at: (f64, f64)) -> Option<Nearest> {
+pub fn nearest(subject: &Subject<'_>, view: View, bounds: &Bounds, at: (f64, f64)) -> Option<NearestState> {
     if !view.is_curve() {
         return None;
     }
@@ -90,8 +90,8 @@ pub fn nearest(subject: &Subject<'_>, view: View, bounds: &Bounds, at: (f64, f64
         let share = |[lo, hi]: [f64; 2], by: f64| by / (hi - lo);
         share(bounds.x, x - at.0).hypot(share(bounds.y, y - at.1))
     };
-    let by_distance = |a: &Nearest, b: &Nearest| away(a.at).total_cmp(&away(b.at));
-    let state = |scale: Scale<'_>, [approach, force, contact_radius]: [f64; 3], what| Nearest {
+    let by_distance = |a: &NearestState, b: &NearestState| away(a.at).total_cmp(&away(b.at));
+    let state = |scale: Scale<'_>, [approach, force, contact_radius]: [f64; 3], what| NearestState {
         at: scale.place(view, [approach, force, contact_radius]),
         what,
         approach,

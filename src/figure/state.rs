@@ -7,7 +7,7 @@ use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
 use super::scale::Scale;
 use super::subject::Subject;
 use crate::explorer::View;
-use crate::explorer::profile::Inside;
+use crate::explorer::profile::StateInside;
 use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::landscape::Stationary;
 use pulloff_engine::quasistatic::profile::Outside;
@@ -72,7 +72,7 @@ fn potential_axis(scale: Scale<'_>, control: Control) -> Axis {
 /// A state on its axes.
 struct Drawing<'a> {
     scale: Scale<'a>,
-    inside: &'a Inside,
+    inside: &'a StateInside,
     /// The largest contact radius to be seen, on its axis.
     widest: f64,
     /// Whether the states lie on no single curve.

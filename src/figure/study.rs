@@ -1,21 +1,21 @@
 //! A quantity over the range of one value, the value of the preset marked.
 
 use super::bounds::Bounds;
-use super::parts::{Area, Axis, Figure, Line, Mark, Meaning, Role, Run, Sign};
+use super::parts::{Area, Axis, AxisScale, Figure, Line, Mark, Meaning, Role, Sign};
 use super::subject::Subject;
-use crate::explorer::studies::{Outcome, StudyData, number};
+use crate::explorer::studies::{StudyData, StudyOutcome, number};
 use pulloff_engine::preset::{Preset, Row};
 use pulloff_engine::report::number::{significant, with_unit};
 use pulloff_engine::sweep::ensemble::quantiles;
 use pulloff_engine::sweep::quantity::Under;
-use pulloff_engine::sweep::{Cell, Column};
+use pulloff_engine::sweep::{Cell, QuantityColumn};
 use pulloff_engine::units::Quantity;
 
 /// Of fewer other surfaces there are no quantiles to be drawn.
 const FEWEST: usize = 5;
 
 /// The quantity in words: its name, and the control where it is not the preset's own.
-fn words(column: Column) -> String {
+fn words(column: QuantityColumn) -> String {
     let name = column.quantity.name.replace('_', " ");
     match column.under {
         Under::Own => name,
@@ -66,13 +66,14 @@ pub fn of(data: &StudyData, preset: &Preset) -> Figure {
         .iter()
         .zip(&data.outcomes)
         .filter_map(|(x, outcome)| {
-            let y = if let Outcome::Found(cell) = outcome { Some(value(cell)) } else { None };
+            let y = if let StudyOutcome::Found(cell) = outcome { Some(value(cell)) } else { None };
             Some((shown(number(x)?), y))
         })
         .collect();
-    let is_counted = data.outcomes.iter().any(|outcome| matches!(outcome, Outcome::Found(Cell::Count(_))));
+    let is_counted =
+        data.outcomes.iter().any(|outcome| matches!(outcome, StudyOutcome::Found(Cell::Count(_))));
     if is_counted {
-        figure.y.run = Run::Counted;
+        figure.y.run = AxisScale::Counted;
     }
     for part in places.chunk_by(|a, b| a.1.is_some() == b.1.is_some()) {
         let points: Vec<(f64, f64)> = part.iter().filter_map(|(x, y)| Some((*x, (*y)?))).collect();
@@ -102,7 +103,7 @@ pub fn of(data: &StudyData, preset: &Preset) -> Figure {
     if done < count {
         figure.notes.push(format!("{done} of {count}"));
     }
-    let missing = data.outcomes.iter().filter(|outcome| matches!(outcome, Outcome::Missing(_))).count();
+    let missing = data.outcomes.iter().filter(|outcome| matches!(outcome, StudyOutcome::Missing(_))).count();
     if missing > 0 {
         figure.notes.push(format!("{missing} without a value: the cross-hair says why"));
     }
@@ -114,7 +115,7 @@ fn slow_pulls(figure: &mut Figure, data: &StudyData, rate: impl Fn(f64) -> f64, 
     /// The first order is drawn up to this share of the quasi-static pull.
     const SHARE: f64 = 1.0;
     let Some(slow) = &data.slow else { return };
-    figure.x.run = Run::Logarithmic;
+    figure.x.run = AxisScale::Logarithmic;
     let rates: Vec<f64> = data.wish.values.iter().filter_map(number).collect();
     let level = rates.iter().map(|x| (rate(*x), force(slow.force)));
     figure.lines.push(Line::new(Role::Zero, "quasi-static", level.collect()));
@@ -214,10 +215,10 @@ pub fn reading(data: &StudyData, preset: &Preset, x: f64) -> Option<String> {
     let shown = row.shown(units, value);
     let value = shown.text(&significant(shown.number, 5), false);
     let found = match data.outcomes.get(at)? {
-        Outcome::Waits => "is being computed".to_owned(),
-        Outcome::Missing(why) => format!("none: {why}"),
-        Outcome::Found(Cell::Count(n)) => n.to_string(),
-        Outcome::Found(Cell::Number(y)) => {
+        StudyOutcome::Waits => "is being computed".to_owned(),
+        StudyOutcome::Missing(why) => format!("none: {why}"),
+        StudyOutcome::Found(Cell::Count(n)) => n.to_string(),
+        StudyOutcome::Found(Cell::Number(y)) => {
             let quantity: Quantity = data.wish.column.quantity.unit;
             with_unit(units, quantity, *y, false, |y| significant(y, 5))
         }

@@ -1,13 +1,13 @@
 //! What figures are built from.
 
-use super::measured::Points;
+use super::measured::MeasuredMarks;
 use super::scale::Scale;
-use crate::explorer::branches::{Branch, branches};
+use crate::explorer::branches::{WalkBranch, branches};
 use crate::explorer::fitting::Distances;
 use crate::explorer::maps::MapData;
 use crate::explorer::model::is_on_curve;
 use crate::explorer::pins::{Pin, name_among};
-use crate::explorer::profile::Inside;
+use crate::explorer::profile::StateInside;
 use crate::explorer::pulls::PullData;
 use crate::explorer::speeds::SpeedsData;
 use crate::explorer::studies::StudyData;
@@ -24,9 +24,9 @@ pub struct Subject<'a> {
     pub curve: &'a CurveData,
     /// The states that led to the walker, which is the last.
     pub walk: Vec<&'a Node>,
-    pub branches: Vec<Branch<'a>>,
+    pub branches: Vec<WalkBranch<'a>>,
     /// The inside of the walker's state, where it is known.
-    pub inside: Option<&'a Inside>,
+    pub inside: Option<&'a StateInside>,
     /// The ends (δ, P) of the line of the loading device through the walker, where it is shown.
     pub device: Option<[(f64, f64); 2]>,
     /// The path of the device from where it begins, where there is one.
@@ -40,7 +40,7 @@ pub struct Subject<'a> {
     /// The number of the selected event on the path.
     pub event: Option<usize>,
     /// The measured points, where there are any.
-    pub measured: Option<Points>,
+    pub measured: Option<MeasuredMarks>,
     /// Their distances from the curve, or why there are none, where they are known.
     pub distances: Option<&'a Result<(Abscissa, Vec<Residual>), String>>,
     /// Their energy release rate and the speed of the edge, where they are known.
@@ -69,7 +69,7 @@ impl<'a> Subject<'a> {
             pull: model.pull(),
             map: model.results.found::<MapData>().map(MapData::report),
             event: model.log().entries.get(model.event).and_then(|entry| entry.number),
-            measured: Points::of(&model.preset).and_then(Result::ok),
+            measured: MeasuredMarks::of(&model.preset).and_then(Result::ok),
             distances: model.results.found::<Distances>().map(|distances| &distances.found),
             speeds: model.results.found(),
             study: study(model),

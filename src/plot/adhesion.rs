@@ -2,13 +2,13 @@
 //! waves of Fig. 9. K. L. Johnson and J. A. Greenwood, J. Colloid Interface Sci. 192, 326 (1997), doi:10.1006/jcis.1997.4984, map what
 //! holds where for the sphere.
 
-use super::paper::{PaperError, Sheet, shipped};
-use crate::figure::{Axis, Figure, Line, Mark, Role, Run, Sign};
+use super::paper::{PaperError, PaperSheet, shipped};
+use crate::figure::{Axis, AxisScale, Figure, Line, Mark, Role, Sign};
 use pulloff_engine::case::{Case, CaseError};
-use pulloff_engine::problem::cohesion::Stated;
+use pulloff_engine::problem::cohesion::StatedCohesion;
 use pulloff_engine::problem::{Adhesion, Control, Turn};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::Setting;
+use pulloff_engine::quasistatic::path::PathSetting;
 use pulloff_engine::quasistatic::{Detail, Losses};
 use pulloff_engine::report::number::significant;
 use pulloff_engine::theory::maugis::Maugis;
@@ -35,8 +35,8 @@ struct Over {
 
 fn loops(name: &'static str, preset: &'static str) -> Result<Over, PaperError> {
     let preset = shipped(preset, &["basis.kind=exact", "path.control=displacement"])?;
-    let (gamma, setting) = (preset.material.work_of_adhesion, Setting::new(Control::Displacement));
-    let setting = Setting { losses: Losses::Once, detail: Detail::Borders, ..setting };
+    let (gamma, setting) = (preset.material.work_of_adhesion, PathSetting::new(Control::Displacement));
+    let setting = PathSetting { losses: Losses::Once, detail: Detail::Borders, ..setting };
     let of = |case: &Case| case.cycle(Some(Turn::Approach(TURN)), &setting, &Unwatched);
     let short = of(&Case::new(&preset)?)?.losses();
     let mut over = Over { name, points: Vec::new(), ends: None };
@@ -44,7 +44,8 @@ fn loops(name: &'static str, preset: &'static str) -> Result<Over, PaperError> {
         let maugis = FROM * (TO / FROM).powf(f64::from(k) / f64::from(COUNT - 1));
         let mut preset = preset.clone();
         // The preset has R = E* = 1.
-        preset.material.adhesion = Adhesion::Dugdale(Stated::Strength(Maugis::of(maugis, gamma).strength));
+        preset.material.adhesion =
+            Adhesion::Dugdale(StatedCohesion::Strength(Maugis::of(maugis, gamma).strength));
         match of(&Case::with_range(&preset, &Unwatched)?) {
             Ok(path) if path.is_whole() => {
                 let pull = path.largest_pull().map_or(f64::NAN, |at| -at.force / (PI * gamma));
@@ -61,7 +62,7 @@ fn loops(name: &'static str, preset: &'static str) -> Result<Over, PaperError> {
 ///
 /// # Errors
 /// [`PaperError`].
-pub fn sheets() -> Result<[Sheet; 2], PaperError> {
+pub fn sheets() -> Result<[PaperSheet; 2], PaperError> {
     let all = [loops("smooth sphere", "fig-3-jkr")?, loops("waves of Fig. 9", "fig-9")?];
     let ends = all.iter().filter_map(|over| {
         let (last, name) = (over.ends?, over.name);
@@ -79,7 +80,7 @@ pub fn sheets() -> Result<[Sheet; 2], PaperError> {
         sphere.points.iter().map(|at| (at[0], Maugis::of(at[0], gamma).largest_pull())).collect();
     let apart = sphere.points.iter().zip(&exact).map(|(at, exact)| (at[2] / exact.1 - 1.0).abs());
     let apart = apart.fold(0.0, f64::max);
-    let axis = |title: &str, run: Run| Axis::pure(title.to_owned()).running(run);
+    let axis = |title: &str, run: AxisScale| Axis::pure(title.to_owned()).running(run);
     let sheet = |name, of: usize, y: &str, more: Vec<Line>, caption: String| {
         let at = |over: &Over| over.points.iter().map(|at| (at[0], at[of])).collect::<Vec<_>>();
         let marks = all.iter().flat_map(&at).map(|at| Mark { sign: Sign::Value, at }).collect();
@@ -88,8 +89,8 @@ pub fn sheets() -> Result<[Sheet; 2], PaperError> {
             .map(|(k, over)| Line::new(Role::Pin(k), over.name, at(over)))
             .chain(more)
             .collect();
-        let figure = Figure::of(axis("λ_M", Run::Logarithmic), axis(y, Run::Linear), lines);
-        Sheet { name, figure: Figure { marks, ..figure }, caption }
+        let figure = Figure::of(axis("λ_M", AxisScale::Logarithmic), axis(y, AxisScale::Linear), lines);
+        PaperSheet { name, figure: Figure { marks, ..figure }, caption }
     };
     let level = |y: f64| Line::new(Role::Zero, "", vec![(FROM, y), (TO, y)]);
     let what = format!(

@@ -2,7 +2,7 @@
 
 use crate::figure::map::laid;
 use crate::figure::places::Places;
-use crate::figure::{Axis, Figure, Run};
+use crate::figure::{Axis, AxisScale, Figure};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::AxisReport;
@@ -13,7 +13,7 @@ pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
     let places = |axis: &AxisReport| Places::of(axis, preset, report.control, false);
     let (x, y) = (places(&report.x), places(&report.y));
     let (lines, marks, bounds) = laid(report, preset, &x, &y);
-    let run = |of: &AxisReport| if of.logarithmic { Run::Logarithmic } else { Run::Linear };
+    let run = |of: &AxisReport| if of.logarithmic { AxisScale::Logarithmic } else { AxisScale::Linear };
     let titled = |places: Places, of: &AxisReport| {
         let words = preset.row(&of.key).map(|row| headline(&row.meaning).to_owned());
         let symbol = words.map(|words| format!("{words}, {}", places.axis.symbol));

@@ -6,7 +6,7 @@ use super::ink;
 use super::svg::{cropped, entry, filled, finish, frame, hatched, hatches, line, outline, plain};
 use crate::figure::Line;
 use crate::mend::Mend;
-use crate::sweep::Results;
+use crate::sweep::SweepResults;
 use crate::sweep::results::ResultsError;
 use kuva::plot::colormap::ColorMap;
 use kuva::plot::legend::{LegendEntry, LegendShape};
@@ -31,7 +31,7 @@ const DECADE: f64 = 10.0;
 
 /// A quantity over two axes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Map {
+pub struct MapChart {
     /// What stands beside the axes, x and y.
     pub titles: [String; 2],
     pub quantity: String,
@@ -47,7 +47,7 @@ pub struct Map {
 
 /// Why results are not drawn.
 #[derive(Debug, thiserror::Error)]
-pub enum MapError {
+pub enum MapChartError {
     #[error(transparent)]
     Results(#[from] ResultsError),
     /// They are neither a grid over two axes of numbers nor rows over one.
@@ -55,7 +55,7 @@ pub enum MapError {
     Grid(String),
 }
 
-impl Mend for MapError {
+impl Mend for MapChartError {
     fn can_be_mended(&self) -> bool {
         match self {
             Self::Results(error) => error.can_be_mended(),
@@ -64,21 +64,21 @@ impl Mend for MapError {
     }
 }
 
-impl MapError {
+impl MapChartError {
     /// No row has a number in this column.
     pub(super) fn empty(column: &str) -> Self {
         Self::Grid(format!("the column {} is empty in every row", quote(column)))
     }
 }
 
-impl Map {
+impl MapChart {
     /// The map of `quantity` in `results`, whose first two columns behind the row are the axes.
-    /// Errors: [`MapError`] when there is no such column, or the rows make no whole grid of at least two by two.
-    pub fn of(results: &Results, axes: &[String], quantity: &str) -> Result<Self, MapError> {
+    /// Errors: [`MapChartError`] when there is no such column, or the rows make no whole grid of at least two by two.
+    pub fn of(results: &SweepResults, axes: &[String], quantity: &str) -> Result<Self, MapChartError> {
         let [x, y] = axes else {
             let what =
                 format!("the results of a sweep are drawn over one axis or two; it has {}", axes.len());
-            return Err(MapError::Grid(what));
+            return Err(MapChartError::Grid(what));
         };
         let has_snaps = results.columns.iter().any(|column| column.name == SNAPS);
         let names: Vec<&str> =
@@ -90,7 +90,7 @@ impl Map {
         let values = [distinct(&along), distinct(&up)];
         let [width, height] = [values[0].len(), values[1].len()];
         if width < 2 || height < 2 || width * height != found.len() {
-            return Err(MapError::Grid(format!(
+            return Err(MapChartError::Grid(format!(
                 "a map needs a whole grid: {} rows are not {width} times {height} values",
                 found.len()
             )));
@@ -109,7 +109,7 @@ impl Map {
         };
         let (cells, snaps) = (grid(&found), snapped.map(|column| grid(&column)));
         if cells.iter().flatten().all(|cell| !cell.is_finite()) {
-            return Err(MapError::empty(quantity));
+            return Err(MapChartError::empty(quantity));
         }
         let title = |name: &str| results.title(name);
         Ok(Self {
@@ -339,7 +339,7 @@ mod tests {
 
     #[test]
     fn a_map_with_holes_is_a_valid_document() {
-        let map = Map {
+        let map = MapChart {
             titles: ["a".to_owned(), "b".to_owned()],
             quantity: "enhancement".to_owned(),
             values: [vec![0.0, 1.0, 2.0], vec![1.0, 10.0, 100.0]],
@@ -355,13 +355,13 @@ mod tests {
         assert!(text.contains("url(#") && text.contains("no value") && text.contains("snaps begin"));
         assert_eq!(map.holes().len(), 1);
         assert_eq!(map.filled()[1], [2.0, 2.0, 4.0]);
-        let full = Map { cells: vec![vec![1.5, 2.0, 3.0]; 3], snaps: None, ..map };
+        let full = MapChart { cells: vec![vec![1.5, 2.0, 3.0]; 3], snaps: None, ..map };
         assert!(full.holes().is_empty() && full.legend().is_empty());
     }
 
     #[test]
     fn counts_are_flat_regions_with_whole_numbers() {
-        let map = |cells: Vec<Vec<f64>>| Map {
+        let map = |cells: Vec<Vec<f64>>| MapChart {
             titles: ["a".to_owned(), "b".to_owned()],
             quantity: "snaps".to_owned(),
             values: [vec![0.0, 1.0, 2.0], vec![1.0, 2.0, 3.0]],
@@ -370,7 +370,7 @@ mod tests {
             lines: Vec::new(),
         };
         let few = map(vec![vec![0.0, 0.0, 1.0], vec![0.0, f64::NAN, 2.0], vec![1.0, 2.0, 4.0]]);
-        let names = |map: &Map| map.legend().into_iter().map(|entry| entry.label).collect::<Vec<_>>();
+        let names = |map: &MapChart| map.legend().into_iter().map(|entry| entry.label).collect::<Vec<_>>();
         assert_eq!(names(&few), ["snaps 0", "1", "2", "3", "4", "no value"]);
         let colors: Vec<String> = few.legend().into_iter().map(|entry| entry.color).collect();
         let text = few.svg(Width::ONE_COLUMN);

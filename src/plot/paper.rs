@@ -12,11 +12,11 @@
 //! | rate | beyond the paper: the largest pull of Fig. 9 over the rate |
 
 use crate::explorer::curve::CurvePoint;
-use crate::explorer::studies::{Outcome, StudyWish, threads};
+use crate::explorer::studies::{StudyOutcome, StudyWish, threads};
 use crate::explorer::{Axes, CurveData, Overlays, Staged, View};
 use crate::figure::curves::place;
 use crate::figure::study;
-use crate::figure::{Axis, Figure, Line, Mark, Role, Run, Scale, Sign, Subject};
+use crate::figure::{Axis, AxisScale, Figure, Line, Mark, Role, Scale, Sign, Subject};
 use crate::store::{read_with, shipped};
 use pulloff_engine::case::{Case, CaseError, critical_force};
 use pulloff_engine::elementary::pow;
@@ -28,7 +28,7 @@ use pulloff_engine::quasistatic::Profile;
 use pulloff_engine::quasistatic::admissible::Judge;
 use pulloff_engine::report::number::significant;
 use pulloff_engine::ritz::{Grading, NewtonSettings, Rings, RingsError, solve};
-use pulloff_engine::sweep::{Cell, Column};
+use pulloff_engine::sweep::{Cell, QuantityColumn};
 use pulloff_engine::theory::Exact;
 use pulloff_engine::verify::cases::{smooth, sphere};
 use pulloff_engine::verify::convergence::radius_at;
@@ -36,7 +36,7 @@ use std::fmt::Write;
 
 /// A figure of the paper.
 #[derive(Debug, Clone)]
-pub struct Sheet {
+pub struct PaperSheet {
     /// The name of its files: `fig-9a`.
     pub name: &'static str,
     /// What is drawn.
@@ -77,7 +77,7 @@ pub const NAMES: [&str; 16] = [
 ];
 
 /// All figures, in the order of the paper; `begin` is told the name of each before it is computed.
-pub fn sheets(mut begin: impl FnMut(&str)) -> Result<Vec<Sheet>, PaperError> {
+pub fn sheets(mut begin: impl FnMut(&str)) -> Result<Vec<PaperSheet>, PaperError> {
     let mut sheets = Vec::new();
     begin("Fig. 1");
     sheets.push(smooth_pressure("fig-1", "fig-1-hertz", 0.3, "Hertz's theory")?);
@@ -105,7 +105,11 @@ pub fn sheets(mut begin: impl FnMut(&str)) -> Result<Vec<Sheet>, PaperError> {
 }
 
 /// Force over approach and contact radius over force of a shipped preset, in the paper's rings, over the exact solution.
-fn curves(names: [&'static str; 2], preset: &'static str, title: &str) -> Result<[Sheet; 2], PaperError> {
+fn curves(
+    names: [&'static str; 2],
+    preset: &'static str,
+    title: &str,
+) -> Result<[PaperSheet; 2], PaperError> {
     // The paper marks where the bodies come apart in this one.
     let has_ends = preset == "fig-8";
     let preset = shipped(preset, &[])?;
@@ -123,7 +127,7 @@ fn curves(names: [&'static str; 2], preset: &'static str, title: &str) -> Result
         );
         // The paper has the contact radius upward.
         let figure = if view == View::ForceRadius { figure.transposed() } else { figure };
-        Sheet { name, figure, caption }
+        PaperSheet { name, figure, caption }
     };
     Ok([
         sheet(names[0], View::ForceApproach, "the force over the approach"),
@@ -187,7 +191,7 @@ fn figure(data: &CurveData, view: View) -> Figure {
 }
 
 /// The quasi-static path of Fig. 9 and what it dissipates, in the exact basis, whose energies are good to rounding.
-fn losses(name: &'static str, control: Control) -> Result<Sheet, PaperError> {
+fn losses(name: &'static str, control: Control) -> Result<PaperSheet, PaperError> {
     let word = if control == Control::Force { "force" } else { "displacement" };
     let set = [format!("path.control={word}"), "basis.kind=exact".to_owned()];
     let preset = shipped("fig-9", &[&set[0], &set[1]])?;
@@ -206,17 +210,17 @@ fn losses(name: &'static str, control: Control) -> Result<Sheet, PaperError> {
         events.iter().filter(|event| event.dissipated.is_some()).count(),
         significant(apart, 2)
     );
-    Ok(Sheet { name, figure: figure(&data, View::Unloading), caption })
+    Ok(PaperSheet { name, figure: figure(&data, View::Unloading), caption })
 }
 
 /// The largest pull of Fig. 9 over the rate of the pull, with what it comes to at low rates.
-fn rates() -> Result<Sheet, PaperError> {
+fn rates() -> Result<PaperSheet, PaperError> {
     const EXPONENT: f64 = 0.5;
     // Twenty to a decade.
     let rates: Vec<f64> = (-160..=40).map(|k| pow(10.0, f64::from(k) / 20.0)).collect();
     let exponent = format!("edge.exponent={EXPONENT}");
     let preset = shipped("fig-9", &["basis.kind=exact", &exponent, "path.rate=1"])?;
-    let column = Column::named("peak_force").map_err(|_| PaperError::Missing("peak_force"))?;
+    let column = QuantityColumn::named("peak_force").map_err(|_| PaperError::Missing("peak_force"))?;
     let values = rates.iter().map(|rate| (*rate).into()).collect();
     let wish = StudyWish { preset: preset.clone(), key: Key::Borrowed(RATE), column, values };
     let data = wish.run(threads(), &Unwatched, &mut |_| {}).ok_or(PaperError::Missing("the study"))?;
@@ -226,7 +230,7 @@ fn rates() -> Result<Sheet, PaperError> {
     figure.marks.clear();
     let found = |rate: f64| {
         let at = data.nearest(rate).map(|(at, _)| &data.outcomes[at]);
-        let force = if let Some(Outcome::Found(Cell::Number(force))) = at { *force } else { f64::NAN };
+        let force = if let Some(StudyOutcome::Found(Cell::Number(force))) = at { *force } else { f64::NAN };
         let critical = critical_force(&preset).unwrap_or(f64::NAN);
         significant(-force / critical, 4)
     };
@@ -238,7 +242,7 @@ fn rates() -> Result<Sheet, PaperError> {
         found(1e-2),
         found(1.0)
     );
-    Ok(Sheet { name: "rate", figure, caption })
+    Ok(PaperSheet { name: "rate", figure, caption })
 }
 
 /// The contact pressure of the smooth sphere in a few rings, over theory.
@@ -247,7 +251,7 @@ fn smooth_pressure(
     preset: &'static str,
     s: f64,
     theory: &str,
-) -> Result<Sheet, PaperError> {
+) -> Result<PaperSheet, PaperError> {
     let preset = shipped(preset, &[FEW_RINGS])?;
     let case = Case::new(&preset)?;
     let pressure = Pressure::at(&case, s)?;
@@ -262,11 +266,11 @@ fn smooth_pressure(
         Line::new(Role::Body, format!("{rings} rings"), pressure.steps(rings)),
         Line::new(Role::Exact, Exact::of(&case.problem).name(), pressure.exact),
     ];
-    Ok(Sheet { name, figure: pressures("r/s", lines), caption })
+    Ok(PaperSheet { name, figure: pressures("r/s", lines), caption })
 }
 
 /// The pressure on waves without adhesion at these contact radii.
-fn loads(name: &'static str, amplitude: &str, title: &str, radii: &[f64]) -> Result<Sheet, PaperError> {
+fn loads(name: &'static str, amplitude: &str, title: &str, radii: &[f64]) -> Result<PaperSheet, PaperError> {
     let last = radii.iter().copied().fold(0.0, f64::max);
     let set = [
         "material.work_of_adhesion=0".to_owned(),
@@ -298,7 +302,7 @@ fn loads(name: &'static str, amplitude: &str, title: &str, radii: &[f64]) -> Res
          solution (dots). {sign} The two differ by at most {} of the pressure on the axis.",
         significant(apart, 2)
     );
-    Ok(Sheet { name, figure: pressures("r/R", lines), caption })
+    Ok(PaperSheet { name, figure: pressures("r/R", lines), caption })
 }
 
 fn pressures(radius: &str, lines: Vec<Line>) -> Figure {
@@ -346,7 +350,7 @@ impl Pressure {
 }
 
 /// The errors of force and contact radius over the number of rings.
-fn errors() -> Result<Sheet, PaperError> {
+fn errors() -> Result<PaperSheet, PaperError> {
     let (mut lines, mut marks) = (Vec::new(), Vec::new());
     let mut words = Vec::new();
     for (i, (title, work_of_adhesion)) in [("Hertz", 0.0), ("JKR", 0.01)].into_iter().enumerate() {
@@ -396,7 +400,7 @@ fn errors() -> Result<Sheet, PaperError> {
         ),
         _ => String::new(),
     };
-    let axis = |title: &str| Axis::pure(title.to_owned()).running(Run::Logarithmic);
+    let axis = |title: &str| Axis::pure(title.to_owned()).running(AxisScale::Logarithmic);
     let caption = format!(
         "The errors of contact radius and force at the approach δ = {APPROACH} R, relative to the exact values, over the \
          number of rings N, computed at the marks; the thin line falls as 1/N. The observed orders at the finest meshes are \
@@ -404,7 +408,7 @@ fn errors() -> Result<Sheet, PaperError> {
         words.join("; ")
     );
     let figure = Figure { marks, ..Figure::of(axis("N"), axis("relative error"), lines) };
-    Ok(Sheet { name: "fig-5", figure, caption })
+    Ok(PaperSheet { name: "fig-5", figure, caption })
 }
 
 /// A shipped preset with assignments.

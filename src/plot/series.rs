@@ -1,9 +1,9 @@
 //! A quantity of a sweep over its one axis: a mark for every row, joined where neighbours have a value; of an ensemble the median,
 //! and where half and nine tenths of the members are.
 
-use super::map::{MapError, distinct, is_logarithmic};
-use crate::figure::{Area, Axis, Figure, Line, Mark, Meaning, Role, Run, Sign};
-use crate::sweep::Results;
+use super::map::{MapChartError, distinct, is_logarithmic};
+use crate::figure::{Area, Axis, AxisScale, Figure, Line, Mark, Meaning, Role, Sign};
+use crate::sweep::SweepResults;
 use crate::sweep::record::statistic;
 
 /// The quantiles that bound the areas, the median between them.
@@ -11,12 +11,12 @@ const QUANTILES: [&str; 5] = ["q05", "q25", "q50", "q75", "q95"];
 
 /// The figure of the statistics of `quantity`, which are in `results`, over the column `axis`.
 /// Errors: As [`figure`].
-fn bands(results: &Results, axis: &str, quantity: &str) -> Result<Figure, MapError> {
+fn bands(results: &SweepResults, axis: &str, quantity: &str) -> Result<Figure, MapChartError> {
     let names = QUANTILES.map(|of| statistic(quantity, of));
     let [along, found @ ..] =
         &results.numbers(&[axis, &names[0], &names[1], &names[2], &names[3], &names[4]])?[..]
     else {
-        return Err(MapError::empty(quantity));
+        return Err(MapChartError::empty(quantity));
     };
     let mut points: Vec<[f64; 6]> = (0..along.len())
         .filter_map(|row| {
@@ -26,9 +26,9 @@ fn bands(results: &Results, axis: &str, quantity: &str) -> Result<Figure, MapErr
         .collect();
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
     if !points.iter().flatten().any(|x| x.is_finite()) {
-        return Err(MapError::empty(quantity));
+        return Err(MapChartError::empty(quantity));
     }
-    let run = if is_logarithmic(&distinct(along)) { Run::Logarithmic } else { Run::Linear };
+    let run = if is_logarithmic(&distinct(along)) { AxisScale::Logarithmic } else { AxisScale::Linear };
     let (x, y) =
         (Axis::pure(results.title(axis)).running(run), Axis::pure(results.title_of(quantity, &names[2])));
     let line = |of: usize| points.iter().map(|point| (point[0], point[of])).collect::<Vec<_>>();
@@ -49,8 +49,8 @@ fn bands(results: &Results, axis: &str, quantity: &str) -> Result<Figure, MapErr
 }
 
 /// The figure of `quantity` in `results` over the column `axis`; a row without a value is a gap.
-/// Errors: [`MapError`] when there is no such column, one is not of numbers, or no row has a value.
-pub fn figure(results: &Results, axis: &str, quantity: &str) -> Result<Figure, MapError> {
+/// Errors: [`MapChartError`] when there is no such column, one is not of numbers, or no row has a value.
+pub fn figure(results: &SweepResults, axis: &str, quantity: &str) -> Result<Figure, MapChartError> {
     if results.has_statistics_of(quantity) {
         return bands(results, axis, quantity);
     }
@@ -63,13 +63,13 @@ pub fn figure(results: &Results, axis: &str, quantity: &str) -> Result<Figure, M
     points.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let is_known = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
     if !points.iter().any(is_known) {
-        return Err(MapError::empty(quantity));
+        return Err(MapChartError::empty(quantity));
     }
     let values = distinct(&along);
-    let run = if is_logarithmic(&values) { Run::Logarithmic } else { Run::Linear };
+    let run = if is_logarithmic(&values) { AxisScale::Logarithmic } else { AxisScale::Linear };
     let marks = points.iter().copied().filter(is_known).map(|at| Mark { sign: Sign::Value, at }).collect();
     let is_count = |(_, y): &(f64, f64)| !y.is_finite() || (*y >= 0.0 && y.fract() == 0.0);
-    let counted = if points.iter().all(is_count) { Run::Counted } else { Run::Linear };
+    let counted = if points.iter().all(is_count) { AxisScale::Counted } else { AxisScale::Linear };
     let [x, y] =
         [(axis, run), (quantity, counted)].map(|(name, run)| Axis::pure(results.title(name)).running(run));
     let mut figure = Figure { marks, ..Figure::of(x, y, vec![Line::new(Role::Body, "", points)]) };

@@ -2,7 +2,7 @@
 
 use super::Width;
 use super::ink::{self, Stroke};
-use crate::figure::{Axis, Bounds, Figure, Line, Mark, Meaning, Role, Run, Sign};
+use crate::figure::{Axis, AxisScale, Bounds, Figure, Line, Mark, Meaning, Role, Sign};
 use kuva::plot::fill_pattern::FillPattern;
 use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
 use kuva::plot::{LinePlot, LineStyle, ScatterPlot};
@@ -74,7 +74,7 @@ pub(super) fn frame(
     values: Option<[f64; 2]>,
     legend: &[LegendEntry],
 ) -> Layout {
-    let run = |is_logarithmic| if is_logarithmic { Run::Logarithmic } else { Run::Linear };
+    let run = |is_logarithmic| if is_logarithmic { AxisScale::Logarithmic } else { AxisScale::Linear };
     let [x, y] = titles;
     let axis = |title: String, k: usize| Axis::pure(title).running(run(logarithmic[k]));
     let bounds = Bounds { x: ranges[0], y: ranges[1] };
@@ -174,14 +174,14 @@ fn layout(figure: &Figure, legend: &[LegendEntry], wide: f64, high: f64) -> Layo
         .with_y_axis_min(bounds.y[0])
         .with_y_axis_max(bounds.y[1]);
     layout = match x.run {
-        Run::Linear => layout.with_x_tick_format(ticks(bounds.x)),
-        Run::Counted => layout.with_x_tick_format(whole()),
-        Run::Logarithmic => layout.with_log_x().with_x_tick_format(factors(bounds.x)),
+        AxisScale::Linear => layout.with_x_tick_format(ticks(bounds.x)),
+        AxisScale::Counted => layout.with_x_tick_format(whole()),
+        AxisScale::Logarithmic => layout.with_log_x().with_x_tick_format(factors(bounds.x)),
     };
     layout = match y.run {
-        Run::Linear => layout.with_y_tick_format(ticks(bounds.y)),
-        Run::Counted => layout.with_y_tick_format(whole()),
-        Run::Logarithmic => layout.with_log_y().with_y_tick_format(factors(bounds.y)),
+        AxisScale::Linear => layout.with_y_tick_format(ticks(bounds.y)),
+        AxisScale::Counted => layout.with_y_tick_format(whole()),
+        AxisScale::Logarithmic => layout.with_log_y().with_y_tick_format(factors(bounds.y)),
     };
     if !legend.is_empty() {
         layout = layout
@@ -468,7 +468,7 @@ mod tests {
             full.areas.push(Area { meaning, outline, lost: None });
         }
         full.marks.push(Mark { sign: Sign::Limit, at: (0.5, nan) });
-        let log = Axis::pure(String::new()).running(Run::Logarithmic);
+        let log = Axis::pure(String::new()).running(AxisScale::Logarithmic);
         let negative =
             Figure::of(log.clone(), log, vec![Line::new(Role::Body, "", vec![(-1.0, 2.0), (1.0, 0.0)])]);
         for figure in [
@@ -484,7 +484,7 @@ mod tests {
                 assert_eq!(document.root_element().tag_name().name(), "svg");
                 assert!(!text.contains("NaN"), "{text}");
                 #[cfg(feature = "png")]
-                assert!(crate::print::Format::Png.bytes(&text).unwrap().starts_with(b"\x89PNG"));
+                assert!(crate::print::PictureFormat::Png.bytes(&text).unwrap().starts_with(b"\x89PNG"));
             }
         }
     }

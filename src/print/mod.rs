@@ -23,7 +23,7 @@ use std::path::Path;
 
 /// The format of a figure's file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+pub enum PictureFormat {
     Svg,
     /// Pixels, 384 an inch.
     Png,
@@ -31,7 +31,7 @@ pub enum Format {
     Pdf,
 }
 
-impl Format {
+impl PictureFormat {
     /// The endings of the files that this build writes.
     pub const ENDINGS: &'static [&'static str] = if cfg!(feature = "pdf") {
         &["svg", "png", "pdf"]
@@ -78,11 +78,11 @@ mod tests {
 
     #[test]
     fn a_format_is_named_by_the_ending() {
-        assert_eq!(Format::of(Path::new("a/b.SVG")), Ok(Format::Svg));
+        assert_eq!(PictureFormat::of(Path::new("a/b.SVG")), Ok(PictureFormat::Svg));
         for (name, feature, has) in
             [("png", "png", cfg!(feature = "png")), ("pdf", "pdf", cfg!(feature = "pdf"))]
         {
-            let format = Format::of(Path::new("figure").with_extension(name).as_path());
+            let format = PictureFormat::of(Path::new("figure").with_extension(name).as_path());
             match format {
                 Ok(_) => assert!(has),
                 Err(error) => {
@@ -93,7 +93,7 @@ mod tests {
             }
         }
         for path in ["a.gif", "svg", "a\u{1b}"] {
-            let said = Format::of(Path::new(path)).unwrap_err().to_string();
+            let said = PictureFormat::of(Path::new(path)).unwrap_err().to_string();
             assert!(said.ends_with("ends in .svg, .png or .pdf") && !said.contains('\u{1b}'), "{said}");
         }
     }
@@ -102,9 +102,9 @@ mod tests {
     #[cfg(feature = "png")]
     fn what_is_no_figure_is_refused() {
         for text in ["", "<svg", "<svg xmlns='http://www.w3.org/2000/svg' width='0' height='5'/>"] {
-            assert!(Format::Png.bytes(text).is_err(), "{text}");
+            assert!(PictureFormat::Png.bytes(text).is_err(), "{text}");
         }
         let wide = "<svg xmlns='http://www.w3.org/2000/svg' width='9000mm' height='5mm'/>";
-        assert!(Format::Png.bytes(wide).unwrap_err().to_string().contains("cannot be drawn"));
+        assert!(PictureFormat::Png.bytes(wide).unwrap_err().to_string().contains("cannot be drawn"));
     }
 }

@@ -5,7 +5,7 @@ use super::data::load;
 use super::file::{FileError, read_bytes};
 use crate::mend::Mend;
 use pulloff_engine::gap::Shape;
-use pulloff_engine::gap::shapes::Measured;
+use pulloff_engine::gap::shapes::MeasuredGap;
 use pulloff_engine::preset::measured::SHIPPED_DATA;
 use pulloff_engine::preset::model::Preset;
 use pulloff_engine::preset::profile::LARGEST;
@@ -58,7 +58,7 @@ pub fn copy_beside(folder: &Path, preset: &Preset) -> Result<Preset, DataError> 
         }
         let name = copied(folder, &from, &read_bytes(&from, LARGEST)?.0)?;
         let copied = Arc::new(load(Some(folder), &name)?).held_in(&preset.units);
-        let measured = Measured::new(copied, measured.smoothing()).map_err(|error| error.to_string())?;
+        let measured = MeasuredGap::new(copied, measured.smoothing()).map_err(|error| error.to_string())?;
         copy.gap = Shape::Profile(Arc::new(measured));
     }
     if let Some(source) = preset.data.source.as_ref().filter(|source| !source.name.starts_with(SHIPPED_DATA))

@@ -2,10 +2,10 @@
 
 use super::file::{FileError, read_bytes};
 use crate::mend::Mend;
-use pulloff_engine::gap::shapes::Rows;
-use pulloff_engine::measured::Source;
+use pulloff_engine::gap::shapes::ProfileRows;
+use pulloff_engine::measured::PointsFile;
 use pulloff_engine::preset::measured::{SHIPPED_DATA, rows, words};
-use pulloff_engine::preset::profile::{Columns, LARGEST, TextError, parse};
+use pulloff_engine::preset::profile::{LARGEST, ProfileColumns, TextError, parse};
 use pulloff_engine::preset::read::{self, ReadError};
 use pulloff_engine::preset::shipped::curve;
 use pulloff_engine::preset::{Files, Preset};
@@ -27,7 +27,7 @@ pub enum ProfileError {
 
 /// Why there is no file of a measured curve. Names and paths in it are safe to show.
 #[derive(Debug, Error)]
-pub enum PointsError {
+pub enum PointsFileError {
     #[error(transparent)]
     File(#[from] FileError),
     /// None that comes with the program, in words.
@@ -35,7 +35,7 @@ pub enum PointsError {
     Shipped(String),
 }
 
-impl Mend for PointsError {
+impl Mend for PointsFileError {
     fn can_be_mended(&self) -> bool {
         match self {
             Self::File(error) => error.can_be_mended(),
@@ -45,18 +45,18 @@ impl Mend for PointsError {
 }
 
 /// Reads the profile in the file `path`.
-pub fn read_profile(path: &Path) -> Result<Columns, ProfileError> {
+pub fn read_profile(path: &Path) -> Result<ProfileColumns, ProfileError> {
     let (bytes, _) = read_bytes(path, LARGEST)?;
     parse(&bytes).map_err(|cause| ProfileError::Text { path: show_path(path), cause })
 }
 
 /// The file `path` of a measured curve, or the one of that name that comes with the program; it is not taken apart yet.
-pub fn read_points(path: &Path) -> Result<Source, PointsError> {
+pub fn read_points(path: &Path) -> Result<PointsFile, PointsFileError> {
     let bytes = match path.to_str().and_then(curve) {
-        Some(text) => text.map_err(PointsError::Shipped)?.as_bytes().to_vec(),
+        Some(text) => text.map_err(PointsFileError::Shipped)?.as_bytes().to_vec(),
         None => read_bytes(path, LARGEST)?.0,
     };
-    Ok(Source::new(path.to_string_lossy().into_owned(), None, bytes.into()))
+    Ok(PointsFile::new(path.to_string_lossy().into_owned(), None, bytes.into()))
 }
 
 /// The bytes of the measured curve `name`, relative to `folder` or to the current folder.
@@ -79,7 +79,7 @@ fn place(folder: Option<&Path>, name: &str) -> Result<PathBuf, String> {
 /// Reads the file `name`, relative to `folder` or to the current folder; data that come with the program by a name that
 /// begins with [`SHIPPED_DATA`].
 /// Errors: Why there are no rows, in words that are safe to show.
-pub fn load(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
+pub fn load(folder: Option<&Path>, name: &str) -> Result<ProfileRows, String> {
     if name.starts_with(SHIPPED_DATA) {
         return (Files::SHIPPED.rows)(folder, name);
     }

@@ -9,14 +9,14 @@ use std::path::Path;
 
 /// Where a path leads.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePlace {
     /// What is there.
     Node { device: u64, inode: u64, is_file: bool },
     /// Nothing yet: a name in a folder.
     Name { device: u64, inode: u64, name: OsString },
 }
 
-impl Place {
+impl FilePlace {
     /// Of what is written to `path`, where `-` is standard output; `None` where it leads nowhere.
     #[must_use]
     pub fn written(path: &Path) -> Option<Self> {
@@ -49,10 +49,10 @@ impl Place {
 }
 
 /// What is behind an open descriptor.
-fn behind(descriptor: rustix::fd::BorrowedFd<'_>) -> Option<Place> {
+fn behind(descriptor: rustix::fd::BorrowedFd<'_>) -> Option<FilePlace> {
     // A descriptor of its own, which is closed again.
     let file = std::fs::File::from(rustix::io::dup(descriptor).ok()?);
-    file.metadata().ok().map(|metadata| Place::node(&metadata))
+    file.metadata().ok().map(|metadata| FilePlace::node(&metadata))
 }
 
 #[cfg(test)]
@@ -71,23 +71,23 @@ mod tests {
         fs::hard_link(at("file"), at("hard")).unwrap();
         symlink("file", at("soft")).unwrap();
         symlink("later", at("dangling")).unwrap();
-        let file = Place::written(&at("file"));
-        assert!(file.is_some() && file == Place::read(&at("file")));
+        let file = FilePlace::written(&at("file"));
+        assert!(file.is_some() && file == FilePlace::read(&at("file")));
         for same in ["hard", "soft", "inner/../file"] {
-            assert_eq!(Place::written(&at(same)), file, "{same}");
+            assert_eq!(FilePlace::written(&at(same)), file, "{same}");
         }
-        assert_ne!(Place::written(&at("twin")), file);
+        assert_ne!(FilePlace::written(&at("twin")), file);
         // What is not there yet is a name in its folder.
-        let later = Place::written(&at("later"));
-        assert!(matches!(later, Some(Place::Name { .. })));
-        assert_eq!(Place::written(&at("dangling")), later);
-        assert_eq!(Place::written(&at("inner/../later")), later);
-        assert_ne!(Place::written(&at("inner/later")), later);
-        assert_eq!(Place::written(&at("none/later")), None);
+        let later = FilePlace::written(&at("later"));
+        assert!(matches!(later, Some(FilePlace::Name { .. })));
+        assert_eq!(FilePlace::written(&at("dangling")), later);
+        assert_eq!(FilePlace::written(&at("inner/../later")), later);
+        assert_ne!(FilePlace::written(&at("inner/later")), later);
+        assert_eq!(FilePlace::written(&at("none/later")), None);
         // A folder or a device is nothing that is read.
         assert!(
             [folder.path(), Path::new("/dev/null"), &at("later")]
-                .map(Place::read)
+                .map(FilePlace::read)
                 .iter()
                 .all(Option::is_none)
         );

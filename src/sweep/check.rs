@@ -1,7 +1,7 @@
 //! Results looked at without computing anything: whether they are of the sweep beside them, and how far they are.
 
-use super::output::{Faults, OutputError};
-use super::record::{Layout, Outcome, Wrong};
+use super::output::{FaultCounts, OutputError};
+use super::record::{Layout, RowOutcome, Wrong};
 use super::shard::Shard;
 use super::sidecar::{self, Sidecar, SidecarError};
 use crate::store::hash::sha256;
@@ -21,7 +21,7 @@ pub struct Checked {
     pub of: u64,
     /// The names of the columns.
     pub columns: Vec<String>,
-    pub faults: Faults,
+    pub faults: FaultCounts,
     /// Whether a line was torn at the end; a run goes on before it.
     pub is_torn: bool,
 }
@@ -56,7 +56,7 @@ pub fn check(path: &Path) -> Result<Checked, OutputError> {
         rows: 0,
         of,
         columns: layout.columns.clone(),
-        faults: Faults::default(),
+        faults: FaultCounts::default(),
         is_torn: false,
     };
     let (mut line, mut number) = (Vec::new(), 0);
@@ -82,7 +82,7 @@ pub fn check(path: &Path) -> Result<Checked, OutputError> {
 }
 
 /// What became of a row.
-fn outcome(layout: &Layout, shard: Shard, index: u64, of: u64, line: &[u8]) -> Result<Outcome, Wrong> {
+fn outcome(layout: &Layout, shard: Shard, index: u64, of: u64, line: &[u8]) -> Result<RowOutcome, Wrong> {
     if index < of { layout.outcome(shard.row(index), line) } else { Err(Wrong::behind_the_last()) }
 }
 

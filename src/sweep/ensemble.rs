@@ -7,7 +7,7 @@
 use super::merge::{MergeError, Merged, merge};
 use super::output::{Existing, OutputError};
 use super::record::{ERROR, Layout, ROW};
-use super::results::{Results, ResultsError};
+use super::results::{ResultsError, SweepResults};
 use super::sidecar::{self, Sidecar};
 use super::spec::identity;
 use crate::store::atomic::{Overwrite, check, write_atomically};
@@ -122,7 +122,7 @@ pub fn members_at<'a>(points: usize, errors: impl IntoIterator<Item = &'a str>) 
 /// Writes the statistics of the members that are there to `results`.
 pub fn summarize(results: &Path) -> Result<(), OutputError> {
     let members = members(results);
-    let rows = Results::open(&members)?;
+    let rows = SweepResults::open(&members)?;
     let (sidecar, text) = Sidecar::read(&members).map_err(ResultsError::from)?;
     let layout = sidecar.layout(&members, &text).map_err(ResultsError::from)?;
     let Design::Ensemble { members: of, seed, .. } = layout.design else { return Ok(()) };

@@ -16,19 +16,19 @@ use std::time::Duration;
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// Which rows may be begun.
-struct Window {
-    state: Mutex<State>,
+struct RowWindow {
+    state: Mutex<WindowState>,
     moved: Condvar,
     size: u64,
 }
 
-struct State {
+struct WindowState {
     written: u64,
     closed: bool,
 }
 
-impl Window {
-    fn change(&self, change: impl FnOnce(&mut State)) {
+impl RowWindow {
+    fn change(&self, change: impl FnOnce(&mut WindowState)) {
         change(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner));
         self.moved.notify_all();
     }
@@ -59,8 +59,8 @@ pub fn in_order<T: Send, E: From<ThreadPoolBuildError>>(
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).thread_name(|n| format!("row-{n}"));
     let pool = pool.build()?;
     let mut next = indices.start;
-    let state = Mutex::new(State { written: next, closed: false });
-    let window = &Window { state, moved: Condvar::new(), size: window };
+    let state = Mutex::new(WindowState { written: next, closed: false });
+    let window = &RowWindow { state, moved: Condvar::new(), size: window };
     let (sender, receiver) = channel();
     std::thread::scope(|scope| {
         scope.spawn(move || {

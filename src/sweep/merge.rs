@@ -1,6 +1,6 @@
 //! Parts of a sweep joined: to the byte the results of a single run.
 
-use super::output::{Existing, Faults, OutputError};
+use super::output::{Existing, FaultCounts, OutputError};
 use super::record::{Layout, Wrong};
 use super::shard::Shard;
 use super::sidecar::{self, Sidecar, SidecarError};
@@ -80,7 +80,7 @@ impl From<WriteError> for MergeError {
 }
 
 /// A part being read.
-struct Part {
+struct MergePart {
     path: PathBuf,
     shard: Shard,
     reader: BufReader<File>,
@@ -88,7 +88,7 @@ struct Part {
     line: Vec<u8>,
 }
 
-impl Part {
+impl MergePart {
     fn open(path: &Path, shard: Shard) -> Result<Self, MergeError> {
         let file = File::open(path).map_err(|cause| MergeError::Io { path: show_path(path), cause })?;
         Ok(Self { path: path.to_owned(), shard, reader: BufReader::new(file), lines: 0, line: Vec::new() })
@@ -115,7 +115,7 @@ impl Part {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Merged {
     pub rows: u64,
-    pub faults: Faults,
+    pub faults: FaultCounts,
 }
 
 /// Joins `parts`, in any order, to `results`.
@@ -155,8 +155,8 @@ pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<Me
     if !missing.is_empty() {
         return Err(MergeError::Missing(listed(&missing)));
     }
-    let open = || -> Result<Vec<Part>, MergeError> {
-        let part = |(number, path): (u64, &&PathBuf)| Part::open(path, Shard { number, of });
+    let open = || -> Result<Vec<MergePart>, MergeError> {
+        let part = |(number, path): (u64, &&PathBuf)| MergePart::open(path, Shard { number, of });
         (1..=of).zip(found.iter().flatten()).map(part).collect()
     };
     if stream::is_stream(results) {
@@ -168,7 +168,7 @@ pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<Me
     }
     let mut open = open()?;
     let overwrite = if existing == Existing::Overwrite { Overwrite::Always } else { Overwrite::Never };
-    let mut faults = Faults::default();
+    let mut faults = FaultCounts::default();
     write_filled(results, overwrite, |file| -> Result<(), MergeError> {
         faults = fill(file, results, &mut open, &layout, sidecar.rows)?;
         Ok(())
@@ -189,10 +189,10 @@ fn listed(names: &[String]) -> String {
 fn fill(
     file: &mut dyn Write,
     results: &Path,
-    parts: &mut [Part],
+    parts: &mut [MergePart],
     layout: &Layout,
     rows: u64,
-) -> Result<Faults, MergeError> {
+) -> Result<FaultCounts, MergeError> {
     let failed = |cause| -> MergeError {
         OutputError::Io { path: stream::shown(results), doing: "write", cause: explained(cause) }.into()
     };
@@ -203,7 +203,7 @@ fn fill(
         checked.map_err(|wrong| part.changed(wrong))?;
     }
     out.write_all(layout.header().as_bytes()).map_err(failed)?;
-    let (mut row, mut faults) = (0, Faults::default());
+    let (mut row, mut faults) = (0, FaultCounts::default());
     while row < rows {
         for part in parts.iter_mut() {
             if row == rows {

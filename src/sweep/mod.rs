@@ -33,6 +33,6 @@ pub use check::check;
 pub use in_order::in_order;
 pub use merge::merge;
 pub use output::{Existing, Output, OutputError};
-pub use results::Results;
-pub use run::{Means, Summary, run};
+pub use results::SweepResults;
+pub use run::{Means, RunSummary, run};
 pub use shard::Shard;

@@ -4,7 +4,7 @@
 //! torn line at the end, which the next run cuts off. The file beside it is written first: results without it are none
 //! of ours and are not touched. Standard output, a pipe or a device takes the rows as they come, and nothing else.
 
-use super::record::{Layout, Outcome, Wrong};
+use super::record::{Layout, RowOutcome, Wrong};
 use super::results::ResultsError;
 use super::shard::Shard;
 use super::sidecar::{self, Sidecar, SidecarError};
@@ -85,16 +85,16 @@ impl Mend for OutputError {
 
 /// Faults of rows.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Faults {
+pub struct FaultCounts {
     /// How many, by their reason.
     pub reasons: BTreeMap<&'static str, u64>,
     /// The rows with a fault and no quantity.
     pub failures: u64,
 }
 
-impl Faults {
+impl FaultCounts {
     /// Counts a row.
-    pub(super) fn count(&mut self, outcome: Outcome) {
+    pub(super) fn count(&mut self, outcome: RowOutcome) {
         if let Some(reason) = outcome.fault {
             *self.reasons.entry(reason).or_default() += 1;
         }
@@ -119,7 +119,7 @@ pub struct Output {
     buffer: Vec<u8>,
     flushed: Instant,
     pub rows: u64,
-    pub faults: Faults,
+    pub faults: FaultCounts,
 }
 
 /// So many bytes are written at once, or after so long.
@@ -172,7 +172,7 @@ impl Output {
     }
 
     fn new(file: File, path: String) -> Self {
-        let (buffer, flushed, faults) = (Vec::new(), Instant::now(), Faults::default());
+        let (buffer, flushed, faults) = (Vec::new(), Instant::now(), FaultCounts::default());
         Self { file, path, is_stream: false, buffer, flushed, rows: 0, faults }
     }
 

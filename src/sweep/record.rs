@@ -4,7 +4,7 @@
 
 use pulloff_engine::sweep::axis::SweepAxis;
 use pulloff_engine::sweep::spec::{Design, Spec, values};
-use pulloff_engine::sweep::{Column, Fault, Measured};
+use pulloff_engine::sweep::{Fault, MeasuredQuantities, QuantityColumn};
 use pulloff_engine::text::quote;
 use std::fmt;
 
@@ -33,14 +33,14 @@ pub struct Layout {
 
 /// What became of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Outcome {
+pub struct RowOutcome {
     /// The reason of its fault, if it has one.
     pub fault: Option<&'static str>,
     /// Whether it has a quantity: a fault of one leaves the others.
     pub has_quantity: bool,
 }
 
-impl Outcome {
+impl RowOutcome {
     /// Whether there is a fault and nothing else.
     #[must_use]
     pub fn is_failure(self) -> bool {
@@ -76,7 +76,7 @@ fn line<'a>(fields: impl IntoIterator<Item = &'a str>) -> String {
 #[must_use]
 pub fn names(spec: &Spec) -> Vec<String> {
     let axes = spec.axes.iter().map(|axis| axis.key.clone());
-    let columns = spec.columns.iter().map(Column::name);
+    let columns = spec.columns.iter().map(QuantityColumn::name);
     std::iter::once(ROW.to_owned()).chain(axes).chain(columns).chain([ERROR.to_owned()]).collect()
 }
 
@@ -100,7 +100,7 @@ fn after(known: &[String], found: &[String]) -> String {
 
 /// The line of a row.
 #[must_use]
-pub fn record(spec: &Spec, row: u64, measured: &Measured) -> String {
+pub fn record(spec: &Spec, row: u64, measured: &MeasuredQuantities) -> String {
     let cells = measured.cells.iter().map(|cell| cell.map_or_else(String::new, |cell| cell.to_string()));
     let fault = measured.fault.as_ref().map_or_else(String::new, Fault::to_string);
     let fields: Vec<String> = cells.chain([fault]).collect();
@@ -149,7 +149,7 @@ impl Layout {
     }
 
     /// What became of a row, from its whole line.
-    pub fn outcome(&self, row: u64, line: &[u8]) -> Result<Outcome, Wrong> {
+    pub fn outcome(&self, row: u64, line: &[u8]) -> Result<RowOutcome, Wrong> {
         let known = known(&self.axes, self.design, row);
         let wrong = |what: &str| Wrong(format!("row {row}: {what}"));
         let fields = fields(line).ok_or_else(|| wrong("is no CSV"))?;
@@ -177,7 +177,7 @@ impl Layout {
             return Err(wrong_field(last, "a fault or nothing"));
         }
         let has_quantity = (known.len()..last).any(|at| !fields[at].is_empty());
-        Ok(Outcome { fault, has_quantity })
+        Ok(RowOutcome { fault, has_quantity })
     }
 }
 

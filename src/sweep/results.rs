@@ -31,7 +31,7 @@ impl Mend for ResultsError {
 
 /// The results of a sweep, or of a part of it; they may still be growing.
 #[derive(Debug, Clone)]
-pub struct Results {
+pub struct SweepResults {
     path: PathBuf,
     /// What is known of the columns, in their order: the row, the axes, the quantities, the error.
     pub columns: Vec<ColumnInfo>,
@@ -45,7 +45,7 @@ pub struct Results {
     pub rows: u64,
 }
 
-impl Results {
+impl SweepResults {
     /// Opens the results; nothing but what stands beside them is read.
     pub fn open(path: &Path) -> Result<Self, ResultsError> {
         let (sidecar, _) = Sidecar::read(path)?;

@@ -1,11 +1,11 @@
 //! Rows of a sweep on every core, written in their order.
 
 use super::in_order::in_order;
-use super::output::{Faults, Output, OutputError};
-use super::record::{self, Outcome};
+use super::output::{FaultCounts, Output, OutputError};
+use super::record::{self, RowOutcome};
 use super::shard::Shard;
 use pulloff_engine::progress::Progress;
-use pulloff_engine::sweep::{Fault, Measured, Spec};
+use pulloff_engine::sweep::{Fault, MeasuredQuantities, Spec};
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
@@ -18,15 +18,15 @@ const MOST_TOGETHER: u64 = 16;
 
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Summary {
+pub struct RunSummary {
     /// The rows that were there before.
     pub before: u64,
     pub now: u64,
     pub of: u64,
-    pub faults: Faults,
+    pub faults: FaultCounts,
 }
 
-impl Summary {
+impl RunSummary {
     /// Whether all rows are there.
     #[must_use]
     pub fn is_complete(&self) -> bool {
@@ -60,18 +60,18 @@ pub fn run(
     means: Means,
     progress: &(dyn Progress + Sync),
     mut written: impl FnMut(u64, u64),
-) -> Result<Summary, OutputError> {
+) -> Result<RunSummary, OutputError> {
     let of = shard.len(spec.rows);
     let (before, mut faults) = (output.rows, output.faults.clone());
     let mut now = 0;
-    let make = |row: u64, measured: Measured| {
-        let outcome = Outcome {
+    let make = |row: u64, measured: MeasuredQuantities| {
+        let outcome = RowOutcome {
             fault: measured.fault.as_ref().map(|fault| fault.reason),
             has_quantity: measured.cells.iter().any(Option::is_some),
         };
         (record::record(spec, row, &measured), outcome)
     };
-    rows(spec, shard, before..of, means, progress, &make, |item: Option<(String, Outcome)>| {
+    rows(spec, shard, before..of, means, progress, &make, |item: Option<(String, RowOutcome)>| {
         let result = match item {
             Some((line, outcome)) => {
                 now += 1;
@@ -84,7 +84,7 @@ pub fn run(
         result
     })?;
     output.finish()?;
-    Ok(Summary { before, now, of, faults })
+    Ok(RunSummary { before, now, of, faults })
 }
 
 /// Computes the rows of a part whose places in it are `indices`, and hands what `make` makes of each over in order, on this
@@ -96,7 +96,7 @@ pub fn rows<T: Send>(
     indices: Range<u64>,
     means: Means,
     progress: &(dyn Progress + Sync),
-    make: &(impl Fn(u64, Measured) -> T + Sync),
+    make: &(impl Fn(u64, MeasuredQuantities) -> T + Sync),
     mut write: impl FnMut(Option<T>) -> Result<(), OutputError>,
 ) -> Result<(), OutputError> {
     let one = |index: u64| {

@@ -37,7 +37,7 @@ impl Mend for LoadError {
 
 /// A spec from a file, and what else was read for it.
 #[derive(Debug)]
-pub struct Loaded {
+pub struct LoadedSpec {
     pub spec: Spec,
     /// The file of the preset, where it is not one that comes with the program.
     pub preset: Option<PathBuf>,
@@ -45,7 +45,7 @@ pub struct Loaded {
 
 /// Reads the spec in a file; its preset is a name in `store`, or a path relative to the folder of the spec: the current
 /// one where the spec comes through a pipe. `changes` are laid over the preset behind those of the spec.
-pub fn load(store: &Store, path: &Path, changes: &[String]) -> Result<Loaded, LoadError> {
+pub fn load(store: &Store, path: &Path, changes: &[String]) -> Result<LoadedSpec, LoadError> {
     let (name, text) = stream::read_given(path, file::LARGEST)?;
     let folder = if stream::is_stream(path) { Path::new(".") } else { atomic::folder_of(path) };
     Ok(read_changed(store, folder, &name, &text, changes)?)
@@ -62,7 +62,7 @@ fn read_changed(
     name: &str,
     text: &str,
     changes: &[String],
-) -> Result<Loaded, SpecError> {
+) -> Result<LoadedSpec, SpecError> {
     let file = RefCell::new(None);
     let preset = |name: &str, set: &[&str]| {
         let is_path = name.contains('/') || Path::new(name).extension().is_some_and(|end| end == "toml");
@@ -83,7 +83,7 @@ fn read_changed(
         Ok(changed.preset)
     };
     let spec = Spec::read(&preset, name, text)?;
-    Ok(Loaded { spec, preset: file.into_inner() })
+    Ok(LoadedSpec { spec, preset: file.into_inner() })
 }
 
 /// All that the results follow from, in one form: two specs that differ in it are different sweeps.

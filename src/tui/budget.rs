@@ -2,7 +2,7 @@
 
 use super::app::App;
 use super::converse;
-use super::terminal::{Display, Inbox, Incoming, Pace, Sink};
+use super::terminal::{Display, FrameSink, Inbox, Incoming, Pace};
 use super::theme::{Charts, Palette, Theme};
 use crate::explorer::{Effect, Inline, Reply, Workers};
 use crate::store::Store;
@@ -34,7 +34,7 @@ impl Counter {
     }
 }
 
-impl Sink for Counter {
+impl FrameSink for Counter {
     fn write_frame(&self, frame: &[u8]) -> io::Result<()> {
         if let Some(told) = &self.told {
             // Nobody listens to what is drawn after the last key.
@@ -315,7 +315,7 @@ struct SlowLine {
 /// One way.
 const WAY: Duration = Duration::from_millis(75);
 
-impl Sink for SlowLine {
+impl FrameSink for SlowLine {
     fn write_frame(&self, frame: &[u8]) -> io::Result<()> {
         if self.runs.load(Ordering::Acquire) {
             self.frames.lock().unwrap().push((Instant::now(), frame.len()));

@@ -16,13 +16,13 @@ use ratatui::widgets::Block;
 
 /// An entry of the legend: what a line or a letter looks like, and what it means.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Entry {
+pub struct LegendRow {
     pub glyph: String,
     pub style: Style,
     pub meaning: String,
 }
 
-impl Entry {
+impl LegendRow {
     fn width(&self) -> usize {
         self.glyph.chars().count() + 1 + self.meaning.chars().count()
     }
@@ -40,7 +40,7 @@ pub struct Chart<'a> {
     /// Whether its lines are curves to be compared: those share the cells in which they meet.
     pub compares: bool,
     /// What lines and letters mean, the most important first.
-    pub legend: Vec<Entry>,
+    pub legend: Vec<LegendRow>,
     /// The mark that stands out, by its place among those of the figure.
     pub selected: Option<usize>,
     pub cross: Option<(f64, f64)>,
@@ -53,9 +53,9 @@ pub struct Chart<'a> {
 }
 
 /// How many entries of a legend there is room for, with an ellipsis where some are left out.
-fn legend_count(legend: &[Entry], room: usize) -> usize {
+fn legend_count(legend: &[LegendRow], room: usize) -> usize {
     let mut used = 0;
-    let fits = |(at, entry): &(usize, &Entry)| {
+    let fits = |(at, entry): &(usize, &LegendRow)| {
         used += if *at == 0 { 0 } else { 2 } + entry.width();
         let rest = if at + 1 < legend.len() { 2 } else { 0 };
         used + rest <= room
@@ -153,12 +153,12 @@ impl Chart<'_> {
     }
 
     /// Goes on with the legend of the chart beside it from where that has no more room; its own stays where that has shown all.
-    pub fn go_on_with_legend(&mut self, area: Rect, beside: Vec<Entry>) {
+    pub fn go_on_with_legend(&mut self, area: Rect, beside: Vec<LegendRow>) {
         let Some(plot) = self.plot(area) else { return };
-        let is_new = |entry: &Entry| !beside.iter().any(|other| other.meaning == entry.meaning);
-        let own: Vec<Entry> = self.legend.iter().filter(|entry| is_new(entry)).cloned().collect();
+        let is_new = |entry: &LegendRow| !beside.iter().any(|other| other.meaning == entry.meaning);
+        let own: Vec<LegendRow> = self.legend.iter().filter(|entry| is_new(entry)).cloned().collect();
         let shown = legend_count(&beside, usize::from(plot.width));
-        let rest: Vec<Entry> = beside.into_iter().skip(shown).chain(own).collect();
+        let rest: Vec<LegendRow> = beside.into_iter().skip(shown).chain(own).collect();
         if !rest.is_empty() {
             self.legend = rest;
         }

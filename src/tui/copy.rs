@@ -4,7 +4,7 @@
 //! passes nothing. So the same text can be exported to a file.
 
 use super::app::App;
-use super::overlay::Content;
+use super::overlay::Excerpt;
 use super::theme::Theme;
 use super::view;
 use crate::explorer::{Model, Node};
@@ -31,18 +31,18 @@ const DIGITS: usize = 10;
 /// The screen of a session that has none, as text: of 100 columns and 30 rows.
 pub fn screen(model: &Model) -> String {
     let app = App { screen: Rect::new(0, 0, 100, 30), ..App::on(model.clone(), Theme::default()) };
-    text(&app, Content::Screen)
+    text(&app, Excerpt::Screen)
 }
 
 /// Content as text in which nothing steers a terminal.
-pub fn text(app: &App, content: Content) -> String {
+pub fn text(app: &App, content: Excerpt) -> String {
     let text = match content {
-        Content::State => app.theme.text(&state(&app.model)),
+        Excerpt::State => app.theme.text(&state(&app.model)),
         // The columns are this program's, and a row always fits them.
-        Content::Events => {
+        Excerpt::Events => {
             events_table(app.model.path_events()).and_then(|table| table.tsv()).unwrap_or_default()
         }
-        Content::Chart | Content::Screen => drawn(app, content),
+        Excerpt::Chart | Excerpt::Screen => drawn(app, content),
     };
     let cell = |cell: &str| sanitize(cell, LINE);
     let line = |line: &str| line.split('\t').map(cell).collect::<Vec<_>>().join("\t") + "\n";
@@ -87,7 +87,7 @@ fn quantities(node: &Node) -> String {
 }
 
 /// The screen, or its first chart; what was asked with a list has closed it before.
-fn drawn(app: &App, content: Content) -> String {
+fn drawn(app: &App, content: Excerpt) -> String {
     let size = app.screen;
     let Ok(mut terminal) = Terminal::new(TestBackend::new(size.width, size.height));
     let Ok(_) = terminal.draw(|frame| {
@@ -97,7 +97,7 @@ fn drawn(app: &App, content: Content) -> String {
     let chart = view::places(app, size).and_then(|regions| regions.charts.first().map(|(_, area)| *area));
     // Its lower wall is that of what stands below, with the heading of that.
     let chart = chart.map(|area| Rect { height: area.height.saturating_sub(1), ..area });
-    lines(buffer, if content == Content::Chart { chart.unwrap_or(size) } else { size })
+    lines(buffer, if content == Excerpt::Chart { chart.unwrap_or(size) } else { size })
 }
 
 fn lines(buffer: &Buffer, area: Rect) -> String {

@@ -3,63 +3,63 @@
 //! Never Ctrl-S or Ctrl-Q (flow control) or Ctrl-Z (suspend); by default never a function or Alt key as the only way.
 //! A command without a key is reached through the command line.
 
-use crate::config::{Config, ConfigError, Mistake};
+use crate::config::{Config, ConfigError, ConfigMistake};
 use crate::explorer::Id;
 use crate::explorer::command::spelled;
-use crate::explorer::table::{ROWS, Row};
+use crate::explorer::table::{CommandRow, ROWS};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use pulloff_engine::text::quote;
 
 /// One key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Key {
+pub enum Keystroke {
     Char(char),
     Ctrl(char),
     Named(KeyCode),
 }
 
 /// The names of keys that are no character.
-const NAMES: [(&str, Key); 25] = [
-    ("Space", Key::Char(' ')),
-    ("Enter", Key::Named(KeyCode::Enter)),
-    ("Esc", Key::Named(KeyCode::Esc)),
-    ("Tab", Key::Named(KeyCode::Tab)),
-    ("Shift-Tab", Key::Named(KeyCode::BackTab)),
-    ("Backspace", Key::Named(KeyCode::Backspace)),
-    ("Delete", Key::Named(KeyCode::Delete)),
-    ("Insert", Key::Named(KeyCode::Insert)),
-    ("Up", Key::Named(KeyCode::Up)),
-    ("Down", Key::Named(KeyCode::Down)),
-    ("Left", Key::Named(KeyCode::Left)),
-    ("Right", Key::Named(KeyCode::Right)),
-    ("Home", Key::Named(KeyCode::Home)),
-    ("End", Key::Named(KeyCode::End)),
-    ("PageUp", Key::Named(KeyCode::PageUp)),
-    ("PageDown", Key::Named(KeyCode::PageDown)),
-    ("F2", Key::Named(KeyCode::F(2))),
-    ("F3", Key::Named(KeyCode::F(3))),
-    ("F4", Key::Named(KeyCode::F(4))),
-    ("F5", Key::Named(KeyCode::F(5))),
-    ("F6", Key::Named(KeyCode::F(6))),
-    ("F7", Key::Named(KeyCode::F(7))),
-    ("F8", Key::Named(KeyCode::F(8))),
-    ("F9", Key::Named(KeyCode::F(9))),
-    ("F12", Key::Named(KeyCode::F(12))),
+const NAMES: [(&str, Keystroke); 25] = [
+    ("Space", Keystroke::Char(' ')),
+    ("Enter", Keystroke::Named(KeyCode::Enter)),
+    ("Esc", Keystroke::Named(KeyCode::Esc)),
+    ("Tab", Keystroke::Named(KeyCode::Tab)),
+    ("Shift-Tab", Keystroke::Named(KeyCode::BackTab)),
+    ("Backspace", Keystroke::Named(KeyCode::Backspace)),
+    ("Delete", Keystroke::Named(KeyCode::Delete)),
+    ("Insert", Keystroke::Named(KeyCode::Insert)),
+    ("Up", Keystroke::Named(KeyCode::Up)),
+    ("Down", Keystroke::Named(KeyCode::Down)),
+    ("Left", Keystroke::Named(KeyCode::Left)),
+    ("Right", Keystroke::Named(KeyCode::Right)),
+    ("Home", Keystroke::Named(KeyCode::Home)),
+    ("End", Keystroke::Named(KeyCode::End)),
+    ("PageUp", Keystroke::Named(KeyCode::PageUp)),
+    ("PageDown", Keystroke::Named(KeyCode::PageDown)),
+    ("F2", Keystroke::Named(KeyCode::F(2))),
+    ("F3", Keystroke::Named(KeyCode::F(3))),
+    ("F4", Keystroke::Named(KeyCode::F(4))),
+    ("F5", Keystroke::Named(KeyCode::F(5))),
+    ("F6", Keystroke::Named(KeyCode::F(6))),
+    ("F7", Keystroke::Named(KeyCode::F(7))),
+    ("F8", Keystroke::Named(KeyCode::F(8))),
+    ("F9", Keystroke::Named(KeyCode::F(9))),
+    ("F12", Keystroke::Named(KeyCode::F(12))),
 ];
 
 /// Keys no command can have, and why.
-const RESERVED: [(Key, &str); 8] = [
-    (Key::Ctrl('s'), "a terminal stops its output on it"),
-    (Key::Ctrl('q'), "a terminal goes on with its output on it"),
-    (Key::Ctrl('z'), "it leads back to the shell"),
-    (Key::Ctrl('i'), "terminals send it as Tab"),
-    (Key::Ctrl('m'), "terminals send it as Enter"),
-    (Key::Ctrl('j'), "terminals send it as Enter"),
-    (Key::Ctrl('h'), "terminals send it as Backspace"),
-    (Key::Ctrl('['), "terminals send it as Esc"),
+const RESERVED: [(Keystroke, &str); 8] = [
+    (Keystroke::Ctrl('s'), "a terminal stops its output on it"),
+    (Keystroke::Ctrl('q'), "a terminal goes on with its output on it"),
+    (Keystroke::Ctrl('z'), "it leads back to the shell"),
+    (Keystroke::Ctrl('i'), "terminals send it as Tab"),
+    (Keystroke::Ctrl('m'), "terminals send it as Enter"),
+    (Keystroke::Ctrl('j'), "terminals send it as Enter"),
+    (Keystroke::Ctrl('h'), "terminals send it as Backspace"),
+    (Keystroke::Ctrl('['), "terminals send it as Esc"),
 ];
 
-impl Key {
+impl Keystroke {
     /// How it is written in the help, the footer and the settings.
     pub fn label(self) -> String {
         match (NAMES.iter().find(|(_, key)| *key == self), self) {
@@ -115,13 +115,13 @@ fn single(text: &str) -> Option<char> {
 }
 
 /// The keys a command has unless the person says otherwise, the one shown in the footer first.
-fn usual(row: &Row) -> Vec<Key> {
-    row.keys.split_whitespace().filter_map(|label| Key::parse(label).ok()).collect()
+fn usual(row: &CommandRow) -> Vec<Keystroke> {
+    row.keys.split_whitespace().filter_map(|label| Keystroke::parse(label).ok()).collect()
 }
 
 /// The keys of every command.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Keymap(Vec<(Id, Vec<Key>)>);
+pub struct Keymap(Vec<(Id, Vec<Keystroke>)>);
 
 impl Default for Keymap {
     fn default() -> Self {
@@ -135,14 +135,18 @@ impl Keymap {
     pub fn of(config: &Config) -> Result<Self, ConfigError> {
         let (mut map, mut mistakes) = (Self::default(), Vec::new());
         for binding in &config.keys {
-            let parsed: Result<Vec<Key>, String> = binding.keys.iter().map(|key| Key::parse(key)).collect();
+            let parsed: Result<Vec<Keystroke>, String> =
+                binding.keys.iter().map(|key| Keystroke::parse(key)).collect();
             match parsed {
-                Ok(keys) if keys.is_empty() && binding.id == Id::CommandLine => mistakes.push(Mistake {
-                    line: binding.line,
-                    what: "command-line needs a key: commands without one are reached through it".to_owned(),
-                }),
+                Ok(keys) if keys.is_empty() && binding.id == Id::CommandLine => {
+                    mistakes.push(ConfigMistake {
+                        line: binding.line,
+                        what: "command-line needs a key: commands without one are reached through it"
+                            .to_owned(),
+                    });
+                }
                 Ok(keys) => map.bind(binding.id, keys),
-                Err(what) => mistakes.push(Mistake { line: binding.line, what }),
+                Err(what) => mistakes.push(ConfigMistake { line: binding.line, what }),
             }
         }
         if mistakes.is_empty() {
@@ -155,14 +159,14 @@ impl Keymap {
         Err(ConfigError::Mistakes { name: config.name.clone(), mistakes })
     }
 
-    fn bind(&mut self, id: Id, keys: Vec<Key>) {
+    fn bind(&mut self, id: Id, keys: Vec<Keystroke>) {
         if let Some((_, bound)) = self.0.iter_mut().find(|(known, _)| *known == id) {
             *bound = keys;
         }
     }
 
-    fn clashes(&self, config: &Config) -> Vec<Mistake> {
-        let all: Vec<(Id, Key)> =
+    fn clashes(&self, config: &Config) -> Vec<ConfigMistake> {
+        let all: Vec<(Id, Keystroke)> =
             self.0.iter().flat_map(|(id, keys)| keys.iter().map(|key| (*id, *key))).collect();
         let line = |id: Id| config.keys.iter().find(|binding| binding.id == id).map(|binding| binding.line);
         all.iter()
@@ -176,13 +180,13 @@ impl Keymap {
                 } else {
                     format!("{} would be the key of {a} and of {b}: give {b} another", key.label())
                 };
-                Some(Mistake { line: line(*second).unwrap_or(1), what })
+                Some(ConfigMistake { line: line(*second).unwrap_or(1), what })
             })
             .collect()
     }
 
     /// The keys of a command, the one shown in the footer first.
-    pub fn keys(&self, id: Id) -> &[Key] {
+    pub fn keys(&self, id: Id) -> &[Keystroke] {
         self.0.iter().find(|(known, _)| *known == id).map_or(&[], |(_, keys)| keys)
     }
 
@@ -232,7 +236,7 @@ impl Keymap {
 
 /// Whether a key asks to stop the program for a while.
 pub fn is_suspend(key: KeyEvent) -> bool {
-    Key::Ctrl('z').matches(key)
+    Keystroke::Ctrl('z').matches(key)
 }
 
 /// The key table of the manual, as Markdown.
@@ -262,10 +266,10 @@ mod tests {
         for row in ROWS {
             assert!(!row.takes.what.is_empty() || !row.keys.is_empty(), "{}", row.name);
             for label in row.keys.split_whitespace() {
-                let key = Key::parse(label).unwrap();
+                let key = Keystroke::parse(label).unwrap();
                 assert!(seen.insert(key.label()), "{} twice", key.label());
                 assert_eq!(key.label(), label);
-                assert!(!matches!(key, Key::Char('G' | '/' | '0'..='9')), "reserved");
+                assert!(!matches!(key, Keystroke::Char('G' | '/' | '0'..='9')), "reserved");
             }
         }
     }

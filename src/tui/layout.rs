@@ -10,7 +10,7 @@
 //!
 //! Charts of the force have one axis of it: an event stands on the same row in both. The pane that `z` chose has the whole screen.
 
-use crate::explorer::{Panel, View};
+use crate::explorer::{ScreenPanel, View};
 use ratatui::layout::Rect;
 
 /// The smallest screen on which anything is shown.
@@ -18,7 +18,7 @@ pub const SMALLEST: (u16, u16) = (40, 10);
 
 /// How the panes stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Shape {
+enum PaneLayout {
     /// The selected one alone.
     Alone,
     /// One above the other over the whole width.
@@ -32,17 +32,17 @@ enum Shape {
 struct Arrangement {
     /// The smallest width and height.
     from: (u16, u16),
-    shape: Shape,
+    shape: PaneLayout,
     charts: usize,
 }
 
 /// The panes of every size, the largest first: the first that fits is taken.
 const ARRANGEMENTS: [Arrangement; 5] = [
-    Arrangement { from: (160, 45), shape: Shape::Column, charts: 3 },
-    Arrangement { from: (120, 36), shape: Shape::Column, charts: 2 },
-    Arrangement { from: (80, 16), shape: Shape::Stacked, charts: 2 },
-    Arrangement { from: (60, 16), shape: Shape::Stacked, charts: 1 },
-    Arrangement { from: SMALLEST, shape: Shape::Alone, charts: 1 },
+    Arrangement { from: (160, 45), shape: PaneLayout::Column, charts: 3 },
+    Arrangement { from: (120, 36), shape: PaneLayout::Column, charts: 2 },
+    Arrangement { from: (80, 16), shape: PaneLayout::Stacked, charts: 2 },
+    Arrangement { from: (60, 16), shape: PaneLayout::Stacked, charts: 1 },
+    Arrangement { from: SMALLEST, shape: PaneLayout::Alone, charts: 1 },
 ];
 
 /// The inside of the column.
@@ -76,15 +76,15 @@ pub struct Regions {
 
 impl Regions {
     /// The panes that are drawn, in the order of the Tab key; alone, each is drawn when it is selected.
-    pub fn panels(&self, is_alone: bool) -> Vec<Panel> {
-        let is_drawn = |panel: &Panel| match panel {
-            Panel::Problem => self.problem.is_some(),
-            Panel::Here => self.here.is_some(),
-            Panel::Result => self.result.is_some(),
-            Panel::Charts => !self.charts.is_empty(),
-            Panel::Log => self.log.is_some(),
+    pub fn panels(&self, is_alone: bool) -> Vec<ScreenPanel> {
+        let is_drawn = |panel: &ScreenPanel| match panel {
+            ScreenPanel::Problem => self.problem.is_some(),
+            ScreenPanel::Here => self.here.is_some(),
+            ScreenPanel::Result => self.result.is_some(),
+            ScreenPanel::Charts => !self.charts.is_empty(),
+            ScreenPanel::Log => self.log.is_some(),
         };
-        Panel::ALL.into_iter().filter(|panel| is_alone || is_drawn(panel)).collect()
+        ScreenPanel::ALL.into_iter().filter(|panel| is_alone || is_drawn(panel)).collect()
     }
 }
 
@@ -97,14 +97,14 @@ pub struct Wants {
     pub log: usize,
     /// Lines of the problem, one a value.
     pub problem: usize,
-    pub panel: Panel,
+    pub panel: ScreenPanel,
     /// Whether the selected pane has the whole screen.
     pub is_whole: bool,
 }
 
 /// Whether only the selected pane is shown at this size.
 pub fn is_alone(area: Rect, is_whole: bool) -> bool {
-    is_whole || arrangement(area).is_some_and(|found| found.shape == Shape::Alone)
+    is_whole || arrangement(area).is_some_and(|found| found.shape == PaneLayout::Alone)
 }
 
 fn arrangement(area: Rect) -> Option<Arrangement> {
@@ -128,23 +128,23 @@ pub fn regions(area: Rect, wants: Wants) -> Option<Regions> {
         footer: line(body.bottom() + 1),
         is_stacked: false,
     };
-    if wants.is_whole || found.shape == Shape::Alone {
+    if wants.is_whole || found.shape == PaneLayout::Alone {
         match wants.panel {
-            Panel::Problem => regions.problem = Some(body),
-            Panel::Here => regions.here = Some(body),
-            Panel::Result => regions.result = Some(body),
-            Panel::Charts => regions.charts = vec![(wants.view, body)],
-            Panel::Log => regions.log = Some(body),
+            ScreenPanel::Problem => regions.problem = Some(body),
+            ScreenPanel::Here => regions.here = Some(body),
+            ScreenPanel::Result => regions.result = Some(body),
+            ScreenPanel::Charts => regions.charts = vec![(wants.view, body)],
+            ScreenPanel::Log => regions.log = Some(body),
         }
         return Some(regions);
     }
     let most = LOG_ROWS.iter().find(|(height, _)| area.height <= *height).map_or(0, |(_, rows)| *rows);
     let wanted = u16::try_from(wants.log.max(1) + 2).unwrap_or(u16::MAX);
     // Where panes are stacked the log keeps its rows: charts that grow and shrink with it would send all of it.
-    let rows = if found.shape == Shape::Stacked { most } else { wanted.clamp(3, most) };
+    let rows = if found.shape == PaneLayout::Stacked { most } else { wanted.clamp(3, most) };
     let (main, log) = split_top(body, body.height + 1 - rows);
     regions.log = Some(log);
-    let charts = if found.shape == Shape::Stacked {
+    let charts = if found.shape == PaneLayout::Stacked {
         regions.is_stacked = true;
         let (problem, charts) = split_top(main, VALUE_LINES + 3);
         regions.problem = Some(problem);
@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     fn wants(log: usize) -> Wants {
-        Wants { view: View::ForceApproach, log, problem: 16, panel: Panel::Charts, is_whole: false }
+        Wants { view: View::ForceApproach, log, problem: 16, panel: ScreenPanel::Charts, is_whole: false }
     }
 
     fn all(regions: &Regions) -> Vec<Rect> {
@@ -282,7 +282,7 @@ mod tests {
 
     #[test]
     fn one_panel_can_have_the_whole_screen() {
-        for panel in Panel::ALL {
+        for panel in ScreenPanel::ALL {
             let area = Rect::new(0, 0, 80, 24);
             let regions = regions(area, Wants { panel, is_whole: true, ..wants(6) }).unwrap();
             assert_eq!(all(&regions), [Rect::new(0, 1, 80, 21)]);

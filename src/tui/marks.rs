@@ -1,7 +1,7 @@
 //! How each line and sign of a figure is drawn: its stroke, letter and colour.
 
 use crate::figure::{Role, Sign};
-use crate::tui::raster::{Meets, STABLE, Stroke, UNSTABLE};
+use crate::tui::raster::{Meets, RasterStroke, STABLE, UNSTABLE};
 use crate::tui::theme::{Charts, Palette, Theme};
 use ratatui::style::Style;
 
@@ -12,11 +12,16 @@ const DIGITS: [char; 6] = ['1', '2', '3', '4', '5', '6'];
 const COUNTS: [&str; 11] = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "*"];
 
 /// The stroke of a line. Solid is stable, broken is not; the colour says which curve it is.
-pub fn look(role: Role, theme: Theme) -> Stroke {
+pub fn look(role: Role, theme: Theme) -> RasterStroke {
     use Meets::{Beneath, Shares, Tints};
     let styles = theme.styles();
-    let of =
-        |style: Style, meets, is_broken, symbol| Stroke { style, meets, is_broken, symbol, letter: None };
+    let of = |style: Style, meets, is_broken, symbol| RasterStroke {
+        style,
+        meets,
+        is_broken,
+        symbol,
+        letter: None,
+    };
     let stroke = match role {
         Role::Zero => of(styles.dim, Beneath, false, ','),
         Role::Undeformed | Role::Starts => of(styles.smooth, Beneath, true, ','),
@@ -60,7 +65,7 @@ pub fn look(role: Role, theme: Theme) -> Stroke {
     );
     let letter =
         (is_lettered && (theme.has_few_colours() || theme.charts == Charts::Ascii)).then_some(stroke.symbol);
-    Stroke { letter, ..stroke }
+    RasterStroke { letter, ..stroke }
 }
 
 /// How a legend shows a line; with its style, or without colour alone, no two that meet are the same.

@@ -39,7 +39,7 @@ mod budget;
 
 pub use terminal::refuse_reason;
 
-use crate::explorer::archive::{Archive, Autosave, Held, ago};
+use crate::explorer::archive::{Archive, Autosave, HeldSession, ago};
 use crate::explorer::model::{Level, Model};
 use crate::explorer::session::{Ended, Snapshot};
 use crate::explorer::{Effect, Reply, Workers};
@@ -55,12 +55,12 @@ use slow_notice::SlowNotice;
 use std::io::{self, Write};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
-use terminal::{Display, Inbox, Incoming, Sink};
+use terminal::{Display, FrameSink, Inbox, Incoming};
 use theme::Theme;
 
 /// What a person has set, ready to be used.
 #[derive(Debug, Clone, Default)]
-pub struct Settings {
+pub struct UserSettings {
     pub keymap: Keymap,
     pub look: look::LookFile,
     /// A message for when the screen comes up.
@@ -73,8 +73,8 @@ pub enum Opening {
     /// A preset, and what is to be said about sessions, if anything.
     Preset(Box<Loaded>, Option<String>),
     /// A preset, with the offer to resume a session that was cut off.
-    Offer(Box<Loaded>, Box<Held>),
-    Resume(Box<Held>),
+    Offer(Box<Loaded>, Box<HeldSession>),
+    Resume(Box<HeldSession>),
 }
 
 /// How long the last write of a session may take when the person quits, and when something else ends the program.
@@ -84,14 +84,14 @@ const PATIENCE: [Duration; 2] = [Duration::from_secs(5), Duration::from_millis(8
 const SAVE_PATIENCE: Duration = Duration::from_secs(10);
 
 /// A session in words: its preset, and how much was walked.
-fn describe(held: &Held) -> String {
+fn describe(held: &HeldSession) -> String {
     let steps = held.summary.steps;
     let steps = if steps == 1 { "1 step".to_owned() } else { format!("{steps} steps") };
     format!("{}, {steps}", sanitize(&held.summary.preset_name, 24))
 }
 
 /// The explorer as it begins, and the session that it may resume.
-fn begin(start: Opening, theme: Theme, autosave: &Autosave) -> (App, Vec<Effect>, Option<Box<Held>>) {
+fn begin(start: Opening, theme: Theme, autosave: &Autosave) -> (App, Vec<Effect>, Option<Box<HeldSession>>) {
     match start {
         Opening::Preset(loaded, notice) => {
             let (mut app, effects) = App::new(*loaded, theme);
@@ -123,7 +123,7 @@ pub fn run(
     archive: Archive,
     start: Opening,
     look: Look,
-    settings: Settings,
+    settings: UserSettings,
 ) -> io::Result<ExitCode> {
     let autosave = Autosave::new(archive);
     let last = autosave.clone();
@@ -179,7 +179,7 @@ fn is_walk_begun(model: &Model, effects: &[Effect]) -> bool {
 ///
 /// All that has happened is taken in before a frame, and a frame is written before the next thing is looked at: a held
 /// key on a slow line makes one frame for many keys. `keep` is shown what it came to before each.
-fn converse<S: Sink>(
+fn converse<S: FrameSink>(
     app: &mut App,
     display: &mut Display<S>,
     inbox: &Inbox<Reply>,

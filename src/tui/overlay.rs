@@ -3,26 +3,26 @@
 use crate::explorer::Command;
 use crate::explorer::data::Foreign;
 use crate::explorer::export::{ExportKind, Page};
-use crate::explorer::script::Entry;
+use crate::explorer::script::PaletteEntry;
 use crate::explorer::session::Snapshot;
 use crate::figure::Figure;
 use pulloff_engine::gap::formula::{Formula, FormulaError};
-use pulloff_engine::measured::Role;
+use pulloff_engine::measured::ColumnRole;
 use pulloff_engine::preset::{Key, data};
 use std::sync::Arc;
 use tui_input::Input;
 
 /// What lies over the screen.
 #[derive(Debug, Clone)]
-pub enum Overlay {
+pub enum Dialog {
     Prompt(Prompt),
     Choose(Choose),
     Confirm(Confirm),
-    Offer(Offer),
+    Offer(ResumeOffer),
     Help(Help),
 }
 
-impl Overlay {
+impl Dialog {
     /// Whether a line was taken and waits for a file.
     pub fn waits(&self) -> bool {
         matches!(self, Self::Prompt(prompt) if prompt.waits)
@@ -47,7 +47,7 @@ pub struct Prompt {
     /// The column of what is wrong in the text, from 1, where it has one.
     pub fault: Option<usize>,
     /// What the line of a command could become.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<PaletteEntry>,
     /// The entry that Enter runs; none where that is the line itself.
     pub selected: Option<usize>,
 }
@@ -79,12 +79,12 @@ pub struct Help {
     pub line: usize,
     pub typing: Option<Input>,
     pub pattern: String,
-    pub found: Option<Found>,
+    pub found: Option<Occurrence>,
 }
 
 /// Where a pattern was found in the help.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Found {
+pub struct Occurrence {
     pub page: usize,
     pub line: usize,
     /// The number of that place, from 1, over all pages.
@@ -188,46 +188,52 @@ pub struct Item {
     pub text: String,
     /// What is said below the list while it is selected; may be empty.
     pub note: String,
-    pub action: Action,
+    pub action: Choice,
     /// What is asked before it is deleted, and what does it; nothing where it cannot be.
     pub delete: Option<Box<Confirm>>,
 }
 
 impl Item {
     /// A line that cannot be deleted.
-    pub fn new(text: impl Into<String>, action: Action) -> Self {
+    pub fn new(text: impl Into<String>, action: Choice) -> Self {
         Self { text: text.into(), note: String::new(), action, delete: None }
     }
 }
 
 /// What choosing a line does.
 #[derive(Debug, Clone)]
-pub enum Action {
+pub enum Choice {
     Command(Command),
     Prompt(Box<Prompt>),
-    Copy(Content),
+    Copy(Excerpt),
     /// Go on naming the columns of a measured curve.
     Columns(Box<Choosing>),
 }
 
 /// What is asked one after the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Step {
+pub enum ColumnQuestion {
     X,
     Force,
     Segment,
 }
 
-impl Step {
+impl ColumnQuestion {
     /// How many questions there are.
     pub const COUNT: usize = 3;
 
     /// What may be chosen, the likeliest first.
-    pub fn roles(self) -> &'static [Role] {
+    pub fn roles(self) -> &'static [ColumnRole] {
         match self {
-            Self::X => &[Role::Approach, Role::Position, Role::Radius, Role::Diameter, Role::Area],
-            Self::Force => &[Role::Force, Role::Deflection],
-            Self::Segment => &[Role::Segment],
+            Self::X => &[
+                ColumnRole::Approach,
+                ColumnRole::Position,
+                ColumnRole::Radius,
+                ColumnRole::Diameter,
+                ColumnRole::Area,
+            ],
+            Self::Force => &[ColumnRole::Force, ColumnRole::Deflection],
+            Self::Segment => &[ColumnRole::Segment],
         }
     }
 }
@@ -236,30 +242,30 @@ impl Step {
 #[derive(Debug, Clone)]
 pub struct Choosing {
     pub foreign: Arc<Foreign>,
-    pub step: Step,
+    pub step: ColumnQuestion,
     /// What was chosen, as `data.columns` says it.
     pub said: Vec<String>,
     /// The column whose unit is asked for: its role and its number.
-    pub unit: Option<(Role, usize)>,
+    pub unit: Option<(ColumnRole, usize)>,
     /// The columns that were chosen.
     pub taken: Vec<usize>,
 }
 
 impl Choosing {
     /// Adds what a column is, and goes to the next question.
-    pub fn says(&mut self, role: Role, number: usize, unit: Option<&str>) {
+    pub fn says(&mut self, role: ColumnRole, number: usize, unit: Option<&str>) {
         let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}]"));
         self.said.push(format!("{}={number}{unit}", role.word()));
         self.unit = None;
         self.step = match self.step {
-            Step::X => Step::Force,
-            Step::Force | Step::Segment => Step::Segment,
+            ColumnQuestion::X => ColumnQuestion::Force,
+            ColumnQuestion::Force | ColumnQuestion::Segment => ColumnQuestion::Segment,
         };
     }
 
     /// Whether nothing more is asked.
     pub fn is_done(&self) -> bool {
-        self.unit.is_none() && self.said.len() == Step::COUNT
+        self.unit.is_none() && self.said.len() == ColumnQuestion::COUNT
     }
 
     /// The command that opens the file with the columns chosen, as one change.
@@ -272,7 +278,7 @@ impl Choosing {
 
 /// A session that may be resumed. Any key but those that take it goes on without it, and does what it always does.
 #[derive(Debug, Clone)]
-pub struct Offer {
+pub struct ResumeOffer {
     pub question: String,
     pub snapshot: Box<Snapshot>,
 }
@@ -287,7 +293,7 @@ pub struct Confirm {
 
 /// What can be copied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Content {
+pub enum Excerpt {
     /// The state of the walker, a quantity a line.
     State,
     Events,
@@ -295,7 +301,7 @@ pub enum Content {
     Screen,
 }
 
-impl Content {
+impl Excerpt {
     /// All, in the order they are offered.
     pub const ALL: [Self; 4] = [Self::State, Self::Events, Self::Chart, Self::Screen];
 

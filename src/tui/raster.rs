@@ -43,7 +43,7 @@ pub enum Meets {
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stroke {
+pub struct RasterStroke {
     pub style: Style,
     pub meets: Meets,
     /// Broken: not stable, or no state.
@@ -57,7 +57,7 @@ pub struct Stroke {
 /// A curve on the cells of a plot; bits count from the upper left, rows first.
 #[derive(Debug, Clone)]
 pub struct Layer {
-    pub stroke: Stroke,
+    pub stroke: RasterStroke,
     bits: Vec<u8>,
     /// The cells in which its letter may stand.
     letters: Vec<usize>,
@@ -74,7 +74,7 @@ fn dots(charts: Charts) -> (u16, u16) {
 
 impl Layer {
     /// A layer without a dot.
-    pub fn new(stroke: Stroke, plot: Rect) -> Self {
+    pub fn new(stroke: RasterStroke, plot: Rect) -> Self {
         let cells = usize::from(plot.width) * usize::from(plot.height);
         Self { stroke, bits: vec![0; cells], letters: Vec::new() }
     }
@@ -241,9 +241,9 @@ mod tests {
     const PLOT: Rect = Rect { x: 3, y: 2, width: 60, height: 20 };
     const BOUNDS: Bounds = Bounds { x: [0.0, 1.0], y: [0.0, 1.0] };
 
-    fn stroke(color: Color, symbol: char) -> Stroke {
+    fn stroke(color: Color, symbol: char) -> RasterStroke {
         let style = Style::new().fg(color);
-        Stroke { style, meets: Meets::Shares, is_broken: false, symbol, letter: Some(symbol) }
+        RasterStroke { style, meets: Meets::Shares, is_broken: false, symbol, letter: Some(symbol) }
     }
 
     fn layer(points: &[(f64, f64)], is_broken: bool, color: Color, charts: Charts) -> Layer {

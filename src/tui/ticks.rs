@@ -1,10 +1,10 @@
 //! Round numbers beside an axis.
 
-use crate::figure::Run;
+use crate::figure::AxisScale;
 use pulloff_engine::report::number::{fixed, short};
 
 /// Round ticks inside `bounds`, at most `most`, with labels of one precision; of an axis of counts whole numbers alone.
-pub fn ticks([lo, hi]: [f64; 2], run: Run, most: usize) -> Vec<(f64, String)> {
+pub fn ticks([lo, hi]: [f64; 2], run: AxisScale, most: usize) -> Vec<(f64, String)> {
     let range = hi - lo;
     if most == 0 || !range.is_finite() || range <= 0.0 {
         return Vec::new();
@@ -12,7 +12,7 @@ pub fn ticks([lo, hi]: [f64; 2], run: Run, most: usize) -> Vec<(f64, String)> {
     let raw = range / most as f64;
     let decade = 10f64.powf(raw.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * decade).find(|step| *step >= raw).unwrap_or(raw);
-    let step = if run == Run::Counted { step.max(1.0) } else { step };
+    let step = if run == AxisScale::Counted { step.max(1.0) } else { step };
     let first = (lo / step).ceil();
     // Decimals that tell neighbouring ticks apart; very small or large values get an exponent.
     let decimals = (-step.log10().floor()).max(0.0);
@@ -39,17 +39,19 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_inside() {
-        let labels =
-            |bounds, most| ticks(bounds, Run::Linear, most).into_iter().map(|(_, l)| l).collect::<Vec<_>>();
+        let labels = |bounds, most| {
+            ticks(bounds, AxisScale::Linear, most).into_iter().map(|(_, l)| l).collect::<Vec<_>>()
+        };
         assert_eq!(labels([-0.061, 0.066], 4), ["-0.05", "0.00", "0.05"]);
         assert_eq!(labels([-1.5, 0.4], 5), ["-1.5", "-1.0", "-0.5", "0.0"]);
         assert_eq!(labels([0.0, 3e-9], 3), ["0", "1e-9", "2e-9", "3e-9"]);
         // Far into a curve neighbouring ticks still differ.
         let deep = labels([0.123_456_78, 0.123_456_82], 4);
         assert_eq!(deep, ["0.12345678", "0.12345679", "0.1234568", "0.12345681", "0.12345682"]);
-        assert!(ticks([1.0, 1.0], Run::Linear, 4).is_empty());
-        assert!(ticks([0.0, f64::NAN], Run::Linear, 4).is_empty());
-        let counts = |bounds| ticks(bounds, Run::Counted, 6).into_iter().map(|(_, l)| l).collect::<Vec<_>>();
+        assert!(ticks([1.0, 1.0], AxisScale::Linear, 4).is_empty());
+        assert!(ticks([0.0, f64::NAN], AxisScale::Linear, 4).is_empty());
+        let counts =
+            |bounds| ticks(bounds, AxisScale::Counted, 6).into_iter().map(|(_, l)| l).collect::<Vec<_>>();
         assert_eq!(counts([-0.1, 2.1]), ["0", "1", "2"]);
         assert_eq!(counts([2.9, 14.2]), ["4", "6", "8", "10", "12", "14"]);
     }

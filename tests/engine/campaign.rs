@@ -28,7 +28,7 @@ use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::problem::Control;
 use pulloff_engine::problem::Turn;
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::{Event, EventKind, Path as Ours, PathState, Setting};
+use pulloff_engine::quasistatic::path::{Event, EventKind, Path as Ours, PathSetting, PathState};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -94,7 +94,7 @@ fn judge(problem: &Problem) -> Outcome {
         Ok(curve) => curve,
         Err(error) => return refused(problem, &error),
     };
-    let ours = match case.unload(&curve, &Setting::one_disc(case.control), &Unwatched) {
+    let ours = match case.unload(&curve, &PathSetting::one_disc(case.control), &Unwatched) {
         Ok(ours) => ours,
         Err(error) => return refused(problem, &error),
     };

@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff_engine::disc::{Basis, Exact};
+use pulloff_engine::disc::{Basis, ExactBasis};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::problem::{Control, Problem, Reduced};
-use pulloff_engine::ritz::{Grading, NewtonSettings, Rings, Solved, solve};
+use pulloff_engine::ritz::{Grading, NewtonSettings, Rings, SolvedState, solve};
 use pulloff_engine::theory;
 use pulloff_engine::theory::hertz;
 use pulloff_engine::theory::jkr::Jkr;
@@ -27,7 +27,7 @@ fn jkr_radius(jkr: &Jkr, delta: f64) -> f64 {
 }
 
 /// Newton in uniform rings from three times the true radius.
-fn from_threefold(gamma: f64, rings: usize, control: Control, value: f64, exact: f64) -> Solved {
+fn from_threefold(gamma: f64, rings: usize, control: Control, value: f64, exact: f64) -> SolvedState {
     with_grading(Grading::Uniform, gamma, rings, control, value, exact)
 }
 
@@ -39,7 +39,7 @@ fn with_grading(
     control: Control,
     value: f64,
     exact: f64,
-) -> Solved {
+) -> SolvedState {
     let basis = Rings::shared_with(rings, grading, &pulloff_engine::progress::Unwatched).unwrap();
     solve(basis.as_ref(), &sphere(gamma), control, value, 3.0 * exact, NewtonSettings::default())
         .unwrap_or_else(|failure| panic!("γ={gamma} {control}={value}: {failure}"))
@@ -169,9 +169,9 @@ fn newton_at_given_force_from_a_threefold_radius() {
 }
 
 /// Newton in the exact basis from three times the true radius.
-fn exactly_from_threefold(gamma: f64, control: Control, value: f64, exact: f64) -> Solved {
+fn exactly_from_threefold(gamma: f64, control: Control, value: f64, exact: f64) -> SolvedState {
     let (problem, settings) = (sphere(gamma), NewtonSettings::default());
-    let basis = Exact::of(&problem, 1.0).unwrap();
+    let basis = ExactBasis::of(&problem, 1.0).unwrap();
     solve(&basis, &problem, control, value, 3.0 * exact, settings)
         .unwrap_or_else(|failure| panic!("γ={gamma} {control}={value}: {failure}"))
 }
@@ -214,7 +214,7 @@ fn hundreds_of_waves_are_resolved_to_rounding() {
         let problem = Problem { effective_modulus: 1.0, work_of_adhesion: 1e-3, shape };
         let exact = theory::Exact::of(&problem);
         let reduced = problem.reduced();
-        let ours = Exact::of(&reduced, s).unwrap().equilibrium(&reduced, s).unwrap();
+        let ours = ExactBasis::of(&reduced, s).unwrap().equilibrium(&reduced, s).unwrap();
         let truth = exact.curve(&[s])[0];
         let slopes = exact.slopes(s);
         let errors = [

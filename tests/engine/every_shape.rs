@@ -9,11 +9,11 @@ use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{BasisSpec, PARAMETERS, Preset};
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::{Path as Ours, PathState, Setting};
+use pulloff_engine::quasistatic::path::{Path as Ours, PathSetting, PathState};
 use pulloff_engine::ritz::Grading;
 use pulloff_engine::theory::Exact;
-use pulloff_engine::theory::disc::Equilibrium;
-use pulloff_engine::theory::unloading::{Path, unload};
+use pulloff_engine::theory::disc::ExactEquilibrium;
+use pulloff_engine::theory::unloading::{ExactPath, unload};
 
 /// How near eigenfunctions come in an automatic number: δ and P relative to their parts, radii of limit points and landings
 /// over that of the start, losses. A snap of little loss is a difference of energies a thousand times as large.
@@ -71,10 +71,10 @@ fn off_the_curve(case: &Case, exact: &Exact) -> f64 {
 }
 
 /// The largest differences of radii and losses from the exact path.
-fn off_the_path(case: &Case, ours: &Ours, exact: &Path) -> [f64; 2] {
+fn off_the_path(case: &Case, ours: &Ours, exact: &ExactPath) -> [f64; 2] {
     let (length, energy) = (case.units().length, case.units().energy);
     let scale = exact.start.contact_radius;
-    let radius = |ours: &PathState, exact: &Equilibrium| {
+    let radius = |ours: &PathState, exact: &ExactEquilibrium| {
         (ours.contact_radius * length - exact.contact_radius).abs() / scale
     };
     let mut off = [radius(ours.start().unwrap(), &exact.start), 0.0];
@@ -100,7 +100,7 @@ fn check(name: &str, preset: &Preset, tolerances: [f64; 3]) {
     assert!(curve <= tolerances[0], "{name}: {curve:e}");
     for control in [Control::Displacement, Control::Force] {
         let curve = case.curve(&Unwatched).unwrap();
-        let ours = case.unload(&curve, &Setting::one_disc(control), &Unwatched).unwrap();
+        let ours = case.unload(&curve, &PathSetting::one_disc(control), &Unwatched).unwrap();
         let truth = unload(&*exact, control, case.start * case.units().length).unwrap();
         // The exact path goes on to the pull-off, ours to the end asked for.
         let jumps = truth.jumps.len();
@@ -160,7 +160,7 @@ fn the_table_follows_a_start_that_runs_far_outward() {
     assert!(found.len() > 1);
     for (case, truth, waves) in found {
         let curve = case.curve(&Unwatched).unwrap();
-        let ours = case.unload(&curve, &Setting::one_disc(Control::Force), &Unwatched).unwrap();
+        let ours = case.unload(&curve, &PathSetting::one_disc(Control::Force), &Unwatched).unwrap();
         let off = off_the_path(&case, &ours, &truth);
         println!("outward by {waves:.2} waves, {off:?}");
         assert_eq!(ours.events.len(), truth.jumps.len(), "{waves}");

@@ -8,7 +8,7 @@ use pulloff_engine::gap::Gap;
 use pulloff_engine::preset::{Preset, Value};
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::Setting;
+use pulloff_engine::quasistatic::path::PathSetting;
 use pulloff_engine::theory::{Exact, unloading};
 use std::sync::Arc;
 
@@ -76,7 +76,7 @@ fn limit_points_and_jumps_are_those_of_the_exact_path() {
             let limits = unloading::limit_points(&*exact, control, start, case.end * units.length);
             let found = curve.limit_points(control);
             assert_eq!(found.len(), limits.len(), "{name}, {control}");
-            let ours = case.unload(&curve, &Setting::one_disc(control), &Unwatched).unwrap();
+            let ours = case.unload(&curve, &PathSetting::one_disc(control), &Unwatched).unwrap();
             let theirs = unloading::unload(&*exact, control, start).unwrap();
             let jumps =
                 theirs.jumps.iter().filter(|jump| jump.before.contact_radius > case.end * units.length);

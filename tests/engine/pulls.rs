@@ -15,8 +15,8 @@ use crate::support::problems::draw;
 use pulloff_engine::Case;
 use pulloff_engine::problem::{Control, Part};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::rate::{Edge, EdgeLaw, Moment, Pull, Puller, RateError, Settings};
-use pulloff_engine::report::pull::{Asked, PullReport};
+use pulloff_engine::rate::{EdgeLaw, Moment, MovingEdge, Pull, PullSettings, Puller, RateError};
+use pulloff_engine::report::pull::{AskedPulls, PullReport};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -26,7 +26,7 @@ const BALANCE: f64 = 1e-9;
 /// A pull of a number, with its words.
 struct Drawn {
     case: Case,
-    edge: Edge,
+    edge: MovingEdge,
     control: Control,
     parts: Vec<Part>,
     words: String,
@@ -41,7 +41,7 @@ impl Drawn {
             start: self.case.start,
             wave: self.case.reduced.gap.feature_length(),
             rise: None,
-            settings: Settings::default(),
+            settings: PullSettings::default(),
         }
     }
 }
@@ -61,7 +61,7 @@ fn drawn(number: u64) -> Option<Drawn> {
     let exponent = 0.1 + 0.9 * random.f64();
     let control = [Control::Displacement, Control::Force, Control::Stiffness(stiffness)][random.usize(0..3)];
     let closing = if random.bool() { gamma } else { gamma * (0.2 + 0.8 * random.f64()) };
-    let edge = Edge { law: EdgeLaw::symmetric(exponent), opening: gamma, closing };
+    let edge = MovingEdge { law: EdgeLaw::symmetric(exponent), opening: gamma, closing };
     let mut parts = vec![Part::Apart { rate }];
     if random.f64() < 0.25 {
         let held = case.basis.equilibrium(&case.reduced, case.start)?;
@@ -143,7 +143,7 @@ fn twice_both_speeds_is_half_the_time() {
         let mut preset = pulloff_engine::preset::read("wavy-sphere", text).unwrap();
         preset.assign("edge.exponent", "0.4").unwrap();
         preset.assign("edge.reference_speed", speed).unwrap();
-        let asked = Asked { rates: vec![rate], ..Asked::default() };
+        let asked = AskedPulls { rates: vec![rate], ..AskedPulls::default() };
         PullReport::compute(&preset, &asked, &Unwatched).unwrap().runs.remove(0)
     };
     let (slow, fast) = (pulled("1", 0.01), pulled("2", 0.02));

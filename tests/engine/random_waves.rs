@@ -6,12 +6,12 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
 use pulloff_engine::continuation::Tracer;
-use pulloff_engine::disc::{Basis, Exact};
+use pulloff_engine::disc::{Basis, ExactBasis};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::problem::{Control, Problem, Reduced};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::curve::settings;
-use pulloff_engine::quasistatic::{Curve, CurveStop, Equilibrium, Point};
+use pulloff_engine::quasistatic::{Curve, CurveStop, Equilibrium, StatePoint};
 use pulloff_engine::ritz::Rings;
 use std::sync::Arc;
 
@@ -50,7 +50,7 @@ fn sign_changes(problem: &Reduced, basis: &Arc<dyn Basis>, wavelength: f64) -> [
 }
 
 /// The radii of the limit points of `control` on an arc-length trace, by the tracer's own search and location.
-fn located(equilibrium: &Equilibrium, points: &[Point], control: Control) -> Vec<f64> {
+fn located(equilibrium: &Equilibrium, points: &[StatePoint], control: Control) -> Vec<f64> {
     let (settings, row) = (settings(equilibrium), equilibrium.control_row(control));
     let mut tracer = Tracer::new(equilibrium, settings);
     let brackets = tracer.brackets(points, &row).unwrap();
@@ -65,7 +65,7 @@ fn the_trace_finds_every_limit_point_of_sixty_random_wavy_spheres_in_rings() {
 
 #[test]
 fn the_trace_finds_every_limit_point_of_sixty_random_wavy_spheres_in_the_exact_basis() {
-    every_limit_point_is_found("exact basis", |problem| Arc::new(Exact::of(problem, FROM).unwrap()));
+    every_limit_point_is_found("exact basis", |problem| Arc::new(ExactBasis::of(problem, FROM).unwrap()));
 }
 
 fn every_limit_point_is_found(name: &str, basis: impl Fn(&Reduced) -> Arc<dyn Basis>) {

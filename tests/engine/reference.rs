@@ -5,11 +5,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff_engine::disc::{Basis, Exact};
+use pulloff_engine::disc::{Basis, ExactBasis};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::problem::{Control, Problem};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::{Setting, unload};
+use pulloff_engine::quasistatic::path::{PathSetting, unload};
 use pulloff_engine::quasistatic::{Curve, EventKind};
 use pulloff_engine::ritz::Rings;
 use serde_json::Value;
@@ -53,7 +53,7 @@ fn rings(number: usize) -> Arc<dyn Basis> {
 /// The largest errors of an unloading: states relative to the range of their column, losses relative.
 fn errors(case: &Case, control: Control, basis: Arc<dyn Basis>) -> (f64, f64) {
     let curve = Curve::of(case.problem.reduced(), basis, case.start, 0.004 * case.start).unwrap();
-    let ours = unload(&curve, &Setting::one_disc(control), &Unwatched).unwrap();
+    let ours = unload(&curve, &PathSetting::one_disc(control), &Unwatched).unwrap();
     let exact = case.data["control"][control.to_string()]["unloading"].as_array().unwrap();
     assert_eq!(ours.events.len(), exact.len(), "{control}");
     let range = |column: &str| case.data["range"][column].as_f64().unwrap();
@@ -140,7 +140,7 @@ fn seven_snaps_and_a_pull_off_under_displacement_control_four_under_force() {
 #[test]
 fn the_exact_basis_gives_curve_events_and_losses_to_rounding() {
     for (case, name) in [(fig8(), "fig8"), (fig9(), "fig9")] {
-        let basis: Arc<dyn Basis> = Arc::new(Exact::of(&case.problem.reduced(), case.start).unwrap());
+        let basis: Arc<dyn Basis> = Arc::new(ExactBasis::of(&case.problem.reduced(), case.start).unwrap());
         for control in controls(&case) {
             let (state, loss) = errors(&case, control, Arc::clone(&basis));
             println!("{name} {control}: states {state:.1e}, losses {loss:.1e}");
@@ -154,7 +154,7 @@ fn the_exact_basis_gives_curve_events_and_losses_to_rounding() {
 fn the_exact_basis_gives_the_curve_and_every_limit_point() {
     for (case, name) in [(fig8(), "fig8"), (fig9(), "fig9")] {
         let problem = case.problem.reduced();
-        let basis: Arc<dyn Basis> = Arc::new(Exact::of(&problem, case.start).unwrap());
+        let basis: Arc<dyn Basis> = Arc::new(ExactBasis::of(&problem, case.start).unwrap());
         let range = |column: &str| case.data["range"][column].as_f64().unwrap();
         let number = |row: &Value, key: &str| row[key].as_f64().unwrap();
         let mut worst = 0.0_f64;

@@ -4,15 +4,15 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff_engine::disc::{Basis, Exact};
+use pulloff_engine::disc::{Basis, ExactBasis};
 use pulloff_engine::gap::Gap;
 use pulloff_engine::gap::{
-    shapes::ExactSphere, shapes::Harmonic, shapes::Harmonics, shapes::PowerLaw, shapes::Profile,
+    shapes::ExactSphere, shapes::Harmonic, shapes::Harmonics, shapes::PowerLaw, shapes::ProfileGap,
     shapes::RandomWaves, shapes::Smoothing,
 };
 use pulloff_engine::problem::{Control, Reduced, Units};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::{Setting, unload};
+use pulloff_engine::quasistatic::path::{PathSetting, unload};
 use pulloff_engine::quasistatic::{Curve, Event, EventKind, PathStop};
 use pulloff_engine::ritz::Rings;
 use pulloff_engine::theory::sneddon::Sneddon;
@@ -41,11 +41,11 @@ fn case<G: Gap + 'static>(name: &'static str, gap: G, exact: impl Disc + 'static
 
 fn law(name: &'static str, factor: f64, exponent: f64, gamma: f64, [tolerance, energy]: [f64; 2]) -> Case {
     let gap = PowerLaw { factor, exponent };
-    Case { tolerance, energy, ..case(name, gap, power_law::PowerLaw::new(1.0, gamma, &gap), 0.8) }
+    Case { tolerance, energy, ..case(name, gap, power_law::PowerLawDisc::new(1.0, gamma, &gap), 0.8) }
 }
 
 fn waves(name: &'static str, gap: &Harmonics, gamma: f64, from: f64) -> Case {
-    let exact = harmonics::Harmonics { effective_modulus: 1.0, work_of_adhesion: gamma, gap: gap.clone() };
+    let exact = harmonics::HarmonicDisc { effective_modulus: 1.0, work_of_adhesion: gamma, gap: gap.clone() };
     // A phase gives the axis a slope, which energies feel as they feel odd powers.
     Case { energy: 1e-8, ..case(name, gap.clone(), exact, from) }
 }
@@ -144,7 +144,7 @@ fn both_bases_find_the_states() {
     for adhesive in [true, false] {
         for Case { name, gap, exact, gamma, from, tolerance, .. } in cases(adhesive) {
             let problem = reduced(&gap, gamma);
-            let table = errors(&Exact::of(&problem, from).unwrap(), &problem, exact.as_ref(), from);
+            let table = errors(&ExactBasis::of(&problem, from).unwrap(), &problem, exact.as_ref(), from);
             println!("{name} adhesive {adhesive}: table {table:?}");
             assert!(table.iter().all(|error| *error <= tolerance), "{name}: {table:?}");
             let [coarse, fine] =
@@ -163,12 +163,12 @@ fn both_bases_find_the_states() {
 fn limit_points_landings_and_losses_are_the_exact_ones() {
     for Case { name, gap, exact, gamma, from, tolerance, energy } in cases(true) {
         let problem = reduced(&gap, gamma);
-        let basis: Arc<dyn Basis> = Arc::new(Exact::of(&problem, from).unwrap());
+        let basis: Arc<dyn Basis> = Arc::new(ExactBasis::of(&problem, from).unwrap());
         let curve = Curve::of(problem, basis, from, 0.004 * from).unwrap();
         // A limit point is where a slope vanishes: its place is good to the root of the tolerance, or to rounding.
         let tolerance = 100.0 * tolerance;
         for control in [Control::Displacement, Control::Force] {
-            let unloading = unload(&curve, &Setting::one_disc(control), &Unwatched).unwrap();
+            let unloading = unload(&curve, &PathSetting::one_disc(control), &Unwatched).unwrap();
             assert_eq!(unloading.stop, PathStop::Apart, "{name} {control}");
             let snaps = unloading.events.iter().filter(|event| event.kind == EventKind::Snap).count();
             println!("{name} {control}: {snaps} snaps");
@@ -209,12 +209,12 @@ fn a_profile_is_its_own_exact_solution_and_nears_that_of_its_source() {
     let rows = |n: u16| {
         let radii: Vec<f64> = (0..=n).map(|i| 0.5 * f64::from(i) / f64::from(n)).collect();
         let gaps: Vec<f64> = radii.iter().map(|&r| source.jet(r).value).collect();
-        Arc::new(Profile::new(&radii, &gaps, Smoothing::None).unwrap()) as Arc<dyn Gap>
+        Arc::new(ProfileGap::new(&radii, &gaps, Smoothing::None).unwrap()) as Arc<dyn Gap>
     };
     let truth = waves("source", &source, gamma, from).exact;
     let gap = rows(150);
     let (problem, own) = (reduced(&gap, gamma), sneddon(&gap, gamma));
-    let table = errors(&Exact::of(&problem, from).unwrap(), &problem, &own, from);
+    let table = errors(&ExactBasis::of(&problem, from).unwrap(), &problem, &own, from);
     println!("profile: table {table:?}");
     assert!(table.iter().all(|error| *error <= 1e-13), "{table:?}");
     let rings = errors(&*Rings::shared(400).unwrap(), &problem, &own, from);
@@ -222,16 +222,16 @@ fn a_profile_is_its_own_exact_solution_and_nears_that_of_its_source() {
     // Half the distance of the rows: an eighth to a sixteenth of the error.
     let [far, near] = [150, 300].map(|n| {
         let problem = reduced(&rows(n), gamma);
-        errors(&Exact::of(&problem, from).unwrap(), &problem, truth.as_ref(), from)
+        errors(&ExactBasis::of(&problem, from).unwrap(), &problem, truth.as_ref(), from)
     });
     println!("profile: rows {far:?} {near:?}");
     assert!(near.iter().zip(far).all(|(near, far)| *near <= 0.2 * far && *near < 1e-3), "{far:?} {near:?}");
     // The unloading jumps as that of the source does.
     let unloaded = |gap: Arc<dyn Gap>| {
         let problem = reduced(&gap, gamma);
-        let basis: Arc<dyn Basis> = Arc::new(Exact::of(&problem, from).unwrap());
+        let basis: Arc<dyn Basis> = Arc::new(ExactBasis::of(&problem, from).unwrap());
         let curve = Curve::of(problem, basis, from, 0.01).unwrap();
-        unload(&curve, &Setting::one_disc(Control::Displacement), &Unwatched).unwrap()
+        unload(&curve, &PathSetting::one_disc(Control::Displacement), &Unwatched).unwrap()
     };
     let (ours, theirs) = (unloaded(rows(600)), unloaded(Arc::new(source.clone())));
     assert!(theirs.events.len() > 1 && theirs.stop == PathStop::Apart);
@@ -248,7 +248,7 @@ fn a_profile_is_its_own_exact_solution_and_nears_that_of_its_source() {
 fn beyond_the_largest_radius_there_is_no_equilibrium() {
     let ball: Arc<dyn Gap> = Arc::new(ExactSphere { radius: 1.0 });
     let problem = reduced(&ball, 0.01);
-    let exact = Exact::of(&problem, 0.5).unwrap();
+    let exact = ExactBasis::of(&problem, 0.5).unwrap();
     assert!(exact.equilibrium(&problem, 0.99).is_some() && exact.equilibrium(&problem, 1.01).is_none());
     assert!(Rings::shared(20).unwrap().equilibrium(&problem, 0.99).is_some());
     assert!(Rings::shared(20).unwrap().equilibrium(&problem, 1.01).is_none());

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
 use pulloff_engine::gap::{Breaks, Gap, Jet, Shape};
-use pulloff_engine::gap::{shapes::ExactSphere, shapes::PowerLaw, shapes::Profile, shapes::Smoothing};
+use pulloff_engine::gap::{shapes::ExactSphere, shapes::PowerLaw, shapes::ProfileGap, shapes::Smoothing};
 use pulloff_engine::problem::{Control, Problem};
 use pulloff_engine::theory::guduru::Guduru;
 use pulloff_engine::theory::jkr::Jkr;
@@ -305,7 +305,7 @@ fn the_slopes_vanish_at_the_limit_points_of_the_reference() {
 
 /// A gap that does not say that it is a cubic: every integral between its knots is then refined until it is resolved.
 #[derive(Debug)]
-struct AnyPieces(Profile);
+struct AnyPieces(ProfileGap);
 
 impl Gap for AnyPieces {
     fn jet(&self, r: f64) -> Jet {
@@ -322,10 +322,10 @@ impl Gap for AnyPieces {
     }
 }
 
-fn rough_profile(rows: u16) -> Profile {
+fn rough_profile(rows: u16) -> ProfileGap {
     let radii: Vec<f64> = (0..rows).map(|i| f64::from(i) / f64::from(rows - 1)).collect();
     let gaps: Vec<f64> = radii.iter().map(|r| 0.5 * r * r + 0.01 * (17.0 * r * r + 3.0 * r).sin()).collect();
-    Profile::new(&radii, &gaps, Smoothing::None).unwrap()
+    ProfileGap::new(&radii, &gaps, Smoothing::None).unwrap()
 }
 
 #[test]

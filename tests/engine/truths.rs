@@ -13,13 +13,13 @@
 use crate::support::quadrature::{Disc, Term};
 use pulloff::store::read;
 use pulloff_engine::case::Case;
-use pulloff_engine::gap::shapes::Profile;
+use pulloff_engine::gap::shapes::ProfileGap;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::{ContactKind, Control};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::Admissibility;
-use pulloff_engine::quasistatic::path::Setting;
+use pulloff_engine::quasistatic::path::PathSetting;
 use pulloff_engine::report::PathReport;
 use pulloff_engine::report::path::{EventReport, Extent};
 use std::f64::consts::{PI, TAU};
@@ -163,8 +163,9 @@ fn losses_do_not_depend_on_how_stiff_the_device_is() {
     let mut losses = |control: Control| -> Vec<[f64; 2]> {
         preset.path.control = control;
         let case = Case::new(&preset).unwrap();
-        let path =
-            case.unload(&case.curve(&Unwatched).unwrap(), &Setting::one_disc(control), &Unwatched).unwrap();
+        let path = case
+            .unload(&case.curve(&Unwatched).unwrap(), &PathSetting::one_disc(control), &Unwatched)
+            .unwrap();
         let both = |event: &pulloff_engine::quasistatic::Event| {
             [event.dissipated, event.dissipated_by_area].map(Option::unwrap)
         };
@@ -246,7 +247,7 @@ fn of_ninety_seven_radii_so_many_are_inadmissible() {
 }
 
 /// h' of a spline as the quadrature takes it.
-fn spline(profile: &Profile) -> Term {
+fn spline(profile: &ProfileGap) -> Term {
     let knots = profile.knots().to_vec();
     let slopes = knots.windows(2).map(|ends| {
         let middle = 0.5 * (ends[0] + ends[1]);
@@ -305,7 +306,7 @@ fn a_thousand_waves_have_the_events_of_their_sum() {
     preset.set("path.start_contact_radius", 1.0.into()).unwrap();
     let (case, gamma) = (Case::new(&preset).unwrap(), preset.material.work_of_adhesion);
     let curve = case.curve(&Unwatched).unwrap();
-    let path = case.unload(&curve, &Setting::one_disc(Control::Displacement), &Unwatched).unwrap();
+    let path = case.unload(&curve, &PathSetting::one_disc(Control::Displacement), &Unwatched).unwrap();
     assert!(path.events.len() > 5, "{:?}", path.events.len());
     let rule = crate::support::quadrature::gauss(1300);
     // δ and dδ/ds.

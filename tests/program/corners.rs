@@ -3,14 +3,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::explorer::walk::{Action, Outcome, Request, walk};
+use pulloff::explorer::walk::{Action, Request, WalkOutcome, walk};
 use pulloff::explorer::{CurveData, Staged};
 use pulloff::store::Store;
 use pulloff_engine::case::Case;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::Setting;
+use pulloff_engine::quasistatic::path::PathSetting;
 use pulloff_engine::quasistatic::walk::At;
 use pulloff_engine::quasistatic::{CurveStop, EventKind};
 use pulloff_engine::report::TraceReport;
@@ -61,7 +61,7 @@ fn a_trace_lands_on_the_corner_and_goes_on_behind_it() {
 fn a_limit_point_sits_on_the_corner() {
     let case = Case::new(&preset(0.07)).unwrap();
     let curve = case.curve(&Unwatched).unwrap();
-    let unloading = case.unload(&curve, &Setting::one_disc(Control::Displacement), &Unwatched).unwrap();
+    let unloading = case.unload(&curve, &PathSetting::one_disc(Control::Displacement), &Unwatched).unwrap();
     assert_eq!(unloading.events.len(), 1);
     let event = &unloading.events[0];
     let units = case.units();
@@ -75,7 +75,7 @@ fn a_limit_point_sits_on_the_corner() {
 }
 
 /// The radii of a walk by hand from the start inward, or with `back` from far inside outward.
-fn walked(preset: &Preset, back: bool) -> (Vec<f64>, Outcome, f64) {
+fn walked(preset: &Preset, back: bool) -> (Vec<f64>, WalkOutcome, f64) {
     let curve = Arc::new(CurveData::compute(preset, &Staged::unwatched()).unwrap());
     let drawn = &curve.base.curve;
     let corner = drawn.corners()[0];
@@ -105,7 +105,7 @@ fn a_step_by_hand_ends_on_the_corner_and_the_next_begins_behind_it() {
     for back in [false, true] {
         // No limit point: steps go on behind it.
         let (radii, outcome, corner) = walked(&preset(0.003), back);
-        assert_eq!(outcome, Outcome::Done, "{back}: {radii:?}");
+        assert_eq!(outcome, WalkOutcome::Done, "{back}: {radii:?}");
         let at = radii.iter().position(|s| (s / corner - 1.0).abs() < 1e-13);
         assert!(at.is_some_and(|at| at + 1 < radii.len()), "{back}: {radii:?} {corner}");
         let inward = |a: &f64, b: &f64| a > b;
@@ -113,6 +113,6 @@ fn a_step_by_hand_ends_on_the_corner_and_the_next_begins_behind_it() {
     }
     // A limit point of the control: the walk stops there.
     let (radii, outcome, corner) = walked(&preset(0.07), false);
-    assert_eq!(outcome, Outcome::AtLimit);
+    assert_eq!(outcome, WalkOutcome::AtLimit);
     assert!((radii.last().unwrap() / corner - 1.0).abs() < 1e-13, "{radii:?}");
 }

@@ -3,10 +3,10 @@
 use crate::support::session::Session;
 use pulloff::explorer::data::Folder;
 use pulloff::explorer::export::ExportKind;
-use pulloff::explorer::log::Mark;
+use pulloff::explorer::log::EventMark;
 use pulloff::explorer::model::{Level, Question};
 use pulloff::explorer::{
-    Axes, Command, Effect, Home, Id, NodeKind, Overlay, Panel, Reply, View, answer, update,
+    Axes, Command, Effect, Home, Id, NodeKind, Overlay, Reply, ScreenPanel, View, answer, update,
 };
 use pulloff::store::{Overwrite, Source, save_file};
 use pulloff_engine::quasistatic::EventKind;
@@ -61,7 +61,7 @@ fn the_next_event_again_and_again_detaches_and_ticks_the_log() {
         }
         let log = session.model.log();
         assert!(session.model.history.current().unwrap().is_apart(), "{preset}: {}", session.status());
-        assert!(log.entries.iter().all(|entry| entry.mark == Mark::Done), "{preset}: {log:?}");
+        assert!(log.entries.iter().all(|entry| entry.mark == EventMark::Done), "{preset}: {log:?}");
         // What is lost by hand is what the path loses.
         let (lost, unbounded) = log.lost();
         let totals = session.model.path().unwrap().totals.clone();
@@ -70,7 +70,7 @@ fn the_next_event_again_and_again_detaches_and_ticks_the_log() {
         assert!((lost - all).abs() <= 1e-12 * all, "{preset}: {lost} {all}");
         // Anew, nothing of it has happened.
         session.does(Id::Restart);
-        assert!(session.model.log().entries.iter().all(|entry| entry.mark == Mark::Ahead));
+        assert!(session.model.log().entries.iter().all(|entry| entry.mark == EventMark::Ahead));
     }
 }
 
@@ -85,7 +85,10 @@ fn a_step_past_a_limit_point_says_so_and_the_next_event_goes_on_from_there() {
     assert!(matches!(session.kind(), NodeKind::Jump(_)));
     // What happened off the path has no number.
     let log = session.model.log();
-    assert!(log.entries.iter().any(|entry| entry.number.is_none() && entry.mark == Mark::Done), "{log:?}");
+    assert!(
+        log.entries.iter().any(|entry| entry.number.is_none() && entry.mark == EventMark::Done),
+        "{log:?}"
+    );
     assert_eq!(log.entries.iter().filter_map(|entry| entry.number).collect::<Vec<_>>(), [1, 2, 3, 4, 5, 6]);
     for _ in 0..14 {
         session.does(Id::NextEvent);
@@ -120,7 +123,7 @@ fn from_apart_the_path_goes_up_to_its_turn_and_back() {
     let events = session.model.path_events().to_vec();
     let turn = events.iter().position(|event| event.kind == "turn").unwrap();
     assert!(turn > 0 && events.len() > turn + 1, "{events:?}");
-    assert_eq!(session.model.log().entries[0].mark, Mark::Done, "the first touch");
+    assert_eq!(session.model.log().entries[0].mark, EventMark::Done, "the first touch");
     for _ in 0..4 * events.len() {
         session.does(Id::NextEvent);
         if session.model.history.current().unwrap().is_apart() {
@@ -129,7 +132,7 @@ fn from_apart_the_path_goes_up_to_its_turn_and_back() {
     }
     let log = session.model.log();
     assert!(session.model.history.current().unwrap().is_apart(), "{}", session.status());
-    assert!(log.entries.iter().all(|entry| entry.mark == Mark::Done), "{log:#?}");
+    assert!(log.entries.iter().all(|entry| entry.mark == EventMark::Done), "{log:#?}");
     assert!(log.entries.iter().all(|entry| entry.number.is_some()), "{log:#?}");
 }
 
@@ -291,7 +294,7 @@ fn the_control_can_change_in_mid_walk() {
 #[test]
 fn selecting_an_event_moves_the_walker_to_its_limit_point() {
     let mut session = Session::new("wavy-sphere");
-    session.model.panel = Panel::Log;
+    session.model.panel = ScreenPanel::Log;
     session.all(&[Id::Down, Id::Down, Id::Edit]);
     let event = &session.model.path_events()[2];
     assert!((session.radius() / event.before.as_ref().unwrap().contact_radius - 1.0).abs() < 1e-9);
@@ -299,8 +302,18 @@ fn selecting_an_event_moves_the_walker_to_its_limit_point() {
     assert!(!session.model.is_unsaved());
     // Done, it is ticked, and one goes back to it.
     session.all(&[Id::Jump, Id::NextEvent]);
-    let marks: Vec<Mark> = session.model.log().entries.iter().map(|entry| entry.mark).collect();
-    assert_eq!(marks, [Mark::Done, Mark::Done, Mark::Done, Mark::Here, Mark::Ahead, Mark::Ahead]);
+    let marks: Vec<EventMark> = session.model.log().entries.iter().map(|entry| entry.mark).collect();
+    assert_eq!(
+        marks,
+        [
+            EventMark::Done,
+            EventMark::Done,
+            EventMark::Done,
+            EventMark::Here,
+            EventMark::Ahead,
+            EventMark::Ahead
+        ]
+    );
     session.does(Id::Edit);
     assert_eq!(session.kind(), NodeKind::Limit);
     assert!(
@@ -562,7 +575,7 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
     session.does(Id::Undo);
 
     // The log goes on to them, but they are no place to go to.
-    session.model.panel = Panel::Log;
+    session.model.panel = ScreenPanel::Log;
     let count = session.model.path_events().len();
     for _ in 0..50 {
         session.does(Id::Down);
@@ -636,7 +649,7 @@ fn zoom_and_cross_hair_have_their_limits() {
     session.does(Id::Whole);
     assert!(session.status().contains("the whole chart is shown"));
     session.does(Id::CrossHair);
-    assert_eq!(session.model.panel, Panel::Charts);
+    assert_eq!(session.model.panel, ScreenPanel::Charts);
     for _ in 0..100 {
         session.does(Id::Left);
     }

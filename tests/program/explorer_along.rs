@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 use crate::support::session::Session;
-use pulloff::explorer::log::Mark;
+use pulloff::explorer::log::EventMark;
 use pulloff::explorer::session::{Document, Ended, Snapshot};
 use pulloff::explorer::{Command, Id, NodeKind, View};
 use pulloff::figure::{Figure, Role, Subject};
@@ -60,7 +60,7 @@ fn every_event_of_the_path_is_walked_once_and_none_besides() {
         to_the_end(&mut session);
         let log = session.model.log();
         let path = session.model.path().unwrap();
-        let done = log.entries.iter().filter(|entry| entry.mark == Mark::Done && entry.number.is_some());
+        let done = log.entries.iter().filter(|entry| entry.mark == EventMark::Done && entry.number.is_some());
         assert_eq!((done.count(), log.entries.len()), (path.events.len(), path.events.len()), "{set:?}");
         // What was lost on the way is what the path loses: each by its own sum.
         let (lost, all) = (log.lost().0, path.totals.dissipated.unwrap());

@@ -4,7 +4,7 @@
 use crate::support::session::Session;
 use pulloff::explorer::model::Level;
 use pulloff::explorer::script::parse;
-use pulloff::explorer::{Command, Effect, Id, NodeKind, Panel, Reply, Stage, answer, update};
+use pulloff::explorer::{Command, CurveStage, Effect, Id, NodeKind, Reply, ScreenPanel, answer, update};
 use pulloff_engine::preset::Value;
 use pulloff_engine::problem::Control;
 
@@ -15,7 +15,7 @@ fn number(session: &Session, key: &str) -> f64 {
 
 /// Selects a knob that is not the first, as the arrows do.
 fn select(session: &mut Session, key: &str) {
-    session.model.panel = Panel::Problem;
+    session.model.panel = ScreenPanel::Problem;
     let at = session.model.knobs().iter().position(|(row, _)| row.key == key).expect("a knob");
     session.model.parameter = at - 1;
     session.does(Id::Down);
@@ -112,7 +112,7 @@ fn how_far_a_curve_is_belongs_to_the_newest_one() {
     let set = Command::Set { key: "gap.amplitude".into(), text: "0.003".to_owned() };
     let effects = update(&mut session.model, set);
     let id = session.model.curve_wanted;
-    let far = |id| Reply::Stage { id, stage: Stage::Curve(70) };
+    let far = |id| Reply::Stage { id, stage: CurveStage::Curve(70) };
     assert!(answer(&mut session.model, far(id - 1)).is_empty());
     assert_eq!(session.model.stage, None);
     answer(&mut session.model, far(id));

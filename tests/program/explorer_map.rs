@@ -7,7 +7,7 @@ use pulloff::explorer::map_axes::MapAxes;
 use pulloff::explorer::maps::MapData;
 use pulloff::explorer::onset::SnapsFrom;
 use pulloff::explorer::session::{Document, Ended, Snapshot};
-use pulloff::explorer::{Command, Id, Panel, View};
+use pulloff::explorer::{Command, Id, ScreenPanel, View};
 use pulloff::figure::{Figure, Role, Sign, Subject};
 
 fn figure(session: &Session) -> Figure {
@@ -41,7 +41,7 @@ fn the_limit_points_over_the_amplitude_carry_the_events_and_the_selected_one_is_
     // The curve of each event passes its mark, and is another one.
     let mut chosen = Vec::new();
     for number in 1..=events {
-        session.does(Command::Pick { panel: Panel::Log, line: Some(number - 1) });
+        session.does(Command::Pick { panel: ScreenPanel::Log, line: Some(number - 1) });
         let shown = figure(&session);
         let line = shown.lines.iter().find(|line| line.role == Role::Chosen).unwrap();
         assert_eq!(line.name, format!("event {number}"));

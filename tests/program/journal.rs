@@ -8,7 +8,7 @@ use pulloff::explorer::export::ExportKind;
 use pulloff::explorer::job::Done;
 use pulloff::explorer::journal::Journal;
 use pulloff::explorer::script::{self, Permission, play};
-use pulloff::explorer::walk::{Made, walk};
+use pulloff::explorer::walk::{MadeState, walk};
 use pulloff::explorer::{Command, Effect, Id, Inline, Model, Reply, answer, open, update};
 use pulloff::store::Store;
 use std::collections::VecDeque;
@@ -84,7 +84,7 @@ impl Late {
             && made.len() > 1
         {
             made.truncate(rng.usize(1..made.len()));
-            *outcome = Some(pulloff::explorer::walk::Outcome::Paused);
+            *outcome = Some(pulloff::explorer::walk::WalkOutcome::Paused);
         }
     }
 
@@ -104,7 +104,7 @@ impl Late {
         let first = self.pending.iter().position(|effect| std::mem::discriminant(effect) == lane).unwrap();
         match self.pending.remove(first).unwrap() {
             Effect::Walk(request) => {
-                let mut made: Vec<Made> = Vec::new();
+                let mut made: Vec<MadeState> = Vec::new();
                 let outcome = walk(&request, &mut |state| {
                     made.push(state);
                     true

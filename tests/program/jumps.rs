@@ -3,13 +3,13 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
-use pulloff::explorer::walk::{Action, Outcome, Request, walk};
+use pulloff::explorer::walk::{Action, Request, WalkOutcome, walk};
 use pulloff::explorer::{CurveData, NodeKind, Staged};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::data::DataSpec;
 use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
 use pulloff_engine::problem::{Adhesion, Begin, Control, Start};
-use pulloff_engine::quasistatic::Turn;
+use pulloff_engine::quasistatic::Extremum;
 use pulloff_engine::quasistatic::walk::At;
 use std::sync::Arc;
 
@@ -47,7 +47,7 @@ fn jumps(preset: &Preset) -> [usize; 3] {
     let curve = Arc::new(CurveData::compute(preset, &Staged::unwatched()).unwrap());
     let mut counts = [0; 3];
     for limit in &curve.limits {
-        let inward = limit.turn == Turn::Minimum;
+        let inward = limit.turn == Extremum::Minimum;
         let request = Request {
             id: 0,
             action: Action::Jump,
@@ -67,14 +67,14 @@ fn jumps(preset: &Preset) -> [usize; 3] {
             true
         });
         match (event, outcome) {
-            (Some(event), Outcome::Done) => {
+            (Some(event), WalkOutcome::Done) => {
                 let size = event.before.as_ref().unwrap().energy.abs();
                 for lost in [event.dissipated, event.dissipated_by_area].into_iter().flatten() {
                     assert!(lost >= -1e-9 * size, "{lost}: {event:?} {preset:?}");
                 }
                 counts[usize::from(!inward)] += 1;
             }
-            (None, Outcome::Stopped(reason)) => {
+            (None, WalkOutcome::Stopped(reason)) => {
                 assert!(!inward, "{reason}: {preset:?}");
                 counts[2] += usize::from(reason.contains("the potential rises"));
             }

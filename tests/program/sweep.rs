@@ -4,7 +4,7 @@
 
 use crate::support::home::{Ended, Home};
 use pulloff::store::Store;
-use pulloff::sweep::{Results, Shard, spec};
+use pulloff::sweep::{Shard, SweepResults, spec};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::sweep::{QUANTITIES, Spec};
@@ -53,11 +53,11 @@ impl Sweeps {
 
     /// Columns of results as text.
     fn columns(&self, results: &str, names: &[&str]) -> Vec<Vec<String>> {
-        Results::open(&self.path(results)).unwrap().texts(names).unwrap()
+        SweepResults::open(&self.path(results)).unwrap().texts(names).unwrap()
     }
 
     fn numbers(&self, results: &str, name: &str) -> Vec<f64> {
-        let all = Results::open(&self.path(results)).unwrap().numbers(&[name]).unwrap();
+        let all = SweepResults::open(&self.path(results)).unwrap().numbers(&[name]).unwrap();
         all[0].iter().map(|x| x.unwrap()).collect()
     }
 }
@@ -154,7 +154,7 @@ values = ["displacement", "stiffness=5 N/m", "force"]
     let loss = home.numbers("r.csv", "snap_loss_displacement");
     assert!(loss[0] > 0.0 && loss[0].to_bits() == loss[2].to_bits());
     assert!(home.numbers("r.csv", "inadmissible_share_force").iter().all(|share| (0.0..1.0).contains(share)));
-    let results = Results::open(&home.path("r.csv")).unwrap();
+    let results = SweepResults::open(&home.path("r.csv")).unwrap();
     let units: Vec<Option<&str>> = results.columns.iter().map(|column| column.unit.as_deref()).collect();
     assert_eq!(units, [None, Some("m"), None, Some("N"), Some("m"), Some("J"), None, None]);
     let message = results.numbers(&["gap.amplitud"]).unwrap_err().to_string();

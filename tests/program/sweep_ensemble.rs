@@ -4,7 +4,7 @@
 
 use crate::support::home::{Ended, Home};
 use pulloff::store::Store;
-use pulloff::sweep::{Results, spec};
+use pulloff::sweep::{SweepResults, spec};
 use pulloff_engine::preset::Value;
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::sweep::measure::measure;
@@ -40,7 +40,7 @@ fn done(home: &Home, arguments: &[&str]) -> String {
 
 /// A column; what is empty is no number.
 fn numbers(home: &Home, results: &str, name: &str) -> Vec<f64> {
-    let all = Results::open(&home.path(results)).unwrap().numbers(&[name]).unwrap();
+    let all = SweepResults::open(&home.path(results)).unwrap().numbers(&[name]).unwrap();
     all[0].iter().map(|x| x.unwrap_or(f64::NAN)).collect()
 }
 
@@ -162,7 +162,7 @@ fn members_with_an_error_are_counted_and_left_out() {
     assert!((numbers(&home, "r.csv", "least_force.mean")[0] / mean - 1.0).abs() < 1e-14);
     assert_eq!(numbers(&home, "r.csv", "least_force.count"), [count as f64]);
     assert_eq!(numbers(&home, "r.csv", "refused"), [refused as f64]);
-    let error = Results::open(&home.path("r.csv")).unwrap().texts(&["error"]).unwrap().remove(0);
+    let error = SweepResults::open(&home.path("r.csv")).unwrap().texts(&["error"]).unwrap().remove(0);
     assert_eq!(error, [format!("members: {refused} of 20 with an error ({refused} refused value)")]);
     home.refused(&["plot", "--sweep", "r.csv", "-o", "x.svg"], &["without an axis"]);
 }

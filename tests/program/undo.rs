@@ -6,8 +6,8 @@ use crate::support::session::Session;
 use fastrand::Rng;
 use pulloff::explorer::export::ExportKind;
 use pulloff::explorer::script::{self, Permission, play};
-use pulloff::explorer::undo::Place;
-use pulloff::explorer::{Command, Effect, Id, Model, NodeKind, Panel, open, update};
+use pulloff::explorer::undo::SessionPlace;
+use pulloff::explorer::{Command, Effect, Id, Model, NodeKind, ScreenPanel, open, update};
 use pulloff::store::Store;
 use pulloff_engine::preset::{Preset, write};
 use std::sync::Arc;
@@ -100,7 +100,7 @@ fn back_and_forth(session: &mut Session) -> usize {
 }
 
 /// The newest place of undo, and how many there are.
-fn newest(session: &Session) -> (Option<*const Place>, usize) {
+fn newest(session: &Session) -> (Option<*const SessionPlace>, usize) {
     let past = session.model.undo.past();
     (past.last().map(Arc::as_ptr), past.len())
 }
@@ -253,7 +253,7 @@ fn a_burst_of_walks_and_undos_is_taken_in_its_order() {
     // Another line is selected before the turn comes: what is turned is what was selected at the key.
     let amplitude = session.model.preset.get("gap.amplitude");
     let all = [Id::NextEvent, Id::Down, Id::More, Id::Up, Id::More].map(Command::from);
-    assert_eq!(session.model.panel, Panel::Problem);
+    assert_eq!(session.model.panel, ScreenPanel::Problem);
     burst(&mut session, &all);
     assert_ne!(session.model.preset.get("gap.amplitude"), amplitude);
     burst(&mut session, &[Id::Undo.into()]);

@@ -3,13 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
 use pulloff_engine::report::{VerifyReport, table};
-use pulloff_engine::verify::{Group, Row, Settings, verify};
+use pulloff_engine::verify::{Group, VerifyRow, VerifySettings, verify};
 use serde_json::Value;
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 
 /// The rows as the program computes them, once for all tests.
-static GROUPS: LazyLock<Vec<Group>> = LazyLock::new(|| verify(&Settings::default()).unwrap());
+static GROUPS: LazyLock<Vec<Group>> = LazyLock::new(|| verify(&VerifySettings::default()).unwrap());
 
 /// Status, standard output and standard error of the program.
 fn run(arguments: &[&str]) -> (i32, String, String) {
@@ -124,7 +124,7 @@ fn the_exact_column_has_the_known_values() {
 
 #[test]
 fn too_coarse_a_basis_fails() {
-    let failing = |settings: Settings| {
+    let failing = |settings: VerifySettings| {
         let report = VerifyReport::new(&verify(&settings).unwrap(), None);
         let failed: Vec<String> =
             report.rows.iter().filter(|row| !row.passes).map(|row| row.group.clone()).collect();
@@ -133,7 +133,7 @@ fn too_coarse_a_basis_fails() {
         failed
     };
     // Forty rings are four per wave: the figures fail, the exact basis does not.
-    let rings = failing(Settings { rings: 40 });
+    let rings = failing(VerifySettings { rings: 40 });
     assert!(rings.iter().any(|group| group.starts_with("Fig. 9")), "{rings:?}");
     assert!(rings.iter().all(|group| !group.ends_with("exact basis")), "{rings:?}");
 }
@@ -145,21 +145,24 @@ fn a_number_that_is_wrong_is_counted_and_written_as_null_where_there_is_none() {
             title: "Spheres".to_owned(),
             measure: "relative",
             rows: vec![
-                Row::relative("approach", 0.102, 0.1, 0.05),
-                Row::relative("force of a sphere", -2.5e-7, -2e-7, 0.05),
+                VerifyRow::relative("approach", 0.102, 0.1, 0.05),
+                VerifyRow::relative("force of a sphere", -2.5e-7, -2e-7, 0.05),
             ],
         },
         Group {
             title: "Counts".to_owned(),
             measure: "absolute",
-            rows: vec![Row::new("snaps", 7.0, 7.0, 1.0, 0.0), Row::worst("limit points", [], 1.0, 1e-10)],
+            rows: vec![
+                VerifyRow::new("snaps", 7.0, 7.0, 1.0, 0.0),
+                VerifyRow::worst("limit points", [], 1.0, 1e-10),
+            ],
         },
         Group {
             title: "Losses".to_owned(),
             measure: "relative",
             rows: vec![
-                Row::own("area against drop", 0.25, 0.26, 0.26, 0.05),
-                Row::own("work", f64::NAN, f64::NAN, 1.0, 0.05),
+                VerifyRow::own("area against drop", 0.25, 0.26, 0.26, 0.05),
+                VerifyRow::own("work", f64::NAN, f64::NAN, 1.0, 0.05),
             ],
         },
     ];

@@ -7,8 +7,8 @@
 //! ```
 
 use super::elliptic;
-use super::ground::{Ground, Under};
-use super::state::State;
+use super::ground::{DiscNodes, Ground};
+use super::state::AnnuliState;
 use crate::disc::{chebyshev, outside};
 use crate::elementary::{asin, sin};
 use crate::gap::Gap;
@@ -29,7 +29,7 @@ const MOST_RADII: f64 = 20_000.0;
 
 /// A place where the gap has a minimum.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Crest {
+pub struct GapMinimum {
     /// r, a length.
     pub radius: f64,
     /// The gap there, a length; negative where the bodies would overlap.
@@ -40,7 +40,7 @@ pub struct Crest {
 #[derive(Debug)]
 pub struct Around<'a> {
     ground: &'a Ground,
-    state: &'a State,
+    state: &'a AnnuliState,
     delta: f64,
     radii: Vec<f64>,
     y: Vec<f64>,
@@ -50,7 +50,7 @@ pub struct Around<'a> {
 
 impl<'a> Around<'a> {
     /// Of a state at the approach `delta`.
-    pub fn new(ground: &'a Ground, state: &'a State, delta: f64) -> Self {
+    pub fn new(ground: &'a Ground, state: &'a AnnuliState, delta: f64) -> Self {
         let y: Vec<f64> = state.y[0].iter().zip(&state.y[1]).map(|(a, b)| a + delta * b).collect();
         let radii: Vec<f64> = state.nodes.iter().flat_map(|nodes| nodes.radii.iter().copied()).collect();
         let (s, first) = (state.contacts.disc, state.contacts.rings.first());
@@ -59,7 +59,7 @@ impl<'a> Around<'a> {
                 let terms = radii.iter().zip(&y);
                 terms.map(|(r, y)| y / ((r - edge).max(0.0) * (r + edge) + below).sqrt()).sum()
             };
-            let even = Under::even(s, *edge);
+            let even = DiscNodes::even(s, *edge);
             let nodes = even.below.iter().zip(&even.weight);
             let smooth = nodes.map(|(below, weight)| [*below, weight * (0.5 * delta - rings(*below))]);
             let gap = ground.sum_below(s, *edge).into_iter().map(|[below, weight]| [below, -0.5 * weight]);
@@ -85,7 +85,7 @@ impl<'a> Around<'a> {
             return self.ground.gap.jet(r).value - self.delta + rings + 2.0 * FRAC_2_PI * disc;
         }
         // Beside the disc its own sum is better conditioned than a difference of h and displacements.
-        let under = Under::even(s, r);
+        let under = DiscNodes::even(s, r);
         let shaded: f64 = under
             .below
             .iter()
@@ -142,7 +142,7 @@ impl<'a> Around<'a> {
 
     /// The minima of the gap outside the contacts, from the axis outward: those between contacts, and those beyond the last up to
     /// the radius `to`; the axis itself is one where it lies outside and the gap rises from it, and so is a corner.
-    pub fn crests(&self, to: f64) -> Vec<Crest> {
+    pub fn crests(&self, to: f64) -> Vec<GapMinimum> {
         let contacts = &self.state.contacts;
         let mut intervals = contacts.gaps();
         let outermost = contacts.outermost();
@@ -187,13 +187,17 @@ impl<'a> Around<'a> {
     }
 
     /// Adds the minima of an interval to those found.
-    fn minima(&self, [from, to]: [f64; 2], found: &mut Vec<Crest>) {
+    fn minima(&self, [from, to]: [f64; 2], found: &mut Vec<GapMinimum>) {
         let radii = self.radii([from, to]);
         let (count, at) = (radii.len() - 1, |k: usize| radii[k]);
         let gaps: Vec<f64> = (0..=count).map(|k| self.gap(at(k))).collect();
         if from == 0.0 && gaps[0] <= gaps[1] {
             let dimple = self.ground.is_dimpled();
-            found.push(if dimple { self.minimum([0.0, at(1)]) } else { Crest { radius: 0.0, gap: gaps[0] } });
+            found.push(if dimple {
+                self.minimum([0.0, at(1)])
+            } else {
+                GapMinimum { radius: 0.0, gap: gaps[0] }
+            });
         }
         for k in 1..count {
             if gaps[k] <= gaps[k - 1] && gaps[k] < gaps[k + 1] {
@@ -206,22 +210,22 @@ impl<'a> Around<'a> {
             let gap = self.gap(*corner);
             let beside = 1e-4 * self.ground.wave;
             if self.gap(corner - beside) > gap && self.gap(corner + beside) > gap {
-                found.push(Crest { radius: *corner, gap });
+                found.push(GapMinimum { radius: *corner, gap });
             }
         }
     }
 
     /// The minimum between two radii, by a Chebyshev series; around a corner of the gap by one on each side.
-    pub fn minimum(&self, [lo, hi]: [f64; 2]) -> Crest {
+    pub fn minimum(&self, [lo, hi]: [f64; 2]) -> GapMinimum {
         let corners = self.ground.stops();
         let inside = corners.partition_point(|r| *r <= lo)..corners.partition_point(|r| *r < hi);
         let inner = corners.get(inside).unwrap_or_default();
         let borders: Vec<f64> = std::iter::once(lo).chain(inner.iter().copied()).chain([hi]).collect();
         let parts = borders.windows(2).map(|pair| {
             let [radius, gap] = chebyshev::least(POINTS, [pair[0], pair[1]], |r| self.gap(r));
-            Crest { radius, gap }
+            GapMinimum { radius, gap }
         });
-        parts.min_by(|a, b| a.gap.total_cmp(&b.gap)).unwrap_or(Crest { radius: lo, gap: f64::NAN })
+        parts.min_by(|a, b| a.gap.total_cmp(&b.gap)).unwrap_or(GapMinimum { radius: lo, gap: f64::NAN })
     }
 }
 

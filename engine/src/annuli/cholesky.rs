@@ -5,14 +5,14 @@ use wide::f64x4;
 
 /// A matrix made ready for right-hand sides.
 #[derive(Debug, Clone)]
-pub enum Factor {
+pub enum Factorization {
     /// `UᵀU`.
     Cholesky(Vec<f64>),
     /// With pivots: between breaks of a gap the sums need not be positive definite.
     Pivoted(Box<LU<f64, Dyn, Dyn>>),
 }
 
-impl Factor {
+impl Factorization {
     /// Of the `n`×`n` matrix with this upper triangle, by rows; `definite` where nothing else is expected. `None` where it is singular.
     pub fn of(mut matrix: Vec<f64>, n: usize, definite: bool) -> Option<Self> {
         if definite {

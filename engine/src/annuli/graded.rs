@@ -14,7 +14,7 @@
 //! R. Kress, J. Comput. Appl. Math. 61, 345 (1995), for the substitution.
 
 use super::nodes::{Graded, Nodes};
-use super::rule::Rule;
+use super::rule::RingRule;
 use crate::elementary::{atan2, pow, sin};
 use std::f64::consts::PI;
 use wide::f64x4;
@@ -40,17 +40,17 @@ fn ramp(u: f64) -> [f64; 2] {
 }
 
 /// A place on a piece: its distances from both borders, and dθ/du.
-struct Place {
+struct GradedPlace {
     from_lower: f64,
     to_upper: f64,
     slope: f64,
 }
 
 /// The place at u of a piece of the width Δ, the first or last of all where there is no break at that end.
-fn place(u: f64, width: f64, first: bool, last: bool) -> Place {
+fn place(u: f64, width: f64, first: bool, last: bool) -> GradedPlace {
     if first {
         let [s, slope] = sigmoid(0.5 * (1.0 - u));
-        return Place {
+        return GradedPlace {
             from_lower: width * (1.0 - 2.0 * s),
             to_upper: 2.0 * width * s,
             slope: width * slope,
@@ -58,14 +58,14 @@ fn place(u: f64, width: f64, first: bool, last: bool) -> Place {
     }
     if last {
         let [s, slope] = sigmoid(0.5 * u);
-        return Place {
+        return GradedPlace {
             from_lower: 2.0 * width * s,
             to_upper: width * (1.0 - 2.0 * s),
             slope: width * slope,
         };
     }
     let [s, slope] = sigmoid(u);
-    Place { from_lower: width * s, to_upper: width * sigmoid(1.0 - u)[0], slope: width * slope }
+    GradedPlace { from_lower: width * s, to_upper: width * sigmoid(1.0 - u)[0], slope: width * slope }
 }
 
 impl Graded {
@@ -108,7 +108,7 @@ impl Nodes {
     /// multiple of four.
     pub fn graded(ends: [f64; 2], breaks: &[f64], pieces: &[usize]) -> Self {
         let n: usize = pieces.iter().sum();
-        let rule = Rule::of(n);
+        let rule = RingRule::of(n);
         let [a, b] = ends;
         let (width, last) = (b - a, pieces.len() - 1);
         let inner = breaks.iter().map(|r| angle_of(ends, *r));

@@ -73,7 +73,7 @@ pub struct Ground {
 
 /// Nodes of a sum over the disc: ∫₀^s f da = Σ `weight` f(`radius`).
 #[derive(Debug, Clone, Default)]
-pub struct Under {
+pub struct DiscNodes {
     /// a.
     pub radius: Vec<f64>,
     /// a₁² sech² v = a₁² − a².
@@ -82,7 +82,7 @@ pub struct Under {
     pub weight: Vec<f64>,
 }
 
-impl Under {
+impl DiscNodes {
     fn push(&mut self, edge: f64, v: f64, weight: f64) {
         let sech = cosh(v).recip();
         let square = sech * sech;
@@ -266,7 +266,7 @@ impl Ground {
         let Some(wavenumber) = self.entire.filter(|k| k * edge < 400.0) else {
             return outside::sum_below(&self.panels, s, edge);
         };
-        let under = Under::any(s, edge, wavenumber);
+        let under = DiscNodes::any(s, edge, wavenumber);
         let nodes = under.radius.iter().zip(&under.below).zip(&under.weight);
         nodes.map(|((a, below), weight)| [*below, weight * self.transform(*a)]).collect()
     }

@@ -21,7 +21,7 @@ use wide::f64x4;
 
 /// A block between the points of two rings, by rows, and what moves with the points.
 #[derive(Debug, Clone, Default)]
-pub struct Moved {
+pub struct MovedBlock {
     /// On one ring the factor of Λ; between rings ∂M/∂r.
     pub first: Vec<f64>,
     /// On one ring the block itself; between rings ∂M/∂r'.
@@ -40,7 +40,7 @@ fn put(into: &mut [f64], from: usize, what: f64x4) {
 
 /// The block of one ring into the rows of `block` that begin at its diagonal, `stride` apart, from the diagonal on; with what moves
 /// it where `moved` is given.
-pub fn own(nodes: &Nodes, block: &mut [f64], stride: usize, mut moved: Option<&mut Moved>) {
+pub fn own(nodes: &Nodes, block: &mut [f64], stride: usize, mut moved: Option<&mut MovedBlock>) {
     let (n, r, rule) = (nodes.radii.len(), &nodes.radii[..], nodes.rule);
     let half = nodes.half();
     let more = (half / nodes.middle()).powi(2) > FOUR_MEANS;
@@ -106,7 +106,7 @@ pub fn between(
     outer: &Nodes,
     block: &mut [f64],
     stride: usize,
-    mut moved: Option<&mut Moved>,
+    mut moved: Option<&mut MovedBlock>,
 ) {
     let (rows, columns) = (inner.radii.len(), outer.radii.len());
     let least = (outer.ends[0] - inner.ends[1]) / (outer.ends[0] + inner.ends[1]);

@@ -45,11 +45,11 @@ pub mod state;
 #[cfg(test)]
 mod tests;
 
-pub use around::{Around, Crest};
+pub use around::{Around, GapMinimum};
 pub use contacts::Contacts;
 pub use contacts::ContactsError;
 pub use contacts::Edge;
 pub use contacts::MOST_CONTACTS;
 pub use ground::Ground;
 pub use rule::MOST_POINTS;
-pub use state::{AnnuliError, MOST_POINTS_IN_ALL, Resolution, State, Wanted, points};
+pub use state::{AnnuliError, AnnuliState, MOST_POINTS_IN_ALL, Resolution, Wanted, points};

@@ -1,6 +1,6 @@
 //! The points of one ring.
 
-use super::rule::Rule;
+use super::rule::RingRule;
 
 /// The points of one ring.
 #[derive(Debug, Clone)]
@@ -8,7 +8,7 @@ pub struct Nodes {
     /// [a, b].
     pub ends: [f64; 2],
     /// Their number and what depends on it alone.
-    pub rule: &'static Rule,
+    pub rule: &'static RingRule,
     /// r, outward.
     pub radii: Vec<f64>,
     /// r − a.
@@ -41,7 +41,7 @@ pub struct Graded {
 impl Nodes {
     /// `n` points of the ring, rounded up.
     pub fn plain(ends: [f64; 2], n: usize) -> Self {
-        let rule = Rule::of(n);
+        let rule = RingRule::of(n);
         let [a, b] = ends;
         let width = b - a;
         let from_inner: Vec<f64> = rule.halves[1].iter().map(|x| width * x).collect();

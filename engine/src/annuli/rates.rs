@@ -7,8 +7,8 @@
 //! J_ij = ∂κ_i/∂α_j,  α = ±e, + where the contact grows with e;      ∂P/∂α_j = 4πe_j κ_j ∂κ_j/∂δ
 //! ```
 
-use super::kernel::Moved;
-use super::state::{Kept, State, dot, edge_unit};
+use super::kernel::MovedBlock;
+use super::state::{AnnuliState, RateTerms, dot, edge_unit};
 use nalgebra::DMatrix;
 use std::f64::consts::FRAC_2_PI;
 use wide::f64x4;
@@ -34,8 +34,8 @@ fn add_product(out: &mut [f64], a: &[f64], x: &[f64], transposed: bool) {
 
 /// What holds for all edges of a state at one approach.
 struct Rates<'a> {
-    state: &'a State,
-    kept: &'a Kept,
+    state: &'a AnnuliState,
+    kept: &'a RateTerms,
     n: usize,
     y: Vec<f64>,
     /// √(r² − s²).
@@ -45,7 +45,7 @@ struct Rates<'a> {
     sums: Vec<f64>,
 }
 
-impl State {
+impl AnnuliState {
     /// J, the derivatives of κ by α at an approach, rows and columns in the order of [`Contacts::edges`](super::Contacts::edges); α = e or −e,
     /// so that a contact grows with it. Not a number where the state was not made with [`Rates`](super::Wanted::Rates).
     pub fn jacobian(&self, delta: f64, slope_at_disc: f64) -> DMatrix<f64> {
@@ -78,7 +78,7 @@ impl Rates<'_> {
     }
 
     /// The block between two rings, the nearer to the axis first.
-    fn between(&self, inner: usize, outer: usize) -> &Moved {
+    fn between(&self, inner: usize, outer: usize) -> &MovedBlock {
         let rings = self.state.nodes.len();
         // Those of the rings before come first: rings − 1, rings − 2, …
         &self.kept.between[inner * (2 * rings - inner - 1) / 2 + outer - inner - 1]
@@ -123,7 +123,7 @@ impl Rates<'_> {
         let (range, size) = (self.range(ring), nodes.radii.len());
         let pull = self.pull(ring, delta);
         let y = &self.y[range.clone()];
-        let Moved { first, second } = &self.kept.own[ring];
+        let MovedBlock { first, second } = &self.kept.own[ring];
         let mut sides = [vec![0.0; self.n], vec![0.0; self.n]];
         // The own block: Σ (first Λ − second (v + v')/σ) y.
         for i in 0..size {

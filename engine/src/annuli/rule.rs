@@ -20,7 +20,7 @@ pub const STEP: usize = 4;
 
 /// What belongs to n points.
 #[derive(Debug)]
-pub struct Rule {
+pub struct RingRule {
     /// cos²(t/2) and sin²(t/2): (b − r)/2d and (r − a)/2d.
     pub halves: [Vec<f64>; 2],
     /// t.
@@ -33,10 +33,10 @@ pub struct Rule {
     pub ends: [Vec<f64>; 2],
 }
 
-impl Rule {
+impl RingRule {
     /// The rule of `n` points, rounded up to a multiple of [`STEP`], [`MOST_POINTS`] at most; made once.
     pub fn of(n: usize) -> &'static Self {
-        static RULES: [OnceLock<Rule>; MOST_POINTS / STEP + 1] =
+        static RULES: [OnceLock<RingRule>; MOST_POINTS / STEP + 1] =
             [const { OnceLock::new() }; MOST_POINTS / STEP + 1];
         let steps = n.div_ceil(STEP).clamp(1, MOST_POINTS / STEP);
         RULES[steps].get_or_init(|| Self::new(STEP * steps))
@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn sums_are_exact_for_cosines() {
-        let rule = Rule::of(15);
+        let rule = RingRule::of(15);
         let n = rule.angles.len();
         assert_eq!(n, 16);
         for degree in 0..n {

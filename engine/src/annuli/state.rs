@@ -1,11 +1,11 @@
 //! The state of a disc and rings: pressures, force, energy and edge intensities, as polynomials in the approach.
 
-use super::cholesky::Factor;
+use super::cholesky::Factorization;
 use super::contacts::Contacts;
 use super::contacts::ContactsError;
 use super::graded;
-use super::ground::{Ground, Under};
-use super::kernel::{self, Moved};
+use super::ground::{DiscNodes, Ground};
+use super::kernel::{self, MovedBlock};
 use super::nodes::Nodes;
 use super::rule::MOST_POINTS;
 use crate::elementary::{atan2, cbrt, ln, log10};
@@ -86,12 +86,12 @@ pub enum Wanted {
 
 /// What the derivatives by the edges take.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Kept {
+pub(super) struct RateTerms {
     /// The equations.
-    pub factor: Option<Factor>,
+    pub factor: Option<Factorization>,
     /// The blocks on rings, and between them in the order (0, 1), (0, 2), …, (1, 2), …
-    pub own: Vec<Moved>,
-    pub between: Vec<Moved>,
+    pub own: Vec<MovedBlock>,
+    pub between: Vec<MovedBlock>,
     /// dF/dr for δ⁰ and δ¹ at the points.
     pub slopes: [Vec<f64>; 2],
     /// The weights of N, and 1/√(r² − a²) at its nodes by rows.
@@ -101,7 +101,7 @@ pub(super) struct Kept {
 
 /// A disc and rings at any approach δ (E* = 1): what is solved is linear in δ, so all of it is a polynomial in δ.
 #[derive(Debug, Clone)]
-pub struct State {
+pub struct AnnuliState {
     /// Where the bodies touch.
     pub contacts: Contacts,
     /// κ of every edge in the order of [`Contacts::edges`]: [κ⁰, κ¹], κ = κ⁰ + κ¹δ; the square root of a stress times a length.
@@ -117,7 +117,7 @@ pub struct State {
     pub(super) nodes: Vec<Nodes>,
     /// ∫ p r' f dr' = Σ y f over a ring's points, for δ⁰ and δ¹.
     pub(super) y: [Vec<f64>; 2],
-    pub(super) kept: Option<Kept>,
+    pub(super) kept: Option<RateTerms>,
 }
 
 /// The points on every ring, one number for each piece between breaks of the gap inside. Held while Newton's method runs, what it solves
@@ -206,7 +206,7 @@ fn digits(ground: &Ground, contacts: &Contacts, nodes: &[Nodes]) -> f64 {
 }
 
 /// The points of all rings of a state, with what the disc makes of them.
-struct Points {
+struct RingPoints {
     r: Vec<f64>,
     /// √(r² − s²).
     root: Vec<f64>,
@@ -214,7 +214,7 @@ struct Points {
     base: Vec<f64>,
 }
 
-impl Points {
+impl RingPoints {
     fn new(contacts: &Contacts, nodes: &[Nodes]) -> Self {
         let count = nodes.iter().map(|nodes| nodes.radii.len()).sum();
         let [mut r, mut root, mut base] = [0; 3].map(|_| Vec::with_capacity(count));
@@ -231,7 +231,7 @@ impl Points {
     }
 
     /// 1/√(r² − a²) at all points for every node, by rows.
-    fn inverse(&self, under: &Under) -> Vec<f64> {
+    fn inverse(&self, under: &DiscNodes) -> Vec<f64> {
         let mut out = Vec::with_capacity(under.below.len() * self.r.len());
         for below in &under.below {
             out.extend(self.base.iter().map(|base| (base + below).sqrt().recip()));
@@ -245,7 +245,7 @@ impl Ground {
     ///
     /// # Errors
     /// [`AnnuliError`].
-    pub fn state(&self, contacts: &Contacts, wanted: Wanted) -> Result<State, AnnuliError> {
+    pub fn state(&self, contacts: &Contacts, wanted: Wanted) -> Result<AnnuliState, AnnuliError> {
         self.state_with(contacts, &points(self, contacts), wanted)
     }
 
@@ -259,7 +259,7 @@ impl Ground {
         contacts: &Contacts,
         points: &Resolution,
         wanted: Wanted,
-    ) -> Result<State, AnnuliError> {
+    ) -> Result<AnnuliState, AnnuliError> {
         contacts.check()?;
         let (radius, known) = (contacts.outermost(), self.reach());
         if radius > known {
@@ -286,9 +286,14 @@ impl Ground {
         self.solved(contacts.clone(), nodes, wanted)
     }
 
-    fn solved(&self, contacts: Contacts, nodes: Vec<Nodes>, wanted: Wanted) -> Result<State, AnnuliError> {
+    fn solved(
+        &self,
+        contacts: Contacts,
+        nodes: Vec<Nodes>,
+        wanted: Wanted,
+    ) -> Result<AnnuliState, AnnuliError> {
         let s = contacts.disc;
-        let mut state = State {
+        let mut state = AnnuliState {
             contacts,
             intensity: Vec::new(),
             force: [0.0; 2],
@@ -308,7 +313,7 @@ impl Ground {
         if !state.nodes.is_empty() {
             self.solve_rings(&mut state, wanted)?;
         } else if wanted == Wanted::Rates {
-            state.kept = Some(Kept::default());
+            state.kept = Some(RateTerms::default());
         }
         if s > 0.0 {
             let unit = -(FRAC_2_PI / s).sqrt();
@@ -328,23 +333,23 @@ impl Ground {
     }
 
     /// The pressures of the rings.
-    fn solve_rings(&self, state: &mut State, wanted: Wanted) -> Result<(), AnnuliError> {
+    fn solve_rings(&self, state: &mut AnnuliState, wanted: Wanted) -> Result<(), AnnuliError> {
         let (contacts, nodes) = (&state.contacts, &state.nodes);
         let s = contacts.disc;
-        let points = Points::new(contacts, nodes);
+        let points = RingPoints::new(contacts, nodes);
         let n = points.r.len();
         let rates = wanted == Wanted::Rates;
-        let mut kept = Kept::default();
+        let mut kept = RateTerms::default();
         let mut matrix = vec![0.0; n * n];
         let mut from = 0;
         for (i, ring) in nodes.iter().enumerate() {
             let size = ring.radii.len();
-            kept.own.push(Moved::default());
+            kept.own.push(MovedBlock::default());
             let moved = kept.own.last_mut().filter(|_| rates);
             kernel::own(ring, &mut matrix[from * n + from..], n, moved);
             let mut column = from + size;
             for other in &nodes[i + 1..] {
-                kept.between.push(Moved::default());
+                kept.between.push(MovedBlock::default());
                 let moved = kept.between.last_mut().filter(|_| rates);
                 kernel::between(ring, other, &mut matrix[from * n + column..], n, moved);
                 column += other.radii.len();
@@ -352,7 +357,7 @@ impl Ground {
             from += size;
         }
         if s > 0.0 {
-            let under = Under::even(s, contacts.rings[0][0]);
+            let under = DiscNodes::even(s, contacts.rings[0][0]);
             kept.inverse = points.inverse(&under);
             kept.weights = under.weight;
             subtract(&mut matrix, n, &kept);
@@ -364,7 +369,7 @@ impl Ground {
             .map(|(a, b)| f64x4::new([*a, *b, 0.0, 0.0]))
             .collect();
         let definite = nodes.iter().all(|nodes| nodes.graded.is_none());
-        let Some(factor) = Factor::of(matrix, n, definite) else {
+        let Some(factor) = Factorization::of(matrix, n, definite) else {
             let narrowest = contacts.widths().into_iter().fold(f64::INFINITY, f64::min);
             return Err(AnnuliError::Singular { narrowest });
         };
@@ -389,7 +394,7 @@ impl Ground {
     }
 
     /// F and F' at the points.
-    fn loads(&self, contacts: &Contacts, points: &Points, rates: bool) -> Loads {
+    fn loads(&self, contacts: &Contacts, points: &RingPoints, rates: bool) -> Loads {
         let s = contacts.disc;
         let n = points.r.len();
         let shade: Vec<f64> = if s > 0.0 {
@@ -449,7 +454,7 @@ pub(super) fn edge_unit(nodes: &Nodes, edge: usize) -> f64 {
 }
 
 /// Takes N from the upper triangle.
-fn subtract(matrix: &mut [f64], n: usize, kept: &Kept) {
+fn subtract(matrix: &mut [f64], n: usize, kept: &RateTerms) {
     let rows: Vec<&[f64]> = kept.inverse.chunks_exact(n).collect();
     for (i, row) in matrix.chunks_exact_mut(n).enumerate() {
         for (four, weights) in rows.chunks_exact(4).zip(kept.weights.chunks_exact(4)) {
@@ -462,7 +467,7 @@ fn subtract(matrix: &mut [f64], n: usize, kept: &Kept) {
     }
 }
 
-impl State {
+impl AnnuliState {
     /// κ at an approach, in the order of [`Contacts::edges`].
     pub fn intensities(&self, delta: f64) -> Vec<f64> {
         self.intensity.iter().map(|[at_zero, slope]| at_zero + slope * delta).collect()

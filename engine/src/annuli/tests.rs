@@ -1,5 +1,5 @@
 use super::*;
-use crate::disc::{Basis, Exact};
+use crate::disc::{Basis, ExactBasis};
 use crate::gap::Gap;
 use crate::gap::{shapes::Harmonic, shapes::Harmonics};
 use crate::ritz::examples::wavy;
@@ -20,7 +20,7 @@ fn slope_at_disc(ground: &Ground, contacts: &Contacts) -> f64 {
 #[test]
 fn a_single_disc_is_the_closed_form() {
     let problem = wavy(0.004);
-    let (ground, basis) = (fig9(), Exact::of(&problem, 0.6).unwrap());
+    let (ground, basis) = (fig9(), ExactBasis::of(&problem, 0.6).unwrap());
     for s in [0.03, 0.2, 0.47] {
         let state = ground.state(&Contacts::of_disc(s), Wanted::Rates).unwrap();
         for delta in [-0.03, 0.0, 0.1] {

@@ -1,6 +1,6 @@
 //! A branch: solutions in order, each with its local frame.
 
-use super::system::{Column, Columns, Linearization, SizeError, System, Vector};
+use super::system::{ColumnView, Columns, Linearization, SizeError, System, Vector};
 use super::tangent::Algebra;
 use crate::elementary::atan2;
 use serde::Serialize;
@@ -36,17 +36,17 @@ impl Point {
     }
 
     /// The unknowns, n scaled numbers.
-    pub fn y(&self) -> Column<'_> {
+    pub fn y(&self) -> ColumnView<'_> {
         self.columns.column(0)
     }
 
     /// The tangent t, n numbers of unit length.
-    pub fn tangent(&self) -> Column<'_> {
+    pub fn tangent(&self) -> ColumnView<'_> {
         self.columns.column(1)
     }
 
     /// The curvature k = dt/dℓ, n numbers.
-    pub fn curvature(&self) -> Column<'_> {
+    pub fn curvature(&self) -> ColumnView<'_> {
         self.columns.column(2)
     }
 

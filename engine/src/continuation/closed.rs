@@ -6,7 +6,7 @@
 //!
 //! A matrix crate's factorization takes a new matrix each time; this one is factored anew in the room it has.
 
-use super::system::{Column, Matrix, Vector};
+use super::system::{ColumnView, Matrix, Vector};
 
 /// M factored.
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ impl Closed {
     }
 
     /// Factors the Jacobian ((n − 1) × n) closed by `row` (n); `None` when the two are singular or not finite.
-    pub fn factor(&mut self, jacobian: &Matrix, row: Column<'_>) -> Option<()> {
+    pub fn factor(&mut self, jacobian: &Matrix, row: ColumnView<'_>) -> Option<()> {
         let Self { factors, order, determinant } = self;
         let n = order.len();
         let columns = jacobian.as_slice().chunks_exact(n - 1).zip(row.as_slice());

@@ -8,7 +8,7 @@
 //! ```
 
 use super::convergence::{Convergence, NewtonFailure};
-use super::system::{Column, Vector};
+use super::system::{ColumnView, Vector};
 use super::tracer::Tracer;
 
 /// The equation that closes the system.
@@ -17,14 +17,14 @@ pub enum Constraint<'a> {
     /// At distance `radius` from `centre`.
     Sphere {
         /// The point stepped from.
-        centre: Column<'a>,
+        centre: ColumnView<'a>,
         /// The step length.
         radius: f64,
     },
     /// On the plane `row`·y = `value`.
     Plane {
         /// c.
-        row: Column<'a>,
+        row: ColumnView<'a>,
         /// v.
         value: f64,
     },

@@ -45,7 +45,7 @@ pub use events::Bracket;
 pub use locate::LimitPoint;
 pub use settings::Settings;
 pub use step::StepFailure;
-pub use system::{Column, Columns, Linearization, Matrix, MatrixMut, SizeError, System, Vector};
+pub use system::{ColumnView, Columns, Linearization, Matrix, MatrixMut, SizeError, System, Vector};
 pub use trace::{End, Stop};
 pub use tracer::Tracer;
 

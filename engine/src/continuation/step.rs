@@ -5,7 +5,7 @@ use super::convergence::NewtonFailure;
 use super::corrector::Constraint;
 use super::settings::Settings;
 use super::step_size;
-use super::system::{Column, SizeError};
+use super::system::{ColumnView, SizeError};
 use super::tracer::Tracer;
 
 /// Why no acceptable step was found.
@@ -121,9 +121,9 @@ impl Tracer<'_> {
     }
 
     /// How far the iterate is from `from` along `direction`.
-    fn ahead_of(&self, from: &Point, direction: Column<'_>) -> f64 {
+    fn ahead_of(&self, from: &Point, direction: ColumnView<'_>) -> f64 {
         let ends = [self.y.column(0), from.y(), direction];
-        let [y, from, direction] = ends.each_ref().map(Column::as_slice);
+        let [y, from, direction] = ends.each_ref().map(ColumnView::as_slice);
         y.iter().zip(from).zip(direction).map(|((y, from), d)| (y - from) * d).sum()
     }
 }

@@ -16,7 +16,7 @@ pub type Vector = DVector<f64>;
 /// Three columns.
 pub type Columns = MatrixXx3<f64>;
 /// A column of a matrix, to read.
-pub type Column<'a> = DVectorView<'a, f64>;
+pub type ColumnView<'a> = DVectorView<'a, f64>;
 /// A matrix.
 pub type Matrix = DMatrix<f64>;
 /// A matrix to write to, whose size is given.

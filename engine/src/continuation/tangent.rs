@@ -10,7 +10,7 @@
 
 use super::closed::Closed;
 use super::second::Second;
-use super::system::{Column, Columns, Linearization, System, Vector};
+use super::system::{ColumnView, Columns, Linearization, System, Vector};
 
 /// Room for the algebra at one point of a system.
 #[derive(Debug, Clone)]
@@ -46,7 +46,7 @@ impl Algebra {
         system: &dyn System,
         y: &Vector,
         at: &Linearization,
-        forward: Column<'_>,
+        forward: ColumnView<'_>,
         evaluations: &mut usize,
     ) -> Option<(Columns, bool)> {
         let Self { closed, second, right, tangent, curvature } = self;

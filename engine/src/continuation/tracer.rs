@@ -3,7 +3,7 @@
 use super::branch::{Point, Work};
 use super::convergence::NewtonFailure;
 use super::settings::Settings;
-use super::system::{Column, Linearization, SizeError, System, Vector};
+use super::system::{ColumnView, Linearization, SizeError, System, Vector};
 use super::tangent::Algebra;
 
 /// Follows the curve of a system; failures leave its caller's points untouched.
@@ -76,7 +76,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// The point of the iterate, its tangent along `forward`.
-    pub(super) fn point(&mut self, rounds: usize, forward: Column<'_>) -> Option<Point> {
+    pub(super) fn point(&mut self, rounds: usize, forward: ColumnView<'_>) -> Option<Point> {
         let Self { system, y, at, algebra, work, .. } = self;
         let (columns, positive) = algebra.frame(*system, y, at, forward, &mut work.evaluations)?;
         let mut point = Point::of(columns, positive);

@@ -2,7 +2,7 @@
 //!
 //! At a contact radius and an approach it answers with the equilibrium residual, the force and the energy with their exact
 //! derivatives; over all radii, with the equilibria in panels ([`Solution`]). The exact basis reads the table of the gap
-//! ([`Exact`](super::Exact)), ring elements are the paper's method ([`Rings`](crate::ritz::Rings)).
+//! ([`ExactBasis`](super::ExactBasis)), ring elements are the paper's method ([`Rings`](crate::ritz::Rings)).
 
 use super::solution::Solution;
 use crate::problem::Reduced;

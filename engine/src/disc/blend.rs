@@ -1,7 +1,7 @@
 //! Mixtures of gaps: where a gap is linear in numbers so is g, and the transforms of a few gaps on the same panels give that of
 //! every mixture for a sum each.
 
-use super::chebyshev::Rule;
+use super::chebyshev::ChebyshevRule;
 use super::clusters::NODES;
 use super::panels::Panels;
 use super::sources::Sources;
@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 const SAME: f64 = 1e-12;
 
 /// g and its slope at the nodes of a panel.
-type Samples = [[f64; NODES]; 2];
+type PanelSamples = [[f64; NODES]; 2];
 
 /// The transforms of some gaps on the same panels.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ struct Tabulated {
     /// Whether slopes are by the variable of the panel.
     steep: Vec<bool>,
     /// One list for each gap.
-    samples: Vec<Vec<Samples>>,
+    samples: Vec<Vec<PanelSamples>>,
 }
 
 /// Gaps of which mixtures are tabulated.
@@ -60,9 +60,9 @@ impl Blend {
         progress: &dyn Progress,
     ) -> Result<(), TableError> {
         let tabulated = self.tabulated(reach, panels.smallest, progress)?;
-        let rule = Rule::of(NODES);
+        let rule = ChebyshevRule::of(NODES);
         for (k, span) in tabulated.spans.iter().enumerate() {
-            let mut mixed: Samples = [[0.0; NODES]; 2];
+            let mut mixed: PanelSamples = [[0.0; NODES]; 2];
             for (weight, samples) in weights.iter().zip(&tabulated.samples) {
                 for (sum, part) in mixed.as_flattened_mut().iter_mut().zip(samples[k].as_flattened()) {
                     *sum += weight * part;
@@ -103,14 +103,14 @@ impl Blend {
         for (steep, span) in steep.iter_mut().zip(&spans) {
             *steep = span.is_steep(|base| sources.iter().any(|sources| sources.jumps_at(base)));
         }
-        let rule = Rule::of(NODES);
+        let rule = ChebyshevRule::of(NODES);
         for (gap, sources) in self.gaps.iter().zip(&sources) {
             let mut of_gap = Vec::with_capacity(spans.len());
             for (span, steep) in spans.iter().zip(&steep) {
                 if progress.stop() {
                     return Err(TableError::Cancelled);
                 }
-                let mut own: Samples = [[0.0; NODES]; 2];
+                let mut own: PanelSamples = [[0.0; NODES]; 2];
                 let by_variable = span.is_steep(|base| sources.jumps_at(base));
                 for (j, x) in rule.nodes.iter().enumerate() {
                     let [value, slope] = sources.transform(&**gap, span, *x);

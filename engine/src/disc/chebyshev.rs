@@ -19,17 +19,17 @@ pub const ROOT_NODES: usize = 40;
 
 /// The n nodes with the matrix from samples to coefficients.
 #[derive(Debug)]
-pub struct Rule {
+pub struct ChebyshevRule {
     /// Descending.
     pub nodes: Vec<f64>,
     /// By columns: what the sample at node j adds to every coefficient.
     columns: Vec<f64>,
 }
 
-impl Rule {
+impl ChebyshevRule {
     /// The rule of `n` nodes, 2 to 64; made once.
     pub fn of(n: usize) -> &'static Self {
-        static RULES: [OnceLock<Rule>; MOST + 1] = [const { OnceLock::new() }; MOST + 1];
+        static RULES: [OnceLock<ChebyshevRule>; MOST + 1] = [const { OnceLock::new() }; MOST + 1];
         RULES[n.clamp(2, MOST)].get_or_init(|| Self::new(n.clamp(2, MOST)))
     }
 
@@ -211,7 +211,7 @@ pub fn chop(mut series: Vec<f64>, share: f64) -> Vec<f64> {
 /// Where a smooth function is least between two places, and its value there, by its series of `nodes` samples.
 pub fn least(nodes: usize, [lo, hi]: [f64; 2], f: impl Fn(f64) -> f64) -> [f64; 2] {
     let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo));
-    let series = Rule::of(nodes).series(|x| f(middle + half * x));
+    let series = ChebyshevRule::of(nodes).series(|x| f(middle + half * x));
     let value = |x: f64| sum(&series, x);
     let places = roots(&derivative(&series), 0.0).into_iter().chain([-1.0, 1.0]);
     let x = places.min_by(|a, b| value(*a).total_cmp(&value(*b))).unwrap_or(0.0);
@@ -239,14 +239,14 @@ fn sums_and_slopes(series: &[f64], x: f64x4) -> [f64x4; 2] {
 
 /// An end of an interval in which roots are looked for.
 #[derive(Debug, Clone, Copy)]
-struct End {
+struct IntervalEnd {
     x: f64,
     value: f64,
     slope: f64,
 }
 
 /// The search for the roots of a series.
-struct Search<'a> {
+struct RootSearch<'a> {
     series: &'a [f64],
     /// A bound of |f''|, by `|T_k''| ≤ k²(k² − 1)/3`.
     bend: f64,
@@ -273,19 +273,19 @@ pub fn roots(series: &[f64], rounding: f64) -> Vec<f64> {
     let series = &series[..last];
     let square = |k: usize| (k * k) as f64;
     let bend = series.iter().enumerate().skip(2).map(|(k, c)| c.abs() * square(k) * (square(k) - 1.0) / 3.0);
-    let mut search = Search { series, bend: bend.sum(), rounding, roots: Vec::new() };
+    let mut search = RootSearch { series, bend: bend.sum(), rounding, roots: Vec::new() };
     let [lo, hi] = [-1.0, 1.0].map(|x| {
         let [value, slope] = sum_and_slope(series, x);
-        End { x, value, slope }
+        IntervalEnd { x, value, slope }
     });
     search.within(lo, hi);
     search.roots
 }
 
-impl Search<'_> {
+impl RootSearch<'_> {
     /// Adds the roots between two ends. Neighbours share the sign of their border, so that rounding there makes no roots and
     /// loses none.
-    fn within(&mut self, lo: End, hi: End) {
+    fn within(&mut self, lo: IntervalEnd, hi: IntervalEnd) {
         let width = hi.x - lo.x;
         let changes = (lo.value > 0.0) != (hi.value > 0.0);
         let bulge = 0.125 * self.bend * width * width;
@@ -303,7 +303,8 @@ impl Search<'_> {
         let [values, slopes] = sums_and_slopes(self.series, f64x4::new(x)).map(f64x4::to_array);
         let mut before = lo;
         for i in 0..PARTS {
-            let end = if i + 1 == PARTS { hi } else { End { x: x[i], value: values[i], slope: slopes[i] } };
+            let end =
+                if i + 1 == PARTS { hi } else { IntervalEnd { x: x[i], value: values[i], slope: slopes[i] } };
             self.within(before, end);
             before = end;
         }
@@ -344,7 +345,7 @@ mod tests {
     #[test]
     fn a_series_is_its_function_with_its_derivative_and_integrals() {
         let f = |x: f64| (1.3 * x).exp() + (2.0 * x).sin();
-        let series = Rule::of(24).series(f);
+        let series = ChebyshevRule::of(24).series(f);
         let twice = times_line(&series, 0.3, -1.7);
         let (slope, area, square) = (derivative(&series), integral(&series), square(&series));
         for i in -10..=10 {
@@ -372,7 +373,7 @@ mod tests {
 
     #[test]
     fn roots_are_all_found() {
-        let series = |f: &dyn Fn(f64) -> f64| Rule::of(ROOT_NODES).series(f);
+        let series = |f: &dyn Fn(f64) -> f64| ChebyshevRule::of(ROOT_NODES).series(f);
         for (f, expected) in [
             (&(|x: f64| x - 0.3) as &dyn Fn(f64) -> f64, &[0.3][..]),
             (&|x| (x - 0.3) * (x - 0.300_01) * (x + 0.9), &[-0.9, 0.3, 0.300_01]),

@@ -15,7 +15,7 @@
 //!
 //! L. Greengard and V. Rokhlin, J. Comput. Phys. 73, 325 (1987), doi:10.1016/0021-9991(87)90140-9, for the tree.
 
-use super::chebyshev::Rule;
+use super::chebyshev::ChebyshevRule;
 use wide::f64x4;
 
 /// Samples of h' on a panel.
@@ -40,7 +40,7 @@ impl<const K: usize> Cluster<K> {
     fn of(parts: &[Self]) -> Self {
         let ends = [0, 1].map(|end| parts[end * (parts.len() - 1)].ends[end]);
         let (centre, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
-        let rule = Rule::of(NODES);
+        let rule = ChebyshevRule::of(NODES);
         let mut moments = [[0.0; NODES]; K];
         for part in parts {
             for (i, r) in part.radii.iter().enumerate() {
@@ -80,7 +80,7 @@ impl<const K: usize> Cluster<K> {
 
 /// What a sum is made of.
 #[derive(Debug)]
-pub enum Part<'a, const K: usize> {
+pub enum SumPart<'a, const K: usize> {
     /// Panels that are far away, together.
     Far(&'a Cluster<K>),
     /// The number of a panel that is looked at for itself.
@@ -110,7 +110,7 @@ impl<const K: usize> Clusters<K> {
     }
 
     /// Calls `add` for what the first `count` panels are made of, seen from where `distance` measures.
-    pub fn visit(&self, count: usize, distance: &dyn Fn(f64) -> f64, add: &mut dyn FnMut(Part<'_, K>)) {
+    pub fn visit(&self, count: usize, distance: &dyn Fn(f64) -> f64, add: &mut dyn FnMut(SumPart<'_, K>)) {
         let top = self.levels.len() - 1;
         for index in 0..self.levels[top].len() {
             self.visit_one([top, index], count, distance, add);
@@ -122,19 +122,19 @@ impl<const K: usize> Clusters<K> {
         [level, index]: [usize; 2],
         count: usize,
         distance: &dyn Fn(f64) -> f64,
-        add: &mut dyn FnMut(Part<'_, K>),
+        add: &mut dyn FnMut(SumPart<'_, K>),
     ) {
         let [first, past] = [index, index + 1].map(|at| at << level);
         if first >= count {
             return;
         }
         if level == 0 {
-            return add(Part::Panel(index));
+            return add(SumPart::Panel(index));
         }
         let cluster = &self.levels[level][index];
         let [lo, hi] = cluster.ends;
         if past.min(self.levels[0].len()) <= count && distance(hi) >= FAR * (hi - lo) {
-            return add(Part::Far(cluster));
+            return add(SumPart::Far(cluster));
         }
         for child in [2 * index, 2 * index + 1] {
             if child < self.levels[level - 1].len() {
@@ -171,8 +171,8 @@ mod tests {
                 clusters.visit(count, &|hi| a - hi, &mut |part| {
                     calls += 1;
                     sum += match part {
-                        Part::Far(cluster) => cluster.sums(a)[0],
-                        Part::Panel(index) => clusters.panel(index).sums(a)[0],
+                        SumPart::Far(cluster) => cluster.sums(a)[0],
+                        SumPart::Panel(index) => clusters.panel(index).sums(a)[0],
                     };
                 });
                 let exact: f64 = panels[..count].iter().map(|panel| panel.sums(a)[0]).sum();

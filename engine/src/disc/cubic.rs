@@ -79,7 +79,7 @@ pub fn nodes() -> [f64; NODES] {
 /// The pieces begin at the axis, each where the one before ends, and h' does not jump between them: a jump would need a
 /// term in dg/dy. h' on the axis may have any value.
 pub fn transform(pieces: &[Piece], from: usize, progress: &dyn Progress) -> Option<Vec<[[f64; NODES]; 2]>> {
-    let sources = Sources::new(pieces);
+    let sources = PieceSamples::new(pieces);
     let nodes = nodes();
     let mut panels = Vec::with_capacity(pieces.len().saturating_sub(from));
     for (i, piece) in pieces.iter().enumerate().skip(from) {
@@ -87,7 +87,7 @@ pub fn transform(pieces: &[Piece], from: usize, progress: &dyn Progress) -> Opti
             return None;
         }
         let y = nodes.map(|x| x * piece.width().sqrt());
-        let mut panel = Panel::new(piece.lo, &y);
+        let mut panel = PanelSums::new(piece.lo, &y);
         sources.gather(&mut panel, i);
         panels.push(panel.finish(&y));
     }
@@ -95,7 +95,7 @@ pub fn transform(pieces: &[Piece], from: usize, progress: &dyn Progress) -> Opti
 }
 
 /// The nodes of a panel and the sums there: ∫h'/√(a² − r²) dr and ∫r h''/√(a² − r²) dr.
-struct Panel {
+struct PanelSums {
     lo: f64,
     /// a − lo.
     from_lo: [f64x4; LANES],
@@ -103,7 +103,7 @@ struct Panel {
     sums: [[f64x4; LANES]; 2],
 }
 
-impl Panel {
+impl PanelSums {
     fn new(lo: f64, y: &[f64; NODES]) -> Self {
         let four = |k: usize| f64x4::new(array::from_fn(|lane| y[4 * k + lane]));
         let from_lo = array::from_fn(|k| four(k) * four(k));
@@ -121,7 +121,7 @@ impl Panel {
     }
 
     /// Adds what the samples contribute, which lie at a distance from all nodes.
-    fn add<const N: usize>(&mut self, samples: &Samples<N>) {
+    fn add<const N: usize>(&mut self, samples: &WeightedSamples<N>) {
         let distance = f64x4::splat(self.lo - samples.lo);
         let offset: [f64x4; LANES] = self.from_lo.map(|x| x + distance);
         for (&t, (&slope, &bend)) in
@@ -206,7 +206,7 @@ impl Panel {
 }
 
 /// Weighted samples of h' and of r h'' that stand for an integral over [lo, hi].
-struct Samples<const N: usize> {
+struct WeightedSamples<const N: usize> {
     lo: f64,
     hi: f64,
     /// r − lo.
@@ -214,7 +214,7 @@ struct Samples<const N: usize> {
     weights: [[f64; N]; 2],
 }
 
-impl Samples<SAMPLES> {
+impl WeightedSamples<SAMPLES> {
     /// Gauss's rule on a piece.
     fn of_piece(piece: &Piece, rule: &[(f64, f64)]) -> Self {
         let offsets = array::from_fn(|k| piece.width() * rule[k].0);
@@ -225,9 +225,9 @@ impl Samples<SAMPLES> {
     }
 }
 
-impl Samples<POINTS> {
+impl WeightedSamples<POINTS> {
     /// The samples of neighbours, as seen from afar.
-    fn of_block<const N: usize>(parts: &[Samples<N>], points: &[(f64, f64); POINTS]) -> Self {
+    fn of_block<const N: usize>(parts: &[WeightedSamples<N>], points: &[(f64, f64); POINTS]) -> Self {
         let (lo, hi) = (parts[0].lo, parts[parts.len() - 1].hi);
         let offsets = points.map(|(x, _)| x * (hi - lo));
         let mut weights = [[0.0; POINTS]; 2];
@@ -254,16 +254,16 @@ impl Samples<POINTS> {
 }
 
 /// All pieces as samples, and the blocks of them.
-struct Sources<'a> {
+struct PieceSamples<'a> {
     pieces: &'a [Piece],
     /// Gauss's rule on (0, 1).
     rule: Vec<(f64, f64)>,
-    samples: Vec<Samples<SAMPLES>>,
+    samples: Vec<WeightedSamples<SAMPLES>>,
     /// Blocks of 8, 16, 32, … pieces, the last of a level of fewer, up to the level with one block.
-    levels: Vec<Vec<Samples<POINTS>>>,
+    levels: Vec<Vec<WeightedSamples<POINTS>>>,
 }
 
-impl<'a> Sources<'a> {
+impl<'a> PieceSamples<'a> {
     fn new(pieces: &'a [Piece]) -> Self {
         let rule = GaussLegendre::new(RULE);
         let rule: Vec<_> = rule.iter().map(|&(x, weight)| (0.5 * (1.0 + x), 0.5 * weight)).collect();
@@ -273,24 +273,25 @@ impl<'a> Sources<'a> {
             let sign = if m % 2 == 0 { 1.0 } else { -1.0 };
             (cos(angle).powi(2), sign * sin(2.0 * angle))
         });
-        let samples: Vec<_> = pieces.iter().map(|piece| Samples::of_piece(piece, &rule)).collect();
-        let mut levels: Vec<Vec<Samples<POINTS>>> =
-            vec![samples.chunks(SMALLEST_BLOCK).map(|parts| Samples::of_block(parts, &points)).collect()];
+        let samples: Vec<_> = pieces.iter().map(|piece| WeightedSamples::of_piece(piece, &rule)).collect();
+        let mut levels: Vec<Vec<WeightedSamples<POINTS>>> = vec![
+            samples.chunks(SMALLEST_BLOCK).map(|parts| WeightedSamples::of_block(parts, &points)).collect(),
+        ];
         while let Some(below) = levels.last().filter(|level| level.len() > 1) {
-            let above = below.chunks(2).map(|parts| Samples::of_block(parts, &points)).collect();
+            let above = below.chunks(2).map(|parts| WeightedSamples::of_block(parts, &points)).collect();
             levels.push(above);
         }
         Self { pieces, rule, samples, levels }
     }
 
     /// Adds everything up to the nodes of `panel`, that of the piece `i`.
-    fn gather(&self, panel: &mut Panel, i: usize) {
+    fn gather(&self, panel: &mut PanelSums, i: usize) {
         self.gather_block(panel, i, self.levels.len() - 1, 0);
         panel.add_near(&self.rule, &self.pieces[i], true);
     }
 
     /// Adds the part of a block that lies before the piece `i`.
-    fn gather_block(&self, panel: &mut Panel, i: usize, level: usize, k: usize) {
+    fn gather_block(&self, panel: &mut PanelSums, i: usize, level: usize, k: usize) {
         let pieces = SMALLEST_BLOCK << level;
         if k * pieces >= i {
             return;

@@ -8,7 +8,7 @@
 
 use super::basis::{Basis, Evaluation, Order};
 use super::outside;
-use super::panels::{Panels, Values};
+use super::panels::{Panels, TransformValues};
 use super::solution::{ExactSolution, Solution};
 use super::span::Place;
 use super::spans::TableError;
@@ -40,13 +40,13 @@ const TIMES_FINER: i32 = 40;
 
 /// The exact basis of one gap.
 #[derive(Debug, Clone)]
-pub struct Exact {
+pub struct ExactBasis {
     table: Arc<Table>,
     /// Smaller discs are read from panels up to here.
     reach: f64,
 }
 
-impl Exact {
+impl ExactBasis {
     /// The exact basis of the gap of `table`; discs of a radius below `reach` are read from the same panels.
     pub fn new(table: Arc<Table>, reach: f64) -> Self {
         Self { table, reach }
@@ -73,8 +73,8 @@ impl Exact {
 }
 
 /// Residual, force and energy at (s, δ) from the transform there.
-fn evaluated(values: &Values, delta: f64, gamma: f64) -> Evaluation {
-    let Values { radius: s, value, slope, bend, area, square } = *values;
+fn evaluated(values: &TransformValues, delta: f64, gamma: f64) -> Evaluation {
+    let TransformValues { radius: s, value, slope, bend, area, square } = *values;
     let q = value - delta;
     let unit = (TAU * s).sqrt().recip();
     let rounding = EDGE_ROUNDING * (value.abs() + delta.abs()) * unit;
@@ -113,7 +113,7 @@ fn state(s: f64, value: f64, area: f64, root: f64) -> Evaluation {
 
 /// An evaluation that is nothing: beyond what is known of the gap.
 fn nothing(s: f64, delta: f64) -> Evaluation {
-    let values = Values {
+    let values = TransformValues {
         radius: s,
         value: f64::NAN,
         slope: f64::NAN,
@@ -124,7 +124,7 @@ fn nothing(s: f64, delta: f64) -> Evaluation {
     evaluated(&values, delta, 0.0)
 }
 
-impl Basis for Exact {
+impl Basis for ExactBasis {
     fn evaluate(&self, problem: &Reduced, s: f64, delta: f64) -> Evaluation {
         let Some(panels) = self.panels(s) else { return nothing(s, delta) };
         evaluated(&panels.values(panels.place(s)), delta, problem.work_of_adhesion)
@@ -281,7 +281,7 @@ mod tests {
     fn smooth_spheres_are_exact() {
         for gamma in [0.0, 1e-12, 1e-6, 0.01] {
             let problem = sphere(gamma);
-            let basis = Exact::of(&problem, 0.7).unwrap();
+            let basis = ExactBasis::of(&problem, 0.7).unwrap();
             for s in [1e-3_f64, 0.1, 0.7] {
                 let at = basis.equilibrium(&problem, s).unwrap();
                 let adhesion = (TAU * gamma * s).sqrt();
@@ -306,7 +306,7 @@ mod tests {
     fn derivatives_agree_with_central_differences() {
         for gamma in [0.004, 0.0] {
             let problem = wavy(gamma);
-            let basis = Exact::of(&problem, 0.5).unwrap();
+            let basis = ExactBasis::of(&problem, 0.5).unwrap();
             for i in 0..40 {
                 // Off the curve on both sides: the residual is signed.
                 let s = 0.05 + 0.011 * f64::from(i);
@@ -322,7 +322,7 @@ mod tests {
     #[test]
     fn slopes_and_tendencies_are_those_of_the_evaluation() {
         let problem = wavy(0.004);
-        let basis = Exact::of(&problem, 0.5).unwrap();
+        let basis = ExactBasis::of(&problem, 0.5).unwrap();
         let solution = basis.solution(&problem, 0.01, 0.5, &Unwatched).unwrap();
         for i in 1..100 {
             let s = 0.005 * f64::from(i);
@@ -349,7 +349,8 @@ mod tests {
 
     #[test]
     fn reduced_answers_do_not_depend_on_the_units() {
-        let exact = |problem: &Reduced| Exact::of(problem, 0.5).unwrap().equilibrium(problem, 0.3).unwrap();
+        let exact =
+            |problem: &Reduced| ExactBasis::of(problem, 0.5).unwrap().equilibrium(problem, 0.3).unwrap();
         let reference = exact(&wavy(0.004));
         for (modulus, length) in [(2.5e6, 1e-9), (7e10, 3.0)] {
             let scaled = Problem {
@@ -377,7 +378,7 @@ mod tests {
         for shape in shapes {
             let problem =
                 Problem { effective_modulus: 1.0, work_of_adhesion: 0.004, shape: shape.clone() }.reduced();
-            let (basis, s) = (Exact::of(&problem, 0.3).unwrap(), 0.2);
+            let (basis, s) = (ExactBasis::of(&problem, 0.3).unwrap(), 0.2);
             let delta = basis.equilibrium(&problem, s).unwrap().approach;
             let radii: Vec<f64> = (0..200).map(|i| s * (1.0 + 0.05 * f64::from(i))).collect();
             let ours = basis.gap_outside(&problem, s, delta, &radii);
@@ -400,7 +401,7 @@ mod tests {
         // Down to where a table made for the start would have no digits left.
         for gamma in [1e-9, 1e-20, 1e-60] {
             let problem = sphere(gamma);
-            let basis = Exact::of(&problem, 0.5).unwrap();
+            let basis = ExactBasis::of(&problem, 0.5).unwrap();
             let solution = basis.solution(&problem, 0.1, 0.5, &Unwatched).unwrap();
             let limits = crate::quasistatic::Monotone::of(&*solution, Control::Force).limits;
             let exact = (1.125 * PI * gamma).cbrt();

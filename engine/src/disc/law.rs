@@ -17,12 +17,12 @@ const RATIO: f64 = 4.0;
 
 /// g = κ aⁿ.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Law {
+pub struct PowerTransform {
     factor: f64,
     exponent: f64,
 }
 
-impl Law {
+impl PowerTransform {
     /// The transform of h = c rⁿ, 1 ≤ n ≤ 100.
     pub fn new(c: f64, n: f64) -> Self {
         // The two that people know, without the rounding of a logarithm.

@@ -39,8 +39,8 @@ pub mod table;
 pub mod waves;
 
 pub use basis::{Basis, Evaluation, Order};
-pub use exact::Exact;
-pub use panels::{Panel, Panels, Values};
+pub use exact::ExactBasis;
+pub use panels::{Panel, Panels, TransformValues};
 pub use solution::{Edges, ExactSolution, Local, Solution};
 pub use span::Place;
 pub use spans::TableError;

@@ -15,8 +15,8 @@
 //! (2/π)√(r² − q²) ∫_s^q t gap(t)/((r² − t²)√(q² − t²)) dt ≥ 0, so beyond the edge the gap can become negative for the first
 //! time only where g < δ. Where g stays above δ the bodies stay apart, and no gap needs to be computed.
 
-use super::chebyshev::{self, Rule};
-use super::clusters::Part;
+use super::chebyshev::{self, ChebyshevRule};
+use super::clusters::SumPart;
 use super::panels::{Panel, Panels};
 use super::span::Place;
 use crate::elementary::{acosh, asin, asinh, cosh, pow, sin, sinh};
@@ -188,10 +188,10 @@ pub fn sum_below(panels: &Panels, s: f64, edge: f64) -> Vec<[f64; 2]> {
     let at = panels.place(s);
     let moments = panels.moments();
     moments.visit(at.panel, &|hi| edge - hi, &mut |part| match part {
-        Part::Far(cluster) => {
+        SumPart::Far(cluster) => {
             cluster.radii.iter().zip(&cluster.weights[0]).for_each(|(a, weight)| add(*a, *weight));
         }
-        Part::Panel(index) => parts_below(panels, Place { panel: index, x: 1.0 }, edge, &mut add),
+        SumPart::Panel(index) => parts_below(panels, Place { panel: index, x: 1.0 }, edge, &mut add),
     });
     parts_below(panels, at, edge, &mut add);
     nodes
@@ -341,7 +341,7 @@ pub fn below(panels: &Panels, s: f64, delta: f64, end: f64) -> Vec<(usize, [f64;
 
 /// What a search for the smallest gap has found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Least {
+pub struct LeastGap {
     /// Where the gap is smallest and how large it is there, `[r, gap]`; `None` where g stays above δ: the bodies stay apart.
     pub at: Option<[f64; 2]>,
     /// The radius at which the search was given up, where it was.
@@ -359,7 +359,7 @@ pub fn least_gap(
     end: f64,
     overlap: f64,
     progress: &dyn Progress,
-) -> Least {
+) -> LeastGap {
     let first = panels.place(s).panel;
     let mut work = 0;
     let pieces = below(panels, s, delta, end);
@@ -369,7 +369,7 @@ pub fn least_gap(
     let mut left = CRESTS;
     for run in pieces.chunk_by(|(a, before), (b, after)| b - a <= 1 && before[1] >= 1.0 && after[0] <= -1.0) {
         if progress.stop() {
-            return Least { at: least, given_up: Some(s) };
+            return LeastGap { at: least, given_up: Some(s) };
         }
         let here = if run.len() <= MANY {
             run.iter().map(on).min_by(smallest)
@@ -394,10 +394,10 @@ pub fn least_gap(
         let Some((last, [_, x])) = run.last() else { continue };
         work += run.len().min(MANY) * (last + 1 - first);
         if work > MOST_WORK && left == CRESTS {
-            return Least { at: least, given_up: Some(panels.radius(Place { panel: *last, x: *x })) };
+            return LeastGap { at: least, given_up: Some(panels.radius(Place { panel: *last, x: *x })) };
         }
     }
-    Least { at: least, given_up: None }
+    LeastGap { at: least, given_up: None }
 }
 
 /// The smallest gap on a piece of a panel: `[r, gap]`.
@@ -406,7 +406,7 @@ fn least_on(panels: &Panels, s: f64, delta: f64, index: usize, [lo, hi]: [f64; 2
     let radius = |x: f64| span.radius(0.5 * (lo + hi) + 0.5 * (hi - lo) * x);
     let gap = |x: f64| gap_from(panels, s, delta, radius(x));
     let least = |a: [f64; 2], b: [f64; 2]| if b[1] < a[1] { b } else { a };
-    let series = Rule::of(SEARCHED).series(gap);
+    let series = ChebyshevRule::of(SEARCHED).series(gap);
     let largest = series.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
     let tail: f64 = series.iter().rev().take(3).map(|c| c.abs()).sum();
     if tail > TAIL * largest && depth > 0 {

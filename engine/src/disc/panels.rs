@@ -1,8 +1,8 @@
 //! The panels of a table of g: on each, series of g, its slope, ∫₀ᵃ g and ∫₀ᵃ g², or a closed law.
 
-use super::chebyshev::{self, ROOT_NODES, Rule};
+use super::chebyshev::{self, ChebyshevRule, ROOT_NODES};
 use super::clusters::{Cluster, Clusters};
-use super::law::Law;
+use super::law::PowerTransform;
 use super::sources::GAUSS;
 use super::span::{Place, panel_of};
 use crate::gap::{panels::Span, panels::Variable};
@@ -36,7 +36,7 @@ pub struct Panel {
 
 /// What a table gives at one radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Values {
+pub struct TransformValues {
     /// a.
     pub radius: f64,
     /// g.
@@ -55,7 +55,7 @@ pub struct Values {
 #[derive(Debug)]
 pub struct Panels {
     pub(super) list: Vec<Arc<Panel>>,
-    pub(super) law: Option<Law>,
+    pub(super) law: Option<PowerTransform>,
     pub(super) smallest: f64,
     pub(super) digits: OnceLock<f64>,
     pub(super) moments: OnceLock<Clusters<1>>,
@@ -119,9 +119,9 @@ impl Panel {
     }
 
     /// The rule that resolves powers of √a on the panel: away from the axis half the nodes do.
-    pub fn edge_rule(&self) -> &'static Rule {
+    pub fn edge_rule(&self) -> &'static ChebyshevRule {
         let near_axis = self.span.hi > FAR_FROM_AXIS * self.span.lo;
-        Rule::of(if near_axis { ROOT_NODES } else { ROOT_NODES / 2 })
+        ChebyshevRule::of(if near_axis { ROOT_NODES } else { ROOT_NODES / 2 })
     }
 
     /// What a derivative by the radius is multiplied with, so that it is smooth on the whole panel: da/dv or 1.
@@ -231,7 +231,7 @@ impl Panels {
     pub fn slope_series(&self, panel: usize) -> Vec<f64> {
         let span = self.list[panel].span;
         match &self.law {
-            Some(law) => Rule::of(ROOT_NODES).series(|x| law.slope(span.radius(x))),
+            Some(law) => ChebyshevRule::of(ROOT_NODES).series(|x| law.slope(span.radius(x))),
             None => self.list[panel].slope.clone(),
         }
     }
@@ -240,7 +240,7 @@ impl Panels {
     pub fn value_series(&self, panel: usize) -> Vec<f64> {
         let span = self.list[panel].span;
         match &self.law {
-            Some(law) => Rule::of(ROOT_NODES).series(|x| law.value(span.radius(x))),
+            Some(law) => ChebyshevRule::of(ROOT_NODES).series(|x| law.value(span.radius(x))),
             None => self.list[panel].value.clone(),
         }
     }
@@ -264,11 +264,11 @@ impl Panels {
     }
 
     /// Everything at a place.
-    pub fn values(&self, at: Place) -> Values {
+    pub fn values(&self, at: Place) -> TransformValues {
         let panel = &*self.list[at.panel];
         let radius = panel.span.radius(at.x);
         if let Some(law) = &self.law {
-            return Values {
+            return TransformValues {
                 radius,
                 value: law.value(radius),
                 slope: law.slope(radius),
@@ -285,7 +285,7 @@ impl Panels {
         } else {
             [weighted, by_x / half / stretch]
         };
-        Values {
+        TransformValues {
             radius,
             value: chebyshev::sum(&panel.value, at.x),
             slope,
@@ -369,7 +369,14 @@ impl Panels {
 }
 
 impl Panels {
-    pub(super) fn push(&mut self, span: Span, rule: &Rule, value: &[f64], slope: &[f64], steep: bool) {
+    pub(super) fn push(
+        &mut self,
+        span: Span,
+        rule: &ChebyshevRule,
+        value: &[f64],
+        slope: &[f64],
+        steep: bool,
+    ) {
         let series = |samples: &[f64]| {
             let mut out = vec![0.0; samples.len()];
             rule.coefficients(samples, &mut out);

@@ -5,7 +5,7 @@
 //! are too coarse for the gap, is a hole.
 
 use super::basis::{Basis, Evaluation, Order};
-use super::chebyshev::{self, Rule};
+use super::chebyshev::{self, ChebyshevRule};
 use super::solution::{Edges, Local, Solution};
 use super::span::Place;
 use crate::gap::Gap;
@@ -48,7 +48,7 @@ const OF_RINGS: Fineness = Fineness { tail: 1e-9, halvings: 4, of_holes: 9, loos
 
 /// One equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
+pub struct SampledState {
     /// δ.
     pub approach: f64,
     /// P.
@@ -63,12 +63,12 @@ pub struct Sample {
 
 /// One panel: the series of δ, P, dδ/dv, dP/dv, U, and of the share of a zone that is in contact.
 #[derive(Debug)]
-pub struct Panel {
+pub struct SampledPanel {
     span: Span,
     series: [Vec<f64>; 6],
 }
 
-impl Panel {
+impl SampledPanel {
     /// Its width, a length.
     pub fn width(&self) -> f64 {
         self.span.hi - self.span.lo
@@ -78,7 +78,7 @@ impl Panel {
 /// Equilibria in panels.
 #[derive(Debug, Default)]
 pub struct Sampled {
-    panels: Vec<Arc<Panel>>,
+    panels: Vec<Arc<SampledPanel>>,
     /// Of zones: where contact in them begins or ends.
     touches: Option<Vec<Place>>,
 }
@@ -107,7 +107,7 @@ impl Sampled {
         let mut panels = Vec::new();
         let source = |radii: &[f64]| {
             let found = basis.equilibria(problem, radii, Order::Slopes, progress);
-            let sample = |at: &Evaluation| Sample {
+            let sample = |at: &Evaluation| SampledState {
                 approach: at.approach,
                 force: at.force,
                 slopes: at.slopes(),
@@ -124,7 +124,7 @@ impl Sampled {
     }
 
     /// Zones in panels that ascend; contact in them begins or ends at the radii `touches`, which are borders of panels.
-    pub fn of_zones(panels: Vec<Arc<Panel>>, touches: &[f64]) -> Self {
+    pub fn of_zones(panels: Vec<Arc<SampledPanel>>, touches: &[f64]) -> Self {
         let mut zones = Self { panels, touches: None };
         zones.touches = Some(touches.iter().filter_map(|radius| zones.place(*radius)).collect());
         zones
@@ -132,29 +132,29 @@ impl Sampled {
 }
 
 /// What is asked for the equilibria at radii: as many of them as there are, up to the first radius that has none.
-type Source<'a> = dyn Fn(&[f64]) -> Vec<Sample> + 'a;
+type SampleSource<'a> = dyn Fn(&[f64]) -> Vec<SampledState> + 'a;
 
 /// Adds panels on which what `source` gives on `span` is resolved; `None` when `progress` said stop.
 pub fn resolve(
-    source: &Source<'_>,
+    source: &SampleSource<'_>,
     span: Span,
     fineness: Fineness,
     progress: &dyn Progress,
-    panels: &mut Vec<Arc<Panel>>,
+    panels: &mut Vec<Arc<SampledPanel>>,
 ) -> Option<()> {
     panel(source, span, fineness, 0, progress, panels)
 }
 
 /// Adds the panels of a span; `None` when `progress` said stop.
 fn panel(
-    source: &Source<'_>,
+    source: &SampleSource<'_>,
     span: Span,
     fineness: Fineness,
     depth: usize,
     progress: &dyn Progress,
-    panels: &mut Vec<Arc<Panel>>,
+    panels: &mut Vec<Arc<SampledPanel>>,
 ) -> Option<()> {
-    let rule = Rule::of(NODES);
+    let rule = ChebyshevRule::of(NODES);
     let radii: Vec<f64> = rule.nodes.iter().map(|x| span.radius(*x)).collect();
     let found = source(&radii);
     if found.len() < NODES && progress.stop() {
@@ -169,7 +169,7 @@ fn panel(
             out
         };
         let stretch = |j: usize| span.stretch(rule.nodes[j]);
-        let made = Panel {
+        let made = SampledPanel {
             span,
             series: [
                 series(&|j| found[j].approach),
@@ -216,7 +216,7 @@ impl Solution for Sampled {
     }
 
     fn at(&self, place: Place) -> Local {
-        let Panel { span, series } = &*self.panels[place.panel];
+        let SampledPanel { span, series } = &*self.panels[place.panel];
         let sum = |k: usize| chebyshev::sum(&series[k], place.x);
         Local {
             contact_radius: span.radius(place.x),
@@ -232,7 +232,7 @@ impl Solution for Sampled {
     }
 
     fn edges(&self, place: Place) -> Edges {
-        let Panel { span, series } = &*self.panels[place.panel];
+        let SampledPanel { span, series } = &*self.panels[place.panel];
         let radius = span.radius(place.x);
         if self.touches.is_none() {
             return Edges { contact_radius: radius, zone: None };

@@ -11,8 +11,8 @@
 //! ([`clusters`](super::clusters)). Angles come from differences a − r that are exact on the panels
 //! right of a break.
 
-use super::chebyshev::Rule;
-use super::clusters::{Cluster, Clusters, NODES, Part};
+use super::chebyshev::ChebyshevRule;
+use super::clusters::{Cluster, Clusters, NODES, SumPart};
 use super::span::panel_of;
 use crate::elementary::{atan2, cos};
 use crate::gap::Gap;
@@ -43,7 +43,7 @@ pub static GAUSS: LazyLock<[[f64; 2]; NODES]> = LazyLock::new(|| {
 
 /// h' and h'' on one panel.
 #[derive(Debug, Clone)]
-struct Source {
+struct PanelSource {
     span: Span,
     /// The series of h' and h'' over the radius, from `lo` to `hi`; nothing on the innermost panel.
     series: [[f64; NODES]; 2],
@@ -52,7 +52,7 @@ struct Source {
 /// The samples of a gap on its panels.
 #[derive(Debug, Clone)]
 pub struct Sources {
-    parts: Vec<Source>,
+    parts: Vec<PanelSource>,
     /// Gauss's nodes in r on each, with their weights times h' and times r h''.
     samples: Clusters<2>,
     /// The breaks at which h' jumps, with the jump.
@@ -71,7 +71,7 @@ fn slopes(gap: &dyn Gap, radii: &[f64; NODES]) -> [[f64; NODES]; 2] {
     [first, second]
 }
 
-impl Source {
+impl PanelSource {
     /// The panel, and its samples.
     fn new(gap: &dyn Gap, span: Span) -> (Self, Cluster<2>) {
         let (centre, half) = (0.5 * (span.lo + span.hi), 0.5 * (span.hi - span.lo));
@@ -88,7 +88,7 @@ impl Source {
         let weighted = if innermost {
             slopes(gap, &radii)
         } else {
-            let rule = Rule::of(NODES);
+            let rule = ChebyshevRule::of(NODES);
             let nodes: [f64; NODES] = std::array::from_fn(|j| centre + half * rule.nodes[j]);
             for (samples, series) in slopes(gap, &nodes).iter().zip(&mut series) {
                 rule.coefficients(samples, series);
@@ -120,7 +120,7 @@ fn sums(series: &[f64; NODES], places: &[f64; NODES]) -> [f64; NODES] {
 
 /// A radius a at which the transform is wanted, with exact differences from the radii around it.
 #[derive(Debug, Clone, Copy)]
-pub struct Target {
+pub struct TargetRadius {
     /// a.
     a: f64,
     /// The break below it and a less that break, exact; 0 and a where there is none.
@@ -128,7 +128,7 @@ pub struct Target {
     above: f64,
 }
 
-impl Target {
+impl TargetRadius {
     /// The radius at x of `span`.
     pub fn new(span: &Span, x: f64) -> Self {
         let a = span.radius(x);
@@ -158,7 +158,7 @@ impl Sources {
     /// The samples of `gap` on `spans`, panels from the axis on, and its jumps at those of `breaks`; `None` when `progress`
     /// said stop.
     pub fn new(gap: &dyn Gap, spans: &[Span], breaks: &[f64], progress: &dyn Progress) -> Option<Self> {
-        let part = |span: &Span| (!progress.stop()).then(|| Source::new(gap, *span));
+        let part = |span: &Span| (!progress.stop()).then(|| PanelSource::new(gap, *span));
         let (parts, samples) = spans.iter().map(part).collect::<Option<(Vec<_>, Vec<_>)>>()?;
         let samples = Clusters::new(samples, MANY);
         let mut jumps = Vec::new();
@@ -182,14 +182,14 @@ impl Sources {
     /// g and its derivative at x of `span`: by the radius, or by the panel's variable where h' jumps at its base and on the
     /// innermost panel.
     pub fn transform(&self, gap: &dyn Gap, span: &Span, x: f64) -> [f64; 2] {
-        let target = Target::new(span, x);
+        let target = TargetRadius::new(span, x);
         let a = target.a;
         let last = panel_of(&self.parts, |part| &part.span, a);
         let [mut first, mut second] = [0.0; 2];
-        let mut add = |part: Part<'_, 2>| {
+        let mut add = |part: SumPart<'_, 2>| {
             let [one, two] = match part {
-                Part::Far(cluster) => cluster.sums(a),
-                Part::Panel(i) => {
+                SumPart::Far(cluster) => cluster.sums(a),
+                SumPart::Panel(i) => {
                     let Span { lo, hi, variable } = self.parts[i].span;
                     if i < last && target.minus(hi) >= FAR * (hi - lo) {
                         self.samples.panel(i).sums(a)
@@ -204,7 +204,7 @@ impl Sources {
             second += two;
         };
         self.samples.visit(last, &|hi| target.minus(hi), &mut add);
-        add(Part::Panel(last));
+        add(SumPart::Panel(last));
         let mut slope = first + second;
         let mut own = 0.0;
         let base = if let Variable::Root { base } = span.variable { base } else { f64::NAN };
@@ -221,7 +221,7 @@ impl Sources {
 }
 
 /// ∫ h'/√(a² − r²) and ∫ r h''/√(a² − r²) over a near panel, as far as a, by angles.
-fn near(part: &Source, target: &Target) -> [f64; 2] {
+fn near(part: &PanelSource, target: &TargetRadius) -> [f64; 2] {
     let Span { lo, hi, .. } = part.span;
     let from = if hi >= target.a { 0.0 } else { target.angle(hi) };
     let to = target.angle(lo);
@@ -248,7 +248,7 @@ fn near(part: &Source, target: &Target) -> [f64; 2] {
 
 /// The same over the innermost panel, as far as a: near the axis in u, r ∝ u⁵, so that broken powers cost nothing, and the rest
 /// by angles.
-fn innermost(gap: &dyn Gap, target: &Target, hi: f64) -> [f64; 2] {
+fn innermost(gap: &dyn Gap, target: &TargetRadius, hi: f64) -> [f64; 2] {
     let a = target.a;
     let end = a.min(hi);
     let inner = 0.5 * end;

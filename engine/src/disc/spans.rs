@@ -2,7 +2,7 @@
 
 use crate::elementary::{ln, pow};
 use crate::gap::Gap;
-use crate::gap::{panels::Refused, panels::Span, panels::Variable};
+use crate::gap::{panels::Span, panels::Unresolved, panels::Variable};
 
 /// The slope of a gap grows on a panel by this factor at most, in so many parts at most.
 const GRADED: f64 = 1e3;
@@ -13,7 +13,7 @@ const MOST_PARTS: f64 = 64.0;
 pub enum TableError {
     /// The gap has structure too fine for the most panels.
     #[error(transparent)]
-    TooFine(Refused),
+    TooFine(Unresolved),
     /// It was no longer wanted.
     #[error("cancelled")]
     Cancelled,

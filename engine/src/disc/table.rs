@@ -12,16 +12,16 @@
 //! I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965), doi:10.1016/0020-7225(65)90019-4, eqs. (4.1)-(4.9), for g.
 
 use super::blend::Blend;
-use super::chebyshev::Rule;
+use super::chebyshev::ChebyshevRule;
 use super::clusters::NODES;
-use super::law::Law;
+use super::law::PowerTransform;
 use super::panels::{Panel, Panels};
 use super::sources::Sources;
 use super::spans::{TableError, graded};
 use super::{cubic, outside, waves};
 use crate::elementary::{exp2, log2, log10};
 use crate::gap::{Form, Gap, Piece, Wave};
-use crate::gap::{panels::Refused, panels::Span, panels::Variable, panels::divide};
+use crate::gap::{panels::Span, panels::Unresolved, panels::Variable, panels::divide};
 use crate::progress::{Progress, Unwatched};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -60,12 +60,12 @@ const CHECKS: u32 = 6;
 const KEPT: usize = 8;
 
 /// The tables of the last gaps, each with its key.
-pub type Kept<K> = Mutex<Vec<(K, Arc<Table>)>>;
+pub type KeptTables<K> = Mutex<Vec<(K, Arc<Table>)>>;
 
 /// How far panels reach and how finely they begin: nothing else decides them, so that an answer never depends on what was asked
 /// before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Stage {
+struct TableStage {
     /// They reach to 2^(k/4), or to the end of the gap.
     reach: i32,
     /// The innermost ends at [`SMALLEST`]·[`FINER`]^m of that.
@@ -79,7 +79,7 @@ pub struct Table {
     /// What the gap is a mixture of, with the weights, where that is known.
     blend: Option<(Arc<Blend>, Vec<f64>)>,
     /// The panels that have been asked for.
-    stages: Mutex<BTreeMap<Stage, Arc<Panels>>>,
+    stages: Mutex<BTreeMap<TableStage, Arc<Panels>>>,
 }
 
 impl fmt::Debug for Table {
@@ -111,7 +111,7 @@ impl Table {
     /// # Errors
     /// [`TableError`].
     pub fn shared<K: PartialEq + Clone + Send + 'static>(
-        store: &Kept<K>,
+        store: &KeptTables<K>,
         key: &K,
         gap: &Arc<dyn Gap>,
         reach: f64,
@@ -192,7 +192,7 @@ impl Table {
         // A positive number has a binary logarithm of some hundred at most.
         #[expect(clippy::cast_possible_truncation)]
         let steps = (4.0 * log2(reach.max(f64::MIN_POSITIVE)) - 1e-9).ceil() as i32;
-        let stage = Stage { reach: if whole { i32::MAX } else { steps }, fineness };
+        let stage = TableStage { reach: if whole { i32::MAX } else { steps }, fineness };
         let lock = || self.stages.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = lock().get(&stage) {
             return Ok(Arc::clone(known));
@@ -200,7 +200,7 @@ impl Table {
         // Not under the lock: another radius must not wait for this one.
         let reach = if whole { end } else { exp2(0.25 * f64::from(steps)).max(reach).min(end) };
         let law = match self.form {
-            Form::Power { factor, exponent } => Some(Law::new(factor, exponent)),
+            Form::Power { factor, exponent } => Some(PowerTransform::new(factor, exponent)),
             _ => None,
         };
         let smallest = SMALLEST * FINER.powi(fineness) * reach;
@@ -218,13 +218,13 @@ impl Table {
         }
         match &self.form {
             Form::Power { exponent, .. } => {
-                let spans = Law::spans(*exponent, reach, panels.smallest);
+                let spans = PowerTransform::spans(*exponent, reach, panels.smallest);
                 panels.list.extend(spans.into_iter().map(|span| Arc::new(Panel::closed(span))));
             }
             Form::Cubic(pieces) => {
                 let pieces = &parted(pieces, panels.smallest);
                 let samples = cubic::transform(pieces, 0, progress).ok_or(TableError::Cancelled)?;
-                let rule = Rule::of(cubic::NODES);
+                let rule = ChebyshevRule::of(cubic::NODES);
                 for (piece, [value, by_variable]) in pieces.iter().zip(samples) {
                     let span =
                         Span { lo: piece.lo, hi: piece.hi, variable: Variable::Root { base: piece.lo } };
@@ -240,7 +240,7 @@ impl Table {
                 let spans = wave_spans(waves, reach, panels.smallest)?;
                 let samples =
                     waves::transform(*curvature, waves, &spans, progress).ok_or(TableError::Cancelled)?;
-                let rule = Rule::of(waves::NODES);
+                let rule = ChebyshevRule::of(waves::NODES);
                 for (span, [value, slope]) in spans.into_iter().zip(samples) {
                     panels.push(span, rule, &value, &slope, false);
                 }
@@ -257,7 +257,7 @@ impl Table {
                 };
                 let sampled =
                     Sources::new(&*self.gap, &spans, &breaks, progress).ok_or(TableError::Cancelled)?;
-                let rule = Rule::of(NODES);
+                let rule = ChebyshevRule::of(NODES);
                 for span in spans {
                     if progress.stop() {
                         return Err(TableError::Cancelled);
@@ -359,7 +359,7 @@ fn wave_spans(waves: &[Wave], reach: f64, smallest: f64) -> Result<Vec<Span>, Ta
     let width = f64::from_bits(width.to_bits() & !0xffff);
     let radius = MOST_WAVE_PANELS * width;
     if radius < reach {
-        return Err(TableError::TooFine(Refused { radius, largest: reach, panels: MOST_WAVE_PANELS }));
+        return Err(TableError::TooFine(Unresolved { radius, largest: reach, panels: MOST_WAVE_PANELS }));
     }
     let mut spans = Vec::new();
     let mut lo = 0.0;
@@ -388,7 +388,7 @@ mod tests {
     use crate::gap::{Jet, Shape};
     use crate::gap::{formula::FormulaParameter, formula::TypedGap};
     use crate::gap::{
-        shapes::ExactSphere, shapes::Harmonic, shapes::Harmonics, shapes::PowerLaw, shapes::Profile,
+        shapes::ExactSphere, shapes::Harmonic, shapes::Harmonics, shapes::PowerLaw, shapes::ProfileGap,
         shapes::Smoothing,
     };
     use std::f64::consts::{FRAC_PI_2, PI};
@@ -517,7 +517,7 @@ mod tests {
     fn a_profile_ends_with_its_last_row() {
         let radii: Vec<f64> = (0..60).map(|i| 0.01 * f64::from(i)).collect();
         let gaps: Vec<f64> = radii.iter().map(|r| r * r / 2.0 + 1e-3 * (30.0 * r).cos()).collect();
-        let profile = Profile::new(&radii, &gaps, Smoothing::None).unwrap();
+        let profile = ProfileGap::new(&radii, &gaps, Smoothing::None).unwrap();
         let knots = profile.knots()[1..].to_vec();
         let gap: Arc<dyn Gap> = Arc::new(profile);
         let table = made(&gap, 0.3);

@@ -9,7 +9,7 @@
 //! panels of one width share: with the addition theorems a panel takes one sine and cosine for each θ, not one for each θ
 //! and x.
 
-use super::chebyshev::Rule;
+use super::chebyshev::ChebyshevRule;
 use crate::elementary::{sin, sin_cos};
 use crate::gap::Wave;
 use crate::gap::panels::Span;
@@ -41,7 +41,7 @@ pub fn transform(
     spans: &[Span],
     progress: &dyn Progress,
 ) -> Option<Vec<[[f64; NODES]; 2]>> {
-    let rule = Rule::of(NODES);
+    let rule = ChebyshevRule::of(NODES);
     let mut samples: Vec<[[f64; NODES]; 2]> = spans
         .iter()
         .map(|span| {
@@ -51,16 +51,16 @@ pub fn transform(
         .collect();
     let Some(farthest) = spans.last().map(|span| span.hi) else { return Some(samples) };
     let steepest = waves.iter().fold(0.0_f64, |most, wave| most.max(wave.wavenumber));
-    let theta = &*Angles::of(PER_RADIAN * steepest * farthest + MORE);
+    let theta = &*WaveAngles::of(PER_RADIAN * steepest * farthest + MORE);
     for wave in waves {
-        let mut shared: Option<(f64, Shared)> = None;
+        let mut shared: Option<(f64, PhaseTable)> = None;
         for (span, samples) in spans.iter().zip(&mut samples) {
             if progress.stop() {
                 return None;
             }
             let [centre, half] = span.line();
             if shared.as_ref().is_none_or(|(width, _)| width.to_bits() != half.to_bits()) {
-                shared = Some((half, Shared::new(theta, wave.wavenumber * half)));
+                shared = Some((half, PhaseTable::new(theta, wave.wavenumber * half)));
             }
             if let Some((_, shared)) = &shared {
                 add(wave, theta, shared, [centre, half], samples);
@@ -81,7 +81,7 @@ pub fn at(curvature: f64, waves: &[Wave], a: f64) -> ([f64; 2], [f64; 3]) {
     let mut slopes = [2.0 * curvature * a, 2.0 * curvature, 0.0];
     for wave in waves {
         let q = wave.wavenumber;
-        let theta = &*Angles::of(PER_RADIAN * q * a + MORE);
+        let theta = &*WaveAngles::of(PER_RADIAN * q * a + MORE);
         let [sine_phase, cosine_phase] = wave.phase;
         let [mut s0, mut s2, mut c1, mut c3] = [0.0; 4];
         for (t, weight) in theta.sines.iter().zip(&theta.weights) {
@@ -104,17 +104,17 @@ pub fn at(curvature: f64, waves: &[Wave], a: f64) -> ([f64; 2], [f64; 3]) {
 }
 
 /// Gauss's nodes in θ on (0, π/2): the half of a rule on (0, π), about whose middle everything is symmetric.
-struct Angles {
+struct WaveAngles {
     /// sin θ.
     sines: Vec<f64>,
     /// The weights of ∫ dθ.
     weights: Vec<f64>,
 }
 
-impl Angles {
+impl WaveAngles {
     /// The rule of at least so many nodes: one of a few sizes, each made once while it is small enough to be kept.
     fn of(nodes: f64) -> Arc<Self> {
-        static RULES: [OnceLock<Arc<Angles>>; KEPT] = [const { OnceLock::new() }; KEPT];
+        static RULES: [OnceLock<Arc<WaveAngles>>; KEPT] = [const { OnceLock::new() }; KEPT];
         // Positive and at most some thousand.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let groups = (nodes / GROUP as f64).ceil() as usize;
@@ -133,14 +133,14 @@ impl Angles {
 }
 
 /// The cosine and sine of q d x sin θ for the first half of the nodes in x, for each θ.
-struct Shared {
+struct PhaseTable {
     cosines: Vec<[f64; HALF]>,
     sines: Vec<[f64; HALF]>,
 }
 
-impl Shared {
-    fn new(theta: &Angles, width: f64) -> Self {
-        let rule = Rule::of(NODES);
+impl PhaseTable {
+    fn new(theta: &WaveAngles, width: f64) -> Self {
+        let rule = ChebyshevRule::of(NODES);
         let angles: Vec<f64> = theta
             .sines
             .iter()
@@ -165,8 +165,8 @@ fn sines_and_cosines(angles: &[f64]) -> (Vec<f64>, Vec<f64>) {
 /// Adds what one wave gives on one panel.
 fn add(
     wave: &Wave,
-    theta: &Angles,
-    shared: &Shared,
+    theta: &WaveAngles,
+    shared: &PhaseTable,
     [centre, half]: [f64; 2],
     samples: &mut [[f64; NODES]; 2],
 ) {
@@ -189,7 +189,7 @@ fn add(
             slope_odd[j] -= steep_sin * s[j];
         }
     }
-    let nodes = &Rule::of(NODES).nodes;
+    let nodes = &ChebyshevRule::of(NODES).nodes;
     let size = wave.amplitude * q;
     for j in 0..HALF {
         for (at, sign) in [(j, 1.0), (NODES - 1 - j, -1.0)] {

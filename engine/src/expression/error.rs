@@ -19,14 +19,14 @@ const POWERS: &str = "; powers are written with ^";
 
 /// A place in a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Place {
+pub struct TextPlace {
     /// The offset in bytes.
     pub byte: usize,
     /// The column in characters, counted from 1.
     pub column: usize,
 }
 
-impl Place {
+impl TextPlace {
     /// The place of the byte `byte` of `text`.
     pub fn of(text: &str, byte: usize) -> Self {
         let before = text.char_indices().take_while(|&(at, _)| at < byte).count();
@@ -39,14 +39,14 @@ impl Place {
 #[error("column {}: {problem}", place.column)]
 pub struct FormulaError {
     /// Where it was noticed.
-    pub place: Place,
+    pub place: TextPlace,
     /// What is wrong there.
-    pub problem: Problem,
+    pub problem: SyntaxProblem,
 }
 
 /// What can be wrong with an expression. Foreign text in it is short and safe to show.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum Problem {
+pub enum SyntaxProblem {
     /// More text than a formula may have.
     #[error("the text is longer than {LENGTH} characters")]
     TooLong,
@@ -149,7 +149,7 @@ fn in_ascii(character: char) -> Option<&'static str> {
     })
 }
 
-impl Problem {
+impl SyntaxProblem {
     /// The problem of a character beyond ASCII.
     pub(super) fn not_ascii(character: char) -> Self {
         Self::NotAscii { character: quoted(character), instead: in_ascii(character) }

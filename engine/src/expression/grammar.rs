@@ -3,7 +3,7 @@
 //! The grammar stands in the head of [`super`]. Every loop moves forward and every descent is counted, so the time
 //! and the stack that a text takes are bounded by its length: [`LENGTH`], [`DEPTH`], [`OPERATIONS`].
 
-use super::error::{DEPTH, FormulaError, LENGTH, NAME, OPERATIONS, Place, Problem, piece};
+use super::error::{DEPTH, FormulaError, LENGTH, NAME, OPERATIONS, SyntaxProblem, TextPlace, piece};
 use super::function::{Binary, Function, RADIUS, Unary, constant};
 use super::program::{Op, Program};
 use winnow::ascii::{digit0, digit1, multispace0};
@@ -15,34 +15,34 @@ use winnow::token::{one_of, take_while};
 
 /// What is written while the text is read.
 #[derive(Debug)]
-struct Writer {
+struct ProgramWriter {
     program: Program,
     operations: usize,
     /// Whether r and parameters may stand in the text.
     variables: bool,
 }
 
-type Input<'a> = Stateful<LocatingSlice<&'a str>, &'a mut Writer>;
+type FormulaInput<'a> = Stateful<LocatingSlice<&'a str>, &'a mut ProgramWriter>;
 
 /// A problem at a byte offset.
 #[derive(Debug)]
-struct Fault {
+struct SyntaxFault {
     byte: usize,
-    problem: Problem,
+    problem: SyntaxProblem,
 }
 
 /// The grammar fails without a word of its own only where an operand must stand.
-impl ParserError<Input<'_>> for Fault {
+impl ParserError<FormulaInput<'_>> for SyntaxFault {
     type Inner = Self;
 
-    fn from_input(input: &Input<'_>) -> Self {
+    fn from_input(input: &FormulaInput<'_>) -> Self {
         // Blanks are skipped together with what follows them: here they still stand before it.
         let rest: &str = input;
         let trimmed = rest.trim_ascii_start();
         let byte = input.current_token_start() + rest.len() - trimmed.len();
         let problem = match trimmed.chars().next() {
-            Some(character) if !character.is_ascii() => Problem::not_ascii(character),
-            _ => Problem::Operand { found: piece(trimmed) },
+            Some(character) if !character.is_ascii() => SyntaxProblem::not_ascii(character),
+            _ => SyntaxProblem::Operand { found: piece(trimmed) },
         };
         Self { byte, problem }
     }
@@ -52,10 +52,10 @@ impl ParserError<Input<'_>> for Fault {
     }
 }
 
-type Parsed<T = ()> = Result<T, ErrMode<Fault>>;
+type Parsed<T = ()> = Result<T, ErrMode<SyntaxFault>>;
 
-fn fail<T>(byte: usize, problem: Problem) -> Parsed<T> {
-    Err(ErrMode::Cut(Fault { byte, problem }))
+fn fail<T>(byte: usize, problem: SyntaxProblem) -> Parsed<T> {
+    Err(ErrMode::Cut(SyntaxFault { byte, problem }))
 }
 
 /// The program of a text that is an expression in r and named parameters.
@@ -68,7 +68,10 @@ pub fn formula(text: &str) -> Result<Program, FormulaError> {
     if rest.is_empty() {
         return Ok(program);
     }
-    Err(FormulaError { place: Place::of(text, end), problem: after_operand(rest, "an operator or the end") })
+    Err(FormulaError {
+        place: TextPlace::of(text, end),
+        problem: after_operand(rest, "an operator or the end"),
+    })
 }
 
 /// The program of the expression without variables at the start of a text, and the byte at which what follows begins.
@@ -80,13 +83,13 @@ pub fn number(text: &str) -> Result<(Program, usize), FormulaError> {
 }
 
 fn leading(text: &str, variables: bool) -> Result<(Program, usize), FormulaError> {
-    let at = |byte, problem| FormulaError { place: Place::of(text, byte), problem };
+    let at = |byte, problem| FormulaError { place: TextPlace::of(text, byte), problem };
     if let Some((byte, _)) = text.char_indices().nth(LENGTH) {
-        return Err(at(byte, Problem::TooLong));
+        return Err(at(byte, SyntaxProblem::TooLong));
     }
-    let mut writer = Writer { program: Program::default(), operations: 0, variables };
+    let mut writer = ProgramWriter { program: Program::default(), operations: 0, variables };
     let mut input = Stateful { input: LocatingSlice::new(text), state: &mut writer };
-    let end = |input: &mut Input| {
+    let end = |input: &mut FormulaInput| {
         sum(input, 0)?;
         blanks(input)?;
         Ok(input.current_token_start())
@@ -95,59 +98,59 @@ fn leading(text: &str, variables: bool) -> Result<(Program, usize), FormulaError
         Ok(end) => Ok((writer.program, end)),
         Err(ErrMode::Backtrack(fault) | ErrMode::Cut(fault)) => Err(at(fault.byte, fault.problem)),
         // Only a stream that is still coming in can be incomplete.
-        Err(ErrMode::Incomplete(_)) => Err(at(text.len(), Problem::Operand { found: piece("") })),
+        Err(ErrMode::Incomplete(_)) => Err(at(text.len(), SyntaxProblem::Operand { found: piece("") })),
     }
 }
 
 /// What is wrong with `rest`, which stands behind a complete operand.
-fn after_operand(rest: &str, expected: &'static str) -> Problem {
+fn after_operand(rest: &str, expected: &'static str) -> SyntaxProblem {
     let found = piece(rest);
     match rest.chars().next() {
-        Some(c) if c.is_ascii_alphanumeric() || c == '(' => Problem::Juxtaposed { found },
-        Some(c) if !c.is_ascii() => Problem::not_ascii(c),
-        Some(',') => Problem::Operator { expected, found: format!("{found} (decimals have a point)") },
-        _ => Problem::Operator { expected, found },
+        Some(c) if c.is_ascii_alphanumeric() || c == '(' => SyntaxProblem::Juxtaposed { found },
+        Some(c) if !c.is_ascii() => SyntaxProblem::not_ascii(c),
+        Some(',') => SyntaxProblem::Operator { expected, found: format!("{found} (decimals have a point)") },
+        _ => SyntaxProblem::Operator { expected, found },
     }
 }
 
-fn blanks(input: &mut Input) -> Parsed {
+fn blanks(input: &mut FormulaInput) -> Parsed {
     multispace0.void().parse_next(input)
 }
 
 /// One of the characters, if it comes next.
-fn symbol<const N: usize>(input: &mut Input, of: [char; N]) -> Parsed<Option<char>> {
+fn symbol<const N: usize>(input: &mut FormulaInput, of: [char; N]) -> Parsed<Option<char>> {
     opt(preceded(multispace0, one_of(of))).parse_next(input)
 }
 
-fn emit(input: &mut Input, op: Op) -> Parsed {
+fn emit(input: &mut FormulaInput, op: Op) -> Parsed {
     let writer = &mut *input.state;
     writer.operations += usize::from(matches!(op, Op::Unary(_) | Op::Binary(_)));
     writer.program.ops.push(op);
     if writer.operations > OPERATIONS {
-        return fail(input.current_token_start(), Problem::TooManyOperations);
+        return fail(input.current_token_start(), SyntaxProblem::TooManyOperations);
     }
     Ok(())
 }
 
-fn sum(input: &mut Input, depth: usize) -> Parsed {
+fn sum(input: &mut FormulaInput, depth: usize) -> Parsed {
     product(input, depth)?;
     while let Some(sign) = symbol(input, ['+', '-'])? {
-        cut_err(|input: &mut Input| product(input, depth)).parse_next(input)?;
+        cut_err(|input: &mut FormulaInput| product(input, depth)).parse_next(input)?;
         emit(input, Op::Binary(if sign == '+' { Binary::Add } else { Binary::Subtract }))?;
     }
     Ok(())
 }
 
-fn product(input: &mut Input, depth: usize) -> Parsed {
+fn product(input: &mut FormulaInput, depth: usize) -> Parsed {
     unary(input, depth)?;
     while let Some(sign) = symbol(input, ['*', '/'])? {
-        cut_err(|input: &mut Input| unary(input, depth)).parse_next(input)?;
+        cut_err(|input: &mut FormulaInput| unary(input, depth)).parse_next(input)?;
         emit(input, Op::Binary(if sign == '*' { Binary::Multiply } else { Binary::Divide }))?;
     }
     Ok(())
 }
 
-fn unary(input: &mut Input, depth: usize) -> Parsed {
+fn unary(input: &mut FormulaInput, depth: usize) -> Parsed {
     // A loop and not a descent: a row of signs takes no stack.
     let mut negative = false;
     while let Some(sign) = symbol(input, ['+', '-'])? {
@@ -157,27 +160,27 @@ fn unary(input: &mut Input, depth: usize) -> Parsed {
     if negative { emit(input, Op::Unary(Unary::Negate)) } else { Ok(()) }
 }
 
-fn power(input: &mut Input, depth: usize) -> Parsed {
+fn power(input: &mut FormulaInput, depth: usize) -> Parsed {
     operand(input, depth)?;
     if symbol(input, ['^'])?.is_some() {
         let depth = deeper(input, depth)?;
-        cut_err(|input: &mut Input| unary(input, depth)).parse_next(input)?;
+        cut_err(|input: &mut FormulaInput| unary(input, depth)).parse_next(input)?;
         emit(input, Op::Binary(Binary::Power))?;
     }
     Ok(())
 }
 
-fn deeper(input: &Input, depth: usize) -> Parsed<usize> {
-    if depth < DEPTH { Ok(depth + 1) } else { fail(input.current_token_start(), Problem::TooDeep) }
+fn deeper(input: &FormulaInput, depth: usize) -> Parsed<usize> {
+    if depth < DEPTH { Ok(depth + 1) } else { fail(input.current_token_start(), SyntaxProblem::TooDeep) }
 }
 
-fn operand(input: &mut Input, depth: usize) -> Parsed {
+fn operand(input: &mut FormulaInput, depth: usize) -> Parsed {
     let start = input.checkpoint();
     blanks(input)?;
     let operand = alt((
         literal,
-        |input: &mut Input| named(input, depth),
-        |input: &mut Input| enclosed(input, depth, false).map(|_| ()),
+        |input: &mut FormulaInput| named(input, depth),
+        |input: &mut FormulaInput| enclosed(input, depth, false).map(|_| ()),
     ))
     .parse_next(input);
     if let Err(ErrMode::Backtrack(_)) = operand {
@@ -186,36 +189,36 @@ fn operand(input: &mut Input, depth: usize) -> Parsed {
     operand
 }
 
-fn literal(input: &mut Input) -> Parsed {
+fn literal(input: &mut FormulaInput) -> Parsed {
     let byte = input.current_token_start();
     let mantissa = alt(((digit1, opt(('.', digit0))).void(), ('.', digit1).void()));
     let exponent = (one_of(['e', 'E']), opt(one_of(['+', '-'])), digit1);
     let digits: &str = (mantissa, opt(exponent)).take().parse_next(input)?;
     match digits.parse() {
         Ok(number) if f64::is_finite(number) => emit(input, Op::Number(number)),
-        _ => fail(byte, Problem::LargeNumber { number: digits.chars().take(NAME).collect() }),
+        _ => fail(byte, SyntaxProblem::LargeNumber { number: digits.chars().take(NAME).collect() }),
     }
 }
 
-fn named(input: &mut Input, depth: usize) -> Parsed {
+fn named(input: &mut FormulaInput, depth: usize) -> Parsed {
     let byte = input.current_token_start();
     let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let name: &str =
         (one_of(|c: char| c.is_ascii_alphabetic()), take_while(0.., letters)).take().parse_next(input)?;
     if name.len() > NAME {
-        return fail(byte, Problem::LongName);
+        return fail(byte, SyntaxProblem::LongName);
     }
     let owned = || name.to_owned();
     let called = input.trim_ascii_start().starts_with('(');
     if let Some(function) = Function::named(name) {
         if !called {
-            return fail(byte, Problem::Uncalled { name: owned() });
+            return fail(byte, SyntaxProblem::Uncalled { name: owned() });
         }
         blanks(input)?;
         let given = enclosed(input, depth, true)?;
         let takes = function.arguments();
         if given != takes {
-            return fail(byte, Problem::Arguments { name: owned(), takes, given });
+            return fail(byte, SyntaxProblem::Arguments { name: owned(), takes, given });
         }
         return emit(
             input,
@@ -229,10 +232,10 @@ fn named(input: &mut Input, depth: usize) -> Parsed {
         return emit(input, Op::Number(value));
     }
     if called && name != RADIUS {
-        return fail(byte, Problem::UnknownFunction { name: owned() });
+        return fail(byte, SyntaxProblem::UnknownFunction { name: owned() });
     }
     if !input.state.variables {
-        return fail(byte, Problem::Variable { name: owned() });
+        return fail(byte, SyntaxProblem::Variable { name: owned() });
     }
     if name == RADIUS {
         return emit(input, Op::Radius);
@@ -246,13 +249,13 @@ fn named(input: &mut Input, depth: usize) -> Parsed {
 }
 
 /// One sum in parentheses, or with `commas` several; the number of them.
-fn enclosed(input: &mut Input, depth: usize, commas: bool) -> Parsed<usize> {
+fn enclosed(input: &mut FormulaInput, depth: usize, commas: bool) -> Parsed<usize> {
     let opening = input.current_token_start();
     '('.parse_next(input)?;
     let depth = deeper(input, depth)?;
     let mut given = 0;
     loop {
-        cut_err(|input: &mut Input| sum(input, depth)).parse_next(input)?;
+        cut_err(|input: &mut FormulaInput| sum(input, depth)).parse_next(input)?;
         given += 1;
         if !commas || symbol(input, [','])?.is_none() {
             break;
@@ -265,7 +268,7 @@ fn enclosed(input: &mut Input, depth: usize, commas: bool) -> Parsed<usize> {
     let byte = input.current_token_start();
     if input.is_empty() {
         // Offset and column are the same here: so far everything was ASCII.
-        return fail(byte, Problem::Unclosed { opened: opening + 1 });
+        return fail(byte, SyntaxProblem::Unclosed { opened: opening + 1 });
     }
     fail(byte, after_operand(input, if commas { "an operator, ',' or ')'" } else { "an operator or ')'" }))
 }
@@ -349,21 +352,21 @@ mod tests {
             assert_eq!(refusal(text), message, "{text}");
         }
         let place = formula("2 * r + λ").unwrap_err().place;
-        assert_eq!(place, Place { byte: 8, column: 9 });
+        assert_eq!(place, TextPlace { byte: 8, column: 9 });
     }
 
     #[test]
     fn hostile_text_is_refused_with_the_limit() {
         let nested = |depth: usize| format!("{}r{}", "(".repeat(depth), ")".repeat(depth));
         assert!(formula(&nested(DEPTH)).is_ok());
-        assert_eq!(formula(&nested(DEPTH + 1)).unwrap_err().problem, Problem::TooDeep);
-        assert_eq!(formula(&"sin(".repeat(1000)).unwrap_err().problem, Problem::TooDeep);
-        assert_eq!(formula(&"2^".repeat(2000)).unwrap_err().problem, Problem::TooDeep);
-        assert_eq!(formula(&"r+".repeat(2000)).unwrap_err().problem, Problem::TooManyOperations);
-        assert_eq!(formula(&"r".repeat(LENGTH)).unwrap_err().problem, Problem::LongName);
+        assert_eq!(formula(&nested(DEPTH + 1)).unwrap_err().problem, SyntaxProblem::TooDeep);
+        assert_eq!(formula(&"sin(".repeat(1000)).unwrap_err().problem, SyntaxProblem::TooDeep);
+        assert_eq!(formula(&"2^".repeat(2000)).unwrap_err().problem, SyntaxProblem::TooDeep);
+        assert_eq!(formula(&"r+".repeat(2000)).unwrap_err().problem, SyntaxProblem::TooManyOperations);
+        assert_eq!(formula(&"r".repeat(LENGTH)).unwrap_err().problem, SyntaxProblem::LongName);
         assert_eq!(formula(&"9".repeat(LENGTH)).unwrap_err().to_string().len(), 10 + 11 + NAME + 13);
         let long = formula(&" ".repeat(1 << 20)).unwrap_err();
-        assert_eq!((long.problem, long.place.column), (Problem::TooLong, LENGTH + 1));
+        assert_eq!((long.problem, long.place.column), (SyntaxProblem::TooLong, LENGTH + 1));
         assert!(formula(&format!("{}1", "-".repeat(LENGTH - 1))).is_ok());
     }
 

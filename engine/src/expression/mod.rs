@@ -24,5 +24,5 @@ pub mod function;
 pub mod grammar;
 pub mod program;
 
-pub use error::{FormulaError, Place, Problem};
+pub use error::{FormulaError, SyntaxProblem, TextPlace};
 pub use program::{Op, Program};

@@ -12,7 +12,7 @@
 //! ½ var min(z², c²)/(mean of z² up to c)² = ½ · 1.6815/0.8999² = 1.04. Squares of noise that is correlated as a ρᵏ are correlated as its
 //! square, and ρ itself is known to var ρ = (1 − ρ²)/m by the m rows apart: M. S. Bartlett, J. R. Stat. Soc. Suppl. 8, 27 (1946).
 
-use super::problem::Problem;
+use super::problem::FitProblem;
 use super::scatter::{Correlation, Scatter, together};
 use super::spread::Spread;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
@@ -23,7 +23,7 @@ pub(super) const LOST: f64 = 1.04;
 const SHARE: f64 = 0.3;
 
 /// What the variances of the values come from.
-pub(super) struct Made<'a> {
+pub(super) struct VarianceSources<'a> {
     /// H⁻¹.
     pub bread: &'a DMatrix<f64>,
     /// The Jacobian, each row times the root of its variance.
@@ -42,8 +42,8 @@ const NORMAL: f64 = 1e8;
 
 /// The degrees of freedom of the variance of each value.
 pub(super) fn degrees(
-    problem: &Problem,
-    made: &Made,
+    problem: &FitProblem,
+    made: &VarianceSources,
     spread: &Spread,
     scatter: &Scatter,
     robust: bool,
@@ -89,7 +89,7 @@ pub(super) fn degrees(
 }
 
 /// (∂ ln V'/∂ρ)² var ρ of each value; none of white noise.
-fn of_decay(problem: &Problem, made: &Made, scatter: &Scatter) -> DVector<f64> {
+fn of_decay(problem: &FitProblem, made: &VarianceSources, scatter: &Scatter) -> DVector<f64> {
     let none = DVector::zeros(made.whole.len());
     let Correlation { share, decay } = scatter.correlation;
     if share <= 0.0 || scatter.apart == 0 {

@@ -11,8 +11,8 @@
 
 use super::distance::Nearest;
 use super::least_squares::LeastSquares;
-use super::path::{Foot, Place};
-use super::problem::{ADHESION, Datum, Instrument, Parameter, Paths, Problem, START, Target};
+use super::path::{Foot, PathPlace};
+use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, Instrument, Paths, START, Target};
 use super::track::Mover;
 use crate::measured::Segment;
 use crate::preset::edge;
@@ -20,13 +20,13 @@ use crate::preset::schema::RANGE_KEYS;
 use nalgebra::{DMatrix, DVector};
 
 /// The paths at some values, and the feet of the points on them.
-pub struct Look {
+pub struct FootedPaths {
     paths: Paths,
     feet: Vec<Option<Nearest>>,
 }
 
 /// How the scaled point moves against its foot, per unit of u.
-fn shift(target: &Target) -> Option<fn(&Datum) -> Place> {
+fn shift(target: &Target) -> Option<fn(&Datum) -> PathPlace> {
     match target {
         Target::Offset => Some(|_| [-1.0, 0.0, 0.0]),
         Target::Baseline => Some(|_| [0.0, -1.0, 0.0]),
@@ -52,17 +52,17 @@ fn mover(target: &Target) -> Option<(Mover, Option<Segment>)> {
 }
 
 /// The derivative of the `k`th residual of a foot that moves by `by` for each unit of u.
-fn moved(foot: &Nearest, by: Place, weights: Place, k: usize) -> f64 {
+fn moved(foot: &Nearest, by: PathPlace, weights: PathPlace, k: usize) -> f64 {
     let part = |axis: usize| foot.normals[k][axis] * by[axis] * weights[axis];
     -(0..3).filter(|axis| weights[*axis] > 0.0).map(part).sum::<f64>()
 }
 
-impl Problem {
+impl FitProblem {
     /// The column of a value between instrument and model.
     fn of_shift(
         &self,
         feet: &[Option<Nearest>],
-        (shift, scale): (fn(&Datum) -> Place, f64),
+        (shift, scale): (fn(&Datum) -> PathPlace, f64),
         mut put: impl FnMut(usize, f64),
     ) {
         let (per, weights) = (self.per_point(), self.weights());
@@ -101,8 +101,14 @@ impl Problem {
     }
 
     /// The column of a value of the model.
-    fn of_model(&self, u: &[f64], j: usize, look: &Look, mut put: impl FnMut(usize, f64)) -> Option<()> {
-        let Look { paths, feet } = look;
+    fn of_model(
+        &self,
+        u: &[f64],
+        j: usize,
+        look: &FootedPaths,
+        mut put: impl FnMut(usize, f64),
+    ) -> Option<()> {
+        let FootedPaths { paths, feet } = look;
         let (per, weights) = (self.per_point(), self.weights());
         let closed = mover(&self.parameters[j].target);
         let mut beside = None;
@@ -136,7 +142,7 @@ impl Problem {
     }
 }
 
-impl Problem {
+impl FitProblem {
     /// How the residuals at `u` change with what `mover` moves, times `share` of each point by its number; points on jumps and at the ends
     /// of arcs stay.
     pub(super) fn changed(
@@ -145,7 +151,7 @@ impl Problem {
         mover: Mover,
         share: impl Fn(usize) -> f64,
     ) -> Option<DVector<f64>> {
-        let (_, Look { paths, feet }) = self.look(u)?;
+        let (_, FootedPaths { paths, feet }) = self.look(u)?;
         let (per, weights) = (self.per_point(), self.weights());
         let mut column = DVector::zeros(per * self.data.len());
         for (i, (datum, foot)) in self.data.iter().zip(&feet).enumerate() {
@@ -160,25 +166,25 @@ impl Problem {
 
     /// How the residuals at `u` change with a slope of the force over x.
     pub(super) fn tilted(&self, u: &[f64]) -> Option<DVector<f64>> {
-        let (_, Look { feet, .. }) = self.look(u)?;
+        let (_, FootedPaths { feet, .. }) = self.look(u)?;
         let mut column = DVector::zeros(self.per_point() * self.data.len());
         self.of_shift(&feet, (shift(&Target::Tilt)?, 1.0), |row, derivative| column[row] = derivative);
         column.iter().all(|x| x.is_finite()).then_some(column)
     }
 }
 
-impl LeastSquares for Problem {
-    type Look = Look;
+impl LeastSquares for FitProblem {
+    type Look = FootedPaths;
 
-    fn look(&self, u: &[f64]) -> Option<(DVector<f64>, Look)> {
+    fn look(&self, u: &[f64]) -> Option<(DVector<f64>, FootedPaths)> {
         let (paths, at): (Paths, Instrument) = (self.paths(u)?, self.instrument_at(u));
         let feet = self.feet(&paths, &at)?;
-        Some((self.told(&feet, &at), Look { paths, feet }))
+        Some((self.told(&feet, &at), FootedPaths { paths, feet }))
     }
 
-    fn derivatives(&self, u: &[f64], look: &Look) -> Option<DMatrix<f64>> {
+    fn derivatives(&self, u: &[f64], look: &FootedPaths) -> Option<DMatrix<f64>> {
         let mut jacobian = DMatrix::zeros(self.per_point() * self.data.len(), u.len());
-        for (j, Parameter { target, scale, .. }) in self.parameters.iter().enumerate() {
+        for (j, FreeParameter { target, scale, .. }) in self.parameters.iter().enumerate() {
             let mut column = jacobian.column_mut(j);
             let put = |row: usize, derivative: f64| column[row] = derivative;
             match (shift(target), scale) {

@@ -12,12 +12,12 @@
 //! factors. The condition is that of J with columns of length 1: beyond
 //! [`LARGEST_CONDITION`] no errors are told.
 
-use super::degrees::{Made, degrees};
+use super::degrees::{VarianceSources, degrees};
 use super::least_squares::Evaluated;
 use super::options::letter;
-use super::problem::{Parameter, Prior, Problem};
+use super::problem::{FitProblem, FreeParameter, Prior};
 use super::scatter::{Correlation, Scatter, together, variance};
-use super::solve::{HUBER, LEAST_SCALE, Solved};
+use super::solve::{HUBER, LEAST_SCALE, SolvedFit};
 use super::spread::{LEAST_LEFT, Spread};
 use crate::elementary::{exp, exp_m1, ln};
 use crate::preset::Preset;
@@ -54,7 +54,7 @@ pub struct Determined {
 }
 
 /// What the fit `solved` of `problem` determines, its noise correlated from row to row as `scatter` says.
-pub fn determined(problem: &Problem, solved: &Solved, scatter: &Scatter, robust: bool) -> Determined {
+pub fn determined(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatter, robust: bool) -> Determined {
     let (at, u) = (&solved.minimum.at, &solved.minimum.parameters[..]);
     let none = Determined {
         condition: f64::INFINITY,
@@ -93,7 +93,7 @@ pub fn determined(problem: &Problem, solved: &Solved, scatter: &Scatter, robust:
     };
     let shares = problem.priors.iter().map(|prior| (0..p).map(|j| share(prior, j)).collect()).collect();
     let errors = DVector::from_iterator(p, (0..p).map(|j| whole[(j, j)].sqrt()));
-    let made = Made {
+    let made = VarianceSources {
         bread: &bread,
         noisy: &noisy,
         jacobian: &at.jacobian,
@@ -167,7 +167,7 @@ impl White {
 ///
 /// B. Widrow and I. Kollár, *Quantization Noise* (2008), chapter 4. Rows apart that stand on both sides of an edge between two steps scatter by
 /// up to q/2 without any noise, so those in contact tell it, whose force goes over many steps.
-fn rounding(problem: &Problem, scatter: &Scatter, rows: usize) -> DVector<f64> {
+fn rounding(problem: &FitProblem, scatter: &Scatter, rows: usize) -> DVector<f64> {
     const TERMS: u32 = 20;
     let (per, step, sigma) = (problem.per_point(), problem.step, problem.sigma[1]);
     let found = scatter.contact.map_or(1.0, |s| s.min(1.0)) * sigma;
@@ -192,8 +192,8 @@ pub(super) struct Sandwich {
 }
 
 pub(super) fn sandwich(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     inner: &DMatrix<f64>,
     correlation: &Correlation,
     robust: bool,
@@ -255,7 +255,7 @@ fn level(residuals: &[f64], p: usize, robust: bool) -> f64 {
 /// `R +10 %, E* -4.7 %, γ -9.1 % together move the curve by less than its noise: fix one of them (only γ·R and E*·√R)`.
 pub(super) fn words(
     preset: &Preset,
-    parameters: &[Parameter],
+    parameters: &[FreeParameter],
     at: &Evaluated,
     u: &[f64],
     direction: &[f64],
@@ -297,7 +297,7 @@ pub(super) fn words(
 }
 
 /// `+10 %`, or for a shift `+3 um`.
-fn change(preset: &Preset, parameter: &Parameter, u: f64, by: f64) -> String {
+fn change(preset: &Preset, parameter: &FreeParameter, u: f64, by: f64) -> String {
     let (before, after) = (parameter.value(u), parameter.value(u + by));
     if parameter.scale.is_none() {
         let percent = 100.0 * exp_m1(by);
@@ -313,7 +313,7 @@ fn products(
     order: &[usize],
     moves: &[f64],
     lead: usize,
-    parameters: &[Parameter],
+    parameters: &[FreeParameter],
     name: &dyn Fn(usize) -> String,
 ) -> Option<String> {
     let mut products = Vec::new();

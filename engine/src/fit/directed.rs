@@ -6,7 +6,7 @@ use crate::measured::asked::signs_text;
 use crate::measured::points::Turned;
 use crate::measured::{Asked, Branches, Points};
 use crate::preset::Preset;
-use crate::progress::{Part, Progress};
+use crate::progress::{Progress, ProgressPart};
 use crate::units::number::short;
 
 /// A direction is the better one if its χ² is smaller by so much.
@@ -79,23 +79,25 @@ pub fn fit(
     }
     let branches = points.branches(&options.asked)?;
     let Some(other) = branches.or else { return fit_branches(preset, &branches, options, progress) };
-    let first = fit_branches(preset, &branches, options, &Part::new(progress, [0.0, 0.3]));
+    let first = fit_branches(preset, &branches, options, &ProgressPart::new(progress, [0.0, 0.3]));
     // One is judged by the noise of the other.
     let sigma = first.as_ref().map_or(options.asked.sigma, |fit| {
         let of = |axis: usize| Some(fit.noise.sigma[axis]).filter(|sigma| *sigma > 0.0);
         [of(0), of(1), of(2)]
     });
-    let along = |turned: Turned, sigma, progress: &Part| {
+    let along = |turned: Turned, sigma, progress: &ProgressPart| {
         let asked = Asked { turned: Some(turned), sigma, ..options.asked };
         let branches = points.branches(&asked)?;
         fit_branches(preset, &branches, &Options { asked, ..options.clone() }, progress)
     };
-    let second = along(other, sigma, &Part::new(progress, [0.3, 0.6]));
+    let second = along(other, sigma, &ProgressPart::new(progress, [0.3, 0.6]));
     let (first, second) = match (first, second) {
         (Ok(first), Ok(second)) => (first, second),
         (Ok(first), Err(_)) => return Ok(first),
         (Err(error), Err(_)) => return Err(error),
-        (Err(_), Ok(_)) => return along(other, options.asked.sigma, &Part::new(progress, [0.6, 1.0])),
+        (Err(_), Ok(_)) => {
+            return along(other, options.asked.sigma, &ProgressPart::new(progress, [0.6, 1.0]));
+        }
     };
     let [here, there] = [&first, &second].map(chi_squared);
     let [taken, left] = if here <= there { [branches.turned, other] } else { [other, branches.turned] };
@@ -105,7 +107,7 @@ pub fn fit(
     let mut found = if here < there {
         first
     } else {
-        along(other, options.asked.sigma, &Part::new(progress, [0.6, 1.0]))?
+        along(other, options.asked.sigma, &ProgressPart::new(progress, [0.6, 1.0]))?
     };
     found.notes.push(format!(
         "the points leave in doubt which way their columns run: with {} chi squared is {}, with {} it is {}. --signs, or data.signs, \

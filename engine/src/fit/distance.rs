@@ -7,7 +7,7 @@
 //! The polyline gives the stretch on which the foot lies; there it is the root of (m − c)·c', with the exact c'. An error ε of the
 //! foot changes r by ε² times the curvature. At the ends of a piece the distance is that from the end, signed as beside it.
 
-use super::path::{Foot, Path, Piece, Place, Vertex};
+use super::path::{FitPath, Foot, PathPiece, PathPlace, Vertex};
 use crate::elementary::hypot;
 
 /// The foot of a point.
@@ -18,25 +18,25 @@ pub struct Nearest {
     /// Where on it.
     pub foot: Foot,
     /// That place of the path.
-    pub at: Place,
+    pub at: PathPlace,
     /// The distances along the normals, one in a plane, two in space.
     pub residuals: [f64; 2],
     /// The derivatives of the residuals by the scaled point.
-    pub normals: [Place; 2],
+    pub normals: [PathPlace; 2],
 }
 
 /// A path in units of noise.
 #[derive(Debug)]
-pub struct Scaled<'a> {
-    path: &'a Path,
-    corners: Vec<Place>,
+pub struct ScaledPath<'a> {
+    path: &'a FitPath,
+    corners: Vec<PathPlace>,
     /// The derivatives by s at the corners.
-    slopes: Vec<Place>,
+    slopes: Vec<PathPlace>,
     /// The ends of the boxes around [`BOXED`] stretches each.
-    boxes: Vec<[Place; 2]>,
+    boxes: Vec<[PathPlace; 2]>,
     /// Those around [`BOXED`] boxes each.
-    chests: Vec<[Place; 2]>,
-    weights: Place,
+    chests: Vec<[PathPlace; 2]>,
+    weights: PathPlace,
 }
 
 /// The way along a curve at which the foot is found, in units of noise.
@@ -45,44 +45,44 @@ const STEPS: usize = 60;
 /// Stretches of the polyline that are passed over together where their box is too far away, and boxes where the one around them is.
 const BOXED: usize = 8;
 
-fn minus(a: Place, b: Place) -> Place {
+fn minus(a: PathPlace, b: PathPlace) -> PathPlace {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
-fn dot(a: Place, b: Place) -> f64 {
+fn dot(a: PathPlace, b: PathPlace) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn scaled(a: Place, by: Place) -> Place {
+fn scaled(a: PathPlace, by: PathPlace) -> PathPlace {
     // A coordinate without weight may be no number.
     std::array::from_fn(|i| if by[i] == 0.0 { 0.0 } else { a[i] * by[i] })
 }
 
 /// `sum` = a x + b y.
-fn sum(a: f64, x: Place, b: f64, y: Place) -> Place {
+fn sum(a: f64, x: PathPlace, b: f64, y: PathPlace) -> PathPlace {
     std::array::from_fn(|i| a * x[i] + b * y[i])
 }
 
 /// The squared distance of a point from a box; 0 within.
-fn from_box(m: Place, [lo, hi]: &[Place; 2]) -> f64 {
-    let off: Place = std::array::from_fn(|i| (lo[i] - m[i]).max(m[i] - hi[i]).max(0.0));
+fn from_box(m: PathPlace, [lo, hi]: &[PathPlace; 2]) -> f64 {
+    let off: PathPlace = std::array::from_fn(|i| (lo[i] - m[i]).max(m[i] - hi[i]).max(0.0));
     dot(off, off)
 }
 
 /// The box around some.
-fn around(some: impl Iterator<Item = [Place; 2]>) -> [Place; 2] {
+fn around(some: impl Iterator<Item = [PathPlace; 2]>) -> [PathPlace; 2] {
     some.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[lo, hi], ends| {
         [std::array::from_fn(|i| lo[i].min(ends[0][i])), std::array::from_fn(|i| hi[i].max(ends[1][i]))]
     })
 }
 
-impl<'a> Scaled<'a> {
+impl<'a> ScaledPath<'a> {
     /// `path` with the coordinates times `weights`, 1/σ, or 0 for one that is not measured.
     #[must_use]
-    pub fn new(path: &'a Path, weights: Place) -> Self {
-        let corners: Vec<Place> = path.vertices.iter().map(|vertex| scaled(vertex.at, weights)).collect();
+    pub fn new(path: &'a FitPath, weights: PathPlace) -> Self {
+        let corners: Vec<PathPlace> = path.vertices.iter().map(|vertex| scaled(vertex.at, weights)).collect();
         let slopes = path.vertices.iter().map(|vertex| scaled(vertex.slopes, weights)).collect();
-        let boxes: Vec<[Place; 2]> = (0..corners.len().saturating_sub(1))
+        let boxes: Vec<[PathPlace; 2]> = (0..corners.len().saturating_sub(1))
             .step_by(BOXED)
             .map(|from| {
                 around(corners[from..(from + BOXED + 1).min(corners.len())].iter().map(|at| [*at; 2]))
@@ -95,7 +95,7 @@ impl<'a> Scaled<'a> {
     /// The foot of the point `m`, in units of noise; `None` where the path is nothing. `box_of_last` is the box that holds the foot of the
     /// point before, where it is looked for first: rows that follow each other lie near each other.
     #[must_use]
-    pub fn nearest(&self, m: Place, box_of_last: &mut usize) -> Option<Nearest> {
+    pub fn nearest(&self, m: PathPlace, box_of_last: &mut usize) -> Option<Nearest> {
         let vertices = &self.path.vertices;
         let mut best = (f64::INFINITY, 0, 0.0);
         let first = *box_of_last;
@@ -119,7 +119,7 @@ impl<'a> Scaled<'a> {
         }
         let piece = vertices[at].piece;
         match self.path.pieces.get(piece)? {
-            Piece::Line([before, after]) => {
+            PathPiece::Line([before, after]) => {
                 let along = minus(scaled(*before, self.weights), scaled(*after, self.weights));
                 let foot = match share {
                     share if share <= 0.0 => Foot::Outer,
@@ -129,12 +129,12 @@ impl<'a> Scaled<'a> {
                 let at = self.path.foot(piece, foot)?;
                 told(self.weights, piece, (foot, at), minus(m, scaled(at, self.weights)), along)
             }
-            Piece::Arc(_) => self.on_arc(m, at),
+            PathPiece::Arc(_) => self.on_arc(m, at),
         }
     }
 
     /// Looks for a place nearer than `best`, its squared distance, its stretch and its share of that, in one box.
-    fn search(&self, m: Place, boxed: usize, best: &mut (f64, usize, f64)) {
+    fn search(&self, m: PathPlace, boxed: usize, best: &mut (f64, usize, f64)) {
         let vertices = &self.path.vertices;
         let from = boxed * BOXED;
         for (i, pair) in self.corners.windows(2).enumerate().skip(from).take(BOXED) {
@@ -157,7 +157,7 @@ impl<'a> Scaled<'a> {
     }
 
     /// The foot on an arc near the stretch from the corner `at` inward.
-    fn on_arc(&self, m: Place, at: usize) -> Option<Nearest> {
+    fn on_arc(&self, m: PathPlace, at: usize) -> Option<Nearest> {
         let vertices = &self.path.vertices;
         let piece = vertices[at].piece;
         // Half the slope of the squared distance, outward.
@@ -226,15 +226,15 @@ impl<'a> Scaled<'a> {
 /// The cubic between two corners of an arc, with the slopes of the curve at both: next to the curve itself, and had without it.
 struct Bridge {
     /// The inner end, and the outer.
-    ends: [Place; 2],
-    slopes: [Place; 2],
+    ends: [PathPlace; 2],
+    slopes: [PathPlace; 2],
     /// The way of s between them.
     way: f64,
 }
 
 impl Bridge {
     /// The place at a share of the way and its first two derivatives by the share.
-    fn at(&self, t: f64) -> [Place; 3] {
+    fn at(&self, t: f64) -> [PathPlace; 3] {
         let [a, b] = self.ends;
         let weights = [
             [t * (1.0 - t) * (1.0 - t), t * t * (t - 1.0), t * t * (3.0 - 2.0 * t)],
@@ -251,12 +251,12 @@ impl Bridge {
     }
 
     /// The second derivative by s.
-    fn bend(&self, t: f64) -> Place {
+    fn bend(&self, t: f64) -> PathPlace {
         self.at(t)[2].map(|x| x / (self.way * self.way))
     }
 
     /// The share of the way at which the point `m` has its foot.
-    fn foot(&self, m: Place) -> f64 {
+    fn foot(&self, m: PathPlace) -> f64 {
         const TIMES: usize = 20;
         const NEAR: f64 = 1e-12;
         let (mut lo, mut hi, mut t) = (0.0, 1.0, 0.5);
@@ -285,11 +285,11 @@ impl Bridge {
 
 /// The distances of `off` along the normals of `along`.
 fn told(
-    weights: Place,
+    weights: PathPlace,
     piece: usize,
-    (foot, at): (Foot, Place),
-    off: Place,
-    along: Place,
+    (foot, at): (Foot, PathPlace),
+    off: PathPlace,
+    along: PathPlace,
 ) -> Option<Nearest> {
     let length = dot(along, along).sqrt();
     if !(length > 0.0 && length.is_finite()) {

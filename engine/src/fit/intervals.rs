@@ -1,8 +1,8 @@
 //! Intervals that need no straight line: by the profile of χ², and by a block bootstrap.
 
-use super::least_squares::Settings;
-use super::problem::{Parameter, Problem, Target};
-use super::solve::{HUBER, Solved};
+use super::least_squares::MinimizationSettings;
+use super::problem::{FitProblem, FreeParameter, Target};
+use super::solve::{HUBER, SolvedFit};
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::preset::Value;
 use crate::progress::Progress;
@@ -11,8 +11,8 @@ use crate::progress::Progress;
 const RISE: f64 = 3.841_458_820_694_124;
 
 /// The rounds and the tolerance of a fit that begins next to its end.
-const WARM: Settings =
-    Settings { rounds: 40, tolerance: 1e-6, resolution: 1.0, huber: f64::INFINITY, nothing: 0.0 };
+const WARM: MinimizationSettings =
+    MinimizationSettings { rounds: 40, tolerance: 1e-6, resolution: 1.0, huber: f64::INFINITY, nothing: 0.0 };
 
 /// Below so many degrees of freedom an interval is much wider than 1.96 errors.
 pub const FEW_DEGREES: f64 = 40.0;
@@ -26,11 +26,11 @@ pub struct Bootstrapped {
     pub interval: [f64; 2],
 }
 
-impl Problem {
+impl FitProblem {
     /// The same with the parameter `j` held at `u`.
     pub(super) fn holding(&self, j: usize, u: f64) -> Option<Self> {
         let mut held = self.clone();
-        let Parameter { target, .. } = held.parameters.remove(j);
+        let FreeParameter { target, .. } = held.parameters.remove(j);
         let value = self.parameters[j].value(u);
         held.priors.retain(|prior| prior.parameter != j);
         for prior in &mut held.priors {
@@ -54,8 +54,8 @@ fn without(u: &[f64], j: usize) -> Vec<f64> {
 
 /// The ends of the 95 % interval of the parameter `j`, in base units, where χ² has risen by 3.84 and all others are fitted again.
 pub fn profile(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     error: f64,
     j: usize,
     robust: bool,
@@ -63,7 +63,8 @@ pub fn profile(
 ) -> Option<[f64; 2]> {
     const TIMES: usize = 12;
     let u = &solved.minimum.parameters;
-    let settings = Settings { huber: if robust { HUBER * solved.scale } else { f64::INFINITY }, ..WARM };
+    let settings =
+        MinimizationSettings { huber: if robust { HUBER * solved.scale } else { f64::INFINITY }, ..WARM };
     let scale = noise(problem, solved, robust);
     let end = |side: f64| {
         let mut others = without(u, j);
@@ -92,12 +93,12 @@ pub fn profile(
 }
 
 /// The noise of the residuals in σ by which a rise of the cost is judged.
-pub(super) fn noise(problem: &Problem, solved: &Solved, robust: bool) -> f64 {
+pub(super) fn noise(problem: &FitProblem, solved: &SolvedFit, robust: bool) -> f64 {
     if robust { solved.scale * stretch(problem, solved) } else { rms(problem, solved) }
 }
 
 /// How much more the loss rises than that of normal residuals: the root of mean ψ² over mean ψ'.
-fn stretch(problem: &Problem, solved: &Solved) -> f64 {
+fn stretch(problem: &FitProblem, solved: &SolvedFit) -> f64 {
     let real = problem.real(&solved.minimum.at.residuals);
     let psi: f64 = real.iter().map(|r| (r / solved.scale).clamp(-HUBER, HUBER).powi(2)).sum();
     let inside = real.iter().filter(|r| r.abs() <= HUBER * solved.scale).count().max(1);
@@ -105,7 +106,7 @@ fn stretch(problem: &Problem, solved: &Solved) -> f64 {
 }
 
 /// The root of the mean square of the residuals.
-fn rms(problem: &Problem, solved: &Solved) -> f64 {
+fn rms(problem: &FitProblem, solved: &SolvedFit) -> f64 {
     let real = problem.real(&solved.minimum.at.residuals);
     (real.iter().map(|r| r * r).sum::<f64>() / real.len() as f64).sqrt()
 }
@@ -125,8 +126,8 @@ pub fn block(residuals: &[f64]) -> usize {
 /// `count` fits to blocks of rows drawn at random with the seed `seed`, each from the fit; how many came to an end, and what they
 /// found.
 pub fn bootstrap(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     robust: bool,
     (count, seed): (usize, u64),
     progress: &dyn Progress,
@@ -135,7 +136,8 @@ pub fn bootstrap(
     let first: Vec<f64> = solved.minimum.at.residuals.iter().step_by(per).copied().collect();
     let (n, block) = (first.len(), block(&first));
     let mut random = SplitMix64::new(seed);
-    let settings = Settings { huber: if robust { HUBER * solved.scale } else { f64::INFINITY }, ..WARM };
+    let settings =
+        MinimizationSettings { huber: if robust { HUBER * solved.scale } else { f64::INFINITY }, ..WARM };
     let mut drawn = problem.clone();
     let mut found: Vec<Vec<f64>> = Vec::new();
     for i in 0..count {
@@ -162,7 +164,7 @@ pub fn bootstrap(
     if found.len() < 10 {
         return None;
     }
-    let of = |(j, parameter): (usize, &Parameter)| {
+    let of = |(j, parameter): (usize, &FreeParameter)| {
         let mut values: Vec<f64> = found.iter().map(|u| parameter.value(u[j])).collect();
         values.sort_by(f64::total_cmp);
         let many = values.len() as f64;

@@ -28,10 +28,10 @@ pub(super) use spring::of_spring;
 
 use super::fitted::Fitted;
 use super::path::Foot;
-use super::problem::{ADHESION, Paths, Problem};
+use super::problem::{ADHESION, FitProblem, Paths};
 use super::pulled::is_pulled;
 use super::scatter::Scatter;
-use super::solve::Solved;
+use super::solve::SolvedFit;
 use super::verdict::Reason;
 use crate::elementary::hypot;
 use crate::measured::converter::Clipped;
@@ -74,8 +74,8 @@ pub fn runs(residuals: &[f64]) -> f64 {
 
 /// What speaks against the fit `solved`, whose fitted preset is `preset`. `inner` is (JᵀJ)⁻¹ where the values are determined.
 pub(super) fn reasons(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     scatter: &Scatter,
     preset: &Preset,
     inner: Option<&DMatrix<f64>>,
@@ -136,7 +136,7 @@ fn of_range(preset: &Preset) -> Option<Reason> {
 }
 
 /// Values in SI that nothing has. In reduced units all sizes are possible.
-fn unlikely(problem: &Problem, solved: &Solved, preset: &Preset) -> Vec<Reason> {
+fn unlikely(problem: &FitProblem, solved: &SolvedFit, preset: &Preset) -> Vec<Reason> {
     let mut reasons = Vec::new();
     if !matches!(preset.units, UnitSystem::Si(_)) {
         return reasons;
@@ -165,8 +165,8 @@ fn unlikely(problem: &Problem, solved: &Solved, preset: &Preset) -> Vec<Reason> 
 /// What is to be doubted about a fit, and leaves its verdict. `is_known` says whether the noise of the force was given, or found in
 /// rows apart.
 pub(super) fn doubts(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
     fitted: &[Fitted],
@@ -215,7 +215,7 @@ pub(super) fn doubts(
 }
 
 /// The largest contact radius and approach of the feet.
-fn extent(problem: &Problem, u: &[f64], paths: &Paths) -> (f64, f64) {
+fn extent(problem: &FitProblem, u: &[f64], paths: &Paths) -> (f64, f64) {
     let feet = problem.feet(paths, &problem.instrument_at(u)).unwrap_or_default();
     let (mut widest, mut deepest) = (0.0, f64::NEG_INFINITY);
     for (datum, foot) in problem.data.iter().zip(&feet) {

@@ -52,7 +52,7 @@ pub trait LeastSquares {
 
 /// Settings of one minimization.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct MinimizationSettings {
     /// Rounds at most.
     pub rounds: usize,
     /// Steps that would move the residuals by less than this share of their size end it.
@@ -66,7 +66,7 @@ pub struct Settings {
     pub nothing: f64,
 }
 
-impl Default for Settings {
+impl Default for MinimizationSettings {
     fn default() -> Self {
         Self { rounds: 100, tolerance: 1e-9, resolution: 1.0, huber: f64::INFINITY, nothing: 0.0 }
     }
@@ -116,13 +116,13 @@ pub(super) fn cost(residuals: &DVector<f64>, counts: Option<&[f64]>, c: f64) -> 
 }
 
 /// R and −Qᵀr of √W J, and the lengths of its columns.
-struct Factored {
+struct TriangularSystem {
     r: DMatrix<f64>,
     right: DVector<f64>,
     lengths: DVector<f64>,
 }
 
-impl Factored {
+impl TriangularSystem {
     fn of(at: &Evaluated, counts: Option<&[f64]>, c: f64) -> Self {
         let roots = DVector::from_iterator(
             at.residuals.len(),
@@ -173,7 +173,7 @@ impl Factored {
 pub fn minimize<P: LeastSquares>(
     problem: &P,
     start: &[f64],
-    settings: &Settings,
+    settings: &MinimizationSettings,
     progress: &dyn Progress,
 ) -> Option<Minimum> {
     minimize_from(problem, start, problem.evaluate(start)?, settings, progress)
@@ -184,7 +184,7 @@ pub fn minimize_from<P: LeastSquares>(
     problem: &P,
     start: &[f64],
     mut at: Evaluated,
-    settings: &Settings,
+    settings: &MinimizationSettings,
     progress: &dyn Progress,
 ) -> Option<Minimum> {
     /// The first damping, its smallest change and the largest that is tried.
@@ -209,7 +209,7 @@ pub fn minimize_from<P: LeastSquares>(
         if progress.stop() {
             return end(u, at, best, Ending::Cancelled, round);
         }
-        let factored = Factored::of(&at, counts, c);
+        let factored = TriangularSystem::of(&at, counts, c);
         for (scale, length) in scales.iter_mut().zip(factored.lengths.iter()) {
             *scale = f64::max(*scale, *length);
         }

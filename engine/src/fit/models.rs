@@ -16,8 +16,8 @@ use crate::elementary::cbrt;
 use crate::measured::Origin;
 use crate::preset::schema::RANGE_KEYS;
 use crate::preset::{Preset, Value, data, edge};
-use crate::problem::{Adhesion, Stated};
-use crate::progress::{Part, Progress};
+use crate::problem::{Adhesion, StatedCohesion};
+use crate::progress::{Progress, ProgressPart};
 use crate::units::UnitSystem;
 use crate::units::number::short;
 use serde::Serialize;
@@ -79,16 +79,19 @@ impl Model {
         let mut free: Vec<String> = free.iter().filter(|name| !is_other(name)).cloned().collect();
         match (self, preset.material.adhesion) {
             (Self::ShortRange | Self::Rate, _) => laid.material.adhesion = Adhesion::ShortRange,
-            (Self::Dugdale, Adhesion::Dugdale(Stated::Strength(_) | Stated::Range(_))) => {}
+            (Self::Dugdale, Adhesion::Dugdale(StatedCohesion::Strength(_) | StatedCohesion::Range(_))) => {}
             (Self::Dugdale, _) => {
-                laid.material.adhesion = Adhesion::Dugdale(Stated::Strength(guess(preset)));
+                laid.material.adhesion = Adhesion::Dugdale(StatedCohesion::Strength(guess(preset)));
             }
         }
         match self {
             Self::ShortRange => {}
             Self::Dugdale if free.iter().any(|name| is_of(&RANGE_KEYS, name)) => {}
             Self::Dugdale => {
-                let key = usize::from(matches!(laid.material.adhesion, Adhesion::Dugdale(Stated::Range(_))));
+                let key = usize::from(matches!(
+                    laid.material.adhesion,
+                    Adhesion::Dugdale(StatedCohesion::Range(_))
+                ));
                 free.push(RANGE_KEYS[key].to_owned());
             }
             Self::Rate => {
@@ -114,7 +117,7 @@ fn guess(preset: &Preset) -> f64 {
 
 /// One model fitted.
 #[derive(Debug, Clone)]
-pub struct Fitted {
+pub struct FittedModel {
     /// The model; `None` of one that the preset alone has.
     pub model: Option<Model>,
     /// What is free in it.
@@ -141,7 +144,7 @@ pub struct Pair {
 #[derive(Debug, Clone)]
 pub struct Models {
     /// The fits, in the order in which they were asked for.
-    pub fits: Vec<Fitted>,
+    pub fits: Vec<FittedModel>,
     /// The number of the best; `None` where no fit came to an end.
     pub best: Option<usize>,
     /// Each other one beside the best.
@@ -152,7 +155,7 @@ impl Models {
     /// The fit of the best, and what was free in it.
     #[must_use]
     pub fn best(&self) -> Option<(&Fit, &[String])> {
-        let Fitted { fit, free, .. } = self.fits.get(self.best?)?;
+        let FittedModel { fit, free, .. } = self.fits.get(self.best?)?;
         Some((fit.as_ref().ok()?, free))
     }
 }
@@ -183,7 +186,7 @@ pub fn fit_models(
     // A pull is fitted to the retraction: to compare it all have the same rows.
     let of_retraction = models.len() > 1 && models.contains(&Model::Rate);
     let count = laid.len() as f64;
-    let mut fits: Vec<Fitted> = Vec::new();
+    let mut fits: Vec<FittedModel> = Vec::new();
     for (i, (model, mut laid, free)) in laid.into_iter().enumerate() {
         if of_retraction && laid.data.source.is_some() && laid.data.segment.is_none() {
             let retraction = Value::Text(data::SEGMENTS[1].to_owned());
@@ -197,10 +200,10 @@ pub fn fit_models(
             let of = |axis: usize| Some(first.noise.sigma[axis]).filter(|sigma| *sigma > 0.0);
             options.asked.sigma = [of(0), of(1), of(2)];
         }
-        let part = Part::new(progress, [i as f64 / count, (i + 1) as f64 / count]);
-        fits.push(Fitted { model, free, fit: fit_own(&laid, &options, &part) });
+        let part = ProgressPart::new(progress, [i as f64 / count, (i + 1) as f64 / count]);
+        fits.push(FittedModel { model, free, fit: fit_own(&laid, &options, &part) });
     }
-    if let [Fitted { fit: Err(error), .. }] = &fits[..] {
+    if let [FittedModel { fit: Err(error), .. }] = &fits[..] {
         return Err(error.clone());
     }
     let scores = scores(&fits);
@@ -215,7 +218,7 @@ pub fn fit_models(
 }
 
 /// A of each; infinite where there is none.
-fn scores(fits: &[Fitted]) -> Vec<f64> {
+fn scores(fits: &[FittedModel]) -> Vec<f64> {
     let known = fits.iter().filter_map(|fitted| fitted.fit.as_ref().ok());
     let noise = known.clone().filter_map(|fit| fit.scatter.contact).fold(f64::INFINITY, f64::min);
     let together = known.map(|fit| fit.scatter.correlation.rows()).fold(f64::INFINITY, f64::min).max(1.0);
@@ -228,12 +231,12 @@ fn scores(fits: &[Fitted]) -> Vec<f64> {
 }
 
 /// A, a difference in what it takes for a model that is not determined: such a one is no better than one that is as good.
-fn rank(fitted: &Fitted, score: f64) -> f64 {
+fn rank(fitted: &FittedModel, score: f64) -> f64 {
     let is_told = fitted.fit.as_ref().is_ok_and(|fit| fit.direction.is_none());
     if is_told { score } else { score + APART }
 }
 
-fn pair(fits: &[Fitted], scores: &[f64], [best, other]: [usize; 2]) -> Option<Pair> {
+fn pair(fits: &[FittedModel], scores: &[f64], [best, other]: [usize; 2]) -> Option<Pair> {
     let difference = scores[other] - scores[best];
     let told_apart = difference > APART;
     let [Some(one), Some(two)] = [best, other].map(|i| fits[i].model) else { return None };

@@ -35,7 +35,12 @@ impl LeastSquares for Set {
 
 fn check(set: &Set, starts: [&[f64]; 2], certified: &[f64], sum: f64) {
     for start in starts {
-        let settings = Settings { rounds: 1000, tolerance: 1e-11, resolution: 1e-12, ..Settings::default() };
+        let settings = MinimizationSettings {
+            rounds: 1000,
+            tolerance: 1e-11,
+            resolution: 1e-12,
+            ..MinimizationSettings::default()
+        };
         let found = minimize(set, start, &settings, &Unwatched).unwrap();
         assert_eq!(found.ending, Ending::Converged);
         for (ours, theirs) in found.parameters.iter().zip(certified) {
@@ -99,7 +104,7 @@ fn huber_passes_over_an_outlier_and_counts_are_repetitions() {
     let mut y: Vec<f64> = (0..20).map(|i| 2.0 + 0.5 * f64::from(i) + 0.01 * f64::from(i % 3 - 1)).collect();
     y[7] = 40.0;
     let of = |huber| {
-        let settings = Settings { huber, ..Settings::default() };
+        let settings = MinimizationSettings { huber, ..MinimizationSettings::default() };
         minimize(&line(y.clone()), &[1.0, 1.0], &settings, &Unwatched).unwrap().parameters
     };
     let (plain, robust) = (of(f64::INFINITY), of(0.015));
@@ -114,6 +119,6 @@ fn it_can_be_stopped_and_keeps_what_it_has() {
         model: |x, b| b[0] * (b[1] * x).exp(),
     };
     let start = set.residuals(&[5.0, 0.3]).unwrap().norm_squared();
-    let found = minimize(&set, &[5.0, 0.3], &Settings::default(), &until(3)).unwrap();
+    let found = minimize(&set, &[5.0, 0.3], &MinimizationSettings::default(), &until(3)).unwrap();
     assert!(found.ending == Ending::Cancelled && found.rounds == 3 && 2.0 * found.cost < start);
 }

@@ -6,7 +6,7 @@
 
 use super::pulled::TrackState;
 use super::track::{Eye, Mover, Reach, Track};
-use super::way::{Leg, Seen, Way, legs};
+use super::way::{Leg, Way, WayEvidence, legs};
 use crate::disc::{self, Local};
 use crate::elementary::hypot;
 use crate::measured::Abscissa;
@@ -19,7 +19,7 @@ use crate::zone::FaultKind;
 use std::f64::consts::TAU;
 
 /// x, P and s.
-pub type Place = [f64; 3];
+pub type PathPlace = [f64; 3];
 
 /// A point of the path: its piece and where on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,20 +36,20 @@ pub enum Foot {
 
 /// A piece of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Piece {
+pub enum PathPiece {
     /// Equilibria between two radii, or edges of a zone, the outer first.
     Arc([f64; 2]),
     /// A jump, by its ends, that before it first: x, P, s.
-    Line([Place; 2]),
+    Line([PathPlace; 2]),
 }
 
 /// A corner of the polyline that stands for the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
     /// Where it is.
-    pub at: Place,
+    pub at: PathPlace,
     /// The derivatives by s; nothing at the ends of a line.
-    pub slopes: Place,
+    pub slopes: PathPlace,
     /// Its piece.
     pub piece: usize,
     /// The radius or edge on an arc, the share on a line.
@@ -58,8 +58,8 @@ pub struct Vertex {
 
 /// A corner of the polyline before its piece is known.
 struct Corner {
-    at: Place,
-    slopes: Place,
+    at: PathPlace,
+    slopes: PathPlace,
     along: f64,
     /// Which way the curve goes there, in units of its ranges.
     direction: Option<[f64; 2]>,
@@ -67,13 +67,13 @@ struct Corner {
 
 /// The path of one preset.
 #[derive(Debug, Clone)]
-pub struct Path {
+pub struct FitPath {
     track: Track,
     eye: Eye,
     /// E* and γ.
     material: [f64; 2],
     /// Its pieces, running inward.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<PathPiece>,
     /// Its corners, running inward.
     pub vertices: Vec<Vertex>,
     /// The outermost radius.
@@ -88,7 +88,7 @@ pub struct Path {
 const STRAIGHT: f64 = 0.98;
 const DEEPEST: usize = 7;
 
-impl Path {
+impl FitPath {
     /// The path of `preset` on this way; `None` where it has none that reaches so far.
     #[must_use]
     pub fn new(preset: &Preset, abscissa: Abscissa, reach: &Reach, way: Way) -> Option<Self> {
@@ -109,7 +109,7 @@ impl Path {
         let limits = track.monotone(held).map_or(0, |monotone| {
             monotone.limits.iter().filter(|limit| inside(limit.contact_radius)).count()
         });
-        let seen = Seen {
+        let seen = WayEvidence {
             x_of: &|at: &Local| eye.x([at.contact_radius, at.approach, at.force]),
             most: reach.most[0],
             turn: [reach.turn[0], reach.turn[1] / units.force],
@@ -134,17 +134,19 @@ impl Path {
                 places.map(along)
             };
             let piece = match leg {
-                Leg::Along(places) => Piece::Arc(ends(places).map(|along| along * units.length)),
+                Leg::Along(places) => PathPiece::Arc(ends(places).map(|along| along * units.length)),
                 Leg::Jump(places) => {
                     path.snaps += 1;
                     let states = ends(places).map(|along| path.track.state(along));
-                    Piece::Line(states.map(|state| state.map_or([f64::NAN; 3], |state| path.place(state.at))))
+                    PathPiece::Line(
+                        states.map(|state| state.map_or([f64::NAN; 3], |state| path.place(state.at))),
+                    )
                 }
             };
             path.pieces.push(piece);
         }
         if legs.is_empty() {
-            path.pieces.push(Piece::Arc([outermost, innermost].map(|s| s * units.length)));
+            path.pieces.push(PathPiece::Arc([outermost, innermost].map(|s| s * units.length)));
         }
         path.draw();
         Some(path)
@@ -154,7 +156,7 @@ impl Path {
     /// straight line at a held radius.
     pub(super) fn pinned_after(&mut self, before: &Self) {
         let ends = [before, &*self].map(|path| path.corner(path.outermost, [1.0; 2]).at);
-        self.pieces.insert(0, Piece::Line(ends));
+        self.pieces.insert(0, PathPiece::Line(ends));
         self.draw();
     }
 
@@ -166,7 +168,7 @@ impl Path {
         let length = self.eye.units.length;
         let reduced = |s: f64| s.min(to) / length;
         let arcs = self.pieces.iter().filter_map(|piece| match piece {
-            Piece::Arc([outer, inner]) if *inner < to => Some([reduced(*outer), reduced(*inner)]),
+            PathPiece::Arc([outer, inner]) if *inner < to => Some([reduced(*outer), reduced(*inner)]),
             _ => None,
         });
         let found = passed(curve, &arcs.collect::<Vec<_>>(), &Unwatched)?;
@@ -198,12 +200,12 @@ impl Path {
                 vertices.push(Vertex { at, slopes, piece, along });
             };
             match what {
-                Piece::Line(ends) => {
+                PathPiece::Line(ends) => {
                     for (at, along) in ends.iter().zip([1.0, 0.0]) {
                         add(&Corner { at: *at, slopes: [0.0; 3], along, direction: None });
                     }
                 }
-                Piece::Arc([outer, inner]) => {
+                PathPiece::Arc([outer, inner]) => {
                     let within = |state: &&TrackState| {
                         let along = state.along * self.eye.units.length;
                         along < *outer && along > *inner
@@ -263,17 +265,17 @@ impl Path {
     }
 
     /// x, P and s of a reduced state.
-    fn place(&self, state: [f64; 3]) -> Place {
+    fn place(&self, state: [f64; 3]) -> PathPlace {
         [self.eye.x(state), state[2] * self.eye.units.force, state[0] * self.eye.units.length]
     }
 
     /// The derivatives of x, P and s by what runs along, of those of the reduced state.
-    fn slopes(&self, slopes: [f64; 3]) -> Place {
+    fn slopes(&self, slopes: [f64; 3]) -> PathPlace {
         self.place(slopes).map(|slope| slope / self.eye.units.length)
     }
 
     /// The place `along` an arc, with its derivatives by that; `None` beyond what is known.
-    pub fn at(&self, along: f64) -> Option<(Place, Place)> {
+    pub fn at(&self, along: f64) -> Option<(PathPlace, PathPlace)> {
         let state = self.track.state(along / self.eye.units.length)?;
         Some((self.place(state.at), self.slopes(state.slopes)))
     }
@@ -281,7 +283,7 @@ impl Path {
     /// How the place `at`, `along` an arc, moves for each unit of the logarithm of a value, what runs along held; `None` where no closed form
     /// says it.
     #[must_use]
-    pub fn moves(&self, mover: Mover, along: f64, at: Place) -> Option<Place> {
+    pub fn moves(&self, mover: Mover, along: f64, at: PathPlace) -> Option<PathPlace> {
         let [_, force, s] = at;
         let compliance = self.eye.compliance;
         // x is δ + P/k.
@@ -349,14 +351,14 @@ impl Path {
     }
 
     /// Where a foot is on this path.
-    pub fn foot(&self, piece: usize, foot: Foot) -> Option<Place> {
+    pub fn foot(&self, piece: usize, foot: Foot) -> Option<PathPlace> {
         match (self.pieces.get(piece)?, foot) {
-            (Piece::Arc(_), Foot::Radius(s)) => self.at(s).map(|(at, _)| at),
-            (Piece::Arc([s, _]), Foot::Outer) | (Piece::Arc([_, s]), Foot::Inner) => {
+            (PathPiece::Arc(_), Foot::Radius(s)) => self.at(s).map(|(at, _)| at),
+            (PathPiece::Arc([s, _]), Foot::Outer) | (PathPiece::Arc([_, s]), Foot::Inner) => {
                 self.at(*s).map(|(at, _)| at)
             }
-            (Piece::Line([at, _]), Foot::Outer) | (Piece::Line([_, at]), Foot::Inner) => Some(*at),
-            (Piece::Line([before, after]), Foot::Share(t)) => {
+            (PathPiece::Line([at, _]), Foot::Outer) | (PathPiece::Line([_, at]), Foot::Inner) => Some(*at),
+            (PathPiece::Line([before, after]), Foot::Share(t)) => {
                 Some(std::array::from_fn(|i| after[i] + t * (before[i] - after[i])))
             }
             _ => None,

@@ -1,12 +1,12 @@
 //! What is fitted: the points and parameters of a preset's branches.
 
 use super::options::{FitError, Options, target};
-use super::problem::{ADHESION, Datum, Instrument, Parameter, Prior, Problem, START, Target};
+use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, Instrument, Prior, START, Target};
 use super::track::Reach;
 use super::track::begins;
 use super::uncertain::{Uncertain, uncertain};
 use crate::gap::Gap;
-use crate::measured::branches::{Point, median};
+use crate::measured::branches::{MeasuredPoint, median};
 use crate::measured::{Abscissa, Branches, Segment};
 use crate::preset::data::BASELINE;
 use crate::preset::data::DataSpec;
@@ -32,7 +32,7 @@ pub fn posed(
     branches: &Branches,
     options: &Options,
     notes: &mut Vec<String>,
-) -> Result<Problem, FitError> {
+) -> Result<FitProblem, FitError> {
     let mut bare = preset.clone();
     // Its own points say nothing of other values.
     bare.data = DataSpec::default();
@@ -51,7 +51,7 @@ pub fn posed(
         bare.edge.rate = None;
         if options.separate && !has_waves {
             let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
-            let attached: Vec<&Point> = retraction.flat_map(|branch| &branch.attached).collect();
+            let attached: Vec<&MeasuredPoint> = retraction.flat_map(|branch| &branch.attached).collect();
             bare.path.start = begun(&bare, branches, &attached, preset.data.offset)?;
             targets.push(Target::Key(START.to_owned()));
         }
@@ -69,7 +69,7 @@ pub fn posed(
             .collect::<Vec<_>>(),
     );
     let parameters = targets.into_iter().map(|target| parameter(&bare, branches, &instrument, target));
-    let parameters: Vec<Parameter> = parameters.collect();
+    let parameters: Vec<FreeParameter> = parameters.collect();
     let attached = data.iter().filter(|datum| !datum.free).count();
     // What is known before takes the place of points.
     let needed = PER_PARAMETER * (parameters.len() - known.len()).max(2);
@@ -88,7 +88,7 @@ pub fn posed(
     let reach = reach(branches, &data);
     let sigma = branches.noise.sigma;
     let space = sigma[2] > 0.0 && abscissa != Abscissa::Radius;
-    Ok(Problem {
+    Ok(FitProblem {
         preset: bare,
         abscissa,
         parameters,
@@ -125,7 +125,7 @@ fn pulled(
         return Err(refused("and first guesses of edge.exponent and edge.reference_speed"));
     }
     let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
-    let attached: Vec<&Point> = retraction.flat_map(|branch| &branch.attached).collect();
+    let attached: Vec<&MeasuredPoint> = retraction.flat_map(|branch| &branch.attached).collect();
     // What the times of a file say is of that file, and what the preset says of no file in particular.
     let is_way = branches.abscissa == Abscissa::Position
         || bare.path.control == Control::Displacement && branches.abscissa == Abscissa::Approach;
@@ -154,12 +154,13 @@ fn pulled(
 fn begun(
     preset: &Preset,
     branches: &Branches,
-    attached: &[&Point],
+    attached: &[&MeasuredPoint],
     offset: Option<f64>,
 ) -> Result<Start, FitError> {
     let first = &attached[..TURN.min(attached.len())];
-    let middle =
-        |of: fn(&Point) -> f64| median(first.iter().map(|point| of(point)).collect()).unwrap_or(f64::NAN);
+    let middle = |of: fn(&MeasuredPoint) -> f64| {
+        median(first.iter().map(|point| of(point)).collect()).unwrap_or(f64::NAN)
+    };
     let seen = middle(|point| point.radius);
     let start = if seen.is_finite() && branches.abscissa != Abscissa::Radius {
         Some(seen)
@@ -171,8 +172,8 @@ fn begun(
 }
 
 /// The rate of x over the times of a retraction; `None` where it is not even or not known.
-fn even_rate(points: &[&Point]) -> Option<f64> {
-    let rate = |of: &[&Point]| {
+fn even_rate(points: &[&MeasuredPoint]) -> Option<f64> {
+    let rate = |of: &[&MeasuredPoint]| {
         let (first, last) = (of.first()?, of.last()?);
         let rate = (first.x - last.x) / (last.time - first.time);
         (rate > 0.0 && rate.is_finite()).then_some(rate)
@@ -187,7 +188,8 @@ fn data(branches: &Branches) -> Vec<Datum> {
     let mut data = Vec::new();
     for (number, branch) in branches.list.iter().enumerate() {
         for (free, points) in [(false, &branch.attached), (true, &branch.free)] {
-            let datum = |&point: &Point| Datum { point, segment: branch.segment, branch: number, free };
+            let datum =
+                |&point: &MeasuredPoint| Datum { point, segment: branch.segment, branch: number, free };
             data.extend(points.iter().map(datum));
         }
     }
@@ -285,7 +287,7 @@ fn tare(branches: &Branches) -> f64 {
 }
 
 /// What is known of a baseline that no rows show.
-fn of_baseline(given: &DataSpec, branches: &Branches, parameters: &[Parameter]) -> Option<Prior> {
+fn of_baseline(given: &DataSpec, branches: &Branches, parameters: &[FreeParameter]) -> Option<Prior> {
     let at = parameters.iter().position(|parameter| parameter.target == Target::Baseline);
     let unseen = branches.baseline.is_none().then_some(at).flatten();
     unseen.map(|parameter| {
@@ -306,13 +308,13 @@ fn reach(branches: &Branches, data: &[Datum]) -> Reach {
     // The retraction, from its largest x down.
     let last = branches.list.iter().rfind(|branch| !branch.attached.is_empty());
     let first = last.map_or(&[][..], |branch| &branch.attached[..TURN.min(branch.attached.len())]);
-    let middle = |of: fn(&Point) -> f64| median(first.iter().map(of).collect()).unwrap_or(f64::NAN);
+    let middle = |of: fn(&MeasuredPoint) -> f64| median(first.iter().map(of).collect()).unwrap_or(f64::NAN);
     let turn = [middle(|point| point.x), middle(|point| point.force)];
     Reach { most, turn, radius: None, length: branches.ranges[0], noise: 0.0 }
 }
 
 /// A parameter at its start.
-fn parameter(preset: &Preset, branches: &Branches, instrument: &Instrument, target: Target) -> Parameter {
+fn parameter(preset: &Preset, branches: &Branches, instrument: &Instrument, target: Target) -> FreeParameter {
     let value = |key: &str| match preset.get(key) {
         Some(Value::Number(value)) => value,
         _ => f64::NAN,
@@ -325,5 +327,5 @@ fn parameter(preset: &Preset, branches: &Branches, instrument: &Instrument, targ
         Target::Baseline => (instrument.baseline, Some(force)),
         Target::Tilt => (instrument.tilt, Some(force / x)),
     };
-    Parameter { target, start, scale }
+    FreeParameter { target, start, scale }
 }

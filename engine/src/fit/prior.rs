@@ -7,12 +7,12 @@
 //! A value that is given with an error is no longer held: it is free, and the points may move it. Its error is then in those of all
 //! others.
 
-use super::least_squares::{Evaluated, LeastSquares, Minimum, Settings, minimize_from};
-use super::problem::Problem;
+use super::least_squares::{Evaluated, LeastSquares, MinimizationSettings, Minimum, minimize_from};
+use super::problem::FitProblem;
 use crate::progress::Progress;
 use nalgebra::{DMatrix, DVector};
 
-impl Problem {
+impl FitProblem {
     /// The derivatives of the terms by u, a row for each.
     pub(super) fn of_priors(&self) -> DMatrix<f64> {
         let mut rows = DMatrix::zeros(self.priors.len(), self.parameters.len());
@@ -26,7 +26,7 @@ impl Problem {
     pub(super) fn minimize(
         &self,
         u: &[f64],
-        settings: &Settings,
+        settings: &MinimizationSettings,
         progress: &dyn Progress,
     ) -> Option<Minimum> {
         self.minimize_from(u, self.evaluate(u)?, settings, progress)
@@ -37,7 +37,7 @@ impl Problem {
         &self,
         u: &[f64],
         at: Evaluated,
-        settings: &Settings,
+        settings: &MinimizationSettings,
         progress: &dyn Progress,
     ) -> Option<Minimum> {
         if self.priors.is_empty() {
@@ -47,7 +47,7 @@ impl Problem {
             let once = std::iter::repeat_n(1.0, self.priors.len());
             counts.iter().copied().chain(once).collect()
         });
-        let known = Known { problem: self, counts };
+        let known = InformedProblem { problem: self, counts };
         let residuals = known.with_terms(&at.residuals, u);
         let at = Evaluated { residuals, jacobian: known.below(&at.jacobian) };
         let mut found = minimize_from(&known, u, at, settings, progress)?;
@@ -59,12 +59,12 @@ impl Problem {
 }
 
 /// A problem with the terms of what is known behind its residuals.
-struct Known<'a> {
-    problem: &'a Problem,
+struct InformedProblem<'a> {
+    problem: &'a FitProblem,
     counts: Option<Vec<f64>>,
 }
 
-impl Known<'_> {
+impl InformedProblem<'_> {
     fn with_terms(&self, residuals: &DVector<f64>, u: &[f64]) -> DVector<f64> {
         let terms = self.problem.priors.iter().map(|prior| (u[prior.parameter] - prior.mean) / prior.sigma);
         let all: Vec<f64> = residuals.iter().copied().chain(terms).collect();
@@ -72,7 +72,7 @@ impl Known<'_> {
     }
 }
 
-impl Known<'_> {
+impl InformedProblem<'_> {
     /// The derivatives of the terms below those of the points.
     fn below(&self, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
         let (rows, columns) = jacobian.shape();
@@ -83,8 +83,8 @@ impl Known<'_> {
     }
 }
 
-impl LeastSquares for Known<'_> {
-    type Look = <Problem as LeastSquares>::Look;
+impl LeastSquares for InformedProblem<'_> {
+    type Look = <FitProblem as LeastSquares>::Look;
 
     fn look(&self, u: &[f64]) -> Option<(DVector<f64>, Self::Look)> {
         let (residuals, look) = self.problem.look(u)?;

@@ -1,16 +1,16 @@
 //! What is fitted: parameters, data, the paths of values and the feet of points on them.
 
-use super::distance::{Nearest, Scaled};
-use super::path::{Path, Place};
+use super::distance::{Nearest, ScaledPath};
+use super::path::{FitPath, PathPlace};
 use super::track::Reach;
 use super::way::Way;
 use crate::elementary::{exp, ln};
-use crate::measured::branches::Point;
+use crate::measured::branches::MeasuredPoint;
 use crate::measured::{Abscissa, Segment};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::schema::RANGE_KEYS;
 use crate::preset::{Preset, Value, edge};
-use crate::problem::{Adhesion, Start, Stated};
+use crate::problem::{Adhesion, Start, StatedCohesion};
 use nalgebra::DVector;
 use std::num::NonZero;
 use std::panic::resume_unwind;
@@ -53,7 +53,7 @@ pub const START: &str = "path.start_contact_radius";
 
 /// A parameter that is free.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Parameter {
+pub struct FreeParameter {
     /// What it is.
     pub target: Target,
     /// Where it starts, in base units.
@@ -62,7 +62,7 @@ pub struct Parameter {
     pub scale: Option<f64>,
 }
 
-impl Parameter {
+impl FreeParameter {
     /// u of a value.
     #[must_use]
     pub fn inner(&self, value: f64) -> f64 {
@@ -103,7 +103,7 @@ pub struct Prior {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Datum {
     /// The point.
-    pub point: Point,
+    pub point: MeasuredPoint,
     /// Its branch.
     pub segment: Segment,
     /// Its number among the branches, which are more than two in a file of several loops.
@@ -125,13 +125,13 @@ pub struct Instrument {
 
 /// What is fitted.
 #[derive(Debug, Clone)]
-pub struct Problem {
+pub struct FitProblem {
     /// The preset that the free keys are laid over, with the device.
     pub preset: Preset,
     /// What x is.
     pub abscissa: Abscissa,
     /// The free parameters.
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<FreeParameter>,
     /// What is known of them before.
     pub priors: Vec<Prior>,
     /// What is held of the instrument.
@@ -139,7 +139,7 @@ pub struct Problem {
     /// The points.
     pub data: Vec<Datum>,
     /// σ of x, P and s.
-    pub sigma: Place,
+    pub sigma: PathPlace,
     /// The step of the converter of the force; 0 where none is seen.
     pub step: f64,
     /// Whether s is measured beside x.
@@ -154,14 +154,14 @@ pub struct Problem {
 
 /// The paths of the two branches, which are one unless their adhesions or their ways differ.
 pub struct Paths {
-    retraction: Path,
-    approach: Option<Path>,
+    retraction: FitPath,
+    approach: Option<FitPath>,
 }
 
 impl Paths {
     /// The path of a branch.
     #[must_use]
-    pub fn of(&self, segment: Segment) -> &Path {
+    pub fn of(&self, segment: Segment) -> &FitPath {
         match (&self.approach, segment) {
             (Some(path), Segment::Approach) => path,
             _ => &self.retraction,
@@ -169,7 +169,7 @@ impl Paths {
     }
 }
 
-impl Problem {
+impl FitProblem {
     /// How many of the residuals the parameters take: what is known before costs none.
     #[must_use]
     pub fn taken(&self) -> usize {
@@ -191,7 +191,7 @@ impl Problem {
 
     /// 1/σ, 0 for what is not measured.
     #[must_use]
-    pub fn weights(&self) -> Place {
+    pub fn weights(&self) -> PathPlace {
         [1.0 / self.sigma[0], 1.0 / self.sigma[1], if self.space { 1.0 / self.sigma[2] } else { 0.0 }]
     }
 
@@ -215,7 +215,7 @@ impl Problem {
                 edge::REFERENCE_SPEED if value.is_normal() => preset.edge.reference_speed = Some(value),
                 START if value.is_normal() => preset.path.start = Start::ContactRadius(value),
                 key if key == RANGE_KEYS[0] && value.is_normal() => {
-                    preset.material.adhesion = Adhesion::Dugdale(Stated::Strength(value));
+                    preset.material.adhesion = Adhesion::Dugdale(StatedCohesion::Strength(value));
                 }
                 key => preset.set(key, Value::Number(value)).ok()?,
             }
@@ -241,7 +241,7 @@ impl Problem {
 
     /// The noise of the points as a share of their ranges.
     fn noise(&self) -> f64 {
-        let share = |sigma: f64, of: fn(&Point) -> f64| {
+        let share = |sigma: f64, of: fn(&MeasuredPoint) -> f64| {
             let values = self.data.iter().map(|datum| of(&datum.point));
             let [lo, hi] =
                 values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], x| [lo.min(x), hi.max(x)]);
@@ -251,7 +251,7 @@ impl Problem {
     }
 
     /// The path of a branch at `u`, beginning at the radius `radius` where that is given.
-    fn path(&self, u: &[f64], segment: Segment, radius: Option<f64>) -> Option<Path> {
+    fn path(&self, u: &[f64], segment: Segment, radius: Option<f64>) -> Option<FitPath> {
         let instrument = self.instrument_at(u);
         let [x, force, s] = self.reach.most;
         let shift = if self.abscissa == Abscissa::Radius { 0.0 } else { instrument.offset };
@@ -271,7 +271,7 @@ impl Problem {
             Start::ContactRadius(radius) if self.pins() => Reach { radius: Some(radius), ..reach },
             _ => reach,
         };
-        Path::new(&preset, self.abscissa, &reach, way)
+        FitPath::new(&preset, self.abscissa, &reach, way)
     }
 
     /// Whether the branches have works of adhesion of their own, and the edge is pinned between them.
@@ -307,8 +307,8 @@ impl Problem {
     }
 
     /// A point as the model has it, in units of noise.
-    fn corrected(&self, datum: &Datum, at: &Instrument) -> Place {
-        let Point { x, force, radius, .. } = datum.point;
+    fn corrected(&self, datum: &Datum, at: &Instrument) -> PathPlace {
+        let MeasuredPoint { x, force, radius, .. } = datum.point;
         let weights = self.weights();
         let shift = if self.abscissa == Abscissa::Radius { 0.0 } else { at.offset };
         [
@@ -323,7 +323,8 @@ impl Problem {
         /// Rows from which threads are worth their beginning.
         const MANY: usize = 20_000;
         let weights = self.weights();
-        let scaled = [Segment::Approach, Segment::Retraction].map(|of| Scaled::new(paths.of(of), weights));
+        let scaled =
+            [Segment::Approach, Segment::Retraction].map(|of| ScaledPath::new(paths.of(of), weights));
         let part = &|part: &[Datum]| -> Option<Vec<Option<Nearest>>> {
             let mut boxes = [0; 2];
             let foot = |datum: &Datum| {

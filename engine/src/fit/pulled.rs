@@ -14,8 +14,8 @@ use crate::gap::Gap;
 use crate::preset::Preset;
 use crate::problem::{Control, Part, Reduced, Start};
 use crate::progress::Unwatched;
-use crate::rate::variation::{ADHESION, EXPONENT, Moved, RATE, START, STIFFNESS};
-use crate::rate::{Edge, EdgeLaw, Moment, Puller, Settings};
+use crate::rate::variation::{ADHESION, EXPONENT, MomentSlopes, RATE, START, STIFFNESS};
+use crate::rate::{EdgeLaw, Moment, MovingEdge, PullSettings, Puller};
 use std::f64::consts::TAU;
 
 /// The error of a step of the integrator as a share of the noise, and its least and largest as a share of the radius.
@@ -39,7 +39,7 @@ pub(super) struct TrackState {
 #[derive(Debug, Clone)]
 pub(super) struct Trail {
     states: Vec<TrackState>,
-    moved: Vec<Moved>,
+    moved: Vec<MomentSlopes>,
     held: Control,
 }
 
@@ -69,7 +69,7 @@ impl Trail {
         let puller = Puller {
             table,
             control: held,
-            edge: Edge {
+            edge: MovingEdge {
                 law: EdgeLaw::symmetric(preset.edge.exponent?),
                 opening,
                 closing: closing.filter(|closing| *closing < opening).unwrap_or(opening),
@@ -77,7 +77,7 @@ impl Trail {
             start: (start / units.length).min(reduced.largest_contact()),
             wave: reduced.gap.feature_length(),
             rise: None,
-            settings: Settings { tolerance, derivatives: true, ..Settings::default() },
+            settings: PullSettings { tolerance, derivatives: true, ..PullSettings::default() },
         };
         let pull = puller.pull(&[Part::Apart { rate }], &Unwatched).ok()?;
         let last = pull.moments.iter().rfind(|moment| moment.contact_radius > 0.0)?;

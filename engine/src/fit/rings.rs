@@ -2,11 +2,11 @@
 
 use super::options::FitError;
 use super::path::Foot;
-use super::problem::Problem;
+use super::problem::FitProblem;
 use crate::measured::Segment;
 use crate::units::{Quantity, number::said};
 
-impl Problem {
+impl FitProblem {
     /// Where the disc of loading at `u` would overlap a crest outside before the last point of the approach, in words.
     pub(super) fn overlapping(&self, u: &[f64]) -> Option<String> {
         if !self.loops {

@@ -1,6 +1,6 @@
 //! What a fit makes of the rows of a file, counted by branch and part.
 
-use super::problem::{Datum, Problem};
+use super::problem::{Datum, FitProblem};
 use crate::measured::{Branches, Segment};
 use serde::Serialize;
 
@@ -32,7 +32,7 @@ pub struct Rows {
 
 impl Rows {
     /// The rows of `branches`, of which those of `problem` are fitted.
-    pub(super) fn of(problem: &Problem, branches: &Branches) -> Self {
+    pub(super) fn of(problem: &FitProblem, branches: &Branches) -> Self {
         let of = |segment: Segment, all: usize| {
             let count = |free: bool| {
                 let is_of = |datum: &&Datum| datum.segment == segment && datum.free == free;

@@ -8,11 +8,11 @@ use super::judge::{doubts, of_sparse, of_spring, reasons, unseen};
 use super::least_squares::{Ending, LeastSquares};
 use super::options::{FitError, Options, letter};
 use super::pose::posed;
-use super::problem::{ADHESION, Datum, Instrument, Parameter, Prior, Problem, START, Target};
+use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, Instrument, Prior, START, Target};
 use super::pulled::is_pulled;
 use super::rows::Rows;
 use super::scatter::Scatter;
-use super::solve::{Solved, solve};
+use super::solve::{SolvedFit, solve};
 use super::start::{Tried, start};
 use super::uncertain::{uncertain, written};
 use super::verdict::{Reason, Verdict};
@@ -21,7 +21,7 @@ use crate::measured::branches::FLOOR;
 use crate::measured::{Abscissa, Branches, Noise, Origin, Segment};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::{Preset, Value, edge};
-use crate::progress::{Part, Progress};
+use crate::progress::{Progress, ProgressPart};
 use crate::units::{
     Quantity,
     number::{said, significant},
@@ -138,7 +138,7 @@ pub fn residuals_own(preset: &Preset) -> Result<(Abscissa, Vec<Residual>), FitEr
     let branches = source.branches(&preset.reading()).map_err(FitError::Data)?;
     // A baseline that nobody says is the median of the free part, where a fit begins.
     let problem = posed(preset, &branches, &Options::default(), &mut Vec::new())?;
-    let at_start = |problem: &Problem| -> Vec<f64> {
+    let at_start = |problem: &FitProblem| -> Vec<f64> {
         problem.parameters.iter().map(|parameter| parameter.inner(parameter.start)).collect()
     };
     let problem = match problem.overlapping(&at_start(&problem)) {
@@ -157,9 +157,9 @@ pub(super) struct Posed<'a> {
     preset: &'a Preset,
     branches: &'a Branches,
     options: &'a Options,
-    pub(super) problem: Problem,
+    pub(super) problem: FitProblem,
     starts: Vec<Tried>,
-    pub(super) solved: Solved,
+    pub(super) solved: SolvedFit,
     notes: Vec<String>,
 }
 
@@ -179,10 +179,11 @@ impl<'a> Posed<'a> {
         let of_both = branches.abscissa == Abscissa::Radius && branches.noise.from[0] == Origin::Assumed;
         let least = of_neighbours
             .then_some([if of_both { problem.sigma[0] } else { f64::INFINITY }, FLOOR * branches.ranges[1]]);
-        let found = |problem: &mut Problem| -> Result<_, FitError> {
-            let (u, starts) = start(problem, options.scan, options.robust, &Part::new(progress, [0.0, 0.8]))
-                .ok_or(FitError::NoStart)?;
-            Ok((starts, last(problem, &u, options.robust, least, &Part::new(progress, [0.8, 0.85]))?))
+        let found = |problem: &mut FitProblem| -> Result<_, FitError> {
+            let (u, starts) =
+                start(problem, options.scan, options.robust, &ProgressPart::new(progress, [0.0, 0.8]))
+                    .ok_or(FitError::NoStart)?;
+            Ok((starts, last(problem, &u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))?))
         };
         let (mut starts, mut solved) = found(&mut problem)?;
         if let Some(why) = problem.overlapping(&solved.minimum.parameters) {
@@ -192,7 +193,8 @@ impl<'a> Posed<'a> {
         if let Some(j) = unpinned(&problem, &solved) {
             let mut u = solved.minimum.parameters;
             problem = problem.holding(j, u.remove(j)).ok_or(FitError::NoStart)?;
-            solved = last(&mut problem, &u, options.robust, least, &Part::new(progress, [0.8, 0.85]))?;
+            solved =
+                last(&mut problem, &u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))?;
             notes.push("no rows tell that the edge is pinned between approach and retraction".to_owned());
         }
         if branches.noise.from[1] == Origin::Apart {
@@ -243,7 +245,14 @@ impl<'a> Posed<'a> {
         let bootstrapped = match &what.errors {
             Some(errors) if alone => {
                 let wanted = Options { bootstrap: options.bootstrap.or(of_few(degrees)), ..options.clone() };
-                intervals(&problem, &solved, &wanted, errors, &mut fitted, &Part::new(progress, [0.85, 0.95]))
+                intervals(
+                    &problem,
+                    &solved,
+                    &wanted,
+                    errors,
+                    &mut fitted,
+                    &ProgressPart::new(progress, [0.85, 0.95]),
+                )
             }
             _ => None,
         };
@@ -296,7 +305,7 @@ impl<'a> Posed<'a> {
 
 /// The number of the contact radius at which an edge is pinned, where the points tell less of it than a tenth: the works of adhesion of both branches
 /// are one then, and no line is between them.
-fn unpinned(problem: &Problem, solved: &Solved) -> Option<usize> {
+fn unpinned(problem: &FitProblem, solved: &SolvedFit) -> Option<usize> {
     const LEAST: f64 = 10.0;
     let j = problem.parameters.iter().position(|parameter| parameter.target == Target::Key(START.to_owned()));
     j.filter(|j| problem.pins() && solved.minimum.at.jacobian.column(*j).norm() < LEAST * solved.scale)
@@ -314,14 +323,14 @@ pub(super) fn fit_branches(
     let scatter = problem.scatter(solved);
     let what = determined(problem, solved, &scatter, options.robust);
     if what.errors.is_some() {
-        let of_spring = of_spring(problem, solved, options.robust, &Part::new(progress, [0.95, 1.0]));
+        let of_spring = of_spring(problem, solved, options.robust, &ProgressPart::new(progress, [0.95, 1.0]));
         posed.notes.extend(of_spring);
     }
     posed.fit(what, scatter, true, progress)
 }
 
 /// What was known before, and a sentence where it decides how well a value is known.
-fn given(problem: &Problem, shares: &[Vec<f64>], notes: &mut Vec<String>) -> Vec<Given> {
+fn given(problem: &FitProblem, shares: &[Vec<f64>], notes: &mut Vec<String>) -> Vec<Given> {
     /// A share of the variance from which the points matter less.
     const MOST: f64 = 0.5;
     let none = Vec::new();
@@ -349,7 +358,7 @@ fn given(problem: &Problem, shares: &[Vec<f64>], notes: &mut Vec<String>) -> Vec
 
 /// By how much G of a fast edge grows, G − γ = K vⁿ with K = γ/v₀ⁿ, where its law is fitted: better known than γ and v₀, of which a fast pull
 /// alone tells no more.
-fn growth(problem: &Problem, u: &[f64], what: &Determined) -> Option<String> {
+fn growth(problem: &FitProblem, u: &[f64], what: &Determined) -> Option<String> {
     if !is_pulled(&problem.preset) {
         return None;
     }
@@ -357,7 +366,7 @@ fn growth(problem: &Problem, u: &[f64], what: &Determined) -> Option<String> {
     let (n, speed) = (preset.edge.exponent?, preset.edge.reference_speed?);
     let value = preset.material.work_of_adhesion / pow(speed, n);
     // d ln K by the logarithms of the values.
-    let slope = |parameter: &Parameter| match &*parameter.key() {
+    let slope = |parameter: &FreeParameter| match &*parameter.key() {
         ADHESION => 1.0,
         edge::REFERENCE_SPEED => -n,
         edge::EXPONENT => -n * ln(speed),
@@ -386,7 +395,7 @@ fn verdict(ending: Ending, is_determined: bool, reasons: &[Reason]) -> Verdict {
 }
 
 /// Σr²/n of the points in contact or apart.
-fn of_part(problem: &Problem, solved: &Solved, free: bool) -> Option<f64> {
+fn of_part(problem: &FitProblem, solved: &SolvedFit, free: bool) -> Option<f64> {
     let per = problem.per_point();
     let of = solved.minimum.at.residuals.iter().enumerate();
     let of = of.filter(|(i, _)| problem.data[i / per].free == free && (!free || i.is_multiple_of(per)));
@@ -397,12 +406,12 @@ fn of_part(problem: &Problem, solved: &Solved, free: bool) -> Option<f64> {
 /// The last fit, from `u`. Where `least` is given, σ of P is that of neighbours, not below its second, and so is that of x where its first is
 /// finite.
 fn last(
-    problem: &mut Problem,
+    problem: &mut FitProblem,
     u: &[f64],
     robust: bool,
     least: Option<[f64; 2]>,
     progress: &dyn Progress,
-) -> Result<Solved, FitError> {
+) -> Result<SolvedFit, FitError> {
     /// Fits by which σ has settled.
     const TIMES: usize = 2;
     let mut solved = solve(problem, u, robust, ROUNDS, progress).ok_or(FitError::NoStart)?;
@@ -423,7 +432,12 @@ fn last(
 
 /// Fits again where the noise is correlated from row to row: its σ, which differences of neighbours tell, is larger by 1/√(1 − r), r the
 /// correlation of neighbours.
-fn of_correlated(problem: &mut Problem, solved: Solved, robust: bool, progress: &dyn Progress) -> Solved {
+fn of_correlated(
+    problem: &mut FitProblem,
+    solved: SolvedFit,
+    robust: bool,
+    progress: &dyn Progress,
+) -> SolvedFit {
     let correlation = problem.scatter(&solved).correlation;
     if correlation.share <= 0.0 {
         return solved;
@@ -435,11 +449,11 @@ fn of_correlated(problem: &mut Problem, solved: Solved, robust: bool, progress: 
 /// Fits again where the points contradict what a tare of the force is assumed to be, 0 ± σ: with σ² = b² − v, the largest likelihood of b, which
 /// the points alone give with the variance v; J. O. Berger, *Statistical Decision Theory and Bayesian Analysis* (1985), section 3.5.4.
 fn of_tare(
-    problem: &mut Problem,
-    solved: Solved,
+    problem: &mut FitProblem,
+    solved: SolvedFit,
     robust: bool,
     (notes, progress): (&mut Vec<String>, &dyn Progress),
-) -> Solved {
+) -> SolvedFit {
     let is_of = |prior: &&mut Prior| problem.parameters[prior.parameter].target == Target::Baseline;
     let jacobian = &solved.minimum.at.jacobian;
     let Some(prior) = problem.priors.iter_mut().find(is_of) else { return solved };
@@ -473,8 +487,8 @@ fn of_few(degrees: f64) -> Option<(usize, u64)> {
 
 /// Puts the intervals that are asked for into `fitted`; how many fits of the bootstrap there were, and the rows of its blocks.
 fn intervals(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     options: &Options,
     errors: &DVector<f64>,
     fitted: &mut [Fitted],
@@ -495,13 +509,13 @@ fn intervals(
 
 /// The values with their errors, and the degrees of freedom of these.
 pub(super) fn values(
-    problem: &Problem,
+    problem: &FitProblem,
     u: &[f64],
     known: Option<(&DVector<f64>, &DVector<f64>)>,
 ) -> Vec<Fitted> {
     /// The share of truths outside of an interval.
     const OUTSIDE: f64 = 0.05;
-    let of = |(j, parameter): (usize, &Parameter)| {
+    let of = |(j, parameter): (usize, &FreeParameter)| {
         let value = parameter.value(u[j]);
         let standard_error = known.map(|(errors, _)| errors[j] * parameter.slope(value).abs());
         let degrees = known.map(|(_, degrees)| degrees[j]);
@@ -518,7 +532,7 @@ pub(super) fn values(
 /// `preset` with the values of `found`; its path stays its own.
 fn laid(
     preset: &Preset,
-    problem: &Problem,
+    problem: &FitProblem,
     (found, closing, instrument): (&Preset, Option<f64>, &Instrument),
     notes: &mut Vec<String>,
 ) -> Preset {
@@ -535,7 +549,7 @@ fn laid(
     laid.data.uncertain = known.join(",");
     let opening = found.material.work_of_adhesion;
     // A closing edge gains at most what an opening one costs: that must be there before.
-    let is_closing = |of: &&Parameter| of.target == Target::Adhesion(Segment::Approach);
+    let is_closing = |of: &&FreeParameter| of.target == Target::Adhesion(Segment::Approach);
     let all = || problem.parameters.iter();
     for parameter in all().filter(|of| !is_closing(of)).chain(all().filter(is_closing)) {
         let (key, value) = match &parameter.target {
@@ -558,7 +572,7 @@ fn laid(
 }
 
 /// The points with their distances.
-fn beside(problem: &Problem, residuals: &DVector<f64>, scale: f64) -> Vec<Residual> {
+fn beside(problem: &FitProblem, residuals: &DVector<f64>, scale: f64) -> Vec<Residual> {
     let per = problem.per_point();
     let of = |(i, datum): (usize, &Datum)| {
         let largest = (0..per).map(|k| residuals[per * i + k].abs()).fold(0.0, f64::max);

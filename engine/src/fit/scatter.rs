@@ -11,8 +11,8 @@
 //! contact the noise cannot be told from what a wrong model leaves.
 //! J. von Neumann, Ann. Math. Stat. 12, 367 (1941), is the same with first differences.
 
-use super::problem::{Datum, Problem};
-use super::solve::Solved;
+use super::problem::{Datum, FitProblem};
+use super::solve::SolvedFit;
 use crate::elementary::{exp, ln};
 use crate::measured::branches::median;
 pub(super) use crate::measured::noise::{CLIPPED, LEFT, variance};
@@ -34,7 +34,7 @@ const CORRELATED: f64 = 3.1;
 
 /// One row, with its residual in σ.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
+pub struct ScatterRow {
     /// Its place among the data.
     pub index: usize,
     /// Its residual.
@@ -109,17 +109,17 @@ pub struct Scatter {
     pub apart: usize,
 }
 
-impl Problem {
+impl FitProblem {
     /// The residuals of one branch, in contact along the path or apart in the order of measurement, without outliers. Radii that go
     /// one way in it are in that order: the noise of a radius would shuffle rows whose forces differ.
-    pub(super) fn rows(&self, solved: &Solved, branch: usize, free: bool, part: usize) -> Vec<Row> {
+    pub(super) fn rows(&self, solved: &SolvedFit, branch: usize, free: bool, part: usize) -> Vec<ScatterRow> {
         let per = self.per_point();
         let residuals = &solved.minimum.at.residuals;
         let is_wanted = |datum: &Datum| datum.branch == branch && datum.free == free;
         let of = self.data.iter().enumerate().filter(|(_, datum)| is_wanted(datum));
-        let mut rows: Vec<Row> =
-            of.map(|(index, _)| Row { index, residual: residuals[per * index + part] }).collect();
-        let by_file = |row: &Row| self.data[row.index].point.at;
+        let mut rows: Vec<ScatterRow> =
+            of.map(|(index, _)| ScatterRow { index, residual: residuals[per * index + part] }).collect();
+        let by_file = |row: &ScatterRow| self.data[row.index].point.at;
         if free {
             rows.sort_by_key(by_file);
         } else if self.abscissa == Abscissa::Radius {
@@ -135,7 +135,7 @@ impl Problem {
     }
 
     /// The residuals of the rows apart of one branch, the farthest from the contact first.
-    fn apart(&self, solved: &Solved, branch: usize) -> Vec<f64> {
+    fn apart(&self, solved: &SolvedFit, branch: usize) -> Vec<f64> {
         let rows = self.rows(solved, branch, true, 0);
         let leaves = rows.first().is_some_and(|row| self.data[row.index].segment == Segment::Retraction);
         let residuals = rows.iter().map(|row| row.residual);
@@ -148,7 +148,7 @@ impl Problem {
     }
 
     /// The noise of the rows, by the residuals of `solved`.
-    pub(super) fn scatter(&self, solved: &Solved) -> Scatter {
+    pub(super) fn scatter(&self, solved: &SolvedFit) -> Scatter {
         let apart: Vec<Vec<f64>> = (0..self.branches()).map(|branch| self.apart(solved, branch)).collect();
         let of = |parts: usize| {
             let outer = |rows: &Vec<f64>| detrended(&rows[..rows.len().div_ceil(parts)]);
@@ -269,7 +269,7 @@ fn correlation(series: &[Vec<f64>]) -> Correlation {
 
 /// `JᵀRJ`: the rows of a branch in the order of measurement, those in contact and those apart.
 pub(super) fn together(
-    problem: &Problem,
+    problem: &FitProblem,
     jacobian: &DMatrix<f64>,
     correlation: &Correlation,
 ) -> DMatrix<f64> {

@@ -1,7 +1,7 @@
 //! One fit from one start, its noise measured by its own residuals.
 
-use super::least_squares::{Ending, LeastSquares, Minimum, Settings};
-use super::problem::Problem;
+use super::least_squares::{Ending, LeastSquares, MinimizationSettings, Minimum};
+use super::problem::FitProblem;
 use super::pulled::is_pulled;
 use crate::measured::branches::median;
 use crate::progress::Progress;
@@ -17,14 +17,14 @@ pub(super) const NOTHING: f64 = 1e-3;
 
 /// A fit.
 #[derive(Debug, Clone)]
-pub struct Solved {
+pub struct SolvedFit {
     /// The minimum.
     pub minimum: Minimum,
     /// The scale of the residuals, in σ.
     pub scale: f64,
 }
 
-impl Problem {
+impl FitProblem {
     /// The same with at most `most` points, evenly taken from those in contact and those apart.
     pub(super) fn thinned(&self, most: usize) -> Self {
         let mut thinned = self.clone();
@@ -57,12 +57,12 @@ const MANY: usize = 4000;
 /// Fits from `start`: rounds of a minimization and a new scale, until the scale stays. Of many rows a part, evenly taken, leads next to
 /// the end.
 pub fn solve(
-    problem: &Problem,
+    problem: &FitProblem,
     start: &[f64],
     robust: bool,
     rounds: usize,
     progress: &dyn Progress,
-) -> Option<Solved> {
+) -> Option<SolvedFit> {
     if problem.data.len() > MANY && problem.counts.is_none() {
         let led = solve(&problem.thinned(MANY), start, robust, rounds, progress);
         let led = led.map_or_else(|| start.to_vec(), |led| led.minimum.parameters);
@@ -73,12 +73,12 @@ pub fn solve(
 
 /// The same on all rows from the beginning.
 fn solve_all(
-    problem: &Problem,
+    problem: &FitProblem,
     start: &[f64],
     robust: bool,
     rounds: usize,
     progress: &dyn Progress,
-) -> Option<Solved> {
+) -> Option<SolvedFit> {
     /// A scale changed by less than this share is the same.
     const SAME: f64 = 1e-3;
     const SCALES: usize = 12;
@@ -92,16 +92,16 @@ fn solve_all(
     let mut left = rounds;
     // Nothing is known better than the scale: only once that has settled the end is found to all digits.
     let is_rough = problem.data.len() > MANY || is_pulled(&problem.preset);
-    let fine = if is_rough { FINE_OF_MANY } else { Settings::default().tolerance };
+    let fine = if is_rough { FINE_OF_MANY } else { MinimizationSettings::default().tolerance };
     let mut tolerance = if robust { ROUGH } else { fine };
     for turn in 0..SCALES {
         let huber = if robust { HUBER * scale } else { f64::INFINITY };
-        let settings = Settings {
+        let settings = MinimizationSettings {
             rounds: left.max(1),
             tolerance,
             huber,
             nothing: 0.5 * (NOTHING * scale).powi(2),
-            ..Settings::default()
+            ..MinimizationSettings::default()
         };
         let minimum = problem.minimize_from(&u, at, &settings, progress)?;
         left = left.saturating_sub(minimum.rounds);
@@ -109,7 +109,7 @@ fn solve_all(
         let same = (next / scale - 1.0).abs() <= SAME;
         let is_last = same && tolerance < ROUGH;
         if !robust || is_last || left == 0 || turn + 1 == SCALES || minimum.ending != Ending::Converged {
-            return Some(Solved { minimum, scale: next });
+            return Some(SolvedFit { minimum, scale: next });
         }
         if same || turn + 2 == SCALES {
             tolerance = fine;

@@ -10,9 +10,9 @@
 //! smaller than those of rows apart.
 
 use super::distance::Nearest;
-use super::problem::Problem;
-use super::scatter::{CLIPPED, LEFT, Row, variance};
-use super::solve::{LEAST_SCALE, Solved};
+use super::problem::FitProblem;
+use super::scatter::{CLIPPED, LEFT, ScatterRow, variance};
+use super::solve::{LEAST_SCALE, SolvedFit};
 use crate::measured::branches::median;
 use nalgebra::DVector;
 
@@ -34,9 +34,9 @@ pub(super) struct Spread {
     pub components: Option<Vec<[f64; 2]>>,
 }
 
-impl Problem {
+impl FitProblem {
     /// `n_x²` and `n_P²` of the rows.
-    fn normals(&self, solved: &Solved) -> Option<Vec<[f64; 2]>> {
+    fn normals(&self, solved: &SolvedFit) -> Option<Vec<[f64; 2]>> {
         let u = &solved.minimum.parameters;
         let feet = self.feet(&self.paths(u)?, &self.instrument_at(u))?;
         Some(feet.iter().map(|foot| normal(foot.as_ref())).collect())
@@ -44,9 +44,9 @@ impl Problem {
 
     /// By how much σ of x and of P are off where neither was known, (√a, √b) of second differences of the rows in contact. `None` of too
     /// few rows.
-    pub(super) fn off(&self, solved: &Solved) -> Option<[f64; 2]> {
+    pub(super) fn off(&self, solved: &SolvedFit) -> Option<[f64; 2]> {
         let normals = self.normals(solved)?;
-        let normal = |row: &Row| normals[row.index];
+        let normal = |row: &ScatterRow| normals[row.index];
         let mut rows: Vec<([f64; 2], f64)> = Vec::new();
         for branch in 0..self.branches() {
             for three in self.rows(solved, branch, false, 0).windows(3) {
@@ -60,7 +60,7 @@ impl Problem {
 
     /// The spread of the residuals, of which the fit has taken the shares `leverage`: one of all rows where there are too few, or two
     /// residuals of each.
-    pub(super) fn spread(&self, solved: &Solved, leverage: &DVector<f64>) -> Spread {
+    pub(super) fn spread(&self, solved: &SolvedFit, leverage: &DVector<f64>) -> Spread {
         let residuals = &solved.minimum.at.residuals;
         let whole = residuals.zip_map(leverage, |r, h| r / (1.0 - h).max(LEAST_LEFT).sqrt());
         let of = || {

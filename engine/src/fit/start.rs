@@ -4,9 +4,9 @@
 //! tried at a few shares of their values.
 
 use super::least_squares::LeastSquares;
-use super::problem::{ADHESION, Datum, Problem, START, Target};
+use super::problem::{ADHESION, Datum, FitProblem, START, Target};
 use super::pulled::is_pulled;
-use super::solve::{Solved, solve};
+use super::solve::{SolvedFit, solve};
 use super::track::begins;
 use crate::elementary::ln;
 use crate::gap::Gap;
@@ -15,7 +15,7 @@ use crate::measured::{Abscissa, Segment};
 use crate::preset::edge;
 use crate::preset::schema::RANGE_KEYS;
 use crate::problem::{Adhesion, Cohesion, Control};
-use crate::progress::{Part, Progress};
+use crate::progress::{Progress, ProgressPart};
 
 /// Values of E*, and the decades they span.
 const MODULI: usize = 31;
@@ -49,7 +49,7 @@ pub struct Tried {
     pub snaps: usize,
 }
 
-impl Problem {
+impl FitProblem {
     /// The mean distance at `u`.
     fn distance(&self, u: &[f64]) -> Option<f64> {
         let residuals = self.residuals(u)?;
@@ -122,7 +122,7 @@ impl Problem {
             None => self.clone(),
         };
         short.preset.material.adhesion = Adhesion::ShortRange;
-        let (found, _) = start(&short, true, robust, &Part::new(progress, [0.0, 0.5]))?;
+        let (found, _) = start(&short, true, robust, &ProgressPart::new(progress, [0.0, 0.5]))?;
         let Some(&j) = range.first() else { return Some(vec![own, found]) };
         let preset = short.preset_at(&found, Segment::Retraction)?;
         let (gamma, e) = (preset.material.work_of_adhesion, preset.material.effective_modulus);
@@ -162,7 +162,7 @@ impl Problem {
             still = still.holding(j, own[j])?;
         }
         still.preset.edge.rate = None;
-        let (found, _) = start(&still, true, robust, &Part::new(progress, [0.0, 0.3]))?;
+        let (found, _) = start(&still, true, robust, &ProgressPart::new(progress, [0.0, 0.3]))?;
         let mut base = found;
         for &j in &free {
             base.insert(j, own[j]);
@@ -255,7 +255,7 @@ impl Problem {
 
 /// The best start and those that were run; `progress` is told the share that is done.
 pub fn start(
-    problem: &Problem,
+    problem: &FitProblem,
     scan: bool,
     robust: bool,
     progress: &dyn Progress,
@@ -305,7 +305,7 @@ pub fn start(
         progress.report(0.6 + 0.4 * i as f64 / count);
         let solved = solve(&run, &u, robust, ROUNDS, progress);
         let begun = u.clone();
-        let end = solved.map_or((before, u), |Solved { minimum, .. }| {
+        let end = solved.map_or((before, u), |SolvedFit { minimum, .. }| {
             let distance = run.distance(&minimum.parameters).unwrap_or(before);
             (distance, minimum.parameters)
         });

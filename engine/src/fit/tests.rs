@@ -1,7 +1,7 @@
 //! Known values from made curves: closed forms of JKR's sphere and of the cone, and our own unloading of a wavy sphere.
 
 use super::least_squares::Ending;
-use super::path::Path;
+use super::path::FitPath;
 use super::problem::START;
 use super::track::{Mover, Reach};
 use super::way::Way;
@@ -406,7 +406,7 @@ fn a_range_of_the_adhesion_moves_the_curve_as_maugis_says() {
     )
     .unwrap();
     let reach = Reach { most: [1.0, 1.0, 2.0], turn: [1.0, 1.0], radius: Some(2.0), length: 1.0, noise: 0.0 };
-    let path = Path::new(&preset, Abscissa::Approach, &reach, Way::Down).unwrap();
+    let path = FitPath::new(&preset, Abscissa::Approach, &reach, Way::Down).unwrap();
     let (at, _) = path.at(1.0).unwrap();
     assert!((at[1] / (-1.5 * PI) - 1.0).abs() < 1e-12, "{at:?}");
     let [delta, force, _] = path.moves(Mover::Range, 1.0, at).unwrap();

@@ -8,7 +8,7 @@ use crate::preset::Preset;
 use crate::problem::Control;
 use crate::problem::Turn;
 use crate::progress::Unwatched;
-use crate::quasistatic::path::{Direction, PathState, Setting};
+use crate::quasistatic::path::{Direction, PathSetting, PathState};
 
 const WAVES: &str = "shape='wavy-sphere'\nradius_of_curvature=1.0\namplitude=0.0025\nwavelength=0.05";
 
@@ -29,7 +29,7 @@ fn a_wavy_sphere_is_found_through_its_snaps() {
 fn unloaded(preset: &Preset, n: usize) -> Points {
     let case = Case::new(preset).unwrap();
     let curve = case.curve(&Unwatched).unwrap();
-    let unloading = case.unload(&curve, &Setting::new(Control::Displacement), &Unwatched).unwrap();
+    let unloading = case.unload(&curve, &PathSetting::new(Control::Displacement), &Unwatched).unwrap();
     let stable = |delta: f64| {
         unloading.pieces().iter().find_map(|[outer, inner]| {
             let state = |s: f64| case.basis.equilibrium(&case.reduced, s).unwrap();
@@ -56,7 +56,7 @@ fn unloaded(preset: &Preset, n: usize) -> Points {
 fn looped(preset: &Preset, top: f64, n: usize) -> Points {
     let control = preset.path.control;
     let case = Case::new(preset).unwrap();
-    let cycle = case.cycle(Some(Turn::Control(top)), &Setting::new(control), &Unwatched).unwrap();
+    let cycle = case.cycle(Some(Turn::Control(top)), &PathSetting::new(control), &Unwatched).unwrap();
     assert!(cycle.states.iter().all(|state| state.contacts.len() == 1 && state.contacts[0][0] == 0.0));
     let radii = |same: &[PathState]| {
         let of = same.iter().map(|state| state.contact_radius);
@@ -140,7 +140,7 @@ fn loading_with_rings_of_contact_is_left_out_and_told() {
     let truth = preset(WAVES, 1.0, 1e-4, "");
     let case = Case::new(&truth).unwrap();
     let turn = Some(Turn::Approach(0.105));
-    let cycle = case.cycle(turn, &Setting::new(Control::Displacement), &Unwatched).unwrap();
+    let cycle = case.cycle(turn, &PathSetting::new(Control::Displacement), &Unwatched).unwrap();
     assert!(cycle.states.iter().any(|state| state.contacts.len() > 1));
     let mut points = Points {
         abscissa: Abscissa::Approach,

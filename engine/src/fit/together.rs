@@ -15,16 +15,16 @@ use super::determined::{Determined, White, determined, sandwich, words};
 use super::directed::branches_of;
 use super::fitted::Fitted;
 use super::intervals::noise;
-use super::least_squares::{Evaluated, LeastSquares, Minimum, Settings, cost, minimize};
+use super::least_squares::{Evaluated, LeastSquares, MinimizationSettings, Minimum, cost, minimize};
 use super::options::{FitError, Options};
-use super::problem::{Parameter, Problem, START, Target};
+use super::problem::{FitProblem, FreeParameter, START, Target};
 use super::run::{Fit, Posed};
 use super::scatter::Scatter;
-use super::solve::{HUBER, NOTHING, Solved};
+use super::solve::{HUBER, NOTHING, SolvedFit};
 use super::verdict::{Reason, Verdict};
-use crate::measured::{Branches, Source};
+use crate::measured::{Branches, PointsFile};
 use crate::preset::Preset;
-use crate::progress::{Part, Progress};
+use crate::progress::{Progress, ProgressPart};
 use crate::units::UnitSystem;
 use crate::units::number::short;
 use nalgebra::{DMatrix, DVector};
@@ -46,14 +46,14 @@ pub struct Together {
     /// Whether they follow one law.
     pub collapse: Collapse,
     /// The fit of each curve under the one law, its errors those of all curves.
-    pub runs: Vec<Run>,
+    pub runs: Vec<CurveFits>,
     /// The preset of the first with the law.
     pub preset: Preset,
 }
 
 /// One curve.
 #[derive(Debug, Clone)]
-pub struct Run {
+pub struct CurveFits {
     /// Under the one law.
     pub fit: Fit,
     /// Under the law that this curve alone would have.
@@ -78,20 +78,20 @@ pub struct Collapse {
 
 /// The curves as one problem, the residuals of each in the noise that it has beside its own law.
 struct Joint<'a> {
-    curves: Vec<Curve<'a>>,
+    curves: Vec<JoinedCurve<'a>>,
     count: usize,
     robust: bool,
 }
 
-struct Curve<'a> {
-    problem: &'a Problem,
+struct JoinedCurve<'a> {
+    problem: &'a FitProblem,
     /// Its minimum under its own law.
-    alone: &'a Solved,
+    alone: &'a SolvedFit,
     /// The places of its values among those of all.
     places: Vec<usize>,
 }
 
-impl Curve<'_> {
+impl JoinedCurve<'_> {
     /// One over its noise, in σ.
     fn weight(&self) -> f64 {
         1.0 / self.alone.scale
@@ -118,7 +118,7 @@ impl<'a> Joint<'a> {
     fn of(posed: &'a [Posed<'_>], robust: bool) -> Self {
         let parameters = posed.iter().flat_map(|posed| &posed.problem.parameters);
         let mut law: Vec<&Target> = Vec::new();
-        for Parameter { target, .. } in parameters {
+        for FreeParameter { target, .. } in parameters {
             if is_of_law(&target.key()) && !law.contains(&target) {
                 law.push(target);
             }
@@ -130,7 +130,7 @@ impl<'a> Joint<'a> {
                 count - 1
             })
         };
-        let of = |posed: &'a Posed<'_>| Curve {
+        let of = |posed: &'a Posed<'_>| JoinedCurve {
             problem: &posed.problem,
             alone: &posed.solved,
             places: posed.problem.parameters.iter().map(|parameter| place(&parameter.target)).collect(),
@@ -145,9 +145,9 @@ impl<'a> Joint<'a> {
     }
 
     /// The values, each as the first curve that has it does.
-    fn parameters(&self) -> Vec<Parameter> {
+    fn parameters(&self) -> Vec<FreeParameter> {
         let of_place = |place: usize| {
-            let has = |curve: &Curve| {
+            let has = |curve: &JoinedCurve| {
                 let j = curve.places.iter().position(|own| *own == place)?;
                 Some(curve.problem.parameters[j].clone())
             };
@@ -159,7 +159,7 @@ impl<'a> Joint<'a> {
     /// What is known before of the values, each once: of a value of all, as the first curve has it.
     fn priors(&self) -> Vec<(usize, f64, f64)> {
         let mut priors: Vec<(usize, f64, f64)> = Vec::new();
-        for Curve { problem, places, .. } in &self.curves {
+        for JoinedCurve { problem, places, .. } in &self.curves {
             for prior in &problem.priors {
                 let place = places[prior.parameter];
                 if priors.iter().all(|(known, ..)| *known != place) {
@@ -173,7 +173,7 @@ impl<'a> Joint<'a> {
     /// Rows of each curve among all.
     fn blocks(&self) -> Vec<Range<usize>> {
         let mut from = 0;
-        let block = |curve: &Curve| {
+        let block = |curve: &JoinedCurve| {
             let block = from..from + curve.problem.data.len() * curve.problem.per_point();
             from = block.end;
             block
@@ -182,7 +182,7 @@ impl<'a> Joint<'a> {
     }
 
     /// One curve at the minimum of all, its residuals in σ again.
-    fn solved(&self, (curve, block): (&Curve, &Range<usize>), minimum: &Minimum) -> Solved {
+    fn solved(&self, (curve, block): (&JoinedCurve, &Range<usize>), minimum: &Minimum) -> SolvedFit {
         let scale = curve.alone.scale;
         let residuals = minimum.at.residuals.rows(block.start, block.len()) * scale;
         let jacobian = DMatrix::from_fn(block.len(), curve.places.len(), |i, j| {
@@ -191,12 +191,12 @@ impl<'a> Joint<'a> {
         let cost = cost(&residuals, None, self.huber() * scale);
         let parameters = curve.own(&minimum.parameters);
         let at = Evaluated { residuals, jacobian };
-        Solved { minimum: Minimum { parameters, at, cost, ..minimum.clone() }, scale }
+        SolvedFit { minimum: Minimum { parameters, at, cost, ..minimum.clone() }, scale }
     }
 }
 
 impl LeastSquares for Joint<'_> {
-    type Look = Vec<<Problem as LeastSquares>::Look>;
+    type Look = Vec<<FitProblem as LeastSquares>::Look>;
 
     fn look(&self, u: &[f64]) -> Option<(DVector<f64>, Self::Look)> {
         let mut all: Vec<f64> = Vec::new();
@@ -250,13 +250,14 @@ pub fn fit_together(
     let mut posed = Vec::new();
     for (run, (preset, branches)) in presets.iter().zip(&branches).enumerate() {
         let share = |run: usize| 0.9 * run as f64 / presets.len() as f64;
-        let part = Part::new(progress, [share(run), share(run + 1)]);
+        let part = ProgressPart::new(progress, [share(run), share(run + 1)]);
         posed.push(Posed::new(preset, branches, options, &part).map_err(numbered(run))?);
     }
     let joint = Joint::of(&posed, options.robust);
     let minimum = least(&joint, progress).ok_or((0, FitError::NoStart))?;
     let blocks = joint.blocks();
-    let solved: Vec<Solved> = joint.curves.iter().zip(&blocks).map(|of| joint.solved(of, &minimum)).collect();
+    let solved: Vec<SolvedFit> =
+        joint.curves.iter().zip(&blocks).map(|of| joint.solved(of, &minimum)).collect();
     let scatters: Vec<Scatter> =
         joint.curves.iter().zip(&solved).map(|(curve, solved)| curve.problem.scatter(solved)).collect();
     let known = known(&joint, (&solved, &scatters), &minimum);
@@ -275,7 +276,7 @@ pub fn fit_together(
             fit.reasons.push(Reason::new("collapse", collapse.chi_squared, collapse.sentence.clone()));
             fit.verdict = fit.verdict.max(Verdict::DoesNotDescribe);
         }
-        runs.push(Run { fit, alone });
+        runs.push(CurveFits { fit, alone });
     }
     let mut law: Vec<Fitted> = Vec::new();
     for fitted in runs.iter().flat_map(|run| run.fit.parameters.iter()) {
@@ -296,7 +297,7 @@ fn belongs(presets: &[Preset], run: usize) -> Result<(), FitError> {
         return Err(FitError::Data("one problem is in SI and another in reduced units".to_owned()));
     }
     let has_same = |other: &Preset| {
-        let is_same = |of: &Source| other.data.source.as_deref().is_some_and(|own| own.has_bytes_of(of));
+        let is_same = |of: &PointsFile| other.data.source.as_deref().is_some_and(|own| own.has_bytes_of(of));
         preset.data.source.as_deref().is_some_and(is_same) && other.reading() == preset.reading()
     };
     if before.iter().any(has_same) {
@@ -310,7 +311,7 @@ fn least(joint: &Joint, progress: &dyn Progress) -> Option<Minimum> {
     const STARTS: usize = 2;
     const ROUNDS: usize = 100;
     const TOLERANCE: f64 = 1e-7;
-    let lay = |curve: &Curve, u: &mut [f64], law_alone: bool| {
+    let lay = |curve: &JoinedCurve, u: &mut [f64], law_alone: bool| {
         for (j, place) in curve.places.iter().enumerate() {
             if !law_alone || is_of_law(&curve.problem.parameters[j].key()) {
                 u[*place] = curve.alone.minimum.parameters[j];
@@ -319,7 +320,7 @@ fn least(joint: &Joint, progress: &dyn Progress) -> Option<Minimum> {
     };
     let mut start = vec![f64::NAN; joint.count];
     joint.curves.iter().for_each(|curve| lay(curve, &mut start, false));
-    let with_law_of = |curve: &Curve| {
+    let with_law_of = |curve: &JoinedCurve| {
         let mut u = start.clone();
         lay(curve, &mut u, true);
         let residuals = joint.residuals(&u)?;
@@ -328,19 +329,19 @@ fn least(joint: &Joint, progress: &dyn Progress) -> Option<Minimum> {
     let mut starts: Vec<(f64, Vec<f64>)> = joint.curves.iter().filter_map(with_law_of).collect();
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
     starts.truncate(STARTS);
-    let settings = Settings {
+    let settings = MinimizationSettings {
         rounds: ROUNDS,
         tolerance: TOLERANCE,
         huber: joint.huber(),
         nothing: 0.5 * NOTHING * NOTHING,
-        ..Settings::default()
+        ..MinimizationSettings::default()
     };
     let found = starts.iter().filter_map(|(_, u)| minimize(joint, u, &settings, progress));
     found.min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
 /// What all curves determine together.
-struct Known {
+struct JointUncertainty {
     condition: f64,
     direction: Option<String>,
     /// The covariance of all values, and (JᵀJ)⁻¹, where they are determined.
@@ -348,15 +349,19 @@ struct Known {
     degrees: f64,
 }
 
-fn known(joint: &Joint, (solved, scatters): (&[Solved], &[Scatter]), minimum: &Minimum) -> Known {
+fn known(
+    joint: &Joint,
+    (solved, scatters): (&[SolvedFit], &[Scatter]),
+    minimum: &Minimum,
+) -> JointUncertainty {
     let p = joint.count;
     let all = || joint.curves.iter().zip(solved.iter().zip(scatters));
-    let of_rows = |(curve, (solved, scatter)): (&Curve, (&Solved, &Scatter))| {
+    let of_rows = |(curve, (solved, scatter)): (&JoinedCurve, (&SolvedFit, &Scatter))| {
         curve.problem.real(&solved.minimum.at.residuals).len() as f64 / scatter.correlation.rows()
     };
     let lost = if joint.robust { LOST } else { 1.0 };
     let degrees = ((all().map(of_rows).sum::<f64>() - p as f64) / lost).max(1.0);
-    let none = |condition, direction| Known { condition, direction, covariance: None, degrees };
+    let none = |condition, direction| JointUncertainty { condition, direction, covariance: None, degrees };
     let jacobian = minimum.at.jacobian.clone();
     let Some(White { condition, inner, weakest, .. }) = White::of(jacobian, joint.priors().len()) else {
         return none(f64::INFINITY, None);
@@ -385,12 +390,12 @@ fn known(joint: &Joint, (solved, scatters): (&[Solved], &[Scatter]), minimum: &M
     }
     let Some(bread) = bread.try_inverse() else { return none(condition, None) };
     let covariance = &bread * points * &bread;
-    Known { condition, direction: None, covariance: Some([covariance, inner]), degrees }
+    JointUncertainty { condition, direction: None, covariance: Some([covariance, inner]), degrees }
 }
 
-impl Known {
+impl JointUncertainty {
     /// As one curve has it.
-    fn of(&self, curve: &Curve) -> Determined {
+    fn of(&self, curve: &JoinedCurve) -> Determined {
         let [covariance, inner] = match &self.covariance {
             Some(both) => both.each_ref().map(|of| Some(curve.part(of))),
             None => [None, None],
@@ -413,10 +418,10 @@ impl Known {
 }
 
 /// Whether the curves follow one law, under which they are `together`.
-fn collapse(joint: &Joint, together: &[Solved], scatters: &[Scatter]) -> Collapse {
+fn collapse(joint: &Joint, together: &[SolvedFit], scatters: &[Scatter]) -> Collapse {
     let (mut sum, mut rows, mut own) = (0.0, 0.0, 0);
     for ((curve, together), scatter) in joint.curves.iter().zip(together).zip(scatters) {
-        let Curve { problem, alone, .. } = curve;
+        let JoinedCurve { problem, alone, .. } = curve;
         let [one, other] = [together, alone].map(|solved| {
             let residuals = DVector::from_vec(problem.real(&solved.minimum.at.residuals));
             cost(&residuals, None, joint.huber() * alone.scale)

@@ -5,10 +5,10 @@
 pub use super::mover::Mover;
 use super::pulled::{TrackState, Trail, is_pulled};
 use crate::case;
-use crate::disc::{Basis, Exact, Local, Place, Solution, Table};
+use crate::disc::{Basis, ExactBasis, Local, Place, Solution, Table};
 use crate::measured::Abscissa;
 use crate::preset::Preset;
-use crate::problem::{Adhesion, Cohesion, Control, Reduced, Stated, Units};
+use crate::problem::{Adhesion, Cohesion, Control, Reduced, StatedCohesion, Units};
 use crate::progress::Unwatched;
 use crate::quasistatic::curve::places;
 use crate::quasistatic::path::{PathError, Zones};
@@ -101,7 +101,8 @@ impl Track {
         let table = case::table(&preset.gap, &reduced, 1.0, &preset.units, &Unwatched).ok()?;
         if let Some(law) = preset.cohesion() {
             let law = law.reduced_by(units.length, units.pressure);
-            let holds_range = !matches!(preset.material.adhesion, Adhesion::Dugdale(Stated::Strength(_)));
+            let holds_range =
+                !matches!(preset.material.adhesion, Adhesion::Dugdale(StatedCohesion::Strength(_)));
             let radius = preset.gap.radius_of_curvature().map(|radius| radius / units.length);
             return Self::in_zone(&table, (law, holds_range, radius), eye, reach, held);
         }
@@ -111,9 +112,9 @@ impl Track {
         }
         let outermost = match reach.radius {
             Some(radius) => (radius / units.length).min(reduced.largest_contact()),
-            None => outermost(&reduced, &Exact::new(Arc::clone(&table), 1e-3), reach, eye)?,
+            None => outermost(&reduced, &ExactBasis::new(Arc::clone(&table), 1e-3), reach, eye)?,
         };
-        let basis: Arc<dyn Basis> = Arc::new(Exact::new(Arc::clone(&table), outermost));
+        let basis: Arc<dyn Basis> = Arc::new(ExactBasis::new(Arc::clone(&table), outermost));
         let ends = [outermost, INNERMOST * outermost];
         let mut curve = Curve::new(reduced, basis, table, ends, Detail::Drawn, &Unwatched)?;
         curve.hold(held);
@@ -320,7 +321,7 @@ pub(super) fn begins(preset: &Preset, abscissa: Abscissa, x: f64, length: f64) -
     };
     let eye = Eye { units: reduced.units, abscissa, compliance };
     let table = case::table(&preset.gap, &reduced, 1.0, &preset.units, &Unwatched).ok()?;
-    let basis = Exact::new(table, 1e-3);
+    let basis = ExactBasis::new(table, 1e-3);
     let reach = Reach {
         most: [x, f64::NEG_INFINITY, f64::NEG_INFINITY],
         turn: [x, 0.0],
@@ -339,7 +340,7 @@ pub(super) fn begins(preset: &Preset, abscissa: Abscissa, x: f64, length: f64) -
 }
 
 /// The reduced radius from which the curve reaches beyond all points.
-fn outermost(reduced: &Reduced, basis: &Exact, reach: &Reach, eye: &Eye) -> Option<f64> {
+fn outermost(reduced: &Reduced, basis: &ExactBasis, reach: &Reach, eye: &Eye) -> Option<f64> {
     const FIRST: f64 = 1e-7;
     const GROWTH: f64 = 1.5;
     let largest = reduced.largest_contact();

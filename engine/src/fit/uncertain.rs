@@ -5,7 +5,7 @@
 //! and a second fit must not count them twice.
 
 use super::options::{FitError, target};
-use super::problem::{Parameter, Prior, Target};
+use super::problem::{FreeParameter, Prior, Target};
 use crate::measured::Abscissa;
 use crate::preset::{Preset, Value};
 use crate::text::quote;
@@ -84,14 +84,14 @@ pub(super) fn uncertain(preset: &Preset, abscissa: Abscissa, text: &str) -> Resu
 
 impl Uncertain {
     /// What it says of the parameter number `at`; an error of a logarithm is a share.
-    pub(super) fn prior(&self, parameter: &Parameter, at: usize) -> Prior {
+    pub(super) fn prior(&self, parameter: &FreeParameter, at: usize) -> Prior {
         let sigma = self.sigma / parameter.slope(self.mean).abs();
         Prior { parameter: at, mean: parameter.inner(self.mean), sigma }
     }
 }
 
 /// The text of what was known of a parameter before its fit, for the next fit of the same points.
-pub(super) fn written(parameter: &Parameter, prior: &Prior) -> String {
+pub(super) fn written(parameter: &FreeParameter, prior: &Prior) -> String {
     let mean = parameter.value(prior.mean);
     let sigma = prior.sigma * parameter.slope(mean).abs();
     format!("{}={mean:?}{}{sigma:?}", parameter.key(), BETWEEN[0])

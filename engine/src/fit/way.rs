@@ -18,7 +18,7 @@ pub enum Way {
 }
 
 /// What the points say of a way.
-pub struct Seen<'a> {
+pub struct WayEvidence<'a> {
     /// x of a state.
     pub x_of: &'a dyn Fn(&Local) -> f64,
     /// The largest x.
@@ -45,7 +45,7 @@ const TIMES: usize = 8;
 ///
 /// With the stable legs comes the unstable stretch at the end that is nearer to the axis: so a point just beyond a pull-off or a first
 /// touch has a curve on both sides.
-pub(super) fn legs(track: &mut Track, control: Control, way: Way, seen: &Seen<'_>) -> Vec<Leg> {
+pub(super) fn legs(track: &mut Track, control: Control, way: Way, seen: &WayEvidence<'_>) -> Vec<Leg> {
     for _ in 0..TIMES {
         let (Some(solution), Some(monotone)) = (track.solution(), track.monotone(control)) else { break };
         let found = match way {
@@ -65,7 +65,7 @@ pub(super) fn legs(track: &mut Track, control: Control, way: Way, seen: &Seen<'_
 }
 
 /// The outer end of the stable stretch on which the points begin: of those with a state at their x that whose force is nearest.
-fn turned(seen: &Seen<'_>, solution: &dyn Solution, monotone: &Monotone) -> Option<Landing> {
+fn turned(seen: &WayEvidence<'_>, solution: &dyn Solution, monotone: &Monotone) -> Option<Landing> {
     const HALVINGS: usize = 50;
     let [x, force] = seen.turn;
     let mut best: Option<(f64, Landing)> = None;
@@ -88,7 +88,7 @@ fn turned(seen: &Seen<'_>, solution: &dyn Solution, monotone: &Monotone) -> Opti
 }
 
 /// The way up, where it goes far enough.
-fn up(seen: &Seen<'_>, solution: &dyn Solution, monotone: &Monotone) -> Option<Vec<Leg>> {
+fn up(seen: &WayEvidence<'_>, solution: &dyn Solution, monotone: &Monotone) -> Option<Vec<Leg>> {
     let enough = |at: &Local| (seen.x_of)(at) >= seen.most;
     let rises = ascend(solution, monotone, 0.0, &enough);
     rises.last().filter(|last| enough(&solution.at(last.end)))?;

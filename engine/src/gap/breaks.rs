@@ -20,7 +20,7 @@ use std::sync::LazyLock;
 
 /// What the gap is at the axis, as a function of r.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Axis {
+pub enum Parity {
     /// Even and smooth: a body that is smooth at its tip.
     #[default]
     Even,
@@ -36,14 +36,14 @@ pub struct Breaks<'a> {
     /// The positive radii where h or one of its first three derivatives jumps, ascending.
     pub knots: &'a [f64],
     /// What the gap is at the axis.
-    pub axis: Axis,
+    pub axis: Parity,
     /// Whether the gap is a cubic in r between its knots.
     pub cubic: bool,
 }
 
 /// A stretch of radii without a knot inside.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stretch {
+pub struct SmoothStretch {
     /// The smaller end.
     pub from: f64,
     /// The larger end.
@@ -64,11 +64,11 @@ impl<'a> Breaks<'a> {
     ///
     /// What a disc of radius a feels of a knot at c < a is singular there, as a power of √(a − c); a disc that does not reach
     /// it feels nothing.
-    pub fn stretches(&self, from: f64, to: f64) -> impl DoubleEndedIterator<Item = Stretch> + use<'a> {
+    pub fn stretches(&self, from: f64, to: f64) -> impl DoubleEndedIterator<Item = SmoothStretch> + use<'a> {
         let inside = self.between(from, to);
         let below = self.knots.partition_point(|knot| *knot <= from);
         let base = below.checked_sub(1).map_or(0.0, |at| self.knots[at]);
-        (0..=inside.len()).map(move |i| Stretch {
+        (0..=inside.len()).map(move |i| SmoothStretch {
             from: if i == 0 { from } else { inside[i - 1] },
             to: inside.get(i).copied().unwrap_or(to),
             base: if i == 0 { base } else { inside[i - 1] },
@@ -123,7 +123,7 @@ impl Angles {
     pub fn new(breaks: Breaks<'_>, s: f64, frequency: f64) -> Self {
         let mut angles = Self::default();
         let mut from = 0.0;
-        if breaks.axis == Axis::Broken && !breaks.cubic {
+        if breaks.axis == Parity::Broken && !breaks.cubic {
             let first = asin(breaks.knots.first().map_or(1.0, |knot| knot / s).min(1.0));
             from = angles.graded(first, frequency);
         }
@@ -218,7 +218,7 @@ mod tests {
     #[test]
     fn broken_powers_reach_rounding() {
         for frequency in [4.0, 300.0] {
-            let angles = Angles::new(Breaks { axis: Axis::Broken, ..Breaks::default() }, 1.0, frequency);
+            let angles = Angles::new(Breaks { axis: Parity::Broken, ..Breaks::default() }, 1.0, frequency);
             for n in [1.0_f64, 1.1, 1.5, 1.9, 2.7] {
                 // Wallis: ∫ sinⁿ⁻¹θ dθ.
                 let exact =

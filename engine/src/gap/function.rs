@@ -71,7 +71,7 @@ pub enum Form {
 
 /// A disc of the complex plane over which a gap's slope is bounded.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Disc {
+pub struct ComplexDisc {
     /// Its centre c, a real radius.
     pub centre: f64,
     /// Its radius R.
@@ -127,7 +127,7 @@ pub trait Gap: Debug + Send + Sync {
     /// infinite where there is no bound: a pole or a branch point.
     ///
     /// `None`: the gap promises nothing about complex radii. How finely it must be divided is then judged by samples.
-    fn slope_bound(&self, disc: Disc) -> Option<f64> {
+    fn slope_bound(&self, disc: ComplexDisc) -> Option<f64> {
         let _ = disc;
         None
     }
@@ -237,9 +237,9 @@ impl<G: Gap> Gap for Scaled<G> {
         }
     }
 
-    fn slope_bound(&self, Disc { centre, radius, branch }: Disc) -> Option<f64> {
+    fn slope_bound(&self, ComplexDisc { centre, radius, branch }: ComplexDisc) -> Option<f64> {
         let l = self.length;
-        self.gap.slope_bound(Disc { centre: l * centre, radius: l * radius, branch: l * branch })
+        self.gap.slope_bound(ComplexDisc { centre: l * centre, radius: l * radius, branch: l * branch })
     }
 
     fn breaks_up_to(&self, to: f64) -> Vec<f64> {
@@ -304,7 +304,7 @@ impl<G: Gap + ?Sized> Gap for std::sync::Arc<G> {
         (**self).form()
     }
 
-    fn slope_bound(&self, disc: Disc) -> Option<f64> {
+    fn slope_bound(&self, disc: ComplexDisc) -> Option<f64> {
         (**self).slope_bound(disc)
     }
 

@@ -20,6 +20,6 @@ pub mod panels;
 pub mod shape;
 pub mod shapes;
 
-pub use breaks::{Axis, Breaks};
-pub use function::{Disc, Form, Gap, Jet, Piece, Wave, wave_index};
+pub use breaks::{Breaks, Parity};
+pub use function::{ComplexDisc, Form, Gap, Jet, Piece, Wave, wave_index};
 pub use shape::Shape;

@@ -16,7 +16,7 @@
 //! slope of the left side is continued around b, so that it is bounded there too, and the break before must stay out.
 //! Left of a break nothing is needed. The innermost panel is taken in u, r = hi u⁵, which costs a broken power nothing.
 
-use super::function::{Disc, Gap};
+use super::function::{ComplexDisc, Gap};
 use crate::elementary::cos;
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
@@ -83,7 +83,7 @@ pub struct Span {
 /// A gap that is not resolved.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("{}", self.words(&UnitSystem::Reduced))]
-pub struct Refused {
+pub struct Unresolved {
     /// The radius that was reached.
     pub radius: f64,
     /// The largest radius asked for.
@@ -92,7 +92,7 @@ pub struct Refused {
     pub panels: f64,
 }
 
-impl Refused {
+impl Unresolved {
     /// What is wrong, with the radii as `units` show them.
     pub fn words(&self, units: &UnitSystem) -> String {
         let [radius, largest] = [self.radius, self.largest].map(|r| said(units, Quantity::Length, r));
@@ -116,7 +116,7 @@ pub fn divide(
     [from, to]: [f64; 2],
     smallest: f64,
     breaks: &[f64],
-) -> Result<Vec<Span>, Refused> {
+) -> Result<Vec<Span>, Unresolved> {
     let breaks: Vec<f64> = breaks.iter().copied().filter(|b| *b > 0.0 && *b < to).collect();
     let mut divider = Divider { gap, to, steepest: 0.0, floor: 0.0, spans: Vec::new() };
     let coarse: Vec<f64> = (0..COARSE).map(|i| to * (i as f64 + 0.5) / COARSE as f64).collect();
@@ -172,7 +172,7 @@ struct Divider<'a> {
 
 impl Divider<'_> {
     /// The panels from `lo` to `hi`, between breaks; `before` is the break before the base of the variable.
-    fn stretch(&mut self, lo: f64, hi: f64, variable: Variable, before: f64) -> Result<(), Refused> {
+    fn stretch(&mut self, lo: f64, hi: f64, variable: Variable, before: f64) -> Result<(), Unresolved> {
         let mut open = vec![(lo, hi)];
         while let Some((lo, hi)) = open.pop() {
             let steepest = self.steepest.max(self.steepest_in(lo, hi));
@@ -189,7 +189,7 @@ impl Divider<'_> {
                 continue;
             }
             if self.spans.len() >= MOST {
-                return Err(Refused { radius: lo, largest: self.to, panels: MOST as f64 });
+                return Err(Unresolved { radius: lo, largest: self.to, panels: MOST as f64 });
             }
             self.steepest = steepest;
             self.spans.push(Span { lo, hi, variable });
@@ -202,7 +202,7 @@ impl Divider<'_> {
         let Span { lo, hi, variable } = span;
         let allowed = GROWTH * steepest;
         let bound = |centre: f64, radius: f64, branch: f64| {
-            self.gap.slope_bound(Disc { centre, radius, branch }).map(|bound| bound <= allowed)
+            self.gap.slope_bound(ComplexDisc { centre, radius, branch }).map(|bound| bound <= allowed)
         };
         let resolved = if let Variable::Root { base } = variable {
             let [from, to] = [lo, hi].map(|r| (r - base).sqrt());
@@ -299,7 +299,7 @@ mod tests {
             self.gap.feature_length()
         }
 
-        fn slope_bound(&self, disc: Disc) -> Option<f64> {
+        fn slope_bound(&self, disc: ComplexDisc) -> Option<f64> {
             self.asked.fetch_add(1, Ordering::Relaxed);
             self.bounded.then(|| self.gap.bound().slope_bound(disc))
         }

@@ -2,12 +2,12 @@
 
 use super::breaks::Breaks;
 use super::formula::TypedGap;
-use super::function::{Disc, Form, Gap, Jet, Wave};
+use super::function::{ComplexDisc, Form, Gap, Jet, Wave};
 use super::lanes::map_lanes;
 use super::shapes::harmonics::sine_change;
 use super::shapes::power_law::NEARLY_A_CONE;
 use super::shapes::random_waves::RandomWavesError;
-use super::shapes::{ExactSphere, Harmonics, Measured, PowerLaw, RandomWaves};
+use super::shapes::{ExactSphere, Harmonics, MeasuredGap, PowerLaw, RandomWaves};
 use crate::elementary::{self, sin_cos};
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
@@ -53,7 +53,7 @@ pub enum Shape {
     /// A formula in r.
     Formula(Arc<TypedGap>),
     /// A measured profile.
-    Profile(Arc<Measured>),
+    Profile(Arc<MeasuredGap>),
 }
 
 impl Shape {
@@ -167,15 +167,15 @@ impl Shape {
     }
 
     /// The gap where it is not one of the paper's two, which are computed here.
-    fn other(&self) -> Option<Other<'_>> {
+    fn other(&self) -> Option<ShapeGap<'_>> {
         Some(match self {
             Self::Sphere { .. } | Self::WavySphere { .. } => return None,
-            Self::ExactSphere(gap) => Other::Ref(gap),
-            Self::Cone { slope } => Other::Cone(PowerLaw::cone(*slope)),
-            Self::PowerLaw(gap) => Other::Ref(gap),
-            Self::Harmonics(gap) | Self::RandomWaves { drawn: gap, .. } => Other::Ref(&**gap),
-            Self::Formula(typed) => Other::Ref(typed.gap()),
-            Self::Profile(measured) => Other::Ref(measured.profile()),
+            Self::ExactSphere(gap) => ShapeGap::Ref(gap),
+            Self::Cone { slope } => ShapeGap::Cone(PowerLaw::cone(*slope)),
+            Self::PowerLaw(gap) => ShapeGap::Ref(gap),
+            Self::Harmonics(gap) | Self::RandomWaves { drawn: gap, .. } => ShapeGap::Ref(&**gap),
+            Self::Formula(typed) => ShapeGap::Ref(typed.gap()),
+            Self::Profile(measured) => ShapeGap::Ref(measured.profile()),
         })
     }
 
@@ -186,12 +186,12 @@ impl Shape {
 }
 
 /// A gap computed in a file of its own.
-enum Other<'a> {
+enum ShapeGap<'a> {
     Ref(&'a dyn Gap),
     Cone(PowerLaw),
 }
 
-impl Other<'_> {
+impl ShapeGap<'_> {
     fn gap(&self) -> &dyn Gap {
         match self {
             Self::Ref(gap) => *gap,
@@ -296,11 +296,11 @@ impl Gap for Shape {
         }
     }
 
-    fn slope_bound(&self, disc: Disc) -> Option<f64> {
+    fn slope_bound(&self, disc: ComplexDisc) -> Option<f64> {
         if let Some(other) = self.other() {
             return other.gap().slope_bound(disc);
         }
-        let Disc { centre, radius, .. } = disc;
+        let ComplexDisc { centre, radius, .. } = disc;
         let wave = self.wave().map_or(0.0, |(amplitude, wavelength)| {
             let q = TAU / wavelength;
             let (sin, cos) = sin_cos(q * centre);
@@ -331,7 +331,7 @@ mod tests {
     use super::*;
     use crate::gap::function::Scaled;
     use crate::gap::{complex::Complex, complex::largest_on};
-    use crate::gap::{shapes::Harmonic, shapes::Profile, shapes::Smoothing};
+    use crate::gap::{shapes::Harmonic, shapes::ProfileGap, shapes::Smoothing};
 
     #[test]
     fn derivatives_agree_with_central_differences() {
@@ -403,7 +403,7 @@ mod tests {
         let waves = vec![wave(0.003, 0.07, 0.0), wave(-0.001, 0.2, 1.1)];
         let rows: Vec<f64> = (0..40).map(|i| f64::from(i) / 20.0).collect();
         let heights: Vec<f64> = rows.iter().map(|r| 0.5 * r * r + 0.01 * (9.0 * r).cos()).collect();
-        let profile = Profile::new(&rows, &heights, Smoothing::None).unwrap();
+        let profile = ProfileGap::new(&rows, &heights, Smoothing::None).unwrap();
         let spline = profile.clone();
         let sine = |z: Complex, Harmonic { amplitude, wavelength, phase }: Harmonic| {
             let q = TAU / wavelength;
@@ -438,7 +438,7 @@ mod tests {
             for _ in 0..300 {
                 let (centre, branch) = (1.5 * random.f64(), 1.5 * random.f64());
                 let radius = 10f64.powf(-4.0 + 4.0 * random.f64());
-                let most = gap.slope_bound(Disc { centre, radius, branch }).unwrap();
+                let most = gap.slope_bound(ComplexDisc { centre, radius, branch }).unwrap();
                 looked_at += i32::from(most.is_finite());
                 let largest = largest_on(centre, radius, |z| slope(z, branch));
                 assert!(
@@ -466,10 +466,10 @@ mod tests {
             for (found, exact) in breaks.iter().zip([0.3, 0.7]) {
                 assert!(length * found >= exact && length * found.next_down() < exact, "{found} {exact}");
             }
-            let disc = Disc { centre: 0.5, radius: 0.1, branch: 0.4 };
+            let disc = ComplexDisc { centre: 0.5, radius: 0.1, branch: 0.4 };
             let [centre, radius, branch] = [0.5, 0.1, 0.4].map(|r| r / length);
             let (ours, exact) =
-                (scaled.slope_bound(Disc { centre, radius, branch }), plain.gap().slope_bound(disc));
+                (scaled.slope_bound(ComplexDisc { centre, radius, branch }), plain.gap().slope_bound(disc));
             assert!((ours.unwrap() / exact.unwrap() - 1.0).abs() < 1e-14);
             assert_eq!(scaled.uncertified(), None);
         }

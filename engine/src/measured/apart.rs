@@ -34,7 +34,7 @@ const MANY: usize = 20;
 
 /// A jump.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Jump {
+pub(super) struct RowJump {
     /// The first row behind it.
     pub(super) at: usize,
     /// Its height in deviations of its noise.
@@ -42,7 +42,7 @@ pub(super) struct Jump {
 }
 
 /// The jump in `force` over `x`, from the contact to the free end; `None` where there is none.
-pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<Jump> {
+pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<RowJump> {
     let n = force.len();
     if n < 2 * FEWEST {
         return None;
@@ -51,7 +51,7 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<Jump> {
 }
 
 /// The jump of so few rows that one alone is as high as their noise seems to be.
-fn of_few(force: &[f64]) -> Option<Jump> {
+fn of_few(force: &[f64]) -> Option<RowJump> {
     let n = force.len();
     let whole = range(force.iter().copied());
     let found = (FEWEST..=n - BEHIND).filter_map(|at| {
@@ -59,13 +59,13 @@ fn of_few(force: &[f64]) -> Option<Jump> {
         let behind = range(force[at..].iter().copied()).max(FLOOR * whole);
         let was_rising = force[at - 1] - force[at - 2] > GOES_ON * height;
         let is_jump = height > OF_RANGE * whole && height > OF_FEW * behind && !was_rising;
-        is_jump.then_some(Jump { at, deviations: height / behind })
+        is_jump.then_some(RowJump { at, deviations: height / behind })
     });
     found.max_by(|a, b| (force[a.at] - force[a.at - 1]).total_cmp(&(force[b.at] - force[b.at - 1])))
 }
 
 /// The jump of enough rows.
-fn of_many(x: &[f64], force: &[f64]) -> Option<Jump> {
+fn of_many(x: &[f64], force: &[f64]) -> Option<RowJump> {
     let n = force.len();
     let sigma = scatter_over(x, force).unwrap_or(0.0).max(FLOOR * range(force.iter().copied()));
     if sigma <= 0.0 {
@@ -78,7 +78,7 @@ fn of_many(x: &[f64], force: &[f64]) -> Option<Jump> {
     }
     let mean = |from: usize, to: usize| (sums[to] - sums[from]) / (to - from) as f64;
     let behind = if n < FEW { BEHIND } else { FEWEST };
-    let mut best: Option<Jump> = None;
+    let mut best: Option<RowJump> = None;
     let mut w = 1;
     while w <= (n / 8).max(1) {
         let scale = (w as f64 / 2.0).sqrt() / sigma;
@@ -91,11 +91,11 @@ fn of_many(x: &[f64], force: &[f64]) -> Option<Jump> {
             rows.clone().filter(|at| height(*at) * scale > SURE).filter(is_peak).collect();
         peaks.sort_by(|&a, &b| height(b).total_cmp(&height(a)));
         let found = peaks.into_iter().take(TRIED).find(|at| is_flat(x, &force, *at, height(*at), w));
-        let found = found.map(|at| Jump { at, deviations: height(at) * scale });
+        let found = found.map(|at| RowJump { at, deviations: height(at) * scale });
         best = best.into_iter().chain(found).max_by(|a, b| a.deviations.total_cmp(&b.deviations));
         w *= 2;
     }
-    best.map(|found| Jump { at: sharpened(&force, found.at, sigma, behind), ..found })
+    best.map(|found| RowJump { at: sharpened(&force, found.at, sigma, behind), ..found })
 }
 
 /// Whether the force behind `at` stands still beside a jump of this height, which was seen in `w` rows.

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 /// Limits of values, as the file has them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Span {
+pub struct ValueRange {
     /// The smallest.
     pub lo: f64,
     /// The largest.
@@ -23,7 +23,7 @@ pub enum FreePart {
     /// None: all rows are in contact.
     None,
     /// Those with x here, in base units and with the sign of the file.
-    Within(Span),
+    Within(ValueRange),
 }
 
 /// What is asked of a file's points.
@@ -34,9 +34,9 @@ pub struct Asked {
     /// The branch that is used alone.
     pub segment: Option<Segment>,
     /// The range of x, in base units and with the signs of the file.
-    pub x: Option<Span>,
+    pub x: Option<ValueRange>,
     /// The range of P, likewise.
-    pub force: Option<Span>,
+    pub force: Option<ValueRange>,
     /// Which rows are apart.
     pub free: FreePart,
     /// σ of x, P and s, where they are known.
@@ -67,7 +67,7 @@ pub enum AskedError {
 /// Reads the end of a range.
 pub type Number<'a> = &'a dyn Fn(&str) -> Result<f64, String>;
 
-impl Span {
+impl ValueRange {
     /// Whether it holds a value.
     #[must_use]
     pub fn holds(&self, value: f64) -> bool {
@@ -106,7 +106,7 @@ impl FreePart {
             "none" => Ok(Self::None),
             said => match said.split_once('=') {
                 Some((axis, range)) if axis.trim() == "x" => {
-                    Span::parse(text, range, EXPECTED, number).map(Self::Within)
+                    ValueRange::parse(text, range, EXPECTED, number).map(Self::Within)
                 }
                 _ => Err(form(text, EXPECTED)),
             },
@@ -166,8 +166,8 @@ mod tests {
         let free = |text: &str| FreePart::parse(text, &number);
         assert_eq!(free(" none "), Ok(FreePart::None));
         assert_eq!(free(""), Ok(FreePart::Found));
-        assert_eq!(free("x = -3 .. 1e-1"), Ok(FreePart::Within(Span { lo: -3.0, hi: 0.1 })));
-        assert_eq!(free("x=..2"), Ok(FreePart::Within(Span { lo: f64::NEG_INFINITY, hi: 2.0 })));
+        assert_eq!(free("x = -3 .. 1e-1"), Ok(FreePart::Within(ValueRange { lo: -3.0, hi: 0.1 })));
+        assert_eq!(free("x=..2"), Ok(FreePart::Within(ValueRange { lo: f64::NEG_INFINITY, hi: 2.0 })));
         for text in ["x", "force=1..2", "x=1", "1..2", "x=2..1", "x=1..1", "x=a..2", "x=nan..2"] {
             assert!(free(text).is_err(), "{text}: {:?}", free(text));
         }

@@ -8,18 +8,18 @@
 //!
 //! How well the columns are known is found in `sigma`.
 
-use super::asked::{Asked, FreePart, Span};
+use super::asked::{Asked, FreePart, ValueRange};
 use super::converter::{Clipped, clipped, quantum, without_repeats};
-pub use super::free::Branch;
+pub use super::free::MeasuredBranch;
 use super::free::{as_elsewhere, branch, one_sided, same_free_force};
 pub(crate) use super::noise::median;
 use super::noise::{END_ROWS, range};
 pub use super::noise::{FLOOR, Noise, Origin};
-pub use super::points::Point;
+pub use super::points::MeasuredPoint;
 use super::points::{Abscissa, Points, Turned, turn};
 use super::role::Segment;
 use super::sigma::noise;
-use super::signs::{Direction, Seen};
+use super::signs::{Orientation, UnsignedPoints};
 use super::turns::{by_time, one_way, rises, runs};
 use thiserror::Error;
 
@@ -34,7 +34,7 @@ pub struct Branches {
     /// What x is.
     pub abscissa: Abscissa,
     /// The branches, approach first.
-    pub list: Vec<Branch>,
+    pub list: Vec<MeasuredBranch>,
     /// How well the columns are known.
     pub noise: Noise,
     /// The median of the free force; `None` without a free part.
@@ -113,7 +113,8 @@ impl Points {
         if points.len() < END_ROWS {
             return Err(BranchError::Few(points.len()));
         }
-        let radius = |point: &Point| if self.abscissa == Abscissa::Radius { point.x } else { point.radius };
+        let radius =
+            |point: &MeasuredPoint| if self.abscissa == Abscissa::Radius { point.x } else { point.radius };
         if let Some(point) = points.iter().find(|point| radius(point) < 0.0) {
             return Err(BranchError::NegativeRadius { row: point.row, radius: radius(point) });
         }
@@ -123,13 +124,13 @@ impl Points {
             notes.push(format!("{repeated} rows are the row before again, and are left out"));
         }
         let of_radius = self.abscissa == Abscissa::Radius;
-        let Direction { turned, or } = self.directed(&mut points, asked, &mut notes)?;
+        let Orientation { turned, or } = self.directed(&mut points, asked, &mut notes)?;
         let free = self.free_part(&points, asked.free, turned)?;
         // Of radii, which are zero while apart, none are turned.
         let ordered = asked.sigma[0].is_some() || of_radius;
         let mut parts = self.parts(&points, ordered, &mut notes)?;
         for (_, part) in &mut parts {
-            let goes_back = |pair: &[Point]| pair[1].time < pair[0].time;
+            let goes_back = |pair: &[MeasuredPoint]| pair[1].time < pair[0].time;
             // A time that begins again within a branch is none.
             if part.windows(2).any(goes_back) {
                 for point in part {
@@ -139,7 +140,7 @@ impl Points {
         }
         let (rows, pauses) = self.counted(&parts);
         let is_wanted = |segment| asked.segment.is_none_or(|wanted| wanted == segment);
-        let mut list: Vec<(Branch, Vec<Point>)> = parts
+        let mut list: Vec<(MeasuredBranch, Vec<MeasuredPoint>)> = parts
             .into_iter()
             .filter(|(segment, _)| is_wanted(*segment))
             .map(|(segment, in_order)| (branch(segment, &in_order, of_radius, free), in_order))
@@ -151,7 +152,7 @@ impl Points {
         if asked.free == FreePart::Found {
             as_elsewhere(&mut list);
         }
-        let used: Vec<&Point> =
+        let used: Vec<&MeasuredPoint> =
             list.iter().flat_map(|(branch, _)| branch.attached.iter().chain(&branch.free)).collect();
         if used.len() < END_ROWS {
             return Err(BranchError::Few(used.len()));
@@ -171,15 +172,15 @@ impl Points {
         let forces = list.iter().flat_map(|(branch, _)| branch.free.iter().map(|p| p.force));
         let baseline = median(forces.collect());
         let clipped = at_an_end(&list, step);
-        let list: Vec<Branch> = list.into_iter().map(|(branch, _)| branch).collect();
+        let list: Vec<MeasuredBranch> = list.into_iter().map(|(branch, _)| branch).collect();
         one_sided(&list, &mut notes);
         let abscissa = self.abscissa;
         Ok(Branches { abscissa, list, noise, baseline, turned, or, ranges, notes, rows, pauses, clipped })
     }
 
     /// The points that are asked for, in the order in which they were measured, with the signs of the file.
-    fn used(&self, asked: &Asked, notes: &mut Vec<String>) -> Vec<Point> {
-        let point = |(at, i): (usize, usize)| Point {
+    fn used(&self, asked: &Asked, notes: &mut Vec<String>) -> Vec<MeasuredPoint> {
+        let point = |(at, i): (usize, usize)| MeasuredPoint {
             x: self.x[i],
             force: self.force[i],
             radius: self.radius.as_ref().map_or(f64::NAN, |s| s[i]),
@@ -207,32 +208,38 @@ impl Points {
     /// Turns the signs as a person says, or as the points show.
     fn directed(
         &self,
-        points: &mut [Point],
+        points: &mut [MeasuredPoint],
         asked: &Asked,
         notes: &mut Vec<String>,
-    ) -> Result<Direction, BranchError> {
+    ) -> Result<Orientation, BranchError> {
         let segments = self.segments.as_deref();
         match asked.turned {
             Some([true, _]) if self.abscissa == Abscissa::Radius => Err(BranchError::TurnedRadius),
             Some(turned) => {
                 turn(points, turned);
-                Ok(Direction { turned, or: None })
+                Ok(Orientation { turned, or: None })
             }
             None => {
                 let is_in_order = disorder(points, segments) <= UNORDERED;
-                let seen = Seen { abscissa: self.abscissa, segments, is_in_order, free: asked.free };
+                let seen =
+                    UnsignedPoints { abscissa: self.abscissa, segments, is_in_order, free: asked.free };
                 seen.signs(points, notes).ok_or(BranchError::Swapped)
             }
         }
     }
 
     /// Which rows are apart, as a person says it of the file, with the signs of `points`.
-    fn free_part(&self, points: &[Point], asked: FreePart, turned: Turned) -> Result<FreePart, BranchError> {
-        let FreePart::Within(Span { lo, hi }) = asked else { return Ok(asked) };
+    fn free_part(
+        &self,
+        points: &[MeasuredPoint],
+        asked: FreePart,
+        turned: Turned,
+    ) -> Result<FreePart, BranchError> {
+        let FreePart::Within(ValueRange { lo, hi }) = asked else { return Ok(asked) };
         if self.abscissa == Abscissa::Radius {
             return Err(BranchError::FreeRadius);
         }
-        let span = if turned[0] { Span { lo: -hi, hi: -lo } } else { Span { lo, hi } };
+        let span = if turned[0] { ValueRange { lo: -hi, hi: -lo } } else { ValueRange { lo, hi } };
         let count = points.iter().filter(|point| span.holds(point.x)).count();
         if count == 0 {
             return Err(BranchError::NothingFree);
@@ -242,7 +249,7 @@ impl Points {
 
     /// How many rows of the approach and of the retraction there are, and of pauses. Rows that are not used are of the branch of the last
     /// row before them that is.
-    fn counted(&self, parts: &[(Segment, Vec<Point>)]) -> ([usize; 2], usize) {
+    fn counted(&self, parts: &[(Segment, Vec<MeasuredPoint>)]) -> ([usize; 2], usize) {
         let mut of: Vec<Option<Segment>> = match &self.segments {
             Some(segments) => segments.iter().copied().map(Some).collect(),
             None => vec![None; self.x.len()],
@@ -269,10 +276,10 @@ impl Points {
     /// The branches by the file's word, or by the largest x.
     fn parts(
         &self,
-        points: &[Point],
+        points: &[MeasuredPoint],
         ordered: bool,
         notes: &mut Vec<String>,
-    ) -> Result<Vec<(Segment, Vec<Point>)>, BranchError> {
+    ) -> Result<Vec<(Segment, Vec<MeasuredPoint>)>, BranchError> {
         let mut parts = Vec::new();
         if let Some(segments) = &self.segments {
             for segment in [Segment::Approach, Segment::Retraction] {
@@ -293,7 +300,7 @@ impl Points {
     }
 
     /// What the branches are taken from, in words.
-    fn order(&self, parts: &[(Segment, Vec<Point>)]) -> Option<String> {
+    fn order(&self, parts: &[(Segment, Vec<MeasuredPoint>)]) -> Option<String> {
         let count = |segment| parts.iter().filter(|(of, _)| *of == segment).count();
         let counts = [count(Segment::Approach), count(Segment::Retraction)];
         let first = |at: usize| parts[at].1.first().map_or(0, |point| point.row);
@@ -321,8 +328,9 @@ impl Points {
 }
 
 /// The end of the range of a converter at which rows in contact stand.
-fn at_an_end(list: &[(Branch, Vec<Point>)], step: Option<f64>) -> Option<Clipped> {
-    let mut rows: Vec<Point> = list.iter().flat_map(|(_, in_order)| in_order.iter().copied()).collect();
+fn at_an_end(list: &[(MeasuredBranch, Vec<MeasuredPoint>)], step: Option<f64>) -> Option<Clipped> {
+    let mut rows: Vec<MeasuredPoint> =
+        list.iter().flat_map(|(_, in_order)| in_order.iter().copied()).collect();
     rows.sort_by_key(|point| point.at);
     let attached = list.iter().flat_map(|(branch, _)| branch.attached.iter().map(|point| point.row));
     let mut attached: Vec<usize> = attached.collect();
@@ -331,9 +339,9 @@ fn at_an_end(list: &[(Branch, Vec<Point>)], step: Option<f64>) -> Option<Clipped
 }
 
 /// The median step of x from row to row of a branch, as a share of its range; 0 of few rows.
-fn disorder(points: &[Point], segments: Option<&[Segment]>) -> f64 {
+fn disorder(points: &[MeasuredPoint], segments: Option<&[Segment]>) -> f64 {
     let whole = range(points.iter().map(|point| point.x));
-    let branch = |point: &Point| segments.map(|of| of[point.row - 1]);
+    let branch = |point: &MeasuredPoint| segments.map(|of| of[point.row - 1]);
     let mut last: [Option<f64>; 3] = [None; 3];
     let mut steps = Vec::new();
     for point in points {
@@ -348,7 +356,7 @@ fn disorder(points: &[Point], segments: Option<&[Segment]>) -> f64 {
 }
 
 /// Refuses points whose x has no order, unless nothing depends on it.
-fn in_order(points: &[Point], indifferent: bool) -> Result<(), BranchError> {
+fn in_order(points: &[MeasuredPoint], indifferent: bool) -> Result<(), BranchError> {
     let share = disorder(points, None);
     if share > UNORDERED && !indifferent {
         Err(BranchError::Unordered { share: 100.0 * share })

@@ -1,17 +1,17 @@
 //! Which columns of a table are used, as its header or a person says.
 
-use super::error::ReadError;
+use super::error::CurveReadError;
 use super::header::{Header, is_way};
 use super::names::named;
-use super::role::{Place, Role, Said, Segment, Spec, SpecError, unit_of};
-use crate::cells::Head;
+use super::role::{ColumnPlace, ColumnRole, ColumnSpec, ColumnSpecError, Said, Segment, unit_of};
+use crate::cells::ColumnHead;
 use crate::text::{quote, sanitize};
 use crate::units::Unit;
 
 /// A column that is looked for in each row.
 #[derive(Debug, Clone)]
-pub(super) struct Wanted {
-    pub role: Role,
+pub(super) struct WantedColumn {
+    pub role: ColumnRole,
     pub at: usize,
     pub unit: Option<Unit>,
     /// Whether a person names it: then it must be there in each row.
@@ -19,55 +19,64 @@ pub(super) struct Wanted {
 }
 
 /// A column whose name is known.
-struct Candidate {
+struct NamedColumn {
     at: usize,
-    role: Role,
+    role: ColumnRole,
     rank: u8,
     side: Option<Segment>,
-    unit: Result<Option<Unit>, SpecError>,
+    unit: Result<Option<Unit>, ColumnSpecError>,
 }
 
 /// The columns whose names are known, the units of each judged.
-fn candidates(header: &Header) -> Vec<Candidate> {
-    let of = |(at, (name, unit)): (usize, &Head)| {
+fn candidates(header: &Header) -> Vec<NamedColumn> {
+    let of = |(at, (name, unit)): (usize, &ColumnHead)| {
         let named = named(name)?;
         let text = unit.as_deref().or(named.unit.as_deref());
         let read = |role| text.map(|text| unit_of(role, text)).transpose();
         // A deflection in units of force is the force, and what is called an area may be given by its diameter.
         let (role, unit) = match (named.role, read(named.role)) {
-            (Role::Deflection, Err(_)) if read(Role::Force).is_ok() => (Role::Force, read(Role::Force)),
+            (ColumnRole::Deflection, Err(_)) if read(ColumnRole::Force).is_ok() => {
+                (ColumnRole::Force, read(ColumnRole::Force))
+            }
             (role, unit) => (role, unit),
         };
-        Some(Candidate { at, role, rank: named.rank, side: named.side, unit })
+        Some(NamedColumn { at, role, rank: named.rank, side: named.side, unit })
     };
     header.heads.iter().enumerate().filter_map(of).collect()
 }
 
 /// The columns of approach and retraction, where they stand beside each other: each with a way and a force, in the same units. A
 /// column of neither belongs to both.
-pub(super) fn sides(header: &Header) -> Option<[Vec<Wanted>; 2]> {
+pub(super) fn sides(header: &Header) -> Option<[Vec<WantedColumn>; 2]> {
     let known = candidates(header);
     let [mut approach, mut retraction] = [Segment::Approach, Segment::Retraction].map(|segment| {
-        let mut wanted: Vec<Wanted> = Vec::new();
+        let mut wanted: Vec<WantedColumn> = Vec::new();
         let of = |side: Option<Segment>| known.iter().filter(move |column| column.side == side);
         for column in of(Some(segment)).chain(of(None)) {
             let is_new = wanted.iter().all(|other| other.role != column.role);
-            if let (true, Ok(unit)) = (is_new && column.role != Role::Segment, &column.unit) {
-                wanted.push(Wanted { role: column.role, at: column.at, unit: unit.clone(), is_said: false });
+            if let (true, Ok(unit)) = (is_new && column.role != ColumnRole::Segment, &column.unit) {
+                wanted.push(WantedColumn {
+                    role: column.role,
+                    at: column.at,
+                    unit: unit.clone(),
+                    is_said: false,
+                });
             }
         }
         wanted
     });
-    let has = |wanted: &[Wanted], is: &dyn Fn(Role) -> bool| wanted.iter().any(|column| is(column.role));
+    let has = |wanted: &[WantedColumn], is: &dyn Fn(ColumnRole) -> bool| {
+        wanted.iter().any(|column| is(column.role))
+    };
     // A time of one branch alone says nothing of the other.
     if has(&approach, &is_time) != has(&retraction, &is_time) {
         for side in [&mut approach, &mut retraction] {
             side.retain(|column| !is_time(column.role));
         }
     }
-    let is_whole = |wanted: &[Wanted]| has(wanted, &is_way) && has(wanted, &is_force);
+    let is_whole = |wanted: &[WantedColumn]| has(wanted, &is_way) && has(wanted, &is_force);
     let has_side = |segment| known.iter().any(|column| column.side == Some(segment) && column.unit.is_ok());
-    let same = |column: &Wanted| {
+    let same = |column: &WantedColumn| {
         retraction.iter().any(|other| other.role == column.role && other.unit == column.unit)
     };
     let is_both = has_side(Segment::Approach) && has_side(Segment::Retraction);
@@ -76,22 +85,22 @@ pub(super) fn sides(header: &Header) -> Option<[Vec<Wanted>; 2]> {
     fits.then_some([approach, retraction])
 }
 
-fn is_time(role: Role) -> bool {
-    role == Role::Time
+fn is_time(role: ColumnRole) -> bool {
+    role == ColumnRole::Time
 }
 
-fn is_force(role: Role) -> bool {
-    [Role::Force, Role::Deflection].contains(&role)
+fn is_force(role: ColumnRole) -> bool {
+    [ColumnRole::Force, ColumnRole::Deflection].contains(&role)
 }
 
 /// Which columns are used, in a file whose first row is in the line `row`.
 pub(super) fn wanted(
-    spec: &Spec,
+    spec: &ColumnSpec,
     header: Option<&Header>,
     row: usize,
     cells: usize,
     notes: &mut Vec<String>,
-) -> Result<Vec<Wanted>, ReadError> {
+) -> Result<Vec<WantedColumn>, CurveReadError> {
     let line = header.map_or(row, |header| header.line);
     let known = || header.map_or_else(String::new, |header| listed(&header.heads));
     let mut refused = Vec::new();
@@ -103,14 +112,14 @@ pub(super) fn wanted(
                 "there is no header: the first column is taken for the approach, the second for the force"
                     .to_owned(),
             );
-            let of = |(at, role)| Wanted { role, at, unit: None, is_said: false };
-            [(0, Role::Approach), (1, Role::Force)].map(of).into()
+            let of = |(at, role)| WantedColumn { role, at, unit: None, is_said: false };
+            [(0, ColumnRole::Approach), (1, ColumnRole::Force)].map(of).into()
         }
         None => Vec::new(),
     };
-    let has = |is: &dyn Fn(Role) -> bool| wanted.iter().any(|column: &Wanted| is(column.role));
+    let has = |is: &dyn Fn(ColumnRole) -> bool| wanted.iter().any(|column: &WantedColumn| is(column.role));
     for (is, missing) in [
-        (&is_force as &dyn Fn(Role) -> bool, "force, or of the deflection"),
+        (&is_force as &dyn Fn(ColumnRole) -> bool, "force, or of the deflection"),
         (&is_way, "approach, of the position or of the contact radius"),
     ] {
         // A column of that name with a unit of something else is the reason.
@@ -118,36 +127,36 @@ pub(super) fn wanted(
             return Err(error.clone());
         }
         if !wanted.is_empty() && !has(is) {
-            return Err(ReadError::Lacks { line, missing, known: known() });
+            return Err(CurveReadError::Lacks { line, missing, known: known() });
         }
     }
     if wanted.is_empty() {
-        return Err(ReadError::Unknown { line, cells, names: known() });
+        return Err(CurveReadError::Unknown { line, cells, names: known() });
     }
     Ok(wanted)
 }
 
 /// The columns that a person names.
 fn of_person(
-    spec: &Spec,
+    spec: &ColumnSpec,
     header: Option<&Header>,
     line: usize,
     cells: usize,
-) -> Result<Vec<Wanted>, ReadError> {
+) -> Result<Vec<WantedColumn>, CurveReadError> {
     let column = |said: &Said| {
         let at = match &said.place {
-            Place::Number(number) => Some(number - 1).filter(|at| *at < cells),
-            Place::Name(name) => header.and_then(|header| {
+            ColumnPlace::Number(number) => Some(number - 1).filter(|at| *at < cells),
+            ColumnPlace::Name(name) => header.and_then(|header| {
                 header.heads.iter().position(|(known, _)| known.eq_ignore_ascii_case(name))
             }),
         };
         let Some(at) = at else {
             let place = match &said.place {
-                Place::Number(number) => format!("{number}: a row has {cells}"),
-                Place::Name(name) => format!("\"{}\"", quote(name)),
+                ColumnPlace::Number(number) => format!("{number}: a row has {cells}"),
+                ColumnPlace::Name(name) => format!("\"{}\"", quote(name)),
             };
             let known = header.map_or_else(String::new, |header| listed(&header.heads));
-            return Err(ReadError::NoColumn { line, place, known });
+            return Err(CurveReadError::NoColumn { line, place, known });
         };
         let head = header.and_then(|header| header.heads.get(at));
         let in_name = head.and_then(|(name, _)| named(name)?.unit);
@@ -162,26 +171,37 @@ fn of_person(
             }
             (None, None) => None,
         };
-        Ok(Wanted { role: said.role, at, unit, is_said: true })
+        Ok(WantedColumn { role: said.role, at, unit, is_said: true })
     };
     spec.0.iter().map(column).collect()
 }
 
 /// Why a column is not used: a signal in volts or amperes lacks its sensitivity, anything else has the wrong unit.
-fn refusal(line: usize, at: usize, name: &str, role: Role, unit: &str, cause: SpecError) -> ReadError {
+fn refusal(
+    line: usize,
+    at: usize,
+    name: &str,
+    role: ColumnRole,
+    unit: &str,
+    cause: ColumnSpecError,
+) -> CurveReadError {
     let is_signal =
         ["V", "mV", "uV", "µV", "nA", "A", "pA", "Volt", "Volts", "volt", "volts"].contains(&unit.trim());
     if is_signal {
         let (number, name, unit) = (at + 1, quote(name), quote(unit));
-        ReadError::Signal { line, number, name, unit, role }
+        CurveReadError::Signal { line, number, name, unit, role }
     } else {
-        ReadError::Unit { line, cause }
+        CurveReadError::Unit { line, cause }
     }
 }
 
 /// The columns whose names in the header are known; those with a unit of something else are `refused`.
-fn of_header(header: &Header, notes: &mut Vec<String>, refused: &mut Vec<(Role, ReadError)>) -> Vec<Wanted> {
-    let mut wanted: Vec<(u8, Wanted)> = Vec::new();
+fn of_header(
+    header: &Header,
+    notes: &mut Vec<String>,
+    refused: &mut Vec<(ColumnRole, CurveReadError)>,
+) -> Vec<WantedColumn> {
+    let mut wanted: Vec<(u8, WantedColumn)> = Vec::new();
     let all = candidates(header);
     // Names of one branch alone are those of all rows, and of two branches nobody knows which is meant.
     let side = |of| all.iter().any(|column| column.side == Some(of));
@@ -197,7 +217,7 @@ fn of_header(header: &Header, notes: &mut Vec<String>, refused: &mut Vec<(Role, 
                 continue;
             }
         };
-        let new = Wanted { role: column.role, at: column.at, unit, is_said: false };
+        let new = WantedColumn { role: column.role, at: column.at, unit, is_said: false };
         let Some((rank, known)) = wanted.iter_mut().find(|(_, known)| known.role == new.role) else {
             wanted.push((column.rank, new));
             continue;
@@ -215,12 +235,14 @@ fn of_header(header: &Header, notes: &mut Vec<String>, refused: &mut Vec<(Role, 
             (*rank, *known) = (column.rank, new);
         }
     }
-    let mut wanted: Vec<Wanted> = wanted.into_iter().map(|(_, wanted)| wanted).collect();
+    let mut wanted: Vec<WantedColumn> = wanted.into_iter().map(|(_, wanted)| wanted).collect();
     // A contact is given once.
-    let has = |wanted: &[Wanted], role| wanted.iter().any(|column| column.role == role);
-    for (better, other) in
-        [(Role::Radius, Role::Diameter), (Role::Radius, Role::Area), (Role::Diameter, Role::Area)]
-    {
+    let has = |wanted: &[WantedColumn], role| wanted.iter().any(|column| column.role == role);
+    for (better, other) in [
+        (ColumnRole::Radius, ColumnRole::Diameter),
+        (ColumnRole::Radius, ColumnRole::Area),
+        (ColumnRole::Diameter, ColumnRole::Area),
+    ] {
         if has(&wanted, better) {
             wanted.retain(|column| column.role != other);
         }
@@ -229,14 +251,14 @@ fn of_header(header: &Header, notes: &mut Vec<String>, refused: &mut Vec<(Role, 
 }
 
 /// Gives columns without a unit that of SI.
-pub(super) fn in_si(wanted: &mut [Wanted]) {
+pub(super) fn in_si(wanted: &mut [WantedColumn]) {
     for column in wanted.iter_mut().filter(|column| column.unit.is_none()) {
         column.unit = column.role.si().and_then(|si| Unit::parse(si, 0).ok());
     }
 }
 
 /// The names of a header, safe to show.
-fn listed(heads: &[Head]) -> String {
+fn listed(heads: &[ColumnHead]) -> String {
     let names: Vec<String> = heads.iter().map(|(name, _)| format!("\"{}\"", quote(name))).collect();
     sanitize(&names.join(", "), 200)
 }

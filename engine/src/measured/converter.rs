@@ -1,6 +1,6 @@
 //! What a converter does to the force: steps, an end of its range; and rows that stand there more than once.
 
-use super::points::Point;
+use super::points::MeasuredPoint;
 
 /// Rows that are the row before again are dropped where they are this share of all.
 const REPEATED: f64 = 0.3;
@@ -51,8 +51,8 @@ pub struct Clipped {
 
 /// The end of the range at which rows in contact stand; `points` in the order of the file, all of them of branches.
 pub(super) fn clipped(
-    points: &[Point],
-    is_attached: &dyn Fn(&Point) -> bool,
+    points: &[MeasuredPoint],
+    is_attached: &dyn Fn(&MeasuredPoint) -> bool,
     step: Option<f64>,
 ) -> Option<Clipped> {
     let force = |end: fn(f64, f64) -> f64, from: f64| points.iter().map(|point| point.force).fold(from, end);
@@ -77,9 +77,9 @@ pub(super) fn clipped(
 }
 
 /// The points without those that are the one before again, where those are many; how many they were.
-pub(super) fn without_repeats(points: &mut Vec<Point>) -> usize {
-    let same = |a: &Point, b: &Point| {
-        let bits = |p: &Point| [p.x.to_bits(), p.force.to_bits(), p.radius.to_bits()];
+pub(super) fn without_repeats(points: &mut Vec<MeasuredPoint>) -> usize {
+    let same = |a: &MeasuredPoint, b: &MeasuredPoint| {
+        let bits = |p: &MeasuredPoint| [p.x.to_bits(), p.force.to_bits(), p.radius.to_bits()];
         bits(a) == bits(b)
     };
     let repeated = points.windows(2).filter(|pair| same(&pair[0], &pair[1])).count();
@@ -100,7 +100,7 @@ mod tests {
         assert!((quantum(&steps).unwrap() - 0.03).abs() < 1e-9);
         let smooth: Vec<f64> = (0..50_u32).map(|i| f64::from(i).sqrt()).collect();
         assert_eq!(quantum(&smooth), None);
-        let point = |(i, force): (usize, f64)| Point {
+        let point = |(i, force): (usize, f64)| MeasuredPoint {
             x: i as f64,
             force,
             radius: 0.0,
@@ -108,7 +108,7 @@ mod tests {
             row: i + 1,
             at: i + 1,
         };
-        let rows = |least: f64| -> Vec<Point> {
+        let rows = |least: f64| -> Vec<MeasuredPoint> {
             let force = (0..60_u32).map(|i| (f64::from(i) - 30.3).powi(2));
             force.map(|force| force.max(least)).enumerate().map(point).collect()
         };
@@ -117,7 +117,7 @@ mod tests {
         assert_eq!((found.rows, found.is_low), (9, true));
         // Rows apart all have one force, and that is no end.
         assert_eq!(clipped(&rows(20.0), &|point| point.force > 20.0, None), None);
-        let mut twice: Vec<Point> = rows(-1.0).into_iter().flat_map(|point| [point, point]).collect();
+        let mut twice: Vec<MeasuredPoint> = rows(-1.0).into_iter().flat_map(|point| [point, point]).collect();
         assert_eq!((without_repeats(&mut twice), twice.len()), (60, 60));
         assert_eq!(without_repeats(&mut twice), 0);
     }

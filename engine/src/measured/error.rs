@@ -1,6 +1,6 @@
 //! What is wrong with the text of a measured curve.
 
-use super::role::{Role, SpecError};
+use super::role::{ColumnRole, ColumnSpecError};
 use crate::cells::{CellFault, Faults, LineFault};
 use crate::text::NotText;
 use std::ops::RangeInclusive;
@@ -12,7 +12,7 @@ pub const ROW_RANGE: RangeInclusive<usize> = 8..=1_000_000;
 pub const MOST_COLUMNS: usize = 64;
 /// What is wrong with one line.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum Fault {
+pub enum CurveFault {
     /// Of the line as a whole.
     #[error(transparent)]
     Line(#[from] LineFault),
@@ -73,7 +73,7 @@ pub enum Fault {
 
 /// Why a text gives no curve.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum ReadError {
+pub enum CurveReadError {
     /// Bytes that are no text.
     #[error(
         "{0}; a force curve of an instrument's own format is read in Python with pulloff.read_afm(path), or exported as \
@@ -82,7 +82,7 @@ pub enum ReadError {
     NotText(NotText),
     /// Lines with faults.
     #[error("{0}")]
-    Faults(Faults<Fault>),
+    Faults(Faults<CurveFault>),
     /// Too few or too many rows.
     #[error(
         "has {rows} rows{}, and a measured curve has {lo} to {hi}",
@@ -126,7 +126,7 @@ pub enum ReadError {
         /// Its unit, safe to show.
         unit: String,
         /// What its name says that it is.
-        role: Role,
+        role: ColumnRole,
     },
     /// More columns than anybody measures.
     #[error("line {line}: has {found} columns; at most {MOST_COLUMNS} are read")]
@@ -175,6 +175,6 @@ pub enum ReadError {
         /// The header.
         line: usize,
         /// What is wrong.
-        cause: SpecError,
+        cause: ColumnSpecError,
     },
 }

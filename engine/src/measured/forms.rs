@@ -4,8 +4,8 @@
 mod makers;
 mod programs;
 
-use super::role::Spec;
-use super::{Abscissa, Measured, ReadError, Role, Segment, columns, parse};
+use super::role::ColumnSpec;
+use super::{Abscissa, ColumnRole, CurveReadError, Measured, Segment, columns, parse};
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::units::{DisplayUnits, UnitSystem};
 use std::fmt::Write;
@@ -42,7 +42,7 @@ fn comma(number: f64) -> String {
 }
 
 /// A form: its name, its bytes, the option, and what must come of it.
-struct Form {
+struct FileForm {
     name: &'static str,
     bytes: Vec<u8>,
     /// The option that its refusal names, as a person fills it in.
@@ -57,8 +57,8 @@ struct Form {
     says: &'static str,
 }
 
-fn form(name: &'static str, text: impl Into<Vec<u8>>) -> Form {
-    Form {
+fn form(name: &'static str, text: impl Into<Vec<u8>>) -> FileForm {
+    FileForm {
         name,
         bytes: text.into(),
         option: "",
@@ -71,7 +71,7 @@ fn form(name: &'static str, text: impl Into<Vec<u8>>) -> Form {
     }
 }
 
-impl Form {
+impl FileForm {
     fn over(self, abscissa: Abscissa) -> Self {
         Self { abscissa, ..self }
     }
@@ -111,12 +111,12 @@ impl Form {
     /// Reads it and compares every number.
     fn check(&self) {
         let name = self.name;
-        let mut read = parse(&self.bytes, &Spec::default());
+        let mut read = parse(&self.bytes, &ColumnSpec::default());
         if !self.option.is_empty() {
             let refusal = read.expect_err(name).to_string();
             assert!(refusal.contains("--columns x=1,force=2"), "{name}: {refusal}");
             assert!(columns(&self.bytes).unwrap().len() > 1, "{name}");
-            read = parse(&self.bytes, &Spec::parse(self.option).unwrap());
+            read = parse(&self.bytes, &ColumnSpec::parse(self.option).unwrap());
         }
         let read = read.unwrap_or_else(|error| panic!("{name}: {error}"));
         let points = read.points(&UnitSystem::Si(DisplayUnits::default()), Some(1.0));
@@ -129,10 +129,11 @@ impl Form {
             let off = [points.x[i] - 1e-9 * x, points.force[i] - 1e-9 * p];
             assert!(off[0].abs() < 1e-16 && off[1].abs() < 1e-16, "{name}: row {i} is off by {off:?}");
         }
-        let near = |stated: Option<super::stated::Stated>, expected: Option<f64>| match (stated, expected) {
-            (Some(stated), Some(expected)) => (stated.value / expected - 1.0).abs() < 1e-12,
-            (stated, expected) => stated.is_none() && expected.is_none(),
-        };
+        let near =
+            |stated: Option<super::stated::StatedValue>, expected: Option<f64>| match (stated, expected) {
+                (Some(stated), Some(expected)) => (stated.value / expected - 1.0).abs() < 1e-12,
+                (stated, expected) => stated.is_none() && expected.is_none(),
+            };
         assert!(near(read.stiffness, self.stiffness), "{name}: {:?}", read.stiffness);
         assert!(near(read.radius, self.radius), "{name}: {:?}", read.radius);
         let counted = read.segments.as_ref().map(|segments| {
@@ -153,7 +154,7 @@ fn western(text: &str) -> Vec<u8> {
 }
 
 /// All forms.
-fn all() -> Vec<Form> {
+fn all() -> Vec<FileForm> {
     let makers = [makers::of_microscopes(), makers::of_indenters(), makers::of_testers()];
     let programs = [programs::of_spreadsheets(), programs::of_own_programs()];
     makers.into_iter().chain(programs).flatten().collect()
@@ -185,7 +186,7 @@ fn damage_is_read_or_refused_in_a_sentence_and_columns_stay_alike() {
                 }
             }
             for option in ["", "x=1,force=2"] {
-                match parse(&bytes, &Spec::parse(option).unwrap()) {
+                match parse(&bytes, &ColumnSpec::parse(option).unwrap()) {
                     Err(error) => {
                         let text = error.to_string();
                         assert!(
@@ -211,7 +212,7 @@ fn damage_is_read_or_refused_in_a_sentence_and_columns_stay_alike() {
 }
 
 fn refused(bytes: &[u8]) -> String {
-    parse(bytes, &Spec::default()).expect_err("it is refused").to_string()
+    parse(bytes, &ColumnSpec::default()).expect_err("it is refused").to_string()
 }
 
 #[test]
@@ -281,9 +282,10 @@ fn what_cannot_be_read_is_refused_in_a_sentence() {
     }
     // A number that is cut is none or another: the rows before it stay.
     assert!(
-        parse(cut.as_bytes(), &Spec::default()).is_ok() || refused(cut.as_bytes()).starts_with("line 21")
+        parse(cut.as_bytes(), &ColumnSpec::default()).is_ok()
+            || refused(cut.as_bytes()).starts_with("line 21")
     );
-    assert!(matches!(parse(b"\xff\xfe1\x00\n", &Spec::default()), Err(ReadError::NotText(_))));
+    assert!(matches!(parse(b"\xff\xfe1\x00\n", &ColumnSpec::default()), Err(CurveReadError::NotText(_))));
 }
 
 #[test]
@@ -294,14 +296,14 @@ fn columns_are_listed_with_their_first_values() {
         seen.iter().map(|seen| (&*seen.name, seen.unit.as_deref())).collect();
     assert_eq!(names, [("u1", Some("nm")), ("u2", None), ("Force", Some("nN"))]);
     assert_eq!(seen[0].first, ["1,5", "2,5", "3"]);
-    assert_eq!(seen[2].role, Some(Role::Force));
+    assert_eq!(seen[2].role, Some(ColumnRole::Force));
     assert!(columns(b"words\n").is_err());
 }
 
 /// The stiffness that a file states, unless it is 1, which nobody has calibrated.
 fn stated(line: &str) -> Measured {
     let text = format!("{line}\nindentation (nm),force (nN)\n{}", two(",", 1.0, 1.0));
-    parse(text.as_bytes(), &Spec::default()).unwrap_or_else(|error| panic!("{line}: {error}"))
+    parse(text.as_bytes(), &ColumnSpec::default()).unwrap_or_else(|error| panic!("{line}: {error}"))
 }
 
 #[test]
@@ -345,15 +347,15 @@ fn settings_are_found_in_every_usual_form() {
 #[test]
 fn a_unit_in_a_name_is_not_given_twice() {
     for (name, role) in [
-        ("force", Some(Role::Force)),
-        ("Normal force", Some(Role::Force)),
+        ("force", Some(ColumnRole::Force)),
+        ("Normal force", Some(ColumnRole::Force)),
         ("force [nN]", None),
         ("force (nN)", None),
         ("force_nN", None),
         ("position / um", None),
-        ("height (measured)", Some(Role::Position)),
+        ("height (measured)", Some(ColumnRole::Position)),
         ("nothing known", None),
     ] {
-        assert_eq!(Role::of_bare(name), role, "{name}");
+        assert_eq!(ColumnRole::of_bare(name), role, "{name}");
     }
 }

@@ -1,38 +1,38 @@
 //! A branch cut into its parts: the rows in contact, those within the jump, those apart.
 
 use super::apart::{SPARSE, jump};
-use super::asked::{FreePart, Span};
+use super::asked::{FreePart, ValueRange};
 use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, Noise, median, noise_of, range};
-use super::points::Point;
+use super::points::MeasuredPoint;
 use super::role::Segment;
 use super::signs::free_end;
 
 /// One branch, from the contact to the free end.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Branch {
+pub struct MeasuredBranch {
     /// Which.
     pub segment: Segment,
     /// The points in contact.
-    pub attached: Vec<Point>,
+    pub attached: Vec<MeasuredPoint>,
     /// The points apart.
-    pub free: Vec<Point>,
+    pub free: Vec<MeasuredPoint>,
     /// How many rows are within the jump: they are of neither.
     pub jump: usize,
 }
 
-impl Branch {
+impl MeasuredBranch {
     /// Drops the rows around the jump that the noise of x has put on its other side.
     pub(super) fn clears_jump(&mut self, noise: &Noise) {
         /// Rows within so many σ of x from the jump may be on either side.
         const NEAR: f64 = 5.0;
         let [Some(last), Some(first)] = [self.attached.last(), self.free.first()] else { return };
         let ends = [first.x - NEAR * noise.sigma[0], last.x + NEAR * noise.sigma[0]];
-        let line = Line::of(&self.free);
+        let line = FreeLine::of(&self.free);
         let limit = BEYOND * noise.sigma[1];
-        let pulled = |point: &Point| point.force < line.at(point.x) - limit;
-        let near = |point: &Point| (ends[0]..=ends[1]).contains(&point.x);
+        let pulled = |point: &MeasuredPoint| point.force < line.at(point.x) - limit;
+        let near = |point: &MeasuredPoint| (ends[0]..=ends[1]).contains(&point.x);
         // Without a jump there is nothing that was mixed.
-        let attached: Vec<&Point> = self.attached.iter().filter(|point| near(point)).collect();
+        let attached: Vec<&MeasuredPoint> = self.attached.iter().filter(|point| near(point)).collect();
         if attached.iter().filter(|point| pulled(point)).count() * 2 < attached.len() {
             return;
         }
@@ -44,19 +44,25 @@ impl Branch {
 }
 
 /// A branch cut into its parts; `asked` has the signs of the points.
-pub(super) fn branch(segment: Segment, in_order: &[Point], of_radius: bool, asked: FreePart) -> Branch {
+pub(super) fn branch(
+    segment: Segment,
+    in_order: &[MeasuredPoint],
+    of_radius: bool,
+    asked: FreePart,
+) -> MeasuredBranch {
     let mut points = in_order.to_vec();
     // Whatever the order of the file.
     points.sort_by(|a, b| b.x.total_cmp(&a.x).then(b.force.total_cmp(&a.force)));
     if of_radius {
-        let (mut free, attached): (Vec<Point>, _) = points.into_iter().partition(|point| point.x <= 0.0);
+        let (mut free, attached): (Vec<MeasuredPoint>, _) =
+            points.into_iter().partition(|point| point.x <= 0.0);
         if asked == FreePart::None {
             free.clear();
         }
-        return Branch { segment, attached, free, jump: 0 };
+        return MeasuredBranch { segment, attached, free, jump: 0 };
     }
     match asked {
-        FreePart::None => return Branch { segment, attached: points, free: Vec::new(), jump: 0 },
+        FreePart::None => return MeasuredBranch { segment, attached: points, free: Vec::new(), jump: 0 },
         FreePart::Within(span) => return apart_within(segment, points, span),
         FreePart::Found => {}
     }
@@ -64,10 +70,10 @@ pub(super) fn branch(segment: Segment, in_order: &[Point], of_radius: bool, aske
     if let Some(jump) = jump(&x, &force) {
         let rest = points.split_off(jump.at);
         let within = within_jump(&rest, &rest, &force);
-        return Branch { segment, attached: points, free: rest[within..].to_vec(), jump: within };
+        return MeasuredBranch { segment, attached: points, free: rest[within..].to_vec(), jump: within };
     }
     if points.len() < 2 * END_ROWS || !free_end(&x, &force)[0] || !stands_still(&force) {
-        return Branch { segment, attached: points, free: Vec::new(), jump: 0 };
+        return MeasuredBranch { segment, attached: points, free: Vec::new(), jump: 0 };
     }
     let count = (points.len() / END_SHARE).max(END_ROWS);
     let end = &force[force.len() - count..];
@@ -84,21 +90,21 @@ pub(super) fn branch(segment: Segment, in_order: &[Point], of_radius: bool, aske
         off = if (force[at] - base).abs() > limit { off + 1 } else { 0 };
     }
     let free = points.split_off((at + off).min(points.len()));
-    Branch { segment, attached: points, free, jump: 0 }
+    MeasuredBranch { segment, attached: points, free, jump: 0 }
 }
 
 /// How many rows at the beginning of `rest`, which is behind a jump, have not come to the force of the rows `free`.
-fn within_jump(rest: &[Point], free: &[Point], force: &[f64]) -> usize {
-    let line = Line::of(free);
+fn within_jump(rest: &[MeasuredPoint], free: &[MeasuredPoint], force: &[f64]) -> usize {
+    let line = FreeLine::of(free);
     let limit = BEYOND * noise_of(force).max(FLOOR * range(force.iter().copied()));
     rest.iter().position(|point| point.force >= line.at(point.x) - limit).unwrap_or(0)
 }
 
 /// A branch whose rows with x in `span` are apart, as a person says: rows beyond them are left out.
-fn apart_within(segment: Segment, mut points: Vec<Point>, span: Span) -> Branch {
-    let holds = |point: &Point| span.holds(point.x);
+fn apart_within(segment: Segment, mut points: Vec<MeasuredPoint>, span: ValueRange) -> MeasuredBranch {
+    let holds = |point: &MeasuredPoint| span.holds(point.x);
     let Some(first) = points.iter().position(holds) else {
-        return Branch { segment, attached: points, free: Vec::new(), jump: 0 };
+        return MeasuredBranch { segment, attached: points, free: Vec::new(), jump: 0 };
     };
     points.retain(|point| point.x >= span.lo);
     let (x, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
@@ -110,7 +116,7 @@ fn apart_within(segment: Segment, mut points: Vec<Point>, span: Span) -> Branch 
         let behind = [&rest[..], &free[..]].concat();
         within = within_jump(&behind, &behind, &force).min(rest.len());
     }
-    Branch { segment, attached: points, free, jump: within }
+    MeasuredBranch { segment, attached: points, free, jump: within }
 }
 
 /// The running median of five, of fewer at the ends.
@@ -145,15 +151,16 @@ fn stands_still(force: &[f64]) -> bool {
 }
 
 /// The line through a free part, by the medians of its halves.
-struct Line {
+struct FreeLine {
     base: f64,
     slope: f64,
 }
 
-impl Line {
-    fn of(points: &[Point]) -> Self {
+impl FreeLine {
+    fn of(points: &[MeasuredPoint]) -> Self {
         let half = points.len() / 2;
-        let of = |part: &[Point], get: fn(&Point) -> f64| median(part.iter().map(get).collect());
+        let of =
+            |part: &[MeasuredPoint], get: fn(&MeasuredPoint) -> f64| median(part.iter().map(get).collect());
         let (near, far) = points.split_at(half);
         let ends = [near, far].map(|part| Some([of(part, |p| p.x)?, of(part, |p| p.force)?]));
         let whole = of(points, |p| p.force).unwrap_or(0.0);
@@ -173,11 +180,15 @@ impl Line {
 
 /// Takes rows for rows in contact whose force stands still, but not where it does on the branch that has most rows apart: a record that
 /// ends near its smallest force looks like that.
-pub(super) fn same_free_force(list: &mut [(Branch, Vec<Point>)], noise: &Noise, notes: &mut Vec<String>) {
+pub(super) fn same_free_force(
+    list: &mut [(MeasuredBranch, Vec<MeasuredPoint>)],
+    noise: &Noise,
+    notes: &mut Vec<String>,
+) {
     /// Levels are one within so many of their errors, and this share of the range of the branch.
     const SAME: f64 = 6.0;
     const SHARE: f64 = 0.1;
-    let level = |branch: &Branch| median(branch.free.iter().map(|point| point.force).collect());
+    let level = |branch: &MeasuredBranch| median(branch.free.iter().map(|point| point.force).collect());
     let most = list.iter().map(|(branch, _)| branch).max_by_key(|branch| branch.free.len());
     let Some((most, at)) = most.and_then(|most| Some((most.free.len(), level(most)?))) else { return };
     for (branch, _) in list {
@@ -199,7 +210,7 @@ pub(super) fn same_free_force(list: &mut [(Branch, Vec<Point>)], noise: &Noise, 
 
 /// Takes the last rows of a short branch for rows apart where another branch has some and these have their force: the force of few rows may
 /// go over from contact to none without a jump that is seen.
-pub(super) fn as_elsewhere(list: &mut [(Branch, Vec<Point>)]) {
+pub(super) fn as_elsewhere(list: &mut [(MeasuredBranch, Vec<MeasuredPoint>)]) {
     /// Forces are one within so many times the range of those apart, and this share of that of the branch; and rows of one, at least.
     const SAME: f64 = 3.0;
     const SHARE: f64 = 0.02;
@@ -222,7 +233,7 @@ pub(super) fn as_elsewhere(list: &mut [(Branch, Vec<Point>)]) {
 }
 
 /// Says where one branch has rows apart and another has none.
-pub(super) fn one_sided(list: &[Branch], notes: &mut Vec<String>) {
+pub(super) fn one_sided(list: &[MeasuredBranch], notes: &mut Vec<String>) {
     let without: Vec<&str> =
         list.iter().filter(|branch| branch.free.is_empty()).map(|branch| branch.segment.name()).collect();
     if let (Some(name), true) = (without.first(), without.len() < list.len()) {

@@ -1,21 +1,21 @@
 //! What the words above a table say of its columns: their names, their units, the branch of its rows.
 
-use super::lines::Table;
+use super::lines::TextTable;
 use super::names::{named, squashed};
-use super::role::{Role, Segment, unit_named};
+use super::role::{ColumnRole, Segment, unit_named};
 use super::words::{Words, count_known, is_units, keyed, unit_cells};
-use crate::cells::{Head, Separator, heads};
+use crate::cells::{ColumnHead, Separator, heads};
 use std::collections::HashMap;
 
 /// A header: the names and units of the columns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Header {
     pub line: usize,
-    pub heads: Vec<Head>,
+    pub heads: Vec<ColumnHead>,
 }
 
 /// The names in the line by which an Igor text file begins waves: `WAVES/D/N=(512) ZSnsr, Defl`.
-fn waves(text: &str) -> Option<Vec<Head>> {
+fn waves(text: &str) -> Option<Vec<ColumnHead>> {
     let mut rest = text.strip_prefix("WAVES")?;
     while let Some(flag) = rest.trim_start().strip_prefix('/') {
         rest = flag.find(|c: char| c.is_whitespace() || c == ',').map_or("", |at| &flag[at..]);
@@ -41,7 +41,7 @@ fn scales<'a>(words: &[Words<'a>]) -> HashMap<&'a str, &'a str> {
 }
 
 /// The cells of words in each way in which they may be parted; the first is that of the rows.
-fn parted(text: &str, separator: Separator) -> impl Iterator<Item = Vec<Head>> {
+fn parted(text: &str, separator: Separator) -> impl Iterator<Item = Vec<ColumnHead>> {
     let dimensions = super::role::dimensions();
     let ways = [separator, Separator::of(text), Separator::Wide, Separator::Spaces];
     ways.into_iter().map(move |way| match way {
@@ -55,8 +55,8 @@ fn parted(text: &str, separator: Separator) -> impl Iterator<Item = Vec<Head>> {
 
 /// `heads` as those of the columns of `table`, if they can be: names behind the last column must mean nothing, and columns
 /// without a name must be empty.
-fn fitted(mut heads: Vec<Head>, table: &Table) -> Option<Vec<Head>> {
-    let is_empty = |head: &Head| head.0.is_empty() && head.1.is_none();
+fn fitted(mut heads: Vec<ColumnHead>, table: &TextTable) -> Option<Vec<ColumnHead>> {
+    let is_empty = |head: &ColumnHead| head.0.is_empty() && head.1.is_none();
     while heads.len() > table.cells
         && heads.last().is_some_and(|head| is_empty(head) || named(&head.0).is_none())
     {
@@ -68,12 +68,12 @@ fn fitted(mut heads: Vec<Head>, table: &Table) -> Option<Vec<Head>> {
     if heads.len() > table.cells || heads.len() < table.filled() {
         return None;
     }
-    heads.resize(table.cells, Head::default());
+    heads.resize(table.cells, ColumnHead::default());
     Some(heads.into_iter().map(whole).collect())
 }
 
 /// The header of a table, from the words above it; `all` are those of the file.
-pub(super) fn headed(table: &Table, all: &[Words]) -> Option<Header> {
+pub(super) fn headed(table: &TextTable, all: &[Words]) -> Option<Header> {
     let last = |key: &str| table.above.iter().rev().find_map(|words| Some((words.line, keyed(words, key)?)));
     // JPK names its columns in a remark, and says more of them in others.
     if let Some((line, names)) = last("columns").or_else(|| last("fancyNames")) {
@@ -85,7 +85,7 @@ pub(super) fn headed(table: &Table, all: &[Words]) -> Option<Header> {
         table.above.iter().rev().find_map(|words| Some((words.line, waves(words.text)?)))
     {
         let scales = scales(all);
-        let with_unit = |(name, _): Head| {
+        let with_unit = |(name, _): ColumnHead| {
             let unit = scales.get(&*name).map(|unit| (*unit).to_owned());
             (name, unit)
         };
@@ -105,7 +105,7 @@ pub(super) fn headed(table: &Table, all: &[Words]) -> Option<Header> {
         }
         let mut found =
             parted(words.text, table.separator).map(|heads| (count_known(&heads), fitted(heads, table)));
-        let fits = |(known, heads): (usize, Option<Vec<Head>>)| heads.map(|heads| (known, heads));
+        let fits = |(known, heads): (usize, Option<Vec<ColumnHead>>)| heads.map(|heads| (known, heads));
         // A remark of the right number of words need not be a header, nor need words that are parted otherwise than the rows.
         let first = found.next().and_then(fits).filter(|(known, _)| !words.is_remark || *known >= 2);
         let heads = first.or_else(|| found.filter_map(fits).find(|(known, _)| *known >= 2));
@@ -120,7 +120,7 @@ pub(super) fn headed(table: &Table, all: &[Words]) -> Option<Header> {
 }
 
 /// Gives the columns without a unit those of `units`.
-fn with_units(mut heads: Vec<Head>, units: &[&str]) -> Vec<Head> {
+fn with_units(mut heads: Vec<ColumnHead>, units: &[&str]) -> Vec<ColumnHead> {
     for (head, unit) in heads.iter_mut().zip(units) {
         head.1 =
             head.1.take().or_else(|| Some((*unit).to_owned()).filter(|unit| !unit.is_empty() && unit != "-"));
@@ -129,7 +129,7 @@ fn with_units(mut heads: Vec<Head>, units: &[&str]) -> Vec<Head> {
 }
 
 /// The branch of all rows of a table: `# segment: retract`, or a line that names it alone.
-pub(super) fn segment(table: &Table) -> Option<Segment> {
+pub(super) fn segment(table: &TextTable) -> Option<Segment> {
     let of = |text: &str| {
         let text = text.trim_matches(|c: char| !c.is_alphanumeric());
         text.starts_with(char::is_alphabetic).then(|| Segment::of(text)).flatten()
@@ -141,7 +141,7 @@ pub(super) fn segment(table: &Table) -> Option<Segment> {
 }
 
 /// What stands in parentheses and is no unit belongs to the name: `height (measured)`.
-fn whole((name, unit): Head) -> Head {
+fn whole((name, unit): ColumnHead) -> ColumnHead {
     match unit {
         Some(text) if unit_named(&text, true).is_none() && text != "V" => {
             let longer = format!("{name} {text}");
@@ -175,6 +175,7 @@ pub(super) fn same(one: Option<&Header>, other: Option<&Header>) -> bool {
 }
 
 /// Whether a column's role may be that of x.
-pub(super) fn is_way(role: Role) -> bool {
-    [Role::Approach, Role::Position, Role::Radius, Role::Diameter, Role::Area].contains(&role)
+pub(super) fn is_way(role: ColumnRole) -> bool {
+    [ColumnRole::Approach, ColumnRole::Position, ColumnRole::Radius, ColumnRole::Diameter, ColumnRole::Area]
+        .contains(&role)
 }

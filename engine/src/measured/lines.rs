@@ -4,7 +4,7 @@
 //! many cells as the rows above it. In a file without such rows it may begin with texts, such as the name of a sample. Words part tables: settings and headers above them, a footer below them. A line among
 //! the rows that begins like a number stays a row, so that its fault is told.
 
-use super::error::{MOST_COLUMNS, ROW_RANGE, ReadError};
+use super::error::{CurveReadError, MOST_COLUMNS, ROW_RANGE};
 use super::words::{Words, is_branch, is_gap, is_number, is_stamp, parts_tables, row_under};
 use crate::cells::{LONGEST_LINE, LineFault, Separator, is_unprintable, remark};
 
@@ -13,7 +13,7 @@ const LINES_ABOVE: usize = 256;
 
 /// A table: rows of as many cells each.
 #[derive(Debug)]
-pub(super) struct Table<'a> {
+pub(super) struct TextTable<'a> {
     /// The words above it, below the table before it.
     pub above: Vec<Words<'a>>,
     /// What parts the cells.
@@ -26,7 +26,7 @@ pub(super) struct Table<'a> {
     pub rows: Vec<(usize, &'a str)>,
 }
 
-impl Table<'_> {
+impl TextTable<'_> {
     /// How many cells of the first row are not behind its last value.
     pub(super) fn filled(&self) -> usize {
         let cells = self.rows.first().map(|(_, text)| self.separator.cells(text)).unwrap_or_default();
@@ -38,7 +38,7 @@ impl Table<'_> {
 #[derive(Debug, Default)]
 pub(super) struct Outline<'a> {
     /// The tables.
-    pub tables: Vec<Table<'a>>,
+    pub tables: Vec<TextTable<'a>>,
     /// All words, below the last table too.
     pub words: Vec<Words<'a>>,
     /// The lines that are wrong as a whole.
@@ -105,8 +105,8 @@ impl<'a> Outline<'a> {
     /// The pieces of a text. Rows begin with a value, or where there are too few of these, with texts.
     ///
     /// # Errors
-    /// [`ReadError`] where there is no use in reading on.
-    pub(super) fn of(text: &'a str) -> Result<Self, ReadError> {
+    /// [`CurveReadError`] where there is no use in reading on.
+    pub(super) fn of(text: &'a str) -> Result<Self, CurveReadError> {
         let outline = Self::led(text, false)?;
         let most = |of: &Self| of.tables.iter().map(|table| table.rows.len()).max().unwrap_or(0);
         if most(&outline) >= *ROW_RANGE.start() {
@@ -117,7 +117,7 @@ impl<'a> Outline<'a> {
     }
 
     /// The pieces of a text, whose rows may begin with texts if `is_led`.
-    fn led(text: &'a str, is_led: bool) -> Result<Self, ReadError> {
+    fn led(text: &'a str, is_led: bool) -> Result<Self, CurveReadError> {
         let mut outline = Self {
             is_led,
             is_igor: text.lines().next().is_some_and(|first| first.trim() == "IGOR"),
@@ -147,7 +147,7 @@ impl<'a> Outline<'a> {
                 is_open = true;
                 rows += 1;
                 if rows > *ROW_RANGE.end() {
-                    return Err(ReadError::Rows { rows, skipped: 0 });
+                    return Err(CurveReadError::Rows { rows, skipped: 0 });
                 }
                 continue;
             }
@@ -184,7 +184,12 @@ impl<'a> Outline<'a> {
     }
 
     /// Begins a table with a line that is a row, the words above it in `above`.
-    fn begins(&mut self, line: usize, text: &'a str, above: &mut Vec<Words<'a>>) -> Result<bool, ReadError> {
+    fn begins(
+        &mut self,
+        line: usize,
+        text: &'a str,
+        above: &mut Vec<Words<'a>>,
+    ) -> Result<bool, CurveReadError> {
         let plain =
             || row(text).or_else(|| row_under(above, text)).map(|(separator, cells)| (separator, cells, 0));
         let Some((separator, cells, lead)) = self.is_led.then(|| led_row(text)).flatten().or_else(plain)
@@ -192,7 +197,7 @@ impl<'a> Outline<'a> {
             return Ok(false);
         };
         if cells > MOST_COLUMNS {
-            return Err(ReadError::ManyColumns { line, found: cells });
+            return Err(CurveReadError::ManyColumns { line, found: cells });
         }
         // Words among rows that are parted as they are: a row with a fault, and no header.
         if let Some(table) = self.tables.last_mut()
@@ -206,9 +211,9 @@ impl<'a> Outline<'a> {
             table.rows.push((line, text));
             return Ok(true);
         }
-        let separator = commas(separator, above, text).ok_or(ReadError::Commas(line))?;
+        let separator = commas(separator, above, text).ok_or(CurveReadError::Commas(line))?;
         let cells = separator.cells(text).len();
-        self.tables.push(Table {
+        self.tables.push(TextTable {
             above: std::mem::take(above),
             separator,
             cells,
@@ -220,7 +225,7 @@ impl<'a> Outline<'a> {
 }
 
 /// Whether words have the cells of a row, and a number among them.
-fn broken(table: &Table, text: &str) -> bool {
+fn broken(table: &TextTable, text: &str) -> bool {
     let cells = table.separator.cells(text);
     cells.len() > 1 && cells.len() == table.cells && cells.iter().any(|cell| is_number(cell))
 }

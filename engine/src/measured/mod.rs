@@ -51,13 +51,13 @@ mod turns;
 mod words;
 
 pub(crate) use apart::SPARSE;
-pub use asked::{Asked, FreePart, Span};
-pub use branches::{Branch, BranchError, Branches, Noise, Origin};
-pub use error::ReadError;
+pub use asked::{Asked, FreePart, ValueRange};
+pub use branches::{BranchError, Branches, MeasuredBranch, Noise, Origin};
+pub use error::CurveReadError;
 pub use points::{Abscissa, Points, PointsError};
-pub use read::{Column, Measured, Seen, columns, parse};
-pub use role::{Role, Segment, Spec, SpecError};
-pub use source::Source;
+pub use read::{Column, Measured, SeenColumn, columns, parse};
+pub use role::{ColumnRole, ColumnSpec, ColumnSpecError, Segment};
+pub use source::PointsFile;
 
 #[cfg(test)]
 mod forms;

@@ -1,9 +1,9 @@
 //! The names of columns by which headers say what they hold.
 
-use super::role::{Role, Segment, dimensions};
+use super::role::{ColumnRole, Segment, dimensions};
 use crate::units::Unit;
 
-impl Role {
+impl ColumnRole {
     /// What a header's name says, if no unit stands in it.
     pub fn of_bare(name: &str) -> Option<Self> {
         named(name).filter(|named| named.unit.is_none()).map(|named| named.role)
@@ -17,9 +17,9 @@ impl Role {
 
 /// A column's name taken apart.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Named {
+pub(super) struct ColumnName {
     /// What it holds.
-    pub role: Role,
+    pub role: ColumnRole,
     /// Of several columns of one role that of the lowest rank is read.
     pub rank: u8,
     /// The branch that it holds alone.
@@ -30,9 +30,9 @@ pub(super) struct Named {
 
 /// The roles with the names by which a header says them, letters and digits alone, in lower case. Names of rank 1 may mean
 /// something else beside others, those of rank 2 are not what was reached but what was asked for.
-const NAMES: [(Role, u8, &[&str]); 17] = [
+const NAMES: [(ColumnRole, u8, &[&str]); 17] = [
     (
-        Role::Approach,
+        ColumnRole::Approach,
         0,
         &[
             "indentation",
@@ -45,7 +45,7 @@ const NAMES: [(Role, u8, &[&str]); 17] = [
         ],
     ),
     (
-        Role::Approach,
+        ColumnRole::Approach,
         1,
         &[
             "approach",
@@ -64,7 +64,7 @@ const NAMES: [(Role, u8, &[&str]); 17] = [
         ],
     ),
     (
-        Role::Position,
+        ColumnRole::Position,
         0,
         &[
             "heightmeasured",
@@ -86,7 +86,7 @@ const NAMES: [(Role, u8, &[&str]); 17] = [
         ],
     ),
     (
-        Role::Position,
+        ColumnRole::Position,
         1,
         &[
             "position",
@@ -119,9 +119,9 @@ const NAMES: [(Role, u8, &[&str]); 17] = [
             "scannerz",
         ],
     ),
-    (Role::Position, 2, &["raw", "rawheight", "targetposition", "setposition", "zdriver", "zcommand"]),
+    (ColumnRole::Position, 2, &["raw", "rawheight", "targetposition", "setposition", "zdriver", "zcommand"]),
     (
-        Role::Deflection,
+        ColumnRole::Deflection,
         0,
         &[
             "deflection",
@@ -138,7 +138,7 @@ const NAMES: [(Role, u8, &[&str]); 17] = [
         ],
     ),
     (
-        Role::Force,
+        ColumnRole::Force,
         0,
         &[
             "force",
@@ -163,16 +163,16 @@ const NAMES: [(Role, u8, &[&str]); 17] = [
             "charge",
         ],
     ),
-    (Role::Force, 1, &["p", "f", "weight", "last", "mass"]),
-    (Role::Force, 2, &["targetforce", "setforce", "targetload", "rawload", "rawforce"]),
-    (Role::Radius, 0, &["contactradius", "radiusofcontact", "kontaktradius"]),
-    (Role::Radius, 1, &["radius", "s", "a"]),
-    (Role::Diameter, 0, &["contactdiameter", "diameterofcontact"]),
-    (Role::Diameter, 1, &["diameter"]),
-    (Role::Area, 0, &["contactarea", "areaofcontact", "area", "kontaktfläche"]),
-    (Role::Time, 0, &["seriestime", "elapsedtime", "totaltime"]),
-    (Role::Time, 1, &["time", "t", "zeit", "standardzeit", "prüfzeit"]),
-    (Role::Segment, 0, &["segment", "branch", "direction", "phase", "segmentname", "segmenttype"]),
+    (ColumnRole::Force, 1, &["p", "f", "weight", "last", "mass"]),
+    (ColumnRole::Force, 2, &["targetforce", "setforce", "targetload", "rawload", "rawforce"]),
+    (ColumnRole::Radius, 0, &["contactradius", "radiusofcontact", "kontaktradius"]),
+    (ColumnRole::Radius, 1, &["radius", "s", "a"]),
+    (ColumnRole::Diameter, 0, &["contactdiameter", "diameterofcontact"]),
+    (ColumnRole::Diameter, 1, &["diameter"]),
+    (ColumnRole::Area, 0, &["contactarea", "areaofcontact", "area", "kontaktfläche"]),
+    (ColumnRole::Time, 0, &["seriestime", "elapsedtime", "totaltime"]),
+    (ColumnRole::Time, 1, &["time", "t", "zeit", "standardzeit", "prüfzeit"]),
+    (ColumnRole::Segment, 0, &["segment", "branch", "direction", "phase", "segmentname", "segmenttype"]),
 ];
 
 /// Words of a name that say nothing of what the column holds.
@@ -204,13 +204,13 @@ pub(super) fn squashed(name: &str) -> String {
 }
 
 /// The role and the rank of a name without anything around it.
-fn known(squashed: &str) -> Option<(Role, u8)> {
+fn known(squashed: &str) -> Option<(ColumnRole, u8)> {
     let found = NAMES.iter().find(|(.., names)| names.contains(&squashed));
     found.map(|(role, rank, _)| (*role, *rank))
 }
 
 /// What a column's name says, with the branch, the unit and the words around it that say nothing.
-pub(super) fn named(name: &str) -> Option<Named> {
+pub(super) fn named(name: &str) -> Option<ColumnName> {
     /// The most words of a name.
     const WORDS: usize = 12;
     let mut words: Vec<&str> =
@@ -222,11 +222,16 @@ pub(super) fn named(name: &str) -> Option<Named> {
     loop {
         let whole = squashed(&words.concat());
         if let Some((role, rank)) = known(&whole) {
-            return Some(Named { role, rank, side, unit });
+            return Some(ColumnName { role, rank, side, unit });
         }
         let (first, last) = (*words.first()?, *words.last()?);
         if words.len() == 1 {
-            return grown(&whole).map(|(role, rank, grown)| Named { role, rank, side: side.or(grown), unit });
+            return grown(&whole).map(|(role, rank, grown)| ColumnName {
+                role,
+                rank,
+                side: side.or(grown),
+                unit,
+            });
         }
         let of = |word: &str| word.chars().all(char::is_alphabetic).then(|| Segment::of(word)).flatten();
         let is_unit = |word: &str| {
@@ -255,7 +260,7 @@ pub(super) fn named(name: &str) -> Option<Named> {
 }
 
 /// A name behind a number, as `image0001zsnsr`, or grown together with a branch, as `extendforce`.
-fn grown(squashed: &str) -> Option<(Role, u8, Option<Segment>)> {
+fn grown(squashed: &str) -> Option<(ColumnRole, u8, Option<Segment>)> {
     let behind = squashed.rfind(|c: char| c.is_ascii_digit()).map(|at| &squashed[at + 1..]);
     if let Some((role, rank)) =
         behind.and_then(known).or_else(|| known(squashed.trim_end_matches(|c: char| c.is_ascii_digit())))

@@ -1,8 +1,8 @@
 //! Columns → points in SI or reduced units.
 
 use super::read::{Column, Measured};
-use super::role::{Role, Segment};
-use super::stated::Stated;
+use super::role::{ColumnRole, Segment};
+use super::stated::StatedValue;
 use crate::problem::Control;
 use crate::units::{Quantity, UnitSystem, number::said};
 use thiserror::Error;
@@ -31,7 +31,7 @@ impl Abscissa {
 
 /// One point, its signs put right.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct MeasuredPoint {
     /// x.
     pub x: f64,
     /// P.
@@ -50,7 +50,7 @@ pub struct Point {
 pub type Turned = [bool; 2];
 
 /// Turns the signs of x and P.
-pub(super) fn turn(points: &mut [Point], [x, force]: Turned) {
+pub(super) fn turn(points: &mut [MeasuredPoint], [x, force]: Turned) {
     for point in points {
         point.x = if x { -point.x } else { point.x };
         point.force = if force { -point.force } else { point.force };
@@ -136,7 +136,7 @@ pub const TIP: Statement = ("a tip radius", "gap.radius_of_curvature", Quantity:
 /// What a file states and a preset does not say, or says otherwise, in words; `None` where they agree.
 #[must_use]
 pub fn overridden(
-    stated: Option<Stated>,
+    stated: Option<StatedValue>,
     preset: Option<f64>,
     units: &UnitSystem,
     statement: Statement,
@@ -157,7 +157,7 @@ pub fn overridden(
 
 /// Compares what a file states with what a preset says, in base units, where both say something.
 fn compare(
-    stated: Option<Stated>,
+    stated: Option<StatedValue>,
     preset: Option<f64>,
     units: &UnitSystem,
     (what, key, quantity): Statement,
@@ -181,7 +181,7 @@ fn compare(
 /// # Errors
 /// [`PointsError`] where both do and differ, or the problem has no units.
 pub fn stiffness(
-    file: Option<Stated>,
+    file: Option<StatedValue>,
     control: Control,
     units: &UnitSystem,
 ) -> Result<Option<f64>, PointsError> {
@@ -194,7 +194,11 @@ pub fn stiffness(
 ///
 /// # Errors
 /// [`PointsError`] where both are there and differ, or the problem has no units.
-pub fn tip_radius(file: Option<Stated>, gap: Option<f64>, units: &UnitSystem) -> Result<(), PointsError> {
+pub fn tip_radius(
+    file: Option<StatedValue>,
+    gap: Option<f64>,
+    units: &UnitSystem,
+) -> Result<(), PointsError> {
     compare(file, gap, units, TIP)
 }
 
@@ -205,7 +209,7 @@ impl Measured {
     /// [`PointsError::Reduced`].
     pub fn check_units(&self, units: &UnitSystem) -> Result<(), PointsError> {
         // A time is left out where it has a unit and the problem has none.
-        let columns = self.columns.iter().filter(|column| column.role != Role::Time);
+        let columns = self.columns.iter().filter(|column| column.role != ColumnRole::Time);
         let named = columns.into_iter().find_map(|column| Some((column, column.unit.as_ref()?)));
         match named {
             Some((column, unit)) if *units == UnitSystem::Reduced => Err(PointsError::Reduced {
@@ -227,9 +231,9 @@ impl Measured {
         self.check_units(units)?;
         let column = |role| self.columns.iter().find(|column| column.role == role);
         let (abscissa, x) = [
-            (Abscissa::Approach, Role::Approach),
-            (Abscissa::Position, Role::Position),
-            (Abscissa::Radius, Role::Radius),
+            (Abscissa::Approach, ColumnRole::Approach),
+            (Abscissa::Position, ColumnRole::Position),
+            (Abscissa::Radius, ColumnRole::Radius),
         ]
         .into_iter()
         .find_map(|(abscissa, role)| Some((abscissa, column(role)?)))
@@ -238,7 +242,7 @@ impl Measured {
             return Err(PointsError::NoSpring("position"));
         }
         let (x, x_step) = base(x);
-        let (force, force_step) = match (column(Role::Force), column(Role::Deflection)) {
+        let (force, force_step) = match (column(ColumnRole::Force), column(ColumnRole::Deflection)) {
             (Some(force), _) => base(force),
             (None, Some(deflection)) => {
                 let k = spring.ok_or(PointsError::NoSpring("deflection"))?;
@@ -247,7 +251,7 @@ impl Measured {
             }
             (None, None) => return Err(PointsError::Constant("force")),
         };
-        let radius = column(Role::Radius).map(base);
+        let radius = column(ColumnRole::Radius).map(base);
         for (values, what) in [(&x, abscissa.name()), (&force, "force")] {
             if values.iter().all(|value| value.total_cmp(&values[0]).is_eq()) {
                 return Err(PointsError::Constant(what));
@@ -256,7 +260,8 @@ impl Measured {
         let radius = radius.filter(|_| abscissa != Abscissa::Radius);
         let steps = [x_step, force_step, radius.as_ref().map_or(0.0, |(_, step)| *step)];
         let radius = radius.map(|(values, _)| values);
-        let time = column(Role::Time).filter(|time| *units != UnitSystem::Reduced || time.unit.is_none());
+        let time =
+            column(ColumnRole::Time).filter(|time| *units != UnitSystem::Reduced || time.unit.is_none());
         let time = time.map(|time| base(time).0);
         Ok(Points { abscissa, x, force, radius, steps, segments: self.segments.clone(), time })
     }

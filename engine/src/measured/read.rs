@@ -11,15 +11,15 @@
 //! instrument in [`stated`](super::stated). Rows without a number in a column that is used are left out and counted. Every fault
 //! is told with its line and its column, the first of them; a file with faults gives no curve.
 
-use super::choice::{Wanted, in_si, sides, wanted};
-use super::error::{Fault, ROW_RANGE, ReadError};
+use super::choice::{WantedColumn, in_si, sides, wanted};
+use super::error::{CurveFault, CurveReadError, ROW_RANGE};
 use super::header::{Header, headed, same, segment};
-use super::lines::{Outline, Table};
+use super::lines::{Outline, TextTable};
 use super::names::named;
-use super::role::{Role, Segment, Spec};
-use super::rows::State;
+use super::role::{ColumnRole, ColumnSpec, Segment};
+use super::rows::CellFindings;
 pub use super::rows::{Column, Measured};
-use super::stated::Settings;
+use super::stated::FileSettings;
 use crate::cells;
 use crate::text::{decode, quote, sanitize};
 use std::borrow::Cow;
@@ -31,7 +31,7 @@ const LONGEST_NAME: usize = 60;
 
 /// A column as a person sees it before its role is chosen.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Seen {
+pub struct SeenColumn {
     /// Its number, from 1.
     pub number: usize,
     /// Its name in the header, safe to show; empty without.
@@ -41,7 +41,7 @@ pub struct Seen {
     /// Its first cells, safe to show.
     pub first: Vec<String>,
     /// What it is taken for.
-    pub role: Option<Role>,
+    pub role: Option<ColumnRole>,
 }
 
 /// A file in pieces, the tables that are read chosen.
@@ -63,12 +63,12 @@ fn lines_of(text: Cow<'_, str>) -> Cow<'_, str> {
 /// Reads the curve in `bytes`, the content of a file, with what a person says of its columns.
 ///
 /// # Errors
-/// [`ReadError`] with the lines that are wrong.
-pub fn parse(bytes: &[u8], spec: &Spec) -> Result<Measured, ReadError> {
-    let (text, note) = decode(bytes).map_err(ReadError::NotText)?;
+/// [`CurveReadError`] with the lines that are wrong.
+pub fn parse(bytes: &[u8], spec: &ColumnSpec) -> Result<Measured, CurveReadError> {
+    let (text, note) = decode(bytes).map_err(CurveReadError::NotText)?;
     let text = lines_of(text);
     let pieces = Pieces::of(&text)?;
-    let settings = Settings::of(&pieces.outline.words);
+    let settings = FileSettings::of(&pieces.outline.words);
     let mut measured = Measured {
         header: pieces.header.as_ref().map(|header| header.line),
         is_computed: pieces.header.as_ref().is_some_and(Header::is_computed),
@@ -76,12 +76,12 @@ pub fn parse(bytes: &[u8], spec: &Spec) -> Result<Measured, ReadError> {
     };
     measured.notes.extend(note.map(str::to_owned));
     measured.notes.extend(pieces.notes.iter().chain(&settings.notes).cloned());
-    let mut state = State::default();
+    let mut state = CellFindings::default();
     pieces.read(spec, settings.is_si, &mut measured, &mut state)?;
     let lines = pieces.outline.faults.iter().map(|(line, fault)| (*line, fault.clone().into()));
     let faults = std::mem::take(&mut state.faults).and(lines);
     if faults.total > 0 {
-        return Err(ReadError::Faults(faults));
+        return Err(CurveReadError::Faults(faults));
     }
     let rows = measured.columns.first().map_or(0, |column| column.values.len());
     if state.has_commas() {
@@ -95,7 +95,7 @@ pub fn parse(bytes: &[u8], spec: &Spec) -> Result<Measured, ReadError> {
         ));
     }
     if !ROW_RANGE.contains(&rows) {
-        return Err(ReadError::Rows { rows, skipped: measured.skipped });
+        return Err(CurveReadError::Rows { rows, skipped: measured.skipped });
     }
     measured.in_radii();
     measured.without_gaps_of_time();
@@ -106,13 +106,13 @@ pub fn parse(bytes: &[u8], spec: &Spec) -> Result<Measured, ReadError> {
 /// The columns of a file to choose from, with the roles that its header gives them.
 ///
 /// # Errors
-/// [`ReadError`] where there is no table.
-pub fn columns(bytes: &[u8]) -> Result<Vec<Seen>, ReadError> {
-    let (text, _) = decode(bytes).map_err(ReadError::NotText)?;
+/// [`CurveReadError`] where there is no table.
+pub fn columns(bytes: &[u8]) -> Result<Vec<SeenColumn>, CurveReadError> {
+    let (text, _) = decode(bytes).map_err(CurveReadError::NotText)?;
     let text = lines_of(text);
     let pieces = Pieces::of(&text)?;
     let tables = pieces.chosen();
-    let Some(table) = tables.first() else { return Err(ReadError::Rows { rows: 0, skipped: 0 }) };
+    let Some(table) = tables.first() else { return Err(CurveReadError::Rows { rows: 0, skipped: 0 }) };
     let rows: Vec<Vec<&str>> = (0..SEEN).filter_map(|row| pieces.cells(&tables, table, row)).collect();
     let of = |at: usize| {
         let head = pieces.header.as_ref().and_then(|header| header.heads.get(at));
@@ -122,14 +122,14 @@ pub fn columns(bytes: &[u8]) -> Result<Vec<Seen>, ReadError> {
             head.and_then(|(_, unit)| unit.clone()).or(named.as_ref().and_then(|named| named.unit.clone()));
         let cells = rows.iter().filter_map(|row| row.get(at)).map(|cell| quote(cell));
         let role = named.map(|named| named.role);
-        Seen { number: at + 1, name, unit, first: cells.collect(), role }
+        SeenColumn { number: at + 1, name, unit, first: cells.collect(), role }
     };
     Ok((0..pieces.width(table)).map(of).collect())
 }
 
 impl<'a> Pieces<'a> {
     /// The pieces of a text, with the table that is read: that with the most rows, and those that go on with it.
-    fn of(text: &'a str) -> Result<Self, ReadError> {
+    fn of(text: &'a str) -> Result<Self, CurveReadError> {
         let outline = Outline::of(text)?;
         let headers: Vec<Option<Header>> =
             outline.tables.iter().map(|table| headed(table, &outline.words)).collect();
@@ -168,12 +168,12 @@ impl<'a> Pieces<'a> {
     }
 
     /// Puts the headers of waves together, one of which stands in each table.
-    fn joined(&mut self, headers: &[Option<Header>]) -> Result<(), ReadError> {
+    fn joined(&mut self, headers: &[Option<Header>]) -> Result<(), CurveReadError> {
         let rows = self.outline.tables.iter().map(|table| table.rows.len());
         if let (Some(least), Some(most)) = (rows.clone().min(), rows.max())
             && least != most
         {
-            return Err(ReadError::Waves { least, most });
+            return Err(CurveReadError::Waves { least, most });
         }
         let line = headers.iter().flatten().map(|header| header.line).next();
         let head = |header: &Option<Header>| header.as_ref().and_then(|header| header.heads.first().cloned());
@@ -184,7 +184,7 @@ impl<'a> Pieces<'a> {
 
     /// Says which lines are left out.
     fn tell(&mut self) {
-        let lines = |table: &Table| Some((table.rows.first()?.0, table.rows.last()?.0));
+        let lines = |table: &TextTable| Some((table.rows.first()?.0, table.rows.last()?.0));
         for (at, table) in self.outline.tables.iter().enumerate() {
             if let (false, Some((first, last))) = (self.tables.contains(&at), lines(table)) {
                 // A number or two above the rows is a setting.
@@ -207,17 +207,17 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    fn chosen(&self) -> Vec<&Table<'a>> {
+    fn chosen(&self) -> Vec<&TextTable<'a>> {
         self.tables.iter().map(|at| &self.outline.tables[*at]).collect()
     }
 
     /// How many columns a row of `table` has.
-    fn width(&self, table: &Table) -> usize {
+    fn width(&self, table: &TextTable) -> usize {
         if self.are_beside { self.tables.len() } else { table.cells }
     }
 
     /// The cells of a row of `table`, or of those beside it.
-    fn cells(&self, all: &[&Table<'a>], table: &Table<'a>, row: usize) -> Option<Vec<&'a str>> {
+    fn cells(&self, all: &[&TextTable<'a>], table: &TextTable<'a>, row: usize) -> Option<Vec<&'a str>> {
         if self.are_beside {
             return all.iter().map(|wave| wave.rows.get(row).map(|(_, text)| cells::bare(text))).collect();
         }
@@ -227,11 +227,11 @@ impl<'a> Pieces<'a> {
     /// Reads the rows into `measured`.
     fn read(
         &self,
-        spec: &Spec,
+        spec: &ColumnSpec,
         is_si: bool,
         measured: &mut Measured,
-        state: &mut State,
-    ) -> Result<(), ReadError> {
+        state: &mut CellFindings,
+    ) -> Result<(), CurveReadError> {
         let all = self.chosen();
         let Some((line, first)) = all.first().and_then(|table| Some((table.rows.first()?.0, *table))) else {
             return Ok(());
@@ -241,7 +241,7 @@ impl<'a> Pieces<'a> {
         let width = self.width(first);
         let [mut wanted, retraction] = match beside {
             Some([approach, retraction]) => {
-                let listed = |side: &[Wanted]| {
+                let listed = |side: &[WantedColumn]| {
                     let numbers: Vec<String> = side.iter().map(|want| (want.at + 1).to_string()).collect();
                     numbers.join(" and ")
                 };
@@ -263,7 +263,7 @@ impl<'a> Pieces<'a> {
         measured.begins(&wanted, all_rows.or(branches.first().copied().flatten().filter(|_| is_said)));
         let mut other = Measured::default();
         other.begins(&retraction, None);
-        let own = |side: &[Wanted], others: &[Wanted]| -> Vec<usize> {
+        let own = |side: &[WantedColumn], others: &[WantedColumn]| -> Vec<usize> {
             let is_own = |at: &usize| others.iter().all(|other| other.at != *at);
             side.iter().map(|want| want.at).filter(is_own).collect()
         };
@@ -275,7 +275,7 @@ impl<'a> Pieces<'a> {
                 let Some(cells) = self.cells(&all, table, row) else { continue };
                 let filled = cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
                 if filled > width || cells.len() < fewest {
-                    state.faults.add(*line, Fault::Cells { found: cells.len(), expected: width });
+                    state.faults.add(*line, CurveFault::Cells { found: cells.len(), expected: width });
                     continue;
                 }
                 let sides = [(&wanted, &mut *measured), (&retraction, &mut other)];

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
+pub enum ColumnRole {
     /// δ, a length.
     Approach,
     /// The way of the device's far end, a length: Δ but for its sign and its zero.
@@ -98,7 +98,7 @@ impl Segment {
     }
 }
 
-impl Role {
+impl ColumnRole {
     /// All, in the order in which messages name them.
     pub const ALL: [Self; 9] = [
         Self::Approach,
@@ -112,7 +112,7 @@ impl Role {
         Self::Time,
     ];
 
-    /// The word by which `--columns` says it; `x` says [`Role::Approach`] too.
+    /// The word by which `--columns` says it; `x` says [`ColumnRole::Approach`] too.
     pub fn word(self) -> &'static str {
         match self {
             Self::Approach => "approach",
@@ -160,7 +160,7 @@ pub(super) fn dimensions() -> [Dimension; 4] {
 
 /// Where a column stands.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Place {
+pub enum ColumnPlace {
     /// Its number, from 1.
     Number(usize),
     /// Its name in the header.
@@ -171,20 +171,20 @@ pub enum Place {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Said {
     /// What it is.
-    pub role: Role,
+    pub role: ColumnRole,
     /// Where it stands.
-    pub place: Place,
+    pub place: ColumnPlace,
     /// Its unit, where that is said.
     pub unit: Option<Unit>,
 }
 
 /// What a person says of the columns of a file; empty leaves it to the header.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Spec(pub Vec<Said>);
+pub struct ColumnSpec(pub Vec<Said>);
 
 /// Why a text says nothing of columns.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum SpecError {
+pub enum ColumnSpecError {
     /// No `ROLE=COLUMN`.
     #[error("\"{0}\" is not of the form ROLE=COLUMN, as in x=1,force=2 or position=Z [nm],force=F [nN]")]
     Form(String),
@@ -218,35 +218,37 @@ pub enum SpecError {
     },
 }
 
-impl Spec {
+impl ColumnSpec {
     /// What a text such as `x=1,force=Load [mN]` says.
     ///
     /// # Errors
-    /// [`SpecError`].
-    pub fn parse(text: &str) -> Result<Self, SpecError> {
+    /// [`ColumnSpecError`].
+    pub fn parse(text: &str) -> Result<Self, ColumnSpecError> {
         let mut said: Vec<Said> = Vec::new();
         for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
-            let (word, place) = part.split_once('=').ok_or_else(|| SpecError::Form(quote(part)))?;
+            let (word, place) = part.split_once('=').ok_or_else(|| ColumnSpecError::Form(quote(part)))?;
             let (word, place) = (word.trim().to_lowercase(), place.trim());
-            let known = Role::ALL.into_iter().find(|role| role.word() == word);
-            let role = known.or((word == "x").then_some(Role::Approach)).ok_or_else(|| SpecError::Role {
-                text: quote(&word),
-                meant: closest(&word, Role::ALL.into_iter().map(Role::word)),
+            let known = ColumnRole::ALL.into_iter().find(|role| role.word() == word);
+            let role = known.or((word == "x").then_some(ColumnRole::Approach)).ok_or_else(|| {
+                ColumnSpecError::Role {
+                    text: quote(&word),
+                    meant: closest(&word, ColumnRole::ALL.into_iter().map(ColumnRole::word)),
+                }
             })?;
             if said.iter().any(|other| other.role == role) {
-                return Err(SpecError::Twice(role.word()));
+                return Err(ColumnSpecError::Twice(role.word()));
             }
             let (name, unit) = match place.strip_suffix(']').and_then(|place| place.rsplit_once('[')) {
                 Some((name, unit)) => (name.trim(), Some(unit_of(role, unit.trim())?)),
                 None => (place, None),
             };
             if name.is_empty() {
-                return Err(SpecError::Form(quote(part)));
+                return Err(ColumnSpecError::Form(quote(part)));
             }
             let place = match name.parse::<usize>() {
-                Ok(0) => return Err(SpecError::Zero),
-                Ok(number) => Place::Number(number),
-                Err(_) => Place::Name(name.to_owned()),
+                Ok(0) => return Err(ColumnSpecError::Zero),
+                Ok(number) => ColumnPlace::Number(number),
+                Err(_) => ColumnPlace::Name(name.to_owned()),
             };
             said.push(Said { role, place, unit });
         }
@@ -255,16 +257,16 @@ impl Spec {
 }
 
 /// The unit `text` of a column of this role.
-pub(super) fn unit_of(role: Role, text: &str) -> Result<Unit, SpecError> {
+pub(super) fn unit_of(role: ColumnRole, text: &str) -> Result<Unit, ColumnSpecError> {
     let expected = match role {
-        Role::Force => "a unit of force",
-        Role::Area => "a unit of area",
-        Role::Segment => "known: a segment has no unit",
-        Role::Time => "a unit of time",
+        ColumnRole::Force => "a unit of force",
+        ColumnRole::Area => "a unit of area",
+        ColumnRole::Segment => "known: a segment has no unit",
+        ColumnRole::Time => "a unit of time",
         _ => "a unit of length",
     };
-    let unit = unit_named(text, role == Role::Force);
-    unit.filter(|unit| role.dimension() == Some(unit.dimension())).ok_or_else(|| SpecError::Unit {
+    let unit = unit_named(text, role == ColumnRole::Force);
+    unit.filter(|unit| role.dimension() == Some(unit.dimension())).ok_or_else(|| ColumnSpecError::Unit {
         role: role.word(),
         unit: quote(text),
         expected,

@@ -1,9 +1,9 @@
 //! Rows of cells → columns of numbers.
 
-use super::choice::Wanted;
-use super::error::Fault;
-use super::role::{Role, Segment};
-use super::stated::Stated;
+use super::choice::WantedColumn;
+use super::error::CurveFault;
+use super::role::{ColumnRole, Segment};
+use super::stated::StatedValue;
 use super::words::{is_gap, last_digit};
 use crate::cells::{self, CellFault, Faults};
 use crate::text::quote;
@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
     /// What it is.
-    pub role: Role,
+    pub role: ColumnRole,
     /// Its number in the file, from 1.
     pub number: usize,
     /// Its unit, where the file or a person names one.
@@ -33,9 +33,9 @@ pub struct Measured {
     /// The branch of each row, where the file says it.
     pub segments: Option<Vec<Segment>>,
     /// The stiffness of the device that the file states, N/m.
-    pub stiffness: Option<Stated>,
+    pub stiffness: Option<StatedValue>,
     /// The radius of the tip that the file states, m.
-    pub radius: Option<Stated>,
+    pub radius: Option<StatedValue>,
     /// The line of the header, from 1.
     pub header: Option<usize>,
     /// Whether the header is that of a walk or a curve of this program: its signs are known, and no free part is to be found.
@@ -50,23 +50,23 @@ pub struct Measured {
 
 /// What the cells of all rows have shown.
 #[derive(Default)]
-pub(super) struct State {
+pub(super) struct CellFindings {
     /// The line of the first number with a decimal point, and with a decimal comma.
     marks: [Option<usize>; 2],
     /// The line of the first row that was left out.
     pub skipped: Option<usize>,
     /// What is wrong.
-    pub faults: Faults<Fault>,
+    pub faults: Faults<CurveFault>,
 }
 
-impl State {
+impl CellFindings {
     /// Takes the row in `line` into `measured`, if it has a number in each column that is `wanted`; `branch` is that of its
     /// table.
     pub(super) fn takes(
         &mut self,
         line: usize,
         cells: &[&str],
-        wanted: &[Wanted],
+        wanted: &[WantedColumn],
         branch: Option<Segment>,
         measured: &mut Measured,
     ) {
@@ -75,14 +75,16 @@ impl State {
         let mut is_whole = true;
         for want in wanted {
             let text = cells.get(want.at).copied().unwrap_or_default();
-            if want.role == Role::Time && !want.is_said {
+            if want.role == ColumnRole::Time && !want.is_said {
                 row.push((time(text), f64::INFINITY));
             } else if is_gap(text) {
                 is_whole = false;
-            } else if want.role == Role::Segment {
+            } else if want.role == ColumnRole::Segment {
                 segment = Segment::of(text);
                 if segment.is_none() {
-                    return self.faults.add(line, Fault::Segment { number: want.at + 1, text: quote(text) });
+                    return self
+                        .faults
+                        .add(line, CurveFault::Segment { number: want.at + 1, text: quote(text) });
                 }
             } else {
                 match self.number(line, text, want) {
@@ -108,18 +110,23 @@ impl State {
     }
 
     /// The number in a cell and the place of its last digit; `None` where it is out of the range of any instrument.
-    fn number(&mut self, line: usize, text: &str, want: &Wanted) -> Result<Option<(f64, f64)>, Fault> {
+    fn number(
+        &mut self,
+        line: usize,
+        text: &str,
+        want: &WantedColumn,
+    ) -> Result<Option<(f64, f64)>, CurveFault> {
         let (number, what) = (want.at + 1, want.role.word());
         let marks = text.bytes().filter(|byte| [b',', b'.'].contains(byte)).count();
         let comma = text.contains(',');
         if comma && marks > 1 {
-            return Err(Fault::Thousands { number, text: quote(text) });
+            return Err(CurveFault::Thousands { number, text: quote(text) });
         }
         if marks == 1 {
             let [same, other] = if comma { [1, 0] } else { [0, 1] };
             self.marks[same] = self.marks[same].or(Some(line));
             if let Some(line) = self.marks[other] {
-                return Err(Fault::Marks { number, text: quote(text), line });
+                return Err(CurveFault::Marks { number, text: quote(text), line });
             }
         }
         let mut plain = std::borrow::Cow::Borrowed(text);
@@ -131,9 +138,9 @@ impl State {
             Ok(value) => Ok(Some((value, last_digit(&plain)))),
             Err(CellFault::Range { .. }) => Ok(None),
             Err(CellFault::Number { .. }) => {
-                Err(Fault::Cell { number, fault: CellFault::Number { what, text: quote(text) } })
+                Err(CurveFault::Cell { number, fault: CellFault::Number { what, text: quote(text) } })
             }
-            Err(fault) => Err(Fault::Cell { number, fault }),
+            Err(fault) => Err(CurveFault::Cell { number, fault }),
         }
     }
 
@@ -154,13 +161,13 @@ fn time(text: &str) -> f64 {
 
 impl Measured {
     /// Makes the columns; `all` is the branch of all rows, where no column says it.
-    pub(super) fn begins(&mut self, wanted: &[Wanted], all: Option<Segment>) {
-        for column in wanted.iter().filter(|column| column.role != Role::Segment) {
+    pub(super) fn begins(&mut self, wanted: &[WantedColumn], all: Option<Segment>) {
+        for column in wanted.iter().filter(|column| column.role != ColumnRole::Segment) {
             let (role, unit) = (column.role, column.unit.clone());
             let (number, values) = (column.at + 1, Vec::new());
             self.columns.push(Column { role, number, unit, values, step: f64::INFINITY });
         }
-        if all.is_some() || wanted.iter().any(|column| column.role == Role::Segment) {
+        if all.is_some() || wanted.iter().any(|column| column.role == ColumnRole::Segment) {
             self.segments = Some(Vec::new());
         }
     }
@@ -183,8 +190,9 @@ impl Measured {
 
     /// Leaves a time out that is not a number in each row: nothing else needs it.
     pub(super) fn without_gaps_of_time(&mut self) {
-        let is_left =
-            |column: &Column| column.role == Role::Time && column.values.iter().any(|time| time.is_nan());
+        let is_left = |column: &Column| {
+            column.role == ColumnRole::Time && column.values.iter().any(|time| time.is_nan())
+        };
         if let Some(at) = self.columns.iter().position(is_left) {
             let Column { number, .. } = self.columns.remove(at);
             self.notes.push(format!("column {number} is a time, but no number in each row: it is left out"));
@@ -196,9 +204,9 @@ impl Measured {
         for column in &mut self.columns {
             let (word, number) = (column.role.word(), column.number);
             let into: fn(f64) -> f64 = match column.role {
-                Role::Diameter => |d| 0.5 * d,
+                ColumnRole::Diameter => |d| 0.5 * d,
                 // An area below 0 is noise around no contact; its sign is kept, so that it is refused as a radius is.
-                Role::Area => |area| (area.abs() / PI).sqrt().copysign(area),
+                ColumnRole::Area => |area| (area.abs() / PI).sqrt().copysign(area),
                 _ => continue,
             };
             if let Some(unit) = column.unit.take() {
@@ -210,7 +218,7 @@ impl Measured {
             }
             let largest = column.values.iter().copied().fold(0.0, f64::max);
             // ds = dA/(2πs), at the largest area.
-            column.step = if column.role == Role::Area && largest > 0.0 {
+            column.step = if column.role == ColumnRole::Area && largest > 0.0 {
                 column.step / (2.0 * PI * into(largest))
             } else {
                 into(column.step)
@@ -218,7 +226,7 @@ impl Measured {
             for value in &mut column.values {
                 *value = into(*value);
             }
-            column.role = Role::Radius;
+            column.role = ColumnRole::Radius;
             let formula = if word == "area" { "s = √(A/π)" } else { "s = d/2" };
             self.notes.push(format!("column {number} is the {word} of the contact: its radius is {formula}"));
         }

@@ -7,9 +7,9 @@
 //! σ_x = max(last digit, median |x_{i−1} − 2x_i + x_{i+1}| / 1.652)    both at least 1e-4 of their range
 //! ```
 
-use super::free::Branch;
+use super::free::MeasuredBranch;
 use super::noise::{FLOOR, Noise, Origin, median, scatter_over, variance};
-use super::points::Point;
+use super::points::MeasuredPoint;
 use crate::elementary::hypot;
 
 /// Steps between rows apart from which their noise is told.
@@ -17,7 +17,7 @@ const FEWEST_APART: usize = 5;
 
 /// σ of x, P and s, the rows in the order of the file.
 pub(super) fn noise(
-    list: &[(Branch, Vec<Point>)],
+    list: &[(MeasuredBranch, Vec<MeasuredPoint>)],
     given: [Option<f64>; 3],
     (steps, converter): ([f64; 3], Option<f64>),
     ranges: [f64; 3],
@@ -26,14 +26,14 @@ pub(super) fn noise(
     let (mut forces, mut ways, mut radii) = (Vec::new(), Vec::new(), Vec::new());
     let mut in_contact = Vec::new();
     // Of radii; a clock has no noise: over time radius and force tell each their own.
-    let touches = |point: &&Point| point.x > 0.0;
+    let touches = |point: &&MeasuredPoint| point.x > 0.0;
     let mut in_touch = list.iter().flat_map(|(_, in_order)| in_order).filter(touches).peekable();
     let has_clock = of_radius && in_touch.peek().is_some() && in_touch.all(|point| point.time.is_finite());
     for (branch, in_order) in list {
         // Nothing is known of radii where the bodies are apart: in contact they vary slowly with what they are measured with.
         let touching =
             || in_order.iter().filter(|point| if of_radius { point.x > 0.0 } else { point.radius > 0.0 });
-        let over = |x: fn(&Point) -> f64, y: fn(&Point) -> f64| {
+        let over = |x: fn(&MeasuredPoint) -> f64, y: fn(&MeasuredPoint) -> f64| {
             let (x, y): (Vec<f64>, Vec<f64>) = touching().map(|point| (x(point), y(point))).unzip();
             scatter_over(&x, &y)
         };
@@ -47,7 +47,7 @@ pub(super) fn noise(
         }
         let mut rows: Vec<usize> = branch.free.iter().map(|point| point.row).collect();
         rows.sort_unstable();
-        let free: Vec<&Point> =
+        let free: Vec<&MeasuredPoint> =
             in_order.iter().filter(|point| rows.binary_search(&point.row).is_ok()).collect();
         forces.extend(free.windows(2).map(|pair| (pair[1].force - pair[0].force).abs()));
         ways.extend(free.windows(3).map(|three| (three[0].x - 2.0 * three[1].x + three[2].x).abs()));

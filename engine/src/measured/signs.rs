@@ -1,9 +1,9 @@
 //! Where the bodies are apart, and the signs of x and P that follow from it.
 
 use super::apart::jump;
-use super::asked::{FreePart, Span};
+use super::asked::{FreePart, ValueRange};
 use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, median, noise_of, range};
-use super::points::{Abscissa, Point, Turned, turn};
+use super::points::{Abscissa, MeasuredPoint, Turned, turn};
 use super::role::Segment;
 use super::turns::{one_way, runs};
 
@@ -83,13 +83,13 @@ fn trends(x: &[f64], y: &[f64], order: &[usize], share: f64) -> Option<[f64; 2]>
 
 /// Whether the signs of x and P are turned, and for which other signs as much speaks.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Direction {
+pub(super) struct Orientation {
     pub(super) turned: Turned,
     pub(super) or: Option<Turned>,
 }
 
 /// What is known of points whose signs are not.
-pub(super) struct Seen<'a> {
+pub(super) struct UnsignedPoints<'a> {
     pub(super) abscissa: Abscissa,
     pub(super) segments: Option<&'a [Segment]>,
     /// Whether the rows are in order.
@@ -98,10 +98,10 @@ pub(super) struct Seen<'a> {
     pub(super) free: FreePart,
 }
 
-impl Seen<'_> {
+impl UnsignedPoints<'_> {
     /// Turns the signs where the free end and the rise in contact say so. `None` where x stands still while P goes on, as in columns that
     /// are swapped; only rows in order show it.
-    pub(super) fn signs(&self, points: &mut [Point], notes: &mut Vec<String>) -> Option<Direction> {
+    pub(super) fn signs(&self, points: &mut [MeasuredPoint], notes: &mut Vec<String>) -> Option<Orientation> {
         if self.abscissa == Abscissa::Radius {
             return Some(self.of_force(points, [false; 2], notes));
         }
@@ -147,7 +147,7 @@ impl Seen<'_> {
 
     /// Turns the sign of the force, that of x being right. It rises where the bodies are pressed together; what it is before the jump to the
     /// free part may speak against that.
-    fn of_force(&self, points: &mut [Point], [x, _]: Turned, notes: &mut Vec<String>) -> Direction {
+    fn of_force(&self, points: &mut [MeasuredPoint], [x, _]: Turned, notes: &mut Vec<String>) -> Orientation {
         let pulls = if self.free == FreePart::None { None } else { pulls(points, self.segments) };
         let (ways, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
         let rises = rises(&ways, &force);
@@ -157,12 +157,12 @@ impl Seen<'_> {
             notes.push(if rises == Some(false) { FALLS } else { PULLED }.to_owned());
         }
         let is_doubtful = pulls.is_some_and(|pulls| rises.is_some_and(|rises| rises != pulls));
-        Direction { turned: [x, turned], or: is_doubtful.then_some([x, !turned]) }
+        Orientation { turned: [x, turned], or: is_doubtful.then_some([x, !turned]) }
     }
 }
 
 /// The end of x at which `span` is, low and high.
-fn end_of(x: &[f64], span: Span) -> [bool; 2] {
+fn end_of(x: &[f64], span: ValueRange) -> [bool; 2] {
     let middle = |of: Vec<f64>| median(of).unwrap_or(f64::NAN);
     let (within, rest): (Vec<f64>, Vec<f64>) = x.iter().partition(|x| span.holds(**x));
     let (within, rest) = (middle(within), middle(rest));
@@ -170,7 +170,7 @@ fn end_of(x: &[f64], span: Span) -> [bool; 2] {
 }
 
 /// The signs at which the force jumps up from the contact to rows apart, and rises with x where the bodies are pressed together most.
-fn by_jumps(points: &[Point], segments: Option<&[Segment]>) -> Option<Direction> {
+fn by_jumps(points: &[MeasuredPoint], segments: Option<&[Segment]>) -> Option<Orientation> {
     let pieces = match segments {
         None => one_way(points),
         Some(of) => {
@@ -196,18 +196,18 @@ fn by_jumps(points: &[Point], segments: Option<&[Segment]>) -> Option<Direction>
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     let (best, turned) = *found.first().filter(|(sum, _)| *sum > 0.0)?;
     let or = found.get(1).filter(|(sum, _)| *sum > LIKELY * best).map(|(_, turned)| *turned);
-    Some(Direction { turned, or })
+    Some(Orientation { turned, or })
 }
 
 /// Whether the force before the jump to the free part is below that of the free part, as it is where bodies pull; `None` without
 /// a free part, or where the jump is so small that the rise in contact says more.
-fn pulls(points: &[Point], segments: Option<&[Segment]>) -> Option<bool> {
+fn pulls(points: &[MeasuredPoint], segments: Option<&[Segment]>) -> Option<bool> {
     /// A jump is trusted from this share of the largest force.
     const LARGE: f64 = 0.3;
     /// At most so many rows before the jump, and at most this share of all, whose median is taken.
     const ROWS: usize = 3;
     const SHARE: usize = 20;
-    let groups: Vec<Vec<Point>> = match segments {
+    let groups: Vec<Vec<MeasuredPoint>> = match segments {
         None => vec![points.to_vec()],
         Some(of) => [Segment::Approach, Segment::Retraction]
             .map(|segment| points.iter().filter(|point| of[point.row - 1] == segment).copied().collect())

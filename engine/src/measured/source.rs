@@ -4,7 +4,7 @@ use super::asked::{Asked, FreePart};
 use super::branches::Branches;
 use super::points::Points;
 use super::read::{Measured, parse};
-use super::role::Spec;
+use super::role::ColumnSpec;
 use crate::units::UnitSystem;
 use std::fmt;
 use std::path::PathBuf;
@@ -24,7 +24,7 @@ pub struct Reading {
 }
 
 /// A file of measured points. Equal where the name and the bytes are.
-pub struct Source {
+pub struct PointsFile {
     /// The file as a person wrote it.
     pub name: String,
     /// The folder that a relative `name` is relative to.
@@ -35,7 +35,7 @@ pub struct Source {
     branches: Mutex<Option<(Reading, Arc<Branches>)>>,
 }
 
-impl Source {
+impl PointsFile {
     /// The file `name`, relative to `folder`, that holds `bytes`.
     #[must_use]
     pub fn new(name: String, folder: Option<PathBuf>, bytes: Arc<[u8]>) -> Self {
@@ -63,7 +63,7 @@ impl Source {
         if let Some((_, measured)) = last.as_ref().filter(|(of, _)| of == columns) {
             return Ok(Arc::clone(measured));
         }
-        let spec = Spec::parse(columns).map_err(|error| error.to_string())?;
+        let spec = ColumnSpec::parse(columns).map_err(|error| error.to_string())?;
         let measured = Arc::new(parse(&self.bytes, &spec).map_err(|error| error.to_string())?);
         *last = Some((columns.to_owned(), Arc::clone(&measured)));
         Ok(measured)
@@ -109,7 +109,7 @@ impl Source {
     }
 }
 
-impl Source {
+impl PointsFile {
     /// Whether it has the same text, whatever its name.
     #[must_use]
     pub fn has_bytes_of(&self, other: &Self) -> bool {
@@ -117,13 +117,13 @@ impl Source {
     }
 }
 
-impl PartialEq for Source {
+impl PartialEq for PointsFile {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name && self.has_bytes_of(other)
     }
 }
 
-impl fmt::Debug for Source {
+impl fmt::Debug for PointsFile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, folder, bytes, .. } = self;
         write!(f, "Source {{ name: {name:?}, folder: {folder:?}, {} bytes }}", bytes.len())

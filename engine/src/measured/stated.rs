@@ -18,14 +18,14 @@ const SAME: f64 = 1e-3;
 
 /// A value that a file states.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stated {
+pub struct StatedValue {
     /// The value, in SI.
     pub value: f64,
     /// Half the place of its last digit.
     pub rounding: f64,
 }
 
-impl Stated {
+impl StatedValue {
     /// Whether `value`, in SI, may be what the file states.
     #[must_use]
     pub fn is(&self, value: f64) -> bool {
@@ -35,7 +35,7 @@ impl Stated {
 
 /// What a file states of its instrument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Setting {
+enum InstrumentValue {
     Stiffness,
     Radius,
     Diameter,
@@ -43,18 +43,18 @@ enum Setting {
 
 /// The settings of a file.
 #[derive(Debug, Default)]
-pub(super) struct Settings {
+pub(super) struct FileSettings {
     /// The stiffness of the spring, N/m.
-    pub stiffness: Option<Stated>,
+    pub stiffness: Option<StatedValue>,
     /// The radius of the tip, m.
-    pub radius: Option<Stated>,
+    pub radius: Option<StatedValue>,
     /// Whether there is a block of afmformats: its columns are in SI.
     pub is_si: bool,
     /// What was found and not used, in words.
     pub notes: Vec<String>,
 }
 
-impl Settings {
+impl FileSettings {
     /// The settings in the words of a file.
     pub(super) fn of(words: &[Words]) -> Self {
         let mut settings = Self::default();
@@ -145,7 +145,7 @@ impl Settings {
             Some(Some(unit)) if unit.dimension() == dimension => Some(unit),
             None if !needs_unit => None,
             _ => {
-                if !matches!(setting, Setting::Stiffness) || key.len() > 1 {
+                if !matches!(setting, InstrumentValue::Stiffness) || key.len() > 1 {
                     let (name, value) = (quote(&name), quote(&value));
                     self.notes.push(format!(
                         "the file states {name}: {value}, without a known unit: it is not used"
@@ -158,28 +158,31 @@ impl Settings {
     }
 
     /// Adds what is stated in `unit`, in SI without one.
-    fn add(&mut self, setting: Setting, number: f64, rounding: f64, unit: Option<&Unit>) {
+    fn add(&mut self, setting: InstrumentValue, number: f64, rounding: f64, unit: Option<&Unit>) {
         let si = |number: f64| {
             let value = unit.map_or(number, |unit| unit.to_si(number));
-            if setting == Setting::Diameter { 0.5 * value } else { value }
+            if setting == InstrumentValue::Diameter { 0.5 * value } else { value }
         };
-        let stated = Stated { value: si(number), rounding: si(rounding) };
+        let stated = StatedValue { value: si(number), rounding: si(rounding) };
         if stated.value.is_nan() || stated.value <= 0.0 || stated.value > LARGEST_NUMBER {
             return;
         }
-        if setting == Setting::Stiffness && stated.value.total_cmp(&1.0).is_eq() {
+        if setting == InstrumentValue::Stiffness && stated.value.total_cmp(&1.0).is_eq() {
             let note = "the file states a spring of 1 N/m, as instruments do that are not calibrated: it is not used";
             if self.notes.iter().all(|known| known != note) {
                 self.notes.push(note.to_owned());
             }
             return;
         }
-        let slot = if setting == Setting::Stiffness { &mut self.stiffness } else { &mut self.radius };
+        let slot = if setting == InstrumentValue::Stiffness { &mut self.stiffness } else { &mut self.radius };
         match slot {
             None => *slot = Some(stated),
             Some(before) if !before.is(stated.value) => {
-                let (what, unit) =
-                    if setting == Setting::Stiffness { ("springs", "N/m") } else { ("tip radii", "m") };
+                let (what, unit) = if setting == InstrumentValue::Stiffness {
+                    ("springs", "N/m")
+                } else {
+                    ("tip radii", "m")
+                };
                 self.notes.push(format!(
                     "the file states two {what}, {:?} and {:?} {unit}: the first is taken",
                     before.value, stated.value
@@ -191,7 +194,7 @@ impl Settings {
 }
 
 /// The setting that `name` names, its dimension, and whether its unit must be there.
-fn setting(name: &str) -> Option<(Setting, Dimension, bool)> {
+fn setting(name: &str) -> Option<(InstrumentValue, Dimension, bool)> {
     const BODIES: [&str; 9] =
         ["tip", "probe", "indenter", "sphere", "bead", "ball", "lens", "colloid", "particle"];
     let name = squashed(name);
@@ -201,10 +204,10 @@ fn setting(name: &str) -> Option<(Setting, Dimension, bool)> {
         || ends("cantileverstiffness")
         || ends("springstiffness")
     {
-        return Some((Setting::Stiffness, Quantity::ForcePerLength.dimension(), false));
+        return Some((InstrumentValue::Stiffness, Quantity::ForcePerLength.dimension(), false));
     }
     if ["k", "kc", "kcantilever", "cantileverk"].contains(&name.as_str()) {
-        return Some((Setting::Stiffness, Quantity::ForcePerLength.dimension(), true));
+        return Some((InstrumentValue::Stiffness, Quantity::ForcePerLength.dimension(), true));
     }
     let length = Quantity::Length.dimension();
     let of_body = |word: &str| {
@@ -213,7 +216,7 @@ fn setting(name: &str) -> Option<(Setting, Dimension, bool)> {
     };
     if of_body("radius").is_some() || ends("radiusofcurvature") || name == "r" {
         // afmformats and JPK write SI.
-        return Some((Setting::Radius, length, true));
+        return Some((InstrumentValue::Radius, length, true));
     }
-    of_body("diameter").map(|()| (Setting::Diameter, length, true))
+    of_body("diameter").map(|()| (InstrumentValue::Diameter, length, true))
 }

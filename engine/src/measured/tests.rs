@@ -1,6 +1,6 @@
 //! Files good, bad and damaged; signs, branches, noise.
 
-use super::points::Point;
+use super::points::MeasuredPoint;
 use super::*;
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::problem::Control;
@@ -51,12 +51,12 @@ fn csv(rows: &[(f64, f64, bool)]) -> String {
 }
 
 fn branches(text: &str) -> Result<Branches, BranchError> {
-    let measured = parse(text.as_bytes(), &Spec::default()).unwrap();
+    let measured = parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
     measured.points(&UnitSystem::Reduced, Some(1.0)).unwrap().branches(&Asked::default())
 }
 
 /// x and P of all points.
-fn strip(list: &[Branch]) -> Vec<[f64; 2]> {
+fn strip(list: &[MeasuredBranch]) -> Vec<[f64; 2]> {
     list.iter().flat_map(|b| b.attached.iter().chain(&b.free)).map(|p| [p.x, p.force]).collect()
 }
 
@@ -73,7 +73,7 @@ fn every_separator_unit_and_name_gives_the_same_points() {
             writeln!(text, "{x:?}{separator}{p:?}").unwrap();
             text
         });
-        let measured = parse(text.as_bytes(), &Spec::default()).unwrap();
+        let measured = parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
         let points = measured.points(&si(), None).unwrap();
         assert_eq!(points.abscissa, Abscissa::Approach, "{header}");
         assert!((points.x[0] + 1e-7).abs() < 1e-20 && (points.force[300] - 1e-9 * rows[300].1).abs() < 1e-20);
@@ -92,7 +92,7 @@ fn a_tab_file_states_its_spring_and_its_segments() {
         let z = -(x + p / 0.043);
         writeln!(text, "{p:e}\t{z:e}\t{z:e}\t{i}\t{}", if *back { "True" } else { "False" }).unwrap();
     }
-    let measured = parse(text.as_bytes(), &Spec::default()).unwrap();
+    let measured = parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
     let spring = measured.stiffness.map(|stated| stated.value);
     assert_eq!(spring, Some(0.043));
     assert!(measured.notes[0].contains("columns 2 and 3 are both a position: the first is read"));
@@ -166,7 +166,7 @@ fn an_unordered_file_is_refused_and_one_with_segments_read_backwards_is_the_same
         rows.swap(i, (random.unit() * (i + 1) as f64) as usize);
     }
     assert!(matches!(branches(&csv(&rows)), Err(BranchError::Unordered { .. })));
-    let measured = parse(csv(&rows).as_bytes(), &Spec::default()).unwrap();
+    let measured = parse(csv(&rows).as_bytes(), &ColumnSpec::default()).unwrap();
     let asked = Asked { sigma: [Some(1e-5), Some(1e-4), None], ..Asked::default() };
     let shuffled = measured.points(&UnitSystem::Reduced, None).unwrap().branches(&asked).unwrap();
     assert!(strip(&right.list) == strip(&shuffled.list));
@@ -175,10 +175,10 @@ fn an_unordered_file_is_refused_and_one_with_segments_read_backwards_is_the_same
 #[test]
 fn what_a_person_says_of_columns_is_read_or_refused() {
     let text = "a b c\n".to_owned() + &"1 2 3\n2 3 5\n".repeat(6);
-    let unknown = parse(text.as_bytes(), &Spec::default()).unwrap_err().to_string();
+    let unknown = parse(text.as_bytes(), &ColumnSpec::default()).unwrap_err().to_string();
     // b and c are nothing, a alone is a radius.
     assert!(unknown.starts_with("line 1: there is no column of the force"), "{unknown}");
-    let spec = Spec::parse("x=c, force=2 [nN]").unwrap();
+    let spec = ColumnSpec::parse("x=c, force=2 [nN]").unwrap();
     let measured = parse(text.as_bytes(), &spec).unwrap();
     assert_eq!(measured.columns[0].values[..2], [3.0, 5.0]);
     assert_eq!(measured.columns[1].unit.as_ref().unwrap().ascii(), "nN");
@@ -189,13 +189,13 @@ fn what_a_person_says_of_columns_is_read_or_refused() {
         ("x=1,approach=2", "approach is said twice"),
         ("force=1 [um]", "the unit \"um\" of force is not a unit of force"),
     ] {
-        let message = Spec::parse(said).unwrap_err().to_string();
+        let message = ColumnSpec::parse(said).unwrap_err().to_string();
         assert!(message.contains(expected), "{said}: {message}");
     }
     for (said, expected) in
         [("x=9,force=1", "no column 9: a row has 3"), ("x=q,force=1", "no column \"q\"; there is \"a\"")]
     {
-        let message = parse(text.as_bytes(), &Spec::parse(said).unwrap()).unwrap_err().to_string();
+        let message = parse(text.as_bytes(), &ColumnSpec::parse(said).unwrap()).unwrap_err().to_string();
         assert!(message.contains(expected), "{said}: {message}");
     }
 }
@@ -227,7 +227,7 @@ fn two_hundred_broken_files_are_a_sentence_each() {
                 .chain([bad.as_str()])
                 .chain(lines[line + 3..].iter().copied());
             let text: Vec<&str> = text.collect();
-            let message = parse(text.join("\n").as_bytes(), &Spec::default()).unwrap_err().to_string();
+            let message = parse(text.join("\n").as_bytes(), &ColumnSpec::default()).unwrap_err().to_string();
             assert!(
                 message.starts_with(&format!("line {}: ", line + 3)) && message.contains(expected),
                 "{message}"
@@ -246,7 +246,7 @@ fn two_hundred_broken_files_are_a_sentence_each() {
             let at = usize::try_from(bits >> 16).unwrap_or(0) % bytes.len();
             bytes[at] = bits.to_le_bytes()[0];
         }
-        if let Ok(measured) = parse(&bytes, &Spec::default())
+        if let Ok(measured) = parse(&bytes, &ColumnSpec::default())
             && let Ok(points) = measured.points(&UnitSystem::Reduced, Some(1.0))
         {
             let _ = points.branches(&Asked::default());
@@ -260,7 +260,7 @@ fn two_hundred_broken_files_are_a_sentence_each() {
         (b"1 2 3\n", "3 columns without a header"),
         (b"delta [nN], force\n1,2\n", "the unit \"nN\" of approach is not a unit of length"),
     ] {
-        let message = parse(text, &Spec::default()).unwrap_err().to_string();
+        let message = parse(text, &ColumnSpec::default()).unwrap_err().to_string();
         assert!(message.contains(expected), "{message}");
     }
 }
@@ -294,17 +294,17 @@ fn branches_beside_each_other_are_two_segments() {
         "Force Constant, nN/nm: 0.25\nExtend Z (nm),Extend Force (nN),Retract Z (nm),Retract Force (nN)\n",
     );
     text.push_str("0.06,0.1,,\n");
-    let measured = parse(text.as_bytes(), &Spec::default()).unwrap();
+    let measured = parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
     assert_eq!(measured.stiffness.map(|stated| stated.value), Some(0.25));
     assert_eq!(measured.columns[0].values.len(), rows.len() + 1);
     assert_eq!(measured.segments.unwrap().iter().filter(|of| **of == Segment::Approach).count(), 302);
     assert!(measured.notes[0].starts_with("columns 1 and 2 are the approach, 3 and 4 the retraction"));
     // Half of one side is a row without a force. Units that differ are refused: nobody knows what is meant.
     text.push_str("0.06,0.1,0.3,\n");
-    let half = parse(text.as_bytes(), &Spec::default()).unwrap();
+    let half = parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
     assert_eq!((half.skipped, half.columns[0].values.len()), (1, rows.len() + 2));
     let mixed = side_by_side(&rows, "Extend Z (nm),Extend Force (nN),Retract Z (um),Retract Force (nN)\n");
-    assert!(parse(mixed.as_bytes(), &Spec::default()).unwrap_err().to_string().contains("--columns"));
+    assert!(parse(mixed.as_bytes(), &ColumnSpec::default()).unwrap_err().to_string().contains("--columns"));
 }
 
 #[test]
@@ -313,13 +313,16 @@ fn decimals_with_a_comma_and_units_below_the_header_are_read() {
     let text = rows.iter().fold("delta;force;segment\n(um);(nN);\n".to_owned(), |text, (x, p, back)| {
         text + &format!("{x:?};{p:?};{back}\n").replace('.', ",")
     });
-    let measured = parse(text.as_bytes(), &Spec::default()).unwrap();
+    let measured = parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
     let same = measured.columns[1].values.iter().zip(&rows).all(|(p, row)| p.total_cmp(&row.1).is_eq());
     assert!(same && measured.notes == ["decimals have a comma: 0,1 is read as 0.1"], "{:?}", measured.notes);
     assert_eq!(measured.columns[1].unit.as_ref().unwrap().ascii(), "nN");
     let deflection = "Z position [nm]\tvDeflection [nN]\n".to_owned() + &"1\t2\n".repeat(10);
-    let measured = parse(deflection.as_bytes(), &Spec::default()).unwrap();
-    assert_eq!([measured.columns[0].role, measured.columns[1].role], [Role::Position, Role::Force]);
+    let measured = parse(deflection.as_bytes(), &ColumnSpec::default()).unwrap();
+    assert_eq!(
+        [measured.columns[0].role, measured.columns[1].role],
+        [ColumnRole::Position, ColumnRole::Force]
+    );
 }
 
 #[test]
@@ -332,7 +335,7 @@ fn rows_that_are_shuffled_stay_and_those_in_no_order_are_not_called_swapped() {
     }
     let text = csv(&rows);
     assert!(matches!(branches(&text), Err(BranchError::Unordered { .. })), "{:?}", branches(&text));
-    let measured = parse(text.as_bytes(), &Spec::default()).unwrap();
+    let measured = parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
     let points = measured.points(&UnitSystem::Reduced, None).unwrap();
     let sigma = [Some(whole.noise.sigma[0]), Some(whole.noise.sigma[1]), None];
     let found = points.branches(&Asked { sigma, ..Asked::default() }).unwrap();
@@ -372,7 +375,7 @@ fn much_noise_and_a_pause_hide_no_free_part_and_rows_around_the_jump_are_dropped
 
 /// The branches of rows, with what is asked of them.
 fn taken(rows: &[(f64, f64, bool)], asked: &Asked) -> Result<Branches, BranchError> {
-    let measured = parse(csv(rows).as_bytes(), &Spec::default()).unwrap();
+    let measured = parse(csv(rows).as_bytes(), &ColumnSpec::default()).unwrap();
     measured.points(&UnitSystem::Reduced, Some(1.0)).unwrap().branches(asked)
 }
 
@@ -390,17 +393,17 @@ fn a_person_says_which_rows_are_apart_and_which_count() {
     let [approach, retraction] = parts(&found)[..] else { panic!("{found:?}") };
     assert_eq!(approach[0] + approach[2], 301);
     // Of all rows below -0.08 the same is apart on both branches; those of the approach from there to its jump are neither.
-    let free = FreePart::Within(Span { lo: f64::NEG_INFINITY, hi: -0.08 });
+    let free = FreePart::Within(ValueRange { lo: f64::NEG_INFINITY, hi: -0.08 });
     let named = taken(&rows, &Asked { free, ..usual }).unwrap();
     assert_eq!(parts(&named), [[approach[0], 0, 41], [retraction[0], 0, 41]]);
     assert_eq!(named.rows, [301, 301]);
     // A part within it leaves out what is beyond.
-    let free = FreePart::Within(Span { lo: -0.0901, hi: -0.0799 });
+    let free = FreePart::Within(ValueRange { lo: -0.0901, hi: -0.0799 });
     let within = taken(&rows, &Asked { free, ..usual }).unwrap();
     assert_eq!(parts(&within), [[approach[0], 0, 21], [retraction[0], 0, 21]]);
     // As the file has x, whichever way it runs; the part says the way of x then.
     let turned: Vec<_> = rows.iter().map(|(x, p, back)| (-x, *p, *back)).collect();
-    let free = FreePart::Within(Span { lo: 0.08, hi: f64::INFINITY });
+    let free = FreePart::Within(ValueRange { lo: 0.08, hi: f64::INFINITY });
     let other = taken(&turned, &Asked { free, ..usual }).unwrap();
     assert_eq!((parts(&other), other.turned), (parts(&named), [true, false]));
     let said = taken(&turned, &Asked { turned: Some([true, false]), ..usual }).unwrap();
@@ -412,7 +415,7 @@ fn a_person_says_which_rows_are_apart_and_which_count() {
     let skipped = taken(&rows, &Asked { skip: 100, ..usual }).unwrap();
     assert_eq!(parts(&skipped), [[approach[0], 0, approach[2] - 100], retraction]);
     assert_eq!(skipped.rows, [301, 301]);
-    let nowhere = FreePart::Within(Span { lo: 5.0, hi: 6.0 });
+    let nowhere = FreePart::Within(ValueRange { lo: 5.0, hi: 6.0 });
     assert_eq!(taken(&rows, &Asked { free: nowhere, ..usual }), Err(BranchError::NothingFree));
     assert_eq!(taken(&rows, &Asked { skip: 600, ..usual }), Err(BranchError::Few(2)));
 }
@@ -424,7 +427,7 @@ fn contact_radii_are_apart_where_they_are_zero_alone() {
         writeln!(text, "{s:?},{:?}", 4.0 / 3.0 * s.powi(3) - (0.2 * s.powi(3)).sqrt()).unwrap();
         text
     });
-    let measured = parse(rows.as_bytes(), &Spec::default()).unwrap();
+    let measured = parse(rows.as_bytes(), &ColumnSpec::default()).unwrap();
     let points = measured.points(&UnitSystem::Reduced, None).unwrap();
     let usual = Asked::default();
     assert_eq!(parts(&points.branches(&usual).unwrap()), [[30, 0, 10]]);
@@ -436,7 +439,7 @@ fn contact_radii_are_apart_where_they_are_zero_alone() {
     let refused = BranchError::NegativeRadius { row: 2, radius: -0.001 };
     assert_eq!(noisy.branches(&Asked { skip: 1, ..usual }), Err(refused));
     assert_eq!(parts(&noisy.branches(&Asked { skip: 2, ..usual }).unwrap()), [[28, 0, 10]]);
-    let within = FreePart::Within(Span { lo: 0.0, hi: 0.1 });
+    let within = FreePart::Within(ValueRange { lo: 0.0, hi: 0.1 });
     assert_eq!(points.branches(&Asked { free: within, ..usual }), Err(BranchError::FreeRadius));
     assert_eq!(
         points.branches(&Asked { turned: Some([true, false]), ..usual }),
@@ -472,7 +475,8 @@ fn timed(order: impl Iterator<Item = usize>, clock: impl Fn(usize) -> String) ->
 
 #[test]
 fn times_are_read_in_seconds_and_tell_the_order() {
-    let read = |text: &str| parse(text.as_bytes(), &Spec::default()).unwrap().points(&si(), None).unwrap();
+    let read =
+        |text: &str| parse(text.as_bytes(), &ColumnSpec::default()).unwrap().points(&si(), None).unwrap();
     let ms = |i: usize| format!("{}", 3 * i + 100);
     let right = read(&timed(0..602, ms));
     let time = right.time.as_ref().unwrap();
@@ -492,7 +496,7 @@ fn times_are_read_in_seconds_and_tell_the_order() {
         assert!(found.notes[0].contains("in the order of their times"), "{:?}", found.notes);
         assert_eq!(found.noise, expected.noise);
         for (found, expected) in found.list.iter().zip(&expected.list) {
-            let ats = |of: &[Point]| of.iter().map(|p| (p.at, p.time.to_bits())).collect::<Vec<_>>();
+            let ats = |of: &[MeasuredPoint]| of.iter().map(|p| (p.at, p.time.to_bits())).collect::<Vec<_>>();
             assert_eq!(ats(&found.attached), ats(&expected.attached));
             assert_eq!(ats(&found.free), ats(&expected.free));
             assert!(
@@ -505,7 +509,7 @@ fn times_are_read_in_seconds_and_tell_the_order() {
 
 #[test]
 fn times_that_tell_nothing_are_left_out() {
-    let read = |text: &str| parse(text.as_bytes(), &Spec::default()).unwrap();
+    let read = |text: &str| parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
     // The time of day, and one that is not there everywhere.
     for clock in [
         |i: usize| format!("14:23:{:02}", i % 60),
@@ -524,11 +528,11 @@ fn times_that_tell_nothing_are_left_out() {
     assert!(!found.notes.iter().any(|note| note.contains("times")), "{:?}", found.notes);
     assert!(found.list.iter().flat_map(|b| &b.attached).all(|p| p.at == p.row && p.time.is_finite()));
     // One that a person names must be there.
-    let spec = Spec::parse("x=1,force=2,time=3 [ms]").unwrap();
+    let spec = ColumnSpec::parse("x=1,force=2,time=3 [ms]").unwrap();
     let gap = timed(0..602, |i| if i == 7 { "x".to_owned() } else { i.to_string() });
     let refused = parse(gap.as_bytes(), &spec).unwrap_err().to_string();
     assert!(refused.contains("line 9: column 3: the time \"x\" is no number"), "{refused}");
-    let wrong = Spec::parse("x=1,force=2,time=3 [nm]").unwrap_err().to_string();
+    let wrong = ColumnSpec::parse("x=1,force=2,time=3 [nm]").unwrap_err().to_string();
     assert!(wrong.contains("is not a unit of time"), "{wrong}");
     // In reduced units a time with a unit is none, and one without is taken.
     let text = timed(0..602, |i| i.to_string());

@@ -1,7 +1,7 @@
 //! Where the way turns round: the branches of a file that names none, in any order and of any number of loops.
 
 use super::noise::range;
-use super::points::Point;
+use super::points::MeasuredPoint;
 use super::role::Segment;
 
 /// x turns where it comes back by more than this share of its range.
@@ -11,7 +11,7 @@ const FEWEST: usize = 5;
 const IN_RUNS: f64 = 0.9;
 
 /// The parts of `points` over which x goes one way.
-pub(super) fn one_way(points: &[Point]) -> Vec<Vec<Point>> {
+pub(super) fn one_way(points: &[MeasuredPoint]) -> Vec<Vec<MeasuredPoint>> {
     let limit = TURN * range(points.iter().map(|point| point.x));
     let mut cuts = vec![0];
     // The farthest row so far, and the way that is gone, once that is known.
@@ -41,8 +41,12 @@ pub(super) fn one_way(points: &[Point]) -> Vec<Vec<Point>> {
 }
 
 /// The runs of rows of one named branch; all of them together where the rows are in no order.
-pub(super) fn runs(points: &[Point], segments: &[Segment], segment: Segment) -> Vec<Vec<Point>> {
-    let mut runs: Vec<Vec<Point>> = Vec::new();
+pub(super) fn runs(
+    points: &[MeasuredPoint],
+    segments: &[Segment],
+    segment: Segment,
+) -> Vec<Vec<MeasuredPoint>> {
+    let mut runs: Vec<Vec<MeasuredPoint>> = Vec::new();
     let mut goes_on = false;
     for point in points {
         let is_of = segments[point.row - 1] == segment;
@@ -87,9 +91,9 @@ pub(super) fn by_time(times: &[f64], x: &[f64]) -> Option<Vec<usize>> {
 }
 
 /// Whether x grows from the beginning of `points` to their end.
-pub(super) fn rises(points: &[Point]) -> bool {
+pub(super) fn rises(points: &[MeasuredPoint]) -> bool {
     let third = (points.len() / 3).max(1);
-    let mean = |of: &[Point]| of.iter().map(|point| point.x).sum::<f64>() / of.len().max(1) as f64;
+    let mean = |of: &[MeasuredPoint]| of.iter().map(|point| point.x).sum::<f64>() / of.len().max(1) as f64;
     mean(&points[points.len() - third..]) > mean(&points[..third])
 }
 
@@ -104,9 +108,9 @@ mod tests {
             |i: u32| f64::from(if i % 100 < 50 { i % 100 } else { 100 - i % 100 }) + 3.0 * f64::from(i % 2);
         let point = |i: u32| {
             let row = i as usize + 1;
-            Point { x: way(i), force: 0.0, radius: 0.0, time: 0.0, row, at: row }
+            MeasuredPoint { x: way(i), force: 0.0, radius: 0.0, time: 0.0, row, at: row }
         };
-        let points: Vec<Point> = (0..300).map(point).collect();
+        let points: Vec<MeasuredPoint> = (0..300).map(point).collect();
         let parts = one_way(&points);
         assert_eq!(
             parts.iter().map(|part| rises(part)).collect::<Vec<_>>(),

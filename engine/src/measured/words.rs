@@ -2,7 +2,7 @@
 
 use super::names::named;
 use super::role::{Segment, unit_named};
-use crate::cells::{Head, Separator, heads};
+use crate::cells::{ColumnHead, Separator, heads};
 use crate::units::Unit;
 
 /// A line of words.
@@ -98,7 +98,7 @@ pub(super) fn last_digit(text: &str) -> f64 {
 }
 
 /// How many columns of a header are known.
-pub(super) fn count_known(heads: &[Head]) -> usize {
+pub(super) fn count_known(heads: &[ColumnHead]) -> usize {
     heads.iter().filter(|(name, _)| named(name).is_some()).count()
 }
 

@@ -4,19 +4,19 @@ use super::data::{
     BASELINE, COLUMNS, DataSpec, FILE, FREE, FREE_PART, OFFSET, SEGMENT, SEGMENTS, SETTINGS, SETTINGS_OF,
     SIGNS, SKIP, TILT, UNCERTAIN,
 };
-use super::given::Given;
+use super::given::GivenValues;
 use super::invalid::Invalid;
 use super::model::Preset;
 use super::value::Value;
 use crate::measured::asked::{AskedError, signs};
 use crate::measured::points::{SPRING, TIP, Turned, overridden, stiffness, tip_radius};
 use crate::measured::source::Reading;
-use crate::measured::{Asked, Branches, FreePart, Segment, Source};
+use crate::measured::{Asked, Branches, FreePart, PointsFile, Segment};
 use crate::problem::Control;
 use crate::units::{Quantity, UnitSystem, parse_quantity};
 use std::sync::Arc;
 
-impl Given<'_> {
+impl GivenValues<'_> {
     /// The measured curve; a control that nothing says becomes the spring that the file states. The gap has the curvature
     /// `radius`.
     pub(super) fn data(&mut self, control: &mut Control, radius: Option<f64>) -> DataSpec {
@@ -25,7 +25,7 @@ impl Given<'_> {
         let source = match self.values.get(FILE) {
             Some(Value::Points(source)) => Some(Arc::clone(source)),
             Some(value @ Value::Text(name)) if !value.is_none() => match (self.files.points)(None, name) {
-                Ok(bytes) => Some(Arc::new(Source::new(name.clone(), None, bytes.into()))),
+                Ok(bytes) => Some(Arc::new(PointsFile::new(name.clone(), None, bytes.into()))),
                 Err(cause) => {
                     self.faults.push(Invalid::Made { key: FILE.into(), cause });
                     None
@@ -73,7 +73,7 @@ impl Given<'_> {
     }
 }
 
-impl Given<'_> {
+impl GivenValues<'_> {
     /// Which rows are apart, as it is said and in base units.
     fn free_part(&mut self) -> (String, FreePart) {
         let text = self.text(FREE_PART);

@@ -2,7 +2,7 @@
 //!
 //! Every preset is made here, whether from a file, from `--set` or from a key on the screen.
 
-use super::given::Given;
+use super::given::GivenValues;
 use super::invalid::Invalid;
 use super::measured::Files;
 use super::model::{BasisSpec, Material, PathSpec, Preset};
@@ -23,7 +23,7 @@ pub fn build(values: &Values, files: Files) -> Result<Preset, Vec<Invalid>> {
     let mut faults = Vec::new();
     let units = system(values, &mut faults);
     let values = &resolved(values, &units, &mut faults);
-    let mut given = Given { values, units: units.clone(), files, faults };
+    let mut given = GivenValues { values, units: units.clone(), files, faults };
     given.check_each();
     given.check_choices();
     let mut given_of = |keys: [&'static str; 3], does| {

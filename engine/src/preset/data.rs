@@ -5,7 +5,7 @@
 //! counts.
 
 use crate::measured::points::Turned;
-use crate::measured::{FreePart, Segment, Source};
+use crate::measured::{FreePart, PointsFile, Segment};
 use std::sync::Arc;
 
 /// The key of the file.
@@ -41,7 +41,7 @@ pub const SEGMENTS: [&str; 2] = ["approach", "retraction"];
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DataSpec {
     /// The file, where there is one.
-    pub source: Option<Arc<Source>>,
+    pub source: Option<Arc<PointsFile>>,
     /// What its columns are, as a person says it; empty leaves it to its header.
     pub columns: String,
     /// Whether the stiffness and the tip radius that the file states are left out.

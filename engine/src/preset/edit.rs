@@ -11,7 +11,7 @@
 use super::data;
 use super::family::{self, PARAMETER_KEYS, is_parameter};
 use super::model::Preset;
-use super::read::{Held, read_holding, read_in};
+use super::read::{HeldFiles, read_holding, read_in};
 use super::rows::parameter;
 use super::schema::Key;
 use super::shape::is_range;
@@ -27,10 +27,10 @@ use toml_edit::{Array, Document, InlineTable, Item, Table, Value};
 /// relative to `folder`.
 #[must_use]
 pub fn onto(folder: Option<&Path>, text: &str, preset: &Preset) -> Option<String> {
-    let held = |text: &str| read_holding(preset.files, "", text, Held::by(preset)).ok();
+    let held = |text: &str| read_holding(preset.files, "", text, HeldFiles::by(preset)).ok();
     // A text of another profile is read with its own rows.
     let before = held(text).or_else(|| read_in(preset.files, folder, "", text, &[] as &[&str]).ok());
-    let layout = Layout::of(text)?;
+    let layout = TextLayout::of(text)?;
     let mut forced = Forced::Keys(BTreeSet::new());
     loop {
         let edited = layout.edited(before.as_ref(), preset, &forced)?;
@@ -88,7 +88,7 @@ struct Leaf {
 }
 
 /// A table with a header, or the top of the text.
-struct Section {
+struct TextSection {
     route: Route,
     /// Its header; the top has none.
     header: Option<Range<usize>>,
@@ -109,15 +109,15 @@ enum Holder {
 }
 
 /// What stands where.
-struct Layout<'a> {
+struct TextLayout<'a> {
     text: &'a str,
     leaves: Vec<Leaf>,
-    sections: Vec<Section>,
+    sections: Vec<TextSection>,
     holders: BTreeMap<Route, Holder>,
 }
 
 /// A value that the text is to have.
-struct Wanted {
+struct WantedValue {
     route: Route,
     /// The key whose value it is, by which it is told whether it changed.
     key: Key,
@@ -126,10 +126,10 @@ struct Wanted {
     comment: String,
 }
 
-impl<'a> Layout<'a> {
+impl<'a> TextLayout<'a> {
     fn of(text: &'a str) -> Option<Self> {
         let document = Document::parse(text).ok()?;
-        let top = Section { route: Route::new(), header: None, end: 0 };
+        let top = TextSection { route: Route::new(), header: None, end: 0 };
         let mut layout = Self { text, leaves: Vec::new(), sections: vec![top], holders: BTreeMap::new() };
         layout.holders.insert(Vec::new(), Holder::Section(0));
         layout.table(&Vec::new(), document.as_table(), 0, "");
@@ -172,7 +172,7 @@ impl<'a> Layout<'a> {
     fn section(&mut self, route: &Route, table: &Table) {
         let header = table.span();
         let end = header.as_ref().map_or(0, |header| header.end);
-        self.sections.push(Section { route: route.clone(), header, end });
+        self.sections.push(TextSection { route: route.clone(), header, end });
         let section = self.sections.len() - 1;
         self.holders.insert(route.clone(), Holder::Section(section));
         self.table(route, table, section, "");
@@ -215,7 +215,7 @@ impl<'a> Layout<'a> {
     }
 
     /// The values that the text is to have for `preset`, in the forms it has.
-    fn wanted(&self, preset: &Preset) -> Vec<Wanted> {
+    fn wanted(&self, preset: &Preset) -> Vec<WantedValue> {
         let mut all = Vec::new();
         for row in preset.rows().filter(|row| !row.is_part() && !is_range(&row.key)) {
             let Some(value) = preset.get(&row.key) else { continue };
@@ -223,7 +223,7 @@ impl<'a> Layout<'a> {
             let is_table = self.holders.contains_key(&own);
             let at = |name: &str| [own.as_slice(), &[name.to_owned()]].concat();
             let mut want = |route: Route, key: Key, value: String| {
-                all.push(Wanted { route, key, value, comment: comment(&row) });
+                all.push(WantedValue { route, key, value, comment: comment(&row) });
             };
             if is_parameter(&row.key) && is_table {
                 want(at("value"), row.key.clone(), toml(preset, &row, &value));
@@ -315,7 +315,7 @@ impl<'a> Layout<'a> {
     }
 
     /// Adds a value at the end of its table; the section it stands in is `kept`.
-    fn add(&self, want: &Wanted, edits: &mut Edits, kept: &mut BTreeSet<usize>) -> Option<()> {
+    fn add(&self, want: &WantedValue, edits: &mut Edits, kept: &mut BTreeSet<usize>) -> Option<()> {
         let (name, above) = want.route.split_last()?;
         // In the innermost value that holds what is above it.
         for depth in (0..=above.len()).rev() {

@@ -6,7 +6,7 @@ use crate::fixtures::FILES;
 use crate::gap::{Gap, Shape};
 use crate::gap::{formula::FormulaParameter, formula::TypedGap};
 use crate::gap::{
-    shapes::ExactSphere, shapes::Harmonic, shapes::Harmonics, shapes::Measured, shapes::PowerLaw,
+    shapes::ExactSphere, shapes::Harmonic, shapes::Harmonics, shapes::MeasuredGap, shapes::PowerLaw,
     shapes::RandomWaves, shapes::Smoothing,
 };
 use crate::preset::data::DataSpec;
@@ -139,7 +139,7 @@ pub fn any_gap(which: u8, radius: f64, amplitude: f64, wavelength: f64, x: f64) 
         }
         _ => {
             let rows = Arc::new(crate::fixtures::load(None, "shipped:rough-sphere.csv").unwrap());
-            Shape::Profile(Arc::new(Measured::new(rows, Smoothing::Cutoff(x)).unwrap()))
+            Shape::Profile(Arc::new(MeasuredGap::new(rows, Smoothing::Cutoff(x)).unwrap()))
         }
     }
 }

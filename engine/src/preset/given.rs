@@ -11,20 +11,20 @@ use super::schema::{
 };
 use super::value::Value;
 use super::values::{Values, chosen};
-use crate::problem::{Adhesion, Cohesion, Control, Stated};
+use crate::problem::{Adhesion, Cohesion, Control, StatedCohesion};
 use crate::ritz::Grading;
 use crate::units::UnitSystem;
 
 /// The values with what was found wrong so far. A value that is missing or wrong reads as one that keeps
 /// the rest going; no preset comes of it.
-pub(super) struct Given<'a> {
+pub(super) struct GivenValues<'a> {
     pub(super) values: &'a Values,
     pub(super) units: UnitSystem,
     pub(super) files: Files,
     pub(super) faults: Vec<Invalid>,
 }
 
-impl Given<'_> {
+impl GivenValues<'_> {
     pub(super) fn check_each(&mut self) {
         for (key, value) in self.values {
             let Some(row) = parameter(key) else { continue };
@@ -91,9 +91,9 @@ impl Given<'_> {
             self.faults.push(Invalid::Rivals { first: first.into(), second: second.into(), does });
         }
         let stated = match given.first() {
-            Some(key) if *key == RANGE_KEYS[0] => Stated::Strength(self.number(key)),
-            Some(key) => Stated::Range(self.number(key)),
-            None => Stated::Action,
+            Some(key) if *key == RANGE_KEYS[0] => StatedCohesion::Strength(self.number(key)),
+            Some(key) => StatedCohesion::Range(self.number(key)),
+            None => StatedCohesion::Action,
         };
         (Adhesion::Dugdale(stated), gamma)
     }

@@ -6,11 +6,11 @@
 //! of the file, in the unit of its radii, which is then that of all lengths: a warning says so.
 
 use super::invalid::Invalid;
-use super::profile::Columns;
+use super::profile::ProfileColumns;
 use super::schema::{Kind, NONE, Parameter};
 use super::value::Value;
-use crate::gap::shapes::Rows;
-use crate::measured::Source;
+use crate::gap::shapes::ProfileRows;
+use crate::measured::PointsFile;
 use crate::text::{quote, sanitize, show_path};
 use std::path::Path;
 use std::sync::Arc;
@@ -26,7 +26,7 @@ const LONGEST_CAUSE: usize = 1000;
 #[derive(Debug, Clone, Copy)]
 pub struct Files {
     /// The rows of a profile; [`rows`] makes them of the columns of a text.
-    pub rows: fn(folder: Option<&Path>, name: &str) -> Result<Rows, String>,
+    pub rows: fn(folder: Option<&Path>, name: &str) -> Result<ProfileRows, String>,
     /// The bytes of a measured curve.
     pub points: fn(folder: Option<&Path>, name: &str) -> Result<Vec<u8>, String>,
 }
@@ -62,21 +62,25 @@ pub fn words(error: &impl ToString) -> String {
 ///
 /// # Errors
 /// A unit that is none, or one alone, in words.
-pub fn rows(folder: Option<&Path>, name: &str, columns: Columns) -> Result<Rows, String> {
-    let named = Rows { name: name.to_owned(), folder: folder.map(Path::to_path_buf), ..Rows::default() };
+pub fn rows(folder: Option<&Path>, name: &str, columns: ProfileColumns) -> Result<ProfileRows, String> {
+    let named = ProfileRows {
+        name: name.to_owned(),
+        folder: folder.map(Path::to_path_buf),
+        ..ProfileRows::default()
+    };
     let shown = shown(&named);
     let notes = columns.notes.iter().map(|note| format!("{shown}: {note}")).collect();
     let (columns, unit) = columns.in_one_unit().map_err(|error| words(&format!("{shown}: {error}")))?;
-    Ok(Rows { radii: columns.radii, gaps: columns.gaps, unit, notes, ..named })
+    Ok(ProfileRows { radii: columns.radii, gaps: columns.gaps, unit, notes, ..named })
 }
 
 /// The file of `rows` as messages name it.
-pub(super) fn shown(rows: &Rows) -> String {
+pub(super) fn shown(rows: &ProfileRows) -> String {
     if rows.is_shipped() { quote(&rows.name) } else { show_path(&rows.path()) }
 }
 
 /// The file of a measured curve as messages name it.
-pub(super) fn shown_file(source: &Source) -> String {
+pub(super) fn shown_file(source: &PointsFile) -> String {
     if source.name.starts_with(SHIPPED_DATA) { quote(&source.name) } else { show_path(&source.path()) }
 }
 
@@ -95,7 +99,7 @@ pub(super) fn located(
         Value::Text(name) if row.kind == Kind::Points && name != NONE => {
             let cause = |cause| Invalid::Made { key: row.key.clone(), cause };
             let bytes = (files.points)(folder, &name).map_err(cause)?;
-            Ok(Value::Points(Arc::new(Source::new(name, folder.map(Path::to_path_buf), bytes.into()))))
+            Ok(Value::Points(Arc::new(PointsFile::new(name, folder.map(Path::to_path_buf), bytes.into()))))
         }
         value => Ok(value),
     }

@@ -60,7 +60,7 @@ pub use edge::EdgeSpec;
 pub use invalid::Invalid;
 pub use measured::Files;
 pub use model::{BasisSpec, Material, PathSpec, Preset};
-pub use read::{Mistake, Origin, ReadError, read, read_in, read_shipped, read_with};
+pub use read::{Mistake, ReadError, ValueOrigin, read, read_in, read_shipped, read_with};
 pub use rows::parameter;
 pub use schema::{Key, PARAMETERS, Parameter, Row};
 pub use value::Value;

@@ -17,7 +17,7 @@ use super::edge::EdgeSpec;
 use super::measured::{self, Files};
 use super::schema::{END_OVER_START, START_KEYS, TURN_KEYS};
 use crate::gap::Shape;
-use crate::gap::shapes::Measured;
+use crate::gap::shapes::MeasuredGap;
 use crate::problem::Turn;
 use crate::problem::{Adhesion, Begin, Cohesion, ContactKind, Control, Problem, Reduced, Start};
 use crate::ritz::Grading;
@@ -191,7 +191,7 @@ impl Preset {
         if let Shape::Profile(measured) = &self.gap {
             let rows = measured.rows();
             if let Some(name) = moved(rows.folder.as_deref(), &rows.name, folder) {
-                preset.gap = Shape::Profile(Arc::new(Measured::clone(measured).named(name)));
+                preset.gap = Shape::Profile(Arc::new(MeasuredGap::clone(measured).named(name)));
             }
         }
         if let Some(source) = &self.data.source

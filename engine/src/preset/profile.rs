@@ -15,7 +15,7 @@
 //! The cells are taken apart as those of any table of an instrument: [`cells`].
 
 use crate::cells::{
-    self, CellFault, Head, LineFault, Separator, heads, is_header, is_unprintable, number, remark,
+    self, CellFault, ColumnHead, LineFault, Separator, heads, is_header, is_unprintable, number, remark,
 };
 use crate::text::{NotText, decode, quote};
 use crate::units::{Quantity, Unit};
@@ -31,7 +31,7 @@ const ROUNDED: f64 = 1e-6;
 
 /// A profile as read: radii ascending from the axis, each once, and their gaps, in the units of the file.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Columns {
+pub struct ProfileColumns {
     /// r.
     pub radii: Vec<f64>,
     /// h.
@@ -46,7 +46,7 @@ pub struct Columns {
 
 /// What is wrong with one line.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum Fault {
+pub enum ProfileFault {
     /// Of the line as a whole.
     #[error(transparent)]
     Line(#[from] LineFault),
@@ -83,7 +83,7 @@ pub enum Fault {
 }
 
 /// The faults of a file, in the order of their lines.
-pub type Faults = cells::Faults<Fault>;
+pub type ProfileFaults = cells::Faults<ProfileFault>;
 
 /// Why a text gives no profile.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -93,7 +93,7 @@ pub enum TextError {
     NotText(NotText),
     /// Lines with faults.
     #[error("{0}")]
-    Faults(Faults),
+    Faults(ProfileFaults),
     /// The columns the other way round.
     #[error(
         "line {line}: the header names the gap \"{first}\" first and the radius \"{second}\" behind it: a profile has \
@@ -147,7 +147,7 @@ const RADIUS_NAMES: &[&str] = &["r", "radius", "rho", "x", "distance", "position
 /// The same of the gap.
 const GAP_NAMES: &[&str] = &["h", "gap", "height", "z", "depth"];
 
-impl Columns {
+impl ProfileColumns {
     /// The same with the gaps in the unit of the radii, and that unit, where the header names them.
     ///
     /// # Errors
@@ -191,7 +191,7 @@ fn length(text: &str, line: usize, what: &'static str) -> Result<Unit, TextError
 
 /// A row with its line.
 #[derive(Debug, Clone, Copy)]
-struct Row {
+struct ProfileRow {
     line: usize,
     radius: f64,
     gap: f64,
@@ -201,10 +201,10 @@ struct Row {
 ///
 /// # Errors
 /// [`TextError`] with the lines that are wrong.
-pub fn parse(bytes: &[u8]) -> Result<Columns, TextError> {
+pub fn parse(bytes: &[u8]) -> Result<ProfileColumns, TextError> {
     let (text, note) = decode(bytes).map_err(TextError::NotText)?;
-    let mut faults = Faults::default();
-    let mut rows: Vec<Row> = Vec::new();
+    let mut faults = ProfileFaults::default();
+    let mut rows: Vec<ProfileRow> = Vec::new();
     let mut separator = None;
     // The header, or a remark that may be one.
     let (mut header, mut candidate) = (None, None);
@@ -232,11 +232,12 @@ pub fn parse(bytes: &[u8]) -> Result<Columns, TextError> {
         }
         let separator = *separator.get_or_insert_with(|| Separator::of(text));
         match row(text, separator) {
-            Ok((radius, gap)) => rows.push(Row { line, radius, gap }),
+            Ok((radius, gap)) => rows.push(ProfileRow { line, radius, gap }),
             Err(fault) => faults.add(line, fault),
         }
     }
-    let mut columns = Columns { notes: note.map(str::to_owned).into_iter().collect(), ..Columns::default() };
+    let mut columns =
+        ProfileColumns { notes: note.map(str::to_owned).into_iter().collect(), ..ProfileColumns::default() };
     if let Some(separator) = separator {
         (columns.header, columns.units) = units(header, candidate, separator)?;
     }
@@ -261,8 +262,9 @@ fn units(
 ) -> Result<(Option<usize>, [Option<String>; 2]), TextError> {
     // A header may be parted otherwise than the rows below it.
     let read = |(line, text): (usize, &str)| {
-        let two =
-            |separator| <[Head; 2]>::try_from(heads(text, separator, &[Quantity::Length.dimension()])).ok();
+        let two = |separator| {
+            <[ColumnHead; 2]>::try_from(heads(text, separator, &[Quantity::Length.dimension()])).ok()
+        };
         let heads = two(separator).or_else(|| two(Separator::of(text)));
         heads.map(|heads| (line, heads))
     };
@@ -282,35 +284,35 @@ fn units(
 }
 
 /// The radius and the gap of a row.
-fn row(text: &str, separator: Separator) -> Result<(f64, f64), Fault> {
+fn row(text: &str, separator: Separator) -> Result<(f64, f64), ProfileFault> {
     let cells = separator.cells(text);
     let &[radius, gap] = cells.as_slice() else {
         return Err(match cells.len() {
             1 => CellFault::Missing(COLUMNS[1]).into(),
-            many => Fault::Cells(many),
+            many => ProfileFault::Cells(many),
         });
     };
     let (radius, gap) = (number(radius, COLUMNS[0])?, number(gap, COLUMNS[1])?);
-    if radius < 0.0 { Err(Fault::Negative(radius)) } else { Ok((radius, gap)) }
+    if radius < 0.0 { Err(ProfileFault::Negative(radius)) } else { Ok((radius, gap)) }
 }
 
 /// Sorts the rows, takes each radius once, and looks whether they begin at the axis.
-fn gather(mut rows: Vec<Row>, columns: &mut Columns, faults: &mut Faults) {
+fn gather(mut rows: Vec<ProfileRow>, columns: &mut ProfileColumns, faults: &mut ProfileFaults) {
     if !rows.is_sorted_by(|a, b| a.radius <= b.radius) {
         columns.notes.push("the rows were not in the order of their radii and have been sorted".to_owned());
         // Stable: of equal radii the earlier line stays first.
         rows.sort_by(|a, b| a.radius.total_cmp(&b.radius));
     }
     let innermost = rows.first().map(|row| row.line);
-    let mut last: Option<Row> = None;
+    let mut last: Option<ProfileRow> = None;
     let (mut repeated, mut twice) = (0, Vec::new());
     for row in rows {
         match last {
-            Some(Row { line, radius, gap }) if radius.total_cmp(&row.radius).is_eq() => {
+            Some(ProfileRow { line, radius, gap }) if radius.total_cmp(&row.radius).is_eq() => {
                 if gap.total_cmp(&row.gap).is_eq() {
                     repeated += 1;
                 } else {
-                    twice.push((row.line, Fault::Twice { radius, line }));
+                    twice.push((row.line, ProfileFault::Twice { radius, line }));
                 }
             }
             _ => {
@@ -331,7 +333,7 @@ fn gather(mut rows: Vec<Row>, columns: &mut Columns, faults: &mut Faults) {
         && columns.radii.len() > 1
         && first > spacing * (1.0 + ROUNDED)
     {
-        twice.push((line, Fault::Hollow { first, spacing }));
+        twice.push((line, ProfileFault::Hollow { first, spacing }));
     }
     faults.total += twice.len();
     faults.shown.append(&mut twice);

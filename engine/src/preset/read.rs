@@ -15,13 +15,13 @@ mod mistake;
 mod sheet;
 mod whole;
 
-pub use mistake::{Mistake, Origin, ReadError};
-pub use sheet::{Held, line};
+pub use mistake::{Mistake, ReadError, ValueOrigin};
+pub use sheet::{HeldFiles, line};
 
 use super::measured::Files;
 use super::model::Preset;
 use crate::text::show_name;
-use sheet::{Place, Sheet};
+use sheet::{LayerOrigin, Sheet};
 use std::path::Path;
 use toml::de::DeTable;
 
@@ -65,7 +65,7 @@ pub fn read_in<S: AsRef<str>>(
     let folder = folder.map(Path::to_path_buf);
     let mut sheet = Sheet { name: show_name(name), files, folder, ..Sheet::default() };
     match DeTable::parse(text) {
-        Ok(document) => sheet.lay("", document.get_ref(), &Place::File(text)),
+        Ok(document) => sheet.lay("", document.get_ref(), &LayerOrigin::File(text)),
         Err(error) => sheet.syntax(text, &error),
     }
     for assignment in assignments {
@@ -78,11 +78,11 @@ pub fn read_in<S: AsRef<str>>(
 ///
 /// # Errors
 /// Every mistake found, with its line.
-pub fn read_holding(files: Files, name: &str, text: &str, held: Held) -> Result<Preset, ReadError> {
+pub fn read_holding(files: Files, name: &str, text: &str, held: HeldFiles) -> Result<Preset, ReadError> {
     let held = Some(held);
     let mut sheet = Sheet { name: show_name(name), files, held, ..Sheet::default() };
     match DeTable::parse(text) {
-        Ok(document) => sheet.lay("", document.get_ref(), &Place::File(text)),
+        Ok(document) => sheet.lay("", document.get_ref(), &LayerOrigin::File(text)),
         Err(error) => sheet.syntax(text, &error),
     }
     sheet.finish()

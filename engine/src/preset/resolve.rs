@@ -9,7 +9,7 @@ use super::value::Value;
 use super::values::{Values, chosen, of_coefficient};
 use crate::problem::Control;
 use crate::units::{
-    DisplayUnits, Quantity, Unit, UnitSystem, Value as Typed, ValueError, number, parse_quantity,
+    DisplayUnits, Quantity, TypedValue, Unit, UnitSystem, ValueError, number, parse_quantity,
 };
 
 /// The units that these values state.
@@ -93,7 +93,7 @@ fn parameter_of(key: &str) -> Option<&str> {
 
 /// The number of a parameter of a formula, or of one end of its range, in SI: of the dimension that the parameter's own
 /// unit names, or of any where that is no unit of ours.
-fn of_parameter(values: &Values, parameter: &str, typed: &Typed) -> Result<f64, String> {
+fn of_parameter(values: &Values, parameter: &str, typed: &TypedValue) -> Result<f64, String> {
     match (stated_unit(values, parameter), &typed.unit) {
         (Some(stated), Some(own)) if stated.dimension() != own.dimension() => Err(format!(
             "expected {} such as {}, the unit of the parameter, got {typed}, {}",

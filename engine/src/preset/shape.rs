@@ -1,7 +1,7 @@
 //! The values of `[gap]` → the gap's shape, and back: rows, values and what a new shape begins with.
 
 use super::family::{self, PARAMETER_KEYS, WAVE_KEYS, is_parameter, parameter_key, wave_key};
-use super::given::Given;
+use super::given::GivenValues;
 use super::invalid::Invalid;
 use super::measured;
 use super::model::Preset;
@@ -17,7 +17,7 @@ use crate::gap::{Gap, Shape};
 use crate::gap::{formula::Formula, formula::FormulaParameter, formula::TypedError, formula::TypedGap};
 use crate::gap::{formula::typed::MOST_PARAMETERS, formula::typed::RADIUS};
 use crate::gap::{
-    shapes::ExactSphere, shapes::Harmonic, shapes::Harmonics, shapes::Measured, shapes::PowerLaw,
+    shapes::ExactSphere, shapes::Harmonic, shapes::Harmonics, shapes::MeasuredGap, shapes::PowerLaw,
     shapes::RandomWaves, shapes::Smoothing,
 };
 use crate::problem::Start;
@@ -26,7 +26,7 @@ use crate::units::number::{said, short};
 use crate::units::{Quantity, Unit, UnitSystem};
 use std::sync::Arc;
 
-impl Given<'_> {
+impl GivenValues<'_> {
     /// The shape of the gap, for a path whose start is said by the key `start`. A shape that cannot be made is among the
     /// faults, and a sphere stands in for it.
     pub(super) fn shape(&mut self, start: Option<&str>) -> Shape {
@@ -195,7 +195,7 @@ impl Given<'_> {
             _ => return Shape::Sphere { radius_of_curvature: f64::NAN },
         };
         let shown = measured::shown(&rows);
-        match Measured::new(rows.held_in(&self.units), smoothing) {
+        match MeasuredGap::new(rows.held_in(&self.units), smoothing) {
             Ok(measured) => Shape::Profile(Arc::new(measured)),
             Err(error) => {
                 let key = if error.is_of_smoothing() { "gap.smoothing" } else { "gap.file" };

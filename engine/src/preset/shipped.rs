@@ -3,7 +3,7 @@
 
 use super::measured::{Files, SHIPPED_DATA, rows, words};
 use super::profile::parse;
-use crate::gap::shapes::Rows;
+use crate::gap::shapes::ProfileRows;
 use crate::text::quote;
 use std::path::Path;
 
@@ -44,7 +44,7 @@ pub fn data(name: &str) -> Option<&'static str> {
 }
 
 /// The rows of the shipped data that `name` means.
-fn shipped_rows(folder: Option<&Path>, name: &str) -> Result<Rows, String> {
+fn shipped_rows(folder: Option<&Path>, name: &str) -> Result<ProfileRows, String> {
     let Some(wanted) = name.strip_prefix(SHIPPED_DATA) else { return (Files::NONE.rows)(folder, name) };
     let text = data(wanted).ok_or_else(|| {
         let known: Vec<String> = DATA.iter().map(|data| format!("{SHIPPED_DATA}{}", data.name)).collect();

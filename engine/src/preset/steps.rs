@@ -4,7 +4,7 @@ use super::edge::{
     CLOSING_ADHESION, CLOSING_EXPONENT, CLOSING_SPEED, EXPONENT, EdgeSpec, HIGHEST_RATIO, RATE,
     REFERENCE_SPEED, RELAXATION_TIME, STEPS, rate_quantity,
 };
-use super::given::Given;
+use super::given::GivenValues;
 use super::invalid::Invalid;
 use super::model::Preset;
 use super::resolve::shown;
@@ -15,7 +15,7 @@ use crate::units::{Quantity, UnitSystem, parse_quantity};
 /// What a part of [`STEPS`] may be.
 const PARTS: &str = "to VALUE at RATE, hold TIME or apart at RATE, with ; between two";
 
-impl Given<'_> {
+impl GivenValues<'_> {
     /// The edge.
     pub(super) fn edge(&mut self) -> EdgeSpec {
         let mut number = |key: &str| self.values.contains_key(key).then(|| self.number(key));

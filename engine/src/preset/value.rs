@@ -2,8 +2,8 @@
 
 use super::invalid::Invalid;
 use super::schema::{AUTO, Kind, LARGEST, NONE, Parameter, SMALLEST};
-use crate::gap::shapes::Rows;
-use crate::measured::Source;
+use crate::gap::shapes::ProfileRows;
+use crate::measured::PointsFile;
 use crate::problem::Control;
 use crate::text::closest;
 use crate::text::{is_unsafe, quote};
@@ -27,9 +27,9 @@ pub enum Value {
     /// A number with its unit, or the stiffness of a control with its own, as typed: the preset's units read it.
     Typed(String),
     /// The rows of a measured profile, with the name of their file.
-    Profile(Arc<Rows>),
+    Profile(Arc<ProfileRows>),
     /// The file of a measured curve.
-    Points(Arc<Source>),
+    Points(Arc<PointsFile>),
 }
 
 impl Value {

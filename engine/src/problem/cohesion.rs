@@ -17,7 +17,7 @@ pub enum Adhesion {
     #[default]
     ShortRange,
     /// A constant tension within a range.
-    Dugdale(Stated),
+    Dugdale(StatedCohesion),
     /// A liquid bridge at a fixed humidity: the pressure of its meniscus within twice the radius of that.
     Capillary {
         /// `γ_L`, the surface tension of the liquid, an energy per area.
@@ -31,7 +31,7 @@ pub enum Adhesion {
 
 /// What is stated of a constant tension beside its work.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Stated {
+pub enum StatedCohesion {
     /// σ₀, a stress.
     Strength(f64),
     /// `h_c`, a length.
@@ -60,9 +60,11 @@ impl Adhesion {
     pub fn cohesion(self, gamma: f64, z0: Option<f64>) -> Option<Cohesion> {
         let found = match self {
             Self::ShortRange => return None,
-            Self::Dugdale(Stated::Strength(strength)) => Cohesion { strength, range: gamma / strength },
-            Self::Dugdale(Stated::Range(range)) => Cohesion { strength: gamma / range, range },
-            Self::Dugdale(Stated::Action) => {
+            Self::Dugdale(StatedCohesion::Strength(strength)) => {
+                Cohesion { strength, range: gamma / strength }
+            }
+            Self::Dugdale(StatedCohesion::Range(range)) => Cohesion { strength: gamma / range, range },
+            Self::Dugdale(StatedCohesion::Action) => {
                 let range = RANGE_OVER_ACTION * z0?;
                 Cohesion { strength: gamma / range, range }
             }

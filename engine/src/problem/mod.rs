@@ -18,7 +18,7 @@ pub mod reduced;
 pub mod start;
 pub mod turn;
 
-pub use cohesion::{Adhesion, Cohesion, Stated};
+pub use cohesion::{Adhesion, Cohesion, StatedCohesion};
 pub use control::Control;
 pub use groups::Groups;
 pub use programme::Part;

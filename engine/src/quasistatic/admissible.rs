@@ -313,7 +313,7 @@ fn radii(s: f64, wave: Option<f64>) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::disc::{Basis, Exact};
+    use crate::disc::{Basis, ExactBasis};
     use crate::gap::Shape;
     use crate::problem::Problem;
     use crate::progress::Unwatched;
@@ -329,9 +329,9 @@ mod tests {
     }
 
     /// The judge of `problem`, and the exact basis of its gap.
-    fn exact(problem: &Reduced) -> (Judge, Exact) {
+    fn exact(problem: &Reduced) -> (Judge, ExactBasis) {
         let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &Unwatched).unwrap());
-        (Judge::new(problem, &table), Exact::new(table, 0.5))
+        (Judge::new(problem, &table), ExactBasis::new(table, 0.5))
     }
 
     fn at(problem: &Reduced, judge: &Judge, basis: &dyn Basis, s: f64) -> Admissibility {
@@ -412,7 +412,7 @@ mod tests {
                 Some(0.43)
             }
 
-            fn slope_bound(&self, disc: crate::gap::Disc) -> Option<f64> {
+            fn slope_bound(&self, disc: crate::gap::ComplexDisc) -> Option<f64> {
                 self.0.slope_bound(disc)
             }
 

@@ -3,7 +3,7 @@
 //!
 //! One disc alone: where a crest outside touches on the way, rings of contact take another one, see [`path`](super::path).
 
-use super::jump::{self, Landing, Run};
+use super::jump::{self, EdgeDirection, Landing};
 use super::monotone::Monotone;
 use crate::disc::{Local, Place, Solution};
 
@@ -25,7 +25,7 @@ pub fn ascend(
     enough: &dyn Fn(&Local) -> bool,
 ) -> Vec<Rise> {
     let mut rises = Vec::new();
-    let run = |from, value| jump::run(solution, monotone, from, value, Run::Outward).ok().flatten();
+    let run = |from, value| jump::run(solution, monotone, from, value, EdgeDirection::Outward).ok().flatten();
     let mut here = run(0, touch);
     while let Some(landing) = here {
         let stretch = &monotone.stretches[landing.stretch];

@@ -1,6 +1,6 @@
 //! The equilibrium curve between two contact radii: its states to draw, its limit points, and the arc-length tracer.
 
-use super::equilibrium::{Equilibrium, Point, Scales, Stability, State, unknown};
+use super::equilibrium::{Equilibrium, Scales, Stability, State, StatePoint, unknown};
 use super::monotone::{Limit, Monotone};
 use super::path::{PathError, Zones};
 use crate::continuation::{Branch, End, Settings, Stop, Tracer};
@@ -332,7 +332,7 @@ impl Curve {
     /// the end of the panel. `None` where there is no corner.
     ///
     /// Just outside a corner the curve is vertical, which no tangent by s can say.
-    pub fn beyond_corner(&self, s: f64, length: f64) -> Option<Point> {
+    pub fn beyond_corner(&self, s: f64, length: f64) -> Option<StatePoint> {
         let place = self.solution.place(s)?;
         let Place { panel, .. } = outer_side(&*self.solution, place);
         if panel == place.panel {
@@ -376,7 +376,7 @@ impl Curve {
             let value = end / self.equilibrium.scales.contact_radius;
             // Next to a corner the curve is vertical, and what Newton's method knows of it ends at the corner.
             let is_near = |branch: &Branch| {
-                let near = |point: &Point| (point.y() - last.y()).norm() <= CORNER_STEP;
+                let near = |point: &StatePoint| (point.y() - last.y()).norm() <= CORNER_STEP;
                 corner && branch.points.last().is_some_and(near)
             };
             let aim = End { unknown: unknown::CONTACT_RADIUS, value };

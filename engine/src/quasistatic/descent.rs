@@ -1,7 +1,7 @@
 //! The way down a solution at a slowly falling control: along it to the next minimum of the control, from there to where the
 //! edge lands, and on.
 
-use super::jump::{self, Landing, Run};
+use super::jump::{self, EdgeDirection, Landing};
 use super::monotone::Monotone;
 use crate::disc::{Place, Solution};
 
@@ -87,13 +87,14 @@ pub fn descend(solution: &dyn Solution, monotone: &Monotone, mut here: Landing, 
             descent.hole = Some(inner).filter(|inner| *inner > 0.0);
             return descent;
         }
-        let landing = match jump::run(solution, monotone, here.stretch, stretch.values[0], Run::Inward) {
-            Ok(landing) => landing,
-            Err(hole) => {
-                descent.hole = Some(hole);
-                return descent;
-            }
-        };
+        let landing =
+            match jump::run(solution, monotone, here.stretch, stretch.values[0], EdgeDirection::Inward) {
+                Ok(landing) => landing,
+                Err(hole) => {
+                    descent.hole = Some(hole);
+                    return descent;
+                }
+            };
         // At a corner the limit point is that of the side further in.
         let before = here.stretch.checked_sub(1).map_or(stretch.inner, |at| monotone.stretches[at].outer);
         descent.jumps.push(Jump { before, stretch: here.stretch, landing });

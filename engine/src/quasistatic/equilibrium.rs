@@ -20,7 +20,7 @@
 //! ```
 
 use super::admissible::{Admissibility, Judge};
-use crate::continuation::{self, Column, Linearization, MatrixMut, System, Vector};
+use crate::continuation::{self, ColumnView, Linearization, MatrixMut, System, Vector};
 use crate::disc::{Basis, Evaluation, Table};
 use crate::elementary::{exp2, log2};
 use crate::gap::{Gap, wave_index};
@@ -62,12 +62,12 @@ impl Scales {
     }
 
     /// δ, P and s of the unknowns.
-    pub fn quantities(&self, y: Column<'_>) -> [f64; 3] {
+    pub fn quantities(&self, y: ColumnView<'_>) -> [f64; 3] {
         [y[0] * self.approach, y[1] * self.force, y[2] * self.contact_radius]
     }
 
     /// The slopes of the curve at a point.
-    pub fn stability(&self, point: &Point) -> Stability {
+    pub fn stability(&self, point: &StatePoint) -> Stability {
         let [delta, force, s] = self.quantities(point.tangent());
         Stability { approach: delta / s, force: force / s }
     }
@@ -155,7 +155,7 @@ pub struct Equilibrium {
 }
 
 /// A state with the frame of the curve there.
-pub type Point = continuation::Point;
+pub type StatePoint = continuation::Point;
 
 /// Three numbers that go with the unknowns: their values, or the row of a control.
 pub type Unknowns = Vector;
@@ -180,12 +180,12 @@ impl Equilibrium {
     }
 
     /// δ, P and s of the unknowns.
-    pub fn quantities(&self, y: Column<'_>) -> [f64; 3] {
+    pub fn quantities(&self, y: ColumnView<'_>) -> [f64; 3] {
         self.scales.quantities(y)
     }
 
     /// s of a point.
-    pub fn contact_radius(&self, point: &Point) -> f64 {
+    pub fn contact_radius(&self, point: &StatePoint) -> f64 {
         point.y()[unknown::CONTACT_RADIUS] * self.scales.contact_radius
     }
 
@@ -201,7 +201,7 @@ impl Equilibrium {
     }
 
     /// The state at a point, its energy evaluated there.
-    pub fn state(&self, point: &Point) -> State {
+    pub fn state(&self, point: &StatePoint) -> State {
         let [delta, force, s] = self.quantities(point.y());
         let energy = self.basis.evaluate(&self.problem, s, delta).energy;
         State { contact_radius: s, approach: delta, force, energy }
@@ -213,18 +213,18 @@ impl Equilibrium {
     }
 
     /// Whether the state of a point is admissible; where `progress` says stop, nothing is known of the gap outside.
-    pub fn admissibility(&self, point: &Point, progress: &dyn Progress) -> Admissibility {
+    pub fn admissibility(&self, point: &StatePoint, progress: &dyn Progress) -> Admissibility {
         let [delta, _, s] = self.quantities(point.y());
         self.judge().judge(s, delta, progress)
     }
 
     /// The slopes of the curve at a point.
-    pub fn stability(&self, point: &Point) -> Stability {
+    pub fn stability(&self, point: &StatePoint) -> Stability {
         self.scales.stability(point)
     }
 
     /// The state and the stiffnesses at a point, energy and `P_δ` evaluated there.
-    pub fn state_and_stiffness(&self, point: &Point) -> (State, Stiffness) {
+    pub fn state_and_stiffness(&self, point: &StatePoint) -> (State, Stiffness) {
         let [delta, _, s] = self.quantities(point.y());
         self.known(point, &self.basis.evaluate(&self.problem, s, delta))
     }
@@ -232,10 +232,10 @@ impl Equilibrium {
     /// The same at each of `points`; `None` when `progress` said stop.
     pub fn states_and_stiffnesses(
         &self,
-        points: &[Point],
+        points: &[StatePoint],
         progress: &dyn Progress,
     ) -> Option<Vec<(State, Stiffness)>> {
-        let place = |point: &Point| {
+        let place = |point: &StatePoint| {
             let [delta, _, s] = self.quantities(point.y());
             [s, delta]
         };
@@ -246,7 +246,7 @@ impl Equilibrium {
     }
 
     /// The state and the stiffnesses at a point, which is evaluated.
-    fn known(&self, point: &Point, here: &Evaluation) -> (State, Stiffness) {
+    fn known(&self, point: &StatePoint, here: &Evaluation) -> (State, Stiffness) {
         /// The slope of the scaled approach along the curve, `t_δ`, that a located limit point leaves.
         const ROUNDING: f64 = 1e-10;
         let [delta, force, s] = self.quantities(point.y());
@@ -269,7 +269,7 @@ impl Equilibrium {
     }
 
     /// The state of radius `s` from the explicit root, as a point whose tangent runs inward.
-    pub fn explicit(&self, s: f64) -> Option<Point> {
+    pub fn explicit(&self, s: f64) -> Option<StatePoint> {
         self.point(&self.basis.equilibrium(&self.problem, s)?)
     }
 
@@ -279,10 +279,10 @@ impl Equilibrium {
     }
 
     /// The point of an evaluated equilibrium, its tangent running inward; `None` where the curve is singular.
-    pub fn point(&self, evaluation: &Evaluation) -> Option<Point> {
+    pub fn point(&self, evaluation: &Evaluation) -> Option<StatePoint> {
         let mut at = Linearization::new(unknown::COUNT);
         self.linearization(evaluation, evaluation.force, &mut at);
-        Point::new(self, &self.unknowns_of(evaluation), &at, &inward())
+        StatePoint::new(self, &self.unknowns_of(evaluation), &at, &inward())
     }
 
     /// The two equations and their derivatives at an evaluated (s, δ) and the force `p`.

@@ -10,7 +10,7 @@ use crate::disc::{Place, Solution};
 
 /// Which way the edge runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Run {
+pub enum EdgeDirection {
     /// The contact shrinks.
     Inward,
     /// The contact grows.
@@ -39,7 +39,7 @@ pub fn run(
     monotone: &Monotone,
     from: usize,
     value: f64,
-    run: Run,
+    run: EdgeDirection,
 ) -> Result<Option<Landing>, f64> {
     let stretches = &monotone.stretches;
     let slack = ROUNDING * value.abs();
@@ -48,7 +48,7 @@ pub fn run(
         Landing { place, stretch: at }
     };
     match run {
-        Run::Inward => {
+        EdgeDirection::Inward => {
             for at in (0..from).rev() {
                 let [next, here] = [&stretches[at], &stretches[at + 1]];
                 let passes = here.joined
@@ -62,7 +62,7 @@ pub fn run(
             }
             Ok(None)
         }
-        Run::Outward => {
+        EdgeDirection::Outward => {
             for (at, stretch) in stretches.iter().enumerate().skip(from + 1) {
                 let before = &stretches[at - 1];
                 let passes = stretch.joined

@@ -20,7 +20,7 @@
 use super::curve::Curve;
 use super::energy::potential;
 use super::equilibrium::{Equilibrium, State};
-use super::jump::Run;
+use super::jump::EdgeDirection;
 use super::monotone::Monotone;
 use crate::disc::{Evaluation, Order, Solution};
 use crate::elementary::ln;
@@ -59,7 +59,7 @@ const INNER: f64 = 0.447_213_595_499_958;
 
 /// The potential at one radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
+pub struct LandscapeSample {
     /// s.
     pub contact_radius: f64,
     /// Π less that of the present radius.
@@ -91,7 +91,7 @@ pub struct Landscape {
     /// The potential there in full.
     pub level: f64,
     /// The potential, radii ascending.
-    pub points: Vec<Sample>,
+    pub points: Vec<LandscapeSample>,
     /// The equilibria in the range, radii ascending.
     pub stationary: Vec<Stationary>,
 }
@@ -115,7 +115,7 @@ impl Landscape {
         }
         let mut grid = grid(&*curve.solution, from, to);
         let monotone = curve.monotone(control);
-        let held = Held { equilibrium, control, value };
+        let held = HeldControl { equilibrium, control, value };
         let crossings = held.crossings(curve, &monotone);
         let found = crossings.into_iter();
         let mut found: Vec<(f64, bool)> = found.filter(|(s, _)| (from..=to).contains(s)).collect();
@@ -145,13 +145,13 @@ impl Landscape {
     ///
     /// The present state is the equilibrium nearest to the present radius. `None` where it is not stable, at a limit
     /// point, where it has merged with the maximum, and where the range ends before there is one.
-    pub fn barrier(&self, run: Run) -> Option<f64> {
+    pub fn barrier(&self, run: EdgeDirection) -> Option<f64> {
         let distance = |at: &Stationary| (at.contact_radius - self.present).abs();
         let order = |a: &Stationary, b: &Stationary| distance(a).total_cmp(&distance(b));
         let (index, here) = self.stationary.iter().enumerate().min_by(|a, b| order(a.1, b.1))?;
         let next = match run {
-            Run::Inward => index.checked_sub(1)?,
-            Run::Outward => index + 1,
+            EdgeDirection::Inward => index.checked_sub(1)?,
+            EdgeDirection::Outward => index + 1,
         };
         let top = self.stationary.get(next).filter(|top| here.stable && !top.stable)?;
         Some(top.potential - here.potential)
@@ -172,7 +172,9 @@ pub fn falls(curve: &Curve, control: Control, value: f64, from: f64, to: f64) ->
     let (lo, hi) = (from.min(to), from.max(to));
     let mut grid = grid(&*curve.solution, lo, hi);
     grid.dedup();
-    let Some(mut samples) = (Held { equilibrium, control, value }).integrate(&grid) else { return false };
+    let Some(mut samples) = (HeldControl { equilibrium, control, value }).integrate(&grid) else {
+        return false;
+    };
     if from > to {
         samples.reverse();
     }
@@ -186,13 +188,13 @@ pub fn falls(curve: &Curve, control: Control, value: f64, from: f64, to: f64) ->
 }
 
 /// A control held at a value.
-struct Held<'a> {
+struct HeldControl<'a> {
     equilibrium: &'a Equilibrium,
     control: Control,
     value: f64,
 }
 
-impl Held<'_> {
+impl HeldControl<'_> {
     /// The equilibria of the solution at the held value, with their stability.
     fn crossings(&self, curve: &Curve, monotone: &Monotone) -> Vec<(f64, bool)> {
         let value = match self.control {
@@ -227,7 +229,7 @@ impl Held<'_> {
     }
 
     /// Π from the first radius of `grid`, which ascends.
-    fn integrate(&self, grid: &[f64]) -> Option<Vec<Sample>> {
+    fn integrate(&self, grid: &[f64]) -> Option<Vec<LandscapeSample>> {
         let mut nodes = Vec::with_capacity(3 * grid.len());
         for pair in grid.windows(2) {
             let (middle, half) = (0.5 * (pair[0] + pair[1]), 0.5 * (pair[1] - pair[0]));
@@ -241,10 +243,11 @@ impl Held<'_> {
         }
         let slopes: Vec<(f64, bool)> = evaluations.iter().map(|e| self.slope(e)).collect();
         let mut sum = 0.0;
-        let mut samples = vec![Sample { contact_radius: nodes[0], potential: 0.0, pulled: slopes[0].1 }];
+        let mut samples =
+            vec![LandscapeSample { contact_radius: nodes[0], potential: 0.0, pulled: slopes[0].1 }];
         for (step, slope) in grid.windows(2).zip(slopes.windows(4).step_by(3)) {
             sum += (step[1] - step[0]) / 12.0 * (slope[0].0 + slope[3].0 + 5.0 * (slope[1].0 + slope[2].0));
-            samples.push(Sample { contact_radius: step[1], potential: sum, pulled: slope[3].1 });
+            samples.push(LandscapeSample { contact_radius: step[1], potential: sum, pulled: slope[3].1 });
         }
         Some(samples)
     }
@@ -263,10 +266,10 @@ impl Held<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::disc::{Basis, Exact, Table};
+    use crate::disc::{Basis, ExactBasis, Table};
     use crate::gap::Shape;
     use crate::problem::{Problem, Reduced};
-    use crate::quasistatic::{Detail, Turn};
+    use crate::quasistatic::{Detail, Extremum};
     use crate::ritz::Rings;
     use std::f64::consts::PI;
     use std::sync::Arc;
@@ -282,14 +285,14 @@ mod tests {
         let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &Unwatched).unwrap());
         let basis: Arc<dyn Basis> = match rings {
             Some(rings) => Rings::shared(rings).unwrap(),
-            None => Arc::new(Exact::new(Arc::clone(&table), 0.5)),
+            None => Arc::new(ExactBasis::new(Arc::clone(&table), 0.5)),
         };
         Curve::new(problem.clone(), basis, table, [0.5, 0.02], Detail::Drawn, &Unwatched).unwrap()
     }
 
     /// The radii at which `control` takes `value` on the curve, descending, with their stability.
     fn crossings(curve: &Curve, control: Control, value: f64) -> Vec<(f64, bool)> {
-        let held = Held { equilibrium: &curve.equilibrium, control, value };
+        let held = HeldControl { equilibrium: &curve.equilibrium, control, value };
         let mut found = held.crossings(curve, &curve.monotone(control));
         found.retain(|(s, _)| (0.02..=0.5).contains(s));
         found.reverse();
@@ -315,7 +318,7 @@ mod tests {
             assert_eq!(at.pulled, at.contact_radius.powi(2) >= delta, "{at:?}");
         }
         assert_eq!(seen.stationary.len(), 1);
-        assert!(seen.stationary[0].stable && seen.barrier(Run::Outward).is_none());
+        assert!(seen.stationary[0].stable && seen.barrier(EdgeDirection::Outward).is_none());
     }
 
     #[test]
@@ -328,7 +331,7 @@ mod tests {
                     let at = &curve.samples[index];
                     let (present, value) = (at.contact_radius, control.value(at.approach, at.force));
                     let seen = Landscape::of(&curve, control, value, present, [0.03, 0.5]).unwrap();
-                    let held = Held { equilibrium: &curve.equilibrium, control, value };
+                    let held = HeldControl { equilibrium: &curve.equilibrium, control, value };
                     assert!(seen.stationary.iter().any(|at| (at.contact_radius - present).abs() < 1e-9));
                     let deepest = seen.points.iter().fold(0.0_f64, |most, p| most.max(p.potential.abs()));
                     // The energies themselves are good to their own rounding only.
@@ -351,7 +354,7 @@ mod tests {
                     }
                     // Minima and maxima in turn, and no other sign change of the slope while the edge pulls.
                     assert!(seen.stationary.windows(2).all(|pair| pair[0].stable != pair[1].stable));
-                    let falls = |pair: &[Sample]| pair[1].potential < pair[0].potential;
+                    let falls = |pair: &[LandscapeSample]| pair[1].potential < pair[0].potential;
                     let turns = seen.points.windows(3).filter(|three| {
                         three.iter().all(|p| p.pulled) && falls(&three[..2]) != falls(&three[1..])
                     });
@@ -371,7 +374,7 @@ mod tests {
         let curve = curve(&problem, None);
         for control in CONTROLS {
             let limits = curve.limit_points(control);
-            let limit = limits.iter().find(|limit| limit.turn == Turn::Minimum).unwrap();
+            let limit = limits.iter().find(|limit| limit.turn == Extremum::Minimum).unwrap();
             let (at, value) = (limit.contact_radius, control.value(limit.approach, limit.force));
             let size = value.abs();
             let barrier = |above: f64| {
@@ -383,7 +386,7 @@ mod tests {
                     .filter(|s| *s >= at)
                     .fold(f64::INFINITY, f64::min);
                 Landscape::of(&curve, control, value, present.min(0.5), [at - 0.03, at + 0.03])?
-                    .barrier(Run::Inward)
+                    .barrier(EdgeDirection::Inward)
             };
             let [high, low, least] = [1e-4, 1e-6, 1e-8].map(|above| barrier(above).unwrap());
             // A fold: the height goes with the distance of the control to the power 3/2.

@@ -36,9 +36,9 @@ pub mod walk;
 
 pub use admissible::Admissibility;
 pub use curve::{Curve, CurveStop, Detail, Sample};
-pub use equilibrium::{Equilibrium, Point, Scales, Stability, State, Stiffness};
+pub use equilibrium::{Equilibrium, Scales, Stability, State, StatePoint, Stiffness};
 pub use landscape::Landscape;
-pub use monotone::{Limit, Monotone, Turn};
+pub use monotone::{Extremum, Limit, Monotone};
 pub use overlap::Overlap;
 pub use path::{Event, EventKind, Losses, Path, PathState, PathStop};
 pub use profile::Profile;

@@ -18,7 +18,7 @@ const SAME: f64 = 1e-13;
 
 /// Whether the control is smallest or largest at a limit point, along the contact radius.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Turn {
+pub enum Extremum {
     /// A minimum over s: the edge runs inward from here (unloading).
     Minimum,
     /// A maximum over s: the edge runs outward from here (loading).
@@ -31,7 +31,7 @@ pub struct Limit {
     /// The control that turns here.
     pub control: Control,
     /// Which way it turns.
-    pub turn: Turn,
+    pub turn: Extremum,
     /// Where it is.
     pub place: Place,
     /// s.
@@ -142,7 +142,7 @@ impl Monotone {
                 if cut.joined {
                     found.limits.push(Limit {
                         control,
-                        turn: if signs[k + 1] { Turn::Minimum } else { Turn::Maximum },
+                        turn: if signs[k + 1] { Extremum::Minimum } else { Extremum::Maximum },
                         place: cut.before,
                         contact_radius: at.contact_radius,
                         approach: at.approach,

@@ -49,7 +49,7 @@ pub fn overlaps(curve: &Curve, progress: &dyn Progress) -> Option<Vec<Overlap>> 
 pub fn passed(curve: &Curve, pieces: &[[f64; 2]], progress: &dyn Progress) -> Option<Vec<Overlap>> {
     let mut curve = curve.clone();
     curve.reach(pieces.iter().map(|[from, _]| *from).fold(0.0, f64::max));
-    let mut search = Search {
+    let mut search = OverlapSearch {
         judge: curve.equilibrium.judge(),
         stretches: curve.monotone(Control::Displacement),
         curve: &curve,
@@ -66,24 +66,24 @@ pub fn passed(curve: &Curve, pieces: &[[f64; 2]], progress: &dyn Progress) -> Op
 
 /// Why a state is not admissible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Cause {
+enum Violation {
     /// A crest overlaps; its number, where it has one.
     Crest(Option<u64>),
     /// The disc would have to pull.
     Pressure,
 }
 
-struct Search<'a> {
+struct OverlapSearch<'a> {
     curve: &'a Curve,
     judge: Judge,
     stretches: Arc<Monotone>,
     progress: &'a dyn Progress,
     found: Vec<Overlap>,
     /// The fault of the interval that is still open.
-    open: Option<Cause>,
+    open: Option<Violation>,
 }
 
-impl Search<'_> {
+impl OverlapSearch<'_> {
     /// The state of radius `s`; `None` when it is no longer wanted.
     fn state(&mut self, s: f64) -> Option<Admissibility> {
         if self.progress.stop() {
@@ -160,7 +160,7 @@ impl Search<'_> {
     /// crest, or for the pressure, an interval is one of its own.
     fn add(&mut self, from: f64, to: f64, state: &Admissibility) {
         let crest = state.overlapping();
-        let cause = crest.map_or(Cause::Pressure, |crest| Cause::Crest(crest.wave));
+        let cause = crest.map_or(Violation::Pressure, |crest| Violation::Crest(crest.wave));
         match self.found.last_mut() {
             Some(overlap) if self.open == Some(cause) => {
                 overlap.to = to;
@@ -187,12 +187,12 @@ impl Search<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::disc::{Exact, Table};
+    use crate::disc::{ExactBasis, Table};
     use crate::gap::Shape;
     use crate::problem::{Problem, Reduced};
     use crate::progress::{Unwatched, until};
     use crate::quasistatic::Detail;
-    use crate::quasistatic::path::{Setting, unload};
+    use crate::quasistatic::path::{PathSetting, unload};
     use std::f64::consts::TAU;
     use std::sync::Arc;
 
@@ -203,7 +203,7 @@ mod tests {
 
     fn curve(problem: &Reduced, to: f64) -> Curve {
         let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &Unwatched).unwrap());
-        let basis = Arc::new(Exact::new(Arc::clone(&table), 0.5));
+        let basis = Arc::new(ExactBasis::new(Arc::clone(&table), 0.5));
         Curve::new(problem.clone(), basis, table, [0.5, to], Detail::Drawn, &Unwatched).unwrap()
     }
 
@@ -238,7 +238,7 @@ mod tests {
         let whole = curve(&problem, 0.04);
         let on_curve = overlaps(&whole, &Unwatched).unwrap();
         for control in [Control::Displacement, Control::Force] {
-            let setting = Setting::one_disc(control);
+            let setting = PathSetting::one_disc(control);
             let pieces = unload(&whole, &setting, &Unwatched).unwrap().pieces();
             let met = passed(&whole, &pieces, &Unwatched).unwrap();
             let on_path = |s: f64| pieces.iter().any(|[outer, inner]| *inner <= s && s <= *outer);

@@ -209,7 +209,7 @@ fn radii(s: f64, wave: Option<f64>) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::disc::{Exact, Table};
+    use crate::disc::{ExactBasis, Table};
     use crate::gap::Shape;
     use crate::problem::Problem;
     use crate::ritz::Rings;
@@ -221,10 +221,10 @@ mod tests {
         Problem { effective_modulus: 1.0, work_of_adhesion: gamma, shape }.reduced()
     }
 
-    fn exact(problem: &Reduced) -> (Exact, Judge) {
+    fn exact(problem: &Reduced) -> (ExactBasis, Judge) {
         let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &Unwatched).unwrap());
         let judge = Judge::new(problem, &table);
-        (Exact::new(table, 0.5), judge)
+        (ExactBasis::new(table, 0.5), judge)
     }
 
     #[test]

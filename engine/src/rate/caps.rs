@@ -9,9 +9,9 @@
 //!
 //! with c'' = d²c/ds² of the equilibrium curve there. Close to a limit point dx/dt = −(x² + t)^{1/n} in these units.
 
-use super::equation::{Edge, Held};
+use super::equation::{HeldDisc, MovingEdge};
 use super::law::Motion;
-use super::settings::Settings;
+use super::settings::PullSettings;
 use crate::disc::solution::ExactSolution;
 use crate::disc::{Panels, Solution};
 use crate::elementary::pow;
@@ -46,7 +46,7 @@ impl Fold {
             Control::Force => 2.0 * s * bend + by_root,
             Control::Stiffness(k) => bend * (1.0 + 2.0 * s / k) + by_root / k,
         };
-        let unit = root / Held::new(panels, limit.control, s, 0.0).by_control;
+        let unit = root / HeldDisc::new(panels, limit.control, s, 0.0).by_control;
         Self { limit, bend: if limit.corner { f64::INFINITY } else { bend.abs() }, unit }
     }
 
@@ -59,16 +59,16 @@ impl Fold {
 
 /// The limit points of one motion, ascending.
 #[derive(Debug, Clone)]
-pub struct Folds {
+pub struct MotionFolds {
     /// The limit points, from the axis outward.
     pub list: Vec<Fold>,
     /// Where the control is monotone.
     pub monotone: Monotone,
 }
 
-impl Folds {
+impl MotionFolds {
     /// Those of the equilibria under the adhesion of a motion.
-    pub fn new(panels: &Arc<Panels>, edge: &Edge, motion: Motion, control: Control) -> Self {
+    pub fn new(panels: &Arc<Panels>, edge: &MovingEdge, motion: Motion, control: Control) -> Self {
         let gamma = edge.adhesion(motion);
         let solution = ExactSolution::new(Arc::clone(panels), gamma);
         let monotone = Monotone::of(&solution, control);
@@ -100,18 +100,18 @@ pub struct Caps<'a> {
     breaks: Vec<f64>,
     /// The way of a step on a gap with waves.
     widest: Option<f64>,
-    settings: Settings,
+    settings: PullSettings,
 }
 
 impl<'a> Caps<'a> {
     /// Those of a motion at a rate of the control; `wave` is the length of the gap's structure, where it is known.
     pub fn new(
         panels: &'a Panels,
-        folds: &Folds,
+        folds: &MotionFolds,
         rate: f64,
         exponent: f64,
         wave: Option<f64>,
-        settings: Settings,
+        settings: PullSettings,
     ) -> Self {
         /// The least that an edge need not go less than, of its radius.
         const LEAST: f64 = 1e-8;

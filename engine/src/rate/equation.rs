@@ -16,14 +16,14 @@
 //! As a function of s, dt/ds = 1/v grows with the control that is left: integrated along the way of the edge every error dies out, on
 //! stable and on unstable stretches alike. Reduced units: E* = 1, v₀ = 1.
 
-use super::law::{Branch, EdgeLaw, Motion};
+use super::law::{EdgeLaw, Motion, MotionLaw};
 use crate::disc::Panels;
 use crate::problem::Control;
 use std::f64::consts::TAU;
 
 /// What a motion is offered and costs: the law, and γ where the edge opens, `γ_a` where it closes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Edge {
+pub struct MovingEdge {
     /// The law.
     pub law: EdgeLaw,
     /// γ, over E* times the unit of length.
@@ -32,7 +32,7 @@ pub struct Edge {
     pub closing: f64,
 }
 
-impl Edge {
+impl MovingEdge {
     /// The adhesion of a motion.
     pub fn adhesion(&self, motion: Motion) -> f64 {
         match motion {
@@ -44,7 +44,7 @@ impl Edge {
 
 /// A disc whose bodies are held by a device.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Held {
+pub struct HeldDisc {
     /// s.
     pub contact_radius: f64,
     /// δ.
@@ -63,7 +63,7 @@ pub struct Held {
     pub area: f64,
 }
 
-impl Held {
+impl HeldDisc {
     /// The disc of the radius `s` at the control value `c`.
     pub fn new(panels: &Panels, control: Control, s: f64, c: f64) -> Self {
         let [values] = panels.values_at(&[s]);
@@ -114,13 +114,13 @@ impl Held {
 
 /// A moment of a stretch, with what the integrator needs there.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct At {
+pub struct StretchMoment {
     /// t.
     pub time: f64,
     /// c.
     pub control: f64,
     /// The disc.
-    pub held: Held,
+    pub held: HeldDisc,
     /// What drives the edge: G/γ − 1 or `γ_a`/G − 1.
     pub drive: f64,
     /// Its derivative by y at held ξ.
@@ -141,7 +141,7 @@ pub struct At {
     pub done: f64,
 }
 
-impl At {
+impl StretchMoment {
     /// What is dissipated in a unit of ξ.
     pub fn dissipation(&self) -> f64 {
         self.loss * self.phi
@@ -163,7 +163,7 @@ pub struct Equation<'a> {
     /// Whether the edge opens or closes.
     pub motion: Motion,
     /// What the control does.
-    pub branch: Branch,
+    pub branch: MotionLaw,
     /// γ or `γ_a`.
     pub adhesion: f64,
     /// s₀, t₀, c₀ and ċ.
@@ -183,14 +183,14 @@ impl<'a> Equation<'a> {
     pub fn new(
         panels: &'a Panels,
         control: Control,
-        edge: &Edge,
+        edge: &MovingEdge,
         motion: Motion,
         [radius, time, value]: [f64; 3],
         rate: f64,
         duration: f64,
     ) -> Self {
         let adhesion = edge.adhesion(motion);
-        let held = Held::new(panels, control, radius, value);
+        let held = HeldDisc::new(panels, control, radius, value);
         let unit_of_control = (TAU * adhesion * radius).sqrt() / held.by_control;
         let unit_of_time = if rate == 0.0 { duration } else { unit_of_control / rate.abs() };
         let branch = edge.law.of(motion);
@@ -198,19 +198,19 @@ impl<'a> Equation<'a> {
     }
 
     /// The moment at ξ and y; `None` where the disc would have no radius there, or one beyond the table.
-    pub fn at(&self, xi: f64, y: f64) -> Option<At> {
+    pub fn at(&self, xi: f64, y: f64) -> Option<StretchMoment> {
         self.at_all(&[xi], &[y]).map(|[at]| at)
     }
 
     /// Several moments at once.
-    pub fn at_all<const N: usize>(&self, xi: &[f64; N], y: &[f64; N]) -> Option<[At; N]> {
+    pub fn at_all<const N: usize>(&self, xi: &[f64; N], y: &[f64; N]) -> Option<[StretchMoment; N]> {
         let (sense, reach) = (self.motion.sense(), self.panels.reach());
         let radii = y.map(|y| self.radius + sense * self.radius * y);
         if !radii.iter().all(|s| *s > 0.0 && *s <= reach) {
             return None;
         }
         let values = self.panels.values_at(&radii);
-        let mut all = [At::default(); N];
+        let mut all = [StretchMoment::default(); N];
         for (i, at) in all.iter_mut().enumerate() {
             *at = self.moment([xi[i], y[i]], radii[i], values[i])?;
         }
@@ -218,11 +218,11 @@ impl<'a> Equation<'a> {
     }
 
     /// The moment at ξ and y, where the radius is s and g, ∫g and g' are `values`.
-    fn moment(&self, [xi, y]: [f64; 2], s: f64, values: [f64; 3]) -> Option<At> {
+    fn moment(&self, [xi, y]: [f64; 2], s: f64, values: [f64; 3]) -> Option<StretchMoment> {
         let (sense, ls, lt) = (self.motion.sense(), self.radius, self.unit_of_time);
         let passed = lt * (xi - y);
         let control = self.value + self.rate * passed;
-        let held = Held::of(values, self.control, s, control);
+        let held = HeldDisc::of(values, self.control, s, control);
         let root = (TAU * self.adhesion * s).sqrt();
         let kappa = held.opening / root;
         let kappa_by_s = (held.slope - held.by_radius) / root - 0.5 * kappa / s;
@@ -251,7 +251,7 @@ impl<'a> Equation<'a> {
             Control::Force => -held.approach,
             Control::Displacement | Control::Stiffness(_) => held.force,
         };
-        Some(At {
+        Some(StretchMoment {
             time: self.time + passed,
             control,
             held,

@@ -6,13 +6,13 @@
 //!
 //! Where an equilibrium bears the load the edge stops there, and the bodies never come apart.
 
-use super::caps::Folds;
-use super::equation::{Edge, Held};
+use super::caps::MotionFolds;
+use super::equation::{HeldDisc, MovingEdge};
 use super::error::RateError;
 use super::law::Motion;
 use crate::disc::Panels;
 use crate::problem::Control;
-use crate::quasistatic::monotone::Turn;
+use crate::quasistatic::monotone::Extremum;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -31,23 +31,24 @@ const GONE: f64 = 1e-9;
 /// [`RateError::NoAdhesion`]; [`RateError::Lost`] where the load is so nearly borne that the time cannot be resolved.
 pub fn time_to_failure(
     panels: &Arc<Panels>,
-    edge: &Edge,
+    edge: &MovingEdge,
     start: f64,
     force: f64,
 ) -> Result<Option<f64>, RateError> {
     if edge.opening <= 0.0 {
         return Err(RateError::NoAdhesion);
     }
-    let folds = Folds::new(panels, edge, Motion::Opening, Control::Force);
+    let folds = MotionFolds::new(panels, edge, Motion::Opening, Control::Force);
     let inside = folds.list.iter().map(|fold| fold.limit).filter(|limit| limit.contact_radius < start);
-    let least = inside.clone().filter(|limit| limit.turn == Turn::Minimum).map(|limit| limit.force);
-    let borne = least.fold(Held::equilibrium(panels, Control::Force, edge.opening, start).min(0.0), f64::min);
+    let least = inside.clone().filter(|limit| limit.turn == Extremum::Minimum).map(|limit| limit.force);
+    let borne =
+        least.fold(HeldDisc::equilibrium(panels, Control::Force, edge.opening, start).min(0.0), f64::min);
     if force >= borne {
         return Ok(None);
     }
     let branch = edge.law.of(Motion::Opening);
     let slowness = |s: f64| {
-        let held = Held::new(panels, Control::Force, s, force);
+        let held = HeldDisc::new(panels, Control::Force, s, force);
         let root = (TAU * edge.opening * s).sqrt();
         1.0 / branch.speed((held.opening - root) * (held.opening + root) / (root * root))[0]
     };

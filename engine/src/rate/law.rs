@@ -51,24 +51,24 @@ impl EdgeLaw {
     }
 
     /// The reference speed and the exponent of a motion.
-    pub fn of(self, motion: Motion) -> Branch {
+    pub fn of(self, motion: Motion) -> MotionLaw {
         match motion {
-            Motion::Opening => Branch { speed: 1.0, exponent: self.exponent },
-            Motion::Closing => Branch { speed: self.closing_speed, exponent: self.closing_exponent },
+            Motion::Opening => MotionLaw { speed: 1.0, exponent: self.exponent },
+            Motion::Closing => MotionLaw { speed: self.closing_speed, exponent: self.closing_exponent },
         }
     }
 }
 
 /// The law of one motion, in terms of its drive: G/γ − 1 where the edge opens, `γ_a`/G − 1 where it closes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Branch {
+pub struct MotionLaw {
     /// v₀ or `v_a`.
     pub speed: f64,
     /// n or m.
     pub exponent: f64,
 }
 
-impl Branch {
+impl MotionLaw {
     /// The speed at a drive, and its derivative; odd in the drive, so that a rest is a simple root.
     pub fn speed(self, drive: f64) -> [f64; 2] {
         let size = drive.abs();
@@ -77,7 +77,7 @@ impl Branch {
         [self.speed * drive * slope, self.speed * inverse * slope]
     }
 
-    /// The drive at a speed, and its derivative; the inverse of [`Branch::speed`].
+    /// The drive at a speed, and its derivative; the inverse of [`MotionLaw::speed`].
     pub fn drive(self, speed: f64) -> [f64; 2] {
         let over = speed / self.speed;
         let size = power(over.abs(), self.exponent);

@@ -37,10 +37,10 @@ pub mod stretch;
 mod tests;
 pub mod variation;
 
-pub use equation::Edge;
+pub use equation::MovingEdge;
 pub use error::RateError;
 pub use law::EdgeLaw;
 pub use pull::{Pull, Puller};
 pub use record::Moment;
-pub use settings::Settings;
+pub use settings::PullSettings;
 pub use snaps::Snap;

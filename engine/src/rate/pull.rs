@@ -9,14 +9,14 @@
 //!
 //! of which the left side and the dissipation are sums over the steps, and the others are read from the table: the balance.
 
-use super::caps::{Caps, Folds};
-use super::equation::{Edge, Equation, Held};
+use super::caps::{Caps, MotionFolds};
+use super::equation::{Equation, HeldDisc, MovingEdge};
 use super::error::RateError;
 use super::law::Motion;
-use super::record::{Least, Moment, Moved, Record};
-use super::settings::Settings;
+use super::record::{LeastForce, Moment, MomentSlopes, Record};
+use super::settings::PullSettings;
 use super::snaps::{Snap, snaps};
-use super::stretch::{End, Stretch};
+use super::stretch::{MotionStretch, StretchEnd};
 use crate::disc::{Panels, Table, TableError};
 use crate::problem::{Control, Part};
 use crate::progress::Progress;
@@ -41,7 +41,7 @@ pub struct Puller<'a> {
     /// The device.
     pub control: Control,
     /// The law and both works of adhesion.
-    pub edge: Edge,
+    pub edge: MovingEdge,
     /// The contact radius at the start, in equilibrium under the work of adhesion that a closing edge gains.
     pub start: f64,
     /// The length of the gap's structure, where it is known.
@@ -49,7 +49,7 @@ pub struct Puller<'a> {
     /// A least force counts as a peak of tension where the force rises by more than this after it; none means 1 % of the largest pull.
     pub rise: Option<f64>,
     /// The integrator.
-    pub settings: Settings,
+    pub settings: PullSettings,
 }
 
 /// A pull, in reduced units.
@@ -74,7 +74,7 @@ pub struct Pull {
     /// Moments in order.
     pub moments: Vec<Moment>,
     /// How s, δ and P of the moments in contact change with the values, where that was asked for.
-    pub moved: Vec<Moved>,
+    pub moved: Vec<MomentSlopes>,
     /// Where the edge closed: the largest contact it closed to, with its approach.
     pub closed_to: Option<[f64; 2]>,
     /// How far G still was from equilibrium at the end of each hold, as |G/γ − 1|.
@@ -87,7 +87,7 @@ pub struct Pull {
 struct Going<'a> {
     puller: &'a Puller<'a>,
     panels: Arc<Panels>,
-    folds: [Option<Folds>; 2],
+    folds: [Option<MotionFolds>; 2],
     record: Record,
     snaps: Vec<Snap>,
     s: f64,
@@ -102,7 +102,7 @@ struct Going<'a> {
 
 /// The way of the control in one part.
 #[derive(Clone, Copy)]
-struct Way {
+struct PartWay {
     rate: f64,
     until: Option<f64>,
     duration: f64,
@@ -119,7 +119,7 @@ impl Puller<'_> {
         }
         let panels = self.panels(programme, progress)?;
         let s = self.start;
-        let c = Held::equilibrium(&panels, self.control, self.edge.closing, s);
+        let c = HeldDisc::equilibrium(&panels, self.control, self.edge.closing, s);
         let mut going = Going {
             puller: self,
             panels,
@@ -135,7 +135,7 @@ impl Puller<'_> {
             is_apart: false,
         };
         let start = going.resting(0.0);
-        let elastic = Held::new(&going.panels, self.control, s, c).potential(&going.panels, self.control);
+        let elastic = HeldDisc::new(&going.panels, self.control, s, c).potential(&going.panels, self.control);
         going.record.add(start, 0.0);
         let mut holds = Vec::new();
         for part in programme {
@@ -144,7 +144,7 @@ impl Puller<'_> {
                 break;
             }
             if let Part::Hold { .. } = part {
-                let held = Held::new(&going.panels, self.control, going.s, going.c);
+                let held = HeldDisc::new(&going.panels, self.control, going.s, going.c);
                 let ratio = held.energy_release_rate() / self.edge.opening;
                 let below = (self.edge.closing / self.edge.opening - ratio).max(0.0);
                 holds.push((ratio - 1.0).max(below));
@@ -172,7 +172,7 @@ impl Puller<'_> {
         let mut reach = self.start;
         for _ in 0..WIDENINGS {
             let panels = up_to(reach)?;
-            if Held::equilibrium(&panels, self.control, self.edge.closing, reach) >= highest {
+            if HeldDisc::equilibrium(&panels, self.control, self.edge.closing, reach) >= highest {
                 return Ok(panels);
             }
             let end = self.table.end();
@@ -186,8 +186,8 @@ impl Puller<'_> {
 }
 
 impl Going<'_> {
-    fn held(&self) -> Held {
-        Held::new(&self.panels, self.puller.control, self.s, self.c)
+    fn held(&self) -> HeldDisc {
+        HeldDisc::new(&self.panels, self.puller.control, self.s, self.c)
     }
 
     /// The moment here, with an edge at rest.
@@ -209,10 +209,10 @@ impl Going<'_> {
         let way = match part {
             Part::Ramp { to, rate } => {
                 let duration = (to - self.c).abs() / rate;
-                Way { rate: rate.copysign(to - self.c), until: Some(self.t + duration), duration }
+                PartWay { rate: rate.copysign(to - self.c), until: Some(self.t + duration), duration }
             }
-            Part::Apart { rate } => Way { rate: -rate, until: None, duration: 0.0 },
-            Part::Hold { time } => Way { rate: 0.0, until: Some(self.t + time), duration: time },
+            Part::Apart { rate } => PartWay { rate: -rate, until: None, duration: 0.0 },
+            Part::Hold { time } => PartWay { rate: 0.0, until: Some(self.t + time), duration: time },
         };
         for _ in 0..CHANGES {
             if self.is_apart || way.until.is_some_and(|until| until - self.t <= OVER * way.duration) {
@@ -227,8 +227,8 @@ impl Going<'_> {
     }
 
     /// Which way the edge goes; `None` where it rests.
-    fn motion(&self, way: Way) -> Option<Motion> {
-        let Edge { opening, closing, .. } = self.puller.edge;
+    fn motion(&self, way: PartWay) -> Option<Motion> {
+        let MovingEdge { opening, closing, .. } = self.puller.edge;
         let offered = self.held().opening;
         let over = |gamma: f64| {
             let root = (TAU * gamma * self.s).sqrt();
@@ -245,11 +245,11 @@ impl Going<'_> {
         }
     }
 
-    fn moves(&mut self, motion: Motion, way: Way, progress: &dyn Progress) -> Result<(), RateError> {
+    fn moves(&mut self, motion: Motion, way: PartWay, progress: &dyn Progress) -> Result<(), RateError> {
         let Puller { control, edge, wave, settings, .. } = self.puller;
         let slot = usize::from(motion == Motion::Closing);
         let panels = Arc::clone(&self.panels);
-        let folds = self.folds[slot].get_or_insert_with(|| Folds::new(&panels, edge, motion, *control));
+        let folds = self.folds[slot].get_or_insert_with(|| MotionFolds::new(&panels, edge, motion, *control));
         let left = way.until.map_or(0.0, |until| until - self.t);
         let equation =
             Equation::new(&panels, *control, edge, motion, [self.s, self.t, self.c], way.rate, left);
@@ -259,34 +259,35 @@ impl Going<'_> {
         let rests = way.rate * motion.sense() <= 0.0 && (motion == Motion::Closing || way.rate >= 0.0);
         let adhesion = edge.adhesion(motion) * PI * self.s * self.s;
         let energy = adhesion + self.held().potential(&panels, *control).abs();
-        let stretch = Stretch { equation: &equation, caps: &caps, settings, until: way.until, rests, energy };
+        let stretch =
+            MotionStretch { equation: &equation, caps: &caps, settings, until: way.until, rests, energy };
         if motion == Motion::Opening && self.pinned_until.is_none() {
             self.pinned_until = Some(self.resting(self.record.dissipated));
         }
         let first = self.record.moments.len();
         let (at, end) = stretch.follow(&mut self.record, progress)?;
-        self.snaps.extend(snaps(&self.record.moments[first..], level, end == End::Apart, &unstable));
+        self.snaps.extend(snaps(&self.record.moments[first..], level, end == StretchEnd::Apart, &unstable));
         let s = at.held.contact_radius;
         self.adhesion += edge.adhesion(motion) * PI * (self.s - s) * (self.s + s);
         if motion == Motion::Closing && self.closed_to.is_none_or(|[largest, _]| s > largest) {
             self.closed_to = Some([s, at.held.approach]);
         }
         (self.s, self.t, self.c) = (s, at.time, at.control);
-        if let (End::Time, Some(until)) = (end, way.until) {
+        if let (StretchEnd::Time, Some(until)) = (end, way.until) {
             self.t = until;
         }
-        self.is_apart = end == End::Apart;
+        self.is_apart = end == StretchEnd::Apart;
         Ok(())
     }
 
     /// The control moves, and the edge does not: to where it begins to, or to the end of the part.
-    fn rests(&mut self, way: Way) {
-        let Edge { opening, closing, .. } = self.puller.edge;
+    fn rests(&mut self, way: PartWay) {
+        let MovingEdge { opening, closing, .. } = self.puller.edge;
         let control = self.puller.control;
         let before = self.held();
         let energy = before.potential(&self.panels, control);
         let gamma = if way.rate < 0.0 { opening } else { closing };
-        let begins = Held::equilibrium(&self.panels, control, gamma, self.s);
+        let begins = HeldDisc::equilibrium(&self.panels, control, gamma, self.s);
         let waits = if way.rate == 0.0 { f64::INFINITY } else { ((begins - self.c) / way.rate).max(0.0) };
         let left = way.until.map_or(f64::INFINITY, |until| until - self.t);
         let force_rate = 2.0 * self.s * before.by_control * way.rate;
@@ -358,11 +359,11 @@ impl Going<'_> {
 
 /// The least forces with a fall of more than `rise` before and a rise of more than that after: a dip that is shallower on either side is
 /// part of its neighbour.
-fn peaks(least: &[Least], rise: f64) -> Vec<Moment> {
+fn peaks(least: &[LeastForce], rise: f64) -> Vec<Moment> {
     let mut found = Vec::new();
     let mut candidate: Option<Moment> = None;
     let mut highest = f64::INFINITY;
-    for Least { at, then } in least {
+    for LeastForce { at, then } in least {
         candidate = match candidate {
             None if highest - at.force <= rise => {
                 highest = highest.max(*then);

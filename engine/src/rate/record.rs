@@ -1,9 +1,9 @@
 //! What is kept of a pull: its moments, sums and least forces.
 
-use super::equation::At;
+use super::equation::StretchMoment;
 use super::law::Motion;
 use super::radau::{NODES, STAGES};
-use super::step::{Step, landed};
+use super::step::{SolvedStep, landed};
 
 /// One moment of a pull, in reduced units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,11 +30,11 @@ pub struct Moment {
 pub const VALUES: usize = 5;
 
 /// How s, δ and P of a moment change with the logarithm of each value; a way along the path is free in it.
-pub type Moved = [[f64; 3]; VALUES];
+pub type MomentSlopes = [[f64; 3]; VALUES];
 
 /// A least force of a pull, and what the force rises to before the next one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Least {
+pub struct LeastForce {
     /// Where it is.
     pub at: Moment,
     /// The largest force after it.
@@ -47,9 +47,9 @@ pub struct Record {
     /// The moments, in order.
     pub moments: Vec<Moment>,
     /// How they change with the values, where that is asked for.
-    pub moved: Vec<Moved>,
+    pub moved: Vec<MomentSlopes>,
     /// The least forces.
-    pub least: Vec<Least>,
+    pub least: Vec<LeastForce>,
     /// What the edge has dissipated, over E* times the unit of length cubed.
     pub dissipated: f64,
     /// The work of the device, in the same unit.
@@ -64,7 +64,7 @@ pub struct Record {
 
 impl Record {
     /// A moment of a moving edge, when `dissipated` is lost.
-    fn moment(&self, at: &At, dissipated: f64) -> Moment {
+    fn moment(&self, at: &StretchMoment, dissipated: f64) -> Moment {
         let sense = self.motion.map_or(0.0, Motion::sense);
         Moment {
             time: at.time,
@@ -81,7 +81,7 @@ impl Record {
     /// Adds a moment; `force_rate` is dP/dt from it on.
     pub fn add(&mut self, moment: Moment, force_rate: f64) {
         if self.force_rate < 0.0 && force_rate >= 0.0 {
-            self.least.push(Least { at: moment, then: moment.force });
+            self.least.push(LeastForce { at: moment, then: moment.force });
         }
         self.force_rate = force_rate;
         self.risen(moment.force);
@@ -95,26 +95,31 @@ impl Record {
     }
 
     /// Begins a stretch of a motion.
-    pub fn began(&mut self, motion: Motion, at: &At) {
+    pub fn began(&mut self, motion: Motion, at: &StretchMoment) {
         self.motion = Some(motion);
         self.add(self.moment(at, self.dissipated), at.force_rate);
     }
 
     /// Adds a step from `start`; `again` solves it with another length.
-    pub fn step(&mut self, start: &At, step: &Step, again: &dyn Fn(f64) -> Option<Step>) {
+    pub fn step(
+        &mut self,
+        start: &StretchMoment,
+        step: &SolvedStep,
+        again: &dyn Fn(f64) -> Option<SolvedStep>,
+    ) {
         self.steps += 1;
-        let (lost, done) = (step.sums(At::dissipation), step.sums(At::work));
+        let (lost, done) = (step.sums(StretchMoment::dissipation), step.sums(StretchMoment::work));
         let mut before = (0.0, start.force_rate);
         for (i, node) in step.nodes.iter().enumerate() {
             if before.1 < 0.0 && node.force_rate >= 0.0 {
                 let longest = if i + 1 == STAGES { Some(*step) } else { again(step.length * NODES[i]) };
-                let rate: &dyn Fn(&At) -> f64 = &|at| at.force_rate;
+                let rate: &dyn Fn(&StretchMoment) -> f64 = &|at| at.force_rate;
                 let bracket = [step.length * before.0, step.length * NODES[i]];
                 let found = longest.and_then(|longest| landed(again, bracket, before.1, &longest, rate));
                 let at = found.map_or(*node, |found| *found.end());
-                let lost = found.map_or(lost[i], |found| found.sums(At::dissipation)[STAGES - 1]);
+                let lost = found.map_or(lost[i], |found| found.sums(StretchMoment::dissipation)[STAGES - 1]);
                 let at = self.moment(&at, self.dissipated + lost);
-                self.least.push(Least { at, then: at.force });
+                self.least.push(LeastForce { at, then: at.force });
             }
             before = (NODES[i], node.force_rate);
             self.force_rate = node.force_rate;

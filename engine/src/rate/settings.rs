@@ -2,7 +2,7 @@
 
 /// How a pull is integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct PullSettings {
     /// The error of a step as a share of the contact radius: 1e-12 to 1e-3.
     pub tolerance: f64,
     /// Newton's method ends at this share of it: its next change would be of the square.
@@ -27,7 +27,7 @@ pub struct Settings {
     pub derivatives: bool,
 }
 
-impl Default for Settings {
+impl Default for PullSettings {
     /// As measured on the wavy sphere: 200 to 600 steps a pull.
     fn default() -> Self {
         Self {

@@ -33,11 +33,11 @@ pub struct Snap {
 }
 
 /// A place between two moments: s, and what is dissipated.
-type Mark = [f64; 2];
+type SnapMark = [f64; 2];
 
 /// A snap that has begun.
-struct Run {
-    from: Mark,
+struct BegunSnap {
+    from: SnapMark,
     top: f64,
     /// The slowest moment after the top.
     low: Moment,
@@ -50,13 +50,13 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool, unstable: &[[f64;
     let slow = if level > 0.0 { RUNS * level } else { f64::INFINITY };
     let level = level.max(f64::MIN_POSITIVE);
     let (mut least, mut is_settled) = (level, false);
-    let mut run: Option<Run> = None;
+    let mut run: Option<BegunSnap> = None;
     for pair in moments.windows(2) {
         let [a, b] = [&pair[0], &pair[1]];
         let speed = b.speed.abs();
         let Some(running) = &mut run else {
             if speed > FASTER * least {
-                run = Some(Run { from: crossing(a, b, FASTER * least), top: speed, low: *b });
+                run = Some(BegunSnap { from: crossing(a, b, FASTER * least), top: speed, low: *b });
                 continue;
             }
             // The edge is slow at first because it starts from rest.
@@ -77,7 +77,7 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool, unstable: &[[f64;
         } else if low <= slow && FASTER * low < running.top && speed > FASTER * low {
             found.push(running.ended([running.low.contact_radius, running.low.dissipated]));
             least = low.max(RESTS * level);
-            run = Some(Run { from: crossing(a, b, FASTER * low), top: speed, low: *b });
+            run = Some(BegunSnap { from: crossing(a, b, FASTER * low), top: speed, low: *b });
         }
     }
     if let (Some(running), Some(last)) = (run.filter(|_| !ends_apart), moments.last()) {
@@ -92,14 +92,14 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool, unstable: &[[f64;
     found
 }
 
-impl Run {
-    fn ended(&self, to: Mark) -> Snap {
+impl BegunSnap {
+    fn ended(&self, to: SnapMark) -> Snap {
         Snap { from: self.from[0], to: to[0], top_speed: self.top, dissipated: to[1] - self.from[1] }
     }
 }
 
 /// Where between two moments the speed is `speed`.
-fn crossing(a: &Moment, b: &Moment, speed: f64) -> Mark {
+fn crossing(a: &Moment, b: &Moment, speed: f64) -> SnapMark {
     let [from, to, at] = [a.speed.abs(), b.speed.abs(), speed].map(|v| ln(v.max(f64::MIN_POSITIVE)));
     let share = (at - from) / (to - from);
     let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 1.0 };

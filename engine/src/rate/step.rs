@@ -7,14 +7,14 @@
 //! p − φ(ξ, y) = 0    or    drive(ξ, y) − drive of the speed of p = 0
 //! ```
 
-use super::equation::{At, Equation};
+use super::equation::{Equation, StretchMoment};
 use super::radau::{ERROR_WEIGHTS, NODES, REAL_EIGENVALUE, STAGES, WEIGHTS, dot};
-use super::settings::Settings;
+use super::settings::PullSettings;
 use nalgebra::{SMatrix, SVector};
 
 /// A step that was solved.
 #[derive(Debug, Clone, Copy)]
-pub struct Step {
+pub struct SolvedStep {
     /// ξ at its beginning.
     pub from: f64,
     /// h.
@@ -22,27 +22,27 @@ pub struct Step {
     /// The stages: p.
     pub slopes: [f64; STAGES],
     /// Their moments; the last one is the end of the step.
-    pub nodes: [At; STAGES],
+    pub nodes: [StretchMoment; STAGES],
     /// y at the end.
     pub y: f64,
     /// The estimated error of y.
     pub error: f64,
 }
 
-impl Step {
+impl SolvedStep {
     /// The moment at its end.
-    pub fn end(&self) -> &At {
+    pub fn end(&self) -> &StretchMoment {
         &self.nodes[STAGES - 1]
     }
 
     /// The estimated error of what is summed over the step, which begins at `start`.
-    pub fn error_of(&self, density: fn(&At) -> f64, start: &At) -> f64 {
+    pub fn error_of(&self, density: fn(&StretchMoment) -> f64, start: &StretchMoment) -> f64 {
         let values = self.nodes.each_ref().map(density);
         self.length * (REAL_EIGENVALUE * density(start) + dot(&ERROR_WEIGHTS, &values))
     }
 
     /// What is summed over the step up to each stage.
-    pub fn sums(&self, density: fn(&At) -> f64) -> [f64; STAGES] {
+    pub fn sums(&self, density: fn(&StretchMoment) -> f64) -> [f64; STAGES] {
         let values = self.nodes.each_ref().map(density);
         WEIGHTS.map(|row| self.length * dot(&row, &values))
     }
@@ -60,12 +60,12 @@ const TOWARDS_BOUND: f64 = 0.1;
 pub fn solve(
     equation: &Equation<'_>,
     [xi, y]: [f64; 2],
-    start: &At,
+    start: &StretchMoment,
     h: f64,
     guess: [f64; STAGES],
     tolerance: f64,
-    settings: &Settings,
-) -> Option<Step> {
+    settings: &PullSettings,
+) -> Option<SolvedStep> {
     let mut p = guess;
     for _ in 0..settings.newton {
         let ways: [f64; STAGES] = std::array::from_fn(|i| y + h * dot(&WEIGHTS[i], &p));
@@ -112,7 +112,7 @@ pub fn solve(
             let damped = 1.0 - h * REAL_EIGENVALUE * start.phi_by_y;
             // An estimate that grows where the edge runs away by itself would be none.
             let error = if damped.is_finite() { h * along / damped.abs().max(1.0) } else { 0.0 };
-            return Some(Step {
+            return Some(SolvedStep {
                 from: xi,
                 length: h,
                 slopes: p,
@@ -128,12 +128,12 @@ pub fn solve(
 /// The step that ends where `of` vanishes, by its length in `[from, to]`; `before` is its value at the shorter, `longest` the step at the
 /// longer one.
 pub fn landed(
-    step: &dyn Fn(f64) -> Option<Step>,
+    step: &dyn Fn(f64) -> Option<SolvedStep>,
     [mut from, mut to]: [f64; 2],
     mut before: f64,
-    longest: &Step,
-    of: &dyn Fn(&At) -> f64,
-) -> Option<Step> {
+    longest: &SolvedStep,
+    of: &dyn Fn(&StretchMoment) -> f64,
+) -> Option<SolvedStep> {
     let mut after = of(longest.end());
     let mut found = *longest;
     let mut side = 0;

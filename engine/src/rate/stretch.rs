@@ -4,19 +4,19 @@
 //! another length; the polynomial of a step is not asked.
 
 use super::caps::Caps;
-use super::equation::{At, Equation};
+use super::equation::{Equation, StretchMoment};
 use super::error::RateError;
 use super::law::Motion;
 use super::radau::{NODES, STAGES, interpolated};
 use super::record::{Moment, Record};
-use super::settings::Settings;
-use super::step::{self, Step, landed};
+use super::settings::PullSettings;
+use super::step::{self, SolvedStep, landed};
 use super::variation::Variation;
 use crate::progress::Progress;
 
 /// Why a stretch ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum End {
+pub enum StretchEnd {
     /// The time is over.
     Time,
     /// The edge rests.
@@ -44,13 +44,13 @@ const PRESSED: f64 = 1e12;
 const ASKED: usize = 64;
 
 /// One stretch.
-pub struct Stretch<'a> {
+pub struct MotionStretch<'a> {
     /// The equation of motion.
     pub equation: &'a Equation<'a>,
     /// The limit points, at which steps are capped.
     pub caps: &'a Caps<'a>,
     /// Tolerance and bounds.
-    pub settings: &'a Settings,
+    pub settings: &'a PullSettings,
     /// The time at which it ends; none for a ramp that goes on until the bodies are apart.
     pub until: Option<f64>,
     /// Whether the control turns the edge round, which then comes to rest.
@@ -63,15 +63,19 @@ pub struct Stretch<'a> {
 struct Here {
     xi: f64,
     y: f64,
-    at: At,
+    at: StretchMoment,
 }
 
-impl Stretch<'_> {
+impl MotionStretch<'_> {
     /// Follows the edge and records it.
     ///
     /// # Errors
     /// [`RateError`].
-    pub fn follow(&self, record: &mut Record, progress: &dyn Progress) -> Result<(At, End), RateError> {
+    pub fn follow(
+        &self,
+        record: &mut Record,
+        progress: &dyn Progress,
+    ) -> Result<(StretchMoment, StretchEnd), RateError> {
         let begin =
             self.equation.at(0.0, 0.0).ok_or(RateError::Lost { contact_radius: self.equation.radius })?;
         let mut here = Here { xi: 0.0, y: 0.0, at: begin };
@@ -84,7 +88,7 @@ impl Stretch<'_> {
             record.moved.extend(resting);
         }
         let mut h = FIRST;
-        let mut last: Option<Step> = None;
+        let mut last: Option<SolvedStep> = None;
         for count in 0..self.settings.steps {
             if count % ASKED == 0 && progress.stop() {
                 return Err(RateError::Cancelled);
@@ -93,7 +97,7 @@ impl Stretch<'_> {
             let rest = 1.0 - here.y;
             if self.equation.motion == Motion::Opening {
                 if rest <= self.settings.gone {
-                    return Ok((here.at, End::Apart));
+                    return Ok((here.at, StretchEnd::Apart));
                 }
                 h = h.min(self.settings.of_rest * rest);
             }
@@ -112,7 +116,10 @@ impl Stretch<'_> {
                 h *= AGAIN;
                 continue;
             };
-            let sums = [step.error_of(At::dissipation, &here.at), step.error_of(At::work, &here.at)];
+            let sums = [
+                step.error_of(StretchMoment::dissipation, &here.at),
+                step.error_of(StretchMoment::work, &here.at),
+            ];
             let lost = sums.map(f64::abs).into_iter().fold(0.0, f64::max) / (self.energy + record.dissipated);
             let error =
                 (step.error.abs() / self.tolerance(&here)).max(lost / (OF_ENERGY * self.settings.tolerance));
@@ -164,7 +171,7 @@ impl Stretch<'_> {
     }
 
     /// The step of the length `h` from here, with what the step before expects of it.
-    fn step(&self, here: &Here, h: f64, last: Option<&Step>) -> Option<Step> {
+    fn step(&self, here: &Here, h: f64, last: Option<&SolvedStep>) -> Option<SolvedStep> {
         let guess = match last {
             Some(last) => {
                 let ahead = |c: f64| (here.xi - last.from + c * h) / last.length;
@@ -184,15 +191,15 @@ impl Stretch<'_> {
     }
 
     /// The step as far as the first of what ends it; `None` where its end is not found.
-    fn cut(&self, here: &Here, step: &Step) -> Option<(Step, Option<End>)> {
+    fn cut(&self, here: &Here, step: &SolvedStep) -> Option<(SolvedStep, Option<StretchEnd>)> {
         let at_break = self.caps.next_break(self.equation.motion, here.at.held.contact_radius);
         let sense = self.equation.motion.sense();
-        let past_break = |at: &At| at_break.map_or(-1.0, |s| sense * (at.held.contact_radius - s));
-        let past_time = |at: &At| self.until.map_or(-1.0, |until| at.time - until);
-        let past_rest = |at: &At| if self.rests { -at.drive } else { -1.0 };
+        let past_break = |at: &StretchMoment| at_break.map_or(-1.0, |s| sense * (at.held.contact_radius - s));
+        let past_time = |at: &StretchMoment| self.until.map_or(-1.0, |until| at.time - until);
+        let past_rest = |at: &StretchMoment| if self.rests { -at.drive } else { -1.0 };
         let mut first = (*step, None);
-        let ends = [None, Some(End::Time), Some(End::Rest)];
-        let pasts: [&dyn Fn(&At) -> f64; 3] = [&past_break, &past_time, &past_rest];
+        let ends = [None, Some(StretchEnd::Time), Some(StretchEnd::Rest)];
+        let pasts: [&dyn Fn(&StretchMoment) -> f64; 3] = [&past_break, &past_time, &past_rest];
         for (past, end) in pasts.into_iter().zip(ends) {
             if past(first.0.end()) >= 0.0 {
                 let landed = landed(

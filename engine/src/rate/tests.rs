@@ -3,7 +3,7 @@
 use super::law::EdgeLaw;
 use super::pull::{Pull, Puller};
 use super::record::Moment;
-use super::{Edge, Settings};
+use super::{MovingEdge, PullSettings};
 use crate::disc::Table;
 use crate::gap::Shape;
 use crate::problem::{Control, Part, Problem};
@@ -23,7 +23,7 @@ fn wavy() -> Table {
 }
 
 fn puller(table: &Table, exponent: f64, control: Control) -> Puller<'_> {
-    let edge = Edge { law: EdgeLaw::symmetric(exponent), opening: GAMMA, closing: GAMMA };
+    let edge = MovingEdge { law: EdgeLaw::symmetric(exponent), opening: GAMMA, closing: GAMMA };
     let rise = 0.01 * 1.5 * PI * GAMMA;
     Puller {
         table,
@@ -32,7 +32,7 @@ fn puller(table: &Table, exponent: f64, control: Control) -> Puller<'_> {
         start: 0.5,
         wave: table.gap().feature_length(),
         rise: Some(rise),
-        settings: Settings::default(),
+        settings: PullSettings::default(),
     }
 }
 
@@ -81,7 +81,7 @@ fn the_last_contact_of_a_slow_pull_is_late_by_the_law() {
         let rate = 1e-8;
         let puller = puller(&table, exponent, Control::Displacement);
         let panels = table.up_to(0.5).unwrap();
-        let folds = super::caps::Folds::new(
+        let folds = super::caps::MotionFolds::new(
             &panels,
             &puller.edge,
             super::law::Motion::Opening,
@@ -101,7 +101,7 @@ fn the_start_is_forgotten() {
     let table = wavy();
     for (tolerance, same) in [(1e-9, 1e-9), (1e-12, 1e-12)] {
         let from = |start, rate| {
-            let settings = Settings { tolerance, ..Settings::default() };
+            let settings = PullSettings { tolerance, ..PullSettings::default() };
             let puller = Puller { start, settings, ..puller(&table, 0.5, Control::Displacement) };
             let pull = puller.pull(&[Part::Apart { rate }], &Unwatched).unwrap();
             [pull.peak.force, pull.last_contact.unwrap().control]
@@ -123,10 +123,10 @@ fn programmes_close_their_balance() {
         [Control::Displacement, Control::Stiffness(1e-3), Control::Stiffness(0.15), Control::Stiffness(1e3)]
     {
         for closing in [1.0, 0.5] {
-            let edge = Edge { law: EdgeLaw::symmetric(0.5), opening: GAMMA, closing: closing * GAMMA };
+            let edge = MovingEdge { law: EdgeLaw::symmetric(0.5), opening: GAMMA, closing: closing * GAMMA };
             let puller = Puller { edge, start: 0.3, ..puller(&table, 0.5, control) };
             let panels = table.up_to(0.5).unwrap();
-            let to = super::equation::Held::equilibrium(&panels, control, edge.closing, 0.37);
+            let to = super::equation::HeldDisc::equilibrium(&panels, control, edge.closing, 0.37);
             let parts = [Part::Ramp { to, rate: 0.01 }, Part::Hold { time: 3.0 }, Part::Apart { rate: 0.02 }];
             let pull = puller.pull(&parts, &Unwatched).unwrap();
             assert!(pull.balance < 1e-9, "{control:?} {closing}: {}", pull.balance);
@@ -147,7 +147,7 @@ fn a_dead_load_is_borne_as_long_as_the_law_says() {
     for (exponent, beta, near, ratios) in
         [(0.5, 0.5 * PI, [1e-4, 0.1], [1.0000, 0.962]), (1.0, PI, [1e-4, 0.1], [0.993, 0.79])]
     {
-        let edge = Edge { law: EdgeLaw::symmetric(exponent), opening: GAMMA, closing: GAMMA };
+        let edge = MovingEdge { law: EdgeLaw::symmetric(exponent), opening: GAMMA, closing: GAMMA };
         let borne = super::failure::time_to_failure(&panels, &edge, start, -0.999 * critical).unwrap();
         assert_eq!(borne, None);
         for (over, ratio) in near.into_iter().zip(ratios) {
@@ -184,8 +184,13 @@ fn pulls_beside_each_other_differ_as_their_derivatives_say() {
     use super::variation::{START, STIFFNESS, VALUES};
     const STEP: f64 = 1e-3;
     let mut wrong = Vec::new();
-    let settings =
-        Settings { tolerance: 1e-12, derivatives: true, of_panel: 0.1, of_wave: 0.02, ..Settings::default() };
+    let settings = PullSettings {
+        tolerance: 1e-12,
+        derivatives: true,
+        of_panel: 0.1,
+        of_wave: 0.02,
+        ..PullSettings::default()
+    };
     let sphere = table(Shape::Sphere { radius_of_curvature: 1.0 });
     let waves = wavy();
     for (table, device, closing, exponent, rate) in [
@@ -201,7 +206,7 @@ fn pulls_beside_each_other_differ_as_their_derivatives_say() {
         let pulled = |by: [f64; VALUES]| {
             let [gamma, n, v, k, s] = by;
             let law = EdgeLaw::symmetric(exponent * n.exp());
-            let edge = Edge { law, opening: GAMMA * gamma.exp(), closing: closing * GAMMA };
+            let edge = MovingEdge { law, opening: GAMMA * gamma.exp(), closing: closing * GAMMA };
             let (control, start, wave) = (control(k), 0.4 * s.exp(), table.gap().feature_length());
             let puller = Puller { table, control, edge, start, wave, rise: None, settings };
             puller.pull(&[Part::Apart { rate: rate * v.exp() }], &Unwatched).unwrap()

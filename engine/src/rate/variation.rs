@@ -7,11 +7,11 @@
 //! `φ_θ` is the derivative at held ξ, y, `L_s` and `L_t`. It is solved with the stages of the step that was taken, so that what comes out are the
 //! derivatives of the numbers that the pull has, whatever their error. One stretch of an edge that opens, and the rest before it.
 
-use super::equation::{At, Equation, Held};
+use super::equation::{Equation, HeldDisc, StretchMoment};
 use super::radau::{STAGES, WEIGHTS};
 use super::record::Moment;
-pub use super::record::{Moved, VALUES};
-use super::step::Step;
+pub use super::record::{MomentSlopes, VALUES};
+use super::step::SolvedStep;
 use crate::elementary::ln;
 use crate::problem::Control;
 use nalgebra::SMatrix;
@@ -38,7 +38,7 @@ pub struct Variation<'a> {
 }
 
 /// What changes at a place that ξ and y name, by each value: s, c, and K at held s and c.
-struct Named {
+struct PlaceSlopes {
     radius: [f64; VALUES],
     control: [f64; VALUES],
     opening: [f64; VALUES],
@@ -46,7 +46,7 @@ struct Named {
 
 impl<'a> Variation<'a> {
     /// That of a stretch which begins in equilibrium, with the disc `start`.
-    pub fn new(equation: &'a Equation<'a>, start: &Held) -> Self {
+    pub fn new(equation: &'a Equation<'a>, start: &HeldDisc) -> Self {
         let Equation { control, radius: s, adhesion, .. } = *equation;
         let root = (TAU * adhesion * s).sqrt();
         let mut begin = [0.0; VALUES];
@@ -61,7 +61,7 @@ impl<'a> Variation<'a> {
     }
 
     /// What changes at held ξ and y; `passed` is the time since the stretch began.
-    fn named(&self, held: &Held, passed: f64) -> Named {
+    fn named(&self, held: &HeldDisc, passed: f64) -> PlaceSlopes {
         let mut radius = [0.0; VALUES];
         radius[START] = self.equation.radius;
         let mut control = self.begin;
@@ -70,11 +70,11 @@ impl<'a> Variation<'a> {
         if let Control::Stiffness(k) = self.equation.control {
             opening[STIFFNESS] = -held.force / (k + 2.0 * held.contact_radius);
         }
-        Named { radius, control, opening }
+        PlaceSlopes { radius, control, opening }
     }
 
     /// `φ_θ`.
-    fn of_phi(&self, at: &At) -> [f64; VALUES] {
+    fn of_phi(&self, at: &StretchMoment) -> [f64; VALUES] {
         let equation = self.equation;
         let held = &at.held;
         let named = self.named(held, at.time - equation.time);
@@ -101,7 +101,7 @@ impl<'a> Variation<'a> {
     }
 
     /// The change of a moment, where y changes by `eta`.
-    fn moved(&self, held: &Held, passed: f64, eta: [f64; VALUES]) -> Moved {
+    fn moved(&self, held: &HeldDisc, passed: f64, eta: [f64; VALUES]) -> MomentSlopes {
         let equation = self.equation;
         let named = self.named(held, passed);
         std::array::from_fn(|value| {
@@ -113,14 +113,14 @@ impl<'a> Variation<'a> {
     }
 
     /// The change of a moment of the rest before the stretch.
-    pub fn resting(&self, moment: &Moment) -> Moved {
+    pub fn resting(&self, moment: &Moment) -> MomentSlopes {
         let Equation { panels, control, .. } = *self.equation;
-        let held = Held::new(panels, control, moment.contact_radius, moment.control);
+        let held = HeldDisc::new(panels, control, moment.contact_radius, moment.control);
         self.moved(&held, 0.0, [0.0; VALUES])
     }
 
     /// The changes of the moments of a step; not numbers where there are none.
-    pub fn step(&mut self, step: &Step) -> [Moved; STAGES] {
+    pub fn step(&mut self, step: &SolvedStep) -> [MomentSlopes; STAGES] {
         let h = step.length;
         let mut matrix = SMatrix::<f64, STAGES, STAGES>::zeros();
         let mut right = SMatrix::<f64, STAGES, VALUES>::zeros();

@@ -1,19 +1,19 @@
 //! Maps of two numbers, and limit points over one, as a document.
 
 use super::problem::Head;
-use super::rows::{RowsError, Table};
+use super::rows::{ReportTable, RowsError};
 use crate::case::Case;
 use crate::preset::{BasisSpec, Preset};
 use crate::problem::Control;
-use crate::progress::{Part, Progress};
-use crate::stability::{Axis, Counts, Family, FamilyError, Folds, Map, MapPoint, Onset, Sort, Spacing};
+use crate::progress::{Progress, ProgressPart};
+use crate::stability::{Counts, Family, FamilyError, Folds, Map, MapAxis, MapPoint, Onset, Sort, Spacing};
 use serde::Serialize;
 
 /// What stands on the ordinate.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Ordinate {
     /// Another number of the preset.
-    Key(Axis),
+    Key(MapAxis),
     /// The controlled quantity at a limit point: δ, P, or Δ.
     Control,
     /// δ.
@@ -79,7 +79,7 @@ pub struct AxisReport {
 }
 
 impl AxisReport {
-    fn of(axis: &Axis) -> Self {
+    fn of(axis: &MapAxis) -> Self {
         let end = |x: f64| Some(x).filter(|x| x.is_finite());
         Self {
             key: axis.key.clone(),
@@ -172,12 +172,12 @@ impl MapReport {
     /// [`MapError`].
     pub fn compute(
         preset: &Preset,
-        x: Axis,
+        x: MapAxis,
         y: &Ordinate,
         cells: [u32; 2],
         progress: &dyn Progress,
     ) -> Result<Self, MapError> {
-        let case = Case::prepare(preset, &Part::new(progress, [0.0, 0.1]))?;
+        let case = Case::prepare(preset, &ProgressPart::new(progress, [0.0, 0.1]))?;
         let mut report = Self {
             head: Head::new("map", preset, &case),
             control: preset.path.control,
@@ -206,7 +206,7 @@ impl MapReport {
         if let Ordinate::Key(axis) = y {
             report.y = AxisReport::of(axis);
             let mut family = Family::new(preset, vec![x, axis.clone()])?;
-            let found = family.map(cells, &Part::new(progress, [0.1, 1.0]))?;
+            let found = family.map(cells, &ProgressPart::new(progress, [0.1, 1.0]))?;
             let (map, counts) = found.ok_or(MapError::Cancelled)?;
             report.rows_of_map(&family, &map);
             report.counts = Some(CountsReport::of(&family, counts));
@@ -222,15 +222,15 @@ impl MapReport {
     /// The points under the names of their columns.
     ///
     /// # Errors
-    /// As [`Table::of`].
-    pub fn table(&self) -> Result<Table, RowsError> {
-        Table::of(COLUMNS, &self.rows)
+    /// As [`ReportTable::of`].
+    pub fn table(&self) -> Result<ReportTable, RowsError> {
+        ReportTable::of(COLUMNS, &self.rows)
     }
 
     /// The points as CSV.
     ///
     /// # Errors
-    /// As [`Table::csv`].
+    /// As [`ReportTable::csv`].
     pub fn csv(&self) -> Result<String, RowsError> {
         self.table()?.csv()
     }

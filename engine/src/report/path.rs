@@ -3,16 +3,16 @@
 use super::number::{significant, with_unit};
 use super::overlap::{self, OverlapReport};
 use super::problem::{Head, control_name};
-use super::rows::{RowsError, Table};
+use super::rows::{ReportTable, RowsError};
 use crate::case::{Case, CaseError};
 use crate::gap::{Gap, wave_index};
 use crate::preset::{BasisSpec, Preset};
 use crate::problem::cohesion::TABOR_OVER_MAUGIS;
 use crate::problem::{ContactKind, Control, Reduced, Turn, Units};
-use crate::progress::{Part, Progress};
+use crate::progress::{Progress, ProgressPart};
 use crate::quasistatic::overlap::passed;
 use crate::quasistatic::path::{
-    Asked, Direction, Event, Losses, Passed, Path, PathState, Setting, Totals, TurnReached, WhyNot,
+    AskedState, Direction, Event, Losses, Passed, Path, PathSetting, PathState, Totals, TurnReached, WhyNot,
 };
 use crate::quasistatic::{Curve, Detail, Overlap, State};
 use crate::units::Quantity;
@@ -306,16 +306,16 @@ impl PathReport {
     /// # Errors
     /// [`CaseError`] when it cannot be computed, and when `progress` said stop.
     pub fn unload(preset: &Preset, extent: Extent, progress: &dyn Progress) -> Result<Self, CaseError> {
-        let case = Case::with_range(preset, &Part::new(progress, [0.0, 0.5]))?;
-        let setting = Setting { losses: extent.losses, ..case.setting_of_unloading() };
-        if let Some(path) = case.unload_in_zone(&setting, &Part::new(progress, [0.5, 1.0]))? {
+        let case = Case::with_range(preset, &ProgressPart::new(progress, [0.0, 0.5]))?;
+        let setting = PathSetting { losses: extent.losses, ..case.setting_of_unloading() };
+        if let Some(path) = case.unload_in_zone(&setting, &ProgressPart::new(progress, [0.5, 1.0]))? {
             return Ok(Self::new(preset, &case, &path));
         }
-        let curve = case.curve_in(Detail::Drawn, &Part::new(progress, [0.5, 0.7]))?;
-        let path = case.unload(&curve, &setting, &Part::new(progress, [0.7, 0.8]))?;
+        let curve = case.curve_in(Detail::Drawn, &ProgressPart::new(progress, [0.5, 0.7]))?;
+        let path = case.unload(&curve, &setting, &ProgressPart::new(progress, [0.7, 0.8]))?;
         let mut report = Self::new(preset, &case, &path);
         if extent.admissibility {
-            report = report.checked(&case, &curve, &path, &Part::new(progress, [0.8, 1.0]))?;
+            report = report.checked(&case, &curve, &path, &ProgressPart::new(progress, [0.8, 1.0]))?;
         }
         report.warnings.extend(case.unsettled(&path, progress));
         // What was given up may lack its warning.
@@ -341,18 +341,18 @@ impl PathReport {
         extent: Extent,
         progress: &dyn Progress,
     ) -> Result<Self, CaseError> {
-        let case = Case::with_range(preset, &Part::new(progress, [0.0, 0.1]))?;
+        let case = Case::with_range(preset, &ProgressPart::new(progress, [0.0, 0.1]))?;
         let units = case.units();
         let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, case.control));
-        let setting = Setting { losses: extent.losses, ..case.setting() };
-        let path = case.cycle(turn, &setting, &Part::new(progress, [0.1, 0.9]))?;
+        let setting = PathSetting { losses: extent.losses, ..case.setting() };
+        let path = case.cycle(turn, &setting, &ProgressPart::new(progress, [0.1, 0.9]))?;
         let report = Self::new(preset, &case, &path);
         if !extent.admissibility || setting.contact == ContactKind::Rings || case.cohesion.is_some() {
             return Ok(report);
         }
         let largest = path.states.iter().map(|state| state.contact_radius).fold(case.start, f64::max);
-        let curve = case.curve_from(largest, &Part::new(progress, [0.9, 0.95]))?;
-        report.checked(&case, &curve, &path, &Part::new(progress, [0.95, 1.0]))
+        let curve = case.curve_from(largest, &ProgressPart::new(progress, [0.9, 0.95]))?;
+        report.checked(&case, &curve, &path, &ProgressPart::new(progress, [0.95, 1.0]))
     }
 
     /// The document of a path of `case`; whether one of one disc is admissible is not known yet.
@@ -445,16 +445,16 @@ impl PathReport {
     /// The events under the names of their columns.
     ///
     /// # Errors
-    /// As [`Table::of`].
-    pub fn table(&self) -> Result<Table, RowsError> {
+    /// As [`ReportTable::of`].
+    pub fn table(&self) -> Result<ReportTable, RowsError> {
         events_table(&self.events)
     }
 
     /// The states under the names of their columns, a row for each contact.
     ///
     /// # Errors
-    /// As [`Table::of`].
-    pub fn states_table(&self) -> Result<Table, RowsError> {
+    /// As [`ReportTable::of`].
+    pub fn states_table(&self) -> Result<ReportTable, RowsError> {
         let rows: Vec<ContactRow> = self
             .states
             .iter()
@@ -481,17 +481,17 @@ impl PathReport {
             })
             .collect();
         if rows.iter().all(|row| row.zone_radius.is_none()) {
-            return Table::of(STATE_COLUMNS, &rows);
+            return ReportTable::of(STATE_COLUMNS, &rows);
         }
-        Table::of(&[STATE_COLUMNS, STATE_ZONE_COLUMNS].concat(), &rows)
+        ReportTable::of(&[STATE_COLUMNS, STATE_ZONE_COLUMNS].concat(), &rows)
     }
 }
 
 /// Events under the names of their columns.
 ///
 /// # Errors
-/// As [`Table::of`].
-pub fn events_table(events: &[EventReport]) -> Result<Table, RowsError> {
+/// As [`ReportTable::of`].
+pub fn events_table(events: &[EventReport]) -> Result<ReportTable, RowsError> {
     let cells = |state: &Option<StateReport>| {
         state.as_ref().map(|state| StateCells {
             contact_radius: state.contact_radius,
@@ -520,9 +520,9 @@ pub fn events_table(events: &[EventReport]) -> Result<Table, RowsError> {
     };
     let rows: Vec<EventRow> = events.iter().map(row).collect();
     if rows.iter().all(|row| row.before_zone_radius.or(row.after_zone_radius).is_none()) {
-        return Table::of(COLUMNS, &rows);
+        return ReportTable::of(COLUMNS, &rows);
     }
-    Table::of(&[COLUMNS, ZONE_COLUMNS].concat(), &rows)
+    ReportTable::of(&[COLUMNS, ZONE_COLUMNS].concat(), &rows)
 }
 
 fn problem_notes(case: &Case) -> Vec<String> {
@@ -548,7 +548,7 @@ pub(super) fn note_of_range(preset: &Preset, case: &Case) -> Option<String> {
 }
 
 /// Why a path does not start from the state asked for.
-fn start_note(case: &Case, path: &Path, asked: &Asked) -> String {
+fn start_note(case: &Case, path: &Path, asked: &AskedState) -> String {
     let units = case.units();
     let length =
         |s: f64| with_unit(&case.shown, Quantity::Length, s * units.length, true, |s| significant(s, 6));

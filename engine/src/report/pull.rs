@@ -3,7 +3,7 @@
 use super::map::EXACT;
 use super::number::{loss, significant};
 use super::problem::Head;
-use super::rows::{RowsError, Table};
+use super::rows::{ReportTable, RowsError};
 use super::table::{aligned, ascii_unit, control, head};
 use crate::case::{Case, CaseError};
 use crate::preset::{BasisSpec, Preset, edge};
@@ -11,7 +11,7 @@ use crate::problem::{Control, Part};
 use crate::progress::{self, Progress};
 use crate::quasistatic::admissible::Judge;
 use crate::rate::failure::time_to_failure;
-use crate::rate::{Edge, EdgeLaw, Moment, Pull, Puller, RateError, Settings};
+use crate::rate::{EdgeLaw, Moment, MovingEdge, Pull, PullSettings, Puller, RateError};
 use crate::units::{Quantity, UnitSystem};
 use serde::Serialize;
 use std::fmt::Write;
@@ -213,7 +213,7 @@ pub struct PullReport {
 
 /// What is asked for.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Asked {
+pub struct AskedPulls {
     /// Rates of the control, in the units of the preset's numbers; none means what the preset says.
     pub rates: Vec<f64>,
     /// Dead loads whose time to failure is wanted. With these and without rates nothing is pulled.
@@ -298,13 +298,13 @@ impl PullReport {
     ///
     /// # Errors
     /// [`PullError`].
-    pub fn compute(preset: &Preset, asked: &Asked, progress: &dyn Progress) -> Result<Self, PullError> {
+    pub fn compute(preset: &Preset, asked: &AskedPulls, progress: &dyn Progress) -> Result<Self, PullError> {
         let case = Case::prepare(preset, progress)?;
         let (law, speed) = law(preset)?;
         let units = *case.units();
         let opening = case.reduced.work_of_adhesion;
         let closing = case.closing.unwrap_or(opening);
-        let edge = Edge { law, opening, closing };
+        let edge = MovingEdge { law, opening, closing };
         let is_force = case.control == Control::Force;
         let factors = Factors {
             length: units.length,
@@ -321,7 +321,7 @@ impl PullReport {
             start: case.start,
             wave: case.reduced.gap.feature_length(),
             rise: case.critical_force().map(|force| RISE * force / units.force),
-            settings: Settings::default(),
+            settings: PullSettings::default(),
         };
         let refused = |error: RateError| match error {
             RateError::Cancelled => PullError::Case(CaseError::Cancelled),
@@ -337,7 +337,7 @@ impl PullReport {
         for (k, (rate, parts)) in programmes.iter().enumerate() {
             let parts: Vec<Part> =
                 parts.iter().map(|part| part.in_units(1.0 / factors.control, 1.0 / factors.time())).collect();
-            let part = progress::Part::new(progress, [k as f64 / count, (k + 1) as f64 / count]);
+            let part = progress::ProgressPart::new(progress, [k as f64 / count, (k + 1) as f64 / count]);
             let pull = puller.pull(&parts, &part).map_err(refused)?;
             warnings.extend(limits(preset, &case, &factors, rate.as_ref(), &pull, progress));
             runs.push(factors.run(*rate, &pull));
@@ -364,10 +364,10 @@ impl PullReport {
     /// The runs under the names of their columns; the times to failure where nothing was pulled.
     ///
     /// # Errors
-    /// As [`Table::of`].
-    pub fn table(&self) -> Result<Table, RowsError> {
+    /// As [`ReportTable::of`].
+    pub fn table(&self) -> Result<ReportTable, RowsError> {
         if self.runs.is_empty() {
-            return Table::of(FAILURE_COLUMNS, &self.failures);
+            return ReportTable::of(FAILURE_COLUMNS, &self.failures);
         }
         let row = |run: &RunReport| RunRow {
             rate: run.rate,
@@ -379,16 +379,16 @@ impl PullReport {
             top_edge_speed: run.top_edge_speed,
             balance: run.balance,
         };
-        Table::of(COLUMNS, &self.runs.iter().map(row).collect::<Vec<_>>())
+        ReportTable::of(COLUMNS, &self.runs.iter().map(row).collect::<Vec<_>>())
     }
 
     /// The moments of all runs.
     ///
     /// # Errors
-    /// As [`Table::of`].
-    pub fn moments(&self) -> Result<Table, RowsError> {
+    /// As [`ReportTable::of`].
+    pub fn moments(&self) -> Result<ReportTable, RowsError> {
         let rows: Vec<MomentRow> = self.runs.iter().flat_map(|run| run.moments.iter().copied()).collect();
-        Table::of(MOMENT_COLUMNS, &rows)
+        ReportTable::of(MOMENT_COLUMNS, &rows)
     }
 
     /// Everything as lines of text.
@@ -536,14 +536,14 @@ pub fn law(preset: &Preset) -> Result<(EdgeLaw, f64), PullError> {
 /// Why a preset does not say how it is pulled; `None` where it does.
 #[must_use]
 pub fn missing(preset: &Preset) -> Option<PullError> {
-    law(preset).err().or_else(|| programmes(preset, &Asked::default()).err())
+    law(preset).err().or_else(|| programmes(preset, &AskedPulls::default()).err())
 }
 
 /// What is done in a run, with its rate where it has one alone.
 type Programme = (Option<f64>, Vec<Part>);
 
 /// What is done in each run, in the preset's units.
-fn programmes(preset: &Preset, asked: &Asked) -> Result<Vec<Programme>, PullError> {
+fn programmes(preset: &Preset, asked: &AskedPulls) -> Result<Vec<Programme>, PullError> {
     if !asked.rates.is_empty() {
         return Ok(asked.rates.iter().map(|&rate| (Some(rate), vec![Part::Apart { rate }])).collect());
     }

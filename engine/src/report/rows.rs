@@ -20,14 +20,14 @@ pub enum RowsError {
 
 /// Rows under the names of their columns; null where a row has nothing.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Table {
+pub struct ReportTable {
     /// The names, in the order of the cells.
     pub columns: Vec<String>,
     /// The cells of each row, one for each column.
     pub rows: Vec<Vec<Value>>,
 }
 
-impl Table {
+impl ReportTable {
     /// `rows` under the names `columns`.
     ///
     /// # Errors
@@ -54,7 +54,7 @@ impl Table {
     /// The same with tabs between the cells, as spreadsheets take it from a clipboard.
     ///
     /// # Errors
-    /// As [`Table::csv`].
+    /// As [`ReportTable::csv`].
     pub fn tsv(&self) -> Result<String, RowsError> {
         self.separated(b'\t')
     }
@@ -77,9 +77,9 @@ impl Table {
 /// `rows` as CSV text with the header `columns`.
 ///
 /// # Errors
-/// As [`Table::of`].
+/// As [`ReportTable::of`].
 pub fn csv<R: Serialize>(columns: &[&str], rows: &[R]) -> Result<String, RowsError> {
-    Table::of(columns, rows)?.csv()
+    ReportTable::of(columns, rows)?.csv()
 }
 
 /// The same with tabs between the cells, as spreadsheets take it from a clipboard.
@@ -87,7 +87,7 @@ pub fn csv<R: Serialize>(columns: &[&str], rows: &[R]) -> Result<String, RowsErr
 /// # Errors
 /// As [`csv()`].
 pub fn tsv<R: Serialize>(columns: &[&str], rows: &[R]) -> Result<String, RowsError> {
-    Table::of(columns, rows)?.separated(b'\t')
+    ReportTable::of(columns, rows)?.separated(b'\t')
 }
 
 fn flatten(name: &str, value: Value, cells: &mut HashMap<String, Value>) {

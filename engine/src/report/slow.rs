@@ -14,7 +14,7 @@ use crate::preset::Preset;
 use crate::problem::Control;
 use crate::progress::Progress;
 use crate::quasistatic::Detail;
-use crate::quasistatic::path::{Event, EventKind, Losses, Setting};
+use crate::quasistatic::path::{Event, EventKind, Losses, PathSetting};
 use std::f64::consts::TAU;
 
 /// The law of a preset; numbers in its units.
@@ -36,7 +36,8 @@ impl SlowPulls {
         let (law, speed) = law(preset)?;
         let curve = case.curve_in(Detail::Borders, progress)?;
         let (losses, detail) = (Losses::Once, Detail::Borders);
-        let setting = Setting { losses, detail, closing: case.closing, ..Setting::one_disc(case.control) };
+        let setting =
+            PathSetting { losses, detail, closing: case.closing, ..PathSetting::one_disc(case.control) };
         let path = case.unload(&curve, &setting, progress)?;
         let Some(at) = path.largest_pull() else { return Ok(None) };
         let units = case.units();

@@ -9,17 +9,17 @@
 //! other end of a spring. D. Maugis and M. Barquins, J. Phys. D 11, 1989 (1978).
 
 use super::problem::Head;
-use super::rows::{RowsError, Table};
+use super::rows::{ReportTable, RowsError};
 use crate::case::{Case, CaseError};
 use crate::disc::Panels;
 use crate::elementary::hypot;
-use crate::measured::branches::Point;
+use crate::measured::branches::MeasuredPoint;
 use crate::measured::speed::{Speed, noise, speeds};
-use crate::measured::{Abscissa, Branch, Branches};
+use crate::measured::{Abscissa, Branches, MeasuredBranch};
 use crate::preset::Preset;
 use crate::problem::{Control, Units};
 use crate::progress::Progress;
-use crate::rate::equation::Held;
+use crate::rate::equation::HeldDisc;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ pub enum SpeedsError {
     #[error("G cannot be computed from {}: the file has no {missing}", .pair.words())]
     Lacks {
         /// What was asked for.
-        pair: Pair,
+        pair: MeasuredPair,
         /// What is missing.
         missing: &'static str,
     },
@@ -54,7 +54,7 @@ pub enum SpeedsError {
 
 /// What G is computed from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pair {
+pub enum MeasuredPair {
     /// P and s.
     ForceRadius,
     /// δ and s.
@@ -63,7 +63,7 @@ pub enum Pair {
     ForceApproach,
 }
 
-impl Pair {
+impl MeasuredPair {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::ForceRadius, Self::ApproachRadius, Self::ForceApproach];
 
@@ -144,11 +144,11 @@ pub struct SpeedsReport {
 }
 
 /// What rows are turned into states by.
-struct Reading {
+struct RowReading {
     panels: Arc<Panels>,
     units: Units,
     abscissa: Abscissa,
-    pair: Pair,
+    pair: MeasuredPair,
     /// That of the way, reduced.
     control: Control,
     /// δ₀, P₀ and its slope over x, in base units.
@@ -165,9 +165,9 @@ struct Released {
     by_radius: f64,
 }
 
-impl Reading {
+impl RowReading {
     /// G at a row; `None` at a radius that is none, or for which the gap is not known.
-    fn released(&self, point: &Point) -> Option<Released> {
+    fn released(&self, point: &MeasuredPoint) -> Option<Released> {
         let [offset, baseline, tilt] = self.instrument;
         let force = (point.force - baseline - tilt * point.x) / self.units.force;
         let [sigma_x, sigma_force] = self.sigma;
@@ -179,17 +179,17 @@ impl Reading {
             Control::Stiffness(k) => (way - force / k, 1.0 / k),
             _ => (way, 0.0),
         };
-        if self.pair != Pair::ForceApproach {
+        if self.pair != MeasuredPair::ForceApproach {
             let radius = radius_of(self.abscissa, point)?;
             let s = radius / self.units.length;
             if !is_known(s) {
                 return None;
             }
-            let (held, of_column) = if self.pair == Pair::ForceRadius {
-                let held = Held::new(&self.panels, Control::Force, s, force);
+            let (held, of_column) = if self.pair == MeasuredPair::ForceRadius {
+                let held = HeldDisc::new(&self.panels, Control::Force, s, force);
                 (held, held.by_control * sigma_force)
             } else {
-                let held = Held::new(&self.panels, Control::Displacement, s, approach);
+                let held = HeldDisc::new(&self.panels, Control::Displacement, s, approach);
                 (held, hypot(sigma_x, compliance * sigma_force))
             };
             let of_opening = 2.0 * held.opening / (TAU * s);
@@ -217,13 +217,13 @@ impl Reading {
     }
 
     /// The disc that has the force `force` at the approach `approach` and pulls at its edge.
-    fn at_force(&self, approach: f64, force: f64) -> Option<Held> {
+    fn at_force(&self, approach: f64, force: f64) -> Option<HeldDisc> {
         /// Halvings of an interval: to the last digit.
         const TIMES: usize = 200;
-        let at = |s: f64| Held::new(&self.panels, Control::Displacement, s, approach);
+        let at = |s: f64| HeldDisc::new(&self.panels, Control::Displacement, s, approach);
         let (mut lo, mut hi) = (self.panels.smallest(), self.panels.reach());
         // Below the disc whose edge is free the force rises with s: it is behind that one.
-        let is_beyond = |held: &Held| held.opening > 0.0 && held.force < force;
+        let is_beyond = |held: &HeldDisc| held.opening > 0.0 && held.force < force;
         if !is_beyond(&at(hi)) {
             return None;
         }
@@ -239,7 +239,7 @@ impl Reading {
 }
 
 /// G, negative where the edge is pressed.
-fn signed(held: &Held) -> f64 {
+fn signed(held: &HeldDisc) -> f64 {
     held.energy_release_rate() * if held.opening < 0.0 { -1.0 } else { 1.0 }
 }
 
@@ -251,7 +251,7 @@ impl SpeedsReport {
     /// [`SpeedsError`].
     pub fn compute(
         preset: &Preset,
-        pair: Option<Pair>,
+        pair: Option<MeasuredPair>,
         progress: &dyn Progress,
     ) -> Result<Self, SpeedsError> {
         let source = preset.data.source.as_ref().ok_or(SpeedsError::NoData)?;
@@ -266,18 +266,19 @@ impl SpeedsReport {
         });
         let mut reach = wanted(&case, &branches);
         let [sigma_x, sigma_force, _] = branches.noise.sigma;
-        let of_file: Vec<Point> = branches.list.iter().flat_map(|branch| branch.attached.clone()).collect();
+        let of_file: Vec<MeasuredPoint> =
+            branches.list.iter().flat_map(|branch| branch.attached.clone()).collect();
         let is_measured = of_file.iter().all(|point| radius_of(branches.abscissa, point).is_some());
-        let usual = if is_measured { Pair::ForceRadius } else { Pair::ForceApproach };
+        let usual = if is_measured { MeasuredPair::ForceRadius } else { MeasuredPair::ForceApproach };
         let pair = pair.unwrap_or(usual);
-        if pair != Pair::ForceApproach && !is_measured {
+        if pair != MeasuredPair::ForceApproach && !is_measured {
             return Err(SpeedsError::Lacks { pair, missing: "contact radius at every row" });
         }
-        if pair != Pair::ForceRadius && branches.abscissa == Abscissa::Radius {
+        if pair != MeasuredPair::ForceRadius && branches.abscissa == Abscissa::Radius {
             return Err(SpeedsError::Lacks { pair, missing: "approach" });
         }
         let mut panels = case.table.up_to(reach).map_err(|_| SpeedsError::Nothing)?;
-        let reading = |panels: Arc<Panels>| Reading {
+        let reading = |panels: Arc<Panels>| RowReading {
             panels,
             units,
             abscissa: branches.abscissa,
@@ -336,31 +337,31 @@ impl SpeedsReport {
     /// The rows under the names of their columns.
     ///
     /// # Errors
-    /// As [`Table::of`].
-    pub fn table(&self) -> Result<Table, RowsError> {
-        Table::of(COLUMNS, &self.rows)
+    /// As [`ReportTable::of`].
+    pub fn table(&self) -> Result<ReportTable, RowsError> {
+        ReportTable::of(COLUMNS, &self.rows)
     }
 }
 
 /// The radius up to which the gap is wanted: the largest that is measured, or else one at which every row is beyond the disc it has.
 fn wanted(case: &Case, branches: &Branches) -> f64 {
-    let of_branch = |branch: &Branch| branch.attached.clone();
+    let of_branch = |branch: &MeasuredBranch| branch.attached.clone();
     let measured = branches.list.iter().flat_map(of_branch).map(|point| radius_of(branches.abscissa, &point));
     let largest = measured.flatten().fold(0.0, f64::max) / case.units().length;
     largest.max(case.start).min(case.reduced.largest_contact())
 }
 
 /// The contact radius that is measured at a point.
-fn radius_of(abscissa: Abscissa, point: &Point) -> Option<f64> {
+fn radius_of(abscissa: Abscissa, point: &MeasuredPoint) -> Option<f64> {
     let radius = if abscissa == Abscissa::Radius { point.x } else { point.radius };
     radius.is_finite().then_some(radius)
 }
 
 /// The rows of one branch in the order of measurement, and the noise of its contact radii.
-fn of_branch(reading: &Reading, branch: &Branch) -> (Vec<SpeedRow>, Option<f64>) {
+fn of_branch(reading: &RowReading, branch: &MeasuredBranch) -> (Vec<SpeedRow>, Option<f64>) {
     let mut points = branch.attached.clone();
     points.sort_by_key(|point| point.at);
-    let found: Vec<(Point, Released)> =
+    let found: Vec<(MeasuredPoint, Released)> =
         points.into_iter().filter_map(|point| Some((point, reading.released(&point)?))).collect();
     let is_timed = found.iter().all(|(point, _)| point.time.is_finite());
     let radii: Vec<f64> = found.iter().map(|(_, released)| released.contact_radius).collect();
@@ -369,7 +370,7 @@ fn of_branch(reading: &Reading, branch: &Branch) -> (Vec<SpeedRow>, Option<f64>)
         if is_timed { found.iter().map(|(point, _)| point.time).collect() } else { numbers };
     let sigma = noise(&times, &radii);
     let speeds = if is_timed { speeds(&times, &radii, sigma) } else { vec![None; found.len()] };
-    let row = |((point, released), speed): (&(Point, Released), Option<Speed>)| SpeedRow {
+    let row = |((point, released), speed): (&(MeasuredPoint, Released), Option<Speed>)| SpeedRow {
         time: is_timed.then_some(point.time),
         contact_radius: released.contact_radius,
         speed: speed.map(|speed| -speed.value),
@@ -387,7 +388,7 @@ fn of_branch(reading: &Reading, branch: &Branch) -> (Vec<SpeedRow>, Option<f64>)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measured::Source;
+    use crate::measured::PointsFile;
     use crate::preset::{Value, data, read};
     use crate::progress::Unwatched;
     use std::fmt::Write;
@@ -419,7 +420,7 @@ mod tests {
 
     fn report(text: &str) -> SpeedsReport {
         let mut preset = read("made", PRESET).unwrap();
-        let source = Source::new("made.csv".to_owned(), None, text.as_bytes().into());
+        let source = PointsFile::new("made.csv".to_owned(), None, text.as_bytes().into());
         preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
         preset.set(data::FREE_PART, Value::Text("none".to_owned())).unwrap();
         preset.set(data::SIGNS, Value::Text("x=+,force=+".to_owned())).unwrap();
@@ -434,7 +435,7 @@ mod tests {
             writeln!(text, "{s:e},{force:e},{time:e},retraction").unwrap();
         }
         let mut preset = read("made", PRESET).unwrap();
-        let source = Source::new("made.csv".to_owned(), None, text.as_bytes().into());
+        let source = PointsFile::new("made.csv".to_owned(), None, text.as_bytes().into());
         preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
         let found = SpeedsReport::compute(&preset, None, &Unwatched).unwrap();
         assert_eq!((found.from, found.rows.len()), ("force and contact radius", made.len()));
@@ -480,11 +481,11 @@ mod tests {
             writeln!(text, "{approach:e},{force:e},{s:e},retraction").unwrap();
         }
         let mut preset = read("made", PRESET).unwrap();
-        let source = Source::new("made.csv".to_owned(), None, text.as_bytes().into());
+        let source = PointsFile::new("made.csv".to_owned(), None, text.as_bytes().into());
         preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
         preset.set(data::FREE_PART, Value::Text("none".to_owned())).unwrap();
         preset.set(data::SIGNS, Value::Text("x=+,force=+".to_owned())).unwrap();
-        for pair in Pair::ALL {
+        for pair in MeasuredPair::ALL {
             let found = SpeedsReport::compute(&preset, Some(pair), &Unwatched).unwrap();
             assert_eq!((found.from, found.rows.len()), (pair.words(), made.len()));
             for row in &found.rows {
@@ -496,9 +497,12 @@ mod tests {
         // An E* twice as large: twice the G of approach and radius, and another one of the others.
         preset.set("material.effective_modulus", Value::Number(2e6)).unwrap();
         let of = |pair| SpeedsReport::compute(&preset, Some(pair), &Unwatched).unwrap().rows[50];
-        let [s, .., energy] = made[of(Pair::ApproachRadius).row - 1];
-        assert!((of(Pair::ApproachRadius).energy_release_rate / (2.0 * energy) - 1.0).abs() < 1e-6);
-        assert!((of(Pair::ForceRadius).energy_release_rate / (2.0 * energy) - 1.0).abs() > 0.1, "{s}");
+        let [s, .., energy] = made[of(MeasuredPair::ApproachRadius).row - 1];
+        assert!((of(MeasuredPair::ApproachRadius).energy_release_rate / (2.0 * energy) - 1.0).abs() < 1e-6);
+        assert!(
+            (of(MeasuredPair::ForceRadius).energy_release_rate / (2.0 * energy) - 1.0).abs() > 0.1,
+            "{s}"
+        );
     }
 
     #[test]
@@ -520,7 +524,7 @@ mod tests {
             writeln!(text, "{s:e},{force:e},{time:e},retraction").unwrap();
         }
         let mut preset = read("made", PRESET).unwrap();
-        let source = Source::new("made.csv".to_owned(), None, text.as_bytes().into());
+        let source = PointsFile::new("made.csv".to_owned(), None, text.as_bytes().into());
         preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
         let found = SpeedsReport::compute(&preset, None, &Unwatched).unwrap();
         for row in &found.rows {

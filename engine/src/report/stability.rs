@@ -2,7 +2,7 @@
 
 use super::map::EXACT;
 use super::problem::Head;
-use super::rows::{RowsError, Table};
+use super::rows::{ReportTable, RowsError};
 use crate::case::{Case, CaseError};
 use crate::preset::{BasisSpec, Preset};
 use crate::problem::Control;
@@ -123,8 +123,8 @@ impl StabilityReport {
     /// The rows under the names of their columns.
     ///
     /// # Errors
-    /// As [`Table::of`].
-    pub fn table(&self) -> Result<Table, RowsError> {
-        Table::of(COLUMNS, &self.rows)
+    /// As [`ReportTable::of`].
+    pub fn table(&self) -> Result<ReportTable, RowsError> {
+        ReportTable::of(COLUMNS, &self.rows)
     }
 }

@@ -1,7 +1,7 @@
 //! Cells in columns, numbers with their units, and a verification as text for a terminal.
 
 use super::number::{difference, short, significant, with_unit};
-use super::rows::Table;
+use super::rows::ReportTable;
 use super::verify::{RowReport, VerifyReport};
 use crate::problem::Control;
 use crate::units::{Quantity, UnitSystem};
@@ -33,7 +33,7 @@ pub(super) fn aligned(rows: &[Vec<String>], left: usize) -> String {
 }
 
 /// Any rows as lines of text under the names of their columns, numbers to eight digits.
-pub fn rows(table: &Table) -> String {
+pub fn rows(table: &ReportTable) -> String {
     let shown = |cell: &Value| match cell {
         Value::Null => "-".to_owned(),
         Value::String(text) => text.clone(),

@@ -5,17 +5,19 @@ use super::overlap::{self, OverlapReport};
 use super::path::note_of_range;
 use super::problem::Head;
 use super::problem::control_name;
-use super::rows::{RowsError, Table};
+use super::rows::{ReportTable, RowsError};
 use crate::case::{Case, CaseError};
 use crate::disc::{Edges, Place};
 use crate::gap::{Gap, wave_index};
 use crate::preset::Preset;
 use crate::problem::Control;
-use crate::progress::{Part, Progress, Unwatched};
+use crate::progress::{Progress, ProgressPart, Unwatched};
 use crate::quasistatic::curve::places;
 use crate::quasistatic::overlap::overlaps;
 use crate::quasistatic::path::Zones;
-use crate::quasistatic::{Curve, CurveStop, Detail, Equilibrium, Monotone, Overlap, Point, State, Stiffness};
+use crate::quasistatic::{
+    Curve, CurveStop, Detail, Equilibrium, Monotone, Overlap, State, StatePoint, Stiffness,
+};
 use crate::theory::{self, Exact};
 use crate::units::Quantity;
 use serde::Serialize;
@@ -103,7 +105,7 @@ impl PointReport {
         case: &Case,
         equilibrium: &Equilibrium,
         step: usize,
-        (point, (state, stiffness)): (&Point, (State, Stiffness)),
+        (point, (state, stiffness)): (&StatePoint, (State, Stiffness)),
         overlapping: &[Overlap],
     ) -> Self {
         let units = case.units();
@@ -166,7 +168,7 @@ impl PointReport {
 
 impl ExactReport {
     /// `force` of a point beside the exact equilibrium at its radius.
-    fn new(force: f64, exact: &theory::Equilibrium) -> Self {
+    fn new(force: f64, exact: &theory::ExactEquilibrium) -> Self {
         Self {
             approach: exact.approach,
             force: exact.force,
@@ -274,13 +276,13 @@ impl TraceReport {
     /// # Errors
     /// As [`TraceReport::compute`], and [`CaseError::Cancelled`] when `progress` said stop.
     pub fn compute_while(preset: &Preset, progress: &dyn Progress) -> Result<Self, CaseError> {
-        let case = Case::with_range(preset, &Part::new(progress, [0.0, 0.4]))?;
+        let case = Case::with_range(preset, &ProgressPart::new(progress, [0.0, 0.4]))?;
         if case.cohesion.is_some() {
-            return Self::in_zone(preset, &case, &Part::new(progress, [0.4, 1.0]));
+            return Self::in_zone(preset, &case, &ProgressPart::new(progress, [0.4, 1.0]));
         }
-        let curve = case.curve(&Part::new(progress, [0.4, 0.6]))?;
-        let (branch, stop) = case.trace_while(&curve, &Part::new(progress, [0.6, 0.8]))?;
-        Self::new(preset, &case, &curve, &branch.points, stop, &Part::new(progress, [0.8, 1.0]))
+        let curve = case.curve(&ProgressPart::new(progress, [0.4, 0.6]))?;
+        let (branch, stop) = case.trace_while(&curve, &ProgressPart::new(progress, [0.6, 0.8]))?;
+        Self::new(preset, &case, &curve, &branch.points, stop, &ProgressPart::new(progress, [0.8, 1.0]))
     }
 
     /// The document of the equilibria of adhesion with a range, from the start to where the zone has shrunk to nothing, or to the
@@ -380,7 +382,7 @@ impl TraceReport {
         preset: &Preset,
         case: &Case,
         curve: &Curve,
-        traced: &[Point],
+        traced: &[StatePoint],
         stop: CurveStop,
         progress: &dyn Progress,
     ) -> Result<Self, CaseError> {
@@ -437,19 +439,19 @@ impl TraceReport {
     /// The points under the names of their columns.
     ///
     /// # Errors
-    /// As [`Table::of`].
-    pub fn table(&self) -> Result<Table, RowsError> {
+    /// As [`ReportTable::of`].
+    pub fn table(&self) -> Result<ReportTable, RowsError> {
         let exact: &[&str] =
             if self.points.iter().all(|point| point.exact.is_none()) { &[] } else { EXACT_COLUMNS };
         let zone: &[&str] =
             if self.points.iter().all(|point| point.zone_radius.is_none()) { &[] } else { ZONE_COLUMNS };
-        Table::of(&[COLUMNS, exact, zone].concat(), &self.points)
+        ReportTable::of(&[COLUMNS, exact, zone].concat(), &self.points)
     }
 
     /// The points as CSV.
     ///
     /// # Errors
-    /// As [`Table::csv`].
+    /// As [`ReportTable::csv`].
     pub fn csv(&self) -> Result<String, RowsError> {
         self.table()?.csv()
     }

@@ -1,8 +1,8 @@
 //! Our numbers against theory, and against each other, as a document.
 
 use super::SCHEMA;
-use super::rows::{RowsError, Table};
-use crate::verify::{Group, Row};
+use super::rows::{ReportTable, RowsError};
+use crate::verify::{Group, VerifyRow};
 use serde::Serialize;
 
 /// A verification: one row per number.
@@ -58,7 +58,7 @@ impl VerifyReport {
     /// The document of `groups`, or of the rows of which the group or the name contains `only`, in any case of letters.
     pub fn new(groups: &[Group], only: Option<&str>) -> Self {
         let wanted = only.map(str::to_lowercase);
-        let is_wanted = |group: &Group, row: &Row| {
+        let is_wanted = |group: &Group, row: &VerifyRow| {
             wanted.as_ref().is_none_or(|wanted| {
                 [&group.title, &row.what].into_iter().any(|text| text.to_lowercase().contains(wanted))
             })
@@ -82,9 +82,9 @@ impl VerifyReport {
     /// The rows under the names of their columns.
     ///
     /// # Errors
-    /// As [`Table::of`].
-    pub fn table(&self) -> Result<Table, RowsError> {
-        Table::of(COLUMNS, &self.rows)
+    /// As [`ReportTable::of`].
+    pub fn table(&self) -> Result<ReportTable, RowsError> {
+        ReportTable::of(COLUMNS, &self.rows)
     }
 
     /// The count in words.
@@ -94,7 +94,7 @@ impl VerifyReport {
 }
 
 impl RowReport {
-    fn new(group: &Group, row: &Row) -> Self {
+    fn new(group: &Group, row: &VerifyRow) -> Self {
         let finite = |x: f64| x.is_finite().then_some(x);
         Self {
             group: group.title.clone(),

@@ -35,14 +35,14 @@ pub enum NoFactor {
 
 /// L of `A = LLᵀ`.
 #[derive(Debug)]
-pub struct Factor {
+pub struct CholeskyFactor {
     /// L, and Lᵀ above its diagonal: there each row of L lies in one piece.
     lower: DMatrix<f64>,
     /// `L_kk⁻¹` of every block.
     inverses: Vec<DMatrix<f64>>,
 }
 
-impl Factor {
+impl CholeskyFactor {
     /// The factor of `a` (n × n, its lower triangle is read); `progress` is told the share of the blocks done.
     ///
     /// # Errors
@@ -97,7 +97,7 @@ impl Factor {
         }
     }
 
-    /// As [`Factor::forward`] row by row, up to four columns at once.
+    /// As [`CholeskyFactor::forward`] row by row, up to four columns at once.
     fn substitute(&self, columns: &mut DMatrix<f64>) {
         let n = columns.nrows();
         let lower = self.lower.as_slice();
@@ -162,7 +162,7 @@ mod tests {
     fn factor_and_solutions_are_those_of_the_matrix() {
         for n in [1, 5, BLOCK, BLOCK + 1, 200] {
             let a = example(n);
-            let factor = Factor::new(a.clone(), &Unwatched).unwrap();
+            let factor = CholeskyFactor::new(a.clone(), &Unwatched).unwrap();
             let lower = factor.lower.lower_triangle();
             let back = &lower * lower.transpose();
             assert!((back - &a).amax() < 1e-14, "{n}");
@@ -181,14 +181,14 @@ mod tests {
     #[test]
     fn it_stops_when_asked_and_refuses_what_is_not_positive_definite() {
         let heard = Heard::until(0.5);
-        let stopped = Factor::new(example(4 * BLOCK), &heard);
+        let stopped = CholeskyFactor::new(example(4 * BLOCK), &heard);
         assert_eq!(stopped.unwrap_err(), NoFactor::Cancelled);
         let told = heard.told.into_inner();
         assert_eq!(told, [0.0, 0.25, 0.5]);
         for bad in [-1.0, f64::NAN] {
             let mut a = example(100);
             a[(90, 90)] = bad;
-            assert_eq!(Factor::new(a, &Unwatched).unwrap_err(), NoFactor::NotPositiveDefinite);
+            assert_eq!(CholeskyFactor::new(a, &Unwatched).unwrap_err(), NoFactor::NotPositiveDefinite);
         }
     }
 }

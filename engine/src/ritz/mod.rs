@@ -31,5 +31,5 @@ pub(crate) mod examples;
 pub use caution::Caution;
 pub use functional::Forms;
 pub use mesh::Grading;
-pub use newton::{NewtonSettings, SolveFailure, Solved, solve};
+pub use newton::{NewtonSettings, SolveFailure, SolvedState, solve};
 pub use rings::{Rings, RingsError};

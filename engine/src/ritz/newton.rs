@@ -30,7 +30,7 @@ impl Default for NewtonSettings {
 
 /// A state found by Newton-Raphson.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Solved {
+pub struct SolvedState {
     /// The basis' answer there.
     pub evaluation: Evaluation,
     /// Rounds needed.
@@ -76,7 +76,7 @@ pub fn solve(
     value: f64,
     mut s: f64,
     settings: NewtonSettings,
-) -> Result<Solved, SolveFailure> {
+) -> Result<SolvedState, SolveFailure> {
     let (of_approach, of_force) = weights(control);
     let mut convergence = Convergence::new(Criteria::new(settings.tolerance, settings.rounds));
     let first = s;
@@ -94,7 +94,7 @@ pub fn solve(
             return Err(SolveFailure::Left { round, s });
         }
         if convergence.is_reached(residual)? {
-            return Ok(Solved { evaluation, rounds: round });
+            return Ok(SolvedState { evaluation, rounds: round });
         }
         let [r_d, r_s] = evaluation.residual_gradient;
         let [p_d, p_s] = evaluation.force_gradient;

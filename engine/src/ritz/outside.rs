@@ -36,7 +36,7 @@ mod tests {
     use super::super::Rings;
     use super::super::examples::wavy;
     use super::*;
-    use crate::disc::{Basis, Exact};
+    use crate::disc::{Basis, ExactBasis};
     use crate::theory::quadrature::integrate;
     use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -83,7 +83,7 @@ mod tests {
         for gamma in [0.0, 0.004] {
             let problem = wavy(gamma);
             for s in [0.03, 0.2, 0.413] {
-                let exact = Exact::of(&problem, 40.0 * s).unwrap();
+                let exact = ExactBasis::of(&problem, 40.0 * s).unwrap();
                 let delta = exact.equilibrium(&problem, s).unwrap().approach;
                 let radii: Vec<f64> = RATIOS.iter().map(|ratio| s * ratio).collect();
                 let ours = exact.gap_outside(&problem, s, delta, &radii);

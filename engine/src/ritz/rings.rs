@@ -18,7 +18,7 @@
 //! and the force to better than 1/N² with either.
 
 use super::caution::{Caution, RINGS_PER_WAVE, WEAK_ADHESION};
-use super::cholesky::{BLOCK, Factor, NoFactor};
+use super::cholesky::{BLOCK, CholeskyFactor, NoFactor};
 use super::functional::Forms;
 use super::kernel::disc_interaction;
 use super::mesh::Grading;
@@ -29,7 +29,7 @@ use crate::disc::{Basis, Evaluation, Order, Solution};
 use crate::elementary::{exp2, log2, log10};
 use crate::gap::Gap;
 use crate::problem::Reduced;
-use crate::progress::{Part, Progress, Unwatched};
+use crate::progress::{Progress, ProgressPart, Unwatched};
 use nalgebra::{DMatrix, DMatrixView, DVector};
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -79,7 +79,7 @@ pub struct Rings {
     nodes: Vec<f64>,
     /// What the values at the inner and the outer edge add to the integral over each ring: the entries of W̃.
     weights: Vec<[f64; 2]>,
-    factor: Factor,
+    factor: CholeskyFactor,
     /// L⁻¹W̃1, and its square 1ᵀK1.
     ones: DVector<f64>,
     cc: f64,
@@ -135,13 +135,14 @@ impl Rings {
             return Err(RingsError::OutOfRange { rings, grading });
         }
         let (edges, radius) = grading.edges(rings);
-        let matrix = pressure_matrix(&edges, radius, &Part::new(progress, [0.0, ASSEMBLY]))
+        let matrix = pressure_matrix(&edges, radius, &ProgressPart::new(progress, [0.0, ASSEMBLY]))
             .ok_or(RingsError::Cancelled)?;
-        let factor =
-            Factor::new(matrix, &Part::new(progress, [ASSEMBLY, 1.0])).map_err(|failure| match failure {
+        let factor = CholeskyFactor::new(matrix, &ProgressPart::new(progress, [ASSEMBLY, 1.0])).map_err(
+            |failure| match failure {
                 NoFactor::NotPositiveDefinite => RingsError::NotPositiveDefinite(rings),
                 NoFactor::Cancelled => RingsError::Cancelled,
-            })?;
+            },
+        )?;
         let nodes: Vec<f64> = edges.iter().map(|edge| edge / radius).collect();
         let weights: Vec<[f64; 2]> = nodes
             .windows(2)
@@ -443,7 +444,7 @@ mod tests {
                         "{grading:?} {rings} {a} {c}"
                     );
                 }
-                assert!(Factor::new(b, &Unwatched).is_ok(), "{grading:?} {rings}");
+                assert!(CholeskyFactor::new(b, &Unwatched).is_ok(), "{grading:?} {rings}");
             }
         }
     }

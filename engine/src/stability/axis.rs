@@ -16,7 +16,7 @@ pub enum Spacing {
 
 /// A number of a preset over a range, in SI or reduced units.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
+pub struct MapAxis {
     /// The dotted key, or [`COMPLIANCE`].
     pub key: String,
     /// The ends, ascending; the last may be infinite where the spacing is [`Spacing::Share`].
@@ -37,7 +37,7 @@ pub struct AxisError {
     expected: &'static str,
 }
 
-impl Axis {
+impl MapAxis {
     /// An axis of `key` from `lo` to `hi`; where `hi` is infinite, which only a compliance may be, `unit` stands in the middle.
     ///
     /// # Errors
@@ -94,7 +94,7 @@ impl Axis {
     }
 }
 
-impl fmt::Display for Axis {
+impl fmt::Display for MapAxis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [lo, hi] = self.range;
         let log = if self.spacing == Spacing::Logarithmic { "log:" } else { "" };
@@ -109,10 +109,10 @@ mod tests {
     #[test]
     fn values_and_shares_belong_together_and_bad_ranges_are_refused() {
         let axes = [
-            Axis::new("a", [-1.0, 3.0], false, 1.0),
-            Axis::new("a", [1e-4, 10.0], true, 1.0),
-            Axis::new(COMPLIANCE, [0.0, f64::INFINITY], false, 2.0),
-            Axis::new(COMPLIANCE, [1.0, f64::INFINITY], false, 2.0),
+            MapAxis::new("a", [-1.0, 3.0], false, 1.0),
+            MapAxis::new("a", [1e-4, 10.0], true, 1.0),
+            MapAxis::new(COMPLIANCE, [0.0, f64::INFINITY], false, 2.0),
+            MapAxis::new(COMPLIANCE, [1.0, f64::INFINITY], false, 2.0),
         ];
         for axis in axes.map(Result::unwrap) {
             for share in [0.0, 0.3, 0.5, 0.99] {
@@ -126,7 +126,7 @@ mod tests {
             }
             assert!((axis.share(axis.range[1]) - 1.0).abs() < 1e-15);
         }
-        let whole = Axis::new(COMPLIANCE, [0.0, f64::INFINITY], false, 2.0).unwrap();
+        let whole = MapAxis::new(COMPLIANCE, [0.0, f64::INFINITY], false, 2.0).unwrap();
         assert!((whole.value(0.5) - 2.0).abs() < 1e-15);
         for (range, logarithmic) in [
             ([1.0, 1.0], false),
@@ -135,7 +135,7 @@ mod tests {
             ([0.0, 1.0], true),
             ([0.0, f64::INFINITY], false),
         ] {
-            assert!(Axis::new("a", range, logarithmic, 1.0).is_err(), "{range:?}");
+            assert!(MapAxis::new("a", range, logarithmic, 1.0).is_err(), "{range:?}");
         }
     }
 }

@@ -1,12 +1,12 @@
 //! The snaps of a member's own quasi-static path, from the limit points and landings of its table alone; and where along an axis
 //! their number changes.
 
-use super::family::{At, Family, FamilyError};
+use super::family::{AxisShares, Family, FamilyError};
 use super::law::Cusp;
 use crate::disc::Basis;
 use crate::progress::{Progress, Unwatched};
 use crate::quasistatic::descent::{descend, stable_start};
-use crate::quasistatic::path::{Setting, unload};
+use crate::quasistatic::path::{PathSetting, unload};
 use crate::quasistatic::{Curve, Detail, EventKind, Losses, Monotone};
 use std::sync::Arc;
 
@@ -56,11 +56,11 @@ pub struct Change {
 
 impl Family {
     /// The path of the member at these shares; `None` where it has no start or no stable state to start from.
-    pub fn passage(&self, at: At<'_>) -> Option<Passage> {
+    pub fn passage(&self, at: AxisShares<'_>) -> Option<Passage> {
         self.try_passage(at).ok().flatten()
     }
 
-    fn try_passage(&self, at: At<'_>) -> Result<Option<Passage>, FamilyError> {
+    fn try_passage(&self, at: AxisShares<'_>) -> Result<Option<Passage>, FamilyError> {
         let member = self.member(at)?;
         let (basis, problem, [end, start]) = member.ground(at)?;
         let Some(solution) = basis.solution(&problem, end, start, &Unwatched) else { return Ok(None) };
@@ -81,7 +81,7 @@ impl Family {
             let curve = Curve::new(problem.clone(), of, table, [start, end], Detail::Borders, &Unwatched);
             let Some(curve) = curve else { return Ok(None) };
             let (losses, detail) = (Losses::Once, Detail::Borders);
-            let setting = Setting { losses, detail, ..Setting::one_disc(member.control) };
+            let setting = PathSetting { losses, detail, ..PathSetting::one_disc(member.control) };
             match unload(&curve, &setting, &Unwatched) {
                 Ok(path) => {
                     let snaps = path.events.iter().filter(|event| event.kind == EventKind::Snap);
@@ -117,7 +117,7 @@ impl Family {
     pub fn changes(
         &self,
         axis: usize,
-        at: At<'_>,
+        at: AxisShares<'_>,
         samples: &[f64],
         halvings: usize,
         progress: &dyn Progress,
@@ -175,7 +175,7 @@ impl Family {
         }
     }
 
-    fn cause(&self, at: At<'_>, before: &Passage, after: &Passage) -> Cause {
+    fn cause(&self, at: AxisShares<'_>, before: &Passage, after: &Passage) -> Cause {
         let born = before.limits.abs_diff(after.limits);
         if born >= 2 {
             let root = self.member(at).map_or(f64::NAN, |member| member.root);
@@ -199,7 +199,7 @@ impl Family {
     }
 
     /// The cusps of the member at these shares, between the end and the start of the path.
-    pub fn cusps(&self, at: At<'_>) -> Vec<Cusp> {
+    pub fn cusps(&self, at: AxisShares<'_>) -> Vec<Cusp> {
         let law = self.member(at).and_then(|member| member.law(at));
         law.map_or_else(|_| Vec::new(), |law| law.cusps(self.radii).0)
     }

@@ -29,7 +29,7 @@ const MOST: usize = 12;
 
 /// An edge of the grid: the axis it runs along, the share of the other one, and its ends.
 #[derive(Debug, Clone, Copy)]
-struct Edge {
+struct GridEdge {
     axis: usize,
     held: f64,
     ends: [f64; 2],
@@ -37,7 +37,7 @@ struct Edge {
     cell: [usize; 2],
 }
 
-impl Edge {
+impl GridEdge {
     fn at(&self, share: f64) -> [f64; 2] {
         let mut at = [self.held; 2];
         at[self.axis] = share;
@@ -54,7 +54,7 @@ struct Counted {
 
 /// A change that is on no line.
 struct Loose {
-    edge: Edge,
+    edge: GridEdge,
     point: MapPoint,
 }
 
@@ -74,7 +74,7 @@ impl Family {
                     let along = &counts.shares[axis];
                     let from = [i, j][axis];
                     let held = counts.shares[1 - axis][[i, j][1 - axis]];
-                    let edge = Edge { axis, held, ends: [along[from], along[from + 1]], cell: [i, j] };
+                    let edge = GridEdge { axis, held, ends: [along[from], along[from + 1]], cell: [i, j] };
                     let known = [counts.cells[j][i], counts.cells[v][u]];
                     loose.extend(self.explain(edge, known, map, progress));
                     if progress.stop() {
@@ -92,7 +92,7 @@ impl Family {
     /// Sees to the changes along an edge between these numbers of snaps; the first that is on no line.
     fn explain(
         &self,
-        edge: Edge,
+        edge: GridEdge,
         known: [Option<usize>; 2],
         map: &mut Map,
         progress: &dyn Progress,
@@ -129,12 +129,12 @@ impl Family {
         last.and_then(|change| self.loose(edge, change))
     }
 
-    fn counted(&self, edge: Edge, share: f64) -> Counted {
+    fn counted(&self, edge: GridEdge, share: f64) -> Counted {
         Counted { share, snaps: self.passage(&edge.at(share)).map(|path| path.snaps) }
     }
 
     /// The first change between two places of an edge, from both sides.
-    fn first_change(&self, edge: Edge, [mut a, mut b]: [Counted; 2]) -> [Counted; 2] {
+    fn first_change(&self, edge: GridEdge, [mut a, mut b]: [Counted; 2]) -> [Counted; 2] {
         for _ in 0..NEARLY {
             let here = self.counted(edge, 0.5 * (a.share + b.share));
             if here.snaps == a.snaps { a = here } else { b = here }
@@ -145,7 +145,7 @@ impl Family {
     /// Whether the change is a cusp, a landing or a start; it is on a line of `map` then.
     fn on_line(
         &self,
-        edge: Edge,
+        edge: GridEdge,
         [before, after]: [Counted; 2],
         map: &mut Map,
         progress: &dyn Progress,
@@ -219,7 +219,7 @@ impl Family {
         true
     }
 
-    fn loose(&self, edge: Edge, [before, after]: [Counted; 2]) -> Option<Loose> {
+    fn loose(&self, edge: GridEdge, [before, after]: [Counted; 2]) -> Option<Loose> {
         let at = edge.at(0.5 * (before.share + after.share));
         let path = [before, after].iter().find_map(|counted| self.passage(&edge.at(counted.share)))?;
         let s = path.jumps.first().copied().unwrap_or(path.radii[1]);
@@ -236,7 +236,7 @@ impl Family {
 
 impl Map {
     /// The shares at which lines cross an edge, ascending.
-    fn crossings(&self, edge: Edge) -> Vec<f64> {
+    fn crossings(&self, edge: GridEdge) -> Vec<f64> {
         let (along, across) = (edge.axis, 1 - edge.axis);
         let [lo, hi] = [edge.ends[0] - TOUCHES, edge.ends[1] + TOUCHES];
         let mut found = Vec::new();

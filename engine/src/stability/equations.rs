@@ -10,7 +10,7 @@
 //!
 //! Radii are in waves, numbers in shares of their axes. Derivatives by s are exact, those by the numbers central differences.
 
-use super::family::{Family, Local};
+use super::family::{Family, LocalLaw};
 use crate::continuation::{Linearization, Point, Settings, System, Vector};
 use crate::quasistatic::monotone::weighted;
 use nalgebra::{DMatrix, DVector};
@@ -49,7 +49,7 @@ pub struct Equations<'a> {
 }
 
 /// One equation: its value, the size of its terms, its derivatives by the radii.
-struct Row {
+struct EquationRow {
     value: f64,
     size: f64,
     by_radius: [f64; 2],
@@ -83,13 +83,13 @@ impl<'a> Equations<'a> {
     }
 
     /// What the law needs of the radii of `y`.
-    pub fn locals(&self, y: &[f64]) -> Option<Vec<Local>> {
+    pub fn locals(&self, y: &[f64]) -> Option<Vec<LocalLaw>> {
         let (radii, shares) = y.split_at(self.radii());
         let member = self.family.member(shares).ok()?;
         if self.sort == Sort::Start {
             return Some(vec![member.local(self.family.start()?)?]);
         }
-        let mut locals: Vec<Local> =
+        let mut locals: Vec<LocalLaw> =
             radii.iter().map(|s| member.local(s * self.unit)).collect::<Option<_>>()?;
         if self.sort == Sort::Arrival {
             locals.push(member.local(self.family.start()?)?);
@@ -97,32 +97,32 @@ impl<'a> Equations<'a> {
         Some(locals)
     }
 
-    fn rows(&self, y: &[f64]) -> Option<Vec<Row>> {
+    fn rows(&self, y: &[f64]) -> Option<Vec<EquationRow>> {
         let locals = self.locals(y)?;
-        let fold = |local: &Local, at: usize| {
+        let fold = |local: &LocalLaw, at: usize| {
             let mut by_radius = [0.0; 2];
             by_radius[at] = local.edge.slope * self.unit;
             let size = local.edge.value.abs().max(local.root).max(f64::MIN_POSITIVE);
-            Row { value: local.edge.value - local.root, size, by_radius }
+            EquationRow { value: local.edge.value - local.root, size, by_radius }
         };
         let folds = if self.sort == Sort::Arrival { 1 } else { locals.len() };
-        let mut rows: Vec<Row> =
+        let mut rows: Vec<EquationRow> =
             locals[..folds].iter().enumerate().map(|(at, local)| fold(local, at)).collect();
         match (self.sort, &locals[..]) {
-            (Sort::Cusp, [local]) => rows.push(Row {
+            (Sort::Cusp, [local]) => rows.push(EquationRow {
                 value: local.edge.slope * self.unit,
                 size: rows[0].size,
                 by_radius: [local.edge.bend * self.unit * self.unit, 0.0],
             }),
             (Sort::Landing | Sort::Arrival, [outer, inner]) => {
-                let [a, b] = [outer, inner].map(Local::control_value);
+                let [a, b] = [outer, inner].map(LocalLaw::control_value);
                 let [da, db] = [outer, inner].map(|local| {
                     let [approach, force] = local.slopes();
                     weighted(local.control, approach, force) * self.unit
                 });
                 let size = (a.abs() + b.abs()).max(f64::MIN_POSITIVE);
                 let inner = if self.sort == Sort::Arrival { 0.0 } else { -db };
-                rows.push(Row { value: a - b, size, by_radius: [da, inner] });
+                rows.push(EquationRow { value: a - b, size, by_radius: [da, inner] });
             }
             _ => {}
         }

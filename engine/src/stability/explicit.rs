@@ -8,8 +8,8 @@
 //!
 //! The tip of a line, where two of them are born, is where F'' = 0 too: a swallowtail.
 
-use super::family::{Family, FamilyError, Local};
-use super::law::{Edge, adhesion_of};
+use super::family::{Family, FamilyError, LocalLaw};
+use super::law::{EdgeJet, adhesion_of};
 use crate::elementary::hypot;
 use crate::problem::Control;
 use crate::progress::Progress;
@@ -46,14 +46,14 @@ impl Born {
 }
 
 /// A line, its points in order, and the swallowtails on it.
-pub type Line = (Vec<Born>, Vec<Born>);
+pub type ExplicitLine = (Vec<Born>, Vec<Born>);
 
 impl Family {
     /// The lines of cusps, where both numbers follow from s; `None` where they do not.
     ///
     /// # Errors
     /// A table cannot be had.
-    pub fn explicit_cusps(&self, progress: &dyn Progress) -> Result<Option<Vec<Line>>, FamilyError> {
+    pub fn explicit_cusps(&self, progress: &dyn Progress) -> Result<Option<Vec<ExplicitLine>>, FamilyError> {
         let (Some(adhesion), Some(factor), 2) = (self.adhesion(), self.adhesion_factor(), self.axes.len())
         else {
             return Ok(None);
@@ -165,8 +165,12 @@ impl Family {
     }
 
     /// The lines of a function of s, parted where it leaves the map, with their swallowtails.
-    pub(super) fn sampled(&self, progress: &dyn Progress, born: &dyn Fn(f64) -> Option<Born>) -> Vec<Line> {
-        let mut lines: Vec<Line> = vec![Line::default()];
+    pub(super) fn sampled(
+        &self,
+        progress: &dyn Progress,
+        born: &dyn Fn(f64) -> Option<Born>,
+    ) -> Vec<ExplicitLine> {
+        let mut lines: Vec<ExplicitLine> = vec![ExplicitLine::default()];
         let mut before: Option<(f64, Option<Born>)> = None;
         let good = |s: f64| born(s).filter(Born::is_inside);
         for s in self.sampled_radii() {
@@ -192,7 +196,7 @@ impl Family {
                     refine(&good, a, b, DEPTH, &mut lines);
                 }
                 if here.is_none() {
-                    lines.push(Line::default());
+                    lines.push(ExplicitLine::default());
                 }
             }
             before = Some((s, here));
@@ -224,7 +228,7 @@ impl Family {
 }
 
 /// 2s/k of the device for which s is a cusp: the stiffer one, or the softer.
-fn relative_compliance(s: f64, grips: &Local, soft: bool) -> Option<f64> {
+fn relative_compliance(s: f64, grips: &LocalLaw, soft: bool) -> Option<f64> {
     let [first, second, _] = third_of(grips, grips.control, s);
     let m = -2.0 * s * second / first;
     let square = 4.0 * m * m - 3.0 * (1.0 - m) * (1.0 - m);
@@ -237,12 +241,12 @@ fn relative_compliance(s: f64, grips: &Local, soft: bool) -> Option<f64> {
 }
 
 /// F under the device `to`, from that under `from`.
-pub(super) fn edge_under(local: &Local, from: Control, to: Control, s: f64) -> Edge {
-    Edge::of(to, s, third_of(local, from, s))
+pub(super) fn edge_under(local: &LocalLaw, from: Control, to: Control, s: f64) -> EdgeJet {
+    EdgeJet::of(to, s, third_of(local, from, s))
 }
 
 /// g', g'' and g''' from F and its derivatives under a device.
-fn third_of(local: &Local, control: Control, s: f64) -> [f64; 3] {
+fn third_of(local: &LocalLaw, control: Control, s: f64) -> [f64; 3] {
     let weight = super::weight::Weight::of(control, s);
     let [f, df, ddf] = [local.edge.value, local.edge.slope, local.edge.bend].map(|x| x / weight.value);
     let second = df - weight.slope * f;
@@ -285,7 +289,7 @@ fn within(
 
 /// Adds the line from `a` to `b` to the last one, its points closer to each other than [`CLOSE`], with the swallowtails between
 /// them. Where it leaves the map on the way, or jumps, another line begins.
-fn refine(good: &dyn Fn(f64) -> Option<Born>, a: Born, b: Born, depth: usize, lines: &mut Vec<Line>) {
+fn refine(good: &dyn Fn(f64) -> Option<Born>, a: Born, b: Born, depth: usize, lines: &mut Vec<ExplicitLine>) {
     let apart = hypot(a.at[0] - b.at[0], a.at[1] - b.at[1]);
     if apart > CLOSE {
         let [from, to] = [a.contact_radius, b.contact_radius];
@@ -300,7 +304,7 @@ fn refine(good: &dyn Fn(f64) -> Option<Born>, a: Born, b: Born, depth: usize, li
         if let Some(edge) = good(last(good, middle, from)) {
             refine(good, a, edge, depth - 1, lines);
         }
-        lines.push(Line::default());
+        lines.push(ExplicitLine::default());
         if let Some(edge) = good(last(good, middle, to)) {
             refine(good, edge, b, depth - 1, lines);
         }

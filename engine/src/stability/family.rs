@@ -4,11 +4,11 @@
 //! linear in a number (a wave's amplitude) so is g, and two tables give it for all its values; any other number asks for the
 //! table of its own gap at each value.
 
-use super::axis::{Axis, COMPLIANCE};
-use super::law::{Edge, Law, root_of};
+use super::axis::{COMPLIANCE, MapAxis};
+use super::law::{EdgeJet, Law, root_of};
 use crate::disc::blend::Blend;
-use crate::disc::table::Kept;
-use crate::disc::{Exact, Panels, Table, TableError, waves};
+use crate::disc::table::KeptTables;
+use crate::disc::{ExactBasis, Panels, Table, TableError, waves};
 use crate::gap::{Form, Gap, Shape, Wave};
 use crate::preset::{Invalid, Preset};
 use crate::problem::{Control, Reduced, Start};
@@ -18,11 +18,11 @@ use crate::quasistatic::start::{StartError, contact_radius};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// The values of the numbers left open, as shares of their axes.
-pub type At<'a> = &'a [f64];
+pub type AxisShares<'a> = &'a [f64];
 
 /// How a number enters.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Role {
+enum NumberRole {
     /// The reduced work of adhesion is this times it.
     Adhesion(f64),
     /// It is the compliance of the device.
@@ -43,8 +43,8 @@ pub struct Family {
     /// The preset.
     pub preset: Preset,
     /// The numbers left open, one or two.
-    pub axes: Vec<Axis>,
-    roles: Vec<Role>,
+    pub axes: Vec<MapAxis>,
+    roles: Vec<NumberRole>,
     /// The unit of length, the same for all members.
     pub length: f64,
     /// The tables of the gaps at both ends of the number that enters linearly; of two such numbers at all four corners, the second
@@ -54,11 +54,11 @@ pub struct Family {
     blend: Option<Arc<Blend>>,
     /// The table of the gap where no axis changes it.
     own: Option<Arc<Table>>,
-    kept: Kept<Shape>,
+    kept: KeptTables<Shape>,
     /// The preset as it is.
-    base: Arc<Made>,
+    base: Arc<MemberCase>,
     /// The last members made, with the bits of the numbers that change their gaps.
-    made: Mutex<Vec<(Vec<u64>, Arc<Made>)>>,
+    made: Mutex<Vec<(Vec<u64>, Arc<MemberCase>)>>,
     /// The contact radii between which lines are looked for, reduced: the end and the start of the preset's path, or the smallest
     /// and the largest radius of all paths once they are known.
     pub radii: [f64; 2],
@@ -69,13 +69,13 @@ const KEPT: usize = 4;
 
 /// A preset whose gap is a member's, with what follows from it; what leaves the gap alone is not set.
 #[derive(Debug)]
-struct Made {
+struct MemberCase {
     preset: Preset,
     reduced: Reduced,
     table: OnceLock<Arc<Table>>,
 }
 
-impl Made {
+impl MemberCase {
     fn of(preset: Preset, length: f64) -> Arc<Self> {
         let reduced = preset.problem().reduced_by(length);
         Arc::new(Self { preset, reduced, table: OnceLock::new() })
@@ -119,9 +119,9 @@ const MOST_FEATURES: f64 = 3000.0;
 
 /// What the law needs to know of one state.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Local {
+pub struct LocalLaw {
     /// F with its derivatives.
-    pub edge: Edge,
+    pub edge: EdgeJet,
     /// √(πγ/2): the state is a limit point where F is equal to it.
     pub root: f64,
     /// g.
@@ -136,7 +136,7 @@ pub struct Local {
     pub control: Control,
 }
 
-impl Local {
+impl LocalLaw {
     /// δ.
     pub fn approach(&self) -> f64 {
         self.transform - 2.0 * self.root * self.contact_radius.sqrt()
@@ -164,7 +164,7 @@ impl Family {
     ///
     /// # Errors
     /// [`FamilyError`].
-    pub fn new(preset: &Preset, axes: Vec<Axis>) -> Result<Self, FamilyError> {
+    pub fn new(preset: &Preset, axes: Vec<MapAxis>) -> Result<Self, FamilyError> {
         for (k, axis) in axes.iter().enumerate() {
             if axes[..k].iter().any(|other| other.key == axis.key) {
                 return Err(FamilyError::Twice(axis.key.clone()));
@@ -194,16 +194,16 @@ impl Family {
             blend: None,
             own: None,
             kept: Mutex::default(),
-            base: Made::of(preset.clone(), length),
+            base: MemberCase::of(preset.clone(), length),
             made: Mutex::default(),
             radii: [0.0; 2],
         };
         family.roles = family.axes.iter().map(|axis| family.role(axis)).collect::<Result<_, _>>()?;
-        let others = family.roles.contains(&Role::Other);
-        if family.roles.contains(&Role::Linear) {
+        let others = family.roles.contains(&NumberRole::Other);
+        if family.roles.contains(&NumberRole::Linear) {
             if others {
-                for role in family.roles.iter_mut().filter(|role| **role == Role::Linear) {
-                    *role = Role::Other;
+                for role in family.roles.iter_mut().filter(|role| **role == NumberRole::Linear) {
+                    *role = NumberRole::Other;
                 }
             } else {
                 family.blend = family.corners()?;
@@ -219,17 +219,19 @@ impl Family {
 
     /// Tabulates the gaps at the ends of the numbers that enter linearly; what they make of all members, where it is worth it.
     fn corners(&mut self) -> Result<Option<Arc<Blend>>, FamilyError> {
-        let linear: Vec<&Axis> =
-            (0..self.axes.len()).filter(|k| self.roles[*k] == Role::Linear).map(|k| &self.axes[k]).collect();
-        let mut corners: Vec<Vec<(&Axis, f64)>> = vec![Vec::new()];
+        let linear: Vec<&MapAxis> = (0..self.axes.len())
+            .filter(|k| self.roles[*k] == NumberRole::Linear)
+            .map(|k| &self.axes[k])
+            .collect();
+        let mut corners: Vec<Vec<(&MapAxis, f64)>> = vec![Vec::new()];
         for axis in linear {
             let with =
                 |value: f64| corners.iter().map(move |corner| [&corner[..], &[(axis, value)]].concat());
             corners = axis.range.into_iter().flat_map(with).collect();
         }
-        let made: Vec<Arc<Made>> = corners
+        let made: Vec<Arc<MemberCase>> = corners
             .iter()
-            .map(|corner| Ok(Made::of(self.with(corner)?, self.length)))
+            .map(|corner| Ok(MemberCase::of(self.with(corner)?, self.length)))
             .collect::<Result<_, Invalid>>()?;
         let blend = Blend::of(made.iter().map(|made| Arc::clone(&made.reduced.gap)).collect());
         let tables: Result<_, TableError> = made.iter().map(|made| self.table(made)).collect();
@@ -240,7 +242,7 @@ impl Family {
     /// The weights of the corners at values of the numbers left open.
     fn weights(&self, value: &dyn Fn(usize) -> f64) -> Vec<f64> {
         let mut weights = vec![1.0];
-        for k in (0..self.axes.len()).filter(|k| self.roles[*k] == Role::Linear) {
+        for k in (0..self.axes.len()).filter(|k| self.roles[*k] == NumberRole::Linear) {
             let [from, to] = self.axes[k].range;
             let share = (value(k) - from) / (to - from);
             weights =
@@ -251,10 +253,10 @@ impl Family {
 
     /// Refuses an axis on which the gap becomes too fine to be tabulated again and again.
     fn check_features(&self) -> Result<(), FamilyError> {
-        for (axis, _) in self.axes.iter().zip(&self.roles).filter(|(_, role)| **role == Role::Other) {
+        for (axis, _) in self.axes.iter().zip(&self.roles).filter(|(_, role)| **role == NumberRole::Other) {
             for end in axis.range {
                 let Ok(preset) = self.with(&[(axis, end)]) else { continue };
-                let made = Made::of(preset, self.length);
+                let made = MemberCase::of(preset, self.length);
                 let feature = made.reduced.gap.feature_length().unwrap_or(f64::INFINITY);
                 let count = self.radii[1] / feature;
                 if count > MOST_FEATURES {
@@ -267,7 +269,7 @@ impl Family {
     }
 
     /// The preset with these values.
-    fn with(&self, values: &[(&Axis, f64)]) -> Result<Preset, Invalid> {
+    fn with(&self, values: &[(&MapAxis, f64)]) -> Result<Preset, Invalid> {
         let mut preset = self.preset.clone();
         let changes = values.iter().filter(|(axis, _)| axis.key != COMPLIANCE);
         preset.set_all(changes.map(|(axis, value)| (axis.key.as_str(), (*value).into())))?;
@@ -280,8 +282,8 @@ impl Family {
     }
 
     /// The gap at these shares: the last ones are kept.
-    fn made(&self, at: At<'_>) -> Result<Arc<Made>, FamilyError> {
-        let values: Vec<(&Axis, f64)> = (0..self.axes.len())
+    fn made(&self, at: AxisShares<'_>) -> Result<Arc<MemberCase>, FamilyError> {
+        let values: Vec<(&MapAxis, f64)> = (0..self.axes.len())
             .filter(|k| !self.keeps_gap(*k))
             .map(|k| (&self.axes[k], self.axes[k].value(at[k])))
             .collect();
@@ -293,7 +295,7 @@ impl Family {
         if let Some((_, made)) = lock().iter().find(|(known, _)| *known == key) {
             return Ok(Arc::clone(made));
         }
-        let made = Made::of(self.with(&values)?, self.length);
+        let made = MemberCase::of(self.with(&values)?, self.length);
         if let Some(blend) = &self.blend {
             let weights = self.weights(&|k| self.axes[k].value(at[k]));
             let table = Table::of_blend(Arc::clone(&made.reduced.gap), blend, weights);
@@ -307,7 +309,7 @@ impl Family {
         Ok(made)
     }
 
-    fn table(&self, made: &Made) -> Result<Arc<Table>, TableError> {
+    fn table(&self, made: &MemberCase) -> Result<Arc<Table>, TableError> {
         let reach = self.reach(&made.preset);
         if let Some(table) = made.table.get() {
             table.up_to(reach)?;
@@ -351,7 +353,7 @@ impl Family {
     }
 
     /// The contact radius at the start, reduced.
-    fn start_of(&self, made: &Made, work_of_adhesion: f64) -> Result<f64, FamilyError> {
+    fn start_of(&self, made: &MemberCase, work_of_adhesion: f64) -> Result<f64, FamilyError> {
         let reduced = made.reduced.clone();
         let (length, force) = (reduced.units.length, reduced.units.force);
         let wanted = match made.preset.path.start {
@@ -359,22 +361,22 @@ impl Family {
             Start::Approach(delta) => Start::Approach(delta / length),
             Start::Force(p) => Start::Force(p / force),
         };
-        let basis = Exact::new(self.table(made)?, self.reach(&made.preset));
+        let basis = ExactBasis::new(self.table(made)?, self.reach(&made.preset));
         let reduced = Reduced { work_of_adhesion, ..reduced };
         Ok(contact_radius(&reduced, &basis, wanted, &Unwatched)?)
     }
 
     /// How an axis enters.
-    fn role(&self, axis: &Axis) -> Result<Role, FamilyError> {
+    fn role(&self, axis: &MapAxis) -> Result<NumberRole, FamilyError> {
         if axis.key == COMPLIANCE {
-            return Ok(Role::Device);
+            return Ok(NumberRole::Device);
         }
         let [lo, hi] = axis.range;
         let middle = axis.value(0.5);
         // Of the other axis too: it may change what this one is measured by.
-        let others: Vec<&Axis> = self.axes.iter().filter(|other| other.key != axis.key).collect();
-        let ends = |other: &Axis| [0.0, 1.0].map(|share| other.value(share));
-        let corners: Vec<Vec<(&Axis, f64)>> = match others.first() {
+        let others: Vec<&MapAxis> = self.axes.iter().filter(|other| other.key != axis.key).collect();
+        let ends = |other: &MapAxis| [0.0, 1.0].map(|share| other.value(share));
+        let corners: Vec<Vec<(&MapAxis, f64)>> = match others.first() {
             Some(other) if other.key != COMPLIANCE => ends(other).map(|value| vec![(*other, value)]).to_vec(),
             _ => vec![Vec::new()],
         };
@@ -389,20 +391,20 @@ impl Family {
             let same = |preset: &Preset| preset.material == b.material && preset.path == b.path;
             let proportional = (factor(&m, middle) / factor(&b, hi) - 1.0).abs() <= ROUNDING;
             let role = if a.gap == b.gap && a.path == b.path && factor(&b, hi) > 0.0 && proportional {
-                Role::Adhesion(factor(&b, hi))
+                NumberRole::Adhesion(factor(&b, hi))
             } else if same(&a) && self.is_linear(&a.gap, &b.gap, &m.gap, (middle - lo) / (hi - lo)) {
-                Role::Linear
+                NumberRole::Linear
             } else {
-                Role::Other
+                NumberRole::Other
             };
             roles.push(role);
         }
-        let first = roles.first().copied().unwrap_or(Role::Other);
+        let first = roles.first().copied().unwrap_or(NumberRole::Other);
         let alike = roles.iter().all(|role| match (*role, first) {
-            (Role::Adhesion(a), Role::Adhesion(b)) => (a / b - 1.0).abs() <= ROUNDING,
+            (NumberRole::Adhesion(a), NumberRole::Adhesion(b)) => (a / b - 1.0).abs() <= ROUNDING,
             (a, b) => a == b,
         });
-        Ok(if alike { first } else { Role::Other })
+        Ok(if alike { first } else { NumberRole::Other })
     }
 
     /// Whether the gap `m` lies at `share` of the way between `a` and `b`, at many radii.
@@ -422,40 +424,42 @@ impl Family {
 
     /// The number whose gap is linear in it, by its place among the axes.
     pub fn linear(&self) -> Option<usize> {
-        self.roles.iter().position(|role| *role == Role::Linear)
+        self.roles.iter().position(|role| *role == NumberRole::Linear)
     }
 
     /// The axis of the work of adhesion.
     pub fn adhesion(&self) -> Option<usize> {
-        self.roles.iter().position(|role| matches!(role, Role::Adhesion(_)))
+        self.roles.iter().position(|role| matches!(role, NumberRole::Adhesion(_)))
     }
 
     /// The axis of the compliance.
     pub fn compliance(&self) -> Option<usize> {
-        self.roles.iter().position(|role| *role == Role::Device)
+        self.roles.iter().position(|role| *role == NumberRole::Device)
     }
 
     /// Whether the gap is the same all over the axis.
     pub fn keeps_gap(&self, axis: usize) -> bool {
-        matches!(self.roles[axis], Role::Adhesion(_) | Role::Device)
+        matches!(self.roles[axis], NumberRole::Adhesion(_) | NumberRole::Device)
     }
 
     /// The reduced work of adhesion over the number on its axis.
     pub fn adhesion_factor(&self) -> Option<f64> {
-        self.roles.iter().find_map(|role| if let Role::Adhesion(c) = role { Some(*c) } else { None })
+        self.roles.iter().find_map(|role| if let NumberRole::Adhesion(c) = role { Some(*c) } else { None })
     }
 
     /// The member at these shares: its adhesion and device, and its preset where some number asks for it.
     ///
     /// # Errors
     /// [`FamilyError`] where the values are refused.
-    pub fn member(&self, at: At<'_>) -> Result<Member<'_>, FamilyError> {
+    pub fn member(&self, at: AxisShares<'_>) -> Result<Member<'_>, FamilyError> {
         let value = |k: usize| self.axes[k].value(at[k]);
-        let (mut source, made) = if self.roles.contains(&Role::Other) {
+        let (mut source, made) = if self.roles.contains(&NumberRole::Other) {
             let made = self.made(at)?;
             let source = match made.reduced.gap.form() {
-                Form::Waves { curvature, waves } => Source::Waves { curvature, waves },
-                _ => Source::One(self.table(&made)?.up_to(self.radii[1].max(self.reach(&made.preset)))?),
+                Form::Waves { curvature, waves } => TransformSource::Waves { curvature, waves },
+                _ => TransformSource::One(
+                    self.table(&made)?.up_to(self.radii[1].max(self.reach(&made.preset)))?,
+                ),
             };
             (Some(source), made)
         } else {
@@ -466,15 +470,15 @@ impl Family {
         let mut control = made.preset.path.control.in_units(units.stiffness);
         for (k, role) in self.roles.iter().enumerate() {
             match role {
-                Role::Adhesion(factor) => work_of_adhesion = factor * value(k),
-                Role::Device => control = device(value(k)).in_units(units.stiffness),
-                Role::Linear => {
+                NumberRole::Adhesion(factor) => work_of_adhesion = factor * value(k),
+                NumberRole::Device => control = device(value(k)).in_units(units.stiffness),
+                NumberRole::Linear => {
                     let reach = self.radii[1].max(self.reach(&self.preset));
                     let parts = self.weights(&value).into_iter().zip(&self.ends);
                     let parts = parts.map(|(weight, table)| Ok((weight, table.up_to(reach)?)));
-                    source = Some(Source::Mixed(parts.collect::<Result<_, TableError>>()?));
+                    source = Some(TransformSource::Mixed(parts.collect::<Result<_, TableError>>()?));
                 }
-                Role::Other => {}
+                NumberRole::Other => {}
             }
         }
         let source = if let Some(source) = source {
@@ -482,7 +486,7 @@ impl Family {
         } else {
             let reach = self.radii[1].max(self.reach(&self.preset));
             let own = self.own.as_ref().ok_or(TableError::Cancelled)?;
-            Source::One(own.up_to(reach)?)
+            TransformSource::One(own.up_to(reach)?)
         };
         Ok(Member { family: self, source, root: root_of(work_of_adhesion), work_of_adhesion, control })
     }
@@ -501,7 +505,7 @@ fn device(compliance: f64) -> Control {
 
 /// Where g comes from.
 #[derive(Debug, Clone)]
-enum Source {
+enum TransformSource {
     One(Arc<Panels>),
     /// A paraboloid with waves, of which one radius needs no table.
     Waves {
@@ -516,7 +520,7 @@ enum Source {
 #[derive(Debug, Clone)]
 pub struct Member<'a> {
     family: &'a Family,
-    source: Source,
+    source: TransformSource,
     /// √(πγ/2).
     pub root: f64,
     /// γ.
@@ -527,19 +531,19 @@ pub struct Member<'a> {
 
 impl Member<'_> {
     /// What the law needs at the radius `s`; `None` beyond the table, and where it has no number.
-    pub fn local(&self, s: f64) -> Option<Local> {
+    pub fn local(&self, s: f64) -> Option<LocalLaw> {
         let of = |panels: &Panels| {
             let place = (s > 0.0 && s <= panels.reach()).then(|| panels.place(s))?;
             let [transform, area] = panels.value_and_area(place);
             (place.panel > 0).then(|| (panels.slopes(place), [transform, area]))
         };
         let (slopes, [transform, area]) = match &self.source {
-            Source::One(panels) => of(panels)?,
-            Source::Waves { curvature, waves } => {
+            TransformSource::One(panels) => of(panels)?,
+            TransformSource::Waves { curvature, waves } => {
                 let (whole, slopes) = waves::at(*curvature, waves, s);
                 (slopes, whole)
             }
-            Source::Mixed(parts) => {
+            TransformSource::Mixed(parts) => {
                 let (mut slopes, mut whole) = ([0.0; 3], [0.0; 2]);
                 for (weight, panels) in parts {
                     let (more, values) = of(panels)?;
@@ -550,9 +554,9 @@ impl Member<'_> {
                 (slopes, whole)
             }
         };
-        let edge = Edge::of(self.control, s, slopes);
+        let edge = EdgeJet::of(self.control, s, slopes);
         let sound = edge.bend.is_finite() && edge.slope.is_finite() && transform.is_finite();
-        sound.then_some(Local {
+        sound.then_some(LocalLaw {
             edge,
             root: self.root,
             transform,
@@ -567,9 +571,9 @@ impl Member<'_> {
     ///
     /// # Errors
     /// The gap cannot be tabulated.
-    pub fn law(&self, at: At<'_>) -> Result<Law, FamilyError> {
+    pub fn law(&self, at: AxisShares<'_>) -> Result<Law, FamilyError> {
         let family = self.family;
-        let panels = if let Source::One(panels) = &self.source {
+        let panels = if let TransformSource::One(panels) = &self.source {
             Arc::clone(panels)
         } else {
             let made = family.made(at)?;
@@ -582,12 +586,12 @@ impl Member<'_> {
     ///
     /// # Errors
     /// [`FamilyError`].
-    pub fn ground(&self, at: At<'_>) -> Result<(Exact, Reduced, [f64; 2]), FamilyError> {
+    pub fn ground(&self, at: AxisShares<'_>) -> Result<(ExactBasis, Reduced, [f64; 2]), FamilyError> {
         let family = self.family;
         let made = family.made(at)?;
         let start = family.start_of(&made, self.work_of_adhesion)?;
         let end = made.preset.end_contact_radius(start * family.length) / family.length;
         let reduced = Reduced { work_of_adhesion: self.work_of_adhesion, ..made.reduced.clone() };
-        Ok((Exact::new(family.table(&made)?, start), reduced, [end, start]))
+        Ok((ExactBasis::new(family.table(&made)?, start), reduced, [end, start]))
     }
 }

@@ -112,7 +112,7 @@ impl Family {
     fn explicit_folds(
         &self,
         progress: &dyn Progress,
-    ) -> Result<Option<Vec<super::explicit::Line>>, FamilyError> {
+    ) -> Result<Option<Vec<super::explicit::ExplicitLine>>, FamilyError> {
         let axis = &self.axes[0];
         let [end, start] = self.radii;
         let born = |s: f64, share: f64, slope: f64| Born {

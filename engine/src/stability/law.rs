@@ -9,7 +9,7 @@
 //! F' = 0, a cusp. Where h'' jumps `γ_k` has a corner and no derivative: an extremum there is none.
 
 use super::weight::Weight;
-use crate::disc::chebyshev::{self, ROOT_NODES, Rule};
+use crate::disc::chebyshev::{self, ChebyshevRule, ROOT_NODES};
 use crate::disc::{Panels, Place};
 use crate::gap::panels::Variable;
 use crate::problem::Control;
@@ -24,7 +24,7 @@ const SMOOTH: f64 = 1e-8;
 
 /// F = `W_k g'` and its derivatives by s at one radius, reduced.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Edge {
+pub struct EdgeJet {
     /// F.
     pub value: f64,
     /// F'.
@@ -33,7 +33,7 @@ pub struct Edge {
     pub bend: f64,
 }
 
-impl Edge {
+impl EdgeJet {
     /// F of the derivatives of g at the radius `s`.
     pub fn of(control: Control, s: f64, [first, second, third]: [f64; 3]) -> Self {
         let Weight { value, slope, bend } = Weight::of(control, s);
@@ -78,9 +78,9 @@ pub struct Law {
 
 impl Law {
     /// F at the radius `s`; `None` beyond the table or on its innermost panel, which holds no limit point.
-    pub fn edge(&self, s: f64) -> Option<Edge> {
+    pub fn edge(&self, s: f64) -> Option<EdgeJet> {
         let place = self.place(s)?;
-        Some(Edge::of(self.control, s, self.panels.slopes(place)))
+        Some(EdgeJet::of(self.control, s, self.panels.slopes(place)))
     }
 
     /// `γ_k(s)`, reduced; zero where g' ≤ 0, `None` beyond the table.
@@ -176,9 +176,9 @@ impl Law {
     /// On a panel, the series of F' times a power of the stretch.
     fn tendency(&self, panel: usize, power: i32) -> Vec<f64> {
         let span = self.panels.list()[panel].span;
-        Rule::of(ROOT_NODES).series(|x| {
+        ChebyshevRule::of(ROOT_NODES).series(|x| {
             let slopes = self.panels.slopes(Place { panel, x });
-            Edge::of(self.control, span.radius(x), slopes).slope * span.stretch(x).powi(power)
+            EdgeJet::of(self.control, span.radius(x), slopes).slope * span.stretch(x).powi(power)
         })
     }
 }

@@ -2,12 +2,12 @@
 
 use super::count::{Passage, even};
 use super::equations::{Equations, Sort};
-use super::family::{At, Family, FamilyError};
+use super::family::{AxisShares, Family, FamilyError};
 use super::law::adhesion_of;
 use super::lines::Traced;
 use crate::elementary::hypot;
 use crate::gap::Gap;
-use crate::progress::{Part, Progress};
+use crate::progress::{Progress, ProgressPart};
 
 /// Columns of the map in which cusps are looked for.
 const CUSP_COLUMNS: u32 = 24;
@@ -80,15 +80,15 @@ impl Family {
         progress: &dyn Progress,
     ) -> Result<Option<(Map, Counts)>, FamilyError> {
         let mut map = Map::default();
-        let Some((counts, radii)) = self.counts(cells, &Part::new(progress, [0.0, 0.4])) else {
+        let Some((counts, radii)) = self.counts(cells, &ProgressPart::new(progress, [0.0, 0.4])) else {
             return Ok(None);
         };
         if let Some(radii) = radii {
             map.notes.extend(self.widen(radii).err());
         }
         self.draw(&mut map, progress)?;
-        self.complete(&mut map, &counts, &Part::new(progress, [0.5, 0.8]));
-        self.mark_changes(&mut map, &Part::new(progress, [0.8, 1.0]));
+        self.complete(&mut map, &counts, &ProgressPart::new(progress, [0.5, 0.8]));
+        self.mark_changes(&mut map, &ProgressPart::new(progress, [0.8, 1.0]));
         let corners = self.member(&[0.5; 2]).and_then(|member| member.law(&[0.5; 2]));
         if corners.is_ok_and(|law| !law.cusps(self.radii).1.is_empty()) {
             map.notes.push(
@@ -180,7 +180,7 @@ impl Family {
     }
 
     /// The limit point at these shares and the radius `s`, reduced.
-    pub fn point_at(&self, at: At<'_>, s: f64) -> Option<MapPoint> {
+    pub fn point_at(&self, at: AxisShares<'_>, s: f64) -> Option<MapPoint> {
         let local = self.member(at).ok()?.local(s)?;
         let (approach, force, control_value) = (local.approach(), local.force(), local.control_value());
         let at = [0, 1].map(|k| at.get(k).copied().unwrap_or(0.0));
@@ -256,7 +256,7 @@ impl Family {
     fn start_starts(&self, progress: &dyn Progress) -> Vec<Vec<f64>> {
         let of = Equations::new(self, Sort::Start);
         let Some(start) = self.start() else { return Vec::new() };
-        let off = |at: At<'_>| {
+        let off = |at: AxisShares<'_>| {
             let member = self.member(at).ok()?;
             Some(member.local(start)?.edge.value - member.root)
         };

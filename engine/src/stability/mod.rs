@@ -30,7 +30,7 @@ pub mod map;
 pub mod onset;
 pub mod weight;
 
-pub use axis::{Axis, AxisError, COMPLIANCE, Spacing};
+pub use axis::{AxisError, COMPLIANCE, MapAxis, Spacing};
 pub use count::{Cause, Change, Passage, even};
 pub use equations::{Equations, Sort};
 pub use family::{Family, FamilyError};

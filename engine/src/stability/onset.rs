@@ -1,6 +1,6 @@
 //! The smallest amplitude of a wave at which a preset snaps at all, with its own adhesion, device and start.
 
-use super::axis::Axis;
+use super::axis::MapAxis;
 use super::count::{Cause, EXACTLY};
 use super::family::{Family, FamilyError};
 use crate::elementary::pow;
@@ -36,7 +36,7 @@ impl Onset {
         if preset.get(GROUP).is_none() || preset.material.work_of_adhesion <= 0.0 {
             return Ok(None);
         }
-        let Ok(axis) = Axis::new(GROUP, RANGE, false, 1.0) else { return Ok(None) };
+        let Ok(axis) = MapAxis::new(GROUP, RANGE, false, 1.0) else { return Ok(None) };
         let family = Family::new(preset, vec![axis])?;
         let mut samples: Vec<f64> = (0..=SAMPLES)
             .map(|k| pow(10f64, -DECADES * (1.0 - f64::from(k) / f64::from(SAMPLES))))

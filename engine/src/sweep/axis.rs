@@ -1,7 +1,7 @@
 //! One axis of a sweep: a key of the preset and the values it takes.
 
 use super::MOST_ROWS;
-use super::document::{Entry, Section, SpecError};
+use super::document::{SpecEntry, SpecError, SpecSection};
 use crate::elementary::{cos, ln, pow};
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::preset::rows::parameter;
@@ -19,12 +19,12 @@ pub struct SweepAxis {
     /// A dotted key that [`Preset::set`] takes.
     pub key: String,
     /// The values.
-    pub points: Points,
+    pub points: AxisValues,
 }
 
 /// The values of an axis; every number is in the units of the preset: SI, or reduced.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Points {
+pub enum AxisValues {
     /// As they are listed.
     Values(Vec<Value>),
     /// By equal differences.
@@ -86,7 +86,7 @@ impl SweepAxis {
     ///
     /// # Errors
     /// [`SpecError`] with the line.
-    pub fn read(section: &Section<'_>, preset: &Preset, fixed: bool) -> Result<Self, SpecError> {
+    pub fn read(section: &SpecSection<'_>, preset: &Preset, fixed: bool) -> Result<Self, SpecError> {
         section.only(&["key", "values", "linear", "logarithmic", "distribution"])?;
         let wanted = "a key of the preset, such as \"gap.amplitude\"";
         let entry = section.need("key", wanted)?;
@@ -100,7 +100,7 @@ impl SweepAxis {
         {
             return Err(entry.fault(&format!("axis.key: {unknown}")));
         }
-        let points = Reader { preset: Some(preset), key }.points(section, &entry)?;
+        let points = KeyReader { preset: Some(preset), key }.points(section, &entry)?;
         let axis = Self { key: key.to_owned(), points };
         if fixed {
             axis.check_applies(&entry, preset)?;
@@ -112,13 +112,13 @@ impl SweepAxis {
     ///
     /// # Errors
     /// [`SpecError`] where it has another form.
-    pub fn of_canonical(section: &Section<'_>) -> Result<Self, SpecError> {
+    pub fn of_canonical(section: &SpecSection<'_>) -> Result<Self, SpecError> {
         let entry = section.need("key", "a key")?;
         let key = entry.text("a key")?;
-        Ok(Self { key: key.to_owned(), points: Reader { preset: None, key }.points(section, &entry)? })
+        Ok(Self { key: key.to_owned(), points: KeyReader { preset: None, key }.points(section, &entry)? })
     }
 
-    fn check_applies(&self, entry: &Entry<'_>, preset: &Preset) -> Result<(), SpecError> {
+    fn check_applies(&self, entry: &SpecEntry<'_>, preset: &Preset) -> Result<(), SpecError> {
         let Some(first) = self.first() else { return Ok(()) };
         match preset.clone().set(&self.key, first) {
             Err(invalid @ (Invalid::OtherChoice { .. } | Invalid::Unused { .. })) => {
@@ -131,11 +131,11 @@ impl SweepAxis {
     /// Its first value, or a likely one.
     pub fn first(&self) -> Option<Value> {
         match &self.points {
-            Points::Drawn(Distribution::Normal { mean, .. }) => Some((*mean).into()),
-            Points::Drawn(Distribution::Uniform([a, _]) | Distribution::LogUniform([a, _])) => {
+            AxisValues::Drawn(Distribution::Normal { mean, .. }) => Some((*mean).into()),
+            AxisValues::Drawn(Distribution::Uniform([a, _]) | Distribution::LogUniform([a, _])) => {
                 Some((*a).into())
             }
-            Points::Drawn(Distribution::Integers([a, _])) => Some((*a).into()),
+            AxisValues::Drawn(Distribution::Integers([a, _])) => Some((*a).into()),
             _ => self.value(0),
         }
     }
@@ -144,7 +144,7 @@ impl SweepAxis {
     #[must_use]
     pub fn is_numeric(&self) -> bool {
         match &self.points {
-            Points::Values(values) => {
+            AxisValues::Values(values) => {
                 values.iter().all(|value| matches!(value, Value::Number(_) | Value::Integer(_)))
             }
             _ => true,
@@ -155,11 +155,11 @@ impl SweepAxis {
     #[must_use]
     pub fn count(&self) -> Option<u64> {
         match &self.points {
-            Points::Values(values) => Some(values.len() as u64),
-            Points::Linear { count, .. }
-            | Points::Whole { count, .. }
-            | Points::Logarithmic { count, .. } => Some(*count),
-            Points::Drawn(_) => None,
+            AxisValues::Values(values) => Some(values.len() as u64),
+            AxisValues::Linear { count, .. }
+            | AxisValues::Whole { count, .. }
+            | AxisValues::Logarithmic { count, .. } => Some(*count),
+            AxisValues::Drawn(_) => None,
         }
     }
 
@@ -169,19 +169,23 @@ impl SweepAxis {
         let last = |count: u64| index > 0 && index + 1 >= count;
         let share = |count: u64| index as f64 / (count.max(2) - 1) as f64;
         match &self.points {
-            Points::Values(values) => values.get(usize::try_from(index).ok()?).cloned(),
+            AxisValues::Values(values) => values.get(usize::try_from(index).ok()?).cloned(),
             // The last is the one that was typed, to the bit.
-            Points::Linear { to, count, .. } | Points::Logarithmic { to, count, .. } if last(*count) => {
+            AxisValues::Linear { to, count, .. } | AxisValues::Logarithmic { to, count, .. }
+                if last(*count) =>
+            {
                 Some((*to).into())
             }
-            Points::Linear { from, to, count } => Some((from + (to - from) * share(*count)).into()),
+            AxisValues::Linear { from, to, count } => Some((from + (to - from) * share(*count)).into()),
             // In software: the same on every machine.
-            Points::Logarithmic { from, to, count } => Some((from * pow(to / from, share(*count))).into()),
-            Points::Whole { from, step, .. } => {
+            AxisValues::Logarithmic { from, to, count } => {
+                Some((from * pow(to / from, share(*count))).into())
+            }
+            AxisValues::Whole { from, step, .. } => {
                 let steps = i64::try_from(index).ok()?;
                 Some(steps.checked_mul(*step).and_then(|way| from.checked_add(way))?.into())
             }
-            Points::Drawn(_) => None,
+            AxisValues::Drawn(_) => None,
         }
     }
 
@@ -193,23 +197,25 @@ impl SweepAxis {
         };
         let range = |word: &str, a: &str, b: &str| format!("distribution = {{ {word} = [{a}, {b}] }}");
         match &self.points {
-            Points::Values(values) => {
+            AxisValues::Values(values) => {
                 let values: Vec<String> = values.iter().map(Value::to_toml).collect();
                 format!("values = [{}]", values.join(", "))
             }
-            Points::Linear { from, to, count } => spaced("linear", *from, *to, *count),
-            Points::Logarithmic { from, to, count } => spaced("logarithmic", *from, *to, *count),
-            Points::Whole { from, step, count } => {
+            AxisValues::Linear { from, to, count } => spaced("linear", *from, *to, *count),
+            AxisValues::Logarithmic { from, to, count } => spaced("logarithmic", *from, *to, *count),
+            AxisValues::Whole { from, step, count } => {
                 let to =
                     from.saturating_add(step.saturating_mul(i64::try_from(*count - 1).unwrap_or(i64::MAX)));
                 format!("linear = {{ from = {from}, to = {to}, count = {count} }}")
             }
-            Points::Drawn(Distribution::Uniform([a, b])) => range("uniform", &exact(*a), &exact(*b)),
-            Points::Drawn(Distribution::LogUniform([a, b])) => range("log-uniform", &exact(*a), &exact(*b)),
-            Points::Drawn(Distribution::Integers([a, b])) => {
+            AxisValues::Drawn(Distribution::Uniform([a, b])) => range("uniform", &exact(*a), &exact(*b)),
+            AxisValues::Drawn(Distribution::LogUniform([a, b])) => {
+                range("log-uniform", &exact(*a), &exact(*b))
+            }
+            AxisValues::Drawn(Distribution::Integers([a, b])) => {
                 range("integers", &a.to_string(), &b.to_string())
             }
-            Points::Drawn(Distribution::Normal { mean, deviation }) => {
+            AxisValues::Drawn(Distribution::Normal { mean, deviation }) => {
                 let (mean, deviation) = (exact(*mean), exact(*deviation));
                 format!("distribution = {{ normal = {{ mean = {mean}, deviation = {deviation} }} }}")
             }
@@ -259,16 +265,16 @@ pub fn rival<'a>(key: &str, before: impl IntoIterator<Item = &'a str>) -> Option
 }
 
 /// Reads the values of one key.
-struct Reader<'a> {
+struct KeyReader<'a> {
     /// What checks them; without it they are as they stand.
     preset: Option<&'a Preset>,
     key: &'a str,
 }
 
-impl Reader<'_> {
+impl KeyReader<'_> {
     /// The values of the axis of a `section`, whose key is `named`.
-    fn points(&self, section: &Section<'_>, named: &Entry<'_>) -> Result<Points, SpecError> {
-        let given: Vec<Entry<'_>> = KINDS.iter().filter_map(|kind| section.get(kind)).collect();
+    fn points(&self, section: &SpecSection<'_>, named: &SpecEntry<'_>) -> Result<AxisValues, SpecError> {
+        let given: Vec<SpecEntry<'_>> = KINDS.iter().filter_map(|kind| section.get(kind)).collect();
         let [points] = &given[..] else {
             let what = format!("the axis {} must have exactly one of {}", self.key, KINDS.join(", "));
             return Err(given.get(1).unwrap_or(named).fault(&what));
@@ -277,20 +283,20 @@ impl Reader<'_> {
             Some("values") => self.values(points),
             Some("linear") => self.linear(points),
             Some("logarithmic") => self.logarithmic(points),
-            _ => Ok(Points::Drawn(self.distribution(points)?)),
+            _ => Ok(AxisValues::Drawn(self.distribution(points)?)),
         }
     }
 
-    fn values(&self, entry: &Entry<'_>) -> Result<Points, SpecError> {
+    fn values(&self, entry: &SpecEntry<'_>) -> Result<AxisValues, SpecError> {
         let values = entry.array("an array of values")?;
         if values.is_empty() {
             return Err(entry.fault(&format!("{} of the axis {} is empty", entry.name, self.key)));
         }
-        Ok(Points::Values(values.iter().map(|value| self.value(value)).collect::<Result<_, _>>()?))
+        Ok(AxisValues::Values(values.iter().map(|value| self.value(value)).collect::<Result<_, _>>()?))
     }
 
     /// One value, in the units of the preset.
-    fn value(&self, entry: &Entry<'_>) -> Result<Value, SpecError> {
+    fn value(&self, entry: &SpecEntry<'_>) -> Result<Value, SpecError> {
         let of_toml = || {
             Value::from_toml(entry.value).map_err(|found| {
                 entry.fault(&format!("{}: {} is {found}; write a number or a text", entry.name, self.key))
@@ -307,7 +313,7 @@ impl Reader<'_> {
     }
 
     /// `{ stiffness = k }`, as a canonical form has it.
-    fn stiffness(entry: &Entry<'_>) -> Result<Value, SpecError> {
+    fn stiffness(entry: &SpecEntry<'_>) -> Result<Value, SpecError> {
         let allowed = "{ stiffness = k }";
         let stiffness = entry.section(allowed)?.need("stiffness", "a number")?;
         match Value::from_toml(stiffness.value) {
@@ -316,7 +322,7 @@ impl Reader<'_> {
         }
     }
 
-    fn number(&self, entry: &Entry<'_>) -> Result<f64, SpecError> {
+    fn number(&self, entry: &SpecEntry<'_>) -> Result<f64, SpecError> {
         match self.value(entry)? {
             Value::Number(x) => Ok(x),
             Value::Control(Control::Stiffness(_)) => Err(entry.fault(&format!(
@@ -327,7 +333,7 @@ impl Reader<'_> {
         }
     }
 
-    fn integer(&self, entry: &Entry<'_>) -> Result<i64, SpecError> {
+    fn integer(&self, entry: &SpecEntry<'_>) -> Result<i64, SpecError> {
         match (entry.value, self.value(entry)?) {
             (DeValue::Integer(n), _) if i64::from_str_radix(n.as_str(), n.radix()).is_ok() => {
                 Ok(i64::from_str_radix(n.as_str(), n.radix()).unwrap_or_default())
@@ -338,7 +344,7 @@ impl Reader<'_> {
     }
 
     /// `{ from, to, count }`.
-    fn spaced<'a>(entry: &Entry<'a>) -> Result<([Entry<'a>; 2], u64), SpecError> {
+    fn spaced<'a>(entry: &SpecEntry<'a>) -> Result<([SpecEntry<'a>; 2], u64), SpecError> {
         let section = entry.section("{ from = a, to = b, count = n }")?;
         section.only(&["from", "to", "count"])?;
         let [from, to] = [section.need("from", "the first value")?, section.need("to", "the last value")?];
@@ -346,7 +352,7 @@ impl Reader<'_> {
         Ok(([from, to], count))
     }
 
-    fn linear(&self, entry: &Entry<'_>) -> Result<Points, SpecError> {
+    fn linear(&self, entry: &SpecEntry<'_>) -> Result<AxisValues, SpecError> {
         let ([from, to], count) = Self::spaced(entry)?;
         if let Value::Integer(first) = self.value(&from)? {
             let (last, steps) = (self.integer(&to)?, i128::from(count) - 1);
@@ -359,20 +365,20 @@ impl Reader<'_> {
                 return Err(entry.fault(&what));
             }
             let step = i64::try_from(way / steps).map_err(|_| to.fault("the steps are too large"))?;
-            return Ok(Points::Whole { from: first, step, count });
+            return Ok(AxisValues::Whole { from: first, step, count });
         }
-        Ok(Points::Linear { from: self.number(&from)?, to: self.number(&to)?, count })
+        Ok(AxisValues::Linear { from: self.number(&from)?, to: self.number(&to)?, count })
     }
 
-    fn logarithmic(&self, entry: &Entry<'_>) -> Result<Points, SpecError> {
+    fn logarithmic(&self, entry: &SpecEntry<'_>) -> Result<AxisValues, SpecError> {
         let ([from, to], count) = Self::spaced(entry)?;
         let [first, last] = [self.number(&from)?, self.number(&to)?];
         self.above_zero(&from, first)?;
         self.above_zero(&to, last)?;
-        Ok(Points::Logarithmic { from: first, to: last, count })
+        Ok(AxisValues::Logarithmic { from: first, to: last, count })
     }
 
-    fn above_zero(&self, entry: &Entry<'_>, x: f64) -> Result<(), SpecError> {
+    fn above_zero(&self, entry: &SpecEntry<'_>, x: f64) -> Result<(), SpecError> {
         if x > 0.0 {
             return Ok(());
         }
@@ -385,12 +391,12 @@ impl Reader<'_> {
         Err(entry.fault(&what))
     }
 
-    fn distribution(&self, entry: &Entry<'_>) -> Result<Distribution, SpecError> {
+    fn distribution(&self, entry: &SpecEntry<'_>) -> Result<Distribution, SpecError> {
         let allowed = "one of { uniform = [a, b] }, { log-uniform = [a, b] }, { normal = { mean = m, deviation = d } }, \
                        { integers = [a, b] }";
         let section = entry.section(allowed)?;
         section.only(&DISTRIBUTIONS)?;
-        let given: Vec<Entry<'_>> = DISTRIBUTIONS.iter().filter_map(|kind| section.get(kind)).collect();
+        let given: Vec<SpecEntry<'_>> = DISTRIBUTIONS.iter().filter_map(|kind| section.get(kind)).collect();
         let [given] = &given[..] else {
             return Err(entry.fault(&format!("{} must be {allowed}", entry.name)));
         };
@@ -413,7 +419,7 @@ impl Reader<'_> {
         }
     }
 
-    fn range(&self, entry: &Entry<'_>) -> Result<[f64; 2], SpecError> {
+    fn range(&self, entry: &SpecEntry<'_>) -> Result<[f64; 2], SpecError> {
         let [a, b] = entry.pair()?;
         let [from, to] = [self.number(&a)?, self.number(&b)?];
         if from < to {
@@ -422,7 +428,7 @@ impl Reader<'_> {
         Err(entry.fault(&format!("{}: {} is not below {}", entry.name, exact(from), exact(to))))
     }
 
-    fn normal(&self, entry: &Entry<'_>) -> Result<Distribution, SpecError> {
+    fn normal(&self, entry: &SpecEntry<'_>) -> Result<Distribution, SpecError> {
         let section = entry.section("{ mean = m, deviation = d }")?;
         section.only(&["mean", "deviation"])?;
         let mean = self.number(&section.need("mean", "a value of the key")?)?;

@@ -1,6 +1,6 @@
 //! A TOML text read entry by entry, each mistake with its line.
 
-use crate::preset::read::{Origin, line};
+use crate::preset::read::{ValueOrigin, line};
 use crate::text::{closest, quote, sanitize, show_name};
 use std::ops::RangeInclusive;
 use thiserror::Error;
@@ -11,7 +11,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 #[error("{origin}: {what}")]
 pub struct SpecError {
     /// Where it stands.
-    pub origin: Origin,
+    pub origin: ValueOrigin,
     /// What, safe to show.
     pub what: String,
 }
@@ -27,7 +27,7 @@ pub struct SpecText<'a> {
 
 /// A table of the document.
 #[derive(Debug, Clone)]
-pub struct Section<'a> {
+pub struct SpecSection<'a> {
     document: SpecText<'a>,
     /// Its dotted name; empty for the document itself.
     name: String,
@@ -37,7 +37,7 @@ pub struct Section<'a> {
 
 /// A key with its value.
 #[derive(Debug, Clone)]
-pub struct Entry<'a> {
+pub struct SpecEntry<'a> {
     document: SpecText<'a>,
     /// Its dotted name.
     pub name: String,
@@ -62,17 +62,17 @@ impl<'a> SpecText<'a> {
     }
 
     fn fault(self, at: usize, what: String) -> SpecError {
-        let origin = Origin::File { name: show_name(self.name), line: Some(line(self.text, at)) };
+        let origin = ValueOrigin::File { name: show_name(self.name), line: Some(line(self.text, at)) };
         SpecError { origin, what }
     }
 
     /// The document as a table of itself.
-    pub fn section(self, table: &'a DeTable<'a>) -> Section<'a> {
-        Section { document: self, name: String::new(), table, at: 0 }
+    pub fn section(self, table: &'a DeTable<'a>) -> SpecSection<'a> {
+        SpecSection { document: self, name: String::new(), table, at: 0 }
     }
 }
 
-impl<'a> Section<'a> {
+impl<'a> SpecSection<'a> {
     /// Refuses every key that is none of `keys`.
     ///
     /// # Errors
@@ -98,17 +98,17 @@ impl<'a> Section<'a> {
     }
 
     /// The value of a key; `None` where the table has no such key.
-    pub fn get(&self, key: &str) -> Option<Entry<'a>> {
+    pub fn get(&self, key: &str) -> Option<SpecEntry<'a>> {
         let (found, value) = self.table.iter().find(|(name, _)| name.get_ref() == key)?;
         let at = found.span().start;
-        Some(Entry { document: self.document, name: self.full(key), value: value.get_ref(), at })
+        Some(SpecEntry { document: self.document, name: self.full(key), value: value.get_ref(), at })
     }
 
     /// The same of a key that must be there.
     ///
     /// # Errors
     /// [`SpecError`], which says what is `allowed`.
-    pub fn need(&self, key: &str, allowed: &str) -> Result<Entry<'a>, SpecError> {
+    pub fn need(&self, key: &str, allowed: &str) -> Result<SpecEntry<'a>, SpecError> {
         self.get(key)
             .ok_or_else(|| self.fault(&format!("{} is missing: it must be {allowed}", self.full(key))))
     }
@@ -119,7 +119,7 @@ impl<'a> Section<'a> {
     }
 }
 
-impl<'a> Entry<'a> {
+impl<'a> SpecEntry<'a> {
     /// An error that names this place.
     pub fn fault(&self, what: &str) -> SpecError {
         self.document.fault(self.at, what.to_owned())
@@ -141,9 +141,9 @@ impl<'a> Entry<'a> {
     ///
     /// # Errors
     /// [`SpecError`], which says what is `allowed`.
-    pub fn array(&self, allowed: &str) -> Result<Vec<Entry<'a>>, SpecError> {
+    pub fn array(&self, allowed: &str) -> Result<Vec<SpecEntry<'a>>, SpecError> {
         let array: &DeArray<'_> = self.value.as_array().ok_or_else(|| self.wrong(allowed))?;
-        let entry = |value: &'a toml::Spanned<DeValue<'a>>| Entry {
+        let entry = |value: &'a toml::Spanned<DeValue<'a>>| SpecEntry {
             document: self.document,
             name: self.name.clone(),
             value: value.get_ref(),
@@ -156,18 +156,18 @@ impl<'a> Entry<'a> {
     ///
     /// # Errors
     /// [`SpecError`] where it has another length.
-    pub fn pair(&self) -> Result<[Entry<'a>; 2], SpecError> {
+    pub fn pair(&self) -> Result<[SpecEntry<'a>; 2], SpecError> {
         let allowed = "two values, [from, to]";
-        <[Entry<'a>; 2]>::try_from(self.array(allowed)?).map_err(|_| self.wrong(allowed))
+        <[SpecEntry<'a>; 2]>::try_from(self.array(allowed)?).map_err(|_| self.wrong(allowed))
     }
 
     /// The value as a table.
     ///
     /// # Errors
     /// [`SpecError`], which says what is `allowed`.
-    pub fn section(&self, allowed: &str) -> Result<Section<'a>, SpecError> {
+    pub fn section(&self, allowed: &str) -> Result<SpecSection<'a>, SpecError> {
         let table = self.value.as_table().ok_or_else(|| self.wrong(allowed))?;
-        Ok(Section { document: self.document, name: self.name.clone(), table, at: self.at })
+        Ok(SpecSection { document: self.document, name: self.name.clone(), table, at: self.at })
     }
 
     /// A whole number of `range`.

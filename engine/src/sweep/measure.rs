@@ -2,7 +2,7 @@
 //! asked for.
 
 use super::fault::Fault;
-use super::quantity::{Column, Quantity, Stage};
+use super::quantity::{QuantityColumn, Stage, SweepQuantity};
 use super::stage::{Cell, CurveMinima, Fitting, OnPath, PresetValues, StartState};
 use crate::case::Case;
 use crate::preset::Preset;
@@ -10,14 +10,14 @@ use crate::problem::{ContactKind, Control};
 use crate::progress::Progress;
 use crate::quasistatic::Detail;
 use crate::quasistatic::overlap::passed;
-use crate::quasistatic::path::{Losses, PathStop, Setting};
+use crate::quasistatic::path::{Losses, PathSetting, PathStop};
 use crate::report::PullReport;
-use crate::report::pull::{Asked, RunReport};
-use crate::units::Quantity as Unit;
+use crate::report::pull::{AskedPulls, RunReport};
+use crate::units::Quantity;
 
 /// The quantities of a preset.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
+pub struct MeasuredQuantities {
     /// One for each wanted column; `None` where it is not defined or could not be had.
     pub cells: Vec<Option<Cell>>,
     /// The first reason for which one could not be had.
@@ -25,7 +25,7 @@ pub struct Measured {
 }
 
 /// What has been computed of a preset so far: each part once, when the first quantity needs it.
-struct Work<'a> {
+struct Workings<'a> {
     preset: &'a Preset,
     ground: PresetValues,
     start: Option<Result<StartState, Fault>>,
@@ -38,12 +38,25 @@ struct Work<'a> {
 }
 
 /// The `wanted` quantities of `preset`; `progress` is asked now and then, `None` when it said stop.
-pub fn measure(preset: &Preset, wanted: &[Column], progress: &dyn Progress) -> Option<Measured> {
+pub fn measure(
+    preset: &Preset,
+    wanted: &[QuantityColumn],
+    progress: &dyn Progress,
+) -> Option<MeasuredQuantities> {
     let ground = PresetValues::new(preset);
     let (paths, loops) = (Vec::new(), Vec::new());
-    let mut work =
-        Work { preset, ground, start: None, line: None, paths, loops, pull: None, fitting: None, progress };
-    let mut measured = Measured { cells: Vec::with_capacity(wanted.len()), fault: None };
+    let mut work = Workings {
+        preset,
+        ground,
+        start: None,
+        line: None,
+        paths,
+        loops,
+        pull: None,
+        fitting: None,
+        progress,
+    };
+    let mut measured = MeasuredQuantities { cells: Vec::with_capacity(wanted.len()), fault: None };
     for column in wanted {
         let cell = work.cell(column).unwrap_or_else(|fault| {
             measured.fault.get_or_insert(fault);
@@ -57,8 +70,8 @@ pub fn measure(preset: &Preset, wanted: &[Column], progress: &dyn Progress) -> O
     Some(measured)
 }
 
-impl Work<'_> {
-    fn cell(&mut self, column: &Column) -> Result<Option<Cell>, Fault> {
+impl Workings<'_> {
+    fn cell(&mut self, column: &QuantityColumn) -> Result<Option<Cell>, Fault> {
         let own = self.preset.path.control;
         match column.quantity.of {
             Stage::Preset(of) => Ok(of(&self.ground)),
@@ -133,7 +146,7 @@ impl Work<'_> {
         let known = self.paths.iter().position(|(of, with, _)| (*of, *with) == (control, contact));
         let at = known.unwrap_or_else(|| {
             let (losses, detail) = (Losses::Once, Detail::Borders);
-            let setting = Setting { control, contact, losses, detail, ..own };
+            let setting = PathSetting { control, contact, losses, detail, ..own };
             let progress = self.progress;
             let in_zone = self.start().and_then(|start| {
                 start.case.unload_in_zone(&setting, progress).map_err(|error| Fault::of_case(&error))
@@ -160,7 +173,7 @@ impl Work<'_> {
             let progress = self.progress;
             let made = self.start().and_then(|start| {
                 let (losses, detail) = (Losses::Once, Detail::Borders);
-                let setting = Setting { control, losses, detail, ..start.case.setting() };
+                let setting = PathSetting { control, losses, detail, ..start.case.setting() };
                 let path = start.case.cycle(None, &setting, progress);
                 Ok(OnPath { path: path.map_err(|e| Fault::of_case(&e))? })
             });
@@ -172,7 +185,7 @@ impl Work<'_> {
 
     fn pull(&mut self) -> Result<&RunReport, Fault> {
         let made = self.pull.get_or_insert_with(|| {
-            let asked = Asked::default();
+            let asked = AskedPulls::default();
             let report =
                 PullReport::compute(self.preset, &asked, self.progress).map_err(|e| Fault::of_pull(&e))?;
             report.runs.into_iter().next().ok_or_else(|| Fault::incomplete("no pull"))
@@ -197,7 +210,7 @@ impl Work<'_> {
     }
 
     /// A cell in the user's units: what comes of the preset alone, or of a report, is in them already.
-    fn shown(&self, cell: Cell, quantity: &Quantity) -> Cell {
+    fn shown(&self, cell: Cell, quantity: &SweepQuantity) -> Cell {
         let (Cell::Number(x), Some(Ok(start)), false) =
             (cell, &self.start, matches!(quantity.of, Stage::Preset(_) | Stage::Pull(_) | Stage::Fit(_)))
         else {
@@ -205,9 +218,9 @@ impl Work<'_> {
         };
         let units = start.case.units();
         Cell::Number(match quantity.unit {
-            Unit::Length => x * units.length,
-            Unit::Force => x * units.force,
-            Unit::Energy => x * units.energy,
+            Quantity::Length => x * units.length,
+            Quantity::Force => x * units.force,
+            Quantity::Energy => x * units.energy,
             _ => x,
         })
     }

@@ -26,8 +26,8 @@ pub mod stage;
 
 pub use document::SpecError;
 pub use fault::Fault;
-pub use measure::Measured;
-pub use quantity::{Column, QUANTITIES, Quantity};
+pub use measure::MeasuredQuantities;
+pub use quantity::{QUANTITIES, QuantityColumn, SweepQuantity};
 pub use spec::Spec;
 pub use stage::Cell;
 

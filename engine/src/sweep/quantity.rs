@@ -5,17 +5,17 @@ use super::stage::{Cell, CurveMinima, Fitting, OnPath, PresetValues};
 use crate::problem::Control;
 use crate::report::pull::RunReport;
 use crate::text::{closest, quote};
-use crate::units::Quantity as Unit;
+use crate::units::Quantity;
 
 /// One quantity.
 #[derive(Debug)]
-pub struct Quantity {
+pub struct SweepQuantity {
     /// Its name in a spec and in the results.
     pub name: &'static str,
     /// What it is called in formulas; empty where it has no such name.
     pub symbol: &'static str,
     /// What it is measured in.
-    pub unit: Unit,
+    pub unit: Quantity,
     /// One line for tables.
     pub meaning: &'static str,
     pub(super) of: Stage,
@@ -46,8 +46,8 @@ pub(super) enum Stage {
 macro_rules! quantities {
     ($($name:literal $symbol:literal $unit:ident $meaning:literal: $of:expr;)*) => {
         /// The quantities.
-        pub static QUANTITIES: &[Quantity] =
-            &[$(Quantity { name: $name, symbol: $symbol, unit: Unit::$unit, meaning: $meaning, of: $of }),*];
+        pub static QUANTITIES: &[SweepQuantity] =
+            &[$(SweepQuantity { name: $name, symbol: $symbol, unit: Quantity::$unit, meaning: $meaning, of: $of }),*];
     };
 }
 
@@ -190,20 +190,20 @@ impl Under {
 
 /// A quantity as it is wanted: a column of the results.
 #[derive(Debug, Clone, Copy)]
-pub struct Column {
+pub struct QuantityColumn {
     /// The quantity.
-    pub quantity: &'static Quantity,
+    pub quantity: &'static SweepQuantity,
     /// Under which control, where that matters.
     pub under: Under,
 }
 
-impl PartialEq for Column {
+impl PartialEq for QuantityColumn {
     fn eq(&self, other: &Self) -> bool {
         (self.quantity.name, self.under) == (other.quantity.name, other.under)
     }
 }
 
-impl Quantity {
+impl SweepQuantity {
     /// Whether it depends on the control: then `NAME` is under the preset's own, `NAME_displacement` and `NAME_force`
     /// under these.
     #[must_use]
@@ -212,27 +212,27 @@ impl Quantity {
     }
 
     /// As a column under each control that matters.
-    pub fn columns(&'static self) -> impl Iterator<Item = Column> {
+    pub fn columns(&'static self) -> impl Iterator<Item = QuantityColumn> {
         let last = if self.is_of_control() { Under::ALL.len() } else { 1 };
-        Under::ALL[..last].iter().map(move |(under, _)| Column { quantity: self, under: *under })
+        Under::ALL[..last].iter().map(move |(under, _)| QuantityColumn { quantity: self, under: *under })
     }
 }
 
 /// What people call the last contact, said of several things: the force there, and the largest pull.
 fn renamed(name: &str) -> Option<String> {
     name.strip_prefix("pull_off_").map(|rest| format!("last_contact_{rest}")).filter(|now| {
-        let all = QUANTITIES.iter().flat_map(Quantity::columns);
+        let all = QUANTITIES.iter().flat_map(SweepQuantity::columns);
         all.into_iter().any(|column| column.name() == *now)
     })
 }
 
-impl Column {
+impl QuantityColumn {
     /// The column of a name.
     ///
     /// # Errors
     /// What is wrong with the name, and the one that may have been meant.
     pub fn named(name: &str) -> Result<Self, String> {
-        let all = || QUANTITIES.iter().flat_map(Quantity::columns);
+        let all = || QUANTITIES.iter().flat_map(SweepQuantity::columns);
         all().find(|column| column.name() == name).ok_or_else(|| {
             let names: Vec<String> = all().map(|column| column.name()).collect();
             let meant = closest(name, names.iter().map(String::as_str));
@@ -259,12 +259,12 @@ mod tests {
 
     #[test]
     fn every_name_is_a_column_and_a_wrong_one_is_put_right() {
-        for column in QUANTITIES.iter().flat_map(Quantity::columns) {
-            assert_eq!(Column::named(&column.name()), Ok(column));
+        for column in QUANTITIES.iter().flat_map(SweepQuantity::columns) {
+            assert_eq!(QuantityColumn::named(&column.name()), Ok(column));
             assert!(column.quantity.meaning.is_ascii());
         }
-        assert!(USUAL.iter().all(|name| Column::named(name).is_ok()));
-        assert_eq!(Column::named("snaps_force").unwrap().under, Under::Force);
+        assert!(USUAL.iter().all(|name| QuantityColumn::named(name).is_ok()));
+        assert_eq!(QuantityColumn::named("snaps_force").unwrap().under, Under::Force);
         for (wrong, message) in [
             ("largest_pul", "no quantity is called \"largest_pul\"; did you mean largest_pull?"),
             ("pull_off_force", "no quantity is called \"pull_off_force\"; it is last_contact_force"),
@@ -276,7 +276,7 @@ mod tests {
             ("enhancement_force", "no quantity is called \"enhancement_force\"; did you mean enhancement?"),
             ("x\u{1b}", "no quantity is called \"x\u{fffd}\""),
         ] {
-            assert_eq!(Column::named(wrong).unwrap_err(), message);
+            assert_eq!(QuantityColumn::named(wrong).unwrap_err(), message);
         }
     }
 }

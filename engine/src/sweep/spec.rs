@@ -1,12 +1,12 @@
 //! The spec of a sweep: TOML text → preset, axes, quantities; and the values of each row.
 
 use super::MOST_ROWS;
-use super::axis::{Distribution, Points, SweepAxis, overrides, rival};
-use super::document::{Entry, Section, SpecError, SpecText};
+use super::axis::{AxisValues, Distribution, SweepAxis, overrides, rival};
+use super::document::{SpecEntry, SpecError, SpecSection, SpecText};
 use super::ensemble::MEMBERS;
 use super::fault::Fault;
-use super::measure::{Measured, measure};
-use super::quantity::{Column, USUAL};
+use super::measure::{MeasuredQuantities, measure};
+use super::quantity::{QuantityColumn, USUAL};
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::preset::schema::CHOOSERS;
 use crate::preset::{Preset, Value};
@@ -67,7 +67,7 @@ pub struct Spec {
     /// How they make rows.
     pub design: Design,
     /// The quantities wanted; at least one.
-    pub columns: Vec<Column>,
+    pub columns: Vec<QuantityColumn>,
     /// The number of rows, from 1 to [`MOST_ROWS`].
     pub rows: u64,
 }
@@ -99,10 +99,11 @@ impl Spec {
             _ => Some(section.need("axis", wanted)?),
         };
         let given = axes.as_ref().map_or_else(|| Ok(Vec::new()), |axes| axes.array(wanted))?;
-        let tables: Vec<Section<'_>> =
+        let tables: Vec<SpecSection<'_>> =
             given.iter().map(|entry| entry.section("a table [[axis]]")).collect::<Result<_, _>>()?;
-        let key =
-            |table: &Section<'_>| table.get("key").and_then(|entry| entry.value.as_str().map(str::to_owned));
+        let key = |table: &SpecSection<'_>| {
+            table.get("key").and_then(|entry| entry.value.as_str().map(str::to_owned))
+        };
         let fixed = !tables.iter().filter_map(key).any(|key| CHOOSERS.contains(&&*key));
         let mut read: Vec<SweepAxis> = Vec::new();
         for table in &tables {
@@ -182,7 +183,7 @@ impl Spec {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn measure(&self, row: u64, progress: &dyn Progress) -> Option<Measured> {
+    pub fn measure(&self, row: u64, progress: &dyn Progress) -> Option<MeasuredQuantities> {
         match self.problem(row) {
             Ok(preset) => measure(&preset, &self.columns, progress),
             Err(fault) => Some(self.lost(fault)),
@@ -191,8 +192,8 @@ impl Spec {
 
     /// A row without any quantity.
     #[must_use]
-    pub fn lost(&self, fault: Fault) -> Measured {
-        Measured { cells: vec![None; self.columns.len()], fault: Some(fault) }
+    pub fn lost(&self, fault: Fault) -> MeasuredQuantities {
+        MeasuredQuantities { cells: vec![None; self.columns.len()], fault: Some(fault) }
     }
 }
 
@@ -202,7 +203,7 @@ pub fn values(axes: &[SweepAxis], design: Design, row: u64) -> Vec<Value> {
         let mut random = SplitMix64::row(seed, row);
         // Drawn in the order of the axes.
         let draw = move |axis: &SweepAxis| match &axis.points {
-            Points::Drawn(distribution) => Some(distribution.draw(&mut random)),
+            AxisValues::Drawn(distribution) => Some(distribution.draw(&mut random)),
             _ => None,
         };
         axes.iter().filter_map(draw)
@@ -249,7 +250,7 @@ fn drawn(axes: Vec<SweepAxis>, preset: &Preset, fixed: bool) -> Result<Vec<Sweep
         axes.into_iter().partition(|axis| axis.count().is_none());
     if has_seed {
         // Every seed is as good as any other; a table of numbers in double precision keeps these.
-        let points = Points::Drawn(Distribution::Integers([0, (1 << 53) - 1]));
+        let points = AxisValues::Drawn(Distribution::Integers([0, (1 << 53) - 1]));
         own.push(SweepAxis { key: SEED.to_owned(), points });
     }
     if own.is_empty() {
@@ -274,11 +275,11 @@ pub fn of_canonical(document: SpecText<'_>) -> Result<(Vec<SweepAxis>, Design), 
 }
 
 /// `preset` with the assignments of `set`.
-fn preset(presets: Presets<'_>, section: &Section<'_>) -> Result<Preset, SpecError> {
+fn preset(presets: Presets<'_>, section: &SpecSection<'_>) -> Result<Preset, SpecError> {
     let wanted = "the name of a preset, or a preset file (with a '/' or ending in .toml)";
     let entry = section.need("preset", wanted)?;
     let name = entry.text(wanted)?;
-    let set: Vec<Entry<'_>> =
+    let set: Vec<SpecEntry<'_>> =
         section.get("set").map_or_else(|| Ok(Vec::new()), |set| set.array(ASSIGNMENTS))?;
     let set: Vec<&str> = set.iter().map(|entry| entry.text(ASSIGNMENTS)).collect::<Result<_, _>>()?;
     // The preset itself first, so that a mistake is told where it is made.
@@ -290,7 +291,7 @@ fn preset(presets: Presets<'_>, section: &Section<'_>) -> Result<Preset, SpecErr
 }
 
 /// The keys to which `set` gives values, each with its place.
-fn assigned<'a>(section: &Section<'a>) -> Result<Vec<(Entry<'a>, String)>, SpecError> {
+fn assigned<'a>(section: &SpecSection<'a>) -> Result<Vec<(SpecEntry<'a>, String)>, SpecError> {
     let mut keys = Vec::new();
     let Some(set) = section.get("set") else { return Ok(keys) };
     for entry in set.array(ASSIGNMENTS)? {
@@ -315,9 +316,10 @@ fn keys_of(key: &str, table: Option<&DeTable<'_>>) -> Vec<String> {
     table.iter().flat_map(below).collect()
 }
 
-fn design(section: &Section<'_>) -> Result<Design, SpecError> {
-    let seed =
-        |section: &Section<'_>| section.need("seed", "a whole number")?.count(0..=i64::MAX.unsigned_abs());
+fn design(section: &SpecSection<'_>) -> Result<Design, SpecError> {
+    let seed = |section: &SpecSection<'_>| {
+        section.need("seed", "a whole number")?.count(0..=i64::MAX.unsigned_abs())
+    };
     let in_pairs = match section.get("combine") {
         Some(combine) if section.get("random").is_some() => {
             return Err(combine.fault("combine is of a grid or of pairs: [random] has neither"));
@@ -347,7 +349,7 @@ fn design(section: &Section<'_>) -> Result<Design, SpecError> {
 }
 
 /// Whether `combine` asks for pairs.
-fn is_pairs(combine: &Entry<'_>) -> Result<bool, SpecError> {
+fn is_pairs(combine: &SpecEntry<'_>) -> Result<bool, SpecError> {
     match combine.text("\"grid\" or \"pairs\"")? {
         "grid" => Ok(false),
         "pairs" => Ok(true),
@@ -361,7 +363,7 @@ fn is_pairs(combine: &Entry<'_>) -> Result<bool, SpecError> {
 }
 
 /// The number of rows, or of points of an ensemble; every axis must fit the design.
-fn rows(design: Design, axes: &[SweepAxis], tables: &[Section<'_>]) -> Result<u64, SpecError> {
+fn rows(design: Design, axes: &[SweepAxis], tables: &[SpecSection<'_>]) -> Result<u64, SpecError> {
     let counts: Vec<Option<u64>> = axes.iter().map(SweepAxis::count).collect();
     // The first of the axes that are not drawn, which all others of pairs are as long as.
     let first = axes.iter().zip(&counts).find_map(|(axis, count)| Some((axis, (*count)?)));
@@ -402,15 +404,15 @@ fn rows(design: Design, axes: &[SweepAxis], tables: &[Section<'_>]) -> Result<u6
     Ok(product)
 }
 
-fn columns(section: &Section<'_>) -> Result<Vec<Column>, SpecError> {
+fn columns(section: &SpecSection<'_>) -> Result<Vec<QuantityColumn>, SpecError> {
     let Some(entry) = section.get("quantities") else {
-        return Ok(USUAL.iter().filter_map(|name| Column::named(name).ok()).collect());
+        return Ok(USUAL.iter().filter_map(|name| QuantityColumn::named(name).ok()).collect());
     };
     let wanted = "an array of names of quantities";
     let mut columns = Vec::new();
     for name in entry.array(wanted)? {
-        let column =
-            Column::named(name.text(wanted)?).map_err(|what| name.fault(&format!("quantities: {what}")))?;
+        let column = QuantityColumn::named(name.text(wanted)?)
+            .map_err(|what| name.fault(&format!("quantities: {what}")))?;
         if columns.contains(&column) {
             return Err(name.fault(&format!("quantities: {} stands there twice", column.name())));
         }

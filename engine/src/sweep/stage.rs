@@ -51,12 +51,12 @@ pub(super) struct StartState {
 pub(super) struct CurveMinima {
     pub(super) curve: Curve,
     /// The state of smallest force and that of smallest approach.
-    least: [Least; 2],
+    least: [LeastState; 2],
     critical_force: Option<f64>,
 }
 
 /// The state of the curve at which the controlled quantity is smallest.
-struct Least {
+struct LeastState {
     state: State,
     is_cut_off: OnceCell<bool>,
     control: Control,
@@ -241,7 +241,7 @@ impl CurveMinima {
         let mut curve = case.curve_in(Detail::Borders, progress)?;
         let least = [Control::Force, Control::Displacement].map(|control| {
             curve.hold(control);
-            Least { state: least(&curve, control), is_cut_off: OnceCell::new(), control }
+            LeastState { state: least(&curve, control), is_cut_off: OnceCell::new(), control }
         });
         let critical_force = case.critical_force().map(|force| force / case.units().force);
         Ok(Self { curve, least, critical_force })
@@ -267,7 +267,7 @@ impl CurveMinima {
 
     /// The state of smallest force, or of smallest approach, of all contacts and not only of those up to the start's.
     fn smallest(&self, which: usize) -> Result<&State, Fault> {
-        let Least { state, is_cut_off, control } = &self.least[which];
+        let LeastState { state, is_cut_off, control } = &self.least[which];
         let is_cut_off = is_cut_off.get_or_init(|| {
             state.contact_radius >= self.curve.outermost() || self.is_smaller_beyond(state, *control)
         });

@@ -37,7 +37,7 @@ pub struct Transform {
 
 /// One exact equilibrium, in the units of the disc.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Equilibrium {
+pub struct ExactEquilibrium {
     /// s, a length.
     pub contact_radius: f64,
     /// δ, a length, positive when pressed together.
@@ -133,10 +133,10 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
     }
 
     /// The equilibrium at `s`, M₂ there known.
-    fn equilibrium(&self, s: f64, square: f64) -> Equilibrium {
+    fn equilibrium(&self, s: f64, square: f64) -> ExactEquilibrium {
         let modulus = self.effective_modulus();
         let (g, edge) = (self.transform(s), self.edge(s));
-        Equilibrium {
+        ExactEquilibrium {
             contact_radius: s,
             approach: g.value - edge,
             force: 2.0 * modulus * (g.moment - s * edge),
@@ -147,7 +147,7 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
     }
 
     /// The equilibria at `radii`, in any order, their energies from one pass over the whole curve.
-    fn curve(&self, radii: &[f64]) -> Vec<Equilibrium> {
+    fn curve(&self, radii: &[f64]) -> Vec<ExactEquilibrium> {
         let mut order: Vec<usize> = (0..radii.len()).collect();
         order.sort_by(|&i, &j| radii[i].total_cmp(&radii[j]));
         let mut squares = vec![(0.0, true); radii.len()];
@@ -161,7 +161,7 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
         }
         let state = |(&s, (square, resolved))| {
             let state = self.equilibrium(s, square);
-            Equilibrium { resolved: resolved && state.resolved, ..state }
+            ExactEquilibrium { resolved: resolved && state.resolved, ..state }
         };
         radii.iter().zip(squares).map(state).collect()
     }

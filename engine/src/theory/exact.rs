@@ -2,13 +2,13 @@
 
 use super::disc::Disc;
 use super::guduru::Guduru;
-use super::harmonics::Harmonics;
+use super::harmonics::HarmonicDisc;
 use super::jkr::Jkr;
-use super::power_law::PowerLaw;
+use super::power_law::PowerLawDisc;
 use super::sneddon::Sneddon;
 use super::sphere::Sphere;
 use crate::gap::{Gap, Shape};
-use crate::gap::{shapes::ExactSphere, shapes::Harmonics as Waves, shapes::PowerLaw as Law};
+use crate::gap::{shapes::ExactSphere, shapes::Harmonics, shapes::PowerLaw};
 use crate::problem::Problem;
 use std::ops::Deref;
 use std::sync::Arc;
@@ -47,11 +47,11 @@ impl Exact {
                 Arc::new(Sphere { effective_modulus, work_of_adhesion, radius })
             }
             Shape::Cone { slope } => {
-                Arc::new(PowerLaw::new(effective_modulus, work_of_adhesion, &Law::cone(slope)))
+                Arc::new(PowerLawDisc::new(effective_modulus, work_of_adhesion, &PowerLaw::cone(slope)))
             }
-            Shape::PowerLaw(ref law) => Arc::new(PowerLaw::new(effective_modulus, work_of_adhesion, law)),
+            Shape::PowerLaw(ref law) => Arc::new(PowerLawDisc::new(effective_modulus, work_of_adhesion, law)),
             Shape::Harmonics(ref waves) | Shape::RandomWaves { drawn: ref waves, .. } => {
-                Arc::new(Harmonics { effective_modulus, work_of_adhesion, gap: Waves::clone(waves) })
+                Arc::new(HarmonicDisc { effective_modulus, work_of_adhesion, gap: Harmonics::clone(waves) })
             }
             Shape::Formula(_) | Shape::Profile(_) => {
                 let gap = Arc::new(shape.clone());

@@ -22,21 +22,21 @@ use super::disc::{Disc, Transform};
 use super::struve::struve;
 use crate::elementary::sin_cos;
 use crate::gap::Gap;
-use crate::gap::shapes::Harmonics as Waves;
+use crate::gap::shapes::Harmonics;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, TAU};
 
 /// An adhesive paraboloid with waves whose contact is one connected disc.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Harmonics {
+pub struct HarmonicDisc {
     /// E*.
     pub effective_modulus: f64,
     /// γ.
     pub work_of_adhesion: f64,
     /// h(r).
-    pub gap: Waves,
+    pub gap: Harmonics,
 }
 
-impl Disc for Harmonics {
+impl Disc for HarmonicDisc {
     fn name(&self) -> &'static str {
         "Guduru 2007, summed"
     }

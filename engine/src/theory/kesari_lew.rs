@@ -26,7 +26,7 @@ use std::f64::consts::PI;
 
 /// Which of the two envelopes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
+pub enum EnvelopeSide {
     /// The one with the larger pull, along which a disc peels.
     Unloading,
     /// The one with the smaller pull, along which a disc grows.
@@ -48,13 +48,13 @@ impl KesariLew {
     }
 
     /// δ and P of an envelope at the contact radius `s`.
-    pub fn envelope(&self, side: Side, s: f64) -> (f64, f64) {
+    pub fn envelope(&self, side: EnvelopeSide, s: f64) -> (f64, f64) {
         let Guduru { effective_modulus: e, work_of_adhesion, radius_of_curvature, amplitude, .. } =
             self.sphere;
         let factor = match side {
-            Side::Unloading => 1.0 + self.share(),
+            EnvelopeSide::Unloading => 1.0 + self.share(),
             // Negative where the wave is stronger than the adhesion: the edge then presses.
-            Side::Loading => 1.0 - self.share(),
+            EnvelopeSide::Loading => 1.0 - self.share(),
         };
         let edge = factor * (2.0 * PI * work_of_adhesion * s / e).sqrt();
         let approach = s * s / radius_of_curvature + amplitude - edge;
@@ -139,7 +139,8 @@ mod tests {
         let [mut nearest_low, mut nearest_high] = [f64::INFINITY; 2];
         for i in 0..4000 {
             let s = 0.3 + 1e-6 * f64::from(i);
-            let (low, high) = (kl.envelope(Side::Unloading, s), kl.envelope(Side::Loading, s));
+            let (low, high) =
+                (kl.envelope(EnvelopeSide::Unloading, s), kl.envelope(EnvelopeSide::Loading, s));
             // At equal radius both δ and P lie between, within what the next order adds.
             for (exact, low, high) in
                 [(kl.sphere.approach(s), low.0, high.0), (kl.sphere.force(s), low.1, high.1)]

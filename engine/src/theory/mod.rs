@@ -43,5 +43,5 @@ pub mod struve;
 pub mod unloading;
 pub mod worst_phase;
 
-pub use disc::{Disc, Equilibrium};
+pub use disc::{Disc, ExactEquilibrium};
 pub use exact::Exact;

@@ -11,12 +11,12 @@
 use super::disc::{Disc, Transform};
 use super::quadrature::Integral;
 use crate::elementary::pow;
-use crate::gap::shapes::PowerLaw as Gap;
+use crate::gap::shapes::PowerLaw;
 use std::f64::consts::PI;
 
 /// An adhesive axisymmetric body of a power-law shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PowerLaw {
+pub struct PowerLawDisc {
     effective_modulus: f64,
     work_of_adhesion: f64,
     exponent: f64,
@@ -24,10 +24,10 @@ pub struct PowerLaw {
     transformed: f64,
 }
 
-impl PowerLaw {
+impl PowerLawDisc {
     /// The body of the gap `gap`, with E* and γ.
     #[must_use]
-    pub fn new(effective_modulus: f64, work_of_adhesion: f64, gap: &Gap) -> Self {
+    pub fn new(effective_modulus: f64, work_of_adhesion: f64, gap: &PowerLaw) -> Self {
         let n = gap.exponent;
         let wallis = 0.5 * PI.sqrt() * libm::tgamma(0.5 * n) / libm::tgamma(0.5 * (n + 1.0));
         let transformed = gap.factor * n * wallis;
@@ -35,7 +35,7 @@ impl PowerLaw {
     }
 }
 
-impl Disc for PowerLaw {
+impl Disc for PowerLawDisc {
     fn name(&self) -> &'static str {
         "Sneddon 1965"
     }
@@ -71,7 +71,7 @@ mod tests {
 
     #[test]
     fn the_paraboloid_is_jkr() {
-        let law = PowerLaw::new(2.0, 0.01, &Gap { factor: 1.0 / 6.0, exponent: 2.0 });
+        let law = PowerLawDisc::new(2.0, 0.01, &PowerLaw { factor: 1.0 / 6.0, exponent: 2.0 });
         let jkr = Jkr { effective_modulus: 2.0, work_of_adhesion: 0.01, radius_of_curvature: 3.0 };
         for s in [0.01, 0.2, 1.7] {
             let (a, b) = (law.curve(&[s])[0], jkr.curve(&[s])[0]);
@@ -83,7 +83,7 @@ mod tests {
 
     #[test]
     fn the_cone_without_adhesion_is_sneddons() {
-        let cone = PowerLaw::new(3.0, 0.0, &Gap::cone(0.2));
+        let cone = PowerLawDisc::new(3.0, 0.0, &PowerLaw::cone(0.2));
         assert!((cone.approach(0.5) - 0.05 * PI).abs() < 1e-15);
         assert!((cone.force(0.5) - 3.0 * PI * 0.2 * 0.125).abs() < 1e-15);
         // The mean pressure under a cone is E*c/2, whatever the radius.

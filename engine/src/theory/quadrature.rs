@@ -5,7 +5,7 @@
 //! far smaller still; at a kink the coefficients fall slowly and the panels crowd there.
 
 use crate::gap::Breaks;
-use crate::gap::breaks::Stretch;
+use crate::gap::breaks::SmoothStretch;
 use gauss_quad::GaussLegendre;
 use std::num::NonZeroUsize;
 use std::ops::AddAssign;
@@ -32,13 +32,13 @@ pub(super) static STRETCH: LazyLock<Vec<(f64, f64)>> =
     LazyLock::new(|| GaussLegendre::new(STRETCH_NODES).as_node_weight_pairs().to_vec());
 
 /// A node on (−1, 1), its weight, and its weights in the last two Legendre coefficients.
-struct Node {
+struct GaussNode {
     x: f64,
     weight: f64,
     tail: [f64; 2],
 }
 
-static RULE: LazyLock<Vec<Node>> = LazyLock::new(|| {
+static RULE: LazyLock<Vec<GaussNode>> = LazyLock::new(|| {
     let rule = GaussLegendre::new(NODES);
     let last = NODES.get() - 1;
     let node = |&(x, weight): &(f64, f64)| {
@@ -49,14 +49,14 @@ static RULE: LazyLock<Vec<Node>> = LazyLock::new(|| {
         }
         // cₙ = (2n+1)/2 Σ w f Pₙ.
         let order = last as f64;
-        Node { x, weight, tail: [(order + 0.5) * weight * here, (order - 0.5) * weight * before] }
+        GaussNode { x, weight, tail: [(order + 0.5) * weight * here, (order - 0.5) * weight * before] }
     };
     rule.as_node_weight_pairs().iter().map(node).collect()
 });
 
 /// One panel: its integrals, those of |f|, and its last coefficients times its width.
 #[derive(Clone, Copy)]
-struct Panel<const K: usize> {
+struct QuadraturePanel<const K: usize> {
     from: f64,
     to: f64,
     integral: [f64; K],
@@ -64,7 +64,7 @@ struct Panel<const K: usize> {
     tail: [f64; K],
 }
 
-impl<const K: usize> Panel<K> {
+impl<const K: usize> QuadraturePanel<K> {
     fn new(from: f64, to: f64, f: &mut impl FnMut(f64) -> [f64; K]) -> Self {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let mut panel = Self { from, to, integral: [0.0; K], absolute: [0.0; K], tail: [0.0; K] };
@@ -114,7 +114,7 @@ pub fn integrate_broken<const K: usize>(
         return integrate(from, to, wave, f);
     }
     let mut sum = Integral { values: [0.0; K], resolved: true };
-    for Stretch { from, to, base } in breaks.stretches(from, to) {
+    for SmoothStretch { from, to, base } in breaks.stretches(from, to) {
         let (x_from, x_to) = ((from - base).sqrt(), (to - base).sqrt());
         let mut rooted = |x: f64| f(base + x * x).map(|value| 2.0 * x * value);
         sum += if breaks.cubic {
@@ -146,11 +146,11 @@ pub fn integrate<const K: usize>(
 ) -> Integral<K> {
     let waves = wave.map_or(1.0, |wave| ((to - from).abs() / wave).clamp(1.0, STARTED)).ceil();
     let width = (to - from) / waves;
-    let mut panels: Vec<Panel<K>> = Vec::new();
+    let mut panels: Vec<QuadraturePanel<K>> = Vec::new();
     let mut index = 0.0;
     while index < waves {
         let end = if index + 1.0 < waves { from + width * (index + 1.0) } else { to };
-        panels.push(Panel::new(from + width * index, end, &mut f));
+        panels.push(QuadraturePanel::new(from + width * index, end, &mut f));
         index += 1.0;
     }
     let scale: [f64; K] = std::array::from_fn(|k| panels.iter().map(|p| p.absolute[k]).sum());
@@ -168,8 +168,8 @@ pub fn integrate<const K: usize>(
             continue;
         }
         made += 2;
-        panels.push(Panel::new(panel.from, middle, &mut f));
-        panels.push(Panel::new(middle, panel.to, &mut f));
+        panels.push(QuadraturePanel::new(panel.from, middle, &mut f));
+        panels.push(QuadraturePanel::new(middle, panel.to, &mut f));
     }
     integral
 }

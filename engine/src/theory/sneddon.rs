@@ -14,7 +14,7 @@ use super::disc::{self, Disc, Transform};
 use super::quadrature::{Integral, STRETCH, integrate};
 use crate::elementary::{asin, sin};
 use crate::gap::Gap;
-use crate::gap::{breaks::Angles, breaks::Breaks, breaks::CUBIC_FREQUENCY, breaks::Stretch};
+use crate::gap::{breaks::Angles, breaks::Breaks, breaks::CUBIC_FREQUENCY, breaks::SmoothStretch};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
@@ -129,13 +129,13 @@ impl Sneddon {
 struct SlopeTable<'a> {
     disc: &'a Sneddon,
     /// Each stretch with its nodes a and the weights of ∫ g' da there.
-    stretches: Vec<(Stretch, Vec<(f64, f64)>)>,
+    stretches: Vec<(SmoothStretch, Vec<(f64, f64)>)>,
 }
 
 impl<'a> SlopeTable<'a> {
     fn new(disc: &'a Sneddon, s: f64) -> Self {
-        let nodes = |stretch: Stretch| {
-            let Stretch { from, to, base } = stretch;
+        let nodes = |stretch: SmoothStretch| {
+            let SmoothStretch { from, to, base } = stretch;
             let nodes = STRETCH.iter().map(|(x, weight)| {
                 let (half, middle) = (0.5 * (to - base).sqrt(), 0.5 * (from - base).sqrt());
                 // In √(a − base), at which g' is smooth.
@@ -151,8 +151,8 @@ impl<'a> SlopeTable<'a> {
     /// ∫_r^s g'(a)/√(a² − r²) da.
     fn pressed(&self, r: f64) -> f64 {
         let first = self.stretches.partition_point(|(stretch, _)| stretch.to <= r);
-        let part = |(stretch, nodes): &(Stretch, Vec<(f64, f64)>)| -> f64 {
-            let &Stretch { from, to, .. } = stretch;
+        let part = |(stretch, nodes): &(SmoothStretch, Vec<(f64, f64)>)| -> f64 {
+            let &SmoothStretch { from, to, .. } = stretch;
             if from - r >= to - from {
                 return nodes.iter().map(|(a, weight)| weight / ((a - r) * (a + r)).sqrt()).sum();
             }

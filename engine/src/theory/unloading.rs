@@ -15,7 +15,7 @@
 //! basis, of Newton or of continuation, so it can judge them. The path is that of P. R. Guduru, J. Mech. Phys. Solids
 //! 55, 445 (2007), doi:10.1016/j.jmps.2006.09.004, and of Fig. 10 of the paper.
 
-use super::disc::{Disc, Equilibrium};
+use super::disc::{Disc, ExactEquilibrium};
 use super::root::halved;
 use crate::problem::Control;
 
@@ -36,41 +36,41 @@ pub const OUTWARD_REACH: f64 = 1000.0;
 
 /// A limit point of a control on an exact curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limit {
+pub struct ExactLimit {
     /// Whether the control is smallest there, along s: the edge leaves it on unloading. Otherwise it is largest.
     pub minimum: bool,
     /// The state.
-    pub state: Equilibrium,
+    pub state: ExactEquilibrium,
 }
 
 /// One instability of an exact path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Jump {
+pub struct ExactJump {
     /// c*, the controlled quantity at which it happens.
     pub control_value: f64,
     /// The limit point.
-    pub before: Equilibrium,
+    pub before: ExactEquilibrium,
     /// The landing; `None` for the pull-off.
-    pub after: Option<Equilibrium>,
+    pub after: Option<ExactEquilibrium>,
     /// The energy lost; `None` for a pull-off under a dead load, where it has no bound.
     pub dissipated: Option<f64>,
 }
 
 /// The exact unloading.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Path {
+pub struct ExactPath {
     /// What was controlled.
     pub control: Control,
     /// The first state, stable: where the one asked for is not, the edge first runs outward from it.
-    pub start: Equilibrium,
+    pub start: ExactEquilibrium,
     /// The instabilities in order. Only the last can be a pull-off; without one the disc shrinks to nothing, as it does
     /// without adhesion.
-    pub jumps: Vec<Jump>,
+    pub jumps: Vec<ExactJump>,
 }
 
 /// A radius of the grid, or a limit point among them.
 #[derive(Debug, Clone, Copy)]
-struct Node {
+struct GridNode {
     radius: f64,
     /// c there.
     value: f64,
@@ -95,8 +95,8 @@ fn grid(disc: &dyn Disc, from: f64, to: f64) -> Vec<f64> {
 }
 
 /// The grid with the limit points of `control` among its radii, running inward.
-fn nodes(disc: &dyn Disc, control: Control, from: f64, to: f64) -> Vec<Node> {
-    let node = |radius, minimum| Node { radius, value: value(disc, control, radius), minimum };
+fn nodes(disc: &dyn Disc, control: Control, from: f64, to: f64) -> Vec<GridNode> {
+    let node = |radius, minimum| GridNode { radius, value: value(disc, control, radius), minimum };
     let mut nodes = Vec::new();
     let mut before: Option<(f64, f64)> = None;
     for s in grid(disc, from, to) {
@@ -112,13 +112,17 @@ fn nodes(disc: &dyn Disc, control: Control, from: f64, to: f64) -> Vec<Node> {
 }
 
 /// The limit points of `control` between the radii `from` and `to < from`, running inward.
-pub fn limit_points(disc: &dyn Disc, control: Control, from: f64, to: f64) -> Vec<Limit> {
+pub fn limit_points(disc: &dyn Disc, control: Control, from: f64, to: f64) -> Vec<ExactLimit> {
     let found: Vec<(f64, bool)> = nodes(disc, control, from, to)
         .into_iter()
         .filter_map(|node| node.minimum.map(|minimum| (node.radius, minimum)))
         .collect();
     let radii: Vec<f64> = found.iter().map(|(radius, _)| *radius).collect();
-    disc.curve(&radii).into_iter().zip(found).map(|(state, (_, minimum))| Limit { minimum, state }).collect()
+    disc.curve(&radii)
+        .into_iter()
+        .zip(found)
+        .map(|(state, (_, minimum))| ExactLimit { minimum, state })
+        .collect()
 }
 
 /// The smallest value of what `control` holds between the radii `from` and `to < from`.
@@ -148,7 +152,7 @@ fn stable_start(disc: &dyn Disc, control: Control, from: f64) -> Option<f64> {
 /// Unloads an exact disc under `control` from the contact radius `from > 0`.
 ///
 /// `None` where that state is unstable and no stable one lies outward up to [`OUTWARD_REACH`].
-pub fn unload(disc: &dyn Disc, control: Control, from: f64) -> Option<Path> {
+pub fn unload(disc: &dyn Disc, control: Control, from: f64) -> Option<ExactPath> {
     let start = stable_start(disc, control, from)?;
     let nodes = nodes(disc, control, start, INWARD_REACH * start);
     // The limit point and the landing of each jump, and c* between them.
@@ -176,14 +180,19 @@ pub fn unload(disc: &dyn Disc, control: Control, from: f64) -> Option<Path> {
             let before = states.next()?;
             let after = landing.and_then(|_| states.next());
             let dissipated = loss(control, control_value, &before, after.as_ref());
-            Some(Jump { control_value, before, after, dissipated })
+            Some(ExactJump { control_value, before, after, dissipated })
         })
         .collect();
-    Some(Path { control, start, jumps })
+    Some(ExactPath { control, start, jumps })
 }
 
 /// The drop of the potential of bodies and device in a jump, the control held at `value`.
-fn loss(control: Control, value: f64, before: &Equilibrium, after: Option<&Equilibrium>) -> Option<f64> {
+fn loss(
+    control: Control,
+    value: f64,
+    before: &ExactEquilibrium,
+    after: Option<&ExactEquilibrium>,
+) -> Option<f64> {
     let (approach, energy) = match (after, control) {
         (Some(after), _) => (after.approach, after.energy),
         (None, Control::Force) => return None,

@@ -101,9 +101,9 @@ impl WorstPhase {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gap::shapes::{Harmonic, Harmonics as Waves};
+    use crate::gap::shapes::{Harmonic, Harmonics};
     use crate::theory::Disc;
-    use crate::theory::harmonics::Harmonics;
+    use crate::theory::harmonics::HarmonicDisc;
 
     const SMOOTH: Jkr = Jkr { effective_modulus: 1.0, work_of_adhesion: 0.004, radius_of_curvature: 1.0 };
 
@@ -121,8 +121,8 @@ mod tests {
                     wavelength: *wavelength,
                     phase,
                 };
-                let gap = Waves::new(1.0, waves.map(wave).collect()).unwrap();
-                let disc = Harmonics { effective_modulus: 1.0, work_of_adhesion: 0.004, gap };
+                let gap = Harmonics::new(1.0, waves.map(wave).collect()).unwrap();
+                let disc = HarmonicDisc { effective_modulus: 1.0, work_of_adhesion: 0.004, gap };
                 least = least.min(disc.force(s));
             }
             let bound = worst.force(s);

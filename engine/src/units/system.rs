@@ -1,7 +1,7 @@
 //! Reduced or SI: how a quantity is typed and shown.
 
 use super::dimension::Quantity;
-use super::table::{JOULE, KILO, METRE, MICRO, MILLI, NEWTON, NONE, Named, PASCAL, PICO, Prefix, SECOND};
+use super::table::{JOULE, KILO, METRE, MICRO, MILLI, NEWTON, NONE, NamedUnit, PASCAL, PICO, Prefix, SECOND};
 use super::unit::{Factor, Unit};
 use super::value::ValueError;
 use std::fmt;
@@ -36,7 +36,8 @@ pub struct DisplayUnits {
 impl Default for DisplayUnits {
     /// µm, µN, kPa, mJ/m², pJ and N/m: those of a soft sphere of a millimetre.
     fn default() -> Self {
-        let factor = |prefix: &'static Prefix, unit: &'static Named, power| Factor { prefix, unit, power };
+        let factor =
+            |prefix: &'static Prefix, unit: &'static NamedUnit, power| Factor { prefix, unit, power };
         let one = |prefix, unit| Unit::of(vec![factor(prefix, unit, 1)]);
         let (length, force) = (one(&MICRO, &METRE), one(&MICRO, &NEWTON));
         Self {

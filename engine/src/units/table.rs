@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 /// A unit with a name: `mantissa` × 10^`exponent` of its dimension in SI.
 #[derive(Debug, PartialEq)]
-pub struct Named {
+pub struct NamedUnit {
     /// How it is shown.
     pub symbol: &'static str,
     /// How it is shown where only ASCII can be.
@@ -35,8 +35,8 @@ pub struct Prefix {
     pub exponent: i32,
 }
 
-const fn named(symbol: &'static str, dimension: Dimension, exponent: i32) -> Named {
-    Named { symbol, ascii: symbol, alias: symbol, dimension, mantissa: 1.0, exponent, prefixed: true }
+const fn named(symbol: &'static str, dimension: Dimension, exponent: i32) -> NamedUnit {
+    NamedUnit { symbol, ascii: symbol, alias: symbol, dimension, mantissa: 1.0, exponent, prefixed: true }
 }
 
 const fn prefix(symbol: &'static str, exponent: i32) -> Prefix {
@@ -49,32 +49,32 @@ const STRESS: Dimension = Dimension::new(-1, 1, -2);
 const ENERGY: Dimension = Dimension::new(2, 1, -2);
 
 /// The metre.
-pub static METRE: Named = named("m", LENGTH, 0);
+pub static METRE: NamedUnit = named("m", LENGTH, 0);
 /// The newton.
-pub static NEWTON: Named = named("N", FORCE, 0);
+pub static NEWTON: NamedUnit = named("N", FORCE, 0);
 /// The pascal.
-pub static PASCAL: Named = named("Pa", STRESS, 0);
+pub static PASCAL: NamedUnit = named("Pa", STRESS, 0);
 /// The joule.
-pub static JOULE: Named = named("J", ENERGY, 0);
+pub static JOULE: NamedUnit = named("J", ENERGY, 0);
 
-static GRAM: Named = named("g", Dimension::new(0, 1, 0), -3);
+static GRAM: NamedUnit = named("g", Dimension::new(0, 1, 0), -3);
 /// The second.
-pub static SECOND: Named = named("s", Dimension::new(0, 0, 1), 0);
-static ELECTRONVOLT: Named = Named { mantissa: 1.602_176_634, ..named("eV", ENERGY, -19) };
+pub static SECOND: NamedUnit = named("s", Dimension::new(0, 0, 1), 0);
+static ELECTRONVOLT: NamedUnit = NamedUnit { mantissa: 1.602_176_634, ..named("eV", ENERGY, -19) };
 // The second character is the ångström sign, which looks the same.
-static ANGSTROM: Named =
-    Named { ascii: "angstrom", alias: "\u{212b}", prefixed: false, ..named("Å", LENGTH, -10) };
-static MICRON: Named = Named { prefixed: false, ..named("micron", LENGTH, -6) };
-static INCH: Named = Named { mantissa: 2.54, prefixed: false, ..named("in", LENGTH, -2) };
-static BAR: Named = named("bar", STRESS, 5);
-static DYNE: Named = Named { prefixed: false, ..named("dyn", FORCE, -5) };
+static ANGSTROM: NamedUnit =
+    NamedUnit { ascii: "angstrom", alias: "\u{212b}", prefixed: false, ..named("Å", LENGTH, -10) };
+static MICRON: NamedUnit = NamedUnit { prefixed: false, ..named("micron", LENGTH, -6) };
+static INCH: NamedUnit = NamedUnit { mantissa: 2.54, prefixed: false, ..named("in", LENGTH, -2) };
+static BAR: NamedUnit = named("bar", STRESS, 5);
+static DYNE: NamedUnit = NamedUnit { prefixed: false, ..named("dyn", FORCE, -5) };
 // The weight of a gram and of a pound under standard gravity, exact by definition: NIST SP 811, appendix B.
-static GRAM_FORCE: Named = Named { mantissa: 9.806_65, ..named("gf", FORCE, -3) };
-static POUND_FORCE: Named =
-    Named { mantissa: 4.448_221_615_260_5, prefixed: false, ..named("lbf", FORCE, 0) };
-static ERG: Named = Named { prefixed: false, ..named("erg", ENERGY, -7) };
-static RADIAN: Named = named("rad", Dimension::NONE, 0);
-static DEGREE: Named = Named {
+static GRAM_FORCE: NamedUnit = NamedUnit { mantissa: 9.806_65, ..named("gf", FORCE, -3) };
+static POUND_FORCE: NamedUnit =
+    NamedUnit { mantissa: 4.448_221_615_260_5, prefixed: false, ..named("lbf", FORCE, 0) };
+static ERG: NamedUnit = NamedUnit { prefixed: false, ..named("erg", ENERGY, -7) };
+static RADIAN: NamedUnit = named("rad", Dimension::NONE, 0);
+static DEGREE: NamedUnit = NamedUnit {
     ascii: "deg",
     alias: "deg",
     mantissa: PI / 180.0,
@@ -83,7 +83,7 @@ static DEGREE: Named = Named {
 };
 
 /// The units by name.
-pub static UNITS: [&Named; 17] = [
+pub static UNITS: [&NamedUnit; 17] = [
     &METRE,
     &NEWTON,
     &PASCAL,
@@ -134,7 +134,7 @@ static OTHERS: [Prefix; 16] = [
 ];
 
 /// The unit of this name and its prefix.
-pub fn lookup(word: &str) -> Option<(&'static Prefix, &'static Named)> {
+pub fn lookup(word: &str) -> Option<(&'static Prefix, &'static NamedUnit)> {
     let prefixes = || [&NONE, &KILO, &MILLI, &MICRO, &PICO].into_iter().chain(&OTHERS);
     UNITS.iter().find_map(|&unit| {
         let names = [unit.symbol, unit.ascii, unit.alias];

@@ -6,8 +6,8 @@
 //! ```
 
 use super::dimension::Dimension;
-use super::table::{JOULE, NONE, Named, Prefix, SECOND, lookup};
-use crate::expression::Place;
+use super::table::{JOULE, NONE, NamedUnit, Prefix, SECOND, lookup};
+use crate::expression::TextPlace;
 use crate::expression::error::NAME;
 use crate::expression::error::piece;
 use std::fmt;
@@ -34,7 +34,7 @@ pub struct Factor {
     /// Its prefix.
     pub prefix: &'static Prefix,
     /// Its unit.
-    pub unit: &'static Named,
+    pub unit: &'static NamedUnit,
     /// Its power, not 0.
     pub power: i32,
 }
@@ -52,7 +52,7 @@ pub enum UnitError {
     #[error("column {}: expected a unit such as um, mN, kPa or mJ/m^2, found {found}", place.column)]
     Expected {
         /// Where.
-        place: Place,
+        place: TextPlace,
         /// What stands there.
         found: String,
     },
@@ -60,7 +60,7 @@ pub enum UnitError {
     #[error("column {}: found {found} behind a unit, which stands once behind the whole expression, as in (1+1/2) um", place.column)]
     Behind {
         /// Where.
-        place: Place,
+        place: TextPlace,
         /// What stands there.
         found: String,
     },
@@ -68,7 +68,7 @@ pub enum UnitError {
     #[error("column {}: unknown unit {name}", place.column)]
     Unknown {
         /// Where.
-        place: Place,
+        place: TextPlace,
         /// The name.
         name: String,
     },
@@ -76,17 +76,17 @@ pub enum UnitError {
     #[error("column {}: the power of a unit must be an integer from -{POWER} to {POWER}, not 0", place.column)]
     Power {
         /// Where.
-        place: Place,
+        place: TextPlace,
     },
     /// A product that goes on and on.
     #[error("column {}: a unit has at most {FACTORS} factors", place.column)]
     TooLong {
         /// Where.
-        place: Place,
+        place: TextPlace,
     },
 }
 
-type Input<'a> = LocatingSlice<&'a str>;
+type UnitInput<'a> = LocatingSlice<&'a str>;
 
 impl Unit {
     /// The unit written in `text` from the byte `start` on.
@@ -94,8 +94,8 @@ impl Unit {
     /// # Errors
     /// What is wrong, with its place in the whole text.
     pub fn parse(text: &str, start: usize) -> Result<Self, UnitError> {
-        let place = |input: &Input| Place::of(text, start + input.current_token_start());
-        let mut input = Input::new(&text[start..]);
+        let place = |input: &UnitInput| TextPlace::of(text, start + input.current_token_start());
+        let mut input = UnitInput::new(&text[start..]);
         let mut factors = Vec::new();
         blanks(&mut input);
         let below = taken(&mut input, (opt('1'), multispace0, '/').void()).is_some();
@@ -229,16 +229,16 @@ pub(super) fn superscript(power: i32) -> String {
     power.to_string().chars().map(digit).collect()
 }
 
-fn blanks(input: &mut Input) {
+fn blanks(input: &mut UnitInput) {
     let _ = taken(input, multispace0.void());
 }
 
-fn word<'a>(input: &mut Input<'a>) -> Option<&'a str> {
+fn word<'a>(input: &mut UnitInput<'a>) -> Option<&'a str> {
     taken(input, take_while(1.., |c: char| c.is_alphabetic() || c == '°'))
 }
 
 /// The power at this place: 1 if none is written, none if it is no integer.
-fn power(input: &mut Input) -> Option<i32> {
+fn power(input: &mut UnitInput) -> Option<i32> {
     let caret = ('^', opt(one_of(['-', '+'])), digit1).take().map(|text: &str| text[1..].parse().ok());
     // m2 and m-2, as many write them.
     let bare = (opt('-'), digit1).take().map(|text: &str| text.parse().ok());
@@ -256,12 +256,12 @@ fn plain(text: &str) -> String {
 }
 
 /// The sign between two factors; a blank is none.
-fn separator(input: &mut Input) -> Option<char> {
+fn separator(input: &mut UnitInput) -> Option<char> {
     taken(input, one_of(['/', '*', '·', '⋅']))
 }
 
 /// What the parser takes, if it matches here.
-fn taken<'a, T>(input: &mut Input<'a>, parser: impl Parser<Input<'a>, T, EmptyError>) -> Option<T> {
+fn taken<'a, T>(input: &mut UnitInput<'a>, parser: impl Parser<UnitInput<'a>, T, EmptyError>) -> Option<T> {
     opt(parser).parse_next(input).ok().flatten()
 }
 

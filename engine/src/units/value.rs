@@ -12,7 +12,7 @@ const QUOTED: usize = 40;
 
 /// A number as typed, with the unit behind it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Value {
+pub struct TypedValue {
     /// The number before the unit, finite.
     pub number: f64,
     /// The unit; a bare number has none.
@@ -67,14 +67,14 @@ fn wanted(quantity: Quantity) -> String {
 ///
 /// # Errors
 /// Text that is neither, with its column; a number that is not finite.
-pub fn parse_quantity(text: &str) -> Result<Value, ValueError> {
+pub fn parse_quantity(text: &str) -> Result<TypedValue, ValueError> {
     let (program, end) = match grammar::number(text) {
         Ok(read) => read,
         Err(error) => divided(text, &error).ok_or(error)?,
     };
     let unit = if end < text.len() { Some(Unit::parse(text, end)?) } else { None };
     let number = program.value();
-    let value = Value { number, unit, text: quoted(text) };
+    let value = TypedValue { number, unit, text: quoted(text) };
     if number.is_finite() { Ok(value) } else { Err(ValueError::NotFinite { text: value.text }) }
 }
 
@@ -95,14 +95,14 @@ fn quoted(text: &str) -> String {
     line.chars().take(QUOTED - 3).chain("...".chars()).collect()
 }
 
-impl fmt::Display for Value {
+impl fmt::Display for TypedValue {
     /// As typed, on one line and not too long.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text)
     }
 }
 
-impl Value {
+impl TypedValue {
     /// The dimension of the unit; a bare number has none of its own.
     pub fn dimension(&self) -> Option<Dimension> {
         self.unit.as_ref().map(Unit::dimension)

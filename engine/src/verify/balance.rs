@@ -12,7 +12,7 @@
 //!
 //! It holds in any basis as it does in theory, because the functional is stationary in s: dU = P dδ.
 
-use super::row::Row;
+use super::row::VerifyRow;
 use crate::gap::Gap;
 use crate::problem::Control;
 use crate::quasistatic::curve::radii;
@@ -33,13 +33,13 @@ const BOUND: f64 = 1e-9;
 pub const OWN_MEASURE: &str = "relative";
 
 /// Work against storage and loss along `ours`, the unloading of `curve`.
-pub fn row(curve: &Curve, ours: &Path) -> Row {
+pub fn row(curve: &Curve, ours: &Path) -> VerifyRow {
     const WHAT: &str = "device's work against stored and lost";
     let Some(work) = work(&curve.equilibrium, ours) else {
-        return Row::own(WHAT, f64::NAN, f64::NAN, 1.0, BOUND);
+        return VerifyRow::own(WHAT, f64::NAN, f64::NAN, 1.0, BOUND);
     };
     let lost = ours.losses();
-    let Some(start) = ours.start() else { return Row::own(WHAT, f64::NAN, f64::NAN, 1.0, BOUND) };
+    let Some(start) = ours.start() else { return VerifyRow::own(WHAT, f64::NAN, f64::NAN, 1.0, BOUND) };
     let at_start = stored(ours.control, start);
     let at_end = match ours.events.last() {
         Some(last) if last.dissipated.is_none() => {
@@ -49,7 +49,7 @@ pub fn row(curve: &Curve, ours: &Path) -> Row {
         None => at_start,
     };
     let turned = work.abs().max(lost).max(at_start.abs()).max(at_end.abs());
-    Row::own(WHAT, work, at_end - at_start + lost, turned, BOUND)
+    VerifyRow::own(WHAT, work, at_end - at_start + lost, turned, BOUND)
 }
 
 /// The energy of the bodies and of the spring.

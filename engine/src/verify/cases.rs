@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 /// A figure of the paper: a wavy sphere, and how it is unloaded.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Figure {
+pub struct PaperFigure {
     /// Its name in the paper.
     pub name: &'static str,
     /// The problem.
@@ -24,17 +24,17 @@ fn work_of_adhesion(group: f64) -> f64 {
 }
 
 /// Fig. 8: A = 0.001 R, λ = 0.1 R, γ' = 0.05; nearly smooth.
-pub fn fig_8() -> Figure {
+pub fn fig_8() -> PaperFigure {
     let shape = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.001, wavelength: 0.1 };
     let problem = Problem { effective_modulus: 1.0, work_of_adhesion: work_of_adhesion(0.05), shape };
-    Figure { name: "Fig. 8", problem, start: 0.5, stiffness: 0.18 }
+    PaperFigure { name: "Fig. 8", problem, start: 0.5, stiffness: 0.18 }
 }
 
 /// Fig. 9: A = 0.0025 R, λ = 0.05 R, γ' = 0.025; the edge snaps from crest to crest.
-pub fn fig_9() -> Figure {
+pub fn fig_9() -> PaperFigure {
     let shape = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 };
     let problem = Problem { effective_modulus: 1.0, work_of_adhesion: work_of_adhesion(0.025), shape };
-    Figure { name: "Fig. 9", problem, start: 0.5, stiffness: 0.15 }
+    PaperFigure { name: "Fig. 9", problem, start: 0.5, stiffness: 0.15 }
 }
 
 /// The smooth sphere.
@@ -48,7 +48,7 @@ pub fn smooth(work_of_adhesion: f64) -> Jkr {
     Jkr { effective_modulus: 1.0, work_of_adhesion, radius_of_curvature: 1.0 }
 }
 
-impl Figure {
+impl PaperFigure {
     /// The three controls: fixed grips, dead load, a spring.
     pub fn controls(&self) -> [Control; 3] {
         [Control::Displacement, Control::Force, Control::Stiffness(self.stiffness)]

@@ -11,8 +11,8 @@
 //! doi:10.1098/rspa.1971.0141.
 
 use super::cases::{smooth, sphere};
-use super::row::{Group, Row};
-use super::settings::{Settings, VerifyError};
+use super::row::{Group, VerifyRow};
+use super::settings::{VerifyError, VerifySettings};
 use crate::disc::Basis;
 use crate::elementary::{ln, pow};
 use crate::problem::Control;
@@ -26,7 +26,7 @@ const APPROACH: f64 = 0.1;
 
 /// How an error falls with N: at most `constant`/N^`order`, the observed order within `spread` of it.
 #[derive(Debug, Clone, Copy)]
-struct Law {
+struct ConvergenceLaw {
     constant: f64,
     order: f64,
     spread: f64,
@@ -39,8 +39,8 @@ struct Study {
     /// γ/(E*R).
     work_of_adhesion: f64,
     grading: Grading,
-    radius: Law,
-    force: Law,
+    radius: ConvergenceLaw,
+    force: ConvergenceLaw,
 }
 
 const STUDIES: [Study; 4] = [
@@ -48,29 +48,29 @@ const STUDIES: [Study; 4] = [
         title: "Hertz at approach 0.1 R, uniform rings",
         work_of_adhesion: 0.0,
         grading: Grading::Uniform,
-        radius: Law { constant: 0.6, order: 1.0, spread: 0.1 },
-        force: Law { constant: 0.3, order: 2.0, spread: 0.2 },
+        radius: ConvergenceLaw { constant: 0.6, order: 1.0, spread: 0.1 },
+        force: ConvergenceLaw { constant: 0.3, order: 2.0, spread: 0.2 },
     },
     Study {
         title: "JKR at approach 0.1 R, uniform rings",
         work_of_adhesion: 0.01,
         grading: Grading::Uniform,
-        radius: Law { constant: 0.2, order: 1.0, spread: 0.1 },
-        force: Law { constant: 1.7, order: 1.0, spread: 0.1 },
+        radius: ConvergenceLaw { constant: 0.2, order: 1.0, spread: 0.1 },
+        force: ConvergenceLaw { constant: 1.7, order: 1.0, spread: 0.1 },
     },
     Study {
         title: "Hertz at approach 0.1 R, rings crowded towards the edge",
         work_of_adhesion: 0.0,
         grading: Grading::Edge,
-        radius: Law { constant: 0.45, order: 1.0, spread: 0.1 },
-        force: Law { constant: 0.4, order: 2.0, spread: 0.2 },
+        radius: ConvergenceLaw { constant: 0.45, order: 1.0, spread: 0.1 },
+        force: ConvergenceLaw { constant: 0.4, order: 2.0, spread: 0.2 },
     },
     Study {
         title: "JKR at approach 0.1 R, rings crowded towards the edge",
         work_of_adhesion: 0.01,
         grading: Grading::Edge,
-        radius: Law { constant: 0.4, order: 2.0, spread: 0.1 },
-        force: Law { constant: 11.0, order: 2.0, spread: 0.1 },
+        radius: ConvergenceLaw { constant: 0.4, order: 2.0, spread: 0.1 },
+        force: ConvergenceLaw { constant: 11.0, order: 2.0, spread: 0.1 },
     },
 ];
 
@@ -85,7 +85,7 @@ pub fn radius_at(exact: &Jkr, delta: f64) -> f64 {
 ///
 /// # Errors
 /// [`VerifyError`] when a basis cannot be made.
-pub fn groups(settings: &Settings) -> Result<Vec<Group>, VerifyError> {
+pub fn groups(settings: &VerifySettings) -> Result<Vec<Group>, VerifyError> {
     STUDIES.iter().map(|study| group(study, settings.rings)).collect()
 }
 
@@ -108,14 +108,14 @@ fn group(study: &Study, finest: usize) -> Result<Group, VerifyError> {
     {
         for (rings, state) in &states {
             let bound = law.constant * pow(*rings, -law.order);
-            rows.push(Row::relative(format!("{quantity}, N = {rings}"), state[k], exact, bound));
+            rows.push(VerifyRow::relative(format!("{quantity}, N = {rings}"), state[k], exact, bound));
         }
         for pair in states.windows(2) {
             let [(coarse, before), (fine, after)] = pair else { continue };
             let ratio = ((before[k] - exact) / (after[k] - exact)).abs();
             let observed = ln(ratio) / ln(fine / coarse);
             let what = format!("{quantity}, order N = {coarse} to {fine}");
-            rows.push(Row::new(what, observed, law.order, 1.0, law.spread));
+            rows.push(VerifyRow::new(what, observed, law.order, 1.0, law.spread));
         }
     }
     Ok(Group { title: study.title.to_owned(), measure: "relative, orders absolute", rows })

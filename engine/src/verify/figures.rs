@@ -4,19 +4,19 @@
 //! figure inward: P. R. Guduru, doi:10.1016/j.jmps.2006.09.004. Forces are told over `P_c = (3/2)πγR` of the smooth
 //! sphere.
 
-use super::cases::{Figure, smooth};
-use super::row::{Group, Row};
+use super::cases::{PaperFigure, smooth};
+use super::row::{Group, VerifyRow};
 use super::settings::Candidate;
 use super::unloading::swept;
 use crate::problem::Control;
-use crate::quasistatic::{Curve, Turn};
+use crate::quasistatic::{Curve, Extremum};
 use crate::theory::unloading::{INWARD_REACH, limit_points};
 use crate::theory::{Disc, Exact};
 use std::sync::Arc;
 
 /// s and the control at the limit point of `control` where it is smallest.
 fn ours(curve: &Curve, control: Control) -> Option<(f64, f64)> {
-    let states = curve.limit_points(control).into_iter().filter(|limit| limit.turn == Turn::Minimum);
+    let states = curve.limit_points(control).into_iter().filter(|limit| limit.turn == Extremum::Minimum);
     let values = states.map(|limit| (limit.contact_radius, control.value(limit.approach, limit.force)));
     values.min_by(|a, b| a.1.total_cmp(&b.1))
 }
@@ -31,7 +31,7 @@ fn exact(disc: &dyn Disc, control: Control, start: f64) -> Option<(f64, f64)> {
 }
 
 /// The extreme values of `figure` in one basis.
-pub fn group(figure: &Figure, candidate: &Candidate) -> Group {
+pub fn group(figure: &PaperFigure, candidate: &Candidate) -> Group {
     const NONE: (f64, f64) = (f64::NAN, f64::NAN);
     let disc = Exact::of(&figure.problem);
     let curve = swept(figure, &Arc::clone(&candidate.basis));
@@ -44,8 +44,8 @@ pub fn group(figure: &Figure, candidate: &Candidate) -> Group {
     ] {
         let (s, value) = curve.as_ref().and_then(|curve| ours(curve, control)).unwrap_or(NONE);
         let (exact_s, exact_value) = exact(&*disc, control, figure.start).unwrap_or(NONE);
-        rows.push(Row::relative(what, value / unit, exact_value / unit, bound));
-        rows.push(Row::relative(place, s, exact_s, bound));
+        rows.push(VerifyRow::relative(what, value / unit, exact_value / unit, bound));
+        rows.push(VerifyRow::relative(place, s, exact_s, bound));
     }
     Group { title: format!("{}, extreme values, {}", figure.name, candidate.name), measure: "relative", rows }
 }

@@ -9,7 +9,7 @@
 //! The balance of a loop puts energies beside works: what is lost in all jumps against ∮ P dδ along the stable states.
 
 use super::cases::fig_9;
-use super::row::{Group, Row};
+use super::row::{Group, VerifyRow};
 use super::settings::VerifyError;
 use crate::annuli::{Contacts, Ground, Wanted};
 use crate::disc::Table;
@@ -19,7 +19,7 @@ use crate::gap::shapes::{Harmonic, Harmonics};
 use crate::problem::Turn;
 use crate::problem::{Control, Problem};
 use crate::progress::Unwatched;
-use crate::quasistatic::path::{Event, EventKind, Path, Setting, cycle};
+use crate::quasistatic::path::{Event, EventKind, Path, PathSetting, cycle};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -40,7 +40,7 @@ const TURN: f64 = 0.14;
 const WEAK: f64 = 1e-4;
 
 /// What another program found of a loop.
-struct Known {
+struct KnownLoop {
     name: &'static str,
     work_of_adhesion: f64,
     /// The approach of every event in order.
@@ -53,8 +53,8 @@ struct Known {
 }
 
 /// Without rings that last.
-fn strong() -> Known {
-    Known {
+fn strong() -> KnownLoop {
+    KnownLoop {
         name: "Fig. 9",
         work_of_adhesion: fig_9().problem.work_of_adhesion,
         approaches: &[
@@ -97,8 +97,8 @@ fn strong() -> Known {
 }
 
 /// With a ring before every merge.
-fn weak() -> Known {
-    Known {
+fn weak() -> KnownLoop {
+    KnownLoop {
         name: "Fig. 9, γ = 1e-4",
         work_of_adhesion: WEAK,
         approaches: &[
@@ -180,23 +180,23 @@ fn annulus() -> Result<Group, VerifyError> {
     let title = "Rigid flat annulus, force over 2E*δb".to_owned();
     let measure = "relative";
     let Ok(flat) = Harmonics::new(FLAT, waves) else {
-        return Ok(Group { title, measure, rows: vec![Row::worst("flat gap", [], 1.0, 0.0)] });
+        return Ok(Group { title, measure, rows: vec![VerifyRow::worst("flat gap", [], 1.0, 0.0)] });
     };
     let ground = Ground::of(Arc::new(flat), 2.0)?;
     let force = |ratio: f64| {
         let contacts = Contacts { disc: 0.0, rings: vec![[ratio, 1.0]] };
         ground.state(&contacts, Wanted::Values).map_or(f64::NAN, |state| 0.5 * state.force[1])
     };
-    let mut rows: Vec<Row> = ANNULUS
+    let mut rows: Vec<VerifyRow> = ANNULUS
         .iter()
-        .map(|[ratio, exact]| Row::relative(format!("a/b = {ratio}"), force(*ratio), *exact, ROUNDING))
+        .map(|[ratio, exact]| VerifyRow::relative(format!("a/b = {ratio}"), force(*ratio), *exact, ROUNDING))
         .collect();
     let narrow = 0.01_f64;
     let exact = 1.0 - 4.0 * narrow.powi(3) / (3.0 * PI * PI);
-    rows.insert(0, Row::relative("a narrow hole, a/b = 0.01", force(narrow), exact, NARROW));
+    rows.insert(0, VerifyRow::relative("a narrow hole, a/b = 0.01", force(narrow), exact, NARROW));
     let thin = 0.999_f64;
     let exact = PI * PI * (1.0 + thin) / (4.0 * ln(16.0 * (1.0 + thin) / (1.0 - thin)));
-    rows.push(Row::relative("a thin ring, a/b = 0.999", force(thin), exact, THIN));
+    rows.push(VerifyRow::relative("a thin ring, a/b = 0.999", force(thin), exact, THIN));
     Ok(Group { title, measure, rows })
 }
 
@@ -209,10 +209,10 @@ fn run(work_of_adhesion: f64) -> Result<Option<Path>, VerifyError> {
     let reduced = Problem { effective_modulus: 1.0, work_of_adhesion, shape }.reduced();
     let table = Arc::new(Table::new(reduced.gap, fig_9().start, &Unwatched)?);
     let (control, turn) = (Control::Displacement, Turn::Approach(TURN));
-    Ok(cycle(&table, work_of_adhesion, turn, &Setting::new(control), &Unwatched).ok())
+    Ok(cycle(&table, work_of_adhesion, turn, &PathSetting::new(control), &Unwatched).ok())
 }
 
-fn of_loop(known: &Known, found: Option<&Path>) -> Group {
+fn of_loop(known: &KnownLoop, found: Option<&Path>) -> Group {
     /// Of states over their range, and of losses relative.
     const STATES: f64 = 1e-9;
     const LOSSES: f64 = 1e-8;
@@ -235,9 +235,9 @@ fn of_loop(known: &Known, found: Option<&Path>) -> Group {
     let first = of(EventKind::FirstTouch).and_then(|event| event.after.as_ref());
     let last = of(EventKind::LastContact).and_then(|event| event.before.as_ref());
     let mut rows = vec![
-        Row::new("number of events", events.len() as f64, known.approaches.len() as f64, 1.0, 0.0),
-        Row::worst("approach of the events, the worst", approaches, range(known.approaches), STATES),
-        Row::worst("outermost edge after them, the worst", landings, range(known.landings), STATES),
+        VerifyRow::new("number of events", events.len() as f64, known.approaches.len() as f64, 1.0, 0.0),
+        VerifyRow::worst("approach of the events, the worst", approaches, range(known.approaches), STATES),
+        VerifyRow::worst("outermost edge after them, the worst", landings, range(known.landings), STATES),
     ];
     let ends = [
         ("after the first touch", first, known.first_touch),
@@ -247,21 +247,21 @@ fn of_loop(known: &Known, found: Option<&Path>) -> Group {
         let [ours_radius, ours_force] =
             state.map_or([f64::NAN; 2], |state| [state.contact_radius, state.force]);
         let scale = known.last_contact[1].abs();
-        rows.push(Row::new(
+        rows.push(VerifyRow::new(
             format!("contact radius {what}"),
             ours_radius,
             radius,
             range(known.landings),
             STATES,
         ));
-        rows.push(Row::new(format!("force {what}"), ours_force, force, scale, STATES));
+        rows.push(VerifyRow::new(format!("force {what}"), ours_force, force, scale, STATES));
     }
-    rows.push(Row::relative("energy lost in the loop", lost, known.lost, LOSSES));
+    rows.push(VerifyRow::relative("energy lost in the loop", lost, known.lost, LOSSES));
     Group { title, measure, rows }
 }
 
 /// The energies lost against the areas that the path encloses.
-fn balance(known: &Known, found: Option<&Path>) -> Row {
+fn balance(known: &KnownLoop, found: Option<&Path>) -> VerifyRow {
     /// The share of the losses that may be missing.
     const BOUND: f64 = 1e-7;
     let what = format!("{}: work against loss", known.name);
@@ -270,5 +270,5 @@ fn balance(known: &Known, found: Option<&Path>) -> Row {
         Some((totals.work_of_loading? + totals.work_of_unloading?, totals.dissipated?))
     });
     let (work, lost) = sums.unwrap_or((f64::NAN, f64::NAN));
-    Row::own(what, work, lost, known.lost, BOUND)
+    VerifyRow::own(what, work, lost, known.lost, BOUND)
 }

@@ -36,8 +36,8 @@ pub mod smooth;
 pub mod stability;
 pub mod unloading;
 
-pub use row::{Group, Row};
-pub use settings::{Settings, VerifyError};
+pub use row::{Group, VerifyRow};
+pub use settings::{VerifyError, VerifySettings};
 
 /// All comparisons, in seconds.
 ///
@@ -53,7 +53,7 @@ pub use settings::{Settings, VerifyError};
 ///
 /// # Errors
 /// [`VerifyError`] when a basis of `settings` cannot be made.
-pub fn verify(settings: &Settings) -> Result<Vec<Group>, VerifyError> {
+pub fn verify(settings: &VerifySettings) -> Result<Vec<Group>, VerifyError> {
     let fig_9 = settings.candidates(&cases::fig_9())?;
     let fig_8 = settings.candidates(&cases::fig_8())?;
     let mut groups = vec![smooth::group()?];

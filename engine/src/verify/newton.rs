@@ -5,8 +5,8 @@
 
 use super::cases::{smooth, sphere};
 use super::convergence::radius_at;
-use super::row::{Group, Row};
-use super::settings::{Settings, VerifyError, exact as exact_basis};
+use super::row::{Group, VerifyRow};
+use super::settings::{VerifyError, VerifySettings, exact as exact_basis};
 use crate::disc::Basis;
 use crate::problem::Control;
 use crate::ritz::{NewtonSettings, Rings, solve};
@@ -22,7 +22,7 @@ const ROUNDS: (f64, f64) = (5.0, 1.0);
 ///
 /// # Errors
 /// [`VerifyError`] when a basis cannot be made.
-pub fn group(settings: &Settings) -> Result<Group, VerifyError> {
+pub fn group(settings: &VerifySettings) -> Result<Group, VerifyError> {
     let (problem, exact) = (sphere(WORK_OF_ADHESION), smooth(WORK_OF_ADHESION));
     let smallest = exact.approach(exact.fixed_grips_radius());
     let rings: Arc<dyn Basis> = Rings::shared(settings.rings)?;
@@ -37,7 +37,7 @@ pub fn group(settings: &Settings) -> Result<Group, VerifyError> {
             let solved = solve(&*basis, &problem, control, delta, from, NewtonSettings::default());
             // At most 40 rounds.
             let rounds = solved.map_or(f64::NAN, |solved| solved.rounds as f64);
-            rows.push(Row::new(format!("{name}: delta = {place}"), rounds, ROUNDS.0, 1.0, ROUNDS.1));
+            rows.push(VerifyRow::new(format!("{name}: delta = {place}"), rounds, ROUNDS.0, 1.0, ROUNDS.1));
         }
     }
     let title = "Newton-Raphson from a threefold contact radius, JKR sphere".to_owned();

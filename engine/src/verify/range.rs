@@ -3,11 +3,11 @@
 //! D. Maugis, J. Colloid Interface Sci. 150, 243 (1992), doi:10.1016/0021-9797(92)90285-T.
 
 use super::cases::sphere;
-use super::row::{Group, Row};
+use super::row::{Group, VerifyRow};
 use crate::disc::Table;
 use crate::problem::{Cohesion, Control, Turn};
 use crate::progress::Unwatched;
-use crate::quasistatic::path::{Setting, cycle_in_zone};
+use crate::quasistatic::path::{PathSetting, cycle_in_zone};
 use crate::theory::maugis::Maugis;
 use crate::zone::Equilibria;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -32,7 +32,7 @@ const BOUND: f64 = 1e-10;
 pub fn group() -> Group {
     let problem = sphere(WORK).reduced();
     let rows = Table::new(Arc::clone(&problem.gap), 0.5, &Unwatched).map_or_else(
-        |_| vec![Row::relative("the table", f64::NAN, 1.0, BOUND)],
+        |_| vec![VerifyRow::relative("the table", f64::NAN, 1.0, BOUND)],
         |table| {
             let table = Arc::new(table);
             PARAMETERS.into_iter().flat_map(|parameter| of(&table, parameter)).collect()
@@ -41,7 +41,7 @@ pub fn group() -> Group {
     Group { title: "Adhesion with a range: a sphere against Maugis".to_owned(), measure: "relative", rows }
 }
 
-fn of(table: &Arc<Table>, parameter: f64) -> [Row; 2] {
+fn of(table: &Arc<Table>, parameter: f64) -> [VerifyRow; 2] {
     let exact = Maugis::of(parameter, WORK);
     let law = Cohesion { strength: exact.strength, range: WORK / exact.strength };
     let angles = (1..ANGLES).map(|k| FRAC_PI_2 * f64::from(k) / f64::from(ANGLES));
@@ -54,9 +54,17 @@ fn of(table: &Arc<Table>, parameter: f64) -> [Row; 2] {
         let state = found.as_ref()?.zone.state(c, None)?;
         Some((state.force, exact.state(angle)[2]))
     });
-    let force = Row::worst(format!("lambda_M {parameter}: worst force"), forces, PI * WORK, BOUND);
-    let path = cycle_in_zone(table, law, Turn::Force(WORK), &Setting::new(Control::Force), &Unwatched);
+    let force = VerifyRow::worst(format!("lambda_M {parameter}: worst force"), forces, PI * WORK, BOUND);
+    let path = cycle_in_zone(table, law, Turn::Force(WORK), &PathSetting::new(Control::Force), &Unwatched);
     let pull = path.ok().and_then(|path| Some(-path.largest_pull()?.force / (PI * WORK)));
     let pull = pull.unwrap_or(f64::NAN);
-    [force, Row::relative(format!("lambda_M {parameter}: P/(pi gamma R)"), pull, exact.largest_pull(), BOUND)]
+    [
+        force,
+        VerifyRow::relative(
+            format!("lambda_M {parameter}: P/(pi gamma R)"),
+            pull,
+            exact.largest_pull(),
+            BOUND,
+        ),
+    ]
 }

@@ -10,17 +10,17 @@
 //! All follow from the law of the edge by expansion about an equilibrium, of the sphere in closed form: at a state that the slow edge
 //! passes, at a limit point, at the state that it creeps to, and beside the least force.
 
-use super::cases::{Figure, fig_9, smooth, sphere};
-use super::row::{Group, Row};
-use crate::disc::Exact;
+use super::cases::{PaperFigure, fig_9, smooth, sphere};
+use super::row::{Group, VerifyRow};
+use crate::disc::ExactBasis;
 use crate::disc::Table;
 use crate::elementary::{ln, pow};
 use crate::problem::{Control, Part, Problem};
 use crate::progress::Unwatched;
-use crate::quasistatic::path::{Setting, unload};
+use crate::quasistatic::path::{PathSetting, unload};
 use crate::quasistatic::{Curve, path::Losses};
 use crate::rate::failure::time_to_failure;
-use crate::rate::{Edge, EdgeLaw, Pull, Puller, Settings};
+use crate::rate::{EdgeLaw, MovingEdge, Pull, PullSettings, Puller};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -37,12 +37,12 @@ fn table(problem: &Problem, reach: f64) -> Option<Arc<Table>> {
     Table::new(problem.clone().reduced().gap, reach, &Unwatched).ok().map(Arc::new)
 }
 
-fn edge(exponent: f64, gamma: f64) -> Edge {
-    Edge { law: EdgeLaw::symmetric(exponent), opening: gamma, closing: gamma }
+fn edge(exponent: f64, gamma: f64) -> MovingEdge {
+    MovingEdge { law: EdgeLaw::symmetric(exponent), opening: gamma, closing: gamma }
 }
 
 /// A pull at fixed grips.
-fn pulled(table: &Table, edge: Edge, start: f64, parts: &[Part]) -> Option<Pull> {
+fn pulled(table: &Table, edge: MovingEdge, start: f64, parts: &[Part]) -> Option<Pull> {
     let puller = Puller {
         table,
         control: Control::Displacement,
@@ -50,7 +50,7 @@ fn pulled(table: &Table, edge: Edge, start: f64, parts: &[Part]) -> Option<Pull>
         start,
         wave: table.gap().feature_length(),
         rise: None,
-        settings: Settings::default(),
+        settings: PullSettings::default(),
     };
     puller.pull(parts, &Unwatched).ok()
 }
@@ -68,7 +68,7 @@ pub fn groups() -> [Group; 2] {
         rows.extend(creep(gaps));
         rows.extend(dissipation(gaps, &fig_9, &mut own));
     } else {
-        rows.push(Row::relative("the tables", f64::NAN, 1.0, 0.0));
+        rows.push(VerifyRow::relative("the tables", f64::NAN, 1.0, 0.0));
     }
     [
         Group {
@@ -85,7 +85,7 @@ pub fn groups() -> [Group; 2] {
 }
 
 /// The sphere's largest pull at a low rate.
-fn peaks(gaps: &Gaps) -> Vec<Row> {
+fn peaks(gaps: &Gaps) -> Vec<VerifyRow> {
     let critical = 1.5 * PI * WORK;
     let radius = smooth(WORK).pull_off_radius();
     [(1.0, 1e-5), (0.5, 1e-7), (0.25, 1e-9)]
@@ -94,13 +94,13 @@ fn peaks(gaps: &Gaps) -> Vec<Row> {
             let pull = pulled(&gaps.sphere, edge(exponent, WORK), 0.5, &[Part::Apart { rate }]);
             let ours = pull.map_or(f64::NAN, |pull| -pull.peak.force / critical - 1.0);
             let law = pow(0.75 * rate / radius, exponent);
-            Row::relative(format!("n = {exponent}: rise of the largest pull"), ours, law, 0.02)
+            VerifyRow::relative(format!("n = {exponent}: rise of the largest pull"), ours, law, 0.02)
         })
         .collect()
 }
 
 /// What a sphere does that is held: at an approach, and under a load that is a little too large.
-fn creep(gaps: &Gaps) -> Vec<Row> {
+fn creep(gaps: &Gaps) -> Vec<VerifyRow> {
     let mut rows = Vec::new();
     for exponent in [0.25, 0.5] {
         let left = |time: f64| {
@@ -110,7 +110,7 @@ fn creep(gaps: &Gaps) -> Vec<Row> {
         };
         let slope = left(1e5).zip(left(1e6)).map_or(f64::NAN, |(a, b)| ln(b / a) / ln(10.0));
         let law = -exponent / (1.0 - exponent);
-        rows.push(Row::relative(format!("n = {exponent}: creep at a held approach"), slope, law, 0.02));
+        rows.push(VerifyRow::relative(format!("n = {exponent}: creep at a held approach"), slope, law, 0.02));
     }
     let critical = 1.5 * PI * WORK;
     let s = smooth(WORK).pull_off_radius();
@@ -124,35 +124,35 @@ fn creep(gaps: &Gaps) -> Vec<Row> {
         let ours = panels.as_ref().and_then(of).unwrap_or(f64::NAN);
         let law =
             beta * (2.0 / bend).sqrt() * pow(0.5 * unit, 1.0 / exponent) * pow(over, 0.5 - 1.0 / exponent);
-        rows.push(Row::relative(format!("n = {exponent}: time under a dead load"), ours, law, 1e-3));
+        rows.push(VerifyRow::relative(format!("n = {exponent}: time under a dead load"), ours, law, 1e-3));
     }
     rows
 }
 
 /// How what a pull of Fig. 9 dissipates comes to the losses of its unloading.
-fn dissipation(gaps: &Gaps, figure: &Figure, own: &mut Vec<Row>) -> Vec<Row> {
+fn dissipation(gaps: &Gaps, figure: &PaperFigure, own: &mut Vec<VerifyRow>) -> Vec<VerifyRow> {
     let gamma = figure.problem.work_of_adhesion;
     let lost = losses(gaps, figure);
     let dissipated = |exponent: f64, rate: f64| {
         let pull = pulled(&gaps.waves, edge(exponent, gamma), figure.start, &[Part::Apart { rate }]);
         pull.and_then(|pull| pull.dissipated).unwrap_or(f64::NAN)
     };
-    own.push(Row::own("dissipated at V = 1e-10 v0", dissipated(1.0, 1e-10), lost, lost, 1e-5));
+    own.push(VerifyRow::own("dissipated at V = 1e-10 v0", dissipated(1.0, 1e-10), lost, lost, 1e-5));
     [0.25, 0.5, 1.0]
         .into_iter()
         .map(|exponent| {
             let [slow, slower] = [1e-7, 1e-8].map(|rate| dissipated(exponent, rate) - lost);
             let slope = ln(slow / slower) / ln(10.0);
             let law = 2.0 * exponent / (2.0 + exponent);
-            Row::relative(format!("n = {exponent}: dissipated beyond jumps"), slope, law, 0.03)
+            VerifyRow::relative(format!("n = {exponent}: dissipated beyond jumps"), slope, law, 0.03)
         })
         .collect()
 }
 
-fn losses(gaps: &Gaps, figure: &Figure) -> f64 {
-    let basis = Arc::new(Exact::new(Arc::clone(&gaps.waves), figure.start));
+fn losses(gaps: &Gaps, figure: &PaperFigure) -> f64 {
+    let basis = Arc::new(ExactBasis::new(Arc::clone(&gaps.waves), figure.start));
     let curve = Curve::of(figure.problem.clone().reduced(), basis, figure.start, 1e-3);
-    let setting = Setting { losses: Losses::Once, ..Setting::one_disc(Control::Displacement) };
+    let setting = PathSetting { losses: Losses::Once, ..PathSetting::one_disc(Control::Displacement) };
     let path = curve.and_then(|curve| unload(&curve, &setting, &Unwatched).ok());
     path.and_then(|path| path.totals.dissipated).unwrap_or(f64::NAN)
 }

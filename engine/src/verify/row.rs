@@ -2,7 +2,7 @@
 
 /// One number against theory, or against another of ours.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct VerifyRow {
     /// What the number is.
     pub what: String,
     /// The engine's; not a number where it could not be computed.
@@ -25,7 +25,7 @@ pub struct Group {
     /// By what its differences are divided.
     pub measure: &'static str,
     /// The comparisons.
-    pub rows: Vec<Row>,
+    pub rows: Vec<VerifyRow>,
 }
 
 impl Group {
@@ -40,7 +40,7 @@ impl Group {
     }
 }
 
-impl Row {
+impl VerifyRow {
     /// `ours` beside `exact`, the difference divided by `scale > 0`.
     pub fn new(what: impl Into<String>, ours: f64, exact: f64, scale: f64, bound: f64) -> Self {
         Self { what: what.into(), ours, exact, other: None, difference: (ours - exact) / scale, bound }
@@ -79,31 +79,31 @@ impl Row {
 
 #[cfg(test)]
 mod tests {
-    use super::{Group, Row};
+    use super::{Group, VerifyRow};
 
     #[test]
     fn within_the_bound_passes_and_what_is_no_number_fails() {
-        assert!(Row::relative("", 1.01, 1.0, 0.02).passes());
-        assert!(Row::new("", 8.0, 8.0, 1.0, 0.0).passes());
-        assert!(!Row::relative("", 0.97, 1.0, 0.02).passes());
-        assert!(!Row::relative("", f64::NAN, 1.0, 0.02).passes());
-        assert!(!Row::worst("", [], 1.0, 1.0).passes());
-        let worst = Row::worst("", [(1.0, 1.1), (3.0, 2.8), (2.0, 2.0)], 2.0, 0.05);
+        assert!(VerifyRow::relative("", 1.01, 1.0, 0.02).passes());
+        assert!(VerifyRow::new("", 8.0, 8.0, 1.0, 0.0).passes());
+        assert!(!VerifyRow::relative("", 0.97, 1.0, 0.02).passes());
+        assert!(!VerifyRow::relative("", f64::NAN, 1.0, 0.02).passes());
+        assert!(!VerifyRow::worst("", [], 1.0, 1.0).passes());
+        let worst = VerifyRow::worst("", [(1.0, 1.1), (3.0, 2.8), (2.0, 2.0)], 2.0, 0.05);
         assert!(
             (worst.ours - 3.0).abs() < 1e-15 && (worst.difference - 0.1).abs() < 1e-15 && !worst.passes()
         );
-        assert!(!Row::worst("", [(1.0, 1.0), (f64::NAN, 2.0)], 1.0, 1.0).passes());
+        assert!(!VerifyRow::worst("", [(1.0, 1.0), (f64::NAN, 2.0)], 1.0, 1.0).passes());
     }
 
     #[test]
     fn two_numbers_of_ours_are_never_called_exact() {
-        let own = Row::own("area", 1.02, 1.0, 1.0, 0.05);
+        let own = VerifyRow::own("area", 1.02, 1.0, 1.0, 0.05);
         assert!(own.exact.is_nan() && own.other == Some(1.0) && own.passes());
-        assert!(!Row::own("area", f64::NAN, f64::NAN, 1.0, 0.05).passes());
+        assert!(!VerifyRow::own("area", f64::NAN, f64::NAN, 1.0, 0.05).passes());
         let group = Group {
             title: "A".to_owned(),
             measure: "relative",
-            rows: vec![own, Row::relative("", 1.0, 1.0, 0.0)],
+            rows: vec![own, VerifyRow::relative("", 1.0, 1.0, 0.0)],
         };
         let [exact, own] = group.apart("over all");
         assert_eq!((&*exact.title, exact.rows.len()), ("A", 1));

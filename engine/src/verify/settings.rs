@@ -3,8 +3,8 @@
 //! The bounds of the rings are for 200 of them, the default number: what a user may expect, up to twice what is
 //! measured. Those of the exact basis leave rounding some room.
 
-use super::cases::Figure;
-use crate::disc::{Basis, Exact, TableError};
+use super::cases::PaperFigure;
+use crate::disc::{Basis, ExactBasis, TableError};
 use crate::problem::Problem;
 use crate::ritz::{Rings, RingsError};
 use std::sync::Arc;
@@ -22,13 +22,13 @@ pub enum VerifyError {
 
 /// What is verified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Settings {
+pub struct VerifySettings {
     /// N of the ring elements, 200 by default: the bounds are for it. Orders of convergence are observed from a
     /// quarter of it.
     pub rings: usize,
 }
 
-impl Default for Settings {
+impl Default for VerifySettings {
     fn default() -> Self {
         Self { rings: 200 }
     }
@@ -36,7 +36,7 @@ impl Default for Settings {
 
 /// The largest differences that pass on the wavy spheres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounds {
+pub struct Tolerances {
     /// Of δ, P and s at limit points and landings, over their ranges on the curve.
     pub state: f64,
     /// Of the smallest force and approach and of their contact radii, relative.
@@ -46,10 +46,10 @@ pub struct Bounds {
 }
 
 /// N = 200. Measured are 0.06 % of the range, 0.1 % of the extreme values, 0.8 % of the losses.
-const RINGS: Bounds = Bounds { state: 1e-3, extreme: 2e-3, loss: 1e-2 };
+const RINGS: Tolerances = Tolerances { state: 1e-3, extreme: 2e-3, loss: 1e-2 };
 
 /// Rounding; losses are small differences of energies.
-const EXACT: Bounds = Bounds { state: 1e-10, extreme: 1e-10, loss: 1e-8 };
+const EXACT: Tolerances = Tolerances { state: 1e-10, extreme: 1e-10, loss: 1e-8 };
 
 /// A basis on trial.
 #[derive(Debug, Clone)]
@@ -59,7 +59,7 @@ pub struct Candidate {
     /// The basis.
     pub basis: Arc<dyn Basis>,
     /// What it is held to.
-    pub bounds: Bounds,
+    pub bounds: Tolerances,
 }
 
 /// The exact basis for `problem` in a largest contact of radius `s`.
@@ -67,15 +67,15 @@ pub struct Candidate {
 /// # Errors
 /// [`VerifyError::Table`].
 pub fn exact(problem: &Problem, s: f64) -> Result<Arc<dyn Basis>, VerifyError> {
-    Ok(Arc::new(Exact::of(&problem.reduced(), s)?))
+    Ok(Arc::new(ExactBasis::of(&problem.reduced(), s)?))
 }
 
-impl Settings {
+impl VerifySettings {
     /// Both bases for the paths of `figure`.
     ///
     /// # Errors
     /// [`VerifyError`] when one cannot be made.
-    pub fn candidates(&self, figure: &Figure) -> Result<Vec<Candidate>, VerifyError> {
+    pub fn candidates(&self, figure: &PaperFigure) -> Result<Vec<Candidate>, VerifyError> {
         let exact = exact(&figure.problem, figure.start)?;
         Ok(vec![
             Candidate { name: "exact basis".to_owned(), basis: exact, bounds: EXACT },

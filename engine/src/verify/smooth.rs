@@ -10,7 +10,7 @@
 //! K. Kendall and A. D. Roberts, doi:10.1098/rspa.1971.0141.
 
 use super::cases::{smooth, sphere};
-use super::row::{Group, Row};
+use super::row::{Group, VerifyRow};
 use super::settings::{VerifyError, exact as exact_basis};
 
 use crate::theory::Disc;
@@ -43,7 +43,7 @@ pub fn group() -> Result<Group, VerifyError> {
                 ("energy", energy, exact.energy),
             ] {
                 let what = format!("{theory}: {quantity}");
-                rows.push(Row::relative(what, ours.unwrap_or(f64::NAN), exact, BOUND));
+                rows.push(VerifyRow::relative(what, ours.unwrap_or(f64::NAN), exact, BOUND));
             }
         }
     }

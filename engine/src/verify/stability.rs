@@ -2,8 +2,8 @@
 //! the law must give the work of adhesion of the problem, under force a ninth of that under displacement, and its cusps are the
 //! extrema of √s g' there.
 
-use super::cases::Figure;
-use super::row::{Group, Row};
+use super::cases::PaperFigure;
+use super::row::{Group, VerifyRow};
 use crate::disc::{Table, TableError};
 use crate::problem::Control;
 use crate::progress::Unwatched;
@@ -26,7 +26,7 @@ const ROUNDS: usize = 80;
 ///
 /// # Errors
 /// The gap cannot be tabulated.
-pub fn group(figure: &Figure) -> Result<Group, TableError> {
+pub fn group(figure: &PaperFigure) -> Result<Group, TableError> {
     let problem = figure.problem.reduced();
     let panels = Table::new(problem.gap.clone(), figure.start, &Unwatched)?.up_to(figure.start)?;
     let law = |control| Law { panels: panels.clone(), control };
@@ -36,7 +36,7 @@ pub fn group(figure: &Figure) -> Result<Group, TableError> {
         let found = limit_points(&*exact, control, figure.start, INWARD_REACH * figure.start);
         found.into_iter().map(|limit| limit.state.contact_radius).collect::<Vec<f64>>()
     };
-    let mut rows: Vec<Row> = figure
+    let mut rows: Vec<VerifyRow> = figure
         .controls()
         .into_iter()
         .map(|control| {
@@ -44,13 +44,13 @@ pub fn group(figure: &Figure) -> Result<Group, TableError> {
             let radii = points(control);
             let what = format!("{control}: {} limit points, worst", radii.len());
             let pairs = radii.iter().map(|s| (law.critical(*s).unwrap_or(f64::NAN), gamma));
-            Row::worst(what, pairs, gamma, BOUND)
+            VerifyRow::worst(what, pairs, gamma, BOUND)
         })
         .collect();
     let grips = law(Control::Displacement);
     let ninth =
         points(Control::Force).into_iter().map(|s| (grips.critical(s).unwrap_or(f64::NAN), 9.0 * gamma));
-    rows.push(Row::worst("nine times that under displacement", ninth, gamma, 9.0 * BOUND));
+    rows.push(VerifyRow::worst("nine times that under displacement", ninth, gamma, 9.0 * BOUND));
     let (cusps, _) = grips.cusps([0.0, figure.start]);
     let wave = exact.wave().unwrap_or(figure.start);
     for (number, cusp) in cusps.iter().take(CUSPS).enumerate() {
@@ -59,9 +59,14 @@ pub fn group(figure: &Figure) -> Result<Group, TableError> {
         let highest = highest([s - 0.1 * wave, s + 0.1 * wave], &law);
         let adhesion = TAU * law(highest).powi(2) / FRAC_PI_2;
         let name = format!("cusp {}", number + 1);
-        rows.push(Row::relative(format!("gamma' of {name}"), TAU * adhesion_of(cusp.value), adhesion, BOUND));
+        rows.push(VerifyRow::relative(
+            format!("gamma' of {name}"),
+            TAU * adhesion_of(cusp.value),
+            adhesion,
+            BOUND,
+        ));
         // Flat at the top: half the digits.
-        rows.push(Row::relative(format!("contact radius of {name}"), s, highest, 1e-6));
+        rows.push(VerifyRow::relative(format!("contact radius of {name}"), s, highest, 1e-6));
     }
     let title = format!("{}, the law of stability, exact", figure.name);
     Ok(Group { title, measure: "relative", rows })

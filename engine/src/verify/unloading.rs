@@ -6,16 +6,16 @@
 //! exact one, and the area between the curve and the control line with that drop, instability by instability.
 
 use super::balance;
-use super::cases::Figure;
-use super::row::{Group, Row};
+use super::cases::PaperFigure;
+use super::row::{Group, VerifyRow};
 use super::settings::Candidate;
 use crate::disc::Basis;
 use crate::problem::Control;
 use crate::progress::Unwatched;
-use crate::quasistatic::path::{Setting, unload};
+use crate::quasistatic::path::{PathSetting, unload};
 use crate::quasistatic::{Curve, Event, Path, PathState};
-use crate::theory::unloading::{self, INWARD_REACH, Jump, limit_points};
-use crate::theory::{Disc, Equilibrium, Exact};
+use crate::theory::unloading::{self, ExactJump, INWARD_REACH, limit_points};
+use crate::theory::{Disc, Exact, ExactEquilibrium};
 use std::sync::Arc;
 
 /// Where a swept curve ends, as a share of its start: the default of presets.
@@ -25,7 +25,7 @@ const END: f64 = 0.004;
 const TWO_LOSSES: f64 = 1e-6;
 
 /// The curve of `figure` in `basis`.
-pub fn swept(figure: &Figure, basis: &Arc<dyn Basis>) -> Option<Curve> {
+pub fn swept(figure: &PaperFigure, basis: &Arc<dyn Basis>) -> Option<Curve> {
     Curve::of(figure.problem.reduced(), Arc::clone(basis), figure.start, END * figure.start)
 }
 
@@ -36,12 +36,12 @@ fn of_ours(state: &PathState) -> [f64; 3] {
     [state.contact_radius, state.approach, state.force]
 }
 
-fn of_exact(state: &Equilibrium) -> [f64; 3] {
+fn of_exact(state: &ExactEquilibrium) -> [f64; 3] {
     [state.contact_radius, state.approach, state.force]
 }
 
 /// The unloadings of `figure` in one basis, a group for each control.
-pub fn groups(figure: &Figure, candidate: &Candidate) -> Vec<Group> {
+pub fn groups(figure: &PaperFigure, candidate: &Candidate) -> Vec<Group> {
     let exact = Exact::of(&figure.problem);
     let curve = swept(figure, &candidate.basis);
     let group = |control| {
@@ -55,29 +55,29 @@ pub fn groups(figure: &Figure, candidate: &Candidate) -> Vec<Group> {
 
 fn rows(
     exact: &dyn Disc,
-    figure: &Figure,
+    figure: &PaperFigure,
     candidate: &Candidate,
     curve: Option<&Curve>,
     control: Control,
-) -> Vec<Row> {
+) -> Vec<VerifyRow> {
     let Some((curve, path)) = curve.zip(unloading::unload(exact, control, figure.start)) else {
-        return vec![Row::worst("equilibrium curve", [], 1.0, 0.0)];
+        return vec![VerifyRow::worst("equilibrium curve", [], 1.0, 0.0)];
     };
     let ranges = ranges(exact, figure);
     let mut rows = limits(exact, figure, candidate, curve, control, ranges);
-    match unload(curve, &Setting::one_disc(control), &Unwatched) {
+    match unload(curve, &PathSetting::one_disc(control), &Unwatched) {
         Ok(ours) => {
             rows.extend(states(&ours, &path.jumps, candidate, ranges));
             rows.extend(losses(&ours, &path.jumps, candidate));
             rows.push(balance::row(curve, &ours));
         }
-        Err(_) => rows.push(Row::worst("unloading", [], 1.0, 0.0)),
+        Err(_) => rows.push(VerifyRow::worst("unloading", [], 1.0, 0.0)),
     }
     rows
 }
 
 /// The ranges of s, δ and P on the exact curve from the start inward.
-fn ranges(exact: &dyn Disc, figure: &Figure) -> [f64; 3] {
+fn ranges(exact: &dyn Disc, figure: &PaperFigure) -> [f64; 3] {
     /// As fine as a chart: only the size matters.
     const POINTS: u32 = 1000;
     let radii = (1..=POINTS).map(|i| figure.start * f64::from(i) / f64::from(POINTS));
@@ -93,12 +93,12 @@ fn ranges(exact: &dyn Disc, figure: &Figure) -> [f64; 3] {
 /// All limit points of the curve, on the path or inside a jump.
 fn limits(
     exact: &dyn Disc,
-    figure: &Figure,
+    figure: &PaperFigure,
     candidate: &Candidate,
     curve: &Curve,
     control: Control,
     ranges: [f64; 3],
-) -> Vec<Row> {
+) -> Vec<VerifyRow> {
     let ours: Vec<f64> = curve.limit_points(control).iter().map(|limit| limit.contact_radius).collect();
     let exact: Vec<f64> = limit_points(exact, control, figure.start, INWARD_REACH * figure.start)
         .iter()
@@ -106,39 +106,39 @@ fn limits(
         .collect();
     let what = format!("contact radius, worst of {}", exact.len());
     vec![
-        Row::new("limit points on the curve", ours.len() as f64, exact.len() as f64, 1.0, 0.0),
-        Row::worst(what, ours.into_iter().zip(exact), ranges[0], candidate.bounds.state),
+        VerifyRow::new("limit points on the curve", ours.len() as f64, exact.len() as f64, 1.0, 0.0),
+        VerifyRow::worst(what, ours.into_iter().zip(exact), ranges[0], candidate.bounds.state),
     ]
 }
 
 /// The states that the instabilities leave, and those they reach.
-fn states(ours: &Path, exact: &[Jump], candidate: &Candidate, ranges: [f64; 3]) -> Vec<Row> {
+fn states(ours: &Path, exact: &[ExactJump], candidate: &Candidate, ranges: [f64; 3]) -> Vec<VerifyRow> {
     let count = |snap: bool| exact.iter().filter(|jump| jump.after.is_some() == snap).count() as f64;
     let ours_count = |snap: bool| ours.events.iter().filter(|e| e.after.is_some() == snap).count() as f64;
     let mut rows = vec![
-        Row::new("snaps", ours_count(true), count(true), 1.0, 0.0),
-        Row::new("last contacts", ours_count(false), count(false), 1.0, 0.0),
+        VerifyRow::new("snaps", ours_count(true), count(true), 1.0, 0.0),
+        VerifyRow::new("last contacts", ours_count(false), count(false), 1.0, 0.0),
     ];
-    let pairs: Vec<(&Event, &Jump)> = ours.events.iter().zip(exact).collect();
+    let pairs: Vec<(&Event, &ExactJump)> = ours.events.iter().zip(exact).collect();
     for (k, quantity) in QUANTITIES.into_iter().enumerate() {
         let left = pairs.iter().filter_map(|(event, jump)| {
             Some((of_ours(event.before.as_ref()?)[k], of_exact(&jump.before)[k]))
         });
         let what = format!("{quantity} before, worst of {}", exact.len());
-        rows.push(Row::worst(what, left, ranges[k], candidate.bounds.state));
+        rows.push(VerifyRow::worst(what, left, ranges[k], candidate.bounds.state));
     }
     for (k, quantity) in QUANTITIES.into_iter().enumerate() {
         let reached = pairs.iter().filter_map(|(event, jump)| {
             Some((of_ours(event.after.as_ref()?)[k], of_exact(jump.after.as_ref()?)[k]))
         });
         let what = format!("{quantity} after, worst of {}", count(true));
-        rows.push(Row::worst(what, reached, ranges[k], candidate.bounds.state));
+        rows.push(VerifyRow::worst(what, reached, ranges[k], candidate.bounds.state));
     }
     rows
 }
 
 /// What each instability loses, in both ways; a last contact under a dead load has no loss.
-fn losses(ours: &Path, exact: &[Jump], candidate: &Candidate) -> Vec<Row> {
+fn losses(ours: &Path, exact: &[ExactJump], candidate: &Candidate) -> Vec<VerifyRow> {
     let mut rows = Vec::new();
     for (number, (event, jump)) in ours.events.iter().zip(exact).enumerate() {
         let Some(exact) = jump.dissipated else { continue };
@@ -146,8 +146,8 @@ fn losses(ours: &Path, exact: &[Jump], candidate: &Candidate) -> Vec<Row> {
         let area = event.dissipated_by_area.unwrap_or(f64::NAN);
         let kind = if jump.after.is_some() { "snap" } else { "last contact" };
         let number = number + 1;
-        rows.push(Row::relative(format!("{number} {kind}: loss"), drop, exact, candidate.bounds.loss));
-        rows.push(Row::own(
+        rows.push(VerifyRow::relative(format!("{number} {kind}: loss"), drop, exact, candidate.bounds.loss));
+        rows.push(VerifyRow::own(
             format!("{number} {kind}: area against drop"),
             area,
             drop,

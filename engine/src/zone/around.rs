@@ -57,7 +57,7 @@ fn places(ground: &Ground, ends: [f64; 2]) -> impl Iterator<Item = [f64; 2]> + u
 
 /// Where a state is not one disc in one zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fault {
+pub struct ZoneFault {
     /// What is there.
     pub kind: FaultKind,
     /// Where, a length.
@@ -162,24 +162,24 @@ impl Zone {
     }
 
     /// The first fault of a state on the gap of `ground`, of those asked for.
-    pub fn fault(&self, ground: &Ground, at: ZoneAt, ends: Ends) -> Option<Fault> {
+    pub fn fault(&self, ground: &Ground, at: ZoneAt, ends: Ends) -> Option<ZoneFault> {
         let Cohesion { strength, range } = self.cohesion;
         let (outer, inner) = (ends != Ends::Inner, ends != Ends::Outer);
         for (radius, gap) in self.gaps(ground, at).take_while(|_| at.edge > 0.0) {
             if outer && gap < -ROUNDING * range {
-                return Some(Fault { kind: FaultKind::Touches, radius });
+                return Some(ZoneFault { kind: FaultKind::Touches, radius });
             }
             if inner && gap > range * (1.0 + ROUNDING) {
-                return Some(Fault { kind: FaultKind::Opens, radius });
+                return Some(ZoneFault { kind: FaultKind::Opens, radius });
             }
         }
         if outer && let Some(radius) = self.second_zone(ground, at) {
-            return Some(Fault { kind: FaultKind::SecondZone, radius });
+            return Some(ZoneFault { kind: FaultKind::SecondZone, radius });
         }
         self.at_corners(at)
             .chain(self.pressures(ground, at).take_while(|_| inner))
             .find(|(_, pressure)| *pressure < -strength * (1.0 + ROUNDING))
-            .map(|(radius, _)| Fault { kind: FaultKind::Torn, radius })
+            .map(|(radius, _)| ZoneFault { kind: FaultKind::Torn, radius })
     }
 
     /// By how much δ and P of the zone with the edge of this state may be larger than its own, where its contact is no disc: not at all

@@ -6,8 +6,8 @@
 use super::around::ZoneAt;
 use super::state::{Zone, ZoneState};
 use crate::annuli::Ground;
-use crate::disc::chebyshev::{self, Rule};
-use crate::disc::sampled::{Fineness, Panel, Sample, Sampled, resolve};
+use crate::disc::chebyshev::{self, ChebyshevRule};
+use crate::disc::sampled::{Fineness, Sampled, SampledPanel, SampledState, resolve};
 use crate::disc::{Solution, Table, TableError};
 use crate::elementary::cbrt;
 use crate::gap::panels::{Span, Variable};
@@ -49,7 +49,7 @@ pub struct Equilibria {
     pub ground: Ground,
     /// What is solved.
     pub zone: Zone,
-    panels: Vec<Arc<Panel>>,
+    panels: Vec<Arc<SampledPanel>>,
     touches: Vec<f64>,
     /// The panels reach up to here, a length.
     at: f64,
@@ -167,7 +167,7 @@ impl Equilibria {
         let variable = self.base.map_or(Variable::Radius, |base| Variable::Root { base });
         let span = Span { lo, hi, variable };
         // Where contact begins or ends.
-        let excess = Rule::of(NODES).series(|x| self.zone.excess(span.radius(x)));
+        let excess = ChebyshevRule::of(NODES).series(|x| self.zone.excess(span.radius(x)));
         let size: f64 = excess.iter().map(|c| c.abs()).sum();
         let roots = chebyshev::roots(&excess, f64::EPSILON * size);
         let inside = (lo + AT_BORDER * hi)..(hi - AT_BORDER * hi);
@@ -229,14 +229,14 @@ impl Equilibria {
 }
 
 /// The states at edges, up to the first that is none.
-fn samples(zone: &Zone, edges: &[f64], progress: &dyn Progress) -> Vec<Sample> {
+fn samples(zone: &Zone, edges: &[f64], progress: &dyn Progress) -> Vec<SampledState> {
     let mut near = None;
     let mut found = Vec::with_capacity(edges.len());
     for edge in edges {
         let state = if progress.stop() { None } else { zone.state(*edge, near) };
         let Some(ZoneState { approach, force, slopes, energy, share, .. }) = state else { break };
         near = (share > 0.0).then_some(share);
-        found.push(Sample { approach, force, slopes, energy, share });
+        found.push(SampledState { approach, force, slopes, energy, share });
     }
     found
 }

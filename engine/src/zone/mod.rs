@@ -15,6 +15,6 @@ pub mod around;
 pub mod equilibria;
 pub mod state;
 
-pub use around::{Ends, Fault, FaultKind, ZoneAt};
+pub use around::{Ends, FaultKind, ZoneAt, ZoneFault};
 pub use equilibria::Equilibria;
 pub use state::{Zone, ZoneState};

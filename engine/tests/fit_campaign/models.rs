@@ -5,8 +5,8 @@ use super::device::{By, Peel, Sample};
 use super::kinds::{DOUBTFUL, Made, plain};
 use super::record::{Random, Record, Seen};
 use super::trial::{Outcome, fitted, made, options, outcome, preset};
-use pulloff_engine::fit::path::Path;
-use pulloff_engine::fit::together::Run;
+use pulloff_engine::fit::path::FitPath;
+use pulloff_engine::fit::together::CurveFits;
 use pulloff_engine::fit::track::{Mover, Reach};
 use pulloff_engine::fit::way::Way;
 use pulloff_engine::fit::{Model, Together, Verdict, fit_models, fit_together};
@@ -24,9 +24,9 @@ const MOVED: [(&str, Mover); 4] = [
     ("material.cohesive_range", Mover::Extent),
 ];
 
-fn path(preset: &Preset, abscissa: Abscissa) -> Path {
+fn path(preset: &Preset, abscissa: Abscissa) -> FitPath {
     let reach = Reach { most: [0.1, 0.1, 0.3], turn: [0.1, 0.1], radius: Some(0.4), length: 1.0, noise: 0.0 };
-    Path::new(preset, abscissa, &reach, Way::Down).unwrap()
+    FitPath::new(preset, abscissa, &reach, Way::Down).unwrap()
 }
 
 #[test]
@@ -300,7 +300,7 @@ fn three_speeds_have_one_law_better_known_than_that_of_each() {
         for (of, truth) in found.law.iter().zip([LENS.adhesion, LENS.reference, LENS.exponent]) {
             let error = of.standard_error.unwrap();
             assert!((of.value - truth).abs() < 4.0 * error, "{of:?} {truth}");
-            let of_one = |run: &Run| {
+            let of_one = |run: &CurveFits| {
                 run.alone.parameters.iter().find(|alone| alone.key == of.key).unwrap().standard_error
             };
             let least = found.runs.iter().filter_map(of_one).fold(f64::INFINITY, f64::min);

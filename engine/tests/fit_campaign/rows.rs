@@ -3,7 +3,7 @@
 use super::kinds::{ADHESION, DOUBTFUL, Kind, MEASURED, plain};
 use super::trial::{Outcome, fitted, made, options, outcome, tried};
 use pulloff_engine::fit::fit_own;
-use pulloff_engine::measured::Source;
+use pulloff_engine::measured::PointsFile;
 use pulloff_engine::preset::{Value, data, read, write};
 use pulloff_engine::progress::Unwatched;
 use std::sync::Arc;
@@ -151,7 +151,7 @@ fn a_written_preset_is_fitted_with_a_baseline_that_is_free_again_or_said() {
         let text: String =
             write(&again).lines().filter(|line| !line.starts_with("file = ")).collect::<Vec<_>>().join("\n");
         let mut again = read("again", &text).unwrap();
-        let source = Source::new("made.csv".to_owned(), None, made.text.as_bytes().into());
+        let source = PointsFile::new("made.csv".to_owned(), None, made.text.as_bytes().into());
         again.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
         let second = fit_own(&again, &options, &Unwatched).map_err(|error| error.to_string());
         let judged = outcome(0, &made, &second);

@@ -3,7 +3,7 @@
 use super::kinds::{Kind, Made};
 use super::record::Random;
 use pulloff_engine::fit::{Fit, Options, fit_own};
-use pulloff_engine::measured::Source;
+use pulloff_engine::measured::PointsFile;
 use pulloff_engine::preset::{Preset, Value, data, read};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::report::fit::FitReport;
@@ -54,7 +54,7 @@ impl Outcome {
 /// The preset of a made curve, with its file.
 pub fn preset(made: &Made) -> Preset {
     let mut preset = read("made", &made.preset).unwrap();
-    let source = Source::new("made.csv".to_owned(), None, made.text.as_bytes().into());
+    let source = PointsFile::new("made.csv".to_owned(), None, made.text.as_bytes().into());
     preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
     preset
 }

@@ -36,11 +36,11 @@ use pulloff_engine::disc::Table;
 use pulloff_engine::preset::{self, shipped};
 use pulloff_engine::problem::{Control, Turn};
 use pulloff_engine::progress::{Progress, Unwatched};
-use pulloff_engine::quasistatic::path::{EventKind, Path, PathState, Setting, Warning, cycle};
+use pulloff_engine::quasistatic::path::{EventKind, Path, PathSetting, PathState, Warning, cycle};
 use pulloff_engine::report::map::{MapError, Ordinate};
 use pulloff_engine::report::path::Extent;
 use pulloff_engine::report::{MapReport, PathReport, StabilityReport, TraceReport};
-use pulloff_engine::stability::Axis;
+use pulloff_engine::stability::MapAxis;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -220,7 +220,7 @@ fn faults(number: u64) -> Vec<String> {
     let approach = 0.01 + 0.05 * random.f64();
     let name = format!("{number}: {name} γ {gamma:e} {control} to {approach}");
     let table = Arc::new(Table::new(Arc::clone(&gap), 0.3, &Unwatched).unwrap());
-    let found = match cycle(&table, gamma, Turn::Approach(approach), &Setting::new(control), &Unwatched) {
+    let found = match cycle(&table, gamma, Turn::Approach(approach), &PathSetting::new(control), &Unwatched) {
         Ok(found) => found,
         Err(error) => return vec![format!("{name}: {error}")],
     };
@@ -328,7 +328,7 @@ fn every_report_stops(times: usize) {
         stops(&format!("stability {name}"), times, &|progress| {
             of_case(StabilityReport::compute(&preset, 200, progress).map(drop))
         });
-        let axis = |key: &str, range| Axis::new(key, range, true, 1.0).unwrap();
+        let axis = |key: &str, range| MapAxis::new(key, range, true, 1.0).unwrap();
         let gamma = preset.material.work_of_adhesion;
         let x = axis("material.work_of_adhesion", [0.5 * gamma, 2.0 * gamma]);
         let y = Ordinate::Key(axis("compliance", [0.1, 10.0]));

@@ -17,8 +17,8 @@ use pulloff_engine::problem::Turn;
 use pulloff_engine::problem::{ContactKind, Control};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::path::{
-    Balance, Direction, EVEN, EventKind, Losses, Path, PathError, PathState, Setting, Warning, WhyNot, cycle,
-    cycle_on,
+    Balance, Direction, EVEN, EventKind, Losses, Path, PathError, PathSetting, PathState, Warning, WhyNot,
+    cycle, cycle_on,
 };
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -26,7 +26,7 @@ use std::sync::Arc;
 
 fn looped(gap: Arc<dyn Gap>, gamma: f64, control: Control, turn: Turn, losses: Losses) -> Path {
     let table = Arc::new(Table::new(gap, 0.3, &Unwatched).unwrap());
-    let setting = Setting { losses, ..Setting::new(control) };
+    let setting = PathSetting { losses, ..PathSetting::new(control) };
     cycle(&table, gamma, turn, &setting, &Unwatched).unwrap()
 }
 
@@ -108,7 +108,7 @@ fn an_unloading_from_inside_an_overlap_starts_with_what_loading_comes_to() {
     for number in 1..=60 {
         preset.set_all([("path.start_contact_radius", (0.003 * f64::from(number)).into())]).unwrap();
         let case = Case::new(&preset).unwrap();
-        let setting = Setting { losses: Losses::Once, ..Setting::new(Control::Displacement) };
+        let setting = PathSetting { losses: Losses::Once, ..PathSetting::new(Control::Displacement) };
         let found = case.unload(&case.curve(&Unwatched).unwrap(), &setting, &Unwatched).unwrap();
         let overlaps = found.asked.is_some_and(|asked| matches!(asked.why, WhyNot::Overlaps(_)));
         if !overlaps {
@@ -245,7 +245,7 @@ fn random_loop(number: u64, losses: Losses) -> Result<(Path, String), String> {
     let approach = 0.01 + 0.07 * random.f64();
     let name = format!("{number}: {name} γ {gamma:e} {control} to {approach}");
     let table = Arc::new(Table::new(gap, 0.3, &Unwatched).unwrap());
-    let setting = Setting { losses, ..Setting::new(control) };
+    let setting = PathSetting { losses, ..PathSetting::new(control) };
     let started = std::time::Instant::now();
     let found = cycle(&table, gamma, Turn::Approach(approach), &setting, &Unwatched)
         .map_err(|error| format!("{name}: {error}"))?;
@@ -292,7 +292,8 @@ fn mobilities_decide_nothing_that_lasts() {
     let ground = Ground::of(gap, 0.7).unwrap();
     let run = |mobility: &(dyn Fn(f64) -> f64 + Sync)| {
         let turn = Turn::Approach(0.04);
-        let setting = Setting { losses: Losses::Once, mobility, ..Setting::new(Control::Displacement) };
+        let setting =
+            PathSetting { losses: Losses::Once, mobility, ..PathSetting::new(Control::Displacement) };
         cycle_on(&ground, 1e-4, turn, &setting, &Unwatched).unwrap()
     };
     let even = run(EVEN);
@@ -314,7 +315,7 @@ fn mobilities_decide_nothing_that_lasts() {
 fn bad_turns_are_refused_with_the_number_that_would_do() {
     let ground = Ground::of(wavy(0.0025, 0.05), 0.7).unwrap();
     let fails = |gamma: f64, control: Control, turn: Turn| {
-        let setting = Setting { losses: Losses::Once, ..Setting::new(control) };
+        let setting = PathSetting { losses: Losses::Once, ..PathSetting::new(control) };
         cycle_on(&ground, gamma, turn, &setting, &Unwatched).unwrap_err()
     };
     let before = fails(1e-4, Control::Displacement, Turn::Control(-0.01));
@@ -325,7 +326,7 @@ fn bad_turns_are_refused_with_the_number_that_would_do() {
     assert!(matches!(fails(1e-4, Control::Force, Turn::Approach(f64::NAN)), PathError::BadTurn(_)));
     let never = fails(1e-4, Control::Displacement, Turn::Force(50.0));
     assert!(matches!(never, PathError::BeyondGap { .. }), "{never:?}");
-    let setting = Setting { losses: Losses::Once, ..Setting::new(Control::Force) };
+    let setting = PathSetting { losses: Losses::Once, ..PathSetting::new(Control::Force) };
     assert_eq!(
         cycle_on(&ground, 1e-4, Turn::Force(0.01), &setting, &|| true).unwrap_err(),
         PathError::Cancelled
@@ -390,7 +391,7 @@ fn without_adhesion_solving_afresh_finds_the_same() {
         let approach = 0.02 + 0.03 * random.f64();
         let ground = Ground::of(Arc::clone(&gap), 0.7).unwrap();
         let control = [Control::Displacement, Control::Force, Control::Stiffness(0.3)][random.usize(0..3)];
-        let setting = Setting { losses: Losses::Once, ..Setting::new(control) };
+        let setting = PathSetting { losses: Losses::Once, ..PathSetting::new(control) };
         let found = match cycle_on(&ground, 0.0, Turn::Approach(approach), &setting, &Unwatched) {
             Ok(found) => found,
             Err(error) => panic!("{number} {name}: {error}"),
@@ -437,7 +438,7 @@ fn without_adhesion_corners_are_passed() {
         let gap = TypedGap::new(&text, Vec::<FormulaParameter>::new(), Some(0.6)).unwrap();
         let ground = Ground::of(Arc::new(Shape::Formula(Arc::new(gap))), 0.5).unwrap();
         let turn = Turn::Approach(approach);
-        let setting = Setting { losses: Losses::Once, ..Setting::new(Control::Displacement) };
+        let setting = PathSetting { losses: Losses::Once, ..PathSetting::new(Control::Displacement) };
         let found = cycle_on(&ground, 0.0, turn, &setting, &Unwatched)
             .unwrap_or_else(|error| panic!("{text}: {error}"));
         assert!(found.events.iter().any(|event| event.kind == EventKind::Touch), "{text}");
@@ -449,7 +450,7 @@ fn without_adhesion_corners_are_passed() {
 #[test]
 #[ignore = "figures, to be read"]
 fn loops_of_measured_profiles() {
-    use pulloff_engine::gap::shapes::profile::{Profile, Smoothing};
+    use pulloff_engine::gap::shapes::profile::{ProfileGap, Smoothing};
     for number in 0..10_u32 {
         let mut random = fastrand::Rng::with_seed(u64::from(number));
         let wavelength = 0.05 + 0.005 * f64::from(number);
@@ -464,10 +465,10 @@ fn loops_of_measured_profiles() {
                 0.5 * r * r + wave + noise * (random.f64() - 0.5)
             })
             .collect();
-        let gap: Arc<dyn Gap> = Arc::new(Profile::new(&radii, &rows, Smoothing::None).unwrap());
+        let gap: Arc<dyn Gap> = Arc::new(ProfileGap::new(&radii, &rows, Smoothing::None).unwrap());
         let table = Arc::new(Table::new(gap, 0.3, &Unwatched).unwrap());
         let turn = Turn::Approach(0.02);
-        let setting = Setting::new(Control::Displacement);
+        let setting = PathSetting::new(Control::Displacement);
         let started = std::time::Instant::now();
         let found = cycle(&table, gamma, turn, &setting, &Unwatched);
         let seconds = started.elapsed().as_secs_f64();
@@ -496,7 +497,7 @@ fn a_wave_with_a_corner_is_that_of_another_program() {
     let gap: Arc<dyn Gap> = Arc::new(Shape::Formula(Arc::new(TypedGap::new(text, none, Some(0.6)).unwrap())));
     let table = Arc::new(Table::new(gap, 0.4, &Unwatched).unwrap());
     let ground = Ground::new(table, 0.4, &Unwatched).unwrap();
-    let setting = Setting::new(Control::Displacement);
+    let setting = PathSetting::new(Control::Displacement);
     let found = cycle_on(&ground, 1e-4, Turn::Approach(0.03), &setting, &Unwatched).unwrap();
     println!("{:?} {:?}", found.totals, found.warnings);
     assert!(found.totals.balance.unwrap() < 1e-6);
@@ -565,7 +566,7 @@ fn broken_loop(number: u64) -> Result<(Path, String), String> {
         Arc::new(Shape::Formula(Arc::new(TypedGap::new(&text, none, Some(0.6)).unwrap())));
     let table = Arc::new(Table::new(gap, 0.5, &Unwatched).unwrap());
     let ground = Ground::new(table, 0.7, &Unwatched).unwrap();
-    let setting = Setting::new(control);
+    let setting = PathSetting::new(control);
     let found = cycle_on(&ground, gamma, Turn::Approach(approach), &setting, &Unwatched)
         .map_err(|error| format!("{name}: {error}"))?;
     Ok((found, name))

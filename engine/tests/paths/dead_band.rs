@@ -15,14 +15,14 @@ use pulloff_engine::preset::{self, shipped};
 use pulloff_engine::problem::{ContactKind, Control, Turn};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::path::{
-    Direction, Event, EventKind, Losses, Path, PathState, PathStop, Setting, cycle, cycle_on,
+    Direction, Event, EventKind, Losses, Path, PathSetting, PathState, PathStop, cycle, cycle_on,
 };
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 fn looped(gap: &Arc<dyn Gap>, [gamma, closing]: [f64; 2], control: Control, turn: Turn) -> Path {
     let table = Arc::new(Table::new(Arc::clone(gap), 0.3, &Unwatched).unwrap());
-    let setting = Setting { closing: Some(closing), ..Setting::new(control) };
+    let setting = PathSetting { closing: Some(closing), ..PathSetting::new(control) };
     cycle(&table, gamma, turn, &setting, &Unwatched).unwrap()
 }
 
@@ -171,11 +171,11 @@ fn rings_are_held_edge_by_edge() {
 fn nothing_that_lasts_depends_on_how_fast_held_edges_get_free() {
     let ground = Ground::of(wavy(0.0025, 0.05), 0.7).unwrap();
     let run = |mobility: &(dyn Fn(f64) -> f64 + Sync)| {
-        let setting = Setting {
+        let setting = PathSetting {
             losses: Losses::Once,
             mobility,
             closing: Some(1e-4),
-            ..Setting::new(Control::Displacement)
+            ..PathSetting::new(Control::Displacement)
         };
         cycle_on(&ground, 3e-4, Turn::Approach(0.08), &setting, &Unwatched).unwrap()
     };
@@ -194,7 +194,7 @@ fn without_a_band_it_is_the_loop_without_one() {
     let gamma = 2e-4;
     let table = Arc::new(Table::new(Arc::clone(&gap), 0.3, &Unwatched).unwrap());
     let turn = Turn::Approach(0.06);
-    let setting = Setting::new(Control::Displacement);
+    let setting = PathSetting::new(Control::Displacement);
     let plain = cycle(&table, gamma, turn, &setting, &Unwatched).unwrap();
     let same = looped(&gap, [gamma, gamma], Control::Displacement, turn);
     assert_eq!(same.events, plain.events);
@@ -215,7 +215,7 @@ fn an_unloading_is_the_way_down_of_the_loop_that_turns_at_its_start() {
         for top in [0.01, 0.03, 0.06, 0.1] {
             preset.set_all([("material.closing_work_of_adhesion", band.into())]).unwrap();
             let case = Case::new(&preset).unwrap();
-            let setting = Setting { contact, ..case.setting() };
+            let setting = PathSetting { contact, ..case.setting() };
             let whole = case.cycle(Some(Turn::Control(top)), &setting, &Unwatched).unwrap();
             let at = whole.events.iter().position(|event| event.kind == EventKind::Turn).unwrap();
             let turned = whole.events[at].before.as_ref().unwrap();
@@ -259,7 +259,7 @@ fn random_loops(numbers: std::ops::Range<u64>) {
         let approach = 0.01 + 0.05 * random.f64();
         let name = format!("{number}: {name} γ {gamma:e} {closing:e} {control} to {approach}");
         let table = Arc::new(Table::new(Arc::clone(&gap), 0.3, &Unwatched).unwrap());
-        let setting = Setting { closing: Some(closing), ..Setting::new(control) };
+        let setting = PathSetting { closing: Some(closing), ..PathSetting::new(control) };
         let found = match cycle(&table, gamma, Turn::Approach(approach), &setting, &Unwatched) {
             Ok(found) => found,
             Err(error) => {

@@ -8,7 +8,7 @@ use pulloff_engine::annuli::Ground;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::problem::Turn;
 use pulloff_engine::problem::{Control, Problem};
-use pulloff_engine::quasistatic::path::{Direction, Losses, PathState, Setting, cycle_on};
+use pulloff_engine::quasistatic::path::{Direction, Losses, PathSetting, PathState, cycle_on};
 use pulloff_engine::ritz::kernel::disc_interaction;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -112,7 +112,7 @@ fn elements_added_while_the_energy_falls_find_the_same_contacts() {
     let gap = Problem { effective_modulus: 1.0, work_of_adhesion: 0.0, shape }.reduced().gap;
     let ground = Ground::of(Arc::clone(&gap), 0.5).unwrap();
     let turn = Turn::Approach(0.03);
-    let setting = Setting { losses: Losses::Once, ..Setting::new(Control::Displacement) };
+    let setting = PathSetting { losses: Losses::Once, ..PathSetting::new(Control::Displacement) };
     let found = cycle_on(&ground, GAMMA, turn, &setting, &pulloff_engine::progress::Unwatched).unwrap();
     let loading = |state: &&PathState| state.direction == Direction::Loading;
     let pieces = found.states.iter().filter(loading).map(|state| state.piece).max().unwrap();

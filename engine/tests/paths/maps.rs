@@ -5,22 +5,22 @@
 
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::EventKind;
-use pulloff_engine::quasistatic::path::Setting;
+use pulloff_engine::quasistatic::path::PathSetting;
 use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::Ordinate;
-use pulloff_engine::stability::{Axis, COMPLIANCE};
+use pulloff_engine::stability::{COMPLIANCE, MapAxis};
 use pulloff_engine::{Case, Control, Preset, preset};
 use std::fmt::Write;
 
 /// A line that ends at the border of the map to this, in shares, reaches it.
 const SLACK: f64 = 1e-6;
 
-fn axis(key: &str, range: [f64; 2], logarithmic: bool) -> Axis {
-    Axis::new(key, range, logarithmic, 1.0).unwrap()
+fn axis(key: &str, range: [f64; 2], logarithmic: bool) -> MapAxis {
+    MapAxis::new(key, range, logarithmic, 1.0).unwrap()
 }
 
 /// The snaps of the preset with these values by its own unloading; `None` where it has no path.
-fn snaps(preset: &Preset, values: [(&Axis, f64); 2]) -> Option<usize> {
+fn snaps(preset: &Preset, values: [(&MapAxis, f64); 2]) -> Option<usize> {
     let mut preset = preset.clone();
     let keys = values.iter().filter(|(axis, _)| axis.key != COMPLIANCE);
     preset.set_all(keys.map(|(axis, value)| (axis.key.as_str(), (*value).into()))).unwrap();
@@ -35,15 +35,15 @@ fn snaps(preset: &Preset, values: [(&Axis, f64); 2]) -> Option<usize> {
     }
     let case = Case::new(&preset).ok()?;
     let path =
-        case.unload(&case.curve(&Unwatched).ok()?, &Setting::one_disc(case.control), &Unwatched).ok()?;
+        case.unload(&case.curve(&Unwatched).ok()?, &PathSetting::one_disc(case.control), &Unwatched).ok()?;
     Some(path.events.iter().filter(|event| event.kind == EventKind::Snap).count())
 }
 
 /// Pairs of neighbouring cells with different snaps, and what is wrong with the map.
-fn judged(preset: &Preset, [x, y]: [Axis; 2], cells: [u32; 2]) -> (usize, String) {
+fn judged(preset: &Preset, [x, y]: [MapAxis; 2], cells: [u32; 2]) -> (usize, String) {
     let name = format!("{x} {y}");
     let report = MapReport::compute(preset, x.clone(), &Ordinate::Key(y.clone()), cells, &Unwatched).unwrap();
-    let share = |axis: &Axis, value: Option<f64>| axis.share(value.unwrap_or(f64::INFINITY));
+    let share = |axis: &MapAxis, value: Option<f64>| axis.share(value.unwrap_or(f64::INFINITY));
     let lines = report.rows.iter().filter(|row| row.kind != "swallowtail");
     let points: Vec<(usize, [f64; 2])> =
         lines.map(|row| (row.line.unwrap(), [share(&x, row.x), share(&y, row.y)])).collect();
@@ -156,7 +156,7 @@ impl Random {
 }
 
 /// A random problem with the numbers that a map of it may have, each with its range.
-fn problem(random: &mut Random, number: usize) -> (Preset, Vec<Axis>) {
+fn problem(random: &mut Random, number: usize) -> (Preset, Vec<MapAxis>) {
     let wave = random.over([0.04, 0.12]);
     let amplitude = random.over([1e-4, 5e-3]);
     let adhesion = random.over([1e-4, 5e-3]);

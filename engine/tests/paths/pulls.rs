@@ -6,8 +6,8 @@ use pulloff_engine::Case;
 use pulloff_engine::preset;
 use pulloff_engine::problem::{Control, Part};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::{PathState, Setting};
-use pulloff_engine::rate::{Edge, EdgeLaw, Puller, Settings};
+use pulloff_engine::quasistatic::path::{PathSetting, PathState};
+use pulloff_engine::rate::{EdgeLaw, MovingEdge, PullSettings, Puller};
 
 /// Gaps with snaps, under displacement and behind a spring: a slow pull has the snaps of the unloading, from and to where those are.
 #[test]
@@ -33,7 +33,7 @@ fn slow_pulls_show_the_events_of_the_unloading() {
             );
             let preset = preset::read("gap", &text).unwrap();
             let case = Case::new(&preset).unwrap();
-            let setting = Setting { control, ..case.setting_of_unloading() };
+            let setting = PathSetting { control, ..case.setting_of_unloading() };
             let path = case.unload(&case.curve(&Unwatched).unwrap(), &setting, &Unwatched).unwrap();
             let begun = path.states[0].contact_radius;
             let radius = |state: &Option<PathState>| state.as_ref().map(|state| state.contact_radius);
@@ -44,9 +44,9 @@ fn slow_pulls_show_the_events_of_the_unloading() {
                 .collect();
             let gamma = case.reduced.work_of_adhesion;
             for (exponent, rate) in [(0.25, 1e-20), (0.5, 1e-13), (1.0, 1e-9)] {
-                let edge = Edge { law: EdgeLaw::symmetric(exponent), opening: gamma, closing: gamma };
+                let edge = MovingEdge { law: EdgeLaw::symmetric(exponent), opening: gamma, closing: gamma };
                 let wave = case.reduced.gap.feature_length();
-                let settings = Settings::default();
+                let settings = PullSettings::default();
                 let puller =
                     Puller { table: &case.table, control, edge, start: begun, wave, rise: None, settings };
                 let pull = puller.pull(&[Part::Apart { rate }], &Unwatched).unwrap();

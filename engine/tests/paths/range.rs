@@ -9,7 +9,7 @@ use pulloff_engine::gap::shapes::{Harmonic, Harmonics};
 use pulloff_engine::problem::{Cohesion, Control, Problem, Turn};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::path::{
-    Event, EventKind, Path, PathError, PathStop, Setting, cycle_in_zone, unload_in_zone,
+    Event, EventKind, Path, PathError, PathSetting, PathStop, cycle_in_zone, unload_in_zone,
 };
 use pulloff_engine::zone::{Equilibria, ZoneAt, ZoneState};
 use std::f64::consts::PI;
@@ -40,7 +40,7 @@ fn strength(gamma: f64, maugis: f64) -> f64 {
 }
 
 fn cycle(shape: &Shape, cohesion: Cohesion, turn: Turn, control: Control) -> Result<Path, PathError> {
-    cycle_in_zone(&table(shape), cohesion, turn, &Setting::new(control), &Unwatched)
+    cycle_in_zone(&table(shape), cohesion, turn, &PathSetting::new(control), &Unwatched)
 }
 
 fn of_kind(path: &Path, kind: EventKind) -> Option<&Event> {
@@ -184,7 +184,7 @@ fn figure_9_jumps_and_loses_as_the_prototype() {
 #[test]
 fn figure_9_comes_to_the_short_range_limit() {
     let unload = |strength: f64| {
-        let setting = Setting::new(Control::Displacement);
+        let setting = PathSetting::new(Control::Displacement);
         let path = unload_in_zone(&table(&FIGURE_9), cohesion(GAMMA, strength), 0.41, &setting, &Unwatched);
         path.unwrap()
     };
@@ -269,7 +269,8 @@ fn times() {
             let table = table(&FIGURE_9);
             let once = || {
                 let law = cohesion(GAMMA, strength);
-                cycle_in_zone(&table, law, Turn::Approach(0.02), &Setting::new(control), &Unwatched).unwrap();
+                cycle_in_zone(&table, law, Turn::Approach(0.02), &PathSetting::new(control), &Unwatched)
+                    .unwrap();
             };
             println!("the loop of Fig. 9 at sigma0 = {strength}, {control}: {:.1} ms", 1e3 * median(9, once));
         }

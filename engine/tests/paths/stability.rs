@@ -5,7 +5,7 @@
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::stability::count::EXACTLY;
 use pulloff_engine::stability::law::{adhesion_of, root_of};
-use pulloff_engine::stability::{Axis, Cause, Family, Onset, even};
+use pulloff_engine::stability::{Cause, Family, MapAxis, Onset, even};
 use pulloff_engine::theory::onset;
 use pulloff_engine::{Adhesion, Control, Material, Preset, Shape, Start};
 use serde_json::Value;
@@ -36,8 +36,8 @@ fn waves(control: Control, start: f64, amplitude_over_wavelength: f64, adhesion:
     preset
 }
 
-fn axis(key: &str, range: [f64; 2], logarithmic: bool) -> Axis {
-    Axis::new(key, range, logarithmic, 1.0).unwrap()
+fn axis(key: &str, range: [f64; 2], logarithmic: bool) -> MapAxis {
+    MapAxis::new(key, range, logarithmic, 1.0).unwrap()
 }
 
 fn control(name: &str) -> Control {
@@ -241,7 +241,7 @@ fn fold_curves_pass_the_limit_points_of_the_curve() {
                         .unwrap();
                     assert!((limit.contact_radius - s).abs() < 1e-3, "{key} {s} {limit:?}");
                     assert!((limit.approach - mix(a.approach, b.approach)).abs() < 2e-4, "{key} {limit:?}");
-                    let minimum = limit.turn == pulloff_engine::Turn::Minimum;
+                    let minimum = limit.turn == pulloff_engine::Extremum::Minimum;
                     assert_eq!(minimum, line.is_minimum, "{key} {s}");
                     hits += 1;
                 }

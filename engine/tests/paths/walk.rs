@@ -8,16 +8,16 @@
 
 use crate::support::{random_gap, wavy};
 use pulloff_engine::annuli::{Contacts, Ground, points};
-use pulloff_engine::disc::{Exact, Table};
+use pulloff_engine::disc::{ExactBasis, Table};
 use pulloff_engine::gap::formula::TypedGap;
 use pulloff_engine::gap::shapes::{Harmonic, Harmonics};
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::problem::Turn;
 use pulloff_engine::problem::{ContactKind, Control, Problem, Reduced};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::{Balance, EventKind, Losses, Path, Setting, Step, cycle};
+use pulloff_engine::quasistatic::path::{Balance, EventKind, Losses, Path, PathSetting, PathStep, cycle};
 use pulloff_engine::quasistatic::walk::{Arrival, At, Reached, Walk, WalkEnd, edges};
-use pulloff_engine::quasistatic::{Curve, Point};
+use pulloff_engine::quasistatic::{Curve, StatePoint};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ fn reduced(gap: Arc<dyn Gap>, gamma: f64) -> Reduced {
 
 pub fn curve(gap: Arc<dyn Gap>, gamma: f64, end: f64) -> Curve {
     let problem = reduced(gap, gamma);
-    let basis = Arc::new(Exact::of(&problem, end).unwrap());
+    let basis = Arc::new(ExactBasis::of(&problem, end).unwrap());
     Curve::of(problem, basis, end, 0.002).unwrap()
 }
 
@@ -39,7 +39,7 @@ pub fn curve(gap: Arc<dyn Gap>, gamma: f64, end: f64) -> Curve {
 pub struct Walker<'a> {
     pub curve: &'a Curve,
     pub control: Control,
-    pub at: Option<(Point, At)>,
+    pub at: Option<(StatePoint, At)>,
     pub inward: bool,
     pub range: [f64; 2],
 }
@@ -130,7 +130,7 @@ fn walks(curve: &Curve, control: Control, found: &Path) -> [f64; 4] {
 
 fn looped(gap: &Arc<dyn Gap>, gamma: f64, control: Control, turn: Turn) -> Path {
     let table = Arc::new(Table::new(Arc::clone(gap), 0.3, &Unwatched).unwrap());
-    let setting = Setting { losses: Losses::Once, ..Setting::new(control) };
+    let setting = PathSetting { losses: Losses::Once, ..PathSetting::new(control) };
     cycle(&table, gamma, turn, &setting, &pulloff_engine::progress::Unwatched).unwrap()
 }
 
@@ -335,7 +335,7 @@ fn of_two_limit_points_within_a_step_the_first_is_met() {
         let from = balance.point(held, -1.0).unwrap();
         let way = (2.0 * away + width(&pair)) / from.scales.edges[0];
         let length = way / from.tangent[0].abs();
-        let ends = Step::new(&balance, &from).taken(length);
+        let ends = PathStep::new(&balance, &from).taken(length);
         let mut taken = balance.step(&from, length, None, &|_| true).unwrap();
         passed += usize::from(ends.is_some_and(|end| end.along_control() * from.along_control() > 0.0));
         assert!(taken.to_limit().unwrap(), "{share}");

@@ -18,7 +18,7 @@ use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::Value;
 use pulloff_engine::problem::{Cohesion, Control, Turn};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::path::{Path, PathState, PathStop, Setting, cycle_in_zone};
+use pulloff_engine::quasistatic::path::{Path, PathSetting, PathState, PathStop, cycle_in_zone};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
@@ -209,7 +209,7 @@ fn figure_9_just_above_the_tension_that_holds_its_troughs_together() {
             pulloff_engine::Problem { effective_modulus: 1.0, work_of_adhesion: gamma, shape: shape.clone() };
         let table = Arc::new(Table::new(Arc::clone(&problem.reduced().gap), 0.5, &Unwatched).unwrap());
         let cohesion = Cohesion { strength, range: gamma / strength };
-        cycle_in_zone(&table, cohesion, Turn::Approach(0.02), &Setting::new(control), &Unwatched).unwrap()
+        cycle_in_zone(&table, cohesion, Turn::Approach(0.02), &PathSetting::new(control), &Unwatched).unwrap()
     };
     for strength in [0.45, 0.42] {
         let judge = Judge::new(&terms, strength, gamma / strength, 0.6);

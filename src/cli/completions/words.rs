@@ -17,7 +17,7 @@ use std::path::Path;
 const GAP_SHAPE: &str = "gap.shape";
 
 /// What the value of an argument is, by the name of the argument; in every subcommand the same.
-const KNOWN: [(&str, Words); 11] = [
+const KNOWN: [(&str, Candidates); 11] = [
     ("preset", presets_or_files),
     ("assignments", assignments),
     ("free", free),
@@ -33,7 +33,7 @@ const KNOWN: [(&str, Words); 11] = [
 ];
 
 /// The candidates for a value that begins so.
-type Words = fn(&OsStr) -> Vec<CompletionCandidate>;
+type Candidates = fn(&OsStr) -> Vec<CompletionCandidate>;
 
 /// The command, with the words of its arguments.
 pub(super) fn known(command: Command) -> Command {

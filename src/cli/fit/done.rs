@@ -1,10 +1,10 @@
 //! The fits of many files as they come: told, put into the table, and in the end summed up.
 
-use super::summary::Summary;
-use super::{Arguments, Sinks, table};
+use super::summary::FitSummary;
+use super::{FitArguments, FitSinks, table};
 use crate::cli::console::Console;
 use crate::cli::format::Format;
-use crate::cli::watch::Stop;
+use crate::cli::watch::StopSignal;
 use crate::cli::{Failure, Status};
 use crate::store::Loaded;
 use crate::store::atomic::folder_of;
@@ -16,18 +16,18 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// What has been fitted so far.
-pub(super) struct Done<'a> {
-    arguments: &'a Arguments,
+pub(super) struct FinishedFits<'a> {
+    arguments: &'a FitArguments,
     console: &'a Console,
-    sinks: Sinks,
+    sinks: FitSinks,
     reports: Vec<FitReport>,
     /// Where several models are compared.
     compared: Option<ModelsReport>,
     worst: Status,
 }
 
-impl<'a> Done<'a> {
-    pub(super) fn new(arguments: &'a Arguments, console: &'a Console, sinks: Sinks) -> Self {
+impl<'a> FinishedFits<'a> {
+    pub(super) fn new(arguments: &'a FitArguments, console: &'a Console, sinks: FitSinks) -> Self {
         Self { arguments, console, sinks, reports: Vec::new(), compared: None, worst: Status::Done }
     }
 
@@ -46,7 +46,7 @@ impl<'a> Done<'a> {
     }
 
     /// Writes what was found of a file to all that is asked for.
-    pub(super) fn keep(&mut self, path: &Path, models: &Models, stop: &Stop) -> Result<(), Failure> {
+    pub(super) fn keep(&mut self, path: &Path, models: &Models, stop: &StopSignal) -> Result<(), Failure> {
         let arguments = self.arguments;
         let Some((found, free)) = models.best() else {
             return self.refuse(
@@ -89,11 +89,11 @@ impl<'a> Done<'a> {
     }
 
     /// Writes the report, of one of `many` files with a summary, and says how it ended.
-    pub(super) fn end(self, many: bool, loaded: &Loaded, stop: &Stop) -> Result<ExitCode, Failure> {
+    pub(super) fn end(self, many: bool, loaded: &Loaded, stop: &StopSignal) -> Result<ExitCode, Failure> {
         let Self { arguments, console, sinks, reports, compared, worst, .. } = self;
         let summary = match &sinks.table {
-            Some(table) => Summary::of(table.header(), table.rows()),
-            None => Summary::of_reports(&reports),
+            Some(table) => FitSummary::of(table.header(), table.rows()),
+            None => FitSummary::of_reports(&reports),
         };
         let summary = Some(summary).filter(|_| many);
         sinks.report.write(match (sinks.format, reports.as_slice(), &compared) {

@@ -11,20 +11,20 @@ use std::fmt::Write;
 
 /// Many fits.
 #[derive(Debug, PartialEq, Serialize)]
-pub(super) struct Summary {
+pub(super) struct FitSummary {
     /// How many files there are.
     files: usize,
     /// How many of them the model describes.
     described: usize,
     /// The values over these, in base units.
-    values: Vec<Spread>,
+    values: Vec<ValueSpread>,
     /// The other files.
     flagged: Vec<Flagged>,
 }
 
 /// One value over the files that are described.
 #[derive(Debug, PartialEq, Serialize)]
-struct Spread {
+struct ValueSpread {
     /// Its dotted key.
     key: String,
     /// Of how many files.
@@ -47,7 +47,7 @@ struct Flagged {
     reasons: String,
 }
 
-impl Summary {
+impl FitSummary {
     /// Of the rows of a table under its header, the file and the verdict first.
     pub(super) fn of(header: &[String], rows: &[Vec<String>]) -> Self {
         let at = |row: &[String], place: Option<usize>| {
@@ -64,7 +64,7 @@ impl Summary {
             let n = pairs.len() as f64;
             let mean = pairs.iter().map(|[value, _]| value).sum::<f64>() / n;
             let square = pairs.iter().map(|[value, _]| (value - mean).powi(2)).sum::<f64>();
-            (n > 0.0).then(|| Spread {
+            (n > 0.0).then(|| ValueSpread {
                 key: key.clone(),
                 count: pairs.len(),
                 mean,
@@ -94,7 +94,7 @@ impl Summary {
     /// Lines for a terminal, numbers in the units of `preset`.
     pub(super) fn text(&self, preset: &Preset) -> String {
         let mut text = format!("{} of {} files are described by the model\n", self.described, self.files);
-        for Spread { key, count, mean, standard_deviation, standard_error } in &self.values {
+        for ValueSpread { key, count, mean, standard_deviation, standard_error } in &self.values {
             let shown = |number| said(&preset.units, quantity(preset, key), number);
             let spread = standard_deviation.map_or_else(String::new, |deviation| {
                 format!(", standard deviation {} of {count} files", shown(deviation))
@@ -129,7 +129,7 @@ mod tests {
             row(["c", "does-not-describe", "70", "1", "9", "too soft"]),
             row(["d", "no points", "", "", "", ""]),
         ];
-        let summary = Summary::of(&header, &rows);
+        let summary = FitSummary::of(&header, &rows);
         let [spread] = &summary.values[..] else { panic!("{summary:?}") };
         assert_eq!((&*spread.key, spread.count, spread.mean), ("E", 2, 2.0));
         assert!((spread.standard_deviation.unwrap() - 2.0_f64.sqrt()).abs() < 1e-15);
@@ -138,8 +138,8 @@ mod tests {
             summary.flagged.iter().map(|flagged| (&*flagged.file, &*flagged.reasons)).collect();
         assert_eq!(flagged, [("c", "too soft"), ("d", "")]);
         assert_eq!((summary.files, summary.described), (4, 2));
-        let one = Summary::of(&header, &rows[..1]);
+        let one = FitSummary::of(&header, &rows[..1]);
         assert_eq!(one.values[0].standard_deviation, None);
-        assert!(Summary::of(&header, &rows[2..]).values.is_empty());
+        assert!(FitSummary::of(&header, &rows[2..]).values.is_empty());
     }
 }

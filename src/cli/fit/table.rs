@@ -1,14 +1,14 @@
 //! The table of many fits: one row for each file, whole after each, so that a rerun goes on where it ended.
 
 use crate::cli::Failure;
-use crate::cli::output::{Replacing, Sink, shown};
+use crate::cli::output::{OutputSink, Replacing, shown};
 use crate::store::hash::sha256;
 use pulloff_engine::text::show_path;
 use std::path::Path;
 
 /// The table of many files: whole after each.
-pub(super) struct Table {
-    sink: Sink,
+pub(super) struct FitTable {
+    sink: OutputSink,
     settings: String,
     header: Vec<String>,
     rows: Vec<Vec<String>>,
@@ -25,11 +25,11 @@ pub(super) fn is_header(line: &str) -> bool {
     names.starts_with(&[FILE, STATE]) && names.ends_with(&[FINGERPRINT])
 }
 
-impl Table {
+impl FitTable {
     /// The table in `path`, or a new one; with `--overwrite` always a new one.
     pub(super) fn open(
         path: &Path,
-        sink: Sink,
+        sink: OutputSink,
         replacing: Replacing,
         settings: &str,
     ) -> Result<Self, Failure> {
@@ -168,7 +168,7 @@ mod tests {
         [header, [file.to_owned(), "ok".to_owned()].into_iter().chain(values).collect()]
     }
 
-    fn sink(path: &Path) -> Sink {
+    fn sink(path: &Path) -> OutputSink {
         Outputs::beside(Inputs::default(), Replacing::default()).kept("--table", path).unwrap()
     }
 
@@ -178,7 +178,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("t.csv");
         for (file, keys) in [("a", &["E", "gamma"][..]), ("b", &["E", "R"]), ("c", &["gamma"]), ("d", &[])] {
-            let mut table = Table::open(&path, sink(&path), Replacing::default(), "s").unwrap();
+            let mut table = FitTable::open(&path, sink(&path), Replacing::default(), "s").unwrap();
             let fingerprint = table.fingerprint(Path::new(file));
             table.add(Path::new(file), Some(&fingerprint), &fitted(file, keys)).unwrap();
             assert_eq!(table.state(Path::new(file)), Some("ok"));

@@ -1,12 +1,12 @@
 //! One law fitted to several files.
 
 use super::done::{ended, status_of};
-use super::{Arguments, Sinks, of_file, refused, table, with_points};
+use super::{FitArguments, FitSinks, of_file, refused, table, with_points};
 use crate::cli::Failure;
 use crate::cli::console::Console;
 use crate::cli::format::Format;
 use crate::cli::measured::typed;
-use crate::cli::watch::Stop;
+use crate::cli::watch::StopSignal;
 use crate::store::Loaded;
 use crate::store::atomic::folder_of;
 use clap::Args;
@@ -47,12 +47,12 @@ impl Several {
 
 /// Fits the law and writes what was found.
 pub(super) fn run(
-    arguments: &Arguments,
+    arguments: &FitArguments,
     (files, loaded, options): (&[PathBuf], &Loaded, &Options),
     (said, rates): (&[(&'static str, Value)], &[f64]),
     console: &Console,
-    sinks: &Sinks,
-    stop: &Stop,
+    sinks: &FitSinks,
+    stop: &StopSignal,
 ) -> Result<ExitCode, Failure> {
     let mut options = options.clone();
     let preset_of =

@@ -24,7 +24,7 @@ struct Shared {
     desk: Mutex<Desk>,
     filled: Condvar,
     /// Held while a session is written, and never together with the desk for longer than a look.
-    writer: Mutex<Writer>,
+    writer: Mutex<SessionWriter>,
 }
 
 /// What is to be written.
@@ -41,7 +41,7 @@ struct Desk {
 
 /// The session that is being written.
 #[derive(Debug, Default)]
-struct Writer {
+struct SessionWriter {
     session: u64,
     claim: Option<Claim>,
     /// What is in the file, without the walk, and how it is said to have ended.
@@ -152,9 +152,14 @@ impl Autosave {
     }
 
     /// Writes a snapshot, if there is something in it that is not in the file.
-    fn write(&self, writer: &mut Writer, snapshot: &Snapshot, ended: Ended) -> Result<(), ArchiveError> {
+    fn write(
+        &self,
+        writer: &mut SessionWriter,
+        snapshot: &Snapshot,
+        ended: Ended,
+    ) -> Result<(), ArchiveError> {
         if writer.session != snapshot.session {
-            *writer = Writer { session: snapshot.session, ..Writer::default() };
+            *writer = SessionWriter { session: snapshot.session, ..SessionWriter::default() };
         }
         let resumed = self.desk().resumed.take_if(|(resumed, ..)| resumed.session == snapshot.session);
         if let Some((resumed, claim, before)) = resumed {

@@ -12,7 +12,7 @@ use crate::store::file::{FileError, read_bytes};
 use crate::store::hash::{DIGITS, sha256};
 use crate::store::lock::{FolderLock, PATIENCE};
 use crate::store::{Overwrite, make_folder, write_atomically};
-use pulloff_engine::gap::shapes::Rows;
+use pulloff_engine::gap::shapes::ProfileRows;
 use pulloff_engine::text::{quote, show_path};
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -174,7 +174,7 @@ fn is_hash(text: &str) -> bool {
 }
 
 /// The columns of a profile as text, every digit of them.
-fn text(rows: &Rows) -> String {
+fn text(rows: &ProfileRows) -> String {
     let mut text = format!("{HEADER}\n");
     for (r, h) in rows.radii.iter().zip(&rows.gaps) {
         // Writing to a String cannot fail.
@@ -212,7 +212,7 @@ mod tests {
                 | prop::num::f64::ZERO, prop::num::f64::NORMAL | prop::num::f64::ZERO), 0..20),
         ) {
             let (radii, gaps): (Vec<f64>, Vec<f64>) = rows.into_iter().unzip();
-            let rows = Rows { radii, gaps, ..Rows::default() };
+            let rows = ProfileRows { radii, gaps, ..ProfileRows::default() };
             let [radii, gaps] = columns(text(&rows).as_bytes()).unwrap();
             let bits = |column: &[f64]| column.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
             prop_assert_eq!((bits(&radii), bits(&gaps)), (bits(&rows.radii), bits(&rows.gaps)));

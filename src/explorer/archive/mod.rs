@@ -23,7 +23,7 @@ pub use error::ArchiveError;
 
 use self::data::{Data, named_in};
 use self::error::{LARGEST, failed};
-use super::session::{Document, Ended, Snapshot, Summary, Unreadable, summary};
+use super::session::{Document, Ended, SessionSummary, Snapshot, Unreadable, summary};
 use crate::store::file::read_bytes;
 use crate::store::lock::FileLock;
 use crate::store::name::is_well_formed;
@@ -57,9 +57,9 @@ pub struct SessionFile {
 
 /// A session read, and held until it is written or dropped.
 #[derive(Debug)]
-pub struct Held {
+pub struct HeldSession {
     pub claim: Claim,
-    pub summary: Summary,
+    pub summary: SessionSummary,
     pub snapshot: Snapshot,
 }
 
@@ -132,7 +132,7 @@ impl Archive {
     }
 
     /// What a list shows of a session.
-    pub fn summary(&self, name: &str) -> Result<Summary, ArchiveError> {
+    pub fn summary(&self, name: &str) -> Result<SessionSummary, ArchiveError> {
         let path = self.path(name)?;
         let unreadable = |cause| ArchiveError::Unreadable { path: show_path(&path), cause };
         let mut found = summary(&self.bytes(name)?).map_err(unreadable)?;
@@ -158,7 +158,7 @@ impl Archive {
 
     /// Reads a session and holds it: nobody else can.
     /// Errors: It is not there, another program holds it, or it cannot be read; its file is as it was.
-    pub fn load(&self, name: &str) -> Result<Held, ArchiveError> {
+    pub fn load(&self, name: &str) -> Result<HeldSession, ArchiveError> {
         let path = self.path(name)?;
         let claim = Claim::of(self.folder_or()?, name)?;
         let (bytes, _) = read_bytes(&path, LARGEST)?;
@@ -171,12 +171,12 @@ impl Archive {
             |hash, curve| data.bytes(&path, hash, curve),
         )?;
         let snapshot = document.snapshot().map_err(unreadable)?;
-        Ok(Held { claim, summary, snapshot })
+        Ok(HeldSession { claim, summary, snapshot })
     }
 
     /// The newest session, if it was cut off: its program did not end as its person wanted. One that is damaged is
     /// kept aside under another name.
-    pub fn cut_off(&self) -> Result<Option<Held>, String> {
+    pub fn cut_off(&self) -> Result<Option<HeldSession>, String> {
         // A folder that cannot be read will be a notice once there is something to write.
         let Ok(Some(name)) = self.newest() else { return Ok(None) };
         let damaged = |cause: &Unreadable| {

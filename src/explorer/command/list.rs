@@ -4,7 +4,7 @@
 //!
 //! Who needs a part of the rows makes it of them: [`command`](super) the identities and their names,
 //! [`table`](crate::explorer::table) the rest, with the names that are known there. A field that is not there is that of
-//! [`Row::PLAIN`](crate::explorer::table::Row::PLAIN).
+//! [`CommandRow::PLAIN`](crate::explorer::table::CommandRow::PLAIN).
 
 /// Hands the rows to a macro.
 macro_rules! each_command {
@@ -86,7 +86,7 @@ macro_rules! each_command {
         NextPanel "next-panel" "Tab" "panel" always Nothing Screen "the next panel on the screen"
             { look: |model| next_panel(model, 1) }
         PreviousPanel "previous-panel" "Shift-Tab" "panel back" always Nothing Screen "previous panel"
-            { look: |model| next_panel(model, Panel::ALL.len() - 1) }
+            { look: |model| next_panel(model, ScreenPanel::ALL.len() - 1) }
         Enlarge "enlarge" "z" "whole" always Nothing Screen "the selected panel on the whole screen, and back" {}
         Go "go" "g" "places" always Nothing Screen
             "to a place: c what happens, i inside a state, m how it depends on values, d data and the walk"

@@ -1,6 +1,6 @@
 //! What stands behind the name of a command: what a command takes, and how it is read.
 
-use super::fault::Fault;
+use super::fault::ScriptFault;
 use super::lexer::Word;
 use super::offers::{Offer, PICTURES, Typing};
 use crate::explorer::command::{Assignment, Command, Id, LENGTHS, MOST_STEPS};
@@ -12,7 +12,7 @@ use pulloff_engine::preset::family::parameter_key;
 use pulloff_engine::preset::groups::{self, GROUPS};
 use pulloff_engine::preset::{Key, PARAMETERS, Parameter, Preset, parameter};
 use pulloff_engine::stability::COMPLIANCE;
-use pulloff_engine::sweep::Column;
+use pulloff_engine::sweep::QuantityColumn;
 use pulloff_engine::text::{closest, closest_key, greek, quote};
 use std::borrow::Cow;
 
@@ -23,7 +23,7 @@ pub struct Takes {
     /// In a word or two, what is typed as it stands in capitals; empty where it takes nothing.
     pub what: &'static str,
     /// Reads it.
-    pub read: fn(&mut Rest<'_>) -> Result<Command, Fault>,
+    pub read: fn(&mut Rest<'_>) -> Result<Command, ScriptFault>,
     /// What can be typed there, as its first word.
     pub offers: fn(&Typing<'_>) -> Vec<Offer>,
     /// Whether more is offered behind the first word.
@@ -35,13 +35,13 @@ pub struct Takes {
 }
 
 /// A command takes this.
-pub const fn takes(what: &'static str, read: fn(&mut Rest<'_>) -> Result<Command, Fault>) -> Takes {
+pub const fn takes(what: &'static str, read: fn(&mut Rest<'_>) -> Result<Command, ScriptFault>) -> Takes {
     Takes { what, read, offers: |_| Vec::new(), goes_on: false, is_needed: false, is_listed: false }
 }
 
 impl Takes {
     /// Nothing.
-    pub const NOTHING: Self = takes("", |rest| Err(Fault::new(rest.end, "nothing stands here")));
+    pub const NOTHING: Self = takes("", |rest| Err(ScriptFault::new(rest.end, "nothing stands here")));
 
     /// The same with what can be typed there.
     pub const fn offering(self, offers: fn(&Typing<'_>) -> Vec<Offer>) -> Self {
@@ -78,9 +78,9 @@ impl<'a> Rest<'a> {
         Some(first)
     }
 
-    pub(super) fn need(&mut self, what: &str) -> Result<&'a Word, Fault> {
+    pub(super) fn need(&mut self, what: &str) -> Result<&'a Word, ScriptFault> {
         let end = self.end;
-        self.next().ok_or_else(|| Fault::new(end, format!("{what} is missing")))
+        self.next().ok_or_else(|| ScriptFault::new(end, format!("{what} is missing")))
     }
 
     /// Takes the next word if it is this one.
@@ -93,7 +93,7 @@ impl<'a> Rest<'a> {
     }
 
     /// Nothing more may stand there.
-    pub(super) fn done(&self, command: Command) -> Result<Command, Fault> {
+    pub(super) fn done(&self, command: Command) -> Result<Command, ScriptFault> {
         match self.words.first() {
             None => Ok(command),
             // It can only be meant as the view of a figure.
@@ -102,61 +102,73 @@ impl<'a> Rest<'a> {
             }
             Some(word) => {
                 let name = command.id().name();
-                Err(Fault::new(word.column, format!("{name} takes no \"{}\" here", quote(&word.text))))
+                Err(ScriptFault::new(word.column, format!("{name} takes no \"{}\" here", quote(&word.text))))
             }
         }
     }
 
     /// A whole number from 1.
-    pub fn count(&mut self, what: &str, most: usize) -> Result<usize, Fault> {
+    pub fn count(&mut self, what: &str, most: usize) -> Result<usize, ScriptFault> {
         let allowed = format!("number from 1 to {most}");
         number(self.need(what)?, &allowed, |count| (1..=most).contains(count))
     }
 
     /// The longest step.
-    pub fn length(&mut self) -> Result<f64, Fault> {
+    pub fn length(&mut self) -> Result<f64, ScriptFault> {
         let allowed = format!("length from {:?} to {:?}", LENGTHS.start(), LENGTHS.end());
         number(self.need("a length")?, &allowed, |length| LENGTHS.contains(length))
     }
 
     /// A value of a key that is known.
-    pub fn assigned(&mut self, what: &str, key: &'static str) -> Result<Command, Fault> {
+    pub fn assigned(&mut self, what: &str, key: &'static str) -> Result<Command, ScriptFault> {
         Ok(Command::Assign(vec![(key.into(), self.need(what)?.text.clone())]))
     }
 
     /// One of some by its name.
-    fn one<T>(&mut self, what: &str, find: impl Fn(&str) -> Option<T>, known: &[&str]) -> Result<T, Fault> {
+    fn one<T>(
+        &mut self,
+        what: &str,
+        find: impl Fn(&str) -> Option<T>,
+        known: &[&str],
+    ) -> Result<T, ScriptFault> {
         let article = if what.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
         let word = self.need(&format!("{article} {what}"))?;
         find(&word.text).ok_or_else(|| unknown(word, what, known))
     }
 
-    fn assignments(&mut self, key: fn(&str, usize) -> Result<Key, Fault>) -> Result<Vec<Assignment>, Fault> {
+    fn assignments(
+        &mut self,
+        key: fn(&str, usize) -> Result<Key, ScriptFault>,
+    ) -> Result<Vec<Assignment>, ScriptFault> {
         std::iter::from_fn(|| self.next()).map(|word| assignment(word, key)).collect()
     }
 }
 
 /// A number that is allowed.
-fn number<T: std::str::FromStr>(word: &Word, allowed: &str, may_be: impl Fn(&T) -> bool) -> Result<T, Fault> {
-    let refused = || Fault::new(word.column, format!("\"{}\" is no {allowed}", quote(&word.text)));
+fn number<T: std::str::FromStr>(
+    word: &Word,
+    allowed: &str,
+    may_be: impl Fn(&T) -> bool,
+) -> Result<T, ScriptFault> {
+    let refused = || ScriptFault::new(word.column, format!("\"{}\" is no {allowed}", quote(&word.text)));
     word.text.parse().ok().filter(may_be).ok_or_else(refused)
 }
 
-pub(super) fn unknown(word: &Word, what: &str, known: &[&str]) -> Fault {
+pub(super) fn unknown(word: &Word, what: &str, known: &[&str]) -> ScriptFault {
     let meant = closest(&word.text, known.iter().copied());
     let hint = meant.map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
     let allowed = if known.len() <= 12 { format!(": it is {}", known.join(", ")) } else { String::new() };
-    Fault::new(word.column, format!("no {what} is called \"{}\"{allowed}{hint}", quote(&word.text)))
+    ScriptFault::new(word.column, format!("no {what} is called \"{}\"{allowed}{hint}", quote(&word.text)))
 }
 
 /// So many commands, or single states as scripts count them.
-pub(in crate::explorer) fn travelled(rest: &mut Rest<'_>, id: Id) -> Result<Command, Fault> {
+pub(in crate::explorer) fn travelled(rest: &mut Rest<'_>, id: Id) -> Result<Command, ScriptFault> {
     let count = rest.count("a number", MOST_STEPS)?;
     Ok(Command::Travel { id, count, states: rest.takes("states") })
 }
 
 /// Where the walker goes: A, an event, or a contact radius.
-pub(in crate::explorer) fn destination(rest: &mut Rest<'_>) -> Result<Command, Fault> {
+pub(in crate::explorer) fn destination(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     if rest.takes("A") {
         return Ok(Id::MoveTo.into());
     }
@@ -169,63 +181,63 @@ pub(in crate::explorer) fn destination(rest: &mut Rest<'_>) -> Result<Command, F
 }
 
 /// A state by its reduced numbers.
-pub(in crate::explorer) fn branch(rest: &mut Rest<'_>) -> Result<Command, Fault> {
+pub(in crate::explorer) fn branch(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     let mut finite = |what| number(rest.need(what)?, "finite number", |x: &f64| x.is_finite());
     Ok(Command::GoToState([finite("an approach")?, finite("a force")?, finite("a contact radius")?]))
 }
 
-pub(in crate::explorer) fn assigned(rest: &mut Rest<'_>) -> Result<Command, Fault> {
+pub(in crate::explorer) fn assigned(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     let first = assignment(rest.need("KEY=VALUE")?, short)?;
     let mut all = vec![first];
     all.extend(rest.assignments(short)?);
     Ok(Command::Assign(all))
 }
 
-pub(in crate::explorer) fn place(rest: &mut Rest<'_>) -> Result<Command, Fault> {
+pub(in crate::explorer) fn place(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     rest.one("place", Home::named, &Home::ALL.map(Home::name)).map(Command::Go)
 }
 
-pub(in crate::explorer) fn view(rest: &mut Rest<'_>) -> Result<Command, Fault> {
+pub(in crate::explorer) fn view(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     rest.one("view", View::named, &View::ALL.map(View::name)).map(Command::Show)
 }
 
-pub(in crate::explorer) fn quantity(rest: &mut Rest<'_>) -> Result<Command, Fault> {
+pub(in crate::explorer) fn quantity(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     let word = rest.need("a quantity")?;
-    Ok(Command::Study(Column::named(&word.text).map_err(|what| Fault::new(word.column, what))?))
+    Ok(Command::Study(QuantityColumn::named(&word.text).map_err(|what| ScriptFault::new(word.column, what))?))
 }
 
-pub(in crate::explorer) fn theory(rest: &mut Rest<'_>) -> Result<Command, Fault> {
+pub(in crate::explorer) fn theory(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     rest.one("theory", Overlay::named, &Overlay::ALL.map(Overlay::name)).map(Command::Overlay)
 }
 
-pub(in crate::explorer) fn axes(rest: &mut Rest<'_>) -> Result<Command, Fault> {
+pub(in crate::explorer) fn axes(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     let x = axis(rest.need("a key")?, &[])?;
     let y = rest.next().map(|word| axis(word, &CURVES.map(|(name, _)| name))).transpose()?;
     Ok(Command::Map { x, y })
 }
 
-pub(in crate::explorer) fn pin(rest: &mut Rest<'_>) -> Result<Command, Fault> {
+pub(in crate::explorer) fn pin(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     Ok(Command::Unpin(if rest.takes("all") { None } else { Some(rest.count("a number", pins::MOST)?) }))
 }
 
-pub(in crate::explorer) fn preset(rest: &mut Rest<'_>) -> Result<Command, Fault> {
+pub(in crate::explorer) fn preset(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     let name = rest.need("a preset")?.text.clone();
     let assignments = rest.assignments(known)?;
     Ok(if assignments.is_empty() { Command::Open(name) } else { Command::OpenWith { name, assignments } })
 }
 
-pub(in crate::explorer) fn saved(rest: &mut Rest<'_>) -> Result<Command, Fault> {
+pub(in crate::explorer) fn saved(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     rest.one("word", |word| (word == "replace").then_some(Command::SaveAnyway), &["replace"])
 }
 
-pub(in crate::explorer) fn saved_as(rest: &mut Rest<'_>) -> Result<Command, Fault> {
+pub(in crate::explorer) fn saved_as(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     let name = rest.need("a name")?.text.clone();
     let with_data = rest.takes("with-data");
     Ok(Command::SaveAs { name, with_data, replace: rest.takes("replace") })
 }
 
 /// A document or a picture, and its file.
-pub(in crate::explorer) fn exported(rest: &mut Rest<'_>) -> Result<Command, Fault> {
+pub(in crate::explorer) fn exported(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     let word = rest.need("a document")?;
     if let Some(picture) = PICTURES.into_iter().find(|picture| picture.name() == word.text) {
         let path = file(rest, picture.endings())?;
@@ -247,30 +259,30 @@ pub(in crate::explorer) fn exported(rest: &mut Rest<'_>) -> Result<Command, Faul
 }
 
 /// The file of an export.
-fn file(rest: &mut Rest<'_>, endings: &[&str]) -> Result<String, Fault> {
+fn file(rest: &mut Rest<'_>, endings: &[&str]) -> Result<String, ScriptFault> {
     let file = rest.need("a file")?;
     if ends_in(&file.text, endings) {
         return Ok(file.text.clone());
     }
-    Err(Fault::new(file.column, format!("the file must end in .{}", endings.join(" or ."))))
+    Err(ScriptFault::new(file.column, format!("the file must end in .{}", endings.join(" or ."))))
 }
 
 /// Reads a key in a column.
-type ReadKey = fn(&str, usize) -> Result<Key, Fault>;
+type ReadKey = fn(&str, usize) -> Result<Key, ScriptFault>;
 
-fn assignment(word: &Word, read: ReadKey) -> Result<Assignment, Fault> {
+fn assignment(word: &Word, read: ReadKey) -> Result<Assignment, ScriptFault> {
     let Some((key, text)) = word.text.split_once('=') else {
         let what = format!(
             "\"{}\" is no KEY=VALUE, as in gap.amplitude=0.002; a value with spaces stands in quotes",
             quote(&word.text)
         );
-        return Err(Fault::new(word.column, what));
+        return Err(ScriptFault::new(word.column, what));
     };
     Ok((read(key, word.column)?, text.to_owned()))
 }
 
 /// A key, a group, or a short name of one: the preset says of which.
-fn short(key: &str, column: usize) -> Result<Key, Fault> {
+fn short(key: &str, column: usize) -> Result<Key, ScriptFault> {
     let is_short = PARAMETERS.iter().chain(&GROUPS).any(|row| is_called(row, key));
     // A formula has letters of its own; to one or two of them too much is alike.
     let is_letter = || parameter(&parameter_key(key)).is_some() && (key.len() <= 2 || meant(key).is_none());
@@ -314,16 +326,16 @@ pub(in crate::explorer) fn key_called(preset: &Preset, name: &str) -> Result<Key
 }
 
 /// A key or a group.
-fn known(key: &str, column: usize) -> Result<Key, Fault> {
+fn known(key: &str, column: usize) -> Result<Key, ScriptFault> {
     if parameter(key).is_none() && groups::row(key).is_none() {
         let hint = meant(key).map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
-        return Err(Fault::new(column, format!("unknown key {}{hint}", quote(key))));
+        return Err(ScriptFault::new(column, format!("unknown key {}{hint}", quote(key))));
     }
     Ok(key.to_owned().into())
 }
 
 /// What stands on an axis of a map: a key, a group, the compliance, or one of these words.
-fn axis(word: &Word, words: &[&str]) -> Result<Key, Fault> {
+fn axis(word: &Word, words: &[&str]) -> Result<Key, ScriptFault> {
     if word.text == COMPLIANCE || words.contains(&&*word.text) {
         return Ok(word.text.clone().into());
     }

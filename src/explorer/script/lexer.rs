@@ -1,6 +1,6 @@
 //! A line → words with their columns, and the quoting that makes a text one word again.
 
-use super::fault::{Fault, LONGEST};
+use super::fault::{LONGEST, ScriptFault};
 use pulloff_engine::text::is_unsafe;
 
 /// A word of a line.
@@ -12,9 +12,9 @@ pub(super) struct Word {
 }
 
 /// The words of a line, its comment left out.
-pub(super) fn split(line: &str) -> Result<Vec<Word>, Fault> {
+pub(super) fn split(line: &str) -> Result<Vec<Word>, ScriptFault> {
     if line.chars().nth(LONGEST).is_some() {
-        return Err(Fault::new(LONGEST + 1, format!("a line has at most {LONGEST} characters")));
+        return Err(ScriptFault::new(LONGEST + 1, format!("a line has at most {LONGEST} characters")));
     }
     let mut words = Vec::new();
     let mut word: Option<Word> = None;
@@ -22,7 +22,7 @@ pub(super) fn split(line: &str) -> Result<Vec<Word>, Fault> {
     let mut chars = line.chars().zip(1..);
     while let Some((c, column)) = chars.next() {
         if is_unsafe(c) && (c != '\t' || quote.is_some()) {
-            return Err(Fault::new(column, "a control or invisible character"));
+            return Err(ScriptFault::new(column, "a control or invisible character"));
         }
         match (c, quote) {
             ('#', None) if word.is_none() => break,
@@ -34,7 +34,12 @@ pub(super) fn split(line: &str) -> Result<Vec<Word>, Fault> {
                     ('"', Some(_)) => quote = None,
                     ('\\', Some(_)) => match chars.next() {
                         Some((c @ ('"' | '\\'), _)) => word.text.push(c),
-                        _ => return Err(Fault::new(column, "in quotes a \\ stands before \" or \\ only")),
+                        _ => {
+                            return Err(ScriptFault::new(
+                                column,
+                                "in quotes a \\ stands before \" or \\ only",
+                            ));
+                        }
                     },
                     (c, _) => word.text.push(c),
                 }
@@ -42,7 +47,7 @@ pub(super) fn split(line: &str) -> Result<Vec<Word>, Fault> {
         }
     }
     if let Some(column) = quote {
-        return Err(Fault::new(column, "the quote is not closed"));
+        return Err(ScriptFault::new(column, "the quote is not closed"));
     }
     words.extend(word);
     Ok(words)

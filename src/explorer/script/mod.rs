@@ -48,10 +48,10 @@ mod print;
 mod read;
 
 pub(super) use arguments::key_called;
-pub use fault::{Fault, LONGEST};
+pub use fault::{LONGEST, ScriptFault};
 /// The first line of a script that a session writes.
 pub(super) const HEAD: &str = "# A session of pulloff: `pulloff run` walks it again.";
-pub use palette::{Entry, palette};
+pub use palette::{PaletteEntry, palette};
 pub use parse::{for_script, parse};
 pub use permissions::Permission;
 pub use play::{Failed, play};

@@ -16,7 +16,7 @@ use pulloff_engine::preset::measured::SHIPPED_DATA;
 use pulloff_engine::preset::schema::{AUTO, Kind, NONE};
 use pulloff_engine::report::number::{significant, with_unit};
 use pulloff_engine::stability::COMPLIANCE;
-use pulloff_engine::sweep::{QUANTITIES, Quantity as Column};
+use pulloff_engine::sweep::{QUANTITIES, SweepQuantity};
 use pulloff_engine::units::Quantity;
 
 /// What is drawn rather than written.
@@ -28,7 +28,7 @@ const CONTROLS: [&str; 3] = ["displacement", "force", "stiffness="];
 pub const DEVICES: [&str; 3] = ["fixed grips hold δ", "a dead load holds P", "a spring holds its far end"];
 
 /// The names of what is in a folder, which is named with its last `/`, as a line names them; folders end with `/`.
-pub type Files<'a> = &'a dyn Fn(&str) -> Vec<String>;
+pub type FolderNames<'a> = &'a dyn Fn(&str) -> Vec<String>;
 
 /// A line that is being typed.
 pub struct Typing<'a> {
@@ -37,7 +37,7 @@ pub struct Typing<'a> {
     pub words: &'a [&'a str],
     /// The last one, so far.
     pub word: &'a str,
-    pub files: Files<'a>,
+    pub files: FolderNames<'a>,
 }
 
 /// What can be typed.
@@ -83,7 +83,7 @@ pub(in crate::explorer) fn views(typing: &Typing<'_>) -> Vec<Offer> {
 
 /// The quantities that can be studied.
 pub(in crate::explorer) fn quantities(typing: &Typing<'_>) -> Vec<Offer> {
-    let all = QUANTITIES.iter().flat_map(Column::columns);
+    let all = QUANTITIES.iter().flat_map(SweepQuantity::columns);
     all.map(|column| {
         let name = column.name();
         let is_here = name == typing.model.studied.name();

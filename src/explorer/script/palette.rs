@@ -1,16 +1,16 @@
 //! The one list behind a typed line: commands, charts, quantities, presets, files and keys, of which the text keeps those that have it.
 
 use super::arguments::rows_called;
-use super::offers::{Files, Offer, Typing};
+use super::offers::{FolderNames, Offer, Typing};
 use super::parse::parse;
 use crate::explorer::command::Id;
 use crate::explorer::model::Model;
-use crate::explorer::table::{ROWS, Row, called};
+use crate::explorer::table::{CommandRow, ROWS, called};
 use pulloff_engine::preset::Parameter;
 
 /// One line of the list.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Entry {
+pub struct PaletteEntry {
     /// What would be typed for it.
     pub line: String,
     /// What it does, or why it cannot be done now.
@@ -21,13 +21,13 @@ pub struct Entry {
     pub is_whole: bool,
 }
 
-impl Entry {
+impl PaletteEntry {
     fn new(line: String, says: impl Into<String>) -> Self {
         let is_whole = !line.ends_with(['=', '/']) && parse(&line).is_ok();
         Self { line, says: says.into(), id: None, is_whole }
     }
 
-    fn command(row: &Row, model: &Model) -> Self {
+    fn command(row: &CommandRow, model: &Model) -> Self {
         let says = (row.needs)(model).map_or_else(|why| format!("- {why}"), |()| row.help.to_owned());
         Self { id: Some(row.id), ..Self::new(row.name.to_owned(), says) }
     }
@@ -39,7 +39,7 @@ impl Entry {
 
 /// What `line` could become: below no text all commands, those of `first` before the others; behind the name of a command what it takes;
 /// else whatever has all words of the text, the best match first.
-pub fn palette(line: &str, first: &[Id], model: &Model, files: Files<'_>) -> Vec<Entry> {
+pub fn palette(line: &str, first: &[Id], model: &Model, files: FolderNames<'_>) -> Vec<PaletteEntry> {
     let start = line.rfind([' ', '\t']).map_or(0, |at| at + 1);
     let (before, word) = line.split_at(start);
     let words: Vec<&str> = before.split_whitespace().collect();
@@ -56,19 +56,19 @@ pub fn palette(line: &str, first: &[Id], model: &Model, files: Files<'_>) -> Vec
         return Vec::new();
     }
     let offers = (row.takes.offers)(&Typing { model, words, word, files });
-    let entries = offers.iter().map(|offer| Entry::offer(before, offer));
+    let entries = offers.iter().map(|offer| PaletteEntry::offer(before, offer));
     ranked(entries.collect(), |entry| rank(&entry.line[start..], &entry.says, "", word))
 }
 
 /// All commands, those of `first` before the others.
-fn commands(first: &[Id], model: &Model) -> Vec<Entry> {
+fn commands(first: &[Id], model: &Model) -> Vec<PaletteEntry> {
     let of_pane = first.iter().filter_map(|id| ROWS.iter().find(|row| row.id == *id));
     let others = ROWS.iter().filter(|row| !first.contains(&row.id));
-    of_pane.chain(others).map(|row| Entry::command(row, model)).collect()
+    of_pane.chain(others).map(|row| PaletteEntry::command(row, model)).collect()
 }
 
 /// Whatever has all words of `text`, or else most of them.
-fn anything(text: &str, model: &Model, files: Files<'_>) -> Vec<Entry> {
+fn anything(text: &str, model: &Model, files: FolderNames<'_>) -> Vec<PaletteEntry> {
     let wanted: Vec<&str> = text.split_whitespace().collect();
     let known =
         |line: &str| called(line).map_or_else(String::new, |row| format!("{} {}", row.short, row.words));
@@ -76,11 +76,11 @@ fn anything(text: &str, model: &Model, files: Files<'_>) -> Vec<Entry> {
     let offered = ROWS.iter().flat_map(|row| {
         let before = format!("{} ", row.name);
         let offers = (row.takes.offers)(&Typing { model, words: &[], word: last, files });
-        offers.into_iter().map(move |offer| Entry::offer(&before, &offer))
+        offers.into_iter().map(move |offer| PaletteEntry::offer(&before, &offer))
     });
     let mut found = of_key(&wanted, model);
-    let all = ROWS.iter().map(|row| Entry::command(row, model)).chain(offered);
-    let all: Vec<Entry> = all.filter(|entry| found.iter().all(|key| key.line != entry.line)).collect();
+    let all = ROWS.iter().map(|row| PaletteEntry::command(row, model)).chain(offered);
+    let all: Vec<PaletteEntry> = all.filter(|entry| found.iter().all(|key| key.line != entry.line)).collect();
     // Where nothing has all words, whatever has most of them.
     let most = if found.is_empty() { wanted.len() } else { 1 };
     let rest = (0..most).map(|missing| {
@@ -95,18 +95,18 @@ fn anything(text: &str, model: &Model, files: Files<'_>) -> Vec<Entry> {
 }
 
 /// A value for a key that is called by its symbol or the end of its name: `A 0.003`, `amplitude=0.003`.
-fn of_key(wanted: &[&str], model: &Model) -> Vec<Entry> {
+fn of_key(wanted: &[&str], model: &Model) -> Vec<PaletteEntry> {
     let (symbol, value) = match wanted {
         [symbol, value] => (*symbol, *value),
         [one] => one.split_once('=').unwrap_or((one, "")),
         _ => return Vec::new(),
     };
-    let entry = |row: &Parameter| Entry::new(format!("set {}={value}", row.key), &*row.meaning);
+    let entry = |row: &Parameter| PaletteEntry::new(format!("set {}={value}", row.key), &*row.meaning);
     rows_called(&model.preset, symbol).iter().map(entry).collect()
 }
 
 /// Those that have a rank, the best first, equals in their order.
-fn ranked(entries: Vec<Entry>, rank: impl Fn(&Entry) -> Option<u8>) -> Vec<Entry> {
+fn ranked(entries: Vec<PaletteEntry>, rank: impl Fn(&PaletteEntry) -> Option<u8>) -> Vec<PaletteEntry> {
     let mut found: Vec<_> =
         entries.into_iter().filter_map(|entry| rank(&entry).map(|rank| (rank, entry))).collect();
     found.sort_by_key(|(rank, _)| *rank);
@@ -140,7 +140,7 @@ mod tests {
     use super::*;
     use crate::store::{Loaded, Source, read, shipped};
 
-    fn found(line: &str) -> Vec<Entry> {
+    fn found(line: &str) -> Vec<PaletteEntry> {
         let text = shipped::find("wavy-sphere").unwrap();
         let preset = read("t", text.text).unwrap();
         let loaded = Loaded { source: Source::Shipped(text), preset, text: String::new(), fingerprint: None };

@@ -1,7 +1,7 @@
 //! Words → a command.
 
 use super::arguments::{Rest, unknown};
-use super::fault::Fault;
+use super::fault::ScriptFault;
 use super::lexer::{Word, split};
 use crate::explorer::command::Command;
 use crate::explorer::table::{ROWS, Script, called, row_of};
@@ -10,23 +10,23 @@ use crate::explorer::table::{ROWS, Script, called, row_of};
 const TRY: &str = "try";
 
 /// The command of a line; `None` where there is none.
-pub fn parse(line: &str) -> Result<Option<Command>, Fault> {
+pub fn parse(line: &str) -> Result<Option<Command>, ScriptFault> {
     let words = split(line)?;
     let Some((name, rest)) = words.split_first() else { return Ok(None) };
     command(name, Rest { words: rest, end: line.trim_end().chars().count() + 2 }).map(Some)
 }
 
 /// The command of a script's line and whether it may fail.
-pub(super) fn script_line(line: &str) -> Result<Option<(bool, Command)>, Fault> {
+pub(super) fn script_line(line: &str) -> Result<Option<(bool, Command)>, ScriptFault> {
     let words = split(line)?;
     let may_fail = words.first().is_some_and(|word| word.text == TRY);
     let Some((name, rest)) = words[usize::from(may_fail)..].split_first() else {
-        return if may_fail { Err(Fault::new(1, "try stands before a command")) } else { Ok(None) };
+        return if may_fail { Err(ScriptFault::new(1, "try stands before a command")) } else { Ok(None) };
     };
     let command = command(name, Rest { words: rest, end: line.trim_end().chars().count() + 2 })?;
     match for_script(&command) {
         Ok(()) => Ok(Some((may_fail, command))),
-        Err(what) => Err(Fault::new(name.column, what)),
+        Err(what) => Err(ScriptFault::new(name.column, what)),
     }
 }
 
@@ -45,9 +45,9 @@ pub fn for_script(command: &Command) -> Result<(), String> {
     Err(format!("{} {why}", row.name))
 }
 
-fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, Fault> {
+fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, ScriptFault> {
     if name.text == TRY {
-        return Err(Fault::new(name.column, "try stands in a script, once, before a command"));
+        return Err(ScriptFault::new(name.column, "try stands in a script, once, before a command"));
     }
     let Some(row) = called(&name.text) else {
         let names: Vec<&str> = ROWS.iter().map(|row| row.name).chain([TRY]).collect();

@@ -9,7 +9,7 @@ use crate::explorer::effect::Effect;
 use crate::explorer::export::{Page, Picture};
 use crate::explorer::model::{CurveError, Level, Model};
 use crate::explorer::update::update;
-use crate::mend::Reason;
+use crate::mend::WordedFault;
 use thiserror::Error;
 
 /// The line that failed, and why.
@@ -19,11 +19,11 @@ pub struct Failed {
     /// The line's number, from 1.
     pub number: usize,
     pub command: String,
-    pub reason: Reason,
+    pub reason: WordedFault,
 }
 
 /// Draws what is seen of a session, or says why it cannot.
-pub type Draws<'a> = &'a dyn Fn(&Model, Picture) -> Result<Page, String>;
+pub type Painter<'a> = &'a dyn Fn(&Model, Picture) -> Result<Page, String>;
 
 /// Does `effects`, and then the lines one after another; `told` hears of each that was done, `draws` what is to be drawn.
 ///
@@ -35,7 +35,7 @@ pub fn play(
     effects: Vec<Effect>,
     lines: &[ScriptLine],
     permission: Permission,
-    draws: Draws<'_>,
+    draws: Painter<'_>,
     told: &mut dyn FnMut(&ScriptLine, &Model),
 ) -> Result<(), Failed> {
     // A script that opens a preset of its own needs no curve of the one before.
@@ -69,11 +69,12 @@ fn obey(
     driver: &Inline,
     line: &ScriptLine,
     permission: Permission,
-    draws: Draws<'_>,
-) -> Result<(), Reason> {
-    let mut command = allowed(model, line.command.clone(), permission).map_err(Reason::mendable)?;
+    draws: Painter<'_>,
+) -> Result<(), WordedFault> {
+    let mut command = allowed(model, line.command.clone(), permission).map_err(WordedFault::mendable)?;
     if let Command::Picture { picture, path, replace } = command {
-        let page = drawn(model, driver, picture, draws).map_err(|why| Reason::mendable(by_name(&why)))?;
+        let page =
+            drawn(model, driver, picture, draws).map_err(|why| WordedFault::mendable(by_name(&why)))?;
         command = Command::ExportPage { page, path, replace };
     }
     let effects = update(model, command);
@@ -84,7 +85,7 @@ fn obey(
 }
 
 /// What is seen, drawn; a view that is not on the screen is shown for as long.
-fn drawn(model: &mut Model, driver: &Inline, picture: Picture, draws: Draws<'_>) -> Result<Page, String> {
+fn drawn(model: &mut Model, driver: &Inline, picture: Picture, draws: Painter<'_>) -> Result<Page, String> {
     let before = model.view;
     if let Picture::Figure(Some(view)) = picture {
         let effects = update(model, Command::Show(view));
@@ -95,10 +96,10 @@ fn drawn(model: &mut Model, driver: &Inline, picture: Picture, draws: Draws<'_>)
     page
 }
 
-fn refusal(model: &Model) -> Option<Reason> {
+fn refusal(model: &Model) -> Option<WordedFault> {
     let (level, text) = model.message.as_ref().filter(|(level, _)| level.is_bad())?;
     // Nothing is computed any more: where there is no curve, it could not be.
     let cause = model.curve_error.as_ref().filter(|_| model.curve.is_none());
     let text = by_name(cause.map_or(text, CurveError::text));
-    Some(Reason { text, can_be_mended: *level == Level::Error })
+    Some(WordedFault { text, can_be_mended: *level == Level::Error })
 }

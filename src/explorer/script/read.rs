@@ -1,6 +1,6 @@
 //! Reads a whole script: every line is parsed before any is run.
 
-use super::fault::Fault;
+use super::fault::ScriptFault;
 use super::parse;
 use crate::explorer::command::Command;
 use pulloff_engine::text::show_name;
@@ -32,7 +32,7 @@ pub struct ScriptError {
     /// The script's name, safe to show.
     pub name: String,
     /// The lines, from 1, and what is wrong with them; at least one.
-    pub faults: Vec<(usize, Fault)>,
+    pub faults: Vec<(usize, ScriptFault)>,
 }
 
 impl fmt::Display for ScriptError {
@@ -51,7 +51,7 @@ pub fn read(name: &str, text: &str) -> Result<Vec<ScriptLine>, ScriptError> {
     for (i, text) in text.lines().enumerate() {
         let number = i + 1;
         if number > MOST_LINES {
-            faults.push((number, Fault::new(1, format!("a script has at most {MOST_LINES} lines"))));
+            faults.push((number, ScriptFault::new(1, format!("a script has at most {MOST_LINES} lines"))));
             break;
         }
         match parse::script_line(text) {

@@ -3,12 +3,12 @@
 //! What a list of sessions shows stands first; it is read without the rest being understood.
 
 use super::number::{Real, floats, reals};
-use super::places::Places;
-use super::problems::{Aside, Collector, Place, Problems, Restored};
-use super::snapshot::{Look, Snapshot};
-use super::tree::{self, Saved};
+use super::places::SavedPlaces;
+use super::problems::{Aside, Collector, Problems, Restored, SavedPath};
+use super::snapshot::{SessionLook, Snapshot};
+use super::tree::{self, SavedNode};
 use super::unreadable::{FORMAT, Unreadable};
-use crate::explorer::journal::{Beginning, Kept, Replay};
+use crate::explorer::journal::{Beginning, KeptJournal, Replay};
 use crate::store::{Fingerprint, Source, shipped};
 use pulloff_engine::preset::Preset;
 use serde::{Deserialize, Serialize};
@@ -38,7 +38,7 @@ impl Ended {
 
 /// What a list shows of a session.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Summary {
+pub struct SessionSummary {
     pub format: u32,
     pub program_version: String,
     pub ended: Ended,
@@ -65,53 +65,53 @@ pub struct Document {
     unsaved: bool,
     /// δ, P and s of the walker in the user's units, for whoever reads the file.
     walker: Option<[Real; 3]>,
-    source: Origin,
+    source: PresetOrigin,
     fingerprint: Option<Fingerprint>,
     /// The number of the preset as it is, and as saved.
     preset: usize,
     saved: usize,
-    look: Look,
+    look: SessionLook,
     pins: Vec<(usize, usize)>,
-    journal: Script,
+    journal: SavedScript,
     problems: Problems,
     settled: bool,
     cursor: Option<usize>,
-    nodes: Vec<Saved>,
+    nodes: Vec<SavedNode>,
     #[serde(default)]
-    undo: Places,
+    undo: SavedPlaces,
 }
 
 /// The script that leads to where the session is.
 #[derive(Debug, Serialize, Deserialize)]
-struct Script {
+struct SavedScript {
     lines: Vec<String>,
     /// Where the walk began: the source of its preset, and the number of the preset.
-    start: Option<(Origin, usize)>,
+    start: Option<(PresetOrigin, usize)>,
     /// What a replay has at the end: the number of the preset, the direction, the step length.
     replay: Option<(usize, bool, Real)>,
     steps: Option<usize>,
     broken: Option<String>,
 }
 
-impl Script {
-    fn of(kept: &Kept, problems: &mut Collector) -> Self {
+impl SavedScript {
+    fn of(kept: &KeptJournal, problems: &mut Collector) -> Self {
         let start = kept.start.as_ref();
         let replay = kept.replay.as_ref();
         Self {
             lines: kept.lines.to_vec(),
-            start: start.map(|start| (Origin::of(&start.source), problems.preset(&start.preset))),
+            start: start.map(|start| (PresetOrigin::of(&start.source), problems.preset(&start.preset))),
             replay: replay.map(|at| (problems.preset(&at.preset), at.inward, Real(at.length))),
             steps: kept.steps,
             broken: kept.broken.clone(),
         }
     }
 
-    fn back(self, preset: impl Fn(usize) -> Result<Preset, Unreadable>) -> Result<Kept, Unreadable> {
+    fn back(self, preset: impl Fn(usize) -> Result<Preset, Unreadable>) -> Result<KeptJournal, Unreadable> {
         let start =
             self.start.map(|(source, at)| Ok(Beginning { source: source.back()?, preset: preset(at)? }));
         let replay =
             self.replay.map(|(at, inward, Real(length))| Ok(Replay { preset: preset(at)?, inward, length }));
-        Ok(Kept {
+        Ok(KeptJournal {
             lines: Arc::new(self.lines),
             start: start.transpose()?,
             replay: replay.transpose()?,
@@ -124,19 +124,19 @@ impl Script {
 /// Where a preset came from.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-enum Origin {
+enum PresetOrigin {
     Shipped(String),
-    User { name: String, path: Place },
-    File(Place),
+    User { name: String, path: SavedPath },
+    File(SavedPath),
     Piped { name: String, text: String },
 }
 
-impl Origin {
+impl PresetOrigin {
     fn of(source: &Source) -> Self {
         match source {
             Source::Shipped(shipped) => Self::Shipped(shipped.name.to_owned()),
-            Source::User { name, path } => Self::User { name: name.clone(), path: Place::of(path) },
-            Source::File(path) => Self::File(Place::of(path)),
+            Source::User { name, path } => Self::User { name: name.clone(), path: SavedPath::of(path) },
+            Source::File(path) => Self::File(SavedPath::of(path)),
             Source::Piped { name, text } => Self::Piped { name: name.clone(), text: text.to_string() },
         }
     }
@@ -162,9 +162,9 @@ impl Document {
         let preset = problems.preset(&snapshot.preset);
         let saved = problems.preset(&snapshot.saved);
         let pins = snapshot.pins.iter().map(|(number, preset)| (*number, problems.preset(preset))).collect();
-        let journal = Script::of(&snapshot.journal, &mut problems);
+        let journal = SavedScript::of(&snapshot.journal, &mut problems);
         let nodes = tree::nodes(&snapshot.history, |setting| problems.setting(setting));
-        let undo = Places::of(&snapshot.undo, &snapshot.history, |preset| problems.preset(preset));
+        let undo = SavedPlaces::of(&snapshot.undo, &snapshot.history, |preset| problems.preset(preset));
         let walker = snapshot.history.current().map(|node| node.state.in_units(node.setting.units()));
         Self {
             format: FORMAT,
@@ -176,7 +176,7 @@ impl Document {
             steps: snapshot.steps(),
             unsaved: snapshot.preset != snapshot.saved,
             walker: walker.map(|state| reals([state.approach, state.force, state.contact_radius])),
-            source: Origin::of(&snapshot.source),
+            source: PresetOrigin::of(&snapshot.source),
             fingerprint: snapshot.fingerprint,
             preset,
             saved,
@@ -265,7 +265,7 @@ fn damaged(error: &serde_json::Error) -> Unreadable {
 }
 
 /// What a list shows of a document.
-pub fn summary(bytes: &[u8]) -> Result<Summary, Unreadable> {
+pub fn summary(bytes: &[u8]) -> Result<SessionSummary, Unreadable> {
     check_format(bytes)?;
     serde_json::from_slice(bytes).map_err(|error| damaged(&error))
 }

@@ -30,7 +30,7 @@ pub mod snapshot;
 mod tree;
 mod unreadable;
 
-pub use document::{Document, Ended, Summary, summary};
+pub use document::{Document, Ended, SessionSummary, summary};
 pub use problems::Aside;
 pub use snapshot::Snapshot;
 pub use unreadable::Unreadable;

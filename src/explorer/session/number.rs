@@ -27,9 +27,9 @@ impl Serialize for Real {
     }
 }
 
-struct Reader;
+struct NumberReader;
 
-impl Visitor<'_> for Reader {
+impl Visitor<'_> for NumberReader {
     type Value = Real;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -62,7 +62,7 @@ impl Visitor<'_> for Reader {
 
 impl<'de> Deserialize<'de> for Real {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(Reader)
+        deserializer.deserialize_any(NumberReader)
     }
 }
 

@@ -5,16 +5,16 @@
 use super::number::Real;
 use super::unreadable::Unreadable;
 use crate::explorer::history::History;
-use crate::explorer::undo::{Place, Undo};
+use crate::explorer::undo::{SessionPlace, Undo};
 use pulloff_engine::preset::{Key, Preset};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The places before the commands done, and of those taken back; the newest last.
 #[derive(Debug, Default, Serialize, Deserialize)]
-pub(super) struct Places {
-    past: Vec<Saved>,
-    future: Vec<Saved>,
+pub(super) struct SavedPlaces {
+    past: Vec<SavedPlace>,
+    future: Vec<SavedPlace>,
     /// The value that the last command turned: the next turn of it goes on with that command.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     gesture: Option<String>,
@@ -22,7 +22,7 @@ pub(super) struct Places {
 
 /// A place, its preset and its state by their numbers in the document.
 #[derive(Debug, Serialize, Deserialize)]
-struct Saved {
+struct SavedPlace {
     preset: usize,
     node: Option<usize>,
     inward: bool,
@@ -30,12 +30,12 @@ struct Saved {
     settled: bool,
 }
 
-impl Places {
+impl SavedPlaces {
     /// Those of `undo`; `preset` numbers their presets.
     pub(super) fn of(undo: &Undo, history: &History, mut preset: impl FnMut(&Preset) -> usize) -> Self {
-        let mut own = |places: &[Arc<Place>]| -> Vec<Saved> {
+        let mut own = |places: &[Arc<SessionPlace>]| -> Vec<SavedPlace> {
             let first = places.iter().rposition(|place| place.shelved.is_some()).map_or(0, |at| at + 1);
-            let saved = places[first..].iter().map(|place| Saved {
+            let saved = places[first..].iter().map(|place| SavedPlace {
                 preset: preset(&place.preset),
                 node: place.node.and_then(|id| history.find(id)),
                 inward: place.inward,
@@ -53,8 +53,8 @@ impl Places {
         self,
         preset: impl Fn(usize) -> Result<Preset, Unreadable>,
     ) -> Result<Undo, Unreadable> {
-        let place = |saved: Saved| {
-            Ok(Place {
+        let place = |saved: SavedPlace| {
+            Ok(SessionPlace {
                 preset: preset(saved.preset)?,
                 // A tree that is read numbers its nodes anew, from 0.
                 node: saved.node.map(|at| at as u64),

@@ -5,9 +5,9 @@ use super::unreadable::Unreadable;
 use crate::explorer::setting::Setting;
 use crate::store::FILES;
 use pulloff_engine::gap::Shape;
-use pulloff_engine::gap::shapes::Rows;
-use pulloff_engine::measured::Source;
-use pulloff_engine::preset::read::Held;
+use pulloff_engine::gap::shapes::ProfileRows;
+use pulloff_engine::measured::PointsFile;
+use pulloff_engine::preset::read::HeldFiles;
 use pulloff_engine::preset::{Preset, write};
 use pulloff_engine::quasistatic::Scales;
 use pulloff_engine::units::Unit;
@@ -21,17 +21,17 @@ use std::sync::Arc;
 /// Presets, settings and the rows of profiles, by number.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(super) struct Problems {
-    presets: Vec<Saved>,
-    settings: Vec<Scaled>,
+    presets: Vec<SavedPreset>,
+    settings: Vec<SavedSetting>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    profiles: Vec<Profile>,
+    profiles: Vec<SavedProfile>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    curves: Vec<Curve>,
+    curves: Vec<SavedCurve>,
 }
 
 /// A preset as its file.
 #[derive(Debug, PartialEq, Eq, Hash, Clone, Serialize, Deserialize)]
-struct Saved {
+struct SavedPreset {
     text: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     profile: Option<usize>,
@@ -42,9 +42,9 @@ struct Saved {
 /// The file of a measured curve, as it was.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(from = "WrittenCurve", into = "WrittenCurve")]
-enum Curve {
+enum SavedCurve {
     /// In the document itself.
-    Within(Arc<Source>),
+    Within(Arc<PointsFile>),
     /// In a file of its own, named by its hash.
     Beside { data: String, name: String, folder: Option<PathBuf> },
 }
@@ -53,63 +53,63 @@ enum Curve {
 #[derive(Serialize, Deserialize)]
 struct WrittenCurve {
     name: String,
-    folder: Option<Place>,
+    folder: Option<SavedPath>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     data: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     text: Option<String>,
 }
 
-impl From<Curve> for WrittenCurve {
-    fn from(curve: Curve) -> Self {
+impl From<SavedCurve> for WrittenCurve {
+    fn from(curve: SavedCurve) -> Self {
         match curve {
-            Curve::Within(source) => Self {
+            SavedCurve::Within(source) => Self {
                 name: source.name.clone(),
-                folder: source.folder.as_deref().map(Place::of),
+                folder: source.folder.as_deref().map(SavedPath::of),
                 data: None,
                 // It was taken apart, and so is text.
                 text: Some(String::from_utf8_lossy(&source.bytes).into_owned()),
             },
-            Curve::Beside { data, name, folder } => {
-                Self { name, folder: folder.as_deref().map(Place::of), data: Some(data), text: None }
+            SavedCurve::Beside { data, name, folder } => {
+                Self { name, folder: folder.as_deref().map(SavedPath::of), data: Some(data), text: None }
             }
         }
     }
 }
 
-impl From<WrittenCurve> for Curve {
+impl From<WrittenCurve> for SavedCurve {
     fn from(WrittenCurve { name, folder, data, text }: WrittenCurve) -> Self {
-        let folder = folder.map(Place::path);
+        let folder = folder.map(SavedPath::path);
         if let Some(data) = data {
             return Self::Beside { data, name, folder };
         }
         let bytes = text.unwrap_or_default().into_bytes();
-        Self::Within(Arc::new(Source::new(name, folder, bytes.into())))
+        Self::Within(Arc::new(PointsFile::new(name, folder, bytes.into())))
     }
 }
 
 /// A setting: its preset and δ₀, P₀, s₀, which only the swept curve knows.
 #[derive(Debug, Serialize, Deserialize)]
-struct Scaled {
+struct SavedSetting {
     preset: usize,
     scales: [Real; 3],
 }
 
 /// The rows of a profile, as they were: its file may change.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(from = "Written", into = "Written")]
-enum Profile {
+#[serde(from = "WrittenProfile", into = "WrittenProfile")]
+enum SavedProfile {
     /// In the document itself, as in all sessions of before.
-    Within(Arc<Rows>),
+    Within(Arc<ProfileRows>),
     /// In a file of their own, named by its hash; `rows` has all but the two columns.
-    Beside { data: String, rows: Rows },
+    Beside { data: String, rows: ProfileRows },
 }
 
 /// A profile as it is written.
 #[derive(Serialize, Deserialize)]
-struct Written {
+struct WrittenProfile {
     name: String,
-    folder: Option<Place>,
+    folder: Option<SavedPath>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     data: Option<String>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -123,12 +123,12 @@ struct Written {
 /// A path: its text, or its bytes where it is none.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(untagged)]
-pub(super) enum Place {
+pub(super) enum SavedPath {
     Text(String),
     Bytes(Vec<u8>),
 }
 
-impl Place {
+impl SavedPath {
     pub(super) fn of(path: &Path) -> Self {
         path.to_str().map_or_else(
             || Self::Bytes(path.as_os_str().as_bytes().to_vec()),
@@ -147,19 +147,19 @@ impl Place {
 /// What can be kept in a file of its own.
 #[derive(Debug, Clone)]
 pub enum Aside {
-    Profile(Arc<Rows>),
-    Curve(Arc<Source>),
+    Profile(Arc<ProfileRows>),
+    Curve(Arc<PointsFile>),
 }
 
 /// Numbers presets and settings while a document is made.
 #[derive(Default)]
 pub(super) struct Collector {
     problems: Problems,
-    texts: HashMap<Saved, usize>,
+    texts: HashMap<SavedPreset, usize>,
     /// The settings seen, by where they are: nodes share them.
     settings: HashMap<*const Setting, usize>,
-    rows: Vec<Arc<Rows>>,
-    sources: Vec<Arc<Source>>,
+    rows: Vec<Arc<ProfileRows>>,
+    sources: Vec<Arc<PointsFile>>,
 }
 
 impl Collector {
@@ -169,7 +169,7 @@ impl Collector {
             _ => None,
         };
         let curve = preset.data.source.as_ref().map(|source| self.curve(source));
-        let text = Saved { text: write(preset), profile, curve };
+        let text = SavedPreset { text: write(preset), profile, curve };
         let presets = &mut self.problems.presets;
         *self.texts.entry(text).or_insert_with_key(|text| {
             presets.push(text.clone());
@@ -183,14 +183,16 @@ impl Collector {
         }
         let Scales { approach, force, contact_radius } = setting.scales;
         let preset = self.preset(&setting.preset);
-        self.problems.settings.push(Scaled { preset, scales: reals([approach, force, contact_radius]) });
+        self.problems
+            .settings
+            .push(SavedSetting { preset, scales: reals([approach, force, contact_radius]) });
         let number = self.problems.settings.len() - 1;
         self.settings.insert(Arc::as_ptr(setting), number);
         number
     }
 
-    fn profile(&mut self, rows: &Arc<Rows>) -> usize {
-        let same = |known: &Arc<Rows>| {
+    fn profile(&mut self, rows: &Arc<ProfileRows>) -> usize {
+        let same = |known: &Arc<ProfileRows>| {
             Arc::ptr_eq(known, rows)
                 || (known == rows && (&known.folder, &known.notes) == (&rows.folder, &rows.notes))
         };
@@ -198,19 +200,19 @@ impl Collector {
             return known;
         }
         self.rows.push(Arc::clone(rows));
-        self.problems.profiles.push(Profile::Within(Arc::clone(rows)));
+        self.problems.profiles.push(SavedProfile::Within(Arc::clone(rows)));
         self.rows.len() - 1
     }
 
-    fn curve(&mut self, source: &Arc<Source>) -> usize {
-        let same = |known: &Arc<Source>| {
+    fn curve(&mut self, source: &Arc<PointsFile>) -> usize {
+        let same = |known: &Arc<PointsFile>| {
             Arc::ptr_eq(known, source) || (known == source && known.folder == source.folder)
         };
         if let Some(known) = self.sources.iter().position(same) {
             return known;
         }
         self.sources.push(Arc::clone(source));
-        self.problems.curves.push(Curve::Within(Arc::clone(source)));
+        self.problems.curves.push(SavedCurve::Within(Arc::clone(source)));
         self.sources.len() - 1
     }
 
@@ -219,16 +221,16 @@ impl Collector {
     }
 }
 
-impl From<Profile> for Written {
-    fn from(profile: Profile) -> Self {
+impl From<SavedProfile> for WrittenProfile {
+    fn from(profile: SavedProfile) -> Self {
         let (rows, data) = match profile {
-            Profile::Within(rows) => (rows, None),
-            Profile::Beside { data, rows } => (Arc::new(rows), Some(data)),
+            SavedProfile::Within(rows) => (rows, None),
+            SavedProfile::Beside { data, rows } => (Arc::new(rows), Some(data)),
         };
         let numbers = |column: &[f64]| column.iter().copied().map(Real).collect();
         Self {
             name: rows.name.clone(),
-            folder: rows.folder.as_deref().map(Place::of),
+            folder: rows.folder.as_deref().map(SavedPath::of),
             data,
             radii: numbers(&rows.radii),
             gaps: numbers(&rows.gaps),
@@ -238,12 +240,12 @@ impl From<Profile> for Written {
     }
 }
 
-impl From<Written> for Profile {
-    fn from(written: Written) -> Self {
+impl From<WrittenProfile> for SavedProfile {
+    fn from(written: WrittenProfile) -> Self {
         let numbers = |column: Vec<Real>| column.into_iter().map(|real| real.0).collect();
-        let rows = Rows {
+        let rows = ProfileRows {
             name: written.name,
-            folder: written.folder.map(Place::path),
+            folder: written.folder.map(SavedPath::path),
             radii: numbers(written.radii),
             gaps: numbers(written.gaps),
             unit: written.unit.and_then(|unit| Unit::parse(&unit, 0).ok()),
@@ -269,18 +271,19 @@ impl Problems {
         mut keep: impl FnMut(&Aside) -> Result<String, E>,
     ) -> Result<(), E> {
         for curve in &mut self.curves {
-            if let Curve::Within(source) = curve {
+            if let SavedCurve::Within(source) = curve {
                 let data = keep(&Aside::Curve(Arc::clone(source)))?;
-                *curve = Curve::Beside { data, name: source.name.clone(), folder: source.folder.clone() };
+                *curve =
+                    SavedCurve::Beside { data, name: source.name.clone(), folder: source.folder.clone() };
             }
         }
         for profile in &mut self.profiles {
-            if let Profile::Within(rows) = profile {
+            if let SavedProfile::Within(rows) = profile {
                 let data = keep(&Aside::Profile(Arc::clone(rows)))?;
-                let Rows { name, folder, unit, notes, .. } = &**rows;
+                let ProfileRows { name, folder, unit, notes, .. } = &**rows;
                 let (name, folder, unit) = (name.clone(), folder.clone(), unit.clone());
-                let rows = Rows { name, folder, unit, notes: notes.clone(), ..Rows::default() };
-                *profile = Profile::Beside { data, rows };
+                let rows = ProfileRows { name, folder, unit, notes: notes.clone(), ..ProfileRows::default() };
+                *profile = SavedProfile::Beside { data, rows };
             }
         }
         Ok(())
@@ -293,16 +296,17 @@ impl Problems {
         mut bytes: impl FnMut(&str, &str) -> Result<Vec<u8>, E>,
     ) -> Result<(), E> {
         for curve in &mut self.curves {
-            if let Curve::Beside { data, name, folder } = curve {
+            if let SavedCurve::Beside { data, name, folder } = curve {
                 let bytes = bytes(data, name)?;
-                let source = Source::new(std::mem::take(name), folder.take(), bytes.into());
-                *curve = Curve::Within(Arc::new(source));
+                let source = PointsFile::new(std::mem::take(name), folder.take(), bytes.into());
+                *curve = SavedCurve::Within(Arc::new(source));
             }
         }
         for profile in &mut self.profiles {
-            if let Profile::Beside { data, rows } = profile {
+            if let SavedProfile::Beside { data, rows } = profile {
                 let [radii, gaps] = columns(data, &rows.name)?;
-                *profile = Profile::Within(Arc::new(Rows { radii, gaps, ..std::mem::take(rows) }));
+                *profile =
+                    SavedProfile::Within(Arc::new(ProfileRows { radii, gaps, ..std::mem::take(rows) }));
             }
         }
         Ok(())
@@ -312,17 +316,17 @@ impl Problems {
     pub(super) fn back(self) -> Result<Restored, Unreadable> {
         let missing = |what: &str| Unreadable::Damaged(format!("a {what} is missing"));
         let within = |profile| match profile {
-            Profile::Within(rows) => Ok(rows),
-            Profile::Beside { .. } => Err(missing("column of a profile")),
+            SavedProfile::Within(rows) => Ok(rows),
+            SavedProfile::Beside { .. } => Err(missing("column of a profile")),
         };
         let profiles = self.profiles.into_iter().map(within).collect::<Result<Vec<_>, _>>()?;
         let within = |curve| match curve {
-            Curve::Within(source) => Ok(source),
-            Curve::Beside { .. } => Err(missing("measured curve")),
+            SavedCurve::Within(source) => Ok(source),
+            SavedCurve::Beside { .. } => Err(missing("measured curve")),
         };
         let curves = self.curves.into_iter().map(within).collect::<Result<Vec<_>, _>>()?;
-        let preset = |saved: &Saved| {
-            let mut held = Held::default();
+        let preset = |saved: &SavedPreset| {
+            let mut held = HeldFiles::default();
             if let Some(at) = saved.profile {
                 held.rows = profiles.get(at).cloned().ok_or_else(|| missing("profile"))?;
             }
@@ -334,7 +338,7 @@ impl Problems {
             preset.map_err(|error| Unreadable::Damaged(error.to_string()))
         };
         let presets = self.presets.iter().map(preset).collect::<Result<Vec<_>, _>>()?;
-        let setting = |saved: Scaled| {
+        let setting = |saved: SavedSetting| {
             let preset: &Preset = presets.get(saved.preset).ok_or_else(|| missing("preset"))?;
             let [approach, force, contact_radius] = floats(saved.scales);
             Ok(Arc::new(Setting::new(preset.clone(), Scales { approach, force, contact_radius })))

@@ -4,13 +4,13 @@ use crate::explorer::backgrounds::want_all;
 use crate::explorer::command::{FIRST_LENGTH, LENGTHS};
 use crate::explorer::effect::Effect;
 use crate::explorer::history::History;
-use crate::explorer::journal::{Journal, Kept};
+use crate::explorer::journal::{Journal, KeptJournal};
 use crate::explorer::map_axes::MapAxes;
 use crate::explorer::model::Model;
 use crate::explorer::pins::Pins;
 use crate::explorer::requests::want_curve;
 use crate::explorer::undo::Undo;
-use crate::explorer::view::{Axes, Overlays, Panel, View, Window};
+use crate::explorer::view::{Axes, Overlays, ScreenPanel, View, Window};
 use crate::store::{Fingerprint, Loaded, Source};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
@@ -30,14 +30,14 @@ pub struct Snapshot {
     /// Whether the walker has been tried on the preset as it is.
     pub settled: bool,
     pub pins: Vec<(usize, Preset)>,
-    pub look: Look,
-    pub journal: Kept,
+    pub look: SessionLook,
+    pub journal: KeptJournal,
 }
 
 /// How a session is looked at and walked; the fields are as in [`Model`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Look {
-    pub panel: Panel,
+pub struct SessionLook {
+    pub panel: ScreenPanel,
     pub parameter: usize,
     pub event: usize,
     pub view: View,
@@ -53,7 +53,7 @@ pub struct Look {
     pub map: Option<MapAxes>,
 }
 
-impl Look {
+impl SessionLook {
     fn of(model: &Model) -> Self {
         let windows = View::ALL.into_iter().map(|view| (view, model.window(view)));
         Self {
@@ -105,7 +105,7 @@ impl Snapshot {
             undo: model.undo.clone(),
             settled: model.is_settled() || model.is_tried,
             pins: shown.chain(model.pins.awaited().iter().cloned()).collect(),
-            look: Look::of(model),
+            look: SessionLook::of(model),
             journal: model.journal.kept(),
         }
     }

@@ -8,12 +8,12 @@ use crate::explorer::history::History;
 use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::setting::Setting;
 use pulloff_engine::annuli::MOST_CONTACTS;
-use pulloff_engine::continuation::{Column, Columns};
+use pulloff_engine::continuation::{ColumnView, Columns};
 use pulloff_engine::quasistatic::admissible::Crest;
 use pulloff_engine::quasistatic::path::Direction;
 use pulloff_engine::quasistatic::walk::{Ahead, edges};
 use pulloff_engine::quasistatic::{
-    Admissibility, Event, EventKind, PathState, Point, Stability, State, Stiffness,
+    Admissibility, Event, EventKind, PathState, Stability, State, StatePoint, Stiffness,
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -24,12 +24,12 @@ const MOST: usize = 2 + 2 * MOST_CONTACTS;
 
 /// A node.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct Saved {
+pub(super) struct SavedNode {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     parent: Option<usize>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     forward: Option<usize>,
-    kind: Kind,
+    kind: SavedKind,
     setting: usize,
     step: usize,
     /// δ, P and every edge, scaled.
@@ -68,7 +68,7 @@ pub(super) struct Saved {
 /// How a node came about.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-enum Kind {
+enum SavedKind {
     Start,
     Step,
     Limit,
@@ -157,7 +157,7 @@ fn state_in(numbers: [Real; 4]) -> State {
     State { contact_radius, approach, force, energy }
 }
 
-impl Kind {
+impl SavedKind {
     fn of(kind: &NodeKind) -> Self {
         match kind {
             NodeKind::Start => Self::Start,
@@ -208,14 +208,14 @@ impl Kind {
     }
 }
 
-impl Saved {
+impl SavedNode {
     fn of(node: &Node, setting: usize, forward: Option<usize>) -> Self {
         let Node { point, stiffness, admissibility, .. } = node;
-        let numbers = |column: Column<'_>| column.iter().map(|x| Real(*x)).collect();
+        let numbers = |column: ColumnView<'_>| column.iter().map(|x| Real(*x)).collect();
         Self {
             parent: node.parent,
             forward,
-            kind: Kind::of(&node.kind),
+            kind: SavedKind::of(&node.kind),
             setting,
             step: node.step,
             y: numbers(point.y()),
@@ -251,7 +251,7 @@ impl Saved {
         let right =
             (FEWEST..=MOST).contains(&unknowns) && columns.iter().all(|column| column.len() == unknowns);
         let columns = right.then(|| columns.concat().iter().map(|x| x.0).collect())?;
-        let mut point = Point::of(Columns::from_vec(columns), self.positive);
+        let mut point = StatePoint::of(Columns::from_vec(columns), self.positive);
         (point.length, point.rounds, point.turning) = (self.length.0, self.rounds, self.turning.0);
         let scales = &setting.scales;
         let [approach, force] = edges::device(scales, &point);
@@ -301,14 +301,14 @@ impl Saved {
 }
 
 /// The nodes of a tree; `setting` numbers their settings.
-pub(super) fn nodes(history: &History, mut setting: impl FnMut(&Arc<Setting>) -> usize) -> Vec<Saved> {
+pub(super) fn nodes(history: &History, mut setting: impl FnMut(&Arc<Setting>) -> usize) -> Vec<SavedNode> {
     let nodes = history.nodes().enumerate();
-    nodes.map(|(at, node)| Saved::of(node, setting(&node.setting), history.forward(at))).collect()
+    nodes.map(|(at, node)| SavedNode::of(node, setting(&node.setting), history.forward(at))).collect()
 }
 
 /// The tree of nodes; `None` where they make none.
 pub(super) fn history(
-    nodes: Vec<Saved>,
+    nodes: Vec<SavedNode>,
     cursor: Option<usize>,
     settings: &[Arc<Setting>],
 ) -> Option<History> {

@@ -8,7 +8,7 @@ use crate::explorer::model::{CurveError, Level, Model};
 use crate::explorer::node::NodeKind;
 use crate::explorer::status_line::of_before;
 use crate::explorer::walk::Action;
-use crate::mend::Reason;
+use crate::mend::WordedFault;
 use std::sync::Arc;
 
 /// The curve on the screen stays; the one being computed is no longer wanted.
@@ -43,7 +43,7 @@ pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
 pub(super) fn curve_came(
     model: &mut Model,
     id: u64,
-    result: Result<Arc<CurveData>, Reason>,
+    result: Result<Arc<CurveData>, WordedFault>,
 ) -> Option<Vec<Effect>> {
     if id <= model.curve_shown {
         return Some(Vec::new());

@@ -11,8 +11,8 @@ use crate::explorer::look;
 use crate::explorer::model::{Level, Model, Question};
 use crate::explorer::requests::{change, file, want_curve};
 use crate::explorer::studies::StudyData;
-use crate::explorer::undo::Place;
-use crate::print::Format;
+use crate::explorer::undo::SessionPlace;
+use crate::print::PictureFormat;
 use crate::store::{Overwrite, Source};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::Preset;
@@ -74,7 +74,7 @@ pub(super) fn export(model: &mut Model, what: ExportKind, path: String, replace:
 pub(super) fn export_page(model: &mut Model, page: Page, path: String, replace: bool) -> Vec<Effect> {
     let refused = match page {
         Page::Screen(_) => (!ends_in(&path, &["txt"])).then(|| "the file must end in .txt".to_owned()),
-        Page::Figure(_) => Format::of(Path::new(&path)).err().map(|error| error.to_string()),
+        Page::Figure(_) => PictureFormat::of(Path::new(&path)).err().map(|error| error.to_string()),
     };
     if let Some(reason) = refused {
         return model.refuse(reason);
@@ -101,7 +101,7 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
             let mut opened = Model::new(*loaded);
             // What was not walked on is nothing to come back to.
             let place = (!model.history.is_empty())
-                .then(|| Place { shelved: Some(Arc::new(shelve(model))), ..model.place() });
+                .then(|| SessionPlace { shelved: Some(Arc::new(shelve(model))), ..model.place() });
             opened.replace(model);
             if let Some(place) = place {
                 opened.undo.did(place);

@@ -3,17 +3,17 @@
 use super::curve::give_up;
 use crate::explorer::backgrounds::give_up_first;
 use crate::explorer::effect::Effect;
-use crate::explorer::fit::{Fitted, fit};
+use crate::explorer::fit::{FitProgress, fit};
 use crate::explorer::model::{Level, Model};
 use crate::explorer::requests::stop;
-use crate::explorer::view::Panel;
+use crate::explorer::view::ScreenPanel;
 use crate::explorer::{look, reach};
 use pulloff_engine::preset::{Row, Value, groups};
 use pulloff_engine::text::{greek, show_name};
 
 /// An arrow key: in Charts it moves what is shown, elsewhere the selection.
 pub(in crate::explorer) fn arrow(model: &mut Model, (right, up): (f64, f64), down: bool) {
-    if model.panel == Panel::Charts { look::go(model, right, up) } else { move_selection(model, down) }
+    if model.panel == ScreenPanel::Charts { look::go(model, right, up) } else { move_selection(model, down) }
 }
 
 /// Ends what is under way, the newest first.
@@ -22,7 +22,7 @@ pub(in crate::explorer) fn cancel(model: &mut Model) -> Vec<Effect> {
         stop(model)
     } else if model.is_computing() {
         give_up(model)
-    } else if model.results.under_way::<Fitted>().is_some() {
+    } else if model.results.under_way::<FitProgress>().is_some() {
         fit(model)
     } else if model.cross.take().is_some() {
         Vec::new()
@@ -32,8 +32,8 @@ pub(in crate::explorer) fn cancel(model: &mut Model) -> Vec<Effect> {
 }
 
 pub(in crate::explorer) fn next_panel(model: &mut Model, by: usize) {
-    let at = Panel::ALL.iter().position(|panel| *panel == model.panel).unwrap_or(0);
-    model.panel = Panel::ALL[(at + by) % Panel::ALL.len()];
+    let at = ScreenPanel::ALL.iter().position(|panel| *panel == model.panel).unwrap_or(0);
+    model.panel = ScreenPanel::ALL[(at + by) % ScreenPanel::ALL.len()];
 }
 
 fn move_selection(model: &mut Model, down: bool) {
@@ -42,7 +42,7 @@ fn move_selection(model: &mut Model, down: bool) {
         if down { (at + 1).min(last) } else { at.saturating_sub(1).min(last) }
     };
     match model.panel {
-        Panel::Problem => {
+        ScreenPanel::Problem => {
             let knobs = model.knobs();
             model.parameter = moved(model.parameter, knobs.len());
             let selected = knobs.into_iter().nth(model.parameter);
@@ -52,10 +52,10 @@ fn move_selection(model: &mut Model, down: bool) {
                 model.tell(Level::Info, text);
             }
         }
-        Panel::Log => {
+        ScreenPanel::Log => {
             model.event = moved(model.event, model.log_lines());
         }
-        Panel::Here | Panel::Result | Panel::Charts => {}
+        ScreenPanel::Here | ScreenPanel::Result | ScreenPanel::Charts => {}
     }
 }
 
@@ -77,19 +77,19 @@ fn long_text(row: &Row, value: Option<&Value>) -> Option<String> {
 }
 
 /// A panel is selected, and a line of it, the last at most.
-pub(super) fn pick(model: &mut Model, panel: Panel, line: Option<usize>) {
+pub(super) fn pick(model: &mut Model, panel: ScreenPanel, line: Option<usize>) {
     model.panel = panel;
     let lines = match panel {
-        Panel::Problem => model.knobs().len(),
-        Panel::Log => model.log_lines(),
-        Panel::Charts if model.view.is_table() => model.history.path().len(),
-        Panel::Here | Panel::Result | Panel::Charts => 0,
+        ScreenPanel::Problem => model.knobs().len(),
+        ScreenPanel::Log => model.log_lines(),
+        ScreenPanel::Charts if model.view.is_table() => model.history.path().len(),
+        ScreenPanel::Here | ScreenPanel::Result | ScreenPanel::Charts => 0,
     };
     let Some(line) = line.map(|line| line.min(lines.saturating_sub(1))) else { return };
     match panel {
-        Panel::Problem => model.parameter = line,
-        Panel::Log => model.event = line,
-        Panel::Charts if model.view.is_table() => reach::pick_walk_line(model, line),
-        Panel::Here | Panel::Result | Panel::Charts => {}
+        ScreenPanel::Problem => model.parameter = line,
+        ScreenPanel::Log => model.event = line,
+        ScreenPanel::Charts if model.view.is_table() => reach::pick_walk_line(model, line),
+        ScreenPanel::Here | ScreenPanel::Result | ScreenPanel::Charts => {}
     }
 }

@@ -9,7 +9,7 @@ use crate::explorer::look::carry_on;
 use crate::explorer::model::{Level, Model};
 use crate::explorer::node::Node;
 use crate::explorer::requests::{adopt_parameters, change, take_back, want_curve};
-use crate::explorer::undo::{Place, Shelved};
+use crate::explorer::undo::{SessionPlace, Shelved};
 use crate::store::Loaded;
 use pulloff_engine::quasistatic::State;
 use std::mem;
@@ -42,7 +42,7 @@ fn once(model: &mut Model, back: bool) -> Option<Vec<Effect>> {
         return Some(effects);
     };
     let kept = shelve(model);
-    model.undo.keep(back, Place { shelved: Some(Arc::new(kept)), ..here });
+    model.undo.keep(back, SessionPlace { shelved: Some(Arc::new(kept)), ..here });
     swap(model, (**shelved).clone());
     go_to_node(model, &place);
     model.preset = place.preset.clone();
@@ -83,7 +83,7 @@ impl Model {
 }
 
 /// The walker, its way and its step length are those of `place`.
-fn go_to_node(model: &mut Model, place: &Place) {
+fn go_to_node(model: &mut Model, place: &SessionPlace) {
     (model.inward, model.length) = (place.inward, place.length);
     let (Some(from), Some(to)) = (model.history.cursor(), place.node.and_then(|id| model.history.find(id)))
     else {

@@ -5,7 +5,7 @@ use crate::explorer::effect::Effect;
 use crate::explorer::job::Job;
 use crate::explorer::model::{Awaits, Model};
 use crate::explorer::table::{Waits, is_available, row_of, why_unavailable};
-use crate::explorer::undo::Place;
+use crate::explorer::undo::SessionPlace;
 use pulloff_engine::preset::Key;
 
 /// Commands that may wait; more key presses than these are a held key.
@@ -111,7 +111,7 @@ pub(super) fn recorded(
         if model.walking.is_some_and(|now| !now.solves && Some(now.id) != walking)
             && !step.is_some_and(|count| model.undo.holds(count))
         {
-            model.undo.begins(Place { is_step: step.is_some(), ..before });
+            model.undo.begins(SessionPlace { is_step: step.is_some(), ..before });
         }
     }
     effects

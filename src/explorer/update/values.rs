@@ -8,7 +8,7 @@ use crate::explorer::nudge::{Amount, next_control, nudge};
 use crate::explorer::pins::{labelled, labelled_with};
 use crate::explorer::requests::{change, file, read, stop};
 use crate::explorer::script::key_called;
-use pulloff_engine::gap::shapes::Rows;
+use pulloff_engine::gap::shapes::ProfileRows;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::family::is_parameter;
 use pulloff_engine::preset::invalid::Invalid;
@@ -250,7 +250,7 @@ pub(super) fn assign(model: &mut Model, assignments: Vec<Assignment>) -> Vec<Eff
 }
 
 /// The rows of a profile were read: they are the gap now.
-pub(super) fn rows_came(model: &mut Model, rows: Arc<Rows>) -> Vec<Effect> {
+pub(super) fn rows_came(model: &mut Model, rows: Arc<ProfileRows>) -> Vec<Effect> {
     // Each note begins with the path, which is said once and short.
     let path = Path::new(&rows.name);
     let whole =

@@ -7,7 +7,7 @@ use crate::explorer::model::{Level, Model, Walking};
 use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::requests::{stop, stop_walk, want_curve};
 use crate::explorer::status_line::{back_or_anew, of_before};
-use crate::explorer::walk::{Action, Made, Outcome, Request, from_exact};
+use crate::explorer::walk::{Action, MadeState, Request, WalkOutcome, from_exact};
 use pulloff_engine::problem::Begin;
 use pulloff_engine::quasistatic::path::Direction;
 use pulloff_engine::quasistatic::walk::At;
@@ -169,8 +169,8 @@ pub(in crate::explorer) fn scale_pace(model: &mut Model, by: f64) -> Vec<Effect>
 pub(super) fn walked(
     model: &mut Model,
     id: u64,
-    made: Vec<Made>,
-    outcome: Option<Outcome>,
+    made: Vec<MadeState>,
+    outcome: Option<WalkOutcome>,
 ) -> Option<Vec<Effect>> {
     let Some(walking) = model.walking.as_mut().filter(|walking| walking.id == id) else {
         return Some(Vec::new());
@@ -195,30 +195,30 @@ pub(super) fn walked(
     }
     let Some(outcome) = outcome else { return Some(Vec::new()) };
     model.walking = None;
-    let is_unsolved = matches!(outcome, Outcome::Stopped(_))
+    let is_unsolved = matches!(outcome, WalkOutcome::Stopped(_))
         && model.history.current().is_some_and(|node| !model.is_on_curve(node));
     model.journal.ended(&outcome, is_unsolved);
     if model.history.current().is_some_and(|node| node.on_path.is_some()) {
         model.journal.turned(model.inward);
     }
     match outcome {
-        Outcome::Done => {}
-        Outcome::AtLimit => {
+        WalkOutcome::Done => {}
+        WalkOutcome::AtLimit => {
             // A held key stops at the limit point; pressing it again goes on.
             while stepped && model.queue.front().is_some_and(|command| command.id() == Id::Step) {
                 model.queue.pop_front();
             }
         }
         // What waits was asked for after the pause: a pause empties the queue.
-        Outcome::Paused => {
+        WalkOutcome::Paused => {
             // Otherwise another value ended it, whose curve is to be told of.
             if !model.is_computing() {
                 let [step, run] = [Id::Step, Id::Run].map(Id::named);
                 model.tell(Level::Info, format!("paused; {step} steps, {run} runs on"));
             }
         }
-        Outcome::Ended(reason) => model.tell(Level::Info, reason),
-        Outcome::Stopped(reason) if model.history.current().is_none() => {
+        WalkOutcome::Ended(reason) => model.tell(Level::Info, reason),
+        WalkOutcome::Stopped(reason) if model.history.current().is_none() => {
             model.inward = true;
             model.journal.turned(true);
             if let Some(curve) = model.curve.clone() {
@@ -229,7 +229,7 @@ pub(super) fn walked(
                 format!("there is no first touch: {reason}; the walk begins with the disc"),
             );
         }
-        Outcome::Stopped(reason) => {
+        WalkOutcome::Stopped(reason) => {
             if is_unsolved {
                 mark_stale(model, id, &reason);
                 model.tell(Level::Failure, format!("{reason}; {} starts again", Id::Restart.named()));
@@ -252,7 +252,7 @@ pub(super) fn walked(
     None
 }
 
-fn append(model: &mut Model, request: u64, state: Made) {
+fn append(model: &mut Model, request: u64, state: MadeState) {
     let current = model.history.current();
     let again = current.is_some_and(|node| matches!(node.kind, NodeKind::Solved | NodeKind::Stale(_)));
     let beside = state.kind == NodeKind::Solved && again;

@@ -3,9 +3,9 @@
 use super::state::App;
 use crate::explorer::script::offers::{DEVICES, Typing};
 use crate::explorer::script::parse;
-use crate::explorer::table::{Row as CommandRow, row_of};
-use crate::explorer::{Command, Effect, Id, Panel, reach};
-use crate::tui::overlay::{Action, Choose, Item, Overlay};
+use crate::explorer::table::{CommandRow, row_of};
+use crate::explorer::{Command, Effect, Id, ScreenPanel, reach};
+use crate::tui::overlay::{Choice, Choose, Dialog, Item};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use pulloff_engine::preset::{Row, Value};
 use pulloff_engine::problem::Control;
@@ -32,10 +32,12 @@ impl App {
     pub(super) fn page_key(&mut self, key: KeyEvent) -> Option<Vec<Effect>> {
         let (panel, model) = (self.model.panel, &self.model);
         let (line, count) = match panel {
-            Panel::Problem => (model.parameter, model.knobs().len()),
-            Panel::Log => (model.event, model.log_lines()),
-            Panel::Charts if model.view.is_table() => (reach::walk_line(model), model.history.path().len()),
-            Panel::Here | Panel::Result | Panel::Charts => return None,
+            ScreenPanel::Problem => (model.parameter, model.knobs().len()),
+            ScreenPanel::Log => (model.event, model.log_lines()),
+            ScreenPanel::Charts if model.view.is_table() => {
+                (reach::walk_line(model), model.history.path().len())
+            }
+            ScreenPanel::Here | ScreenPanel::Result | ScreenPanel::Charts => return None,
         };
         let line = turned(key, line, count)?;
         Some(self.run(Command::Pick { panel, line: Some(line) }))
@@ -50,7 +52,7 @@ impl App {
         match key.code {
             KeyCode::Char('D') | KeyCode::Delete => {
                 if let Some(confirm) = choose.current().and_then(|(_, item)| item.delete.clone()) {
-                    self.overlay = Some(Overlay::Confirm(*confirm));
+                    self.overlay = Some(Dialog::Confirm(*confirm));
                     return Vec::new();
                 }
             }
@@ -74,13 +76,13 @@ impl App {
             },
         }
         choose.picture = choose.current().and_then(|(_, item)| self.picture(&item.action));
-        self.overlay = Some(Overlay::Choose(choose));
+        self.overlay = Some(Dialog::Choose(choose));
         Vec::new()
     }
 
     /// The words of a value that is one of some.
     pub(super) fn ask_choice(&mut self, row: &Row, words: &[&str], value: Option<&Value>) -> Vec<Effect> {
-        let set = |word: &str| Action::Command(Command::Set { key: row.key.clone(), text: word.to_owned() });
+        let set = |word: &str| Choice::Command(Command::Set { key: row.key.clone(), text: word.to_owned() });
         let items = words.iter().map(|word| Item::new(*word, set(word))).collect();
         let here = words.iter().position(|word| value.is_some_and(|value| value.to_string() == *word));
         self.choose(&format!("{}: {}", row.label, row.meaning), items, here.unwrap_or(0));
@@ -94,14 +96,14 @@ impl App {
             Some(Value::Control(Control::Stiffness(_))) => 2,
             _ => 0,
         };
-        let set = |word: &str| Action::Command(Command::Set { key: row.key.clone(), text: word.to_owned() });
+        let set = |word: &str| Choice::Command(Command::Set { key: row.key.clone(), text: word.to_owned() });
         let [grips, load, spring] = DEVICES;
         let items = vec![
             Item::new(format!("displacement  {grips}"), set("displacement")),
             Item::new(format!("force         {load}"), set("force")),
             Item::new(
                 format!("stiffness ... {spring}"),
-                Action::Prompt(Box::new(self.value_prompt(row, value))),
+                Choice::Prompt(Box::new(self.value_prompt(row, value))),
             ),
         ];
         self.choose(&format!("{}: {}", row.label, row.meaning), items, here);
@@ -118,7 +120,7 @@ impl App {
             let said = self.theme.symbols(&self.keymap.spelled(&offer.says));
             let does =
                 offer.does.clone().or_else(|| parse(&format!("{} {}", row.name, offer.word)).ok()?)?;
-            Some(Item::new(format!("{:<width$} {said}", offer.word), Action::Command(does)))
+            Some(Item::new(format!("{:<width$} {said}", offer.word), Choice::Command(does)))
         });
         let here = offers.iter().position(|offer| offer.is_here).unwrap_or(0);
         let title = row.help.split([':', ';']).next().unwrap_or_default();
@@ -131,21 +133,21 @@ impl App {
         let Some((at, item)) = choose.current() else { return Vec::new() };
         match item.action.clone() {
             // Several may be wanted: the list stays until it is closed.
-            Action::Command(command @ Command::Overlay(_)) => {
+            Choice::Command(command @ Command::Overlay(_)) => {
                 let effects = self.run(command);
                 self.ask_argument(row_of(Id::Overlays));
-                if let Some(Overlay::Choose(choose)) = &mut self.overlay {
+                if let Some(Dialog::Choose(choose)) = &mut self.overlay {
                     choose.selected = at;
                 }
                 effects
             }
-            Action::Command(command) => self.open_or_ask(command),
-            Action::Prompt(prompt) => {
-                self.overlay = Some(Overlay::Prompt(*prompt));
+            Choice::Command(command) => self.open_or_ask(command),
+            Choice::Prompt(prompt) => {
+                self.overlay = Some(Dialog::Prompt(*prompt));
                 Vec::new()
             }
-            Action::Columns(choosing) => self.columns_chosen(&choosing),
-            Action::Copy(content) => {
+            Choice::Columns(choosing) => self.columns_chosen(&choosing),
+            Choice::Copy(content) => {
                 self.copy(content);
                 Vec::new()
             }

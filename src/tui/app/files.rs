@@ -5,10 +5,10 @@ use crate::explorer::export::{ExportKind, Page, Picture};
 use crate::explorer::model::Level;
 use crate::explorer::{Command, Effect, Id};
 use crate::plot::picture::picture;
-use crate::print::Format;
+use crate::print::PictureFormat;
 use crate::store::Source;
 use crate::tui::copy;
-use crate::tui::overlay::{Action, Content, Item, Overlay as Over, Prompt, Purpose};
+use crate::tui::overlay::{Choice, Dialog, Excerpt, Item, Prompt, Purpose};
 use pulloff_engine::text::sanitize;
 
 impl App {
@@ -23,14 +23,14 @@ impl App {
             Prompt::new("Save the preset as", note, suggestion.clone(), Purpose::Name { with_data })
         };
         if self.has_data() {
-            let item = |text: &str, with_data| Item::new(text, Action::Prompt(Box::new(prompt(with_data))));
+            let item = |text: &str, with_data| Item::new(text, Choice::Prompt(Box::new(prompt(with_data))));
             let items = vec![
                 item("the preset       the data stay where they are", false),
                 item("save with data   the data are copied beside the preset", true),
             ];
             self.choose("Save", items, 0);
         } else {
-            self.overlay = Some(Over::Prompt(prompt(false)));
+            self.overlay = Some(Dialog::Prompt(prompt(false)));
         }
         Vec::new()
     }
@@ -56,9 +56,9 @@ impl App {
                 ExportKind::Script => "script  what was done, for pulloff run",
                 ExportKind::Study => "study   the study: its values, or in a .toml the sweep that repeats it",
             };
-            Item::new(text, Action::Prompt(Box::new(prompt)))
+            Item::new(text, Choice::Prompt(Box::new(prompt)))
         });
-        let text = copy::text(self, Content::Screen);
+        let text = copy::text(self, Excerpt::Screen);
         let file = format!("{}-screen.txt", sanitize(&base, 60));
         let prompt = Prompt::new(
             "Export the screen to",
@@ -66,14 +66,14 @@ impl App {
             file,
             Purpose::Page(Page::Screen(text)),
         );
-        let screen = Item::new("screen  what is on the screen, as text", Action::Prompt(Box::new(prompt)));
+        let screen = Item::new("screen  what is on the screen, as text", Choice::Prompt(Box::new(prompt)));
         let figure = picture(&self.model, self.model.view).ok().map(|svg| {
             let file = format!("{}-{}.svg", sanitize(&base, 60), self.model.view.name());
-            let note = format!("a file ending in .{}", Format::ENDINGS.join(" or ."));
+            let note = format!("a file ending in .{}", PictureFormat::ENDINGS.join(" or ."));
             let prompt = Prompt::new("Export the figure to", &note, file, Purpose::Page(Page::Figure(svg)));
             Item::new(
                 "figure  the first view for print: zoom, pins and theory with it",
-                Action::Prompt(Box::new(prompt)),
+                Choice::Prompt(Box::new(prompt)),
             )
         });
         self.choose("Export", items.into_iter().chain([screen]).chain(figure).collect(), 0);
@@ -83,7 +83,7 @@ impl App {
     /// What is seen, drawn, for the export of it.
     pub(super) fn draw_page(&mut self, what: Picture, path: String, replace: bool) -> Option<Command> {
         let page = match what {
-            Picture::Screen => Ok(Page::Screen(copy::text(self, Content::Screen))),
+            Picture::Screen => Ok(Page::Screen(copy::text(self, Excerpt::Screen))),
             Picture::Figure(view) => picture(&self.model, view.unwrap_or(self.model.view)).map(Page::Figure),
         };
         match page {
@@ -96,15 +96,15 @@ impl App {
     }
 
     pub(super) fn ask_copy(&mut self) -> Vec<Effect> {
-        let items = Content::ALL.map(|content| {
-            Item::new(format!("{:<7} {}", content.name(), content.meaning()), Action::Copy(content))
+        let items = Excerpt::ALL.map(|content| {
+            Item::new(format!("{:<7} {}", content.name(), content.meaning()), Choice::Copy(content))
         });
         self.choose("Copy", items.to_vec(), 0);
         Vec::new()
     }
 
     /// Text for the clipboard, if it is not too long for it.
-    pub(super) fn copy(&mut self, content: Content) {
+    pub(super) fn copy(&mut self, content: Excerpt) {
         let text = copy::text(self, content);
         let (level, told) = if text.len() > copy::LONGEST {
             let export = Id::Export.named();

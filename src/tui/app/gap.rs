@@ -6,7 +6,7 @@ use crate::explorer::{Command, Effect, update};
 use crate::figure::Figure;
 use crate::figure::shape::undeformed;
 use crate::store::shipped::{CURVES, DATA};
-use crate::tui::overlay::{Action, Item, Prompt, Purpose};
+use crate::tui::overlay::{Choice, Item, Prompt, Purpose};
 use pulloff_engine::preset::measured::SHIPPED_DATA;
 use pulloff_engine::preset::schema::NONE;
 use pulloff_engine::preset::{Key, Value, data};
@@ -25,8 +25,8 @@ const SHAPES: [(&str, &str); 9] = [
     ("profile", "measured rows of a file"),
 ];
 
-fn set(key: &Key, text: impl Into<String>) -> Action {
-    Action::Command(Command::Set { key: key.clone(), text: text.into() })
+fn set(key: &Key, text: impl Into<String>) -> Choice {
+    Choice::Command(Command::Set { key: key.clone(), text: text.into() })
 }
 
 impl App {
@@ -57,7 +57,7 @@ impl App {
         let is_curve = *key == data::FILE;
         let go = |text: String, path| {
             let command = Command::Browse { key: key.clone(), folder: Some(path) };
-            Item::new(text, Action::Command(command))
+            Item::new(text, Choice::Command(command))
         };
         let up = folder.path.parent().map(|parent| go("../".to_owned(), parent.to_owned()));
         let below = folder.folders.iter().map(|name| go(format!("{name}/"), folder.path.join(name)));
@@ -76,7 +76,7 @@ impl App {
             ("Profiles in", "Read a profile", "a file with the columns r and h")
         };
         let prompt = Prompt::new(asks, note, String::new(), Purpose::Value(key.clone()));
-        let path = Item::new("a path ...", Action::Prompt(Box::new(prompt)));
+        let path = Item::new("a path ...", Choice::Prompt(Box::new(prompt)));
         let selected =
             usize::from(up.is_some()) + if folder.files.is_empty() { 0 } else { folder.folders.len() };
         let has_curve = is_curve && self.model.preset.data.source.is_some();
@@ -93,9 +93,9 @@ impl App {
     }
 
     /// What choosing a line would make of the gap, where it is a shape that is chosen.
-    pub(super) fn picture(&self, action: &Action) -> Option<Figure> {
+    pub(super) fn picture(&self, action: &Choice) -> Option<Figure> {
         match action {
-            Action::Command(Command::Set { key, text }) if key == "gap.shape" => {
+            Choice::Command(Command::Set { key, text }) if key == "gap.shape" => {
                 let mut preset = self.model.preset.clone();
                 preset.set(key, text.as_str().into()).ok()?;
                 Some(undeformed(&preset))

@@ -2,7 +2,7 @@
 
 use super::state::App;
 use crate::explorer::Id;
-use crate::tui::overlay::{Found, Help, Overlay};
+use crate::tui::overlay::{Dialog, Help, Occurrence};
 use crate::tui::view::help::{PAGES, plain};
 use crossterm::event::{Event, KeyCode, KeyEvent};
 use tui_input::Input;
@@ -17,7 +17,7 @@ impl App {
     pub(super) fn help_key(&mut self, mut help: Help, key: KeyEvent) {
         if let Some(input) = help.typing.take() {
             self.type_pattern(&mut help, input, key);
-            self.overlay = Some(Overlay::Help(help));
+            self.overlay = Some(Dialog::Help(help));
             return;
         }
         let has_pattern = !help.pattern.is_empty();
@@ -37,7 +37,7 @@ impl App {
             _ => {}
         }
         help.line = help.line.min(plain(self, help.page).len());
-        self.overlay = Some(Overlay::Help(help));
+        self.overlay = Some(Dialog::Help(help));
     }
 
     fn type_pattern(&self, help: &mut Help, mut input: Input, key: KeyEvent) {
@@ -80,7 +80,7 @@ impl App {
         };
         help.found = next.and_then(|at| {
             let (page, line) = *places.get(at)?;
-            Some(Found { page, line, number: at + 1, of: places.len() })
+            Some(Occurrence { page, line, number: at + 1, of: places.len() })
         });
         if let Some(found) = help.found {
             (help.page, help.line) = (found.page, found.line);

@@ -5,7 +5,7 @@ use crate::explorer::data::list;
 use crate::explorer::script::{palette, parse};
 use crate::explorer::table::{called, row_of};
 use crate::explorer::{Command, Effect, Id};
-use crate::tui::overlay::{Help, LONGEST_LINE, Overlay, Prompt, Purpose};
+use crate::tui::overlay::{Dialog, Help, LONGEST_LINE, Prompt, Purpose};
 use crate::tui::view::help::now;
 use crate::tui::view::status;
 use crossterm::event::{Event, KeyCode, KeyEvent};
@@ -25,7 +25,7 @@ impl App {
         let title = if is_help { "What can be done (Tab: how to read the screen)" } else { "Command" };
         let mut prompt = Prompt::new(title, NOTE, String::new(), Purpose::Line { is_help });
         self.changed(&mut prompt, Input::default());
-        self.overlay = Some(Overlay::Prompt(prompt));
+        self.overlay = Some(Dialog::Prompt(prompt));
         effects
     }
 
@@ -36,7 +36,7 @@ impl App {
             _ if prompt.waits => {}
             KeyCode::Enter => return self.obey_line(prompt),
             KeyCode::Tab if is_empty && prompt.purpose == (Purpose::Line { is_help: true }) => {
-                self.overlay = Some(Overlay::Help(Help::default()));
+                self.overlay = Some(Dialog::Help(Help::default()));
                 return Vec::new();
             }
             KeyCode::Tab => self.take_entry(&mut prompt),
@@ -62,7 +62,7 @@ impl App {
                 }
             }
         }
-        self.overlay = Some(Overlay::Prompt(prompt));
+        self.overlay = Some(Dialog::Prompt(prompt));
         Vec::new()
     }
 
@@ -99,10 +99,10 @@ impl App {
 
     /// The list of a line that stands there, when more is known: names of presets.
     pub(super) fn list_again(&mut self) {
-        let Some(Overlay::Prompt(mut prompt)) = self.overlay.take_if(|over| {
+        let Some(Dialog::Prompt(mut prompt)) = self.overlay.take_if(|over| {
             matches!(
                 over,
-                Overlay::Prompt(Prompt { purpose: Purpose::Line { .. }, error: None, waits: false, .. })
+                Dialog::Prompt(Prompt { purpose: Purpose::Line { .. }, error: None, waits: false, .. })
             )
         }) else {
             return;
@@ -112,7 +112,7 @@ impl App {
         self.list(&mut prompt);
         prompt.selected =
             selected.and_then(|line| prompt.entries.iter().position(|entry| entry.line == line));
-        self.overlay = Some(Overlay::Prompt(prompt));
+        self.overlay = Some(Dialog::Prompt(prompt));
     }
 
     /// Puts the selected entry, or the first, where the text before the cursor stands.
@@ -147,7 +147,7 @@ impl App {
             // What stands behind the cursor is not dropped.
             if !entry.is_whole || prompt.input.cursor() < line.chars().count() {
                 self.take_entry(&mut prompt);
-                self.overlay = Some(Overlay::Prompt(prompt));
+                self.overlay = Some(Dialog::Prompt(prompt));
                 return Vec::new();
             }
             line.clone_from(&entry.line);
@@ -157,7 +157,7 @@ impl App {
             Err(fault) => {
                 prompt.error = Some(format!("column {}: {fault}", fault.column));
                 prompt.fault = Some(fault.column);
-                self.overlay = Some(Overlay::Prompt(prompt));
+                self.overlay = Some(Dialog::Prompt(prompt));
                 return Vec::new();
             }
             Ok(Some(command)) => {

@@ -13,10 +13,10 @@
 
 use super::state::App;
 use crate::explorer::model::Level;
-use crate::explorer::{Command, Effect, Id, Panel, View, reach};
+use crate::explorer::{Command, Effect, Id, ScreenPanel, View, reach};
 use crate::figure::{Subject, map, nearest, study};
 use crate::tui::layout::Regions;
-use crate::tui::overlay::Overlay;
+use crate::tui::overlay::Dialog;
 use crate::tui::terminal::{KeyCode, MouseEvent, MouseEventKind};
 use crate::tui::view::status::{self, Does};
 use crate::tui::view::{cells, charts, header, log, overlays, places, problem, states};
@@ -31,7 +31,7 @@ fn table(regions: &Regions, at: Position) -> Option<Rect> {
 }
 
 /// A plot, and a place on it in shares of its window.
-type Place = (Rect, (f64, f64));
+type PlotPlace = (Rect, (f64, f64));
 
 impl App {
     /// Takes the mouse, or leaves it to the terminal.
@@ -60,7 +60,7 @@ impl App {
             _ => None,
         };
         if up.is_none()
-            && !matches!(self.overlay, Some(Overlay::Confirm(_)))
+            && !matches!(self.overlay, Some(Dialog::Confirm(_)))
             && let Some(effects) = self.click_word(at)
         {
             return effects;
@@ -68,7 +68,7 @@ impl App {
         match (&self.overlay, up) {
             (None, Some(up)) => self.wheel(at, up),
             (None, None) => self.click(at),
-            (Some(Overlay::Prompt(prompt)), None) => match overlays::entry_at(prompt, self.screen, at) {
+            (Some(Dialog::Prompt(prompt)), None) => match overlays::entry_at(prompt, self.screen, at) {
                 Some(line) if Some(line) == prompt.selected => self.key(KeyCode::Enter.into()),
                 Some(line) => {
                     self.select_item(line);
@@ -77,11 +77,11 @@ impl App {
                 None => Vec::new(),
             },
             // Above the list are lines typed before, which no wheel brings back.
-            (Some(Overlay::Prompt(prompt)), Some(true)) if prompt.selected.is_none() => Vec::new(),
-            (Some(Overlay::Choose(_) | Overlay::Help(_) | Overlay::Prompt(_)), Some(up)) => {
+            (Some(Dialog::Prompt(prompt)), Some(true)) if prompt.selected.is_none() => Vec::new(),
+            (Some(Dialog::Choose(_) | Dialog::Help(_) | Dialog::Prompt(_)), Some(up)) => {
                 self.key(if up { KeyCode::Up } else { KeyCode::Down }.into())
             }
-            (Some(Overlay::Choose(choose)), None) => match overlays::line_at(choose, self.screen, at) {
+            (Some(Dialog::Choose(choose)), None) => match overlays::line_at(choose, self.screen, at) {
                 Some(line) if line == choose.selected => self.key(KeyCode::Enter.into()),
                 Some(line) => {
                     self.select_item(line);
@@ -113,20 +113,20 @@ impl App {
     /// Another line of the list that lies over the screen.
     fn select_item(&mut self, line: usize) {
         match self.overlay.take() {
-            Some(Overlay::Choose(mut choose)) => {
+            Some(Dialog::Choose(mut choose)) => {
                 choose.selected = line;
                 choose.picture = choose.current().and_then(|(_, item)| self.picture(&item.action));
-                self.overlay = Some(Overlay::Choose(choose));
+                self.overlay = Some(Dialog::Choose(choose));
             }
-            Some(Overlay::Prompt(mut prompt)) => {
+            Some(Dialog::Prompt(mut prompt)) => {
                 prompt.selected = Some(line);
-                self.overlay = Some(Overlay::Prompt(prompt));
+                self.overlay = Some(Dialog::Prompt(prompt));
             }
             other => self.overlay = other,
         }
     }
 
-    fn pick(&mut self, panel: Panel, line: Option<usize>) -> Vec<Effect> {
+    fn pick(&mut self, panel: ScreenPanel, line: Option<usize>) -> Vec<Effect> {
         self.run(Command::Pick { panel, line })
     }
 
@@ -136,29 +136,29 @@ impl App {
         // An upper wall has the title of what is below it.
         if let Some(area) = inside(regions.log) {
             let line = log::line_at(self, area, at.y);
-            if line == Some(self.model.event) && self.model.panel == Panel::Log {
+            if line == Some(self.model.event) && self.model.panel == ScreenPanel::Log {
                 return self.run(Id::Edit.into());
             }
-            return self.pick(Panel::Log, line);
+            return self.pick(ScreenPanel::Log, line);
         }
-        for (panel, area) in [(Panel::Here, regions.here), (Panel::Result, regions.result)] {
+        for (panel, area) in [(ScreenPanel::Here, regions.here), (ScreenPanel::Result, regions.result)] {
             if inside(area).is_some() {
                 return self.pick(panel, None);
             }
         }
         if let Some(area) = inside(regions.problem) {
             let line = self.value_at(&regions, area, at);
-            return self.pick(Panel::Problem, line);
+            return self.pick(ScreenPanel::Problem, line);
         }
         if let Some(area) = table(&regions, at) {
             let line = states::line_at(&self.model, area, at.y);
-            if line == Some(reach::walk_line(&self.model)) && self.model.panel == Panel::Charts {
+            if line == Some(reach::walk_line(&self.model)) && self.model.panel == ScreenPanel::Charts {
                 return self.run(Id::Edit.into());
             }
-            return self.pick(Panel::Charts, line);
+            return self.pick(ScreenPanel::Charts, line);
         }
         let Some((view, place)) = self.place(&regions, at) else { return Vec::new() };
-        let mut effects = self.pick(Panel::Charts, None);
+        let mut effects = self.pick(ScreenPanel::Charts, None);
         if let Some((plot, share)) = place {
             effects.extend(self.go_to(view, share, Some(plot)));
         }
@@ -170,17 +170,17 @@ impl App {
         let inside = |area: Option<Rect>| area.filter(|area| area.contains(at));
         if let Some(area) = inside(regions.problem) {
             let Some(line) = self.value_at(&regions, area, at) else { return Vec::new() };
-            let mut effects = self.pick(Panel::Problem, Some(line));
+            let mut effects = self.pick(ScreenPanel::Problem, Some(line));
             effects.extend(self.run(if up { Id::More } else { Id::Less }.into()));
             return effects;
         }
         if inside(regions.log).is_some() {
             let line = if up { self.model.event.saturating_sub(1) } else { self.model.event + 1 };
-            return self.pick(Panel::Log, Some(line));
+            return self.pick(ScreenPanel::Log, Some(line));
         }
         if table(&regions, at).is_some() {
             let line = reach::walk_line(&self.model);
-            return self.pick(Panel::Charts, Some(if up { line.saturating_sub(1) } else { line + 1 }));
+            return self.pick(ScreenPanel::Charts, Some(if up { line.saturating_sub(1) } else { line + 1 }));
         }
         match self.place(&regions, at) {
             Some((view, Some((_, about)))) => self.run(Command::Zoom { view, closer: up, about }),
@@ -194,7 +194,7 @@ impl App {
     }
 
     /// The chart at a place of the screen, and if it is on the plot, the plot and the place in shares of the window.
-    fn place(&self, regions: &Regions, at: Position) -> Option<(View, Option<Place>)> {
+    fn place(&self, regions: &Regions, at: Position) -> Option<(View, Option<PlotPlace>)> {
         let (view, area) = regions.charts.iter().find(|(_, area)| area.contains(at))?;
         let subject = Subject::of(&self.model);
         let plot = subject.and_then(|subject| {

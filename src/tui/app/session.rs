@@ -3,7 +3,7 @@
 use super::state::App;
 use crate::explorer::Effect;
 use crate::explorer::session::Snapshot;
-use crate::tui::overlay::{Offer, Overlay as Over};
+use crate::tui::overlay::{Dialog, ResumeOffer};
 use crate::tui::theme::Theme;
 use crossterm::event::{KeyCode, KeyEvent};
 
@@ -17,15 +17,15 @@ impl App {
     /// Offers a session.
     pub fn offer(&mut self, what: &str, snapshot: Snapshot) {
         let question = format!("{what} Enter goes on with it, Esc begins anew.");
-        self.overlay = Some(Over::Offer(Offer { question, snapshot: Box::new(snapshot) }));
+        self.overlay = Some(Dialog::Offer(ResumeOffer { question, snapshot: Box::new(snapshot) }));
     }
 
     /// Whether a session is offered and no answer given yet.
     pub fn is_offering(&self) -> bool {
-        matches!(self.overlay, Some(Over::Offer(_)))
+        matches!(self.overlay, Some(Dialog::Offer(_)))
     }
 
-    pub(super) fn offer_key(&mut self, offer: Offer, key: KeyEvent) -> Vec<Effect> {
+    pub(super) fn offer_key(&mut self, offer: ResumeOffer, key: KeyEvent) -> Vec<Effect> {
         match key.code {
             KeyCode::Enter | KeyCode::Char('y') => {
                 let (model, effects) = offer.snapshot.resume(Some(&self.model));

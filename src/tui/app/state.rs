@@ -5,14 +5,12 @@ use crate::explorer::job::Done;
 use crate::explorer::look::{MIDDLE, make_room};
 use crate::explorer::model::{Level, Question};
 use crate::explorer::table::{is_available, row_of};
-use crate::explorer::{Command, Effect, Home, Id, Model, Panel, Reply, View, answer, open, update};
+use crate::explorer::{Command, Effect, Home, Id, Model, Reply, ScreenPanel, View, answer, open, update};
 use crate::figure::Subject;
 use crate::store::{Listed, Listing, Loaded, Source};
 use crate::tui::keymap::Keymap;
 use crate::tui::layout::is_alone;
-use crate::tui::overlay::{
-    Action, Choose, Confirm, Help, Item, LONGEST_LINE, Overlay as Over, Prompt, Purpose,
-};
+use crate::tui::overlay::{Choice, Choose, Confirm, Dialog, Help, Item, LONGEST_LINE, Prompt, Purpose};
 use crate::tui::theme::Theme;
 use crate::tui::view::help::ABOUT;
 use crate::tui::view::{cells, places};
@@ -38,7 +36,7 @@ fn deletion(source: &Source) -> Option<Box<Confirm>> {
 #[derive(Debug)]
 pub struct App {
     pub model: Model,
-    pub overlay: Option<Over>,
+    pub overlay: Option<Dialog>,
     /// Whether the next key says to which place to go.
     pub going: bool,
     pub theme: Theme,
@@ -93,11 +91,11 @@ impl App {
         let mut effects = self.pause(key);
         effects.extend(match self.overlay.take() {
             None => self.command_key(key),
-            Some(Over::Prompt(prompt)) => self.prompt_key(prompt, key),
-            Some(Over::Choose(choose)) => self.choose_key(choose, key),
-            Some(Over::Confirm(confirm)) => self.confirm_key(confirm, key),
-            Some(Over::Offer(offer)) => self.offer_key(offer, key),
-            Some(Over::Help(help)) => {
+            Some(Dialog::Prompt(prompt)) => self.prompt_key(prompt, key),
+            Some(Dialog::Choose(choose)) => self.choose_key(choose, key),
+            Some(Dialog::Confirm(confirm)) => self.confirm_key(confirm, key),
+            Some(Dialog::Offer(offer)) => self.offer_key(offer, key),
+            Some(Dialog::Help(help)) => {
                 self.help_key(help, key);
                 Vec::new()
             }
@@ -115,7 +113,7 @@ impl App {
     pub fn paste(&mut self, text: &str) -> Vec<Effect> {
         let Some(mut over) = self.overlay.take() else { return Vec::new() };
         let mut effects = Vec::new();
-        if let Over::Prompt(prompt) = &mut over
+        if let Dialog::Prompt(prompt) = &mut over
             && !prompt.waits
         {
             if std::mem::take(&mut prompt.fresh) {
@@ -135,7 +133,7 @@ impl App {
         self.screen = screen;
         let drawn = places(self, screen).map(|regions| regions.panels(is_alone(screen, self.enlarged)));
         if drawn.is_some_and(|drawn| !drawn.contains(&self.model.panel)) {
-            self.model.panel = Panel::Charts;
+            self.model.panel = ScreenPanel::Charts;
         }
         make_room(&mut self.model, views)
     }
@@ -151,7 +149,7 @@ impl App {
             self.file_answered();
         }
         // A line being typed, or an offer, is not torn away: the question waits for its end.
-        if !matches!(self.overlay, Some(Over::Prompt(_) | Over::Offer(_))) {
+        if !matches!(self.overlay, Some(Dialog::Prompt(_) | Dialog::Offer(_))) {
             self.raise_questions();
         }
         effects
@@ -160,7 +158,7 @@ impl App {
     /// A prompt that waited for a file closes, or stays with the reason why it was refused.
     pub(super) fn file_answered(&mut self) {
         let model = &mut self.model;
-        let Some(Over::Prompt(prompt)) = self.overlay.as_mut().filter(|over| over.waits()) else { return };
+        let Some(Dialog::Prompt(prompt)) = self.overlay.as_mut().filter(|over| over.waits()) else { return };
         // What is asked instead says the reason itself.
         if model.question.is_none()
             && let Some((_, reason)) = model.message.take_if(|(level, _)| level.is_bad())
@@ -178,7 +176,7 @@ impl App {
         prompt.waits =
             prompt.error.is_none() && effects.iter().any(|effect| matches!(effect, Effect::File(_)));
         if prompt.waits || prompt.error.is_some() {
-            self.overlay = Some(Over::Prompt(prompt));
+            self.overlay = Some(Dialog::Prompt(prompt));
         }
         effects
     }
@@ -237,18 +235,18 @@ impl App {
             .map(|entry| Item {
                 text: format!("{:<14} {}{}", entry.name, sanitize(&shown(&entry.title), 90), own(entry)),
                 note: entry.comment.clone(),
-                action: Action::Command(Command::Open(entry.name.clone())),
+                action: Choice::Command(Command::Open(entry.name.clone())),
                 delete: deletion(&entry.source),
             })
             .collect();
         let note = "a path with a / or ending in .toml";
         let prompt = Prompt::new("Open a file", note, String::new(), Purpose::Path);
-        items.push(Item::new("a file ...", Action::Prompt(Box::new(prompt))));
+        items.push(Item::new("a file ...", Choice::Prompt(Box::new(prompt))));
         self.choose("Open a preset", items, 0);
     }
 
     pub(super) fn ask(&mut self, question: String, yes: Command) {
-        self.overlay = Some(Over::Confirm(Confirm { question, yes }));
+        self.overlay = Some(Dialog::Confirm(Confirm { question, yes }));
     }
 
     pub(super) fn command_key(&mut self, key: KeyEvent) -> Vec<Effect> {
@@ -318,20 +316,22 @@ impl App {
                 Vec::new()
             }
             Id::About => {
-                self.overlay = Some(Over::Help(Help { page: ABOUT, ..Help::default() }));
+                self.overlay = Some(Dialog::Help(Help { page: ABOUT, ..Help::default() }));
                 Vec::new()
             }
             Id::NextPanel | Id::PreviousPanel => self.next_panel(id == Id::NextPanel),
-            Id::Up | Id::Down if self.model.panel == Panel::Problem => self.value_beside(id == Id::Down),
-            Id::Edit if self.model.panel == Panel::Charts && self.model.cross.is_none() => {
+            Id::Up | Id::Down if self.model.panel == ScreenPanel::Problem => {
+                self.value_beside(id == Id::Down)
+            }
+            Id::Edit if self.model.panel == ScreenPanel::Charts && self.model.cross.is_none() => {
                 match self.model.view {
                     View::Study => self.ask_argument(row_of(Id::Study)),
                     View::Map => self.run(Id::Map.into()),
                     _ => self.run(Id::Edit.into()),
                 }
             }
-            Id::Edit if self.model.panel == Panel::Charts => self.go_to_cross_hair(),
-            Id::Edit if self.model.panel == Panel::Problem => self.ask_value(),
+            Id::Edit if self.model.panel == ScreenPanel::Charts => self.go_to_cross_hair(),
+            Id::Edit if self.model.panel == ScreenPanel::Problem => self.ask_value(),
             id => self.run(id.into()),
         }
     }
@@ -354,7 +354,7 @@ impl App {
             return self.run(if down { Id::Down } else { Id::Up }.into());
         };
         let line = Some(cells::value_beside(self, area.width.saturating_sub(2), down));
-        self.run(Command::Pick { panel: Panel::Problem, line })
+        self.run(Command::Pick { panel: ScreenPanel::Problem, line })
     }
 
     /// The cross-hair, or where the walker stands in the window of the first view, or its middle.
@@ -373,7 +373,7 @@ impl App {
     pub(super) fn choose(&mut self, title: &str, items: Vec<Item>, selected: usize) {
         let picture = items.get(selected).and_then(|item| self.picture(&item.action));
         let (title, filter) = (title.to_owned(), String::new());
-        self.overlay = Some(Over::Choose(Choose { title, items, filter, selected, picture }));
+        self.overlay = Some(Dialog::Choose(Choose { title, items, filter, selected, picture }));
     }
 
     pub(super) fn ask_value(&mut self) -> Vec<Effect> {
@@ -386,7 +386,7 @@ impl App {
             (_, Kind::Control) => return self.ask_control(&row, value),
             _ => {}
         }
-        self.overlay = Some(Over::Prompt(self.value_prompt(&row, value)));
+        self.overlay = Some(Dialog::Prompt(self.value_prompt(&row, value)));
         Vec::new()
     }
 
@@ -413,7 +413,7 @@ impl App {
     }
 
     pub(super) fn prompt(&mut self, title: &str, note: &str, text: String, purpose: Purpose) -> Vec<Effect> {
-        self.overlay = Some(Over::Prompt(Prompt::new(title, note, text, purpose)));
+        self.overlay = Some(Dialog::Prompt(Prompt::new(title, note, text, purpose)));
         Vec::new()
     }
 
@@ -435,7 +435,7 @@ impl App {
                 let text = prompt.input.value().to_owned();
                 if let Some(fault) = prompt.formula_error() {
                     prompt.refuse(&fault);
-                    self.overlay = Some(Over::Prompt(prompt));
+                    self.overlay = Some(Dialog::Prompt(prompt));
                     return Vec::new();
                 }
                 let Some(command) = prompt.purpose.clone().command(text) else { return effects };
@@ -457,7 +457,7 @@ impl App {
                 }
             }
         }
-        self.overlay = Some(Over::Prompt(prompt));
+        self.overlay = Some(Dialog::Prompt(prompt));
         effects
     }
 
@@ -477,7 +477,7 @@ impl App {
             KeyCode::Char('n') | KeyCode::Esc => Vec::new(),
             _ if self.keymap.command(key) == Some(Id::SaveAs) => self.ask_name(),
             _ => {
-                self.overlay = Some(Over::Confirm(confirm));
+                self.overlay = Some(Dialog::Confirm(confirm));
                 Vec::new()
             }
         }

@@ -36,7 +36,7 @@ impl Ink {
 
 /// Cells beside each other in one row and of one look, by where they stand among all.
 #[derive(Debug, Clone)]
-struct Run {
+struct CellRun {
     look: usize,
     cells: Range<usize>,
 }
@@ -48,7 +48,7 @@ const MOST_RUNS: usize = 400;
 pub(super) fn encode(cells: &[(Position, &Cell)], columns: u16) -> Vec<u8> {
     let runs = runs(cells);
     let in_rows = in_order(cells, columns, runs.clone().into_iter());
-    let mut by_look: Vec<Vec<Run>> = Vec::new();
+    let mut by_look: Vec<Vec<CellRun>> = Vec::new();
     for run in runs {
         if by_look.len() <= run.look {
             by_look.resize_with(run.look + 1, Vec::new);
@@ -63,9 +63,9 @@ pub(super) fn encode(cells: &[(Position, &Cell)], columns: u16) -> Vec<u8> {
 }
 
 /// The cells in runs; a blank has the look of the cell before it where that makes no difference.
-fn runs(cells: &[(Position, &Cell)]) -> Vec<Run> {
+fn runs(cells: &[(Position, &Cell)]) -> Vec<CellRun> {
     let mut inks: Vec<Ink> = Vec::new();
-    let mut runs: Vec<Run> = Vec::new();
+    let mut runs: Vec<CellRun> = Vec::new();
     for (at, (place, cell)) in cells.iter().enumerate() {
         let ink = Ink::of(cell);
         let before = runs.last().map(|run| run.look);
@@ -80,20 +80,24 @@ fn runs(cells: &[(Position, &Cell)]) -> Vec<Run> {
             {
                 run.cells.end = at + 1;
             }
-            _ => runs.push(Run { look, cells: at..at + 1 }),
+            _ => runs.push(CellRun { look, cells: at..at + 1 }),
         }
     }
     runs
 }
 
 /// The runs in an order in which each is near the one before it: steep curves are followed down, not crossed in rows.
-fn nearest_first(cells: &[(Position, &Cell)], mut runs: Vec<Run>, at: &mut Option<Position>) -> Vec<Run> {
+fn nearest_first(
+    cells: &[(Position, &Cell)],
+    mut runs: Vec<CellRun>,
+    at: &mut Option<Position>,
+) -> Vec<CellRun> {
     if runs.len() > MOST_RUNS {
         return runs;
     }
     let mut ordered = Vec::with_capacity(runs.len());
     while !runs.is_empty() {
-        let cost = |run: &Run| at.map_or(0, |at| bytes_of_way(at, cells[run.cells.start].0));
+        let cost = |run: &CellRun| at.map_or(0, |at| bytes_of_way(at, cells[run.cells.start].0));
         // The first of those that are equally near.
         let next = (0..runs.len()).min_by_key(|next| cost(&runs[*next])).unwrap_or(0);
         let run = runs.remove(next);
@@ -104,7 +108,7 @@ fn nearest_first(cells: &[(Position, &Cell)], mut runs: Vec<Run>, at: &mut Optio
     ordered
 }
 
-fn in_order(cells: &[(Position, &Cell)], columns: u16, runs: impl Iterator<Item = Run>) -> Vec<u8> {
+fn in_order(cells: &[(Position, &Cell)], columns: u16, runs: impl Iterator<Item = CellRun>) -> Vec<u8> {
     let mut encoder = CellEncoder { frame: Vec::new(), ink: PLAIN, at: None, is_sure: false, columns };
     for (place, cell) in runs.flat_map(|run| &cells[run.cells]) {
         encoder.write(*place, cell);
@@ -136,9 +140,9 @@ impl CellEncoder {
         // Behind the last column terminals differ in where the cursor is.
         let next = Some(Position::new(at.x.saturating_add(1), at.y)).filter(|next| next.x < self.columns);
         (self.at, self.is_sure) = match width(symbol) {
-            Width::One => (next, self.is_sure),
-            Width::MostlyOne => (next, false),
-            Width::Other => (None, false),
+            SymbolWidth::One => (next, self.is_sure),
+            SymbolWidth::MostlyOne => (next, false),
+            SymbolWidth::Other => (None, false),
         };
     }
 
@@ -281,22 +285,22 @@ fn color(codes: &mut String, color: Color, shift: u8) {
 }
 
 /// How many columns a symbol takes.
-enum Width {
+enum SymbolWidth {
     One,
     /// One, but two on some that are set up for East Asian text.
     MostlyOne,
     Other,
 }
 
-fn width(symbol: &str) -> Width {
+fn width(symbol: &str) -> SymbolWidth {
     let mut chars = symbol.chars();
     match (chars.next(), chars.next()) {
-        (Some(' '..='~' | '\u{2800}'..='\u{28ff}'), None) => Width::One,
+        (Some(' '..='~' | '\u{2800}'..='\u{28ff}'), None) => SymbolWidth::One,
         // Latin, Greek, Cyrillic; punctuation, arrows, mathematics, frames and blocks.
         (Some('\u{a1}'..='\u{2ff}' | '\u{370}'..='\u{482}' | '\u{2010}'..='\u{27bf}'), None) => {
-            Width::MostlyOne
+            SymbolWidth::MostlyOne
         }
-        _ => Width::Other,
+        _ => SymbolWidth::Other,
     }
 }
 

@@ -17,8 +17,8 @@ use ratatui::{
 };
 
 use super::end::{HUNG_UP, end};
-use super::screen::{Screen, Written};
-use super::sink::Sink;
+use super::screen::{FrameCost, Screen};
+use super::sink::FrameSink;
 
 /// How frames follow each other. The first one after a pause never waits.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,7 +49,7 @@ impl Default for Pace {
 
 impl Pace {
     /// The wait from the end of a frame to the start of the next.
-    fn gap(&self, written: Written) -> Duration {
+    fn gap(&self, written: FrameCost) -> Duration {
         if written.bytes == 0 {
             return Duration::ZERO;
         }
@@ -89,7 +89,7 @@ impl Allowance {
 }
 
 /// The screen to draw on.
-pub struct Display<S: Sink + 'static> {
+pub struct Display<S: FrameSink + 'static> {
     terminal: Terminal<Screen<S>>,
     line: &'static S,
     pace: Pace,
@@ -100,7 +100,7 @@ pub struct Display<S: Sink + 'static> {
     due_running: Instant,
 }
 
-impl<S: Sink> Display<S> {
+impl<S: FrameSink> Display<S> {
     pub fn new(line: &'static S) -> io::Result<Self> {
         Self::paced(line, Pace::default())
     }
@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn small_frames_follow_at_thirty_per_second_and_large_ones_at_the_rate() {
         let pace = Pace::default();
-        let gap = |bytes, took| pace.gap(Written { bytes, took: Duration::from_millis(took) }).as_millis();
+        let gap = |bytes, took| pace.gap(FrameCost { bytes, took: Duration::from_millis(took) }).as_millis();
         assert_eq!(gap(0, 0), 0);
         assert_eq!(gap(200, 0), 33);
         assert_eq!(gap(1600, 0), 100);

@@ -5,7 +5,7 @@ use std::io;
 use super::display::Display;
 use super::end::{self, install_panic_hook};
 use super::input::Inbox;
-use super::sink::Sink;
+use super::sink::FrameSink;
 use super::tty::Tty;
 use super::{hangup, signals};
 
@@ -28,7 +28,7 @@ impl Drop for Guard {
 /// ([`set_last_words`](super::set_last_words)) and with the terminal given back.
 /// Errors: If there is no terminal (ask [`refuse_reason`](super::refuse_reason) first), if it was taken before, or if a thread
 /// cannot be started. The terminal is then as it was.
-pub fn enter<T: Send + 'static>() -> io::Result<(Guard, Display<impl Sink>, Inbox<T>)> {
+pub fn enter<T: Send + 'static>() -> io::Result<(Guard, Display<impl FrameSink>, Inbox<T>)> {
     let tty = Tty::open()?;
     // Before the first mode is set, so that no moment is without them.
     install_panic_hook();

@@ -74,4 +74,4 @@ pub use input::{Inbox, Incoming, Sender};
 pub use refuse::{refuse_reason, utf8_locale};
 pub use screen::Screen;
 pub use signals::suspend;
-pub use sink::Sink;
+pub use sink::FrameSink;

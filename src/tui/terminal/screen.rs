@@ -22,31 +22,31 @@ use ratatui::{
 
 use super::cell_encoder::encode;
 use super::end::{HUNG_UP, end};
-use super::sink::Sink;
+use super::sink::FrameSink;
 
 /// The terminal as ratatui sees it.
-pub struct Screen<S: Sink + 'static> {
+pub struct Screen<S: FrameSink + 'static> {
     line: &'static S,
     frame: Vec<u8>,
     cursor_shown: Option<bool>,
     /// Where the cursor was put, if nothing was drawn since.
     cursor_at: Option<Position>,
-    last: Written,
+    last: FrameCost,
 }
 
 /// What the last frame cost.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Written {
+pub(super) struct FrameCost {
     pub(super) bytes: usize,
     pub(super) took: Duration,
 }
 
-impl<S: Sink> Screen<S> {
+impl<S: FrameSink> Screen<S> {
     pub(super) fn new(line: &'static S) -> Self {
-        Self { line, frame: Vec::new(), cursor_shown: None, cursor_at: None, last: Written::default() }
+        Self { line, frame: Vec::new(), cursor_shown: None, cursor_at: None, last: FrameCost::default() }
     }
 
-    pub(super) fn last_written(&self) -> Written {
+    pub(super) fn last_written(&self) -> FrameCost {
         self.last
     }
 
@@ -75,7 +75,7 @@ impl<S: Sink> Screen<S> {
     }
 }
 
-impl<S: Sink> Backend for Screen<S> {
+impl<S: FrameSink> Backend for Screen<S> {
     type Error = io::Error;
 
     fn draw<'a, I>(&mut self, content: I) -> io::Result<()>
@@ -144,7 +144,7 @@ impl<S: Sink> Backend for Screen<S> {
         if self.line.write_frame(&self.frame).is_err() {
             end(HUNG_UP);
         }
-        self.last = Written { bytes: self.frame.len(), took: start.elapsed() };
+        self.last = FrameCost { bytes: self.frame.len(), took: start.elapsed() };
         self.frame.clear();
         Ok(())
     }

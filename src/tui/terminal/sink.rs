@@ -3,7 +3,7 @@
 use std::io;
 
 /// Where frames go.
-pub trait Sink {
+pub trait FrameSink {
     /// Writes a whole frame, waiting for room as long as it takes.
     fn write_frame(&self, frame: &[u8]) -> io::Result<()>;
 

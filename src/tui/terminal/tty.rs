@@ -27,7 +27,7 @@ use rustix::{
     },
 };
 
-use super::sink::Sink;
+use super::sink::FrameSink;
 
 /// Switches to the alternate screen, cleared, without cursor, and lets pastes be told from keys.
 const TAKE: &[u8] = b"\x1b[?1049h\x1b[?25l\x1b[?2004h\x1b[0m\x1b[2J\x1b[H";
@@ -210,7 +210,7 @@ impl Tty {
     }
 }
 
-impl Sink for Tty {
+impl FrameSink for Tty {
     // If the terminal is given back meanwhile the rest is dropped: it belongs to a screen that is no longer shown.
     fn write_frame(&self, frame: &[u8]) -> io::Result<()> {
         let hands = self.hands.load(Ordering::SeqCst);

@@ -2,8 +2,8 @@
 
 use super::here;
 use super::parts::{is_selected, panel};
-use super::problem::{CELL, Shown, shown, standing};
-use crate::explorer::Panel;
+use super::problem::{CELL, ShownValue, shown, standing};
+use crate::explorer::ScreenPanel;
 use crate::tui::app::App;
 use crate::tui::layout::VALUE_LINES;
 use ratatui::Frame;
@@ -13,14 +13,14 @@ use ratatui::widgets::Paragraph;
 
 /// Where a value stands: its line and the cells of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Seat {
+struct ValueSeat {
     line: usize,
     first: usize,
     cells: usize,
 }
 
 /// The seats of so wide values, in lines of `count` cells; none is broken.
-fn seats(values: &[Shown], count: usize) -> Vec<Seat> {
+fn seats(values: &[ShownValue], count: usize) -> Vec<ValueSeat> {
     let (mut line, mut first) = (0, 0);
     let mut seats = Vec::new();
     for value in values {
@@ -28,14 +28,14 @@ fn seats(values: &[Shown], count: usize) -> Vec<Seat> {
         if first > 0 && first + cells > count {
             (line, first) = (line + 1, 0);
         }
-        seats.push(Seat { line, first, cells });
+        seats.push(ValueSeat { line, first, cells });
         first += cells;
     }
     seats
 }
 
 /// The lines shown, from the first one on: the selected one is the last of them, as soon as there are lines above.
-fn first_line(seats: &[Seat], selected: usize) -> usize {
+fn first_line(seats: &[ValueSeat], selected: usize) -> usize {
     let last = seats.last().map_or(0, |seat| seat.line);
     let lines = usize::from(VALUE_LINES);
     let at = seats.get(selected).map_or(0, |seat| seat.line);
@@ -49,7 +49,7 @@ fn count(width: u16) -> usize {
 /// Draws the values and the state.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
-    let selected = is_selected(app, Panel::Problem);
+    let selected = is_selected(app, ScreenPanel::Problem);
     let inner = area.inner(Margin::new(1, 1));
     let values = shown(app);
     let can_turn = model.knobs().len();
@@ -88,7 +88,7 @@ pub fn value_at(app: &App, area: Rect, at: Position) -> Option<usize> {
         return None;
     }
     let cell = usize::from(at.x.checked_sub(inner.x)?) / CELL;
-    let is_it = |seat: &Seat| seat.line == line && (seat.first..seat.first + seat.cells).contains(&cell);
+    let is_it = |seat: &ValueSeat| seat.line == line && (seat.first..seat.first + seat.cells).contains(&cell);
     seats.iter().position(is_it).filter(|at| *at < app.model.knobs().len())
 }
 
@@ -99,7 +99,7 @@ pub fn value_beside(app: &App, width: u16, down: bool) -> usize {
     let last = app.model.knobs().len().saturating_sub(1);
     let Some(here) = seats.get(selected).copied() else { return selected };
     let line = if down { Some(here.line + 1) } else { here.line.checked_sub(1) };
-    let is_it = |seat: &Seat| Some(seat.line) == line && seat.first <= here.first;
+    let is_it = |seat: &ValueSeat| Some(seat.line) == line && seat.first <= here.first;
     let found = seats.iter().take(last + 1).rposition(is_it);
     let first_of_line = || seats.iter().take(last + 1).position(|seat| Some(seat.line) == line);
     found.or_else(first_of_line).unwrap_or(selected)

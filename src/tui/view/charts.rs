@@ -3,10 +3,10 @@
 use super::legend::legend;
 use super::parts::is_selected;
 use super::states;
-use crate::explorer::{Id, Model, Panel, View, Window, reach};
+use crate::explorer::{Id, Model, ScreenPanel, View, Window, reach};
 use crate::figure::{Area, Axis, Figure, Meaning, Sign, Subject, nearest};
 use crate::tui::app::App;
-use crate::tui::chart::{Chart, Entry};
+use crate::tui::chart::{Chart, LegendRow};
 use crate::tui::marks::style;
 use crate::tui::theme::Theme;
 use pulloff_engine::gap::Gap;
@@ -27,7 +27,7 @@ pub struct Seat {
 /// Draws one view.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, seat: Seat) {
     let (model, first) = (&app.model, seat.first);
-    let selected = first && is_selected(app, Panel::Charts);
+    let selected = first && is_selected(app, ScreenPanel::Charts);
     if view.is_table() {
         return states::draw(frame, area, app, selected);
     }
@@ -130,6 +130,8 @@ fn select_event(model: &Model, chart: &mut Chart<'_>) {
         && let sign @ Sign::Event(_) = chart.figure.marks[at].sign
     {
         let style = style(sign, chart.theme).add_modifier(Modifier::REVERSED);
-        chart.legend.insert(0, Entry { glyph: "v".to_owned(), style, meaning: format!("event {number}") });
+        chart
+            .legend
+            .insert(0, LegendRow { glyph: "v".to_owned(), style, meaning: format!("event {number}") });
     }
 }

@@ -2,7 +2,7 @@
 
 use super::parts::{is_selected, pair, panel, symbol};
 use crate::explorer::node::{Node, NodeKind};
-use crate::explorer::{Id, Model, Panel};
+use crate::explorer::{Id, Model, ScreenPanel};
 use crate::figure::{Axis, Scale};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
@@ -22,7 +22,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
     let node = model.history.current();
     let title = node.map_or_else(|| "Here".to_owned(), |node| format!("Here, step {}", node.step));
-    let block = panel(theme, &title, is_selected(app, Panel::Here));
+    let block = panel(theme, &title, is_selected(app, ScreenPanel::Here));
     let inner = block.inner(area);
     frame.render_widget(block, area);
     let Some(node) = node else { return };

@@ -2,14 +2,14 @@
 
 use crate::explorer::{Model, View};
 use crate::figure::{Bounds, Figure, Role, Sign, Subject, nearest, reading, study};
-use crate::tui::chart::Entry;
+use crate::tui::chart::LegendRow;
 use crate::tui::marks::{glyph, letter, look, style};
 use crate::tui::theme::Theme;
 
 /// What is in the window of a figure, the most important first: the curve, pins, the walk, the marks, theory, the rest.
-pub fn legend(figure: &Figure, bounds: &Bounds, theme: Theme) -> Vec<Entry> {
-    let mut words: Vec<(u8, Entry)> = Vec::new();
-    let mut add = |rank: u8, entry: Entry| {
+pub fn legend(figure: &Figure, bounds: &Bounds, theme: Theme) -> Vec<LegendRow> {
+    let mut words: Vec<(u8, LegendRow)> = Vec::new();
+    let mut add = |rank: u8, entry: LegendRow| {
         if !words.iter().any(|(_, other)| other.meaning == entry.meaning) {
             words.push((rank, entry));
         }
@@ -18,7 +18,7 @@ pub fn legend(figure: &Figure, bounds: &Bounds, theme: Theme) -> Vec<Entry> {
     for line in figure.lines.iter().filter(|line| !line.name.is_empty() && is_seen(&line.points)) {
         let style = look(line.role, theme).style;
         let meaning = theme.symbols(&line.name);
-        add(rank(line.role), Entry { glyph: glyph(line.role, theme), style, meaning });
+        add(rank(line.role), LegendRow { glyph: glyph(line.role, theme), style, meaning });
     }
     for mark in figure.marks.iter().filter(|mark| bounds.share(mark.at).is_some()) {
         if let Some((rank, word)) = meaning(mark.sign) {
@@ -28,7 +28,7 @@ pub fn legend(figure: &Figure, bounds: &Bounds, theme: Theme) -> Vec<Entry> {
                 Sign::OfCrest(_) => "c1".to_owned(),
                 sign => letter(sign, theme),
             };
-            add(rank, Entry { glyph, style: style(mark.sign, theme), meaning: word.to_owned() });
+            add(rank, LegendRow { glyph, style: style(mark.sign, theme), meaning: word.to_owned() });
         }
     }
     // Of one rank in the order of the figure; pins by number.

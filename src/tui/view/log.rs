@@ -1,8 +1,8 @@
 //! The log: what happens on the path, done, here and ahead, a line each; behind it the inadmissible parts of the curve.
 
 use super::parts::{is_selected, panel};
-use crate::explorer::log::{Entry, Log, Mark};
-use crate::explorer::{Axes, Inadmissible, Model, Panel};
+use crate::explorer::log::{EventMark, Log, LogEntry};
+use crate::explorer::{Axes, Inadmissible, Model, ScreenPanel};
 use crate::figure::{Axis, Scale};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
@@ -27,7 +27,7 @@ const BAR_ROWS: u16 = 4;
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
     let log = model.log();
-    let selected = is_selected(app, Panel::Log);
+    let selected = is_selected(app, ScreenPanel::Log);
     let head = title(model, theme, usize::from(area.width));
     let room = usize::from(area.width).saturating_sub(head.chars().count() + 4);
     let block = panel(theme, &head, selected)
@@ -66,9 +66,9 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
         let text = if i == first || i + 1 == last { format!("{text:<width$}{more}") } else { text };
         let style = match log.entries.get(i).map(|entry| entry.mark) {
             _ if chosen => theme.selection(),
-            Some(Mark::Here) => theme.strong(),
-            Some(Mark::Ahead) | None => Style::new(),
-            Some(Mark::Done) => theme.dim(),
+            Some(EventMark::Here) => theme.strong(),
+            Some(EventMark::Ahead) | None => Style::new(),
+            Some(EventMark::Done) => theme.dim(),
         };
         Line::styled(text.trim_end().to_owned(), style)
     }));
@@ -81,10 +81,11 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
 
 /// The lines shown: those about the selected one, and in any case the one where the walker stands, or that is next.
 fn shown(log: &Log, model: &Model, count: usize, rows: usize) -> Vec<usize> {
-    let next = || log.entries.iter().rposition(|entry| entry.mark == Mark::Done).map_or(0, |done| done + 1);
-    let here = log.entries.iter().position(|entry| entry.mark == Mark::Here).unwrap_or_else(next);
+    let next =
+        || log.entries.iter().rposition(|entry| entry.mark == EventMark::Done).map_or(0, |done| done + 1);
+    let here = log.entries.iter().position(|entry| entry.mark == EventMark::Here).unwrap_or_else(next);
     // What is done just before stays in sight.
-    let above = if model.panel == Panel::Log { model.event + 1 } else { here + 2 };
+    let above = if model.panel == ScreenPanel::Log { model.event + 1 } else { here + 2 };
     let about = |rows: usize| {
         let first = above.saturating_sub(rows).min(count.saturating_sub(rows));
         first..count.min(first + rows)
@@ -121,18 +122,18 @@ fn title(model: &Model, theme: Theme, width: usize) -> String {
     let old = if is_old { ", of the values before" } else { "" };
     let marks = format!(
         "Log{old} {} done {} here {} ahead",
-        mark(theme, Mark::Done),
-        mark(theme, Mark::Here),
-        mark(theme, Mark::Ahead)
+        mark(theme, EventMark::Done),
+        mark(theme, EventMark::Here),
+        mark(theme, EventMark::Ahead)
     );
     if marks.chars().count() + 30 < width { marks } else { format!("Log{old}") }
 }
 
-fn mark(theme: Theme, mark: Mark) -> &'static str {
+fn mark(theme: Theme, mark: EventMark) -> &'static str {
     match mark {
-        Mark::Done => theme.glyph("✓", "x"),
-        Mark::Here => "@",
-        Mark::Ahead => theme.glyph("·", "."),
+        EventMark::Done => theme.glyph("✓", "x"),
+        EventMark::Here => "@",
+        EventMark::Ahead => theme.glyph("·", "."),
     }
 }
 
@@ -214,7 +215,7 @@ fn bar(model: &Model, theme: Theme, area: Rect) -> Option<Line<'static>> {
 
 /// A column: how soon it is left out, and whether its cells begin at its left.
 const COLUMNS: [(u8, bool); 9] = [
-    // Mark and number.
+    // EventMark and number.
     (0, true),
     // What happened.
     (3, true),
@@ -232,7 +233,7 @@ const COLUMNS: [(u8, bool); 9] = [
 ];
 
 /// The lines of the entries, with as many columns as there is room for; the first line shown names what they are.
-fn table(model: &Model, theme: Theme, entries: &[Entry], named: usize, room: usize) -> Vec<String> {
+fn table(model: &Model, theme: Theme, entries: &[LogEntry], named: usize, room: usize) -> Vec<String> {
     let Some(curve) = model.curve.as_deref() else { return Vec::new() };
     let scale = Scale::of(curve, model.axes);
     let [length, force, radius] = scale.state_axes();
@@ -278,7 +279,7 @@ fn table(model: &Model, theme: Theme, entries: &[Entry], named: usize, room: usi
 }
 
 /// The cells of an entry, in the units of the charts.
-fn cells(entry: &Entry, scale: Scale<'_>, units: &UnitSystem, theme: Theme, is_held: bool) -> [String; 9] {
+fn cells(entry: &LogEntry, scale: Scale<'_>, units: &UnitSystem, theme: Theme, is_held: bool) -> [String; 9] {
     let event = &entry.event;
     let number = entry.number.map_or_else(String::new, |number| number.to_string());
     let arrow = theme.glyph("▸", ">");

@@ -16,8 +16,8 @@ pub mod status;
 
 use super::app::App;
 use super::layout::{COLUMN, Regions, SMALLEST, Wants, regions};
-use super::overlay::Overlay;
-use crate::explorer::Panel;
+use super::overlay::Dialog;
+use crate::explorer::ScreenPanel;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
@@ -45,7 +45,7 @@ pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
     status::draw(frame, regions.status, regions.footer, app);
     match &app.overlay {
         None => {}
-        Some(Overlay::Help(shown)) => help::draw(frame, area, app, shown),
+        Some(Dialog::Help(shown)) => help::draw(frame, area, app, shown),
         Some(overlay) => overlays::draw(frame, area, app, overlay),
     }
     regions.charts.len()
@@ -54,17 +54,17 @@ pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
 /// Draws the selected panel, or the others.
 fn draw_panels(frame: &mut Frame<'_>, app: &App, regions: &Regions, selected: bool) {
     let is_due = |panel| is_selected(app, panel) == selected;
-    if let Some(area) = regions.problem.filter(|_| is_due(Panel::Problem)) {
+    if let Some(area) = regions.problem.filter(|_| is_due(ScreenPanel::Problem)) {
         if regions.is_stacked {
             cells::draw(frame, area, app);
         } else {
             problem::draw(frame, area, app);
         }
     }
-    if let Some(area) = regions.here.filter(|_| is_due(Panel::Here)) {
+    if let Some(area) = regions.here.filter(|_| is_due(ScreenPanel::Here)) {
         here::draw(frame, area, app);
     }
-    if let Some(area) = regions.result.filter(|_| is_due(Panel::Result)) {
+    if let Some(area) = regions.result.filter(|_| is_due(ScreenPanel::Result)) {
         result::draw(frame, area, app);
     }
     let pair = match &regions.charts[..] {
@@ -73,13 +73,13 @@ fn draw_panels(frame: &mut Frame<'_>, app: &App, regions: &Regions, selected: bo
     };
     for (i, (view, area)) in regions.charts.iter().enumerate() {
         // The keys are those of the first.
-        if (i == 0 && is_selected(app, Panel::Charts)) == selected {
+        if (i == 0 && is_selected(app, ScreenPanel::Charts)) == selected {
             let beside = pair.filter(|_| i < 2).map(|[a, b]| if i == 0 { b } else { a });
             let seat = charts::Seat { first: i == 0, beside };
             charts::draw(frame, *area, app, *view, seat);
         }
     }
-    if let Some(area) = regions.log.filter(|_| is_due(Panel::Log)) {
+    if let Some(area) = regions.log.filter(|_| is_due(ScreenPanel::Log)) {
         log::draw(frame, area, app);
     }
 }

@@ -5,7 +5,7 @@ use super::parts::panel;
 use crate::explorer::script::parse;
 use crate::explorer::{View, Window};
 use crate::tui::app::App;
-use crate::tui::overlay::{Choose, Overlay, Prompt, Purpose};
+use crate::tui::overlay::{Choose, Dialog, Prompt, Purpose};
 use crate::tui::theme::Theme;
 use pulloff_engine::text::sanitize;
 use ratatui::Frame;
@@ -23,13 +23,13 @@ const NARROWEST: u16 = 20;
 const PICTURE: u16 = 16;
 
 /// Draws what lies over the screen, except the help.
-pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, overlay: &Overlay) {
+pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, overlay: &Dialog) {
     match overlay {
-        Overlay::Prompt(prompt) => draw_prompt(frame, area, app, prompt),
-        Overlay::Choose(choose) => draw_choose(frame, area, app.theme, choose),
-        Overlay::Confirm(confirm) => draw_question(frame, area, app.theme, "Sure?", &confirm.question),
-        Overlay::Offer(offer) => draw_question(frame, area, app.theme, "Go on?", &offer.question),
-        Overlay::Help(_) => {}
+        Dialog::Prompt(prompt) => draw_prompt(frame, area, app, prompt),
+        Dialog::Choose(choose) => draw_choose(frame, area, app.theme, choose),
+        Dialog::Confirm(confirm) => draw_question(frame, area, app.theme, "Sure?", &confirm.question),
+        Dialog::Offer(offer) => draw_question(frame, area, app.theme, "Go on?", &offer.question),
+        Dialog::Help(_) => {}
     }
 }
 

@@ -1,6 +1,6 @@
 //! Parts that several regions draw with: frames of panels, cut texts, pairs of key and value.
 
-use crate::explorer::{Id, Panel};
+use crate::explorer::{Id, ScreenPanel};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
@@ -13,7 +13,7 @@ pub(super) fn panel<'a>(theme: Theme, title: &str, selected: bool) -> Block<'a> 
 }
 
 /// Whether a panel is the selected one, and nothing lies over it.
-pub(super) fn is_selected(app: &App, panel: Panel) -> bool {
+pub(super) fn is_selected(app: &App, panel: ScreenPanel) -> bool {
     app.model.panel == panel && app.overlay.is_none()
 }
 

@@ -2,7 +2,7 @@
 
 use super::parts::{is_selected, pair, panel, symbol};
 use crate::explorer::fitting::is_free;
-use crate::explorer::{Id, Model, Panel};
+use crate::explorer::{Id, Model, ScreenPanel};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
@@ -33,7 +33,7 @@ struct Arranged {
 
 fn arrange(app: &App, area: Rect, all: &[(Row, Option<Value>)]) -> Arranged {
     let model = &app.model;
-    let selected = is_selected(app, Panel::Problem);
+    let selected = is_selected(app, ScreenPanel::Problem);
     let inner = area.inner(Margin::new(1, 1));
     // The groups that can be set stand behind the parameters, among those that cannot.
     let parameters = all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count();
@@ -58,7 +58,7 @@ fn arrange(app: &App, area: Rect, all: &[(Row, Option<Value>)]) -> Arranged {
 /// Draws the parameters and the groups.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
-    let selected = is_selected(app, Panel::Problem);
+    let selected = is_selected(app, ScreenPanel::Problem);
     let all = model.knobs();
     let Arranged { inner, parameters, first, rows, groups } = arrange(app, area, &all);
     let title = if rows < parameters {
@@ -102,14 +102,14 @@ pub fn line_at(app: &App, area: Rect, row: u16) -> Option<usize> {
 pub(super) const CELL: usize = 13;
 
 /// A value as cells show it.
-pub(super) struct Shown {
+pub(super) struct ShownValue {
     label: String,
     text: String,
     /// How many cells it takes.
     pub(super) cells: usize,
 }
 
-impl Shown {
+impl ShownValue {
     /// A value of so many characters, written as `text` says for the room there is.
     fn new(label: String, width: usize, text: impl FnOnce(usize) -> String) -> Self {
         // The mark before the label, and a blank behind it.
@@ -136,7 +136,7 @@ impl Shown {
 }
 
 /// The values, the groups that can be set, then those that cannot, as cells show them.
-pub(super) fn shown(app: &App) -> Vec<Shown> {
+pub(super) fn shown(app: &App) -> Vec<ShownValue> {
     /// A turned number keeps its cell: room for this many characters, whatever it is now.
     const NUMBER: usize = 5;
     let (model, theme) = (&app.model, app.theme);
@@ -150,19 +150,20 @@ pub(super) fn shown(app: &App) -> Vec<Shown> {
             let unit = row.unit_in(units).map_or(0, |unit| unit.ascii().chars().count() + 1);
             let shortest = errors.iter().map(|error| error.chars().count()).min().unwrap_or(0);
             let width = short.max(NUMBER + unit) + shortest;
-            Shown::new(label, width, |room| fitted(theme, units, &row, x, (7, errors), room))
+            ShownValue::new(label, width, |room| fitted(theme, units, &row, x, (7, errors), room))
         };
         match value {
-            None => Shown::word(label, "auto".to_owned()),
+            None => ShownValue::word(label, "auto".to_owned()),
             Some(Value::Number(x)) => number(label, x, &errors(theme, error)),
             Some(Value::Control(Control::Stiffness(k))) => number(format!("{label} k"), k, &[String::new()]),
-            Some(value) => Shown::word(label, theme.text(&value.to_string())),
+            Some(value) => ShownValue::word(label, theme.text(&value.to_string())),
         }
     });
     let of = Groups::of(&model.preset.problem(), model.preset.range_of_action(), model.preset.cohesion());
     let others = [("λ²/AR", of.connectivity), ("α", of.johnson), ("μ", of.tabor)];
-    let others =
-        others.into_iter().filter_map(|(name, value)| Some(Shown::word(theme.text(name), short(value?, 4))));
+    let others = others
+        .into_iter()
+        .filter_map(|(name, value)| Some(ShownValue::word(theme.text(name), short(value?, 4))));
     values.chain(others).collect()
 }
 

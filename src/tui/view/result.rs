@@ -3,7 +3,7 @@
 use super::log::snaps;
 use super::parts::{is_selected, pair, panel};
 use crate::explorer::pins::Pin;
-use crate::explorer::{Model, Panel};
+use crate::explorer::{Model, ScreenPanel};
 use crate::figure::Scale;
 use crate::tui::app::App;
 use crate::tui::theme::Theme;
@@ -19,7 +19,7 @@ use ratatui::widgets::Paragraph;
 /// Draws what comes of the path.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
-    let block = panel(theme, "Result", is_selected(app, Panel::Result));
+    let block = panel(theme, "Result", is_selected(app, ScreenPanel::Result));
     let inner = block.inner(area);
     frame.render_widget(block, area);
     let pinned = model.pins.all().last().and_then(|pin| Some((pin, pin.curve.report.as_ref()?)));

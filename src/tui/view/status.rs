@@ -4,9 +4,9 @@ use super::legend::reading;
 use super::parts::fitted;
 use crate::explorer::model::Level;
 use crate::explorer::table::{is_available, row_of};
-use crate::explorer::{Home, Id, Panel, View};
+use crate::explorer::{Home, Id, ScreenPanel, View};
 use crate::tui::app::App;
-use crate::tui::overlay::{Overlay, Prompt, Purpose};
+use crate::tui::overlay::{Dialog, Prompt, Purpose};
 use crossterm::event::KeyCode;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -18,23 +18,25 @@ pub fn offered(app: &App) -> Vec<(Id, &'static str)> {
     let walk = [Id::Step, Id::NextEvent, Id::Jump, Id::Reverse, Id::Undo].map(word);
     let model = &app.model;
     let own: &[(Id, &str)] = match (model.panel, model.view) {
-        (Panel::Problem, _) if model.preset.data.source.is_some() => &[
+        (ScreenPanel::Problem, _) if model.preset.data.source.is_some() => &[
             (Id::Less, "less"),
             (Id::More, "more"),
             (Id::Edit, "type"),
             (Id::Free, "free"),
             (Id::Fit, "fit"),
         ],
-        (Panel::Problem, _) => &[(Id::Less, "less"), (Id::More, "more"), (Id::Edit, "type")],
-        (Panel::Log, _) => &[(Id::Edit, "go there")],
-        (Panel::Charts, view) if view.is_table() => &[(Id::Edit, "go there")],
-        (Panel::Charts, _) if model.cross.is_some() => &[(Id::Edit, "go there"), (Id::CrossHair, "off")],
-        (Panel::Charts, View::Study) => &[(Id::Edit, "quantity"), (Id::CrossHair, "cross-hair")],
-        (Panel::Charts, View::Map) => &[(Id::Edit, "axes"), (Id::CrossHair, "cross-hair")],
-        (Panel::Charts, _) => {
+        (ScreenPanel::Problem, _) => &[(Id::Less, "less"), (Id::More, "more"), (Id::Edit, "type")],
+        (ScreenPanel::Log, _) => &[(Id::Edit, "go there")],
+        (ScreenPanel::Charts, view) if view.is_table() => &[(Id::Edit, "go there")],
+        (ScreenPanel::Charts, _) if model.cross.is_some() => {
+            &[(Id::Edit, "go there"), (Id::CrossHair, "off")]
+        }
+        (ScreenPanel::Charts, View::Study) => &[(Id::Edit, "quantity"), (Id::CrossHair, "cross-hair")],
+        (ScreenPanel::Charts, View::Map) => &[(Id::Edit, "axes"), (Id::CrossHair, "cross-hair")],
+        (ScreenPanel::Charts, _) => {
             &[(Id::CrossHair, "cross-hair"), (Id::ZoomIn, "closer"), (Id::ZoomOut, "wider")]
         }
-        (Panel::Here | Panel::Result, _) => &[],
+        (ScreenPanel::Here | ScreenPanel::Result, _) => &[],
     };
     let rest = [
         Id::Quit,
@@ -97,13 +99,13 @@ pub enum Does {
 
 /// A key of the footer and what it does in a word.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Word {
+pub struct FooterWord {
     pub key: String,
     pub text: &'static str,
     pub does: Does,
 }
 
-impl Word {
+impl FooterWord {
     /// Its columns, with a blank between and two behind.
     fn width(&self) -> usize {
         self.key.chars().count() + self.text.chars().count() + 3
@@ -111,15 +113,18 @@ impl Word {
 }
 
 /// The words of the footer that fit into `width`.
-fn words(app: &App, width: u16) -> Vec<Word> {
+fn words(app: &App, width: u16) -> Vec<FooterWord> {
     let key = |id: Id| app.keymap.first(id);
-    let command = |(id, text): (Id, &'static str)| Word { key: key(id), text, does: Does::Command(id) };
-    let in_list =
-        |(id, text, code): (Id, &'static str, KeyCode)| Word { key: key(id), text, does: Does::Key(code) };
+    let command = |(id, text): (Id, &'static str)| FooterWord { key: key(id), text, does: Does::Command(id) };
+    let in_list = |(id, text, code): (Id, &'static str, KeyCode)| FooterWord {
+        key: key(id),
+        text,
+        does: Does::Key(code),
+    };
     let (accept, back) = ((Id::Edit, "accept", KeyCode::Enter), (Id::Cancel, "back", KeyCode::Esc));
-    let all: Vec<Word> = match &app.overlay {
+    let all: Vec<FooterWord> = match &app.overlay {
         None if app.going => {
-            let place = |home: Home| Word {
+            let place = |home: Home| FooterWord {
                 key: home.name().chars().take(1).collect(),
                 text: home.name(),
                 does: Does::Place(home),
@@ -129,26 +134,26 @@ fn words(app: &App, width: u16) -> Vec<Word> {
         None => {
             offered(app).into_iter().filter(|(id, _)| is_available(&app.model, *id)).map(command).collect()
         }
-        Some(Overlay::Prompt(Prompt { purpose: Purpose::Line { .. }, .. })) => {
-            let take = Word { key: "Tab".to_owned(), text: "take", does: Does::Key(KeyCode::Tab) };
+        Some(Dialog::Prompt(Prompt { purpose: Purpose::Line { .. }, .. })) => {
+            let take = FooterWord { key: "Tab".to_owned(), text: "take", does: Does::Key(KeyCode::Tab) };
             [(Id::Edit, "run", KeyCode::Enter), (Id::Down, "down", KeyCode::Down), back]
                 .map(in_list)
                 .into_iter()
                 .chain([take])
                 .collect()
         }
-        Some(Overlay::Prompt(_) | Overlay::Offer(_)) => [accept, back].map(in_list).to_vec(),
-        Some(Overlay::Choose(_) | Overlay::Help(_)) => {
+        Some(Dialog::Prompt(_) | Dialog::Offer(_)) => [accept, back].map(in_list).to_vec(),
+        Some(Dialog::Choose(_) | Dialog::Help(_)) => {
             let through = [(Id::Up, "up", KeyCode::Up), (Id::Down, "down", KeyCode::Down)];
             through.into_iter().chain([accept, back]).map(in_list).collect()
         }
-        Some(Overlay::Confirm(_)) => {
-            let yes = Word { key: "y".to_owned(), text: "yes", does: Does::Key(KeyCode::Char('y')) };
+        Some(Dialog::Confirm(_)) => {
+            let yes = FooterWord { key: "y".to_owned(), text: "yes", does: Does::Key(KeyCode::Char('y')) };
             vec![yes, in_list(back)]
         }
     };
     let mut used = 1;
-    let fits = |word: &Word| {
+    let fits = |word: &FooterWord| {
         used += word.width();
         used <= usize::from(width) + 2
     };

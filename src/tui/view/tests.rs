@@ -1,6 +1,6 @@
 //! Whole screens: at every size, as text, and the styles that carry meaning.
 
-use crate::explorer::{Command, Id, Inline, Panel, View, update};
+use crate::explorer::{Command, Id, Inline, ScreenPanel, View, update};
 use crate::store::Store;
 use crate::tui::app::App;
 use crate::tui::theme::{Charts, Palette, Theme};
@@ -219,7 +219,7 @@ fn nothing_is_cut_inside_a_number() {
 #[test]
 fn a_panel_can_have_the_whole_screen_and_an_event_its_number_on_the_curve() {
     let mut screen = Screen::new("wavy-sphere");
-    screen.app.model.panel = Panel::Charts;
+    screen.app.model.panel = ScreenPanel::Charts;
     screen.keys("z");
     let text = screen.text(80, 24);
     assert!(!text.contains("Problem") && text.contains("P/Pc over δ"), "{text}");
@@ -338,15 +338,15 @@ fn zooming_keeps_the_walker_in_place_and_fit_shows_all_again() {
     let place = |text: &str| text.lines().find_map(|line| Some((line.len(), line.find('@')?)));
     assert!(place(&whole).is_some() && place(&close).is_some());
     // In Charts the arrows move the window, elsewhere they select.
-    screen.app.model.panel = Panel::Charts;
+    screen.app.model.panel = ScreenPanel::Charts;
     screen.press(KeyCode::Right);
     assert_ne!(screen.text(80, 24), close);
-    assert_eq!(screen.app.model.panel, Panel::Charts);
+    assert_eq!(screen.app.model.panel, ScreenPanel::Charts);
     screen.keys("f");
     assert!(!screen.text(80, 24).contains("zoom"));
     screen.press(KeyCode::Tab);
     screen.press(KeyCode::BackTab);
-    assert_eq!(screen.app.model.panel, Panel::Charts);
+    assert_eq!(screen.app.model.panel, ScreenPanel::Charts);
 }
 
 #[test]
@@ -445,7 +445,7 @@ fn a_log_of_many_events_says_how_many_are_left_out_and_keeps_the_current_one() {
     assert!(lines[0].contains('+') && here > 0, "{}", screen.text(120, 40));
     // From the other end of the list too.
     for key in [KeyCode::PageUp, KeyCode::PageUp, KeyCode::End] {
-        screen.app.model.panel = Panel::Log;
+        screen.app.model.panel = ScreenPanel::Log;
         screen.press(key);
         let lines = log(&screen);
         assert!(lines.iter().any(|line| line.contains('@')), "{lines:?}");
@@ -514,11 +514,11 @@ fn selection_instability_and_errors_have_their_styles() {
     let walker =
         |cell: &&ratatui::buffer::Cell| cell.symbol() == "@" && cell.modifier.contains(Modifier::REVERSED);
     assert!(buffer.content().iter().any(|cell| walker(&cell)));
-    screen.app.model.panel = Panel::Log;
+    screen.app.model.panel = ScreenPanel::Log;
     let buffer = screen.draw(80, 24);
     assert!(find(&buffer, ">@1").modifier.contains(Modifier::REVERSED));
     screen.keys("\t{");
-    screen.app.model.panel = Panel::Here;
+    screen.app.model.panel = ScreenPanel::Here;
     screen.keys("{");
     let buffer = screen.draw(80, 24);
     assert_eq!(find(&buffer, "select a value first").fg, error);

@@ -3,9 +3,9 @@
 //! The noise there may be correlated from row to row: n rows count as n/τ. False alarms: 1 in 1000.
 
 use super::super::chance::beyond_t;
-use super::super::problem::Problem;
+use super::super::problem::FitProblem;
 use super::super::scatter::Scatter;
-use super::super::solve::Solved;
+use super::super::solve::SolvedFit;
 use super::super::verdict::Reason;
 use super::ROUNDING;
 use crate::units::number::short;
@@ -18,7 +18,7 @@ const FEWEST: usize = 8;
 const COUNTED: f64 = 4.0;
 
 /// What the rows apart say against the fit.
-pub(super) fn of_apart(problem: &Problem, solved: &Solved, scatter: &Scatter) -> Vec<Reason> {
+pub(super) fn of_apart(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatter) -> Vec<Reason> {
     let mut reasons = Vec::new();
     let tau = scatter.correlation.rows();
     let counted = scatter.apart as f64 / tau;
@@ -38,7 +38,7 @@ pub(super) fn of_apart(problem: &Problem, solved: &Solved, scatter: &Scatter) ->
 }
 
 /// Forces that differ between the branches.
-fn levels(problem: &Problem, solved: &Solved, tau: f64) -> Option<Reason> {
+fn levels(problem: &FitProblem, solved: &SolvedFit, tau: f64) -> Option<Reason> {
     let mut means: Vec<[f64; 3]> = Vec::new();
     for branch in 0..problem.branches() {
         let rows = problem.rows(solved, branch, true, 0);

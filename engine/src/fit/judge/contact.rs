@@ -11,9 +11,9 @@
 //! series of 8 to 300 rows), runs 1 in 1000.
 
 use super::super::chance::{beyond_f, beyond_t};
-use super::super::problem::Problem;
-use super::super::scatter::{Row, Scatter};
-use super::super::solve::Solved;
+use super::super::problem::FitProblem;
+use super::super::scatter::{Scatter, ScatterRow};
+use super::super::solve::SolvedFit;
 use super::super::verdict::Reason;
 use super::{ROUNDING, runs};
 use crate::elementary::{hypot, ln};
@@ -50,8 +50,8 @@ struct Bin {
 
 /// What the points in contact say against the fit. `inner` is (JᵀJ)⁻¹.
 pub(super) fn of_contact(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
 ) -> Vec<Reason> {
@@ -80,8 +80,8 @@ pub(super) fn of_contact(
 
 /// Whether the means along the path are off.
 fn of_bins(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
     s: f64,
@@ -138,7 +138,12 @@ fn of_bins(
 }
 
 /// The bins of all branches.
-fn bins(problem: &Problem, solved: &Solved, scatter: &Scatter, inner: Option<&DMatrix<f64>>) -> Vec<Bin> {
+fn bins(
+    problem: &FitProblem,
+    solved: &SolvedFit,
+    scatter: &Scatter,
+    inner: Option<&DMatrix<f64>>,
+) -> Vec<Bin> {
     let per = problem.per_point();
     let mut bins = Vec::new();
     for branch in 0..problem.branches() {
@@ -156,11 +161,11 @@ fn bins(problem: &Problem, solved: &Solved, scatter: &Scatter, inner: Option<&DM
 }
 
 fn bin(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
-    rows: &[Row],
+    rows: &[ScatterRow],
     part: usize,
 ) -> Option<Bin> {
     let (count, per) = (rows.len() as f64, problem.per_point());
@@ -173,7 +178,7 @@ fn bin(
     );
     let taken = inner.map_or(0.0, |inner| gradient.dot(&(inner * &gradient)));
     let whole = scatter.correlation.of_mean(rows.len());
-    let datum = |row: &Row| problem.data[row.index];
+    let datum = |row: &ScatterRow| problem.data[row.index];
     Some(Bin {
         segment: datum(rows.first()?).segment,
         count: rows.len(),
@@ -187,7 +192,7 @@ fn bin(
 }
 
 /// Residuals that keep their sign.
-fn of_runs(problem: &Problem, solved: &Solved) -> Vec<Reason> {
+fn of_runs(problem: &FitProblem, solved: &SolvedFit) -> Vec<Reason> {
     let mut reasons = Vec::new();
     for branch in 0..problem.branches() {
         let rows = problem.rows(solved, branch, false, 0);

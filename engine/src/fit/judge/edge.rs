@@ -1,6 +1,6 @@
 //! The edge of the points in contact: how fast it goes at each.
 
-use super::super::problem::Problem;
+use super::super::problem::FitProblem;
 use crate::elementary::hypot;
 use crate::measured::speed::{Speed, noise, speeds};
 use crate::measured::{Abscissa, Segment};
@@ -28,7 +28,7 @@ impl Clock {
 }
 
 /// What is known of the edge at the points of a problem.
-pub(super) struct Edge {
+pub(super) struct EdgeMotion {
     /// −ds/dt, by the number of the point; nothing but for retractions in contact.
     pub(super) speeds: Vec<Option<Speed>>,
     /// The number of the row in its retraction, over their number.
@@ -37,10 +37,10 @@ pub(super) struct Edge {
     pub(super) clock: Clock,
 }
 
-impl Edge {
+impl EdgeMotion {
     /// Of the retractions of `problem`, whose values are `u`, by each clock there is: the column of times, or without one all others. None where
     /// radii are not measured.
-    pub(super) fn all(problem: &Problem, u: &[f64]) -> Vec<Self> {
+    pub(super) fn all(problem: &FitProblem, u: &[f64]) -> Vec<Self> {
         if problem.abscissa != Abscissa::Radius && !problem.space {
             return Vec::new();
         }
@@ -54,7 +54,7 @@ impl Edge {
         [Some(by_rows), by_approach].into_iter().flatten().collect()
     }
 
-    fn of(problem: &Problem, clock: Clock, time: &dyn Fn(usize) -> f64) -> Self {
+    fn of(problem: &FitProblem, clock: Clock, time: &dyn Fn(usize) -> f64) -> Self {
         let count = problem.data.len();
         let mut edge = Self { speeds: vec![None; count], order: vec![0.0; count], clock };
         for rows in retractions(problem) {
@@ -82,7 +82,7 @@ impl Edge {
 }
 
 /// The rows of each retraction in contact, in the order of measurement.
-pub(super) fn retractions(problem: &Problem) -> Vec<Vec<usize>> {
+pub(super) fn retractions(problem: &FitProblem) -> Vec<Vec<usize>> {
     let of_branch = |branch: usize| {
         let is_wanted = |i: &usize| {
             let datum = &problem.data[*i];
@@ -96,7 +96,7 @@ pub(super) fn retractions(problem: &Problem) -> Vec<Vec<usize>> {
 }
 
 /// δ of a row by its force and radius: at a held contact radius δ goes with P as at a punch, at the stiffness 2E*s.
-fn approach<'a>(problem: &'a Problem, u: &[f64]) -> Option<impl Fn(usize) -> Option<f64> + 'a> {
+fn approach<'a>(problem: &'a FitProblem, u: &[f64]) -> Option<impl Fn(usize) -> Option<f64> + 'a> {
     let paths = problem.paths(u)?;
     let modulus = problem.preset_at(u, Segment::Retraction)?.material.effective_modulus;
     let baseline = problem.instrument_at(u).baseline;

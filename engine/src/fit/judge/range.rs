@@ -3,9 +3,9 @@
 use super::super::determined::Determined;
 use super::super::options::letter;
 use super::super::path::Foot;
-use super::super::problem::Problem;
+use super::super::problem::FitProblem;
 use super::super::scatter::Scatter;
-use super::super::solve::{Solved, solve};
+use super::super::solve::{SolvedFit, solve};
 use super::super::start::start;
 use super::super::track::LARGEST_MAUGIS;
 use super::super::verdict::Reason;
@@ -35,8 +35,8 @@ const LOOKED: u32 = 12;
 /// The errors are those next to the minimum. Farther off, where the range goes to nothing, there may be another that is as deep: it is looked
 /// for anew.
 pub(in super::super) fn unseen(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     (what, scatter): (&Determined, &Scatter),
     robust: bool,
     progress: &dyn Progress,
@@ -85,7 +85,7 @@ fn cost(residuals: &DVector<f64>, s: f64) -> f64 {
 }
 
 /// A state between those of the points that one disc in one zone does not hold: the values are those of another problem.
-pub(super) fn of_zone(problem: &Problem, solved: &Solved) -> Option<Reason> {
+pub(super) fn of_zone(problem: &FitProblem, solved: &SolvedFit) -> Option<Reason> {
     let u = &solved.minimum.parameters;
     let paths = problem.paths(u)?;
     let feet = problem.feet(&paths, &problem.instrument_at(u))?;

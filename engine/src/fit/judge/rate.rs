@@ -13,12 +13,12 @@
 //! from row to row is looked for too, as √(number of the row); the three share that alarm.
 
 use super::super::chance::beyond_t;
-use super::super::problem::Problem;
+use super::super::problem::FitProblem;
 use super::super::scatter::Scatter;
-use super::super::solve::Solved;
+use super::super::solve::SolvedFit;
 use super::super::track::Mover;
 use super::super::verdict::Reason;
-use super::edge::{Edge, retractions};
+use super::edge::{EdgeMotion, retractions};
 use super::scores::{MOST_OF_NEIGHBOURS, score};
 use super::untold::untold;
 use crate::elementary::{ln, pow};
@@ -37,18 +37,18 @@ const SLOWEST: f64 = 1.0 / 400.0;
 
 /// What speaks for a work of adhesion that grows, or against telling it from one that does not.
 pub(super) fn of_rate(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
 ) -> Option<Reason> {
-    let edges = Edge::all(problem, &solved.minimum.parameters);
-    let tested: Vec<(&Edge, [[f64; 2]; 2])> = edges
+    let edges = EdgeMotion::all(problem, &solved.minimum.parameters);
+    let tested: Vec<(&EdgeMotion, [[f64; 2]; 2])> = edges
         .iter()
         .filter_map(|edge| Some((edge, tested(problem, solved, scatter, inner, edge)?)))
         .collect();
     // The speed by each clock, and where none is a column of times the number of the row.
-    let tests = if edges.iter().any(Edge::is_timed) { 1.0 } else { 1.0 + edges.len() as f64 };
+    let tests = if edges.iter().any(EdgeMotion::is_timed) { 1.0 } else { 1.0 + edges.len() as f64 };
     let found = tested.iter().find_map(|(edge, tested)| grows(problem, scatter, edge, (*tested, tests)));
     // What fits take up of a law by one clock is left by another, or by the number of the row.
     let all = tested.iter().flat_map(|(edge, [[_, by_speed], [_, by_row]])| {
@@ -66,12 +66,12 @@ pub(super) fn of_rate(
 
 /// What is to be doubted where no column has the times and nothing else was found: whether the edge rests is not in the points.
 pub(super) fn of_untimed(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
 ) -> Option<String> {
-    let edges = Edge::all(problem, &solved.minimum.parameters);
+    let edges = EdgeMotion::all(problem, &solved.minimum.parameters);
     let mut untimed = edges.iter().filter(|edge| !edge.is_timed());
     let reason = untimed.find_map(|edge| untold(problem, solved, scatter, inner, (edge, 0.0)))?;
     Some(format!("no column has the times: {}", reason.sentence))
@@ -79,11 +79,11 @@ pub(super) fn of_untimed(
 
 /// n and t of the speed, and of the number of the row.
 fn tested(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
-    edge: &Edge,
+    edge: &EdgeMotion,
 ) -> Option<[[f64; 2]; 2]> {
     let mut alone = vec![false; problem.per_point() * problem.data.len()];
     for rows in retractions(problem) {
@@ -105,9 +105,9 @@ fn tested(
 
 /// A work of adhesion that grows with the speed of the edge, or where no column has the times with the number of the row.
 fn grows(
-    problem: &Problem,
+    problem: &FitProblem,
     scatter: &Scatter,
-    edge: &Edge,
+    edge: &EdgeMotion,
     ([by_speed, by_row], tests): ([[f64; 2]; 2], f64),
 ) -> Option<Reason> {
     let is_found = |[n, t]: [f64; 2]| n > 0.0 && tests * 0.5 * beyond_t(t, scatter.degrees) < FALSE_ALARM;
@@ -136,7 +136,7 @@ fn grows(
 
 /// Marks the rows, in the order of measurement, which are off by more than `limit` to a side where neither of the rows beside them is. The
 /// first and the last have one such row: nothing says that they are off alone.
-fn off_alone(problem: &Problem, solved: &Solved, limit: f64, rows: &[usize], alone: &mut [bool]) {
+fn off_alone(problem: &FitProblem, solved: &SolvedFit, limit: f64, rows: &[usize], alone: &mut [bool]) {
     let per = problem.per_point();
     for part in 0..per {
         let side = |i: usize| {

@@ -11,9 +11,9 @@
 
 use super::super::chance::beyond_t;
 use super::super::least_squares::LeastSquares;
-use super::super::problem::{Problem, Target};
+use super::super::problem::{FitProblem, Target};
 use super::super::scatter::Scatter;
-use super::super::solve::Solved;
+use super::super::solve::SolvedFit;
 use super::super::track::Mover;
 use super::super::verdict::Reason;
 use super::ROUNDING;
@@ -37,8 +37,8 @@ pub(super) const MOST_OF_NEIGHBOURS: f64 = 4.0;
 /// n and t of the residuals that change by `z`. Where `alone` says which rows are off alone, these say nothing, and the noise of neighbours is
 /// taken for that of all others: what the rows differ by beside z is then no noise.
 pub(super) fn score(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     scatter: &Scatter,
     inner: &DMatrix<f64>,
     z: &DVector<f64>,
@@ -73,8 +73,8 @@ pub(super) fn score(
 
 /// A force with a slope over x. Rows apart alone would tell it by a short lever.
 pub(super) fn of_tilt(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
 ) -> Option<Reason> {
@@ -95,8 +95,8 @@ pub(super) fn of_tilt(
 
 /// A gap that is no paraboloid: h goes with r^(2 + n).
 pub(super) fn of_shape(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
 ) -> Option<Reason> {
@@ -130,8 +130,8 @@ pub(super) fn of_shape(
 
 /// An adhesion that has a range: the edge is no longer sharp, by the first order in it.
 pub(super) fn of_range(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
 ) -> Option<Reason> {

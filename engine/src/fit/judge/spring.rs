@@ -2,8 +2,8 @@
 
 use super::super::least_squares::Ending;
 use super::super::options::letter;
-use super::super::problem::{Problem, Target};
-use super::super::solve::{Solved, solve};
+use super::super::problem::{FitProblem, Target};
+use super::super::solve::{SolvedFit, solve};
 use crate::elementary::exp_m1;
 use crate::measured::Abscissa;
 use crate::preset::Value;
@@ -18,8 +18,8 @@ const STILL: f64 = 1e-9;
 
 /// `k 10 % larger: E* -8.0 %, γ +7.1 %; …`: what the fit would be with another spring; `None` where there is none, or it is free.
 pub(in crate::fit) fn of_spring(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     robust: bool,
     progress: &dyn Progress,
 ) -> Option<String> {

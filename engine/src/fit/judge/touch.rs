@@ -3,9 +3,9 @@
 //!
 //! A median of m rows is known to 1.2533 s/√m; beyond five of these it is no chance.
 
-use super::super::problem::{Problem, Target};
+use super::super::problem::{FitProblem, Target};
 use super::super::scatter::Scatter;
-use super::super::solve::Solved;
+use super::super::solve::SolvedFit;
 use super::super::verdict::Reason;
 use super::ROUNDING;
 use crate::measured::branches::median;
@@ -24,8 +24,8 @@ const BEFORE: f64 = 3.0;
 
 /// Rows of an approach that pull where the model has the bodies apart.
 pub(super) fn of_touch(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
 ) -> Option<Reason> {

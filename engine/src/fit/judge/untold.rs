@@ -16,12 +16,12 @@
 //! Each row counts as far as its speed is known: a speed that is off changes its G.
 
 use super::super::options::letter;
-use super::super::problem::Problem;
+use super::super::problem::FitProblem;
 use super::super::scatter::Scatter;
-use super::super::solve::{Solved, solve};
+use super::super::solve::{SolvedFit, solve};
 use super::super::track::Mover;
 use super::super::verdict::Reason;
-use super::edge::Edge;
+use super::edge::EdgeMotion;
 use crate::elementary::{exp_m1, hypot};
 use crate::measured::branches::median;
 use crate::measured::{Abscissa, Segment};
@@ -52,17 +52,17 @@ const NOTHING: f64 = 3.0;
 
 /// A law that grows with the speed and fits as well; `lean` is by how many standard errors the points lean to one.
 pub(super) fn untold(
-    problem: &Problem,
-    solved: &Solved,
+    problem: &FitProblem,
+    solved: &SolvedFit,
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
-    (edge, lean): (&Edge, f64),
+    (edge, lean): (&EdgeMotion, f64),
 ) -> Option<Reason> {
     let (s, inner) = (scatter.contact?, inner?);
     let usual = median((0..problem.data.len()).filter_map(|i| edge.speed(i)).collect())?;
     let u = &solved.minimum.parameters;
     let slopes = problem.changed(u, Mover::Adhesion, |_| 1.0)?;
-    let law = Law::of(problem, edge, (REFERENCE * usual, &slopes, s));
+    let law = AdhesionGrowth::of(problem, edge, (REFERENCE * usual, &slopes, s));
     let (moved, worse) = law.against_none(problem, u, s)?;
     let errors = |j: usize| moved[j].abs() / (s * inner[(j, j)].max(0.0).sqrt());
     let enough = AS_GOOD + lean.clamp(0.0, MOST_LEANING);
@@ -87,11 +87,15 @@ pub(super) fn untold(
 }
 
 /// A work of adhesion that grows, at each row by its place: √(G/γ) − 1, and how much its residuals count.
-struct Law(BTreeMap<usize, (f64, Vec<f64>)>);
+struct AdhesionGrowth(BTreeMap<usize, (f64, Vec<f64>)>);
 
-impl Law {
+impl AdhesionGrowth {
     /// With v₀, the derivatives of the residuals by ln γ, and s.
-    fn of(problem: &Problem, edge: &Edge, (reference, slopes, s): (f64, &DVector<f64>, f64)) -> Self {
+    fn of(
+        problem: &FitProblem,
+        edge: &EdgeMotion,
+        (reference, slopes, s): (f64, &DVector<f64>, f64),
+    ) -> Self {
         let per = problem.per_point();
         let mut rows = BTreeMap::new();
         for (i, datum) in problem.data.iter().enumerate() {
@@ -106,7 +110,7 @@ impl Law {
     }
 
     /// By how much the values of `problem` move with it, from `u`, and by how much its χ² is larger than that of no law.
-    fn against_none(&self, problem: &Problem, u: &[f64], s: f64) -> Option<(DVector<f64>, f64)> {
+    fn against_none(&self, problem: &FitProblem, u: &[f64], s: f64) -> Option<(DVector<f64>, f64)> {
         let mut part = problem.thinned(ROWS);
         let times = problem.data.len() as f64 / part.data.len() as f64;
         let ones = vec![1.0; problem.per_point()];
@@ -121,14 +125,19 @@ impl Law {
 }
 
 /// χ² of points that count as they do, in s².
-fn cost(problem: &Problem, residuals: &DVector<f64>, s: f64) -> f64 {
+fn cost(problem: &FitProblem, residuals: &DVector<f64>, s: f64) -> f64 {
     let counts = problem.counts.as_deref().unwrap_or_default();
     let of = |(i, r): (usize, &f64)| counts.get(i).unwrap_or(&1.0) * (r / s).clamp(-MOST, MOST).powi(2);
     residuals.iter().enumerate().map(of).sum()
 }
 
 /// The fit from `start` in which √G is larger than √γ by the share `growth` of the place of each row, and its χ².
-fn grown(problem: &Problem, start: &[f64], growth: &dyn Fn(usize) -> f64, s: f64) -> Option<(Vec<f64>, f64)> {
+fn grown(
+    problem: &FitProblem,
+    start: &[f64],
+    growth: &dyn Fn(usize) -> f64,
+    s: f64,
+) -> Option<(Vec<f64>, f64)> {
     /// A χ² that changes by no more has settled.
     const SETTLED: f64 = 0.02;
     let compliance = match (problem.abscissa, problem.preset.path.control) {

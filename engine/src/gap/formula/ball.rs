@@ -31,7 +31,7 @@ pub struct Ball {
 }
 
 /// A function and its derivative on a ball.
-pub type Pair = (Ball, Ball);
+pub type BallPair = (Ball, Ball);
 
 /// A sine or a hyperbolic one from its value and its slope at the middle.
 fn swing(along: f64, across: f64, radius: f64) -> Ball {
@@ -153,7 +153,7 @@ impl Ball {
     }
 
     /// tan x with 1 + tan²x.
-    pub fn tan(self) -> Pair {
+    pub fn tan(self) -> BallPair {
         let Self { middle, radius } = self;
         let cos = cos(middle).abs();
         let clear = asin(cos) - radius;
@@ -163,7 +163,7 @@ impl Ball {
     }
 
     /// tanh x with 1 − tanh²x.
-    pub fn tanh(self) -> Pair {
+    pub fn tanh(self) -> BallPair {
         let Self { middle, radius } = self;
         let clear = middle.abs() - radius;
         let near = if radius < FRAC_PI_2 {
@@ -181,14 +181,14 @@ impl Ball {
     }
 
     /// ln x with 1/x.
-    pub fn ln(self) -> Pair {
+    pub fn ln(self) -> BallPair {
         let Self { middle, radius } = self;
         let ln = if middle > radius { Self::new(ln(middle), -ln_1p(-radius / middle)) } else { Self::OPEN };
         (ln, if middle > 0.0 { self.recip() } else { Self::OPEN })
     }
 
     /// arctan x with 1/((x − i)(x + i)).
-    pub fn atan(self) -> Pair {
+    pub fn atan(self) -> BallPair {
         let distance = hypot(self.middle, 1.0);
         if distance <= self.radius {
             return (Self::OPEN, Self::OPEN);
@@ -200,7 +200,7 @@ impl Ball {
     }
 
     /// arcsin x (`sign` 1) or arccos x (`sign` −1) from its value at the middle, with ±1/√((1 − x)(1 + x)).
-    pub fn arc_sine(self, value: f64, sign: f64) -> Pair {
+    pub fn arc_sine(self, value: f64, sign: f64) -> BallPair {
         let factor = |sign: f64| self.scale(sign).shift(1.0).power(-0.5);
         let slope = (factor(-1.0) * factor(1.0)).scale(sign);
         (self.along(value, slope), slope)

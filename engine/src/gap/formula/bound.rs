@@ -1,6 +1,6 @@
 //! The formula with its parameters given.
 
-use super::fold::{Step, Steps};
+use super::fold::{FormulaStep, Steps};
 use super::jets::{Block, Jets, LANES};
 use crate::gap::Jet;
 use std::array::from_fn;
@@ -53,7 +53,7 @@ impl Bound {
     /// What these of the steps, the whole of an operand, make of the radii s·x, with N − 1 derivatives, one by one.
     pub(super) fn each<const N: usize>(
         &self,
-        steps: &[Step],
+        steps: &[FormulaStep],
         s: f64,
         nodes: &[f64],
         mut with: impl FnMut(usize, [f64; N]),
@@ -77,28 +77,28 @@ impl Bound {
 }
 
 /// The steps on a stack that is large enough for them.
-fn run<const N: usize>(steps: &[Step], radii: Block, stack: &mut [Jets<N>]) -> Jets<N> {
+fn run<const N: usize>(steps: &[FormulaStep], radii: Block, stack: &mut [Jets<N>]) -> Jets<N> {
     // The number of blocks on the stack; the one on top is at `top - 1`.
     let mut top = 0;
     for step in steps {
         match *step {
-            Step::Number(_) | Step::Radius => top += 1,
-            Step::Binary(_) => top -= 1,
+            FormulaStep::Number(_) | FormulaStep::Radius => top += 1,
+            FormulaStep::Binary(_) => top -= 1,
             _ => {}
         }
         let at = top - 1;
         stack[at] = match *step {
-            Step::Number(number) => Jets::number(number),
-            Step::Radius => Jets::radii(radii),
-            Step::Binary(binary) => stack[at].binary(stack[top], binary),
-            Step::Unary(unary) => stack[at].unary(unary),
-            Step::Shift(c) => stack[at].shift(c),
-            Step::Scale(c) => stack[at].scale(c),
-            Step::Divide(c) => stack[at].divide(c),
-            Step::Over(c) => stack[at].over(c),
-            Step::IntegerPower(n) => stack[at].integer_power(n),
-            Step::RealPower(p) => stack[at].real_power(p),
-            Step::Exponential(c) => stack[at].exponential(c),
+            FormulaStep::Number(number) => Jets::number(number),
+            FormulaStep::Radius => Jets::radii(radii),
+            FormulaStep::Binary(binary) => stack[at].binary(stack[top], binary),
+            FormulaStep::Unary(unary) => stack[at].unary(unary),
+            FormulaStep::Shift(c) => stack[at].shift(c),
+            FormulaStep::Scale(c) => stack[at].scale(c),
+            FormulaStep::Divide(c) => stack[at].divide(c),
+            FormulaStep::Over(c) => stack[at].over(c),
+            FormulaStep::IntegerPower(n) => stack[at].integer_power(n),
+            FormulaStep::RealPower(p) => stack[at].real_power(p),
+            FormulaStep::Exponential(c) => stack[at].exponential(c),
         };
     }
     stack[0]

@@ -20,7 +20,7 @@ use super::bisect::{NARROW, bisect};
 use super::bound::Bound;
 use super::fold::{Switch, Zero};
 use crate::elementary::log2;
-use crate::gap::Axis;
+use crate::gap::Parity;
 use crate::gap::function::MOST_BREAKS;
 
 /// Intervals to begin with.
@@ -166,7 +166,7 @@ impl Bound {
     }
 
     /// What the formula is at the axis, where `length` is the first length of it.
-    pub fn axis(&self, length: f64) -> Axis {
+    pub fn axis(&self, length: f64) -> Parity {
         let r = NEAR_AXIS * length;
         let [near, far] = [r, 2.0 * r].map(|r| {
             let jet = self.jet(r);
@@ -174,27 +174,27 @@ impl Bound {
             if (a - b).abs() <= ROUNDING * (a.abs() + b.abs()) { 0.0 } else { a - b }
         });
         if near == 0.0 || far == 0.0 {
-            return Axis::Even;
+            return Parity::Even;
         }
         let power = log2((far / near).abs());
         let whole = power.round();
         if (power - whole).abs() > NEAR_WHOLE {
-            return Axis::Broken;
+            return Parity::Broken;
         }
         // 0 belongs to r² log r.
         if whole == 0.0 {
-            Axis::Broken
+            Parity::Broken
         } else if whole % 2.0 == 0.0 {
-            Axis::Even
+            Parity::Even
         } else {
-            Axis::Odd
+            Parity::Odd
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::gap::Axis;
+    use crate::gap::Parity;
     use crate::gap::{formula::Bound, formula::Formula};
 
     fn bound(text: &str) -> Bound {
@@ -281,17 +281,17 @@ mod tests {
     #[test]
     fn the_axis_is_known_by_its_first_power() {
         for (text, axis) in [
-            ("r^2/2", Axis::Even),
-            ("3", Axis::Even),
-            ("r^4", Axis::Even),
-            ("r^2/2 + 0.001*(1 - cos(100*r))", Axis::Even),
-            ("1 - sqrt(1 - r^2)", Axis::Even),
-            ("0.2*r", Axis::Odd),
-            ("r^2 + 0.01*r^3", Axis::Odd),
-            ("r^2 + 0.01*sin(30*r)", Axis::Odd),
-            ("r^1.5", Axis::Broken),
-            ("r^2 + 0.1*r^2.5", Axis::Broken),
-            ("r^3.3", Axis::Broken),
+            ("r^2/2", Parity::Even),
+            ("3", Parity::Even),
+            ("r^4", Parity::Even),
+            ("r^2/2 + 0.001*(1 - cos(100*r))", Parity::Even),
+            ("1 - sqrt(1 - r^2)", Parity::Even),
+            ("0.2*r", Parity::Odd),
+            ("r^2 + 0.01*r^3", Parity::Odd),
+            ("r^2 + 0.01*sin(30*r)", Parity::Odd),
+            ("r^1.5", Parity::Broken),
+            ("r^2 + 0.1*r^2.5", Parity::Broken),
+            ("r^3.3", Parity::Broken),
         ] {
             let length = bound(text).feature_length(1.0).unwrap_or(1.0);
             assert_eq!(bound(text).axis(length), axis, "{text}");

@@ -4,12 +4,12 @@
 //! step, min, max) is the branch that holds at one radius, continued: smooth pieces are bounded that way. On an interval of
 //! real radii it is bounded whatever holds where, which finds the places where it switches.
 
-use super::ball::{Ball, Pair};
+use super::ball::{Ball, BallPair};
 use super::bound::Bound;
-use super::fold::{Step, Switch, Zero};
+use super::fold::{FormulaStep, Switch, Zero};
 use crate::elementary::{acos, asin, ln, pow};
 use crate::expression::function::{Binary, Unary};
-use crate::gap::Disc;
+use crate::gap::ComplexDisc;
 use std::f64::consts::LN_10;
 use std::ops::{Neg, Range};
 
@@ -41,7 +41,7 @@ impl Image {
     }
 
     /// f of the value, given with its derivative.
-    fn chain(self, (value, derivative): Pair, at: f64) -> Self {
+    fn chain(self, (value, derivative): BallPair, at: f64) -> Self {
         // What does not change has no slope, not even where that of f is infinite: max(r - a, 0)^1.5.
         let slope = if self.slope == Ball::ZERO { Ball::ZERO } else { derivative * self.slope };
         Self { value, slope, at }
@@ -171,8 +171,8 @@ impl Image {
 
 impl Bound {
     /// An upper bound of |h'| on `disc`, infinite where there is none.
-    pub fn slope_bound(&self, disc: Disc) -> f64 {
-        let Disc { centre, radius, branch } = disc;
+    pub fn slope_bound(&self, disc: ComplexDisc) -> f64 {
+        let ComplexDisc { centre, radius, branch } = disc;
         run(&self.steps.steps, Ball::new(centre, radius), Some(branch)).slope.bound()
     }
 
@@ -204,40 +204,42 @@ impl Bound {
 }
 
 /// The steps on these radii: on the disc with the branches that hold at `branch`, or without one on the interval.
-fn run(steps: &[Step], radii: Ball, branch: Option<f64>) -> Image {
+fn run(steps: &[FormulaStep], radii: Ball, branch: Option<f64>) -> Image {
     let on_disc = branch.is_some();
     let mut stack: Vec<Image> = Vec::new();
     for step in steps {
         // The folder gives every step its operands.
         let pop = |stack: &mut Vec<Image>| stack.pop().unwrap_or(Image::undefined());
         let made = match *step {
-            Step::Number(number) => Image::number(number),
-            Step::Radius => Image { value: radii, slope: Ball::number(1.0), at: branch.unwrap_or(f64::NAN) },
-            Step::Binary(binary) => {
+            FormulaStep::Number(number) => Image::number(number),
+            FormulaStep::Radius => {
+                Image { value: radii, slope: Ball::number(1.0), at: branch.unwrap_or(f64::NAN) }
+            }
+            FormulaStep::Binary(binary) => {
                 let b = pop(&mut stack);
                 pop(&mut stack).binary(b, binary, on_disc)
             }
-            Step::Unary(unary) => pop(&mut stack).unary(unary, on_disc),
-            Step::Shift(c) => {
+            FormulaStep::Unary(unary) => pop(&mut stack).unary(unary, on_disc),
+            FormulaStep::Shift(c) => {
                 let x = pop(&mut stack);
                 Image { value: x.value.shift(c), at: x.at + c, ..x }
             }
-            Step::Scale(c) => {
+            FormulaStep::Scale(c) => {
                 let x = pop(&mut stack);
                 x.map(|ball| ball.scale(c), c * x.at)
             }
-            Step::Divide(c) => {
+            FormulaStep::Divide(c) => {
                 let x = pop(&mut stack);
                 x.map(|ball| Ball::new(ball.middle / c, ball.radius / c.abs()), x.at / c)
             }
-            Step::Over(c) => {
+            FormulaStep::Over(c) => {
                 let x = pop(&mut stack);
                 let over = x.value.recip();
                 x.chain((over.scale(c), (over * over).scale(-c)), c / x.at)
             }
-            Step::IntegerPower(n) => pop(&mut stack).real_power(f64::from(n)),
-            Step::RealPower(p) => pop(&mut stack).real_power(p),
-            Step::Exponential(c) => {
+            FormulaStep::IntegerPower(n) => pop(&mut stack).real_power(f64::from(n)),
+            FormulaStep::RealPower(p) => pop(&mut stack).real_power(p),
+            FormulaStep::Exponential(c) => {
                 let x = pop(&mut stack);
                 let value = x.value.scale(ln(c)).exp();
                 x.chain((value, value.scale(ln(c))), pow(c, x.at))
@@ -256,7 +258,7 @@ impl Image {
 
 #[cfg(test)]
 mod tests {
-    use crate::gap::Disc;
+    use crate::gap::ComplexDisc;
     use crate::gap::{complex::Complex, complex::largest_on};
     use crate::gap::{formula::Bound, formula::Formula};
     use std::f64::consts::TAU;
@@ -356,7 +358,7 @@ mod tests {
                 let centre = 1.2 * random.f64();
                 let radius = 10f64.powf(-4.0 + 3.5 * random.f64());
                 let branch = if random.bool() { centre } else { 1.2 * random.f64() };
-                let most = formula.slope_bound(Disc { centre, radius, branch });
+                let most = formula.slope_bound(ComplexDisc { centre, radius, branch });
                 assert!(most >= 0.0, "{text}: {most}");
                 if !most.is_finite() {
                     continue;
@@ -392,12 +394,12 @@ mod tests {
             ("r^r", 0.1, 0.2),
             ("0*r^2 + (0 - 1)^0.5*r", 0.5, 0.1),
         ] {
-            let most = bound(text).slope_bound(Disc { centre, radius, branch: centre });
+            let most = bound(text).slope_bound(ComplexDisc { centre, radius, branch: centre });
             assert!(most.is_infinite(), "{text}: {most}");
         }
         // No overflow times zero, and nothing of what is identically zero.
         for (text, most) in [("exp(-1e6*(r - 0.3)^2)", 1e-300), ("max(r - 0.9, 0)^1.5", 1e-300)] {
-            let found = bound(text).slope_bound(Disc { centre: 0.7, radius: 0.1, branch: 0.7 });
+            let found = bound(text).slope_bound(ComplexDisc { centre: 0.7, radius: 0.1, branch: 0.7 });
             assert!(found <= most, "{text}: {found}");
         }
     }

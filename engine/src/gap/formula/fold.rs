@@ -10,7 +10,7 @@ const LARGEST_POWER: f64 = 1024.0;
 
 /// One step on a stack of blocks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Step {
+pub enum FormulaStep {
     /// A number laid on top.
     Number(f64),
     /// The radii laid on top.
@@ -37,7 +37,7 @@ pub enum Step {
 
 /// A periodic function and the steps of its argument.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Wave {
+pub struct FormulaWave {
     /// The steps of the argument.
     pub argument: Range<usize>,
     /// The period of the function in its argument.
@@ -70,18 +70,18 @@ pub struct Switch {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Steps {
     /// The steps; they leave one block.
-    pub steps: Vec<Step>,
+    pub steps: Vec<FormulaStep>,
     /// The largest number of blocks on the stack.
     pub depth: usize,
     /// Its periodic functions.
-    pub waves: Vec<Wave>,
+    pub waves: Vec<FormulaWave>,
     /// Where it may not be smooth.
     pub switches: Vec<Switch>,
 }
 
 /// A value on the stack while the steps are written.
 #[derive(Debug, Clone, Copy)]
-enum Slot {
+enum StackSlot {
     /// Known now; no step has been written for it.
     Constant(f64),
     /// Made by the steps from here on.
@@ -90,63 +90,65 @@ enum Slot {
 
 /// The steps of `program` with these values for its parameters.
 pub fn fold(program: &Program, parameters: &[f64]) -> Steps {
-    let mut folder = Folder::default();
+    let mut folder = ConstantFolding::default();
     for op in &program.ops {
         match *op {
-            Op::Number(number) => folder.slots.push(Slot::Constant(number)),
-            Op::Parameter(index) => folder.slots.push(Slot::Constant(parameters[index])),
+            Op::Number(number) => folder.slots.push(StackSlot::Constant(number)),
+            Op::Parameter(index) => folder.slots.push(StackSlot::Constant(parameters[index])),
             Op::Radius => {
-                folder.slots.push(Slot::From(folder.out.steps.len()));
-                folder.out.steps.push(Step::Radius);
+                folder.slots.push(StackSlot::From(folder.out.steps.len()));
+                folder.out.steps.push(FormulaStep::Radius);
             }
             Op::Unary(unary) => folder.unary(unary),
             Op::Binary(binary) => folder.binary(binary),
         }
     }
-    if let Slot::Constant(number) = folder.pop() {
-        folder.out.steps.push(Step::Number(number));
+    if let StackSlot::Constant(number) = folder.pop() {
+        folder.out.steps.push(FormulaStep::Number(number));
     }
     folder.out.depth = depth(&folder.out.steps);
     folder.out
 }
 
 #[derive(Default)]
-struct Folder {
+struct ConstantFolding {
     out: Steps,
-    slots: Vec<Slot>,
+    slots: Vec<StackSlot>,
 }
 
-impl Folder {
-    fn pop(&mut self) -> Slot {
+impl ConstantFolding {
+    fn pop(&mut self) -> StackSlot {
         // The grammar gives every operation its operands.
-        self.slots.pop().unwrap_or(Slot::Constant(f64::NAN))
+        self.slots.pop().unwrap_or(StackSlot::Constant(f64::NAN))
     }
 
     fn unary(&mut self, unary: Unary) {
         let slot = self.pop();
         match slot {
-            Slot::Constant(x) => self.slots.push(Slot::Constant(unary.value(x))),
-            Slot::From(start) => self.step(start, Step::Unary(unary)),
+            StackSlot::Constant(x) => self.slots.push(StackSlot::Constant(unary.value(x))),
+            StackSlot::From(start) => self.step(start, FormulaStep::Unary(unary)),
         }
     }
 
     /// A step on the value made by the steps from `start` on.
-    fn step(&mut self, start: usize, step: Step) {
+    fn step(&mut self, start: usize, step: FormulaStep) {
         let argument = start..self.out.steps.len();
-        let wave = |period| Wave { argument: argument.clone(), period };
+        let wave = |period| FormulaWave { argument: argument.clone(), period };
         let switch = |zero| Switch { argument: argument.clone(), other: None, zero };
         match step {
-            Step::Unary(Unary::Sin | Unary::Cos) => self.out.waves.push(wave(TAU)),
-            Step::Unary(Unary::Tan) => self.out.waves.push(wave(PI)),
-            Step::Unary(Unary::Abs | Unary::Sign | Unary::Step | Unary::Sqrt | Unary::Log | Unary::Log10) => {
+            FormulaStep::Unary(Unary::Sin | Unary::Cos) => self.out.waves.push(wave(TAU)),
+            FormulaStep::Unary(Unary::Tan) => self.out.waves.push(wave(PI)),
+            FormulaStep::Unary(
+                Unary::Abs | Unary::Sign | Unary::Step | Unary::Sqrt | Unary::Log | Unary::Log10,
+            ) => {
                 self.out.switches.push(switch(Zero::Difference));
             }
-            Step::RealPower(p) if p.fract() != 0.0 => self.out.switches.push(switch(Zero::Difference)),
-            Step::Unary(Unary::Asin | Unary::Acos) => self.out.switches.push(switch(Zero::Unit)),
+            FormulaStep::RealPower(p) if p.fract() != 0.0 => self.out.switches.push(switch(Zero::Difference)),
+            FormulaStep::Unary(Unary::Asin | Unary::Acos) => self.out.switches.push(switch(Zero::Unit)),
             _ => {}
         }
         self.out.steps.push(step);
-        self.slots.push(Slot::From(start));
+        self.slots.push(StackSlot::From(start));
     }
 
     /// What the steps from `start` on make is this number after all.
@@ -154,26 +156,28 @@ impl Folder {
         self.out.steps.truncate(start);
         self.out.waves.retain(|wave| wave.argument.end <= start);
         self.out.switches.retain(|switch| switch.argument.end <= start);
-        self.slots.push(Slot::Constant(number));
+        self.slots.push(StackSlot::Constant(number));
     }
 
     fn binary(&mut self, binary: Binary) {
         let (b, a) = (self.pop(), self.pop());
         match (a, b) {
-            (Slot::Constant(a), Slot::Constant(b)) => self.slots.push(Slot::Constant(binary.value(a, b))),
-            (Slot::From(start), Slot::From(second)) => {
-                self.compared(binary, start, second);
-                self.step(start, Step::Binary(binary));
+            (StackSlot::Constant(a), StackSlot::Constant(b)) => {
+                self.slots.push(StackSlot::Constant(binary.value(a, b)));
             }
-            (Slot::From(start), Slot::Constant(c)) => self.with_second(binary, start, c),
-            (Slot::Constant(c), Slot::From(start)) => match binary {
+            (StackSlot::From(start), StackSlot::From(second)) => {
+                self.compared(binary, start, second);
+                self.step(start, FormulaStep::Binary(binary));
+            }
+            (StackSlot::From(start), StackSlot::Constant(c)) => self.with_second(binary, start, c),
+            (StackSlot::Constant(c), StackSlot::From(start)) => match binary {
                 Binary::Subtract => {
-                    self.out.steps.push(Step::Unary(Unary::Negate));
-                    self.step(start, Step::Shift(c));
+                    self.out.steps.push(FormulaStep::Unary(Unary::Negate));
+                    self.step(start, FormulaStep::Shift(c));
                 }
                 Binary::Divide if c == 0.0 => self.replace(start, 0.0),
-                Binary::Divide => self.step(start, Step::Over(c)),
-                Binary::Power => self.step(start, Step::Exponential(c)),
+                Binary::Divide => self.step(start, FormulaStep::Over(c)),
+                Binary::Power => self.step(start, FormulaStep::Exponential(c)),
                 symmetric => self.with_second(symmetric, start, c),
             },
         }
@@ -194,18 +198,18 @@ impl Folder {
     /// An operation whose second operand is a number.
     fn with_second(&mut self, binary: Binary, start: usize, c: f64) {
         match binary {
-            Binary::Add => self.step(start, Step::Shift(c)),
-            Binary::Subtract => self.step(start, Step::Shift(-c)),
+            Binary::Add => self.step(start, FormulaStep::Shift(c)),
+            Binary::Subtract => self.step(start, FormulaStep::Shift(-c)),
             // A wave without amplitude is no feature: nothing of it may stay.
             Binary::Multiply if c == 0.0 => self.replace(start, 0.0),
-            Binary::Multiply => self.step(start, Step::Scale(c)),
-            Binary::Divide => self.step(start, Step::Divide(c)),
+            Binary::Multiply => self.step(start, FormulaStep::Scale(c)),
+            Binary::Divide => self.step(start, FormulaStep::Divide(c)),
             Binary::Power => self.power(start, c),
             Binary::Min | Binary::Max | Binary::Hypot => {
                 let second = self.out.steps.len();
-                self.out.steps.push(Step::Number(c));
+                self.out.steps.push(FormulaStep::Number(c));
                 self.compared(binary, start, second);
-                self.step(start, Step::Binary(binary));
+                self.step(start, FormulaStep::Binary(binary));
             }
         }
     }
@@ -215,24 +219,28 @@ impl Folder {
             return self.replace(start, 1.0);
         }
         if p.fract() != 0.0 || p.abs() > LARGEST_POWER {
-            return self.step(start, Step::RealPower(p));
+            return self.step(start, FormulaStep::RealPower(p));
         }
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small integer by now")]
         let n = p.abs() as u32;
         if p < 0.0 {
-            self.step(start, Step::Over(1.0));
+            self.step(start, FormulaStep::Over(1.0));
             self.slots.pop();
         }
-        if n > 1 { self.step(start, Step::IntegerPower(n)) } else { self.slots.push(Slot::From(start)) }
+        if n > 1 {
+            self.step(start, FormulaStep::IntegerPower(n));
+        } else {
+            self.slots.push(StackSlot::From(start));
+        }
     }
 }
 
-fn depth(steps: &[Step]) -> usize {
+fn depth(steps: &[FormulaStep]) -> usize {
     let (mut depth, mut deepest) = (0, 0);
     for step in steps {
         match step {
-            Step::Number(_) | Step::Radius => depth += 1,
-            Step::Binary(_) => depth -= 1,
+            FormulaStep::Number(_) | FormulaStep::Radius => depth += 1,
+            FormulaStep::Binary(_) => depth -= 1,
             _ => {}
         }
         deepest = deepest.max(depth);
@@ -251,12 +259,21 @@ mod tests {
 
     #[test]
     fn constants_are_folded() {
-        assert_eq!(steps("2*pi/4").steps, [Step::Number(PI / 2.0)]);
-        assert_eq!(steps("3 - r").steps, [Step::Radius, Step::Unary(Unary::Negate), Step::Shift(3.0)]);
-        assert_eq!(steps("r^2/(2*3)").steps, [Step::Radius, Step::IntegerPower(2), Step::Divide(6.0)]);
-        assert_eq!(steps("2^r").steps, [Step::Radius, Step::Exponential(2.0)]);
-        assert_eq!(steps("r^-2").steps, [Step::Radius, Step::Over(1.0), Step::IntegerPower(2)]);
-        assert_eq!(steps("r^1 + r^0").steps, [Step::Radius, Step::Shift(1.0)]);
+        assert_eq!(steps("2*pi/4").steps, [FormulaStep::Number(PI / 2.0)]);
+        assert_eq!(
+            steps("3 - r").steps,
+            [FormulaStep::Radius, FormulaStep::Unary(Unary::Negate), FormulaStep::Shift(3.0)]
+        );
+        assert_eq!(
+            steps("r^2/(2*3)").steps,
+            [FormulaStep::Radius, FormulaStep::IntegerPower(2), FormulaStep::Divide(6.0)]
+        );
+        assert_eq!(steps("2^r").steps, [FormulaStep::Radius, FormulaStep::Exponential(2.0)]);
+        assert_eq!(
+            steps("r^-2").steps,
+            [FormulaStep::Radius, FormulaStep::Over(1.0), FormulaStep::IntegerPower(2)]
+        );
+        assert_eq!(steps("r^1 + r^0").steps, [FormulaStep::Radius, FormulaStep::Shift(1.0)]);
         assert_eq!(steps("r + (r + (r + r))").depth, 4);
     }
 

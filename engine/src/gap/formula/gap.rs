@@ -2,7 +2,7 @@
 
 use super::bound::Bound;
 use super::survey::NotFinite;
-use crate::gap::{Axis, Breaks, Disc, Gap, Jet};
+use crate::gap::{Breaks, ComplexDisc, Gap, Jet, Parity};
 
 /// How far beyond the radius asked for a formula is looked at.
 const BEYOND: f64 = 16.0;
@@ -20,7 +20,7 @@ pub struct FormulaGap {
     corners: Vec<f64>,
     /// How far the corners have been looked for.
     searched: f64,
-    axis: Axis,
+    axis: Parity,
 }
 
 impl Bound {
@@ -102,7 +102,7 @@ impl Gap for FormulaGap {
         Breaks { knots: &self.corners, axis: self.axis, cubic: false }
     }
 
-    fn slope_bound(&self, disc: Disc) -> Option<f64> {
+    fn slope_bound(&self, disc: ComplexDisc) -> Option<f64> {
         Some(self.bound.slope_bound(disc))
     }
 

@@ -31,7 +31,7 @@ pub mod jets;
 pub mod survey;
 pub mod typed;
 
-pub use crate::expression::{FormulaError, Place, Problem};
+pub use crate::expression::{FormulaError, SyntaxProblem, TextPlace};
 pub use bound::Bound;
 pub use gap::FormulaGap;
 pub use survey::NotFinite;

@@ -7,7 +7,7 @@
 
 use super::bisect::{NARROW, bisect};
 use super::bound::Bound;
-use super::fold::Wave;
+use super::fold::FormulaWave;
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::ops::Range;
@@ -167,7 +167,7 @@ impl Bound {
         self.steps.waves.iter().filter_map(|wave| self.wave_length(wave, largest)).min_by(f64::total_cmp)
     }
 
-    fn wave_length(&self, wave: &Wave, largest: f64) -> Option<f64> {
+    fn wave_length(&self, wave: &FormulaWave, largest: f64) -> Option<f64> {
         let (mut lowest, mut highest, mut steepest) = (f64::INFINITY, f64::NEG_INFINITY, 0f64);
         let mut open = vec![[0.0, largest]];
         while !open.is_empty() {

@@ -8,7 +8,7 @@
 //! The second form of h loses no digits near the axis, and (R − r)(R + r) none near the equator. The gap ends at
 //! r = R, where the sphere turns upright. R is a length. The exact solution is [`theory::sphere`](crate::theory::sphere).
 
-use crate::gap::{Disc, Gap, Jet};
+use crate::gap::{ComplexDisc, Gap, Jet};
 
 /// h = R − √(R² − r²).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,7 +35,7 @@ impl Gap for ExactSphere {
     }
 
     /// |h'| = |z|/√(|R − z| |R + z|).
-    fn slope_bound(&self, Disc { centre, radius, .. }: Disc) -> Option<f64> {
+    fn slope_bound(&self, ComplexDisc { centre, radius, .. }: ComplexDisc) -> Option<f64> {
         let reach = centre.abs() + radius;
         let (near, far) = (self.radius - reach, self.radius + centre.abs() - radius);
         Some(if near > 0.0 { reach / (near * far).sqrt() } else { f64::INFINITY })

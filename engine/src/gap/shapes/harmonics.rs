@@ -18,7 +18,7 @@
 
 use crate::elementary::{sin_cos, sinh};
 use crate::gap::lanes::map_lanes;
-use crate::gap::{Axis, Breaks, Disc, Gap, Jet};
+use crate::gap::{Breaks, ComplexDisc, Gap, Jet, Parity};
 use crate::gap::{function::Form, function::Wave};
 use std::f64::consts::TAU;
 use wide::f64x4;
@@ -158,7 +158,7 @@ impl Gap for Harmonics {
     fn breaks(&self) -> Breaks<'_> {
         // The sine of a multiple of π as rounded.
         let slope = |term: &Term| term.phase_sin.abs() > PHASE_ROUNDING;
-        let axis = if self.terms.iter().any(slope) { Axis::Odd } else { Axis::Even };
+        let axis = if self.terms.iter().any(slope) { Parity::Odd } else { Parity::Even };
         Breaks { axis, ..Breaks::default() }
     }
 
@@ -172,7 +172,7 @@ impl Gap for Harmonics {
         Form::Waves { curvature: 1.0 / self.radius_of_curvature, waves }
     }
 
-    fn slope_bound(&self, Disc { centre, radius, .. }: Disc) -> Option<f64> {
+    fn slope_bound(&self, ComplexDisc { centre, radius, .. }: ComplexDisc) -> Option<f64> {
         let wave = |&Term { amplitude, wavenumber: q, phase_sin, phase_cos }: &Term| {
             let (sin, cos) = sin_cos(q * centre);
             let (shifted_sin, shifted_cos) =

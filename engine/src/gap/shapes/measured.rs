@@ -1,6 +1,6 @@
 //! A measured profile together with the file it came from.
 
-use super::profile::{InvalidProfile, Profile, Smoothing};
+use super::profile::{InvalidProfile, ProfileGap, Smoothing};
 use crate::units::{Quantity, Unit, UnitSystem};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ pub const SHIPPED_DATA: &str = "shipped:";
 
 /// The rows of a file, in one unit of length. Equal where the name and the rows are.
 #[derive(Debug, Clone, Default)]
-pub struct Rows {
+pub struct ProfileRows {
     /// The file as a person wrote it.
     pub name: String,
     /// The folder that a relative `name` is relative to.
@@ -25,7 +25,7 @@ pub struct Rows {
     pub notes: Vec<String>,
 }
 
-impl Rows {
+impl ProfileRows {
     /// Whether they come with the program.
     pub fn is_shipped(&self) -> bool {
         self.name.starts_with(SHIPPED_DATA)
@@ -68,7 +68,7 @@ impl Rows {
     }
 }
 
-impl PartialEq for Rows {
+impl PartialEq for ProfileRows {
     fn eq(&self, other: &Self) -> bool {
         (&self.name, &self.radii, &self.gaps) == (&other.name, &other.radii, &other.gaps)
     }
@@ -76,30 +76,30 @@ impl PartialEq for Rows {
 
 /// A measured profile as a gap, with its rows. Equal where what a person sees is: the name, the rows, the smoothing.
 #[derive(Debug, Clone)]
-pub struct Measured {
-    rows: Arc<Rows>,
+pub struct MeasuredGap {
+    rows: Arc<ProfileRows>,
     smoothing: Smoothing,
-    profile: Profile,
+    profile: ProfileGap,
 }
 
-impl Measured {
+impl MeasuredGap {
     /// The gap of `rows`.
     ///
     /// # Errors
     /// [`InvalidProfile`].
-    pub fn new(rows: Arc<Rows>, smoothing: Smoothing) -> Result<Self, InvalidProfile> {
-        let profile = Profile::new(&rows.radii, &rows.gaps, smoothing)?;
+    pub fn new(rows: Arc<ProfileRows>, smoothing: Smoothing) -> Result<Self, InvalidProfile> {
+        let profile = ProfileGap::new(&rows.radii, &rows.gaps, smoothing)?;
         Ok(Self { rows, smoothing, profile })
     }
 
     /// The same gap from a file of this name.
     #[must_use]
     pub fn named(self, name: String) -> Self {
-        Self { rows: Arc::new(Rows { name, ..Rows::clone(&self.rows) }), ..self }
+        Self { rows: Arc::new(ProfileRows { name, ..ProfileRows::clone(&self.rows) }), ..self }
     }
 
     /// The rows.
-    pub fn rows(&self) -> &Arc<Rows> {
+    pub fn rows(&self) -> &Arc<ProfileRows> {
         &self.rows
     }
 
@@ -109,18 +109,18 @@ impl Measured {
     }
 
     /// The curve through the rows.
-    pub fn profile(&self) -> &Profile {
+    pub fn profile(&self) -> &ProfileGap {
         &self.profile
     }
 
     /// The curve through the same rows in half as many cells: where it has other events, the cells decide them, and not the
     /// gap. None where every row is a knot.
-    pub fn coarser(&self) -> Option<Profile> {
+    pub fn coarser(&self) -> Option<ProfileGap> {
         self.profile.coarser(&self.rows.radii, &self.rows.gaps)
     }
 }
 
-impl PartialEq for Measured {
+impl PartialEq for MeasuredGap {
     fn eq(&self, other: &Self) -> bool {
         // The curve follows from the rows and the smoothing; rows shared need no look.
         self.smoothing == other.smoothing && (Arc::ptr_eq(&self.rows, &other.rows) || self.rows == other.rows)

@@ -21,9 +21,9 @@ pub mod split_mix;
 
 pub use exact_sphere::ExactSphere;
 pub use harmonics::{Harmonic, Harmonics};
-pub use measured::{Measured, Rows};
+pub use measured::{MeasuredGap, ProfileRows};
 pub use power_law::PowerLaw;
-pub use profile::{Profile, Smoothing};
+pub use profile::{ProfileGap, Smoothing};
 pub use random_waves::RandomWaves;
 
 #[cfg(test)]

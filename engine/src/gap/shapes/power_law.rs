@@ -17,7 +17,7 @@
 //! of Elasticity* (1953); I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965), doi:10.1016/0020-7225(65)90019-4.
 
 use crate::elementary::pow;
-use crate::gap::{Axis, Breaks, Disc, Form, Gap, Jet};
+use crate::gap::{Breaks, ComplexDisc, Form, Gap, Jet, Parity};
 use std::ops::RangeInclusive;
 
 /// The allowed exponents: below 1 the tip is a cusp without a disc of contact, above 100 it is a flat punch.
@@ -37,7 +37,7 @@ pub struct PowerLaw {
 
 impl PowerLaw {
     /// Where a cone is not smooth: at its tip.
-    pub const CONE_BREAKS: Breaks<'static> = Breaks { knots: &[], axis: Axis::Odd, cubic: false };
+    pub const CONE_BREAKS: Breaks<'static> = Breaks { knots: &[], axis: Parity::Odd, cubic: false };
 
     /// The cone h = c r of slope `slope`, the cotangent of its half apex angle.
     #[must_use]
@@ -83,15 +83,15 @@ impl Gap for PowerLaw {
 
     fn breaks(&self) -> Breaks<'_> {
         let axis = match self.exponent {
-            n if n.fract() != 0.0 => Axis::Broken,
-            n if n % 2.0 == 0.0 => Axis::Even,
-            _ => Axis::Odd,
+            n if n.fract() != 0.0 => Parity::Broken,
+            n if n % 2.0 == 0.0 => Parity::Even,
+            _ => Parity::Odd,
         };
         Breaks { axis, ..Breaks::default() }
     }
 
     /// |zⁿ⁻¹| = |z|ⁿ⁻¹; a broken power has no bound around the axis, where it branches.
-    fn slope_bound(&self, Disc { centre, radius, .. }: Disc) -> Option<f64> {
+    fn slope_bound(&self, ComplexDisc { centre, radius, .. }: ComplexDisc) -> Option<f64> {
         let n = self.exponent;
         if n.fract() != 0.0 && centre <= radius {
             return Some(f64::INFINITY);

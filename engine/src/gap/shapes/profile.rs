@@ -44,7 +44,7 @@ mod invalid;
 mod tests;
 
 use body::Body;
-pub use curve::Profile;
+pub use curve::ProfileGap;
 use invalid::check;
 pub use invalid::{CLOSEST, Cells, FEWEST_ROWS, InvalidProfile, MOST_KNOTS};
 
@@ -59,7 +59,7 @@ pub enum Smoothing {
     Auto,
 }
 
-impl Profile {
+impl ProfileGap {
     /// The profile of `gaps` at `radii ≥ 0`, ascending, both in one unit of length.
     ///
     /// # Errors

@@ -44,7 +44,7 @@ type Bands = Vec<[f64; 3]>;
 
 /// The rows as the spline sees them.
 #[derive(Debug)]
-pub struct Rows<'a> {
+pub struct SplineRows<'a> {
     radii: &'a [f64],
     values: &'a [f64],
     /// wᵢ, one for each row.
@@ -59,7 +59,7 @@ pub struct Rows<'a> {
 
 /// A spline found.
 #[derive(Debug)]
-pub struct Fit {
+pub struct SplineFit {
     /// m, its second derivative at every radius.
     pub second: Vec<f64>,
     /// g, its value at every radius.
@@ -68,7 +68,7 @@ pub struct Fit {
     score: f64,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> SplineRows<'a> {
     /// The rows `values` at `radii`, which ascend from 0 or above, with their weights; at least three.
     pub fn new(radii: &'a [f64], values: &'a [f64], weights: &'a [f64]) -> Self {
         let n = radii.len() - 1;
@@ -101,7 +101,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The spline of cutoff Λ; `None` when the equations cannot be solved in floating point.
-    pub fn fit(&self, cutoff: f64) -> Option<Fit> {
+    pub fn fit(&self, cutoff: f64) -> Option<SplineFit> {
         let penalty = (cutoff / TAU).powi(4);
         let matrix = self.stiffness.iter().zip(&self.filter);
         let matrix: Bands = matrix.map(|(r, s)| std::array::from_fn(|k| r[k] + penalty * s[k])).collect();
@@ -128,7 +128,7 @@ impl<'a> Rows<'a> {
         let trace = penalty * trace_of_product(&factor, &self.filter);
         // The last one, f'' = 0.
         second.push(0.0);
-        Some(Fit { second, values, score: y.len() as f64 * removed / (trace * trace) })
+        Some(SplineFit { second, values, score: y.len() as f64 * removed / (trace * trace) })
     }
 
     /// The cutoff between `least` and `most` of the smallest score.
@@ -165,7 +165,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The cubic from every radius to the next, as its jet at the radius.
-    pub fn pieces(&self, fit: &Fit) -> Vec<Jet> {
+    pub fn pieces(&self, fit: &SplineFit) -> Vec<Jet> {
         let (g, m) = (&fit.values, &fit.second);
         self.radii
             .windows(2)
@@ -280,7 +280,7 @@ mod tests {
             let radii = uneven(200, first);
             let values: Vec<f64> = radii.iter().map(|r| (9.0 * r).cos()).collect();
             let weights = widths(&radii);
-            let rows = Rows::new(&radii, &values, &weights);
+            let rows = SplineRows::new(&radii, &values, &weights);
             let fit = rows.fit(0.0).unwrap();
             assert_eq!(fit.values, values);
             let pieces = rows.pieces(&fit);
@@ -303,7 +303,7 @@ mod tests {
         for (wavelength, cutoff) in [(0.05, 0.05), (0.05, 0.025), (0.02, 0.04), (0.25, 0.25)] {
             let wave = |r: f64| (TAU * r / wavelength).cos();
             let values: Vec<f64> = radii.iter().map(|&r| wave(r)).collect();
-            let fit = Rows::new(&radii, &values, &widths(&radii)).fit(cutoff).unwrap();
+            let fit = SplineRows::new(&radii, &values, &widths(&radii)).fit(cutoff).unwrap();
             let share = 1.0 / (1.0 + (cutoff / wavelength).powi(4));
             for i in (0..2000).step_by(7) {
                 let (ours, exact) = (fit.values[i], share * wave(radii[i]));
@@ -316,7 +316,7 @@ mod tests {
     fn the_trace_is_that_of_the_whole_matrix() {
         let radii = uneven(12, 0.01);
         let (zeros, weights) = (vec![0.0; 12], widths(&radii));
-        let rows = Rows::new(&radii, &zeros, &weights);
+        let rows = SplineRows::new(&radii, &zeros, &weights);
         let cutoff = 0.4;
         let penalty = (cutoff / TAU).powi(4);
         let matrix: Bands = rows
@@ -331,7 +331,7 @@ mod tests {
             .map(|i| {
                 let mut unit = zeros.clone();
                 unit[i] = 1.0;
-                1.0 - Rows::new(&radii, &unit, &weights).fit(cutoff).unwrap().values[i]
+                1.0 - SplineRows::new(&radii, &unit, &weights).fit(cutoff).unwrap().values[i]
             })
             .sum();
         assert!((trace / whole - 1.0).abs() < 1e-12, "{trace} {whole}");
@@ -347,7 +347,7 @@ mod tests {
         let values: Vec<f64> =
             radii.iter().map(|&r| wave(r) + noise * (random.unit() + random.unit() - 1.0)).collect();
         let weights = widths(&radii);
-        let rows = Rows::new(&radii, &values, &weights);
+        let rows = SplineRows::new(&radii, &values, &weights);
         let cutoff = rows.cutoff(1e-3, 0.5);
         let fit = rows.fit(cutoff).unwrap();
         let error = radii.iter().zip(&fit.values).map(|(&r, g)| (g - wave(r)).powi(2)).sum::<f64>() / 2000.0;

@@ -1,6 +1,6 @@
 //! What the programs of makers of instruments write.
 
-use super::{Form, comma, form, half, lines, rows, western};
+use super::{FileForm, comma, form, half, lines, rows, western};
 use crate::measured::Abscissa;
 use std::fmt::Write;
 
@@ -26,7 +26,7 @@ fn beside(separator: &str) -> String {
 }
 
 /// Of the makers of microscopes.
-pub(super) fn of_microscopes() -> Vec<Form> {
+pub(super) fn of_microscopes() -> Vec<FileForm> {
     let both = [("extend", half(false)), ("retract", half(true))];
     let igor = lines(&rows(), |_, x, p| format!("\t{:e}\t{:e}", x * 1e-9, p * 1e-9));
     let wave = |scale: f64, at: usize| lines(&rows(), |_, x, p| format!("\t{:e}", [x, p][at] * scale));
@@ -122,7 +122,7 @@ pub(super) fn of_microscopes() -> Vec<Form> {
 }
 
 /// Of other instruments.
-pub(super) fn of_indenters() -> Vec<Form> {
+pub(super) fn of_indenters() -> Vec<FileForm> {
     let hysitron = |head: &str| {
         let rows = lines(&rows(), |i, x, p| format!("{x}\t{}\t{}\t0.5\t0.25", p * 1e-3, 0.01 * i as f64));
         format!("\r\nNumber of Points  =  20\r\n\r\n{head}\r\n{}", rows.replace('\n', "\r\n"))
@@ -170,7 +170,7 @@ pub(super) fn of_indenters() -> Vec<Form> {
 }
 
 /// Of testers of materials and of own rigs.
-pub(super) fn of_testers() -> Vec<Form> {
+pub(super) fn of_testers() -> Vec<FileForm> {
     let all = "Time [s]\tPiezo [nm]\tDefl [V]\tDefl [nm]\tIndentation [nm]\tForce [nN]\tTemperature [°C]\n"
         .to_owned()
         + &lines(&rows(), |i, x, p| {

@@ -1,9 +1,9 @@
 //! What spreadsheets and people's own programs write.
 
-use super::{Form, comma, form, half, lines, rows, two, utf_16, western};
+use super::{FileForm, comma, form, half, lines, rows, two, utf_16, western};
 
 /// Of spreadsheets.
-pub(super) fn of_spreadsheets() -> Vec<Form> {
+pub(super) fn of_spreadsheets() -> Vec<FileForm> {
     let german = "Weg [µm];Kraft [µN]\r\n".to_owned()
         + &lines(&rows(), |_, x, p| format!("{};{}", comma(x * 1e-3), comma(p * 1e-3))).replace('\n', "\r\n");
     let tabs = german.replace(';', "\t");
@@ -71,7 +71,7 @@ pub(super) fn of_spreadsheets() -> Vec<Form> {
 }
 
 /// Of own programs.
-pub(super) fn of_own_programs() -> Vec<Form> {
+pub(super) fn of_own_programs() -> Vec<FileForm> {
     let unit = |name, x: &str, p: &str, of_x: f64, of_p: f64| {
         form(name, format!("indentation [{x}]\tload [{p}]\n{}", two("\t", 1e-9 / of_x, 1e-9 / of_p)))
     };

@@ -14,7 +14,7 @@ use crate::preset::shape;
 use crate::preset::value::Value;
 use crate::preset::values::Values;
 use crate::preset::{data, edge};
-use crate::problem::{Adhesion, Control, Stated};
+use crate::problem::{Adhesion, Control, StatedCohesion};
 use crate::text::closest_key;
 use crate::text::quote;
 use crate::units::UnitSystem;
@@ -168,13 +168,13 @@ fn adhesion_keys() -> [&'static str; 5] {
 /// What an adhesion says of one of them.
 fn adhesion_value(adhesion: Adhesion, key: &str) -> Option<f64> {
     match adhesion {
-        Adhesion::Dugdale(Stated::Strength(x)) => (key == RANGE_KEYS[0]).then_some(x),
-        Adhesion::Dugdale(Stated::Range(x)) => (key == RANGE_KEYS[1]).then_some(x),
+        Adhesion::Dugdale(StatedCohesion::Strength(x)) => (key == RANGE_KEYS[0]).then_some(x),
+        Adhesion::Dugdale(StatedCohesion::Range(x)) => (key == RANGE_KEYS[1]).then_some(x),
         Adhesion::Capillary { surface_tension, kelvin_radius, contact_angle } => {
             let at = LIQUID_KEYS.iter().position(|known| *known == key)?;
             Some([surface_tension, kelvin_radius, contact_angle][at])
         }
-        Adhesion::ShortRange | Adhesion::Dugdale(Stated::Action) => None,
+        Adhesion::ShortRange | Adhesion::Dugdale(StatedCohesion::Action) => None,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::gap::{shapes::ExactSphere, shapes::PowerLaw, shapes::RandomWaves};
-use crate::measured::Source;
+use crate::measured::PointsFile;
 use crate::preset::edge::EdgeSpec;
 use crate::preset::examples::{any_gap, wavy};
 use crate::preset::rows::parameter;
@@ -55,9 +55,9 @@ fn another(key: &str) -> Value {
 }
 
 /// Numbers without a header.
-fn points() -> Source {
+fn points() -> PointsFile {
     let rows: Vec<String> = (0..10).map(|i| format!("{i} {}", i * i)).collect();
-    Source::new("points.txt".to_owned(), None, rows.join("\n").into_bytes().into())
+    PointsFile::new("points.txt".to_owned(), None, rows.join("\n").into_bytes().into())
 }
 
 /// Every key of the table.

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::gap::Gap;
-use crate::gap::{shapes::Profile, shapes::Smoothing};
+use crate::gap::{shapes::ProfileGap, shapes::Smoothing};
 use crate::text::{NotText, is_unsafe};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -14,7 +14,7 @@ fn rows(separator: &str) -> String {
     (0..10).map(row).collect()
 }
 
-fn good(text: &str) -> Columns {
+fn good(text: &str) -> ProfileColumns {
     parse(text.as_bytes()).unwrap()
 }
 
@@ -22,7 +22,7 @@ fn refused(text: &str) -> String {
     parse(text.as_bytes()).unwrap_err().to_string()
 }
 
-fn names(columns: &Columns) -> [Option<&str>; 2] {
+fn names(columns: &ProfileColumns) -> [Option<&str>; 2] {
     [columns.units[0].as_deref(), columns.units[1].as_deref()]
 }
 
@@ -326,7 +326,7 @@ fn sound_or_refused(bytes: &[u8]) {
     assert!(columns.radii.is_sorted_by(|a, b| a < b) && columns.radii[0] >= 0.0);
     assert!(columns.gaps.iter().all(|h| h.is_finite()));
     for smoothing in [Smoothing::None, Smoothing::Auto, Smoothing::Cutoff(1.0)] {
-        match Profile::new(&columns.radii, &columns.gaps, smoothing) {
+        match ProfileGap::new(&columns.radii, &columns.gaps, smoothing) {
             Ok(profile) => {
                 let known = profile.largest_radius().unwrap();
                 for share in [0.0, 1e-9, 0.3, 0.999] {

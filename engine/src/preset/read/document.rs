@@ -1,8 +1,8 @@
 //! Documents and assignments laid down: tables, arrays of waves, single keys.
 
 use super::MISTAKES;
-use super::mistake::Origin;
-use super::sheet::{Place, Sheet};
+use super::mistake::ValueOrigin;
+use super::sheet::{LayerOrigin, Sheet};
 use crate::gap::shapes::harmonics::MOST_WAVES;
 use crate::preset::data;
 use crate::preset::family;
@@ -20,7 +20,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 
 impl Sheet {
     /// Lays down the keys of a table, and of the tables in it.
-    pub(super) fn lay(&mut self, prefix: &str, table: &DeTable<'_>, place: &Place<'_>) {
+    pub(super) fn lay(&mut self, prefix: &str, table: &DeTable<'_>, place: &LayerOrigin<'_>) {
         for (key, value) in table {
             if self.mistakes.len() >= MISTAKES {
                 return;
@@ -61,8 +61,8 @@ impl Sheet {
                 (other, Some(row), _) => {
                     let value = Value::from_toml(other).map_err(|found| row.wrong_type(found));
                     let folder = match place {
-                        Place::File(_) => self.folder.as_deref(),
-                        Place::Assignment(_) => None,
+                        LayerOrigin::File(_) => self.folder.as_deref(),
+                        LayerOrigin::Assignment(_) => None,
                     };
                     let value = value.and_then(|value| match &self.held {
                         Some(held) if row.kind == Kind::File => Ok(Value::Profile(Arc::clone(&held.rows))),
@@ -87,8 +87,8 @@ impl Sheet {
     }
 
     /// Lays down the waves of an array.
-    fn lay_waves(&mut self, waves: &DeArray<'_>, origin: Origin, place: &Place<'_>) {
-        if matches!(place, Place::Assignment(_)) {
+    fn lay_waves(&mut self, waves: &DeArray<'_>, origin: ValueOrigin, place: &LayerOrigin<'_>) {
+        if matches!(place, LayerOrigin::Assignment(_)) {
             self.entries.retain(|key, _| family::below(key, family::WAVE_TABLE).is_none());
         }
         if waves.len() > MOST_WAVES {
@@ -120,7 +120,7 @@ impl Sheet {
         if self.mistakes.len() >= MISTAKES {
             return;
         }
-        let place = Place::Assignment(assignment);
+        let place = LayerOrigin::Assignment(assignment);
         let origin = self.origin(&place, 0);
         let Some((key, text)) = assignment.split_once('=') else {
             return self.mistake(origin, Invalid::Assignment);
@@ -156,7 +156,7 @@ impl Sheet {
 
     pub(super) fn syntax(&mut self, text: &str, error: &toml::de::Error) {
         let span = error.span().unwrap_or_default();
-        let origin = self.origin(&Place::File(text), span.start);
+        let origin = self.origin(&LayerOrigin::File(text), span.start);
         // The parser's words quote no source text, but nothing promises that they never will.
         let mut what = sanitize(error.message(), 120);
         if let Some(at) = text.get(span).map(str::trim).filter(|at| !at.is_empty()) {

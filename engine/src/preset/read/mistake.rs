@@ -6,7 +6,7 @@ use thiserror::Error;
 
 /// Where a value came from. Names and texts in it are already safe to show.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Origin {
+pub enum ValueOrigin {
     /// A file, and the line where known.
     File {
         /// The file's name.
@@ -18,7 +18,7 @@ pub enum Origin {
     Assignment(String),
 }
 
-impl fmt::Display for Origin {
+impl fmt::Display for ValueOrigin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File { name, line: Some(line) } => write!(f, "{name}:{line}"),
@@ -33,7 +33,7 @@ impl fmt::Display for Origin {
 #[error("{origin}: {invalid}")]
 pub struct Mistake {
     /// Where.
-    pub origin: Origin,
+    pub origin: ValueOrigin,
     /// What.
     pub invalid: Invalid,
 }

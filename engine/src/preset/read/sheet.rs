@@ -1,9 +1,9 @@
 //! The layers laid down so far: what is known of each key, and where it came from.
 
-use super::mistake::{Mistake, Origin};
+use super::mistake::{Mistake, ValueOrigin};
 use crate::gap::Shape;
-use crate::gap::shapes::Rows;
-use crate::measured::Source;
+use crate::gap::shapes::ProfileRows;
+use crate::measured::PointsFile;
 use crate::preset::Preset;
 use crate::preset::invalid::Invalid;
 use crate::preset::measured::Files;
@@ -18,27 +18,27 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// What is known of one key.
-pub(super) struct Entry {
+pub(super) struct SheetEntry {
     pub(super) value: Result<Value, Invalid>,
-    pub(super) origin: Origin,
+    pub(super) origin: ValueOrigin,
 }
 
 /// What the files of a preset hold. One that has none holds nothing, which is a mistake where a key names it.
 #[derive(Debug, Clone)]
-pub struct Held {
+pub struct HeldFiles {
     /// The rows of its profile.
-    pub rows: Arc<Rows>,
+    pub rows: Arc<ProfileRows>,
     /// Its measured curve.
-    pub points: Arc<Source>,
+    pub points: Arc<PointsFile>,
 }
 
-impl Default for Held {
+impl Default for HeldFiles {
     fn default() -> Self {
-        Self { rows: Arc::default(), points: Arc::new(Source::new(String::new(), None, Arc::new([]))) }
+        Self { rows: Arc::default(), points: Arc::new(PointsFile::new(String::new(), None, Arc::new([]))) }
     }
 }
 
-impl Held {
+impl HeldFiles {
     /// What those of `preset` hold.
     #[must_use]
     pub fn by(preset: &Preset) -> Self {
@@ -62,42 +62,44 @@ pub(super) struct Sheet {
     /// The folder of the file.
     pub(super) folder: Option<PathBuf>,
     /// What its files hold, where that is known and no file is to be read.
-    pub(super) held: Option<Held>,
+    pub(super) held: Option<HeldFiles>,
     /// Whether an assignment chose a formula: its parameters need not fit those of the file.
     pub(super) refit: bool,
-    pub(super) entries: BTreeMap<Key, Entry>,
+    pub(super) entries: BTreeMap<Key, SheetEntry>,
     /// Assignments of groups: laid over the whole, when all they follow from is known.
-    pub(super) groups: Vec<(String, String, Origin)>,
+    pub(super) groups: Vec<(String, String, ValueOrigin)>,
     /// Where the file's tables begin.
-    pub(super) tables: BTreeMap<Key, Origin>,
+    pub(super) tables: BTreeMap<Key, ValueOrigin>,
     pub(super) mistakes: Vec<Mistake>,
 }
 
 /// Where the values being laid down come from.
-pub(super) enum Place<'a> {
+pub(super) enum LayerOrigin<'a> {
     File(&'a str),
     Assignment(&'a str),
 }
 
 impl Sheet {
-    pub(super) fn origin(&self, place: &Place<'_>, at: usize) -> Origin {
+    pub(super) fn origin(&self, place: &LayerOrigin<'_>, at: usize) -> ValueOrigin {
         match place {
-            Place::File(text) => Origin::File { name: self.name.clone(), line: Some(line(text, at)) },
-            Place::Assignment(text) => Origin::Assignment(quote(text)),
+            LayerOrigin::File(text) => {
+                ValueOrigin::File { name: self.name.clone(), line: Some(line(text, at)) }
+            }
+            LayerOrigin::Assignment(text) => ValueOrigin::Assignment(quote(text)),
         }
     }
 
     /// Stores what was found for a key. An assignment replaces what the file said in another way: another start,
     /// the waves of another shape, the size of another basis.
-    pub(super) fn put(&mut self, row: &Parameter, value: Result<Value, Invalid>, origin: Origin) {
-        if matches!(origin, Origin::Assignment(_)) {
+    pub(super) fn put(&mut self, row: &Parameter, value: Result<Value, Invalid>, origin: ValueOrigin) {
+        if matches!(origin, ValueOrigin::Assignment(_)) {
             self.refit = self.refit || row.key == "gap.formula";
             let rivals = rivals(&row.key);
             self.entries.retain(|key, _| !rivals.contains(&&**key));
             if let (Ok(word), true) = (&value, CHOOSERS.contains(&&*row.key)) {
                 let word = word.to_string();
                 self.entries.retain(|key, entry| {
-                    matches!(entry.origin, Origin::Assignment(_))
+                    matches!(entry.origin, ValueOrigin::Assignment(_))
                         || parameter(key).is_some_and(|other| other.fits(&row.key, &word))
                 });
             }
@@ -107,17 +109,17 @@ impl Sheet {
                 let mut one = Values::new();
                 put(&mut one, row, value);
                 for (key, value) in one {
-                    self.entries.insert(key, Entry { value: Ok(value), origin: origin.clone() });
+                    self.entries.insert(key, SheetEntry { value: Ok(value), origin: origin.clone() });
                 }
             }
             Err(invalid) => {
                 let whole = row.table().filter(|_| row.is_part()).unwrap_or(&row.key).to_owned();
-                self.entries.insert(whole.into(), Entry { value: Err(invalid), origin });
+                self.entries.insert(whole.into(), SheetEntry { value: Err(invalid), origin });
             }
         }
     }
 
-    pub(super) fn mistake(&mut self, origin: Origin, invalid: Invalid) {
+    pub(super) fn mistake(&mut self, origin: ValueOrigin, invalid: Invalid) {
         self.mistakes.push(Mistake { origin, invalid });
     }
 }

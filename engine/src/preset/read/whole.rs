@@ -1,8 +1,8 @@
 //! The layers as one preset, or all that is wrong with them.
 
 use super::MISTAKES;
-use super::mistake::{Mistake, Origin, ReadError};
-use super::sheet::{Entry, Sheet};
+use super::mistake::{Mistake, ReadError, ValueOrigin};
+use super::sheet::{Sheet, SheetEntry};
 use crate::preset::build::build;
 use crate::preset::family::{below, parameter_key};
 use crate::preset::invalid::Invalid;
@@ -20,7 +20,7 @@ impl Sheet {
             self.mistakes.retain(|mistake| matches!(mistake.invalid, Invalid::Syntax { .. }));
             return Err(ReadError { mistakes: self.mistakes });
         }
-        if let Some(Entry { value: Err(invalid @ Invalid::Format { .. }), origin }) =
+        if let Some(SheetEntry { value: Err(invalid @ Invalid::Format { .. }), origin }) =
             self.entries.get("format")
         {
             let mistake = Mistake { origin: origin.clone(), invalid: invalid.clone() };
@@ -40,14 +40,14 @@ impl Sheet {
         }
         if self.refit {
             let assigned = |key: &str| {
-                self.entries.get(key).is_some_and(|entry| matches!(entry.origin, Origin::Assignment(_)))
+                self.entries.get(key).is_some_and(|entry| matches!(entry.origin, ValueOrigin::Assignment(_)))
             };
             // Another formula's parameters are not guessed: a misspelt one would be a gap that nobody meant.
             for new in fit_parameters(&mut values, assigned) {
                 let meant = new.alike.map(|(name, _)| parameter_key(&name).into());
                 let key = parameter_key(&new.name).into();
                 let origin = self.entries.get("gap.formula").map(|entry| entry.origin.clone());
-                let origin = origin.unwrap_or(Origin::File { name: self.name.clone(), line: None });
+                let origin = origin.unwrap_or(ValueOrigin::File { name: self.name.clone(), line: None });
                 mistakes.push(Mistake { origin, invalid: Invalid::Unset { key, meant } });
             }
         }
@@ -74,9 +74,9 @@ impl Sheet {
         }
         // Lines in order; what has no line, and the assignments, at the end.
         mistakes.sort_by_key(|mistake| match mistake.origin {
-            Origin::File { line: Some(line), .. } => (0, line),
-            Origin::File { line: None, .. } => (1, 0),
-            Origin::Assignment(_) => (2, 0),
+            ValueOrigin::File { line: Some(line), .. } => (0, line),
+            ValueOrigin::File { line: None, .. } => (1, 0),
+            ValueOrigin::Assignment(_) => (2, 0),
         });
         mistakes.truncate(MISTAKES);
         Err(ReadError { mistakes })
@@ -99,12 +99,13 @@ impl Sheet {
     }
 
     /// Where to point for a fault found in the whole: the key, else its table, else the file.
-    fn origin_of(&self, invalid: &Invalid) -> Origin {
+    fn origin_of(&self, invalid: &Invalid) -> ValueOrigin {
         // A range that two keys make together is the later layer's doing.
         if let Invalid::EndBeyondStart { .. } | Invalid::Wide { .. } = invalid {
             let partners = [START_KEYS[0], "path.end_contact_radius", "gap.radius_of_curvature"];
             let said = partners.iter().filter_map(|key| self.entries.get(*key));
-            if let Some(entry) = said.into_iter().find(|entry| matches!(entry.origin, Origin::Assignment(_)))
+            if let Some(entry) =
+                said.into_iter().find(|entry| matches!(entry.origin, ValueOrigin::Assignment(_)))
             {
                 return entry.origin.clone();
             }
@@ -114,7 +115,7 @@ impl Sheet {
             return entry.origin.clone();
         }
         let table = key.and_then(|key| self.tables.get(table_of(key)?));
-        table.cloned().unwrap_or(Origin::File { name: self.name.clone(), line: None })
+        table.cloned().unwrap_or(ValueOrigin::File { name: self.name.clone(), line: None })
     }
 }
 

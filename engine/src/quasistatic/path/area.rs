@@ -37,14 +37,14 @@ const WIDER: f64 = 10.0;
 
 /// A way of edges: from where it is small, to where it is large.
 #[derive(Debug, Clone, Copy)]
-enum Way {
+enum EdgeWay {
     /// On a straight line.
     Line([f64; 2], [f64; 2]),
     /// A ring from nothing at a radius.
     Open(f64, [f64; 2]),
 }
 
-impl Way {
+impl EdgeWay {
     /// Both edges and their rates at t.
     fn at(&self, t: f64) -> [[f64; 2]; 2] {
         let [from, to] = match self {
@@ -90,8 +90,8 @@ impl Balance<'_> {
             let (Some(first), Some(last)) = (inside.first(), inside.last()) else {
                 let crest = crests.and_then(|crests| crests.iter().find(|r| **r > lo && **r < hi));
                 match crest {
-                    _ if lo <= 0.0 => ways.push(Way::Open(0.0, [lo, hi])),
-                    Some(crest) => ways.push(Way::Open(*crest, [lo, hi])),
+                    _ if lo <= 0.0 => ways.push(EdgeWay::Open(0.0, [lo, hi])),
+                    Some(crest) => ways.push(EdgeWay::Open(*crest, [lo, hi])),
                     None => vanishing.push([lo, hi]),
                 }
                 continue;
@@ -101,7 +101,7 @@ impl Balance<'_> {
             for (k, piece) in inside.iter().enumerate() {
                 let inner = if k == 0 { lo } else { middles[k - 1] };
                 let outer = if k + 1 == inside.len() { hi } else { middles[k] };
-                ways.push(Way::Line(*piece, [inner, outer]));
+                ways.push(EdgeWay::Line(*piece, [inner, outer]));
             }
             debug_assert!(first[0] <= last[1]);
         }
@@ -109,8 +109,8 @@ impl Balance<'_> {
         let farthest = ways
             .iter()
             .flat_map(|way| match way {
-                Way::Line(from, to) => [from[0] - to[0], to[1] - from[1]],
-                Way::Open(point, to) => [point - to[0], to[1] - point],
+                EdgeWay::Line(from, to) => [from[0] - to[0], to[1] - from[1]],
+                EdgeWay::Open(point, to) => [point - to[0], to[1] - point],
             })
             .fold(0.0, f64::max);
         // Some hundred at most.
@@ -138,7 +138,7 @@ impl Balance<'_> {
     }
 
     /// The times at which an edge passes a break of the gap, with 0 and 1: there G goes like the root of the time.
-    fn borders(&self, ways: &[Way]) -> Vec<f64> {
+    fn borders(&self, ways: &[EdgeWay]) -> Vec<f64> {
         let mut times = vec![0.0, 1.0];
         for way in ways {
             for [start, rate] in way.at(0.0) {

@@ -10,7 +10,9 @@
 //! A state is stable where all eigenvalues of J are positive. J = S·diag(e κ) with S symmetric, so that they are real where κ > 0.
 
 use super::lane::Lane;
-use crate::annuli::{AnnuliError, Around, Contacts, Crest, Ground, Resolution, State, Wanted, points};
+use crate::annuli::{
+    AnnuliError, AnnuliState, Around, Contacts, GapMinimum, Ground, Resolution, Wanted, points,
+};
 use crate::disc::outside;
 use crate::problem::{ContactKind, Control};
 use crate::progress::Progress;
@@ -53,9 +55,9 @@ pub struct Balance<'a> {
 
 /// Edges at a control value, in equilibrium or not.
 #[derive(Debug, Clone)]
-pub struct Held {
+pub struct HeldEdges {
     /// The contacts with their pressures.
-    pub state: State,
+    pub state: AnnuliState,
     /// c.
     pub control_value: f64,
     /// δ.
@@ -92,7 +94,12 @@ impl Balance<'_> {
     ///
     /// # Errors
     /// [`AnnuliError`].
-    pub fn held(&self, contacts: &Contacts, points: &Resolution, value: f64) -> Result<Held, AnnuliError> {
+    pub fn held(
+        &self,
+        contacts: &Contacts,
+        points: &Resolution,
+        value: f64,
+    ) -> Result<HeldEdges, AnnuliError> {
         let state = self.ground.state_with(contacts, points, Wanted::Rates)?;
         let [p0, p1] = state.force;
         let (delta, factor, by_value) = self.approach(&state, value);
@@ -113,7 +120,7 @@ impl Balance<'_> {
             DVector::from_iterator(edges.len(), state.intensity.iter().map(|[_, slope]| slope * by_value));
         let force = p0 + p1 * delta;
         let mut held =
-            Held { state, control_value: value, approach: delta, force, excess, jacobian, by_control };
+            HeldEdges { state, control_value: value, approach: delta, force, excess, jacobian, by_control };
         self.pin(&mut held);
         Ok(held)
     }
@@ -124,7 +131,7 @@ impl Balance<'_> {
     }
 
     /// Nothing is asked of edges that are held, and nothing moves them.
-    fn pin(&self, held: &mut Held) {
+    fn pin(&self, held: &mut HeldEdges) {
         if self.pinned.is_none() {
             return;
         }
@@ -139,7 +146,7 @@ impl Balance<'_> {
     }
 
     /// The held edge that is nearest to moving: its radius, and κ − √γ there.
-    pub fn nearest_to_moving(&self, held: &Held) -> Option<(f64, f64)> {
+    pub fn nearest_to_moving(&self, held: &HeldEdges) -> Option<(f64, f64)> {
         self.pinned?;
         let root = self.work_of_adhesion.sqrt();
         let edges = held.state.contacts.edges().into_iter().zip(held.state.intensities(held.approach));
@@ -155,7 +162,7 @@ impl Balance<'_> {
     }
 
     /// Lets go of the held edges that would move; whether there are any.
-    pub fn lets_go(&self, held: &Held) -> bool {
+    pub fn lets_go(&self, held: &HeldEdges) -> bool {
         let before = self.nearest_to_moving(held).filter(|(_, excess)| *excess > 0.0);
         if let Some((radius, _)) = before {
             self.let_go(radius);
@@ -165,7 +172,7 @@ impl Balance<'_> {
 
     /// The way in which edges that are not stable begin to run: the eigenvector of the least eigenvalue of J, outward at every edge, by inverse
     /// iteration. Edges that adhere ease each other, so that no part of it has the other sign.
-    pub fn softest(held: &Held) -> DVector<f64> {
+    pub fn softest(held: &HeldEdges) -> DVector<f64> {
         /// The shift is below the eigenvalue by this share of J: the other eigenvalues are further away.
         const BELOW: f64 = 1e-10;
         const TIMES: usize = 6;
@@ -181,7 +188,7 @@ impl Balance<'_> {
     }
 
     /// δ at the control value, f and ∂δ/∂c.
-    fn approach(&self, state: &State, value: f64) -> (f64, f64, f64) {
+    fn approach(&self, state: &AnnuliState, value: f64) -> (f64, f64, f64) {
         let [p0, p1] = state.force;
         match self.control {
             Control::Displacement => (value, 0.0, 1.0),
@@ -205,7 +212,7 @@ impl Balance<'_> {
     ///
     /// # Errors
     /// [`NotFound`].
-    pub fn solve(&self, from: &Contacts, value: f64) -> Result<Held, NotFound> {
+    pub fn solve(&self, from: &Contacts, value: f64) -> Result<HeldEdges, NotFound> {
         let points = points(self.ground, from);
         let mut contacts = from.clone();
         let mut last = f64::INFINITY;
@@ -237,7 +244,7 @@ impl Balance<'_> {
     }
 
     /// Whether, or how nearly, edges are stable when the control is held: the least eigenvalue of J.
-    pub fn least_eigenvalue(held: &Held) -> f64 {
+    pub fn least_eigenvalue(held: &HeldEdges) -> f64 {
         let j = &held.jacobian;
         let n = j.nrows();
         match n {
@@ -261,7 +268,7 @@ impl Balance<'_> {
 
     /// The least gap outside the contacts and its radius, crests alone; `None` where nothing can come near, or nothing else is
     /// followed.
-    pub fn least_gap(&self, held: &Held) -> Option<Crest> {
+    pub fn least_gap(&self, held: &HeldEdges) -> Option<GapMinimum> {
         if self.contact == ContactKind::OneDisc {
             return None;
         }
@@ -277,9 +284,10 @@ impl Balance<'_> {
             }
             let (panels, s) = (&self.ground.panels, contacts.disc);
             let least = outside::least_gap(panels, s, held.approach, end, overlap, self.progress);
-            let found = least
-                .at
-                .map(|[radius, gap]| Crest { radius, gap: if gap < overlap { gap } else { gap.max(0.0) } });
+            let found = least.at.map(|[radius, gap]| GapMinimum {
+                radius,
+                gap: if gap < overlap { gap } else { gap.max(0.0) },
+            });
             let overlaps = found.is_some_and(|crest| crest.gap < 0.0);
             // A search that was given up says nothing of what lies beyond: that is sampled, as it is around rings.
             if overlaps || least.given_up.is_none() {
@@ -290,7 +298,7 @@ impl Balance<'_> {
     }
 
     /// The minima of the gap outside the contacts that could touch, from the axis outward.
-    pub fn crests(&self, held: &Held) -> Vec<Crest> {
+    pub fn crests(&self, held: &HeldEdges) -> Vec<GapMinimum> {
         let around = Around::new(self.ground, &held.state, held.approach);
         around.crests(self.ground.can_touch_up_to(held.approach))
     }

@@ -1,12 +1,12 @@
 //! A path of any contacts while it runs: the loop from apart to a turn and back.
 
-use super::balance::{Balance, Held};
+use super::balance::{Balance, HeldEdges};
 use super::error::PathError;
 use super::event::{Direction, EventKind, Passed, PassedKind, PathState};
 use super::lane::Lane;
 use super::record::Record;
-use super::setting::{Path, PathStop, Setting, TurnReached, measure};
-use crate::annuli::{AnnuliError, Contacts, ContactsError, Crest, Ground, points};
+use super::setting::{Path, PathSetting, PathStop, TurnReached, measure};
+use crate::annuli::{AnnuliError, Contacts, ContactsError, GapMinimum, Ground, points};
 use crate::disc::Table;
 use crate::gap::Form;
 use crate::problem::{ContactKind, Control, Turn};
@@ -18,11 +18,11 @@ use std::sync::Arc;
 
 /// What ends a stretch of stable states.
 #[derive(Debug)]
-pub(super) enum End {
+pub(super) enum CourseEnd {
     Limit(DVector<f64>),
     /// The outer end of this stretch of one disc.
     Fold(usize),
-    Touch(Crest),
+    Touch(GapMinimum),
     Turn,
     /// G of a held edge has come to γ.
     Free,
@@ -31,7 +31,7 @@ pub(super) enum End {
 /// A path of any contacts while it runs.
 pub(in crate::quasistatic) struct Course<'a, 'b> {
     pub balance: &'a Balance<'b>,
-    pub setting: &'a Setting<'a>,
+    pub setting: &'a PathSetting<'a>,
     /// Where the control turns round; `None` on the way down alone.
     pub turn: Option<Turn>,
     /// Below this radius a disc is not followed, a length.
@@ -54,7 +54,7 @@ pub fn cycle(
     table: &Arc<Table>,
     gamma: f64,
     turn: Turn,
-    setting: &Setting<'_>,
+    setting: &PathSetting<'_>,
     progress: &dyn Progress,
 ) -> Result<Path, PathError> {
     let reach = match turn {
@@ -134,7 +134,7 @@ pub fn cycle_on(
     ground: &Ground,
     gamma: f64,
     turn: Turn,
-    setting: &Setting<'_>,
+    setting: &PathSetting<'_>,
     progress: &dyn Progress,
 ) -> Result<Path, PathError> {
     if !turn.value().is_finite() {
@@ -155,7 +155,7 @@ pub(super) fn lane(ground: &Ground, gamma: f64, control: Control) -> Option<Lane
 pub(super) fn balance<'a>(
     ground: &'a Ground,
     gamma: f64,
-    setting: &Setting<'_>,
+    setting: &PathSetting<'_>,
     lane: Option<&'a Lane>,
     progress: &'a dyn Progress,
 ) -> Balance<'a> {
@@ -166,7 +166,7 @@ pub(super) fn balance<'a>(
 }
 
 /// The place of the least gap; the axis where it is one of several. `None` where there is none, or `progress` said stop.
-fn first_crest(ground: &Ground, progress: &dyn Progress) -> Option<Crest> {
+fn first_crest(ground: &Ground, progress: &dyn Progress) -> Option<GapMinimum> {
     /// Radii at which the gap is looked at between two questions.
     const TOGETHER: usize = 64;
     let reach = ground.reach();
@@ -184,7 +184,7 @@ fn first_crest(ground: &Ground, progress: &dyn Progress) -> Option<Crest> {
     }
     let (best, _) = least?;
     if best <= 0.0 && !ground.is_dimpled() {
-        return Some(Crest { radius: 0.0, gap: value(0.0) });
+        return Some(GapMinimum { radius: 0.0, gap: value(0.0) });
     }
     // h' changes its sign at a smooth minimum; at a corner the bisection ends on it.
     let at = radii.partition_point(|r| *r < best);
@@ -194,7 +194,7 @@ fn first_crest(ground: &Ground, progress: &dyn Progress) -> Option<Crest> {
         if ground.gap.jet(middle).first > 0.0 { hi = middle } else { lo = middle }
     }
     let radius = if value(best) < value(hi) { best } else { hi };
-    Some(Crest { radius, gap: value(radius) })
+    Some(GapMinimum { radius, gap: value(radius) })
 }
 
 /// The error with what was reached, where an edge ran beyond what is known of the gap, or a state has too many contacts.
@@ -213,14 +213,14 @@ pub(super) fn beyond(error: PathError, approach: f64, force: f64) -> PathError {
 
 impl<'a, 'b> Course<'a, 'b> {
     /// One that has not begun, to no turn and no end.
-    pub fn new(balance: &'a Balance<'b>, setting: &'a Setting<'a>, direction: Direction) -> Self {
+    pub fn new(balance: &'a Balance<'b>, setting: &'a PathSetting<'a>, direction: Direction) -> Self {
         let record = Record::new(setting, direction, balance.progress);
         Self { balance, setting, turn: None, end: 0.0, record, steps: 0 }
     }
 }
 
 impl Course<'_, '_> {
-    pub(super) fn state(&self, held: &Held) -> PathState {
+    pub(super) fn state(&self, held: &HeldEdges) -> PathState {
         let Record { direction, piece, control, .. } = self.record;
         let state = PathState::new(held, self.balance.work_of_adhesion, direction, piece);
         if self.balance.control == control {
@@ -230,7 +230,7 @@ impl Course<'_, '_> {
     }
 
     /// What the turn is measured by.
-    pub(super) fn measure(&self, held: &Held) -> f64 {
+    pub(super) fn measure(&self, held: &HeldEdges) -> f64 {
         match self.turn {
             Some(Turn::Control(_)) if self.balance.control == self.setting.control => held.control_value,
             Some(turn) => measure(turn, held, self.setting.control),
@@ -239,11 +239,11 @@ impl Course<'_, '_> {
     }
 
     /// Whether the turn is reached.
-    pub(super) fn has_turned(&self, held: &Held) -> bool {
+    pub(super) fn has_turned(&self, held: &HeldEdges) -> bool {
         self.turn.is_some_and(|turn| self.measure(held) >= turn.value())
     }
 
-    pub(super) fn record(&mut self, held: &Held) {
+    pub(super) fn record(&mut self, held: &HeldEdges) {
         if held.state.digits < self.record.digits.0 {
             self.record.digits = (held.state.digits, held.control_value);
         }
@@ -255,7 +255,7 @@ impl Course<'_, '_> {
     ///
     /// # Errors
     /// [`PathError`] where the bodies do not touch, or not before the turn.
-    pub fn first_crest(&self) -> Result<(Crest, f64), PathError> {
+    pub fn first_crest(&self) -> Result<(GapMinimum, f64), PathError> {
         let (balance, setting) = (self.balance, self.setting);
         let ground = balance.ground;
         if let Some(Turn::Radius(radius)) = self.turn
@@ -266,7 +266,7 @@ impl Course<'_, '_> {
         let progress = balance.progress;
         let crest = match setting.contact {
             ContactKind::Rings => first_crest(ground, progress),
-            ContactKind::OneDisc => Some(Crest { radius: 0.0, gap: ground.gap.jet(0.0).value }),
+            ContactKind::OneDisc => Some(GapMinimum { radius: 0.0, gap: ground.gap.jet(0.0).value }),
         };
         let Some(crest) = crest else {
             let searched = ground.reach();
@@ -316,7 +316,7 @@ impl Course<'_, '_> {
     /// come to γ at its edge.
     pub(super) fn down(
         mut self,
-        held: Held,
+        held: HeldEdges,
         gamma: f64,
         finished: &dyn Fn(Record<'_>, PathStop) -> Path,
     ) -> Result<Path, PathError> {
@@ -340,21 +340,21 @@ impl Course<'_, '_> {
     }
 
     /// From the first touch at a crest to the turn.
-    pub(super) fn loaded(&mut self, crest: Crest, value: f64) -> Result<Held, PathError> {
+    pub(super) fn loaded(&mut self, crest: GapMinimum, value: f64) -> Result<HeldEdges, PathError> {
         let mut held = self.first_touch(crest, value)?;
         while !self.has_turned(&held) {
             let (end, next) = self.way_up(&held)?;
             held = match end {
-                End::Turn => return Ok(next),
-                End::Free => None,
-                End::Limit(null) => {
+                CourseEnd::Turn => return Ok(next),
+                CourseEnd::Free => None,
+                CourseEnd::Limit(null) => {
                     let start = self.balance.kicked(&next.state.contacts, &null, 1.0);
                     self.jump(EventKind::SnapIn, &next, start, None)?
                 }
-                End::Fold(stretch) => {
+                CourseEnd::Fold(stretch) => {
                     self.balance.lane.map(|lane| self.advance(lane, &next, stretch)).transpose()?
                 }
-                End::Touch(crest) => {
+                CourseEnd::Touch(crest) => {
                     let start = self
                         .balance
                         .seeded(&next.state.contacts, crest.radius, next.control_value)
@@ -368,7 +368,7 @@ impl Course<'_, '_> {
     }
 
     /// The way down of contacts that are recorded, until the bodies are apart.
-    pub(super) fn unloaded(&mut self, mut held: Held) -> Result<PathStop, PathError> {
+    pub(super) fn unloaded(&mut self, mut held: HeldEdges) -> Result<PathStop, PathError> {
         let balance = self.balance;
         loop {
             let contacts = &held.state.contacts;
@@ -382,8 +382,8 @@ impl Course<'_, '_> {
             }
             let (end, mut next) = self.stretch(&held)?;
             let null = match end {
-                End::Limit(null) => null,
-                End::Free => {
+                CourseEnd::Limit(null) => null,
+                CourseEnd::Free => {
                     next = self.let_go(&next)?;
                     if Balance::least_eigenvalue(&next) > 0.0 {
                         held = next;
@@ -402,7 +402,7 @@ impl Course<'_, '_> {
     }
 
     /// The edges where a held one begins to move, which it may from here on.
-    fn let_go(&mut self, at: &Held) -> Result<Held, PathError> {
+    fn let_go(&mut self, at: &HeldEdges) -> Result<HeldEdges, PathError> {
         let balance = self.balance;
         let lost = PathError::Lost { control_value: at.control_value };
         let (radius, _) = balance.nearest_to_moving(at).ok_or(lost)?;
@@ -439,7 +439,7 @@ impl Course<'_, '_> {
     }
 
     /// Follows stable states while the control goes up, to what ends them.
-    fn way_up(&mut self, held: &Held) -> Result<(End, Held), PathError> {
+    fn way_up(&mut self, held: &HeldEdges) -> Result<(CourseEnd, HeldEdges), PathError> {
         let lane = self.balance.lane_of(&held.state.contacts);
         match lane.map(|lane| self.rise(lane, held)).transpose()?.flatten() {
             Some(found) => Ok(found),
@@ -448,7 +448,7 @@ impl Course<'_, '_> {
     }
 
     /// The first touch and what it jumps to.
-    pub fn first_touch(&mut self, crest: Crest, value: f64) -> Result<Held, PathError> {
+    pub fn first_touch(&mut self, crest: GapMinimum, value: f64) -> Result<HeldEdges, PathError> {
         let start = self.balance.seeded(&Contacts::default(), crest.radius, value)?;
         let mut passed = vec![Passed { kind: PassedKind::Touch, radius: crest.radius }];
         let held = self
@@ -464,10 +464,10 @@ impl Course<'_, '_> {
     pub fn jump(
         &mut self,
         kind: EventKind,
-        before: &Held,
+        before: &HeldEdges,
         start: Contacts,
         radius: Option<f64>,
-    ) -> Result<Option<Held>, PathError> {
+    ) -> Result<Option<HeldEdges>, PathError> {
         let mut passed: Vec<Passed> =
             radius.iter().map(|radius| Passed { kind: PassedKind::Touch, radius: *radius }).collect();
         let value = before.control_value;
@@ -482,8 +482,8 @@ impl Course<'_, '_> {
     pub(super) fn jumped(
         &mut self,
         kind: EventKind,
-        before: Option<&Held>,
-        landed: Option<&Held>,
+        before: Option<&HeldEdges>,
+        landed: Option<&HeldEdges>,
         radius: Option<f64>,
         passed: Vec<Passed>,
     ) {
@@ -506,7 +506,7 @@ mod tests {
 
     /// The loop of a gap, with discs on the exact panels or step by step as any contact.
     fn looped(ground: &Ground, gamma: f64, control: Control, turn: Turn, on_lane: bool) -> Path {
-        let setting = Setting::new(control);
+        let setting = PathSetting::new(control);
         let lane = on_lane.then(|| Lane::new(ground, gamma, control));
         let balance = balance(ground, gamma, &setting, lane.as_ref(), &Unwatched);
         let course = Course { turn: Some(turn), ..Course::new(&balance, &setting, Direction::Loading) };

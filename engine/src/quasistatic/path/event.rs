@@ -1,6 +1,6 @@
 //! What happens on a path, and its states.
 
-use super::balance::Held;
+use super::balance::HeldEdges;
 use crate::disc::{Edges, Local, Place, Solution};
 use crate::problem::Control;
 use crate::quasistatic::energy::{self, Losses};
@@ -67,7 +67,7 @@ pub struct PathState {
 
 impl PathState {
     /// The state of edges that are held.
-    pub fn new(held: &Held, gamma: f64, direction: Direction, piece: usize) -> Self {
+    pub fn new(held: &HeldEdges, gamma: f64, direction: Direction, piece: usize) -> Self {
         let contacts = &held.state.contacts;
         Self {
             contact_radius: contacts.outermost(),

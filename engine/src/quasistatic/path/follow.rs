@@ -1,11 +1,11 @@
 //! Following stable states to what ends them: a limit point, a touch, the turn; with the areas on the way.
 
-use super::balance::{Balance, Held};
-use super::course::{Course, End};
+use super::balance::{Balance, HeldEdges};
+use super::course::{Course, CourseEnd};
 use super::error::PathError;
 use super::event::Direction;
-use super::point::{Point, Step};
-use super::stepped::{Side, Stepped};
+use super::point::{PathPoint, PathStep};
+use super::stepped::{SingularSide, TakenStep};
 use crate::annuli::ground::gauss;
 use crate::annuli::{AnnuliError, MOST_POINTS_IN_ALL, points};
 use crate::problem::{ContactKind, Control};
@@ -35,7 +35,7 @@ const NEARLY: f64 = 0.8;
 
 impl Course<'_, '_> {
     /// Follows stable states from `held` to what ends them.
-    pub(super) fn stretch(&mut self, held: &Held) -> Result<(End, Held), PathError> {
+    pub(super) fn stretch(&mut self, held: &HeldEdges) -> Result<(CourseEnd, HeldEdges), PathError> {
         let (balance, sense) = (self.balance, self.record.direction.sense());
         let lost = PathError::Lost { control_value: held.control_value };
         let mut point = balance.point(held.clone(), sense).ok_or(lost)?;
@@ -46,14 +46,14 @@ impl Course<'_, '_> {
             let mut taken = taken.ok_or_else(|| self.stopped(&point.held))?;
             let to_held = &taken.end.held;
             let forth = (to_held.control_value - point.held.control_value) * sense > 0.0;
-            if taken.side == Side::From && !(forth && Balance::least_eigenvalue(to_held) > 0.0) {
+            if taken.side == SingularSide::From && !(forth && Balance::least_eigenvalue(to_held) > 0.0) {
                 // The limit point sits on the corner.
-                return Ok((End::Limit(taken.end.along_edges()), point.held));
+                return Ok((CourseEnd::Limit(taken.end.along_edges()), point.held));
             }
             length = taken.length;
             let end = self.ended(&mut taken)?;
-            let Stepped { step, length: taken, end: next, side } = taken;
-            if side == Side::Smooth {
+            let TakenStep { step, length: taken, end: next, side } = taken;
+            if side == SingularSide::Smooth {
                 for extreme in self.extremes(&step, &point, (taken, &next)) {
                     self.record(&extreme.held);
                 }
@@ -66,15 +66,20 @@ impl Course<'_, '_> {
                 return Ok((end, next.held));
             }
             ((point, bend), length) = match side {
-                Side::Smooth => (step.left_at(taken, next), (GROWTH * length).min(LONGEST)),
+                SingularSide::Smooth => (step.left_at(taken, next), (GROWTH * length).min(LONGEST)),
                 _ => ((next.rescaled(balance), None), FIRST),
             };
         }
     }
 
     /// Where δ or P has an extreme on a step: the smallest force of a path is that of a state of it.
-    fn extremes(&self, step: &Step<'_, '_>, from: &Point, (length, to): (f64, &Point)) -> Vec<Point> {
-        let slopes = |point: &Point| self.balance.slopes(point);
+    fn extremes(
+        &self,
+        step: &PathStep<'_, '_>,
+        from: &PathPoint,
+        (length, to): (f64, &PathPoint),
+    ) -> Vec<PathPoint> {
+        let slopes = |point: &PathPoint| self.balance.slopes(point);
         let [start, end] = [slopes(from), slopes(to)];
         // What is held has its extremes at the ends of stretches.
         let held = match self.balance.control {
@@ -82,7 +87,7 @@ impl Course<'_, '_> {
             Control::Force => Some(1),
             Control::Stiffness(_) => None,
         };
-        let mut found: Vec<(f64, Point)> = (0..2)
+        let mut found: Vec<(f64, PathPoint)> = (0..2)
             .filter(|of| Some(*of) != held && start[*of] * end[*of] < 0.0)
             .filter_map(|of| step.located((length, to), start[of], &mut |point| Some(slopes(point)[of])))
             .collect();
@@ -91,7 +96,7 @@ impl Course<'_, '_> {
     }
 
     /// Whether an edge goes against the control: of stable edges that adhere none does, for they ease each other.
-    fn goes_back(&self, at: &Point) -> bool {
+    fn goes_back(&self, at: &PathPoint) -> bool {
         /// A part of the tangent that is nothing.
         const NOTHING: f64 = 1e-9;
         let sense = self.record.direction.sense();
@@ -99,7 +104,7 @@ impl Course<'_, '_> {
     }
 
     /// Counts a step, and asks whether to go on.
-    pub(super) fn counted(&mut self, held: &Held) -> Result<(), PathError> {
+    pub(super) fn counted(&mut self, held: &HeldEdges) -> Result<(), PathError> {
         self.steps += 1;
         if self.steps > STEPS {
             return Err(PathError::TooLong { steps: STEPS, control_value: held.control_value });
@@ -123,7 +128,7 @@ impl Course<'_, '_> {
     }
 
     /// Why no further step could be taken.
-    pub(super) fn stopped(&self, held: &Held) -> PathError {
+    pub(super) fn stopped(&self, held: &HeldEdges) -> PathError {
         let (radius, known) = (held.state.contacts.outermost(), self.balance.ground.reach());
         let count = points(self.balance.ground, &held.state.contacts).count();
         if known - radius < 1e-3 * self.balance.ground.wave {
@@ -137,7 +142,7 @@ impl Course<'_, '_> {
     }
 
     /// How much of the path is done, roughly.
-    fn share(&self, held: &Held) -> f64 {
+    fn share(&self, held: &HeldEdges) -> f64 {
         let share = self.turn.map_or(0.0, |turn| self.measure(held) / turn.value());
         let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.5 };
         match self.record.direction {
@@ -147,11 +152,12 @@ impl Course<'_, '_> {
     }
 
     /// The first event on a step, which then ends there.
-    fn ended(&self, taken: &mut Stepped<'_, '_>) -> Result<Option<End>, PathError> {
+    fn ended(&self, taken: &mut TakenStep<'_, '_>) -> Result<Option<CourseEnd>, PathError> {
         let from = taken.step.from();
-        let mut end = taken.to_limit()?.then(|| End::Limit(taken.end.along_edges()));
+        let mut end = taken.to_limit()?.then(|| CourseEnd::Limit(taken.end.along_edges()));
         if self.record.direction == Direction::Unloading {
-            let mut over = |point: &Point| self.balance.nearest_to_moving(&point.held).map(|(_, over)| over);
+            let mut over =
+                |point: &PathPoint| self.balance.nearest_to_moving(&point.held).map(|(_, over)| over);
             if over(&taken.end).is_some_and(|over| over > 0.0) {
                 let lost = PathError::Lost { control_value: from.held.control_value };
                 let at_start = over(from).ok_or(lost)?;
@@ -160,28 +166,28 @@ impl Course<'_, '_> {
                 } else {
                     taken.to_root(at_start, &mut over)?;
                 }
-                end = Some(End::Free);
+                end = Some(CourseEnd::Free);
             }
             return Ok(end);
         }
-        end = taken.to_touch(false)?.map(End::Touch).or(end);
+        end = taken.to_touch(false)?.map(CourseEnd::Touch).or(end);
         if let Some(turn) = self.turn.filter(|_| self.has_turned(&taken.end.held)) {
-            let left = |point: &Point| self.measure(&point.held) - turn.value();
+            let left = |point: &PathPoint| self.measure(&point.held) - turn.value();
             taken.to_root(left(from), &mut |point| Some(left(point)))?;
-            end = Some(End::Turn);
+            end = Some(CourseEnd::Turn);
         }
         Ok(end)
     }
 
     /// ∫ (dΠ/dc) dc over a step, in the root of the distance from a corner.
-    fn area_of(&self, step: &Step<'_, '_>, length: f64, next: &Point, side: Side) -> f64 {
+    fn area_of(&self, step: &PathStep<'_, '_>, length: f64, next: &PathPoint, side: SingularSide) -> f64 {
         /// What is left of an area's places: their errors enter as products.
         const NEAR: f64 = 1e-9;
         if length <= 0.0 {
             return 0.0;
         }
         let by_force = self.setting.control == Control::Force;
-        if side == Side::Smooth {
+        if side == SingularSide::Smooth {
             return step.way(length, next, by_force, ON_THE_WAY).map_or(f64::NAN, |way| {
                 gauss(way.degree()).iter().fold(0.0, |sum, [x, weight]| {
                     let (value, rate) = way.at(0.5 * length * (1.0 + x));
@@ -196,7 +202,7 @@ impl Course<'_, '_> {
         for [x, weight] in gauss(NODES_AT_CORNERS) {
             let u = 0.5 * (1.0 + x);
             let [share, stretch] =
-                if side == Side::From { [u * u, 2.0 * u] } else { [u * (2.0 - u), 2.0 * (1.0 - u)] };
+                if side == SingularSide::From { [u * u, 2.0 * u] } else { [u * (2.0 - u), 2.0 * (1.0 - u)] };
             let Some((point, rate)) = step.within(length * share, &(&offset * share), NEAR) else {
                 return f64::NAN;
             };

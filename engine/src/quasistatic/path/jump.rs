@@ -8,12 +8,12 @@
 //! and ends in the least equilibrium that contains its start, whatever the mobilities; begun where all G ≥ γ it only shrinks, to the
 //! greatest one inside. On the way contacts merge, touch and vanish.
 
-use super::balance::{Balance, CONVERGED, Held, keeps_widths, moved};
+use super::balance::{Balance, CONVERGED, HeldEdges, keeps_widths, moved};
 use super::error::PathError;
 use super::event::{Passed, PassedKind};
 use crate::annuli::{Contacts, points};
 use crate::elementary::cbrt;
-use crate::quasistatic::jump::Run;
+use crate::quasistatic::jump::EdgeDirection;
 use nalgebra::DVector;
 
 /// Steps of one run at most.
@@ -93,7 +93,7 @@ impl Balance<'_> {
         sense: f64,
         mobility: Mobility<'_>,
         passed: &mut Vec<Passed>,
-    ) -> Result<Option<Held>, PathError> {
+    ) -> Result<Option<HeldEdges>, PathError> {
         let mut contacts = start;
         let mut last = f64::INFINITY;
         for _ in 0..STEPS {
@@ -105,7 +105,7 @@ impl Balance<'_> {
                 return Ok(None);
             }
             if let Some(lane) = self.lane_of(&contacts) {
-                let run = if sense > 0.0 { Run::Outward } else { Run::Inward };
+                let run = if sense > 0.0 { EdgeDirection::Outward } else { EdgeDirection::Inward };
                 if self.is_pinned(contacts.disc) {
                     let held = self.held(&contacts, &points(self.ground, &contacts), value)?;
                     if !self.lets_go(&held) {
@@ -159,7 +159,7 @@ impl Balance<'_> {
     /// A step of the flow.
     fn damped(
         &self,
-        held: &Held,
+        held: &HeldEdges,
         lowest: f64,
         sense: f64,
         mobility: Mobility<'_>,
@@ -198,7 +198,7 @@ impl Balance<'_> {
     /// The contacts with a seed where the gap is negative.
     pub(super) fn touched(
         &self,
-        held: &Held,
+        held: &HeldEdges,
         value: f64,
         passed: &mut Vec<Passed>,
     ) -> Result<Option<Contacts>, PathError> {

@@ -11,7 +11,7 @@ use crate::disc::{Place, Solution};
 use crate::problem::{Control, Turn};
 use crate::quasistatic::curve::Curve;
 use crate::quasistatic::energy;
-use crate::quasistatic::jump::{self, Run};
+use crate::quasistatic::jump::{self, EdgeDirection};
 use crate::quasistatic::monotone::Monotone;
 use std::sync::Arc;
 
@@ -63,21 +63,21 @@ impl Lane {
     ///
     /// An edge that is not in equilibrium runs as it is pulled, whatever `run` says: one that has come a hair too far on the way goes
     /// back, and not on to a state that nothing drives it to.
-    pub fn landing(&self, s: f64, c: f64, run: Run) -> Option<f64> {
+    pub fn landing(&self, s: f64, c: f64, run: EdgeDirection) -> Option<f64> {
         let value = self.weighted(c);
         let at = self.monotone.stretch_of(s);
         let stretch = self.monotone.stretches.get(at)?;
         let here = self.monotone.value(&self.solution.at(self.solution.place(s)?));
         let slack = ROUNDING * value.abs();
         let pulled = match here - value {
-            by if by < -slack => Run::Outward,
-            by if by > slack => Run::Inward,
+            by if by < -slack => EdgeDirection::Outward,
+            by if by > slack => EdgeDirection::Inward,
             _ => run,
         };
         let lands_here = stretch.rising
             && match pulled {
-                Run::Outward => stretch.values[1] >= value - slack,
-                Run::Inward => stretch.values[0] <= value + slack,
+                EdgeDirection::Outward => stretch.values[1] >= value - slack,
+                EdgeDirection::Inward => stretch.values[0] <= value + slack,
             };
         let place = if lands_here {
             self.monotone.solve(&*self.solution, stretch, value)

@@ -1,16 +1,16 @@
 //! A path on the [`Lane`]: up to a touch, the turn or a limit point, and down until the bodies are apart.
 
-use super::balance::{Balance, Held};
-use super::course::{Course, End, beyond};
+use super::balance::{Balance, HeldEdges};
+use super::course::{Course, CourseEnd, beyond};
 use super::error::PathError;
 use super::event::EventKind;
 use super::lane::Lane;
 use super::record::stop_of;
 use super::setting::PathStop;
-use crate::annuli::{Around, Contacts, Crest, points};
+use crate::annuli::{Around, Contacts, GapMinimum, points};
 use crate::disc::{Local, Place};
 use crate::quasistatic::descent::stable_start;
-use crate::quasistatic::jump::{self, Run};
+use crate::quasistatic::jump::{self, EdgeDirection};
 
 /// A gap that is nothing, in waves.
 const TOUCHES: f64 = 1e-11;
@@ -20,14 +20,18 @@ const LOCATED: usize = 80;
 
 impl Course<'_, '_> {
     /// The disc at a place, held at its own control value.
-    fn disc(&self, at: &Local) -> Result<Held, PathError> {
+    fn disc(&self, at: &Local) -> Result<HeldEdges, PathError> {
         let contacts = Contacts::of_disc(at.contact_radius);
         let value = self.balance.control.value(at.approach, at.force);
         Ok(self.balance.held(&contacts, &points(self.balance.ground, &contacts), value)?)
     }
 
     /// Follows the disc `held` while the control goes up, to what ends its stable stretch; `None` where it is not on one.
-    pub(super) fn rise(&mut self, lane: &Lane, held: &Held) -> Result<Option<(End, Held)>, PathError> {
+    pub(super) fn rise(
+        &mut self,
+        lane: &Lane,
+        held: &HeldEdges,
+    ) -> Result<Option<(CourseEnd, HeldEdges)>, PathError> {
         let Lane { solution, monotone, .. } = lane;
         let Some(from) = stable_start(&**solution, monotone, held.state.contacts.disc) else {
             return Ok(None);
@@ -35,13 +39,13 @@ impl Course<'_, '_> {
         let stretch = &monotone.stretches[from.stretch];
         let turn = self.turn.and_then(|turn| lane.turns(turn, [from.place, stretch.outer]));
         let mut to = turn.unwrap_or(stretch.outer);
-        let mut end = if turn.is_some() { End::Turn } else { End::Fold(from.stretch) };
+        let mut end = if turn.is_some() { CourseEnd::Turn } else { CourseEnd::Fold(from.stretch) };
         let at_end = self.disc(&solution.at(to))?;
         // What could touch may lie beyond the table.
         self.counted(&at_end)?;
         if let Some(crest) = self.balance.least_gap(&at_end).filter(|crest| crest.gap < 0.0) {
             let (place, crest) = self.touch_between(lane, [from.place, to], crest)?;
-            (to, end) = (place, End::Touch(crest));
+            (to, end) = (place, CourseEnd::Touch(crest));
         }
         let last = self.disc(&solution.at(to))?;
         self.counted(&last)?;
@@ -49,7 +53,7 @@ impl Course<'_, '_> {
         if let Some(highest) = self.record.states.iter().max_by(|a, b| a.approach.total_cmp(&b.approach)) {
             self.within_reach(highest.approach, highest.force)?;
         }
-        if matches!(end, End::Fold(at) if at + 1 == monotone.stretches.len()) {
+        if matches!(end, CourseEnd::Fold(at) if at + 1 == monotone.stretches.len()) {
             // No limit point: the table ends.
             return Err(PathError::BeyondGap {
                 radius: solution.reach(),
@@ -66,8 +70,8 @@ impl Course<'_, '_> {
         &self,
         lane: &Lane,
         [from, mut to]: [Place; 2],
-        mut crest: Crest,
-    ) -> Result<(Place, Crest), PathError> {
+        mut crest: GapMinimum,
+    ) -> Result<(Place, GapMinimum), PathError> {
         /// Crests that may overlap one after the other.
         const CRESTS: usize = 8;
         for _ in 0..CRESTS {
@@ -87,8 +91,8 @@ impl Course<'_, '_> {
         &self,
         lane: &Lane,
         [from, to]: [Place; 2],
-        crest: Crest,
-    ) -> Result<(Place, Crest), PathError> {
+        crest: GapMinimum,
+    ) -> Result<(Place, GapMinimum), PathError> {
         /// The part of the gap's own length around the last place of the crest in which it is looked for.
         const NEAR: f64 = 1.0 / 14.0;
         let (solution, ground) = (&lane.solution, self.balance.ground);
@@ -124,9 +128,15 @@ impl Course<'_, '_> {
     }
 
     /// Runs from the limit point at the outer end of a stretch to where the edge lands, with what touches on the way.
-    pub(super) fn advance(&mut self, lane: &Lane, before: &Held, stretch: usize) -> Result<Held, PathError> {
+    pub(super) fn advance(
+        &mut self,
+        lane: &Lane,
+        before: &HeldEdges,
+        stretch: usize,
+    ) -> Result<HeldEdges, PathError> {
         let value = lane.monotone.stretches[stretch].values[1];
-        let landing = jump::run(&*lane.solution, &lane.monotone, stretch, value, Run::Outward).ok().flatten();
+        let landing =
+            jump::run(&*lane.solution, &lane.monotone, stretch, value, EdgeDirection::Outward).ok().flatten();
         let ends = PathError::BeyondGap {
             radius: lane.solution.reach(),
             approach: before.approach,
@@ -149,7 +159,7 @@ impl Course<'_, '_> {
     }
 
     /// The way down of the disc `held`; `None` where it is on no stable stretch.
-    pub(super) fn descend(&mut self, lane: &Lane, held: &Held) -> Result<Option<PathStop>, PathError> {
+    pub(super) fn descend(&mut self, lane: &Lane, held: &HeldEdges) -> Result<Option<PathStop>, PathError> {
         let from = stable_start(&*lane.solution, &lane.monotone, held.state.contacts.disc);
         let Some(from) = from else { return Ok(None) };
         let descent = self.record.descend(lane, from, self.end)?;
@@ -172,14 +182,14 @@ impl Balance<'_> {
         lane: &Lane,
         disc: &Contacts,
         value: f64,
-        run: Run,
-    ) -> Result<Option<Held>, PathError> {
+        run: EdgeDirection,
+    ) -> Result<Option<HeldEdges>, PathError> {
         let held = |contacts: &Contacts| self.held(contacts, &points(self.ground, contacts), value);
         match (lane.landing(disc.disc, value, run), run) {
             (Some(s), _) => Ok(Some(held(&Contacts::of_disc(s))?)),
-            (None, Run::Inward) => Ok(None),
-            (None, Run::Outward) => {
-                let Held { approach, force, .. } = held(disc)?;
+            (None, EdgeDirection::Inward) => Ok(None),
+            (None, EdgeDirection::Outward) => {
+                let HeldEdges { approach, force, .. } = held(disc)?;
                 Err(PathError::BeyondGap { radius: self.ground.reach(), approach, force })
             }
         }

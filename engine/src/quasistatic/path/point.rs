@@ -1,6 +1,6 @@
 //! Points of an equilibrium curve with rings, and steps along it by arc length in all edges and the control.
 
-use super::balance::{Balance, Held, keeps_widths, moved};
+use super::balance::{Balance, HeldEdges, keeps_widths, moved};
 use crate::annuli::{Contacts, Resolution, points};
 use crate::problem::Control;
 use nalgebra::{DMatrix, DVector, Dyn, LU};
@@ -20,27 +20,27 @@ const LEFT: f64 = 0.4;
 
 /// A point of a curve.
 #[derive(Debug, Clone)]
-pub struct Point {
+pub struct PathPoint {
     /// The edges, in equilibrium.
-    pub held: Held,
+    pub held: HeldEdges,
     /// The unit tangent by (α/ℓ, c/c₀).
     pub tangent: DVector<f64>,
     /// ℓ of every edge, and c₀.
-    pub scales: Scales,
+    pub scales: ArcScales,
     /// Newton's rounds that led to it.
     pub rounds: usize,
 }
 
 /// Units of the arc length.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Scales {
+pub struct ArcScales {
     /// ℓ of every edge, a length.
     pub edges: DVector<f64>,
     /// c₀, of the control.
     pub control: f64,
 }
 
-impl Point {
+impl PathPoint {
     /// The part of the tangent that is the control's.
     pub fn along_control(&self) -> f64 {
         self.tangent[self.tangent.len() - 1]
@@ -61,9 +61,9 @@ impl Point {
 type Factored = LU<f64, Dyn, Dyn>;
 
 /// A step from a point: its points on the rings are held. Its length is measured along the tangent, or along one edge.
-pub struct Step<'a, 'b> {
+pub struct PathStep<'a, 'b> {
     balance: &'a Balance<'b>,
-    from: &'a Point,
+    from: &'a PathPoint,
     points: Resolution,
     row: DVector<f64>,
     /// The second derivative by the length at the start, as the step before left it.
@@ -73,24 +73,28 @@ pub struct Step<'a, 'b> {
 impl Balance<'_> {
     /// The units of the arc length at `contacts`: of every edge the length in which the gap changes there, and of the control a
     /// share of the largest.
-    pub fn scales(&self, contacts: &Contacts) -> Scales {
+    pub fn scales(&self, contacts: &Contacts) -> ArcScales {
         const OF_APPROACH: f64 = 0.2;
         const OF_FORCE: f64 = 0.1;
         let edges: Vec<f64> =
             contacts.edges().iter().map(|edge| self.ground.length_at(edge.radius)).collect();
         let longest = edges.iter().copied().fold(self.ground.wave, f64::max);
         let share = if self.control == Control::Force { OF_FORCE } else { OF_APPROACH };
-        Scales { edges: DVector::from_vec(edges), control: share * longest }
+        ArcScales { edges: DVector::from_vec(edges), control: share * longest }
     }
 
     /// The point of edges in equilibrium, its tangent such that the control goes up (`sense` 1) or down (−1).
-    pub fn point(&self, held: Held, sense: f64) -> Option<Point> {
+    pub fn point(&self, held: HeldEdges, sense: f64) -> Option<PathPoint> {
         let n = held.excess.len();
         self.point_along(held, &|_| DVector::from_fn(n + 1, |i, _| if i == n { sense } else { 0.0 }))
     }
 
     /// The same with its tangent on the side of `along`, which is asked for in the units of the arc length.
-    pub fn point_along(&self, held: Held, along: &dyn Fn(&Scales) -> DVector<f64>) -> Option<Point> {
+    pub fn point_along(
+        &self,
+        held: HeldEdges,
+        along: &dyn Fn(&ArcScales) -> DVector<f64>,
+    ) -> Option<PathPoint> {
         let scales = self.scales(&held.state.contacts);
         let n = held.excess.len();
         let mut right = DVector::zeros(n + 1);
@@ -98,21 +102,26 @@ impl Balance<'_> {
         let found = Self::bordered(&held, &along(&scales), &scales).lu().solve(&right)?;
         let norm = found.norm();
         let tangent = (norm.is_finite() && norm > 0.0).then(|| found / norm)?;
-        Some(Point { held, tangent, scales, rounds: 0 })
+        Some(PathPoint { held, tangent, scales, rounds: 0 })
     }
 
     /// Whether the equations of a point, closed by its tangent, have a positive determinant: one sign along a curve.
-    pub fn is_positive(point: &Point) -> bool {
+    pub fn is_positive(point: &PathPoint) -> bool {
         Self::bordered(&point.held, &point.tangent, &point.scales).determinant() > 0.0
     }
 
     /// dδ and dP along the tangent of a point, in the units of the arc length.
-    pub fn slopes(&self, point: &Point) -> [f64; 2] {
+    pub fn slopes(&self, point: &PathPoint) -> [f64; 2] {
         self.changes(&point.held, &point.tangent, &point.scales)
     }
 
     /// dδ and dP of edges and a control, in equilibrium or not, that change by `change` in the units of the arc length.
-    fn changes(&self, Held { state, excess, .. }: &Held, change: &DVector<f64>, scales: &Scales) -> [f64; 2] {
+    fn changes(
+        &self,
+        HeldEdges { state, excess, .. }: &HeldEdges,
+        change: &DVector<f64>,
+        scales: &ArcScales,
+    ) -> [f64; 2] {
         let root = self.work_of_adhesion.sqrt();
         let by_edges: f64 = (state.contacts.edges().iter().enumerate())
             .map(|(i, edge)| {
@@ -131,7 +140,7 @@ impl Balance<'_> {
     }
 
     /// J and ∂κ/∂c in the units of the arc length over the row `along`.
-    fn bordered(held: &Held, along: &DVector<f64>, scales: &Scales) -> DMatrix<f64> {
+    fn bordered(held: &HeldEdges, along: &DVector<f64>, scales: &ArcScales) -> DMatrix<f64> {
         let n = held.excess.len();
         DMatrix::from_fn(n + 1, n + 1, |i, j| match (i < n, j < n) {
             (true, true) => held.jacobian[(i, j)] * scales.edges[j],
@@ -141,7 +150,7 @@ impl Balance<'_> {
     }
 }
 
-impl Point {
+impl PathPoint {
     /// The same in the units of where it is, ready for a step of its own.
     #[must_use]
     pub fn rescaled(self, balance: &Balance<'_>) -> Self {
@@ -161,9 +170,9 @@ impl Point {
     }
 }
 
-impl<'a, 'b> Step<'a, 'b> {
+impl<'a, 'b> PathStep<'a, 'b> {
     /// Steps from `from`.
-    pub fn new(balance: &'a Balance<'b>, from: &'a Point) -> Self {
+    pub fn new(balance: &'a Balance<'b>, from: &'a PathPoint) -> Self {
         let row = from.tangent.clone();
         Self { balance, from, points: points(balance.ground, from.contacts()), row, bend: None }
     }
@@ -176,14 +185,14 @@ impl<'a, 'b> Step<'a, 'b> {
 
     /// Steps measured by the way of one edge, in waves, on the side to which it goes along the tangent: close to a corner of the gap
     /// the tangent turns without bound, and only this way is regular.
-    pub fn of_edge(balance: &'a Balance<'b>, from: &'a Point, edge: usize) -> Self {
+    pub fn of_edge(balance: &'a Balance<'b>, from: &'a PathPoint, edge: usize) -> Self {
         let mut row = DVector::zeros(from.tangent.len());
         row[edge] = if from.tangent[edge] < 0.0 { -1.0 } else { 1.0 };
         Self { balance, from, points: points(balance.ground, from.contacts()), row, bend: None }
     }
 
     /// Where it starts.
-    pub fn from(&self) -> &'a Point {
+    pub fn from(&self) -> &'a PathPoint {
         self.from
     }
 
@@ -204,18 +213,23 @@ impl<'a, 'b> Step<'a, 'b> {
     }
 
     /// The tangent at a point of the step, scaled to 1 along that of the start.
-    pub fn rate_of(&self, point: &Point) -> DVector<f64> {
+    pub fn rate_of(&self, point: &PathPoint) -> DVector<f64> {
         &point.tangent / point.tangent.dot(&self.row)
     }
 
     /// The point at the distance `length` along the tangent of the start, beginning at the sum of the start and `guess` in the units of
     /// the arc length; with the tangent scaled to 1 along that of the start, times which dℓ is.
-    pub fn to(&self, length: f64, guess: &DVector<f64>) -> Option<(Point, DVector<f64>)> {
+    pub fn to(&self, length: f64, guess: &DVector<f64>) -> Option<(PathPoint, DVector<f64>)> {
         self.within(length, guess, CONVERGED)
     }
 
     /// The same with a last step of Newton's method of `converged` at most.
-    pub fn within(&self, length: f64, guess: &DVector<f64>, converged: f64) -> Option<(Point, DVector<f64>)> {
+    pub fn within(
+        &self,
+        length: f64,
+        guess: &DVector<f64>,
+        converged: f64,
+    ) -> Option<(PathPoint, DVector<f64>)> {
         let n = self.from.held.excess.len();
         let mut offset = guess.clone();
         let mut last = f64::INFINITY;
@@ -231,7 +245,7 @@ impl<'a, 'b> Step<'a, 'b> {
                 unit[n] = 1.0;
                 let rate = lu.solve(&unit)?;
                 let tangent = &rate / rate.norm();
-                return Some((Point { held, tangent, scales: self.from.scales.clone(), rounds }, rate));
+                return Some((PathPoint { held, tangent, scales: self.from.scales.clone(), rounds }, rate));
             }
             if size > 2.0 * last.max(1e-3) {
                 return None;
@@ -243,7 +257,7 @@ impl<'a, 'b> Step<'a, 'b> {
     }
 
     /// The point at the distance `length`, from the tangent and the bend; `None` where the step is too long for its rules.
-    pub fn taken(&self, length: f64) -> Option<Point> {
+    pub fn taken(&self, length: f64) -> Option<PathPoint> {
         let line = self.line(length);
         let guess = self.bend.as_ref().map(|bend| &line + bend * (0.5 * length * length));
         let bent = guess.and_then(|guess| self.to(length, &guess));
@@ -252,7 +266,7 @@ impl<'a, 'b> Step<'a, 'b> {
     }
 
     /// A point of the step as the start of the next one, and how the curve bends there: as the cubic with the tangents of both ends.
-    pub fn left_at(&self, length: f64, end: Point) -> (Point, Option<DVector<f64>>) {
+    pub fn left_at(&self, length: f64, end: PathPoint) -> (PathPoint, Option<DVector<f64>>) {
         let (offset, [before, after]) = (self.offset(&end), [self.line(1.0), self.rate_of(&end)]);
         let bend = ((before * 2.0 + &after * 4.0) - offset * (6.0 / length)) / length;
         let scales = end.scales.clone();
@@ -273,7 +287,7 @@ impl<'a, 'b> Step<'a, 'b> {
 
     /// The step up to `end`, at the distance `length`, as a polynomial in the length, through states that are added until one lies on it
     /// to `near`: the offsets in the units of the arc length, and dΠ/dc, which is P or, for `by_force`, −δ.
-    pub fn way(&self, length: f64, end: &Point, by_force: bool, near: f64) -> Option<Interpolant> {
+    pub fn way(&self, length: f64, end: &PathPoint, by_force: bool, near: f64) -> Option<Interpolant> {
         /// Where states are added, as shares of the step.
         const ADDED: [f64; 7] = [0.5, 0.2, 0.8, 0.35, 0.65, 0.1, 0.9];
         let balance = self.balance;
@@ -321,7 +335,7 @@ impl<'a, 'b> Step<'a, 'b> {
     }
 
     /// The edges at an offset from the start, with the equations of a correction there: the point at the distance `length`.
-    fn equations(&self, offset: &DVector<f64>, length: f64) -> Option<(Held, Factored, DVector<f64>)> {
+    fn equations(&self, offset: &DVector<f64>, length: f64) -> Option<(HeldEdges, Factored, DVector<f64>)> {
         let (balance, from) = (self.balance, self.from);
         let (n, scales) = (from.held.excess.len(), &from.scales);
         let contacts = moved(from.contacts(), &offset.rows(0, n).component_mul(&scales.edges));
@@ -337,7 +351,7 @@ impl<'a, 'b> Step<'a, 'b> {
         Some((held, lu, right))
     }
 
-    fn allowed(&self, point: &Point) -> bool {
+    fn allowed(&self, point: &PathPoint) -> bool {
         let (before, after) = (self.from.contacts(), point.contacts());
         let edges = before.edges().into_iter().zip(after.edges());
         let longest = edges
@@ -349,7 +363,7 @@ impl<'a, 'b> Step<'a, 'b> {
     }
 
     /// The offset of a point from the start, in the units of the arc length.
-    pub fn offset(&self, point: &Point) -> DVector<f64> {
+    pub fn offset(&self, point: &PathPoint) -> DVector<f64> {
         let n = point.held.excess.len();
         let scales = &self.from.scales;
         let edges: Vec<_> = self.from.contacts().edges().into_iter().zip(point.contacts().edges()).collect();
@@ -363,10 +377,10 @@ impl<'a, 'b> Step<'a, 'b> {
     /// the other sign at the end.
     pub fn located(
         &self,
-        end: (f64, &Point),
+        end: (f64, &PathPoint),
         at_start: f64,
-        measure: &mut dyn FnMut(&Point) -> Option<f64>,
-    ) -> Option<(f64, Point)> {
+        measure: &mut dyn FnMut(&PathPoint) -> Option<f64>,
+    ) -> Option<(f64, PathPoint)> {
         const ROUNDING: f64 = 1e-14;
         let (mut lo, mut f_lo) = (0.0, at_start);
         let (mut hi, mut f_hi) = (end.0, measure(end.1)?);

@@ -3,14 +3,14 @@
 use super::error::{PathError, Warning};
 use super::event::{Direction, Event, EventKind, Passed, PathState};
 use super::lane::Lane;
-use super::setting::{Asked, DeadBand, Path, PathStop, Setting, Totals, TurnReached};
+use super::setting::{AskedState, DeadBand, Path, PathSetting, PathStop, Totals, TurnReached};
 use crate::disc::Place;
 use crate::problem::{ContactKind, Control};
 use crate::progress::Progress;
 use crate::quasistatic::curve::{CurveStop, Detail, places};
 use crate::quasistatic::descent::{AT_END, Descent, descend, stable_start};
 use crate::quasistatic::energy::{self, Losses};
-use crate::quasistatic::jump::{self, Landing, Run};
+use crate::quasistatic::jump::{self, EdgeDirection, Landing};
 
 /// What the balance of a path may leave of its losses.
 const BALANCED: f64 = 1e-6;
@@ -50,7 +50,7 @@ pub(in crate::quasistatic) struct Record<'a> {
 
 impl<'a> Record<'a> {
     /// Nothing yet.
-    pub fn new(setting: &Setting<'_>, direction: Direction, progress: &'a dyn Progress) -> Self {
+    pub fn new(setting: &PathSetting<'_>, direction: Direction, progress: &'a dyn Progress) -> Self {
         Self {
             control: setting.control,
             contact: setting.contact,
@@ -277,7 +277,7 @@ impl<'a> Record<'a> {
             here
         } else {
             let value = monotone.value(&solution.at(place));
-            let landing = jump::run(solution, monotone, monotone.stretch_of(s), value, Run::Inward);
+            let landing = jump::run(solution, monotone, monotone.stretch_of(s), value, EdgeDirection::Inward);
             let landing = match landing {
                 Ok(landing) => landing,
                 Err(hole) => return Ok(PathStop::Curve(CurveStop::NoEquilibrium(hole))),
@@ -301,7 +301,7 @@ impl<'a> Record<'a> {
     /// The path with its sums.
     pub fn finished(
         self,
-        asked: Option<Asked>,
+        asked: Option<AskedState>,
         turn: Option<TurnReached>,
         work_of_loading: Option<f64>,
         stop: PathStop,

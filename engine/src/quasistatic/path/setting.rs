@@ -1,6 +1,6 @@
 //! What a path is asked for, and what it answers.
 
-use super::balance::Held;
+use super::balance::HeldEdges;
 use super::describe::beyond_zone_at;
 use super::error::Warning;
 use super::event::{Direction, Event, EventKind, PathState};
@@ -14,7 +14,7 @@ use crate::zone::FaultKind;
 use std::fmt;
 
 /// What the turn is measured by, of edges at a control value.
-pub(super) fn measure(turn: Turn, held: &Held, control: Control) -> f64 {
+pub(super) fn measure(turn: Turn, held: &HeldEdges, control: Control) -> f64 {
     match turn {
         Turn::Approach(_) => held.approach,
         Turn::Force(_) => held.force,
@@ -25,7 +25,7 @@ pub(super) fn measure(turn: Turn, held: &Held, control: Control) -> f64 {
 
 /// What a path is asked for.
 #[derive(Clone, Copy)]
-pub struct Setting<'a> {
+pub struct PathSetting<'a> {
     /// The device.
     pub control: Control,
     /// Which contacts are followed.
@@ -40,7 +40,7 @@ pub struct Setting<'a> {
     pub mobility: Mobility<'a>,
 }
 
-impl Setting<'static> {
+impl PathSetting<'static> {
     /// Contact in rings wherever it appears, losses twice, states to draw.
     #[must_use]
     pub fn new(control: Control) -> Self {
@@ -55,7 +55,7 @@ impl Setting<'static> {
     }
 }
 
-impl Setting<'_> {
+impl PathSetting<'_> {
     /// What a closing edge gains where an opening one costs `gamma`; `None` where that is not less.
     #[must_use]
     pub fn closing_below(&self, gamma: f64) -> Option<f64> {
@@ -74,7 +74,7 @@ pub struct TurnReached {
 
 /// A state asked for from which the edge first ran outward.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Asked {
+pub struct AskedState {
     /// The state.
     pub state: State,
     /// Why it ran.
@@ -192,7 +192,7 @@ pub struct Path {
     /// Which contacts were followed.
     pub contact: ContactKind,
     /// The state asked for, where the path starts at another further out.
-    pub asked: Option<Asked>,
+    pub asked: Option<AskedState>,
     /// Where it turned; `None` of an unloading alone.
     pub turn: Option<TurnReached>,
     /// The events in order.

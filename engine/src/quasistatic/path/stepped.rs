@@ -5,8 +5,8 @@
 
 use super::balance::Balance;
 use super::error::PathError;
-use super::point::{Point, Step};
-use crate::annuli::{Around, Contacts, Crest};
+use super::point::{PathPoint, PathStep};
+use crate::annuli::{Around, Contacts, GapMinimum};
 use nalgebra::DVector;
 
 /// The shortest step, in the units of the arc length.
@@ -38,7 +38,7 @@ const LONG: f64 = 2e-3;
 
 /// Where a step is singular.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
+pub enum SingularSide {
     /// Nowhere.
     Smooth,
     /// At its start, on a corner of the gap.
@@ -48,15 +48,15 @@ pub enum Side {
 }
 
 /// A step that was taken.
-pub struct Stepped<'a, 'b> {
+pub struct TakenStep<'a, 'b> {
     /// Along what.
-    pub step: Step<'a, 'b>,
+    pub step: PathStep<'a, 'b>,
     /// How far, in its own measure.
     pub length: f64,
     /// Where it ends.
-    pub end: Point,
+    pub end: PathPoint,
     /// Where it is singular.
-    pub side: Side,
+    pub side: SingularSide,
 }
 
 impl<'b> Balance<'b> {
@@ -64,15 +64,15 @@ impl<'b> Balance<'b> {
     /// says whether it may end at a point.
     pub fn step<'a>(
         &'a self,
-        from: &'a Point,
+        from: &'a PathPoint,
         mut length: f64,
         bend: Option<DVector<f64>>,
-        fits: &dyn Fn(&Point) -> bool,
-    ) -> Option<Stepped<'a, 'b>> {
+        fits: &dyn Fn(&PathPoint) -> bool,
+    ) -> Option<TakenStep<'a, 'b>> {
         if let Some((edge, way, side)) = self.corner_ahead(from, length) {
             return self.led(from, edge, way, side);
         }
-        let step = Step::new(self, from).bent(bend);
+        let step = PathStep::new(self, from).bent(bend);
         // Faster than its tangent said, or on other equilibria: shorter steps see it coming.
         let taken = |length: f64| step.taken(length).filter(|end| !self.crosses(from, end) && fits(end));
         while length >= SHORTEST {
@@ -80,9 +80,9 @@ impl<'b> Balance<'b> {
                 let nearer = Some(length).filter(|length| *length > LONG);
                 let nearer = nearer.and_then(|length| step.grazes(length, &end));
                 if let Some((length, end)) = nearer.and_then(|length| Some((length, taken(length)?))) {
-                    return Some(Stepped { step, length, end, side: Side::Smooth });
+                    return Some(TakenStep { step, length, end, side: SingularSide::Smooth });
                 }
-                return Some(Stepped { step, length, end, side: Side::Smooth });
+                return Some(TakenStep { step, length, end, side: SingularSide::Smooth });
             }
             length *= 0.5;
         }
@@ -90,15 +90,21 @@ impl<'b> Balance<'b> {
     }
 
     /// The step on which one edge goes so far, in waves, to a corner or from it.
-    fn led<'a>(&'a self, from: &'a Point, edge: usize, way: f64, side: Side) -> Option<Stepped<'a, 'b>> {
-        let step = Step::of_edge(self, from, edge);
-        let most = if side == Side::From { 0.02 } else { 0.2 };
+    fn led<'a>(
+        &'a self,
+        from: &'a PathPoint,
+        edge: usize,
+        way: f64,
+        side: SingularSide,
+    ) -> Option<TakenStep<'a, 'b>> {
+        let step = PathStep::of_edge(self, from, edge);
+        let most = if side == SingularSide::From { 0.02 } else { 0.2 };
         let mut lengths = std::iter::successors(Some(way), |length| Some(0.5 * length)).take(HALVINGS);
         let (length, end) = lengths.find_map(|length| {
             let guess = step.line(length).map(|x| x.clamp(-most, most));
             step.to(length, &guess).map(|(end, _)| (length, end))
         })?;
-        Some(Stepped { step, length, end, side })
+        Some(TakenStep { step, length, end, side })
     }
 
     /// The edge that stands on a corner of the gap.
@@ -110,19 +116,19 @@ impl<'b> Balance<'b> {
     }
 
     /// The step away from a corner on which an edge of `from` stands; `None` where none does, or there is no state beyond.
-    pub fn beyond_corner<'a>(&'a self, from: &'a Point) -> Option<Stepped<'a, 'b>> {
-        self.led(from, self.on_corner(from.contacts())?, BEYOND, Side::From)
+    pub fn beyond_corner<'a>(&'a self, from: &'a PathPoint) -> Option<TakenStep<'a, 'b>> {
+        self.led(from, self.on_corner(from.contacts())?, BEYOND, SingularSide::From)
     }
 
     /// The edge that stands on a corner of the gap or meets one within a step of this length, and how far it is led, in waves.
-    fn corner_ahead(&self, point: &Point, length: f64) -> Option<(usize, f64, Side)> {
+    fn corner_ahead(&self, point: &PathPoint, length: f64) -> Option<(usize, f64, SingularSide)> {
         let ground = self.ground;
         let corners = ground.stops();
         if corners.is_empty() {
             return None;
         }
         if let Some(edge) = self.on_corner(point.contacts()) {
-            return Some((edge, BEYOND, Side::From));
+            return Some((edge, BEYOND, SingularSide::From));
         }
         let edges = point.contacts().edges();
         let moving = edges.iter().enumerate().filter(|(_, edge)| !self.is_pinned(edge.radius));
@@ -137,11 +143,11 @@ impl<'b> Balance<'b> {
             let near = way <= AHEAD * (speed.abs() * length).max(NEAREST);
             near.then_some((i, way, way / speed.abs()))
         });
-        ahead.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(i, way, _)| (i, way, Side::Towards))
+        ahead.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(i, way, _)| (i, way, SingularSide::Towards))
     }
 
     /// Whether an edge meets a corner of the gap between two points, one on which it does not stand at first.
-    fn crosses(&self, from: &Point, to: &Point) -> bool {
+    fn crosses(&self, from: &PathPoint, to: &PathPoint) -> bool {
         let (corners, margin) = (self.ground.stops(), ON * self.ground.wave);
         let edges = from.contacts().edges().into_iter().zip(to.contacts().edges());
         edges.into_iter().any(|(a, b)| {
@@ -151,20 +157,20 @@ impl<'b> Balance<'b> {
     }
 
     /// The gap at a point near a crest, least there; `reach` is half the width in which it is followed.
-    fn near(&self, point: &Point, crest: Crest, reach: f64) -> Crest {
+    fn near(&self, point: &PathPoint, crest: GapMinimum, reach: f64) -> GapMinimum {
         let around = Around::new(self.ground, &point.held.state, point.held.approach);
         if crest.radius > 0.0 {
             around.minimum([(crest.radius - reach).max(0.0), crest.radius + reach])
         } else {
-            Crest { radius: 0.0, gap: around.gap(0.0) }
+            GapMinimum { radius: 0.0, gap: around.gap(0.0) }
         }
     }
 }
 
-impl Step<'_, '_> {
+impl PathStep<'_, '_> {
     /// Where on the step up to `end` the slope of the control is least, if it may change its sign there and back; by the cubic with
     /// the control and its slope at both ends.
-    fn grazes(&self, length: f64, end: &Point) -> Option<f64> {
+    fn grazes(&self, length: f64, end: &PathPoint) -> Option<f64> {
         let last = end.tangent.len() - 1;
         let [first, second] = [self.line(1.0)[last], self.rate_of(end)[last]];
         let mean = self.offset(end)[last] / length;
@@ -178,13 +184,13 @@ impl Step<'_, '_> {
     }
 }
 
-impl Stepped<'_, '_> {
+impl TakenStep<'_, '_> {
     /// Ends the step where the control turns on it; whether it does.
     ///
     /// # Errors
     /// [`PathError::Lost`].
     pub fn to_limit(&mut self) -> Result<bool, PathError> {
-        let slope = |point: &Point| point.along_control();
+        let slope = |point: &PathPoint| point.along_control();
         let at_start = slope(self.step.from());
         if at_start * slope(&self.end) > 0.0 {
             return Ok(false);
@@ -200,7 +206,7 @@ impl Stepped<'_, '_> {
     pub fn to_root(
         &mut self,
         at_start: f64,
-        measure: &mut dyn FnMut(&Point) -> Option<f64>,
+        measure: &mut dyn FnMut(&PathPoint) -> Option<f64>,
     ) -> Result<(), PathError> {
         let lost = PathError::Lost { control_value: self.step.from().held.control_value };
         (self.length, self.end) =
@@ -213,10 +219,10 @@ impl Stepped<'_, '_> {
     ///
     /// # Errors
     /// [`PathError::Lost`].
-    pub fn to_touch(&mut self, past: bool) -> Result<Option<Crest>, PathError> {
+    pub fn to_touch(&mut self, past: bool) -> Result<Option<GapMinimum>, PathError> {
         let (balance, from) = (self.step.balance(), self.step.from());
         let wave = balance.ground.wave;
-        let at_start = |crest: Crest| balance.near(from, crest, wave / 14.0);
+        let at_start = |crest: GapMinimum| balance.near(from, crest, wave / 14.0);
         let mut touched = None;
         // The crest that touches first: each is brought to its own touch. What is left there of the one before is rounding.
         let mut overlap = 0.0;

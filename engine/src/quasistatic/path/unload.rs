@@ -7,13 +7,13 @@
 //! which is the same contact where both are found. Without adhesion contact has
 //! no memory: the way down is that of the loop.
 
-use super::balance::{Balance, Held};
+use super::balance::{Balance, HeldEdges};
 use super::course::{Course, at_least, balance, cycle_on, highest, lane, on_ground};
 use super::error::PathError;
 use super::event::{Direction, EventKind, PathState};
 use super::lane::Lane;
 use super::record::{Record, stop_of};
-use super::setting::{Asked, Path, Setting, WhyNot};
+use super::setting::{AskedState, Path, PathSetting, WhyNot};
 use crate::annuli::{Contacts, Ground, points};
 use crate::problem::{ContactKind, Control, Turn};
 use crate::progress::Progress;
@@ -21,7 +21,7 @@ use crate::quasistatic::admissible::falls;
 use crate::quasistatic::curve::Curve;
 use crate::quasistatic::descent::stable_start;
 use crate::quasistatic::equilibrium::State;
-use crate::quasistatic::jump::{self, Landing, Run};
+use crate::quasistatic::jump::{self, EdgeDirection, Landing};
 use crate::quasistatic::landscape;
 
 /// How far outward a stable state is looked for, as a multiple of the start radius.
@@ -35,7 +35,7 @@ const BEYOND: f64 = 1.3;
 /// # Errors
 /// [`PathError::UnstableStart`] when the start is unstable and no stable state lies outward, [`PathError::Cancelled`] when `progress`
 /// said stop, others where contact in rings cannot be followed.
-pub fn unload(curve: &Curve, setting: &Setting<'_>, progress: &dyn Progress) -> Result<Path, PathError> {
+pub fn unload(curve: &Curve, setting: &PathSetting<'_>, progress: &dyn Progress) -> Result<Path, PathError> {
     let control = setting.control;
     let (from, to) = (curve.outermost(), curve.innermost());
     let receding = curve;
@@ -62,14 +62,14 @@ pub fn unload(curve: &Curve, setting: &Setting<'_>, progress: &dyn Progress) -> 
     let asked = asked.filter(|_| start.contact_radius > from).map(|state| {
         let value = control.value(state.approach, state.force);
         let falls = landscape::falls(curve, control, value, from, start.contact_radius);
-        Asked { state, why: WhyNot::Unstable { falls } }
+        AskedState { state, why: WhyNot::Unstable { falls } }
     });
     if setting.contact == ContactKind::Rings {
         let fault = fault(curve, start.contact_radius, progress);
         let problem = &curve.equilibrium.problem;
         let splits = problem.work_of_adhesion == 0.0 && falls(&*problem.gap, start.contact_radius);
         if fault.is_some() || splits {
-            let asked = asked.or(fault.map(|why| Asked { state: start, why }));
+            let asked = asked.or(fault.map(|why| AskedState { state: start, why }));
             return with_rings(curve, gamma, setting, &start, asked, progress);
         }
     }
@@ -109,9 +109,9 @@ fn fault(curve: &Curve, s: f64, progress: &dyn Progress) -> Option<WhyNot> {
 fn with_rings(
     curve: &Curve,
     to_open: f64,
-    setting: &Setting<'_>,
+    setting: &PathSetting<'_>,
     start: &State,
-    asked: Option<Asked>,
+    asked: Option<AskedState>,
     progress: &dyn Progress,
 ) -> Result<Path, PathError> {
     let (control, to) = (setting.control, curve.innermost());
@@ -149,7 +149,12 @@ fn with_rings(
 }
 
 /// The contact that grows at the held control from a disc beside which bodies overlap.
-fn grown(balance: &Balance<'_>, setting: &Setting<'_>, s: f64, value: f64) -> Result<Held, PathError> {
+fn grown(
+    balance: &Balance<'_>,
+    setting: &PathSetting<'_>,
+    s: f64,
+    value: f64,
+) -> Result<HeldEdges, PathError> {
     let disc = Contacts::of_disc(s);
     let held = balance.held(&disc, &points(balance.ground, &disc), value)?;
     let mut passed = Vec::new();
@@ -188,7 +193,9 @@ fn run_outward(curve: &mut Curve, control: Control, from: f64) -> Result<Landing
         let stretch = monotone.stretch_of(from);
         let value =
             curve.solution.place(from).map_or(f64::NAN, |place| monotone.value(&curve.solution.at(place)));
-        if let Ok(Some(landing)) = jump::run(&*curve.solution, &monotone, stretch, value, Run::Outward) {
+        if let Ok(Some(landing)) =
+            jump::run(&*curve.solution, &monotone, stretch, value, EdgeDirection::Outward)
+        {
             return Ok(landing);
         }
         if reach >= limit {

@@ -4,14 +4,14 @@
 //! narrows until two contacts are one. The second is found on the contact that is already one: where its pressure at the closing point
 //! is 0; before that it pulls there. All controls rise together, so the approach is the one that is stepped.
 
-use super::balance::Held;
+use super::balance::HeldEdges;
 use super::course::Course;
 use super::error::PathError;
 use super::event::{Direction, Event, EventKind, PathState};
-use super::point::Step;
+use super::point::PathStep;
 use super::setting::{Path, PathStop, TurnReached};
-use super::stepped::{Side, Stepped};
-use crate::annuli::{Around, Contacts, Crest};
+use super::stepped::{SingularSide, TakenStep};
+use crate::annuli::{Around, Contacts, GapMinimum};
 use crate::disc::chebyshev;
 use crate::problem::{Control, Turn};
 use crate::quasistatic::Stability;
@@ -31,7 +31,7 @@ impl Course<'_, '_> {
     }
 
     /// The loop of bodies that do not adhere, from the first touch of `crest`; the balance is that of a held approach.
-    pub(super) fn without_adhesion(mut self, crest: Crest, turn: Turn) -> Result<Path, PathError> {
+    pub(super) fn without_adhesion(mut self, crest: GapMinimum, turn: Turn) -> Result<Path, PathError> {
         let apart = PathState {
             contact_radius: crest.radius,
             zone: None,
@@ -96,7 +96,7 @@ impl Course<'_, '_> {
     }
 
     /// The contacts with one more that has begun at a crest, a little beyond the approach at which it touches.
-    pub fn begun(&mut self, contacts: &Contacts, crest: f64, delta: f64) -> Result<Held, PathError> {
+    pub fn begun(&mut self, contacts: &Contacts, crest: f64, delta: f64) -> Result<HeldEdges, PathError> {
         let mut delta = delta + self.lift();
         match self.turn {
             Some(Turn::Approach(turn)) => delta = delta.min(turn),
@@ -120,16 +120,16 @@ impl Course<'_, '_> {
     }
 
     /// Follows the contacts up to the next event, which is passed.
-    fn risen(&mut self, from: &Held) -> Result<Held, PathError> {
+    fn risen(&mut self, from: &HeldEdges) -> Result<HeldEdges, PathError> {
         const FIRST: f64 = 0.02;
         const LONGEST: f64 = 0.15;
         const SHORTEST: f64 = 1e-10;
-        let lost = |held: &Held| PathError::Lost { control_value: held.control_value };
+        let lost = |held: &HeldEdges| PathError::Lost { control_value: held.control_value };
         let mut point = self.balance.point(from.clone(), 1.0).ok_or_else(|| lost(from))?;
         let mut length = FIRST;
         loop {
             self.counted(&point.held)?;
-            let step = Step::new(self.balance, &point);
+            let step = PathStep::new(self.balance, &point);
             let Some(next) = step.taken(length) else {
                 length *= 0.5;
                 if length < SHORTEST {
@@ -137,7 +137,7 @@ impl Course<'_, '_> {
                 }
                 continue;
             };
-            let mut taken = Stepped { step, length, end: next, side: Side::Smooth };
+            let mut taken = TakenStep { step, length, end: next, side: SingularSide::Smooth };
             let crest = taken.to_touch(false)?;
             let next = taken.end;
             // A gap that closes does so before that touch, or is looked at again after it.
@@ -152,7 +152,8 @@ impl Course<'_, '_> {
                 return Ok(merged);
             }
             if let Some(turn) = self.turn.filter(|_| self.has_turned(&next.held)) {
-                let mut left = |point: &super::point::Point| Some(self.measure(&point.held) - turn.value());
+                let mut left =
+                    |point: &super::point::PathPoint| Some(self.measure(&point.held) - turn.value());
                 let at_start = self.measure(&point.held) - turn.value();
                 let (_, end) = (taken.step)
                     .located((taken.length, &next), at_start, &mut left)
@@ -175,7 +176,7 @@ impl Course<'_, '_> {
     }
 
     /// The merged contact at the approach at which a narrow gap closes, and where, if nothing touches before; up to `before`.
-    fn closing(&self, held: &Held, before: Option<f64>) -> Option<(f64, Held)> {
+    fn closing(&self, held: &HeldEdges, before: Option<f64>) -> Option<(f64, HeldEdges)> {
         let contacts = &held.state.contacts;
         let gaps = contacts.gaps();
         let (k, [lo, hi]) =
@@ -194,7 +195,7 @@ impl Course<'_, '_> {
         }
         let width = hi - lo;
         let range = [(lo - width).max(0.0), hi + width];
-        let least = |delta: f64, from: &Contacts| -> Option<(Held, [f64; 2])> {
+        let least = |delta: f64, from: &Contacts| -> Option<(HeldEdges, [f64; 2])> {
             let held = self.balance.solve(from, delta).ok()?;
             let around = Around::new(self.balance.ground, &held.state, delta);
             let least = chebyshev::least(POINTS, range, |r| around.pressure(r));

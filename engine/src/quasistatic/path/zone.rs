@@ -7,7 +7,7 @@ use super::error::PathError;
 use super::event::{Direction, EventKind, Passed, PassedKind, PathState};
 use super::lane::Lane;
 use super::record::Record;
-use super::setting::{Asked, Path, PathStop, Setting, TurnReached, WhyNot};
+use super::setting::{AskedState, Path, PathSetting, PathStop, TurnReached, WhyNot};
 use crate::disc::{Local, Place, Solution, Table};
 use crate::elementary::{atan2, cbrt, sin};
 use crate::problem::{Cohesion, Control, Start, Turn};
@@ -15,9 +15,9 @@ use crate::progress::Progress;
 use crate::quasistatic::descent::{descend, stable_start};
 use crate::quasistatic::energy::{self, Losses};
 use crate::quasistatic::equilibrium::State;
-use crate::quasistatic::jump::{self, Landing, Run};
+use crate::quasistatic::jump::{self, EdgeDirection, Landing};
 use crate::quasistatic::monotone::{Monotone, weighted};
-use crate::zone::{Ends, Equilibria, Fault, FaultKind, ZoneAt, ZoneState, equilibria};
+use crate::zone::{Ends, Equilibria, FaultKind, ZoneAt, ZoneFault, ZoneState, equilibria};
 use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -52,7 +52,7 @@ pub fn cycle_in_zone(
     table: &Arc<Table>,
     cohesion: Cohesion,
     turn: Turn,
-    setting: &Setting<'_>,
+    setting: &PathSetting<'_>,
     progress: &dyn Progress,
 ) -> Result<Path, PathError> {
     if !turn.value().is_finite() {
@@ -97,7 +97,7 @@ pub fn unload_in_zone(
     table: &Arc<Table>,
     cohesion: Cohesion,
     start: f64,
-    setting: &Setting<'_>,
+    setting: &PathSetting<'_>,
     progress: &dyn Progress,
 ) -> Result<Path, PathError> {
     let mut found = Equilibria::new(table, cohesion, equilibria::about(cohesion, start), progress)?;
@@ -146,7 +146,7 @@ pub fn start_in_zone(
 /// A path on as much of the equilibria as it needs.
 fn on_equilibria(
     found: &mut Equilibria,
-    setting: &Setting<'_>,
+    setting: &PathSetting<'_>,
     progress: &dyn Progress,
     path: &dyn Fn(Course<'_>) -> Result<Path, PathError>,
 ) -> Result<Path, PathError> {
@@ -287,7 +287,7 @@ fn fault(
     place: Place,
     ends: Ends,
     progress: &dyn Progress,
-) -> Result<Option<Fault>, PathError> {
+) -> Result<Option<ZoneFault>, PathError> {
     if progress.stop() {
         return Err(PathError::Cancelled);
     }
@@ -300,7 +300,7 @@ fn fault(
 }
 
 /// The error of a state that is not one disc in one zone.
-fn beyond(solution: &dyn Solution, place: Place, fault: Option<Fault>) -> PathError {
+fn beyond(solution: &dyn Solution, place: Place, fault: Option<ZoneFault>) -> PathError {
     let at = solution.at(place);
     let radius = fault.map_or(at.contact_radius, |fault| fault.radius);
     let kind = fault.map(|fault| fault.kind);
@@ -323,8 +323,8 @@ fn place_of(solution: &dyn Solution, s: f64) -> Option<Place> {
 
 /// What is known of a path beside its states.
 #[derive(Default)]
-struct Known {
-    asked: Option<Asked>,
+struct PathFacts {
+    asked: Option<AskedState>,
     turn: Option<TurnReached>,
     work_of_loading: Option<f64>,
 }
@@ -333,7 +333,7 @@ struct Known {
 struct Course<'a> {
     equilibria: &'a Equilibria,
     lane: Lane,
-    setting: &'a Setting<'a>,
+    setting: &'a PathSetting<'a>,
     record: Record<'a>,
     progress: &'a dyn Progress,
 }
@@ -343,11 +343,11 @@ impl Course<'_> {
         &*self.lane.solution
     }
 
-    fn fault(&self, place: Place, ends: Ends) -> Result<Option<Fault>, PathError> {
+    fn fault(&self, place: Place, ends: Ends) -> Result<Option<ZoneFault>, PathError> {
         fault(self.equilibria, self.solution(), place, ends, self.progress)
     }
 
-    fn beyond(&self, place: Place, fault: Option<Fault>) -> PathError {
+    fn beyond(&self, place: Place, fault: Option<ZoneFault>) -> PathError {
         beyond(self.solution(), place, fault)
     }
 
@@ -431,7 +431,7 @@ impl Course<'_> {
         let Lane { solution, monotone, .. } = &self.lane;
         let from = monotone.stretches[stretch].outer;
         let last = solution.at(from);
-        match jump::run(&**solution, monotone, stretch, value, Run::Outward) {
+        match jump::run(&**solution, monotone, stretch, value, EdgeDirection::Outward) {
             Ok(Some(landing)) => Ok(landing),
             Ok(None) => Err(PathError::BeyondGap {
                 radius: solution.reach(),
@@ -489,9 +489,9 @@ impl Course<'_> {
     /// The path of what `way` follows, which ends where a state is not one disc in one zone.
     fn path(
         mut self,
-        way: impl FnOnce(&mut Self, &mut Known) -> Result<PathStop, PathError>,
+        way: impl FnOnce(&mut Self, &mut PathFacts) -> Result<PathStop, PathError>,
     ) -> Result<Path, PathError> {
-        let mut known = Known::default();
+        let mut known = PathFacts::default();
         let stop = match way(&mut self, &mut known) {
             Err(PathError::BeyondZone { kind, radius, approach, force })
                 if !self.record.states.is_empty() =>
@@ -503,7 +503,7 @@ impl Course<'_> {
         Ok(self.record.finished(known.asked, known.turn, known.work_of_loading, stop))
     }
 
-    fn whole(&mut self, turn: Turn, known: &mut Known) -> Result<PathStop, PathError> {
+    fn whole(&mut self, turn: Turn, known: &mut PathFacts) -> Result<PathStop, PathError> {
         let mut here = self.jumped_in()?;
         let at_turn = loop {
             let stretch = self.lane.monotone.stretches[here.stretch];
@@ -554,7 +554,7 @@ impl Course<'_> {
         Ok(PathStop::Apart)
     }
 
-    fn down(&mut self, start: f64, known: &mut Known) -> Result<PathStop, PathError> {
+    fn down(&mut self, start: f64, known: &mut PathFacts) -> Result<PathStop, PathError> {
         let solution = Arc::clone(&self.lane.solution);
         let beyond = PathError::BeyondGap { radius: solution.reach(), approach: f64::NAN, force: f64::NAN };
         let asked_at = place_of(&*solution, start).ok_or(beyond)?;
@@ -572,7 +572,7 @@ impl Course<'_> {
                 energy: solution.energy(asked_at),
             };
             // From a falling stretch outward the first crossing is the landing.
-            known.asked = Some(Asked { state, why: WhyNot::Unstable { falls: true } });
+            known.asked = Some(AskedState { state, why: WhyNot::Unstable { falls: true } });
             landing
         };
         self.lands(asked_at, Some(here))?;

@@ -7,7 +7,7 @@ use super::arrival::{Ahead, Arrival, Emit, Reached, WalkEnd, WalkFailure};
 use super::edges;
 use crate::continuation::Columns;
 use crate::quasistatic::path::{Direction, EventKind};
-use crate::quasistatic::{Admissibility, Event, Path, PathState, Point, Scales, Stability, Stiffness};
+use crate::quasistatic::{Admissibility, Event, Path, PathState, Scales, Stability, StatePoint, Stiffness};
 use std::f64::consts::TAU;
 
 /// Control values as near as this share of their range are one.
@@ -246,7 +246,7 @@ impl<'a> Along<'a> {
         let bend = vec![0.0; y.len()];
         Reached {
             arrival,
-            point: Point::of(Columns::from_vec([y, tangent, bend].concat()), true),
+            point: StatePoint::of(Columns::from_vec([y, tangent, bend].concat()), true),
             state: state.state(),
             stability: if state.rings() > 0 {
                 edges::stability(1.0, &Stiffness { tangent: self.slope(at), ..stiffness })

@@ -2,7 +2,7 @@
 
 use crate::continuation::StepFailure;
 use crate::quasistatic::path::Event;
-use crate::quasistatic::{Admissibility, Point, Stability, State, Stiffness};
+use crate::quasistatic::{Admissibility, Stability, State, StatePoint, Stiffness};
 use thiserror::Error;
 
 /// Where the edge would land from a limit point, and what it would cost.
@@ -101,7 +101,7 @@ pub struct Reached {
     pub arrival: Arrival,
     /// The state with the frame of the curve there: δ, P and the edges from the axis outward, in the scales of the curve. With rings its
     /// tangent is that of a walk inward.
-    pub point: Point,
+    pub point: StatePoint,
     /// δ, P, U and the outermost edge.
     pub state: State,
     /// The slopes that decide its stability.

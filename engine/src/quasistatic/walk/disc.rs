@@ -9,11 +9,11 @@ use crate::gap::Gap;
 use crate::problem::Control;
 use crate::progress::Unwatched;
 use crate::quasistatic::curve::{Curve, settings};
-use crate::quasistatic::jump::{self, Run};
-use crate::quasistatic::monotone::{Limit, Monotone, Turn};
+use crate::quasistatic::jump::{self, EdgeDirection};
+use crate::quasistatic::monotone::{Extremum, Limit, Monotone};
 use crate::quasistatic::path::stepped::ROUNDING;
 use crate::quasistatic::path::{Event, Losses};
-use crate::quasistatic::{Point, energy, landscape};
+use crate::quasistatic::{StatePoint, energy, landscape};
 use crate::ritz::{self, NewtonSettings};
 
 /// A landing outward is looked for further out by this factor, and up to this multiple of the radius.
@@ -31,7 +31,7 @@ const ROUNDS: usize = 80;
 
 /// A place at which a step ends: a limit point of the control, or a corner of the curve.
 #[derive(Debug, Clone, Copy)]
-struct Stop {
+struct StepStop {
     contact_radius: f64,
     is_limit: bool,
     is_corner: bool,
@@ -44,7 +44,7 @@ fn rounded(radius: f64) -> f64 {
 }
 
 /// The first of `stops`, which ascend, on the way from one radius to another, the latter included.
-fn first_between(stops: &[Stop], from: f64, to: f64) -> Option<Stop> {
+fn first_between(stops: &[StepStop], from: f64, to: f64) -> Option<StepStop> {
     if to < from {
         let from = from * (1.0 - LEFT);
         stops.iter().rev().find(|stop| to <= stop.contact_radius && stop.contact_radius < from).copied()
@@ -92,8 +92,8 @@ impl Walk<'_> {
                 point.rounds = solved.rounds;
                 Some(point)
             });
-        let is_stable = |point: &Point| equilibrium.stability(point).under(self.control);
-        let stable = |found: Option<Point>| match found {
+        let is_stable = |point: &StatePoint| equilibrium.stability(point).under(self.control);
+        let stable = |found: Option<StatePoint>| match found {
             Some(point) if !was_stable || is_stable(&point) => Some(point),
             found => self.nearest_crossing(value, s, &is_stable).filter(|_| was_stable).or(found),
         };
@@ -106,19 +106,19 @@ impl Walk<'_> {
     }
 
     /// The stops on the curve up to the radius `reach`, ascending.
-    fn stops(&self, reach: f64) -> Vec<Stop> {
+    fn stops(&self, reach: f64) -> Vec<StepStop> {
         let mut curve = self.curve.clone();
         curve.reach(reach);
         let monotone = curve.monotone(self.control);
-        let limits = monotone.limits.iter().map(|at| Stop {
+        let limits = monotone.limits.iter().map(|at| StepStop {
             contact_radius: at.contact_radius,
             is_limit: true,
             is_corner: at.corner,
         });
-        let mut stops: Vec<Stop> = limits.collect();
+        let mut stops: Vec<StepStop> = limits.collect();
         for contact_radius in curve.corners() {
             if stops.iter().all(|stop| stop.contact_radius.to_bits() != contact_radius.to_bits()) {
-                stops.push(Stop { contact_radius, is_limit: false, is_corner: true });
+                stops.push(StepStop { contact_radius, is_limit: false, is_corner: true });
             }
         }
         stops.sort_by(|a, b| a.contact_radius.total_cmp(&b.contact_radius));
@@ -126,9 +126,9 @@ impl Walk<'_> {
     }
 
     /// The stop computed with the smallest sufficient table, so that its bits do not depend on how far the walk has been.
-    fn located(&self, stop: Stop) -> Stop {
+    fn located(&self, stop: StepStop) -> StepStop {
         const SPARE: f64 = 1.05;
-        let away = |other: &Stop| (other.contact_radius - stop.contact_radius).abs();
+        let away = |other: &StepStop| (other.contact_radius - stop.contact_radius).abs();
         let found = self.stops(SPARE * stop.contact_radius).into_iter();
         let mut found = found.min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(stop);
         if !found.is_corner {
@@ -152,7 +152,7 @@ impl Walk<'_> {
         }
         let mut tracer = Tracer::new(equilibrium, settings);
         tracer.length = self.length;
-        let turned = |point: Point| {
+        let turned = |point: StatePoint| {
             let shrinking = point.tangent()[2] < 0.0;
             if shrinking == self.inward { point } else { point.reversed() }
         };
@@ -277,16 +277,21 @@ impl Walk<'_> {
     }
 
     /// The second derivative of the control along the curve: below zero at its maximum.
-    fn bend(&self, point: &Point) -> f64 {
+    fn bend(&self, point: &StatePoint) -> f64 {
         self.equilibrium().control_row(self.control).dot(&point.curvature())
     }
 
     /// The next point by arc length; a corner of the curve is left and reached without the tangent that it does not have.
-    fn next(&self, stops: &[Stop], tracer: &mut Tracer<'_>, here: &Point) -> Result<Point, WalkFailure> {
+    fn next(
+        &self,
+        stops: &[StepStop],
+        tracer: &mut Tracer<'_>,
+        here: &StatePoint,
+    ) -> Result<StatePoint, WalkFailure> {
         let equilibrium = self.equilibrium();
         let s = equilibrium.contact_radius(here);
         let towards = if self.inward { 0.0 } else { f64::INFINITY };
-        let is_here = |stop: &Stop| (stop.contact_radius / s - 1.0).abs() <= LEFT;
+        let is_here = |stop: &StepStop| (stop.contact_radius / s - 1.0).abs() <= LEFT;
         if stops.iter().any(|stop| stop.is_corner && is_here(stop)) && !self.inward {
             let mut curve = self.curve.clone();
             curve.reach(1.1 * s);
@@ -316,7 +321,7 @@ impl Walk<'_> {
 
     /// The place that the edge leaves at constant control from `from`, and where it comes to rest, `None` where the bodies
     /// come apart; with a curve that reaches there.
-    fn landing(&self, from: &Point) -> Result<(Curve, Place, Option<Place>), WalkFailure> {
+    fn landing(&self, from: &StatePoint) -> Result<(Curve, Place, Option<Place>), WalkFailure> {
         let s = self.equilibrium().contact_radius(from);
         let mut curve = self.curve.clone();
         curve.reach(s * (1.0 + 1e-9));
@@ -328,11 +333,11 @@ impl Walk<'_> {
             let limit = if self.at == At::Limit { nearest_limit(&monotone, s) } else { None };
             let (place, stretch, run) = match limit {
                 Some((index, limit)) => match limit.turn {
-                    Turn::Minimum => (limit.place, index + 1, Run::Inward),
-                    Turn::Maximum => (limit.place, index, Run::Outward),
+                    Extremum::Minimum => (limit.place, index + 1, EdgeDirection::Inward),
+                    Extremum::Maximum => (limit.place, index, EdgeDirection::Outward),
                 },
-                None if self.inward => (place, monotone.stretch_of(s), Run::Inward),
-                None => (place, monotone.stretch_of(s), Run::Outward),
+                None if self.inward => (place, monotone.stretch_of(s), EdgeDirection::Inward),
+                None => (place, monotone.stretch_of(s), EdgeDirection::Outward),
             };
             let value = monotone.value(&curve.solution.at(place));
             match jump::run(&*curve.solution, &monotone, stretch, value, run) {
@@ -345,7 +350,7 @@ impl Walk<'_> {
                     }
                     return Ok((curve, place, Some(landing.place)));
                 }
-                Ok(None) if run == Run::Inward => return Ok((curve, place, None)),
+                Ok(None) if run == EdgeDirection::Inward => return Ok((curve, place, None)),
                 Ok(None) => {
                     reach *= OUTWARD_STEP;
                     if reach > OUTWARD_REACH * s || !curve.reach(reach) {
@@ -358,7 +363,7 @@ impl Walk<'_> {
     }
 
     /// Where the edge runs from the limit point `from`, and what that costs; `None` where it is not known.
-    fn ahead(&self, from: &Point) -> Option<Ahead> {
+    fn ahead(&self, from: &StatePoint) -> Option<Ahead> {
         let on_limit = self.standing(from, At::Limit);
         if let Some(jumped) = on_limit.runs_into_crests() {
             return Some(jumped.ahead());
@@ -370,7 +375,12 @@ impl Walk<'_> {
     }
 
     /// The state that is `wanted`, nearest to the radius `s`, at which the curve takes the control value.
-    fn nearest_crossing(&self, value: f64, s: f64, wanted: &dyn Fn(&Point) -> bool) -> Option<Point> {
+    fn nearest_crossing(
+        &self,
+        value: f64,
+        s: f64,
+        wanted: &dyn Fn(&StatePoint) -> bool,
+    ) -> Option<StatePoint> {
         let curve = self.curve;
         let solution = &*curve.solution;
         let monotone = curve.monotone(self.control);

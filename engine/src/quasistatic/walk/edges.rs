@@ -5,15 +5,15 @@
 //! makes odd.
 
 use crate::annuli::{Around, Contacts, Ground, points};
-use crate::continuation::{Column, Columns, Vector};
+use crate::continuation::{ColumnView, Columns, Vector};
 use crate::disc::Table;
 use crate::elementary::sin;
 use crate::gap::{Gap, wave_index};
 use crate::problem::Control;
 use crate::quasistatic::admissible::{Admissibility, Crest, Judge};
 use crate::quasistatic::equilibrium::{Equilibrium, Scales};
-use crate::quasistatic::path::{self, Balance, Held, Step};
-use crate::quasistatic::{Point, Stability, State, Stiffness};
+use crate::quasistatic::path::{self, Balance, HeldEdges, PathStep};
+use crate::quasistatic::{Stability, State, StatePoint, Stiffness};
 use nalgebra::DVector;
 use std::f64::consts::PI;
 
@@ -30,12 +30,12 @@ const ROUNDING: f64 = 1e-9;
 const PRESSED: f64 = 1e-7;
 
 /// Whether a point is one of more than a disc.
-pub fn has_rings(point: &Point) -> bool {
+pub fn has_rings(point: &StatePoint) -> bool {
     point.y().len() > BEFORE + 1
 }
 
 /// The contacts of a point, lengths.
-pub fn contacts(scales: &Scales, point: &Point) -> Contacts {
+pub fn contacts(scales: &Scales, point: &StatePoint) -> Contacts {
     let y = point.y();
     let radii: Vec<f64> = y.iter().skip(BEFORE).map(|e| e * scales.contact_radius).collect();
     of_edges(&radii)
@@ -48,12 +48,12 @@ fn of_edges(radii: &[f64]) -> Contacts {
 }
 
 /// δ and P of a point.
-pub fn device(scales: &Scales, point: &Point) -> [f64; 2] {
+pub fn device(scales: &Scales, point: &StatePoint) -> [f64; 2] {
     [point.y()[0] * scales.approach, point.y()[1] * scales.force]
 }
 
 /// The change of a control that goes with one of the unknowns.
-pub(super) fn of_control(control: Control, scales: &Scales, change: &Column<'_>) -> f64 {
+pub(super) fn of_control(control: Control, scales: &Scales, change: &ColumnView<'_>) -> f64 {
     control.value(change[0] * scales.approach, change[1] * scales.force)
 }
 
@@ -68,14 +68,14 @@ pub fn stability(lowest: f64, stiffness: &Stiffness) -> Stability {
 }
 
 /// The edges of a point at its value of the control of `balance`; `None` where there is no state.
-pub(super) fn held(balance: &Balance<'_>, scales: &Scales, point: &Point) -> Option<Held> {
+pub(super) fn held(balance: &Balance<'_>, scales: &Scales, point: &StatePoint) -> Option<HeldEdges> {
     let contacts = contacts(scales, point);
     let [delta, force] = device(scales, point);
     balance.held(&contacts, &points(balance.ground, &contacts), balance.control.value(delta, force)).ok()
 }
 
 /// A point of the equilibria where the walk left off at `point`, with the tangent on the same side.
-pub(super) fn resumed(balance: &Balance<'_>, scales: &Scales, point: &Point) -> Option<path::Point> {
+pub(super) fn resumed(balance: &Balance<'_>, scales: &Scales, point: &StatePoint) -> Option<path::PathPoint> {
     let held = held(balance, scales, point)?;
     let (along, edges) = (point.tangent(), held.state.contacts.edges());
     let control = of_control(balance.control, scales, &along);
@@ -88,7 +88,7 @@ pub(super) fn resumed(balance: &Balance<'_>, scales: &Scales, point: &Point) -> 
 }
 
 /// The point of edges in equilibrium on which the contacts shrink; `None` where the curve is singular.
-pub(super) fn shrinking(balance: &Balance<'_>, held: Held) -> Option<path::Point> {
+pub(super) fn shrinking(balance: &Balance<'_>, held: HeldEdges) -> Option<path::PathPoint> {
     let edges = held.state.contacts.edges();
     balance.point_along(held, &|units| {
         let by_edge = |i: usize| edges.get(i).map_or(0.0, |edge| -edge.radius * units.edges[i]);
@@ -97,14 +97,14 @@ pub(super) fn shrinking(balance: &Balance<'_>, held: Held) -> Option<path::Point
 }
 
 /// How the contacts grow along the tangent of a point, every edge outward of its contact, in the scale of radii.
-pub(super) fn growth(point: &Point) -> DVector<f64> {
+pub(super) fn growth(point: &StatePoint) -> DVector<f64> {
     let along = point.tangent();
     let signs = of_edges(&point.y().as_slice()[BEFORE..]).edges();
     DVector::from_fn(signs.len(), |i, _| signs[i].sign * along[BEFORE + i])
 }
 
 /// The derivatives of the unknowns along the equilibria, of unit length, and that length for one of the arc.
-pub(super) fn direction(balance: &Balance<'_>, scales: &Scales, point: &path::Point) -> (Vector, f64) {
+pub(super) fn direction(balance: &Balance<'_>, scales: &Scales, point: &path::PathPoint) -> (Vector, f64) {
     let [delta, force] = balance.slopes(point);
     let edges = point.contacts().edges();
     let edges = edges.iter().zip(&point.scales.edges).zip(&point.tangent);
@@ -116,14 +116,14 @@ pub(super) fn direction(balance: &Balance<'_>, scales: &Scales, point: &path::Po
 }
 
 /// A point of the equilibria as a walk keeps it.
-pub(super) fn kept(balance: &Balance<'_>, scales: &Scales, point: &path::Point) -> Point {
+pub(super) fn kept(balance: &Balance<'_>, scales: &Scales, point: &path::PathPoint) -> StatePoint {
     let edges = point.contacts().edges();
     let n = BEFORE + edges.len();
     let before = [point.held.approach / scales.approach, point.held.force / scales.force];
     let y: Vec<f64> =
         before.into_iter().chain(edges.iter().map(|edge| edge.radius / scales.contact_radius)).collect();
     let (tangent, speed) = direction(balance, scales, point);
-    let step = Step::new(balance, point);
+    let step = PathStep::new(balance, point);
     let beside = [BESIDE, -BESIDE].into_iter().find_map(|h| Some((h, step.to(h, &step.line(h))?.0)));
     let bend: Vec<f64> = match beside {
         Some((h, beside)) => {
@@ -133,7 +133,7 @@ pub(super) fn kept(balance: &Balance<'_>, scales: &Scales, point: &path::Point) 
         None => vec![0.0; n],
     };
     let columns = [y, tangent.iter().copied().collect(), bend].concat();
-    let mut kept = Point::of(Columns::from_vec(columns), Balance::is_positive(point));
+    let mut kept = StatePoint::of(Columns::from_vec(columns), Balance::is_positive(point));
     kept.rounds = point.rounds;
     kept
 }
@@ -154,14 +154,14 @@ pub struct Judged {
 }
 
 /// δ, P, U and the outermost edge of edges in equilibrium.
-pub(super) fn state(held: &Held, gamma: f64) -> State {
+pub(super) fn state(held: &HeldEdges, gamma: f64) -> State {
     let (approach, force) = (held.approach, held.force);
     let contact_radius = held.state.contacts.outermost();
     State { contact_radius, approach, force, energy: held.state.energy(approach, gamma) }
 }
 
 /// What is to be known of `point`, whose edges are `held` at its approach.
-pub fn judged(equilibrium: &Equilibrium, ground: &Ground, point: &Point, held: &Held) -> Judged {
+pub fn judged(equilibrium: &Equilibrium, ground: &Ground, point: &StatePoint, held: &HeldEdges) -> Judged {
     let (scales, gamma) = (&equilibrium.scales, equilibrium.problem.work_of_adhesion);
     let contacts = &held.state.contacts;
     let along = point.tangent();
@@ -190,7 +190,7 @@ pub fn judged(equilibrium: &Equilibrium, ground: &Ground, point: &Point, held: &
     }
 }
 
-fn admissibility(equilibrium: &Equilibrium, ground: &Ground, held: &Held) -> Admissibility {
+fn admissibility(equilibrium: &Equilibrium, ground: &Ground, held: &HeldEdges) -> Admissibility {
     /// A touch that has just been located is none yet, in waves.
     const TOUCHES: f64 = 1e-11;
     let around = Around::new(ground, &held.state, held.approach);
@@ -214,7 +214,7 @@ fn admissibility(equilibrium: &Equilibrium, ground: &Ground, held: &Held) -> Adm
 }
 
 /// The least pressure in the contacts, its radius and the largest.
-fn least_pressure(ground: &Ground, around: &Around<'_>, held: &Held) -> Option<(f64, f64, f64)> {
+fn least_pressure(ground: &Ground, around: &Around<'_>, held: &HeldEdges) -> Option<(f64, f64, f64)> {
     const PER_WAVE: f64 = 16.0;
     const FEWEST: f64 = 40.0;
     let mut least: Option<(f64, f64)> = None;

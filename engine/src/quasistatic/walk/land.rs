@@ -7,21 +7,21 @@ use crate::annuli::{AnnuliError, Contacts, Ground};
 use crate::problem::Control;
 use crate::progress::Unwatched;
 use crate::quasistatic::path::course::Course;
-use crate::quasistatic::path::{Balance, Direction, Held, PassedKind, PathError, Setting};
-use crate::quasistatic::{Event, EventKind, Point, State};
+use crate::quasistatic::path::{Balance, Direction, HeldEdges, PassedKind, PathError, PathSetting};
+use crate::quasistatic::{Event, EventKind, State, StatePoint};
 
 /// A jump, and where it lands.
 pub(super) struct Jumped {
     pub ground: Ground,
     /// None where the bodies come apart.
-    pub held: Option<Held>,
+    pub held: Option<HeldEdges>,
     /// None without adhesion, where nothing runs and nothing is lost.
     pub event: Option<Event>,
     after: Option<State>,
 }
 
 impl Jumped {
-    fn of(balance: &Balance<'_>, held: Option<Held>, event: Option<Event>) -> Self {
+    fn of(balance: &Balance<'_>, held: Option<HeldEdges>, event: Option<Event>) -> Self {
         let after = held.as_ref().map(|held| edges::state(held, balance.work_of_adhesion));
         Self { ground: balance.ground.clone(), held, event, after }
     }
@@ -41,7 +41,7 @@ impl Jumped {
 
 impl Walk<'_> {
     /// The state of a disc, with what is to be known of it.
-    pub(super) fn of_disc(&self, arrival: Arrival, point: Point) -> Reached {
+    pub(super) fn of_disc(&self, arrival: Arrival, point: StatePoint) -> Reached {
         let equilibrium = self.equilibrium();
         let (state, stiffness) = equilibrium.state_and_stiffness(&point);
         Reached {
@@ -57,7 +57,7 @@ impl Walk<'_> {
     }
 
     /// The state of a point with rings, with what is to be known of it.
-    pub(super) fn of_rings(&self, ground: &Ground, arrival: Arrival, point: Point) -> Option<Reached> {
+    pub(super) fn of_rings(&self, ground: &Ground, arrival: Arrival, point: StatePoint) -> Option<Reached> {
         let equilibrium = self.equilibrium();
         let balance = self.balance(ground, Control::Displacement);
         let held = edges::held(&balance, &equilibrium.scales, &point)?;
@@ -71,7 +71,7 @@ impl Walk<'_> {
         &self,
         balance: &Balance<'_>,
         arrival: Arrival,
-        held: Held,
+        held: HeldEdges,
     ) -> Result<Reached, WalkFailure> {
         let missing = WalkFailure::NoEquilibrium("at the landing");
         let (contacts, scales) = (&held.state.contacts, &self.equilibrium().scales);
@@ -119,12 +119,12 @@ impl Walk<'_> {
     }
 
     /// The same on a gap known so far; `None` where nothing runs.
-    fn jumped(&self, ground: &Ground, from: &Point) -> Result<Option<Jumped>, PathError> {
+    fn jumped(&self, ground: &Ground, from: &StatePoint) -> Result<Option<Jumped>, PathError> {
         let scales = &self.equilibrium().scales;
         let (balance, contacts) = (self.running(ground), edges::contacts(scales, from));
         let lost = PathError::Lost { control_value: f64::NAN };
         let before = edges::held(&balance, scales, from).ok_or(lost)?;
-        let setting = Setting::new(balance.control);
+        let setting = PathSetting::new(balance.control);
         let (kind, direction, start, radius) = if let At::Touch(radius) = self.at {
             let direction = Direction::Loading;
             if balance.work_of_adhesion == 0.0 {
@@ -178,7 +178,7 @@ impl Walk<'_> {
     fn touched(&self) -> Result<Reached, WalkFailure> {
         let first = |ground: &Ground| {
             let balance = self.running(ground);
-            let setting = Setting::new(balance.control);
+            let setting = PathSetting::new(balance.control);
             let mut course = Course::new(&balance, &setting, Direction::Loading);
             let (crest, value) = course.first_crest()?;
             let held = if balance.work_of_adhesion > 0.0 {

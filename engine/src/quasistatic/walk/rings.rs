@@ -5,12 +5,12 @@ use super::edges;
 use super::walker::{At, ROOM, Walk};
 use crate::annuli::{Contacts, Ground};
 use crate::problem::Control;
-use crate::quasistatic::Point;
-use crate::quasistatic::path::{self, GROWTH, LONGEST, NotFound, PathError, Side};
+use crate::quasistatic::StatePoint;
+use crate::quasistatic::path::{self, GROWTH, LONGEST, NotFound, PathError, SingularSide};
 
 /// Where a step with rings ends.
-struct Stepped {
-    point: Point,
+struct RingStep {
+    point: StatePoint,
     arrival: Arrival,
     /// The length that the next step may have, in the units of a path.
     length: Option<f64>,
@@ -24,7 +24,7 @@ impl Walk<'_> {
         emit: &mut Emit<'_>,
     ) -> Result<WalkEnd, WalkFailure> {
         let scales = &self.equilibrium().scales;
-        let turned = |point: Point| if self.inward { point } else { point.reversed() };
+        let turned = |point: StatePoint| if self.inward { point } else { point.reversed() };
         let mut here = turned(self.begun("walk")?.clone());
         let (mut at, mut length) = (self.at, None);
         let [start, end] = self.range;
@@ -85,11 +85,11 @@ impl Walk<'_> {
     fn ring_step(
         &self,
         ground: &Ground,
-        here: &Point,
+        here: &StatePoint,
         at: At,
         length: Option<f64>,
         run: bool,
-    ) -> Result<Stepped, WalkFailure> {
+    ) -> Result<RingStep, WalkFailure> {
         let scales = &self.equilibrium().scales;
         let balance = self.balance(ground, self.control);
         let lost = || WalkFailure::Edges("the equilibria could not be followed further".to_owned());
@@ -99,7 +99,7 @@ impl Walk<'_> {
         let wanted = if run { length.unwrap_or(asked).min(LONGEST) } else { asked };
         // From a limit point to the side on which its bend says that the control goes on: a step that ends elsewhere passes another.
         let bend = edges::of_control(self.control, scales, &here.curvature());
-        let goes_on = |end: &path::Point| at != At::Limit || end.along_control() * bend > 0.0;
+        let goes_on = |end: &path::PathPoint| at != At::Limit || end.along_control() * bend > 0.0;
         let mut taken = balance.step(&from, wanted, None, &goes_on).ok_or_else(lost)?;
         let whole = taken.length;
         let mut arrival = Arrival::Step;
@@ -110,15 +110,15 @@ impl Walk<'_> {
         if let Some(crest) = taken.to_touch(true).map_err(said)? {
             arrival = Arrival::Touch(crest.radius);
         }
-        if arrival == Arrival::Step && taken.side == Side::Towards {
+        if arrival == Arrival::Step && taken.side == SingularSide::Towards {
             let beyond = balance.beyond_corner(&taken.end);
-            let turns = |end: &path::Point| end.along_control() * taken.end.along_control() < 0.0;
+            let turns = |end: &path::PathPoint| end.along_control() * taken.end.along_control() < 0.0;
             if beyond.is_some_and(|beyond| turns(&beyond.end)) {
                 arrival = Arrival::Limit(None);
             }
         }
-        let length = if taken.side == Side::Smooth { Some(GROWTH * whole) } else { length };
-        Ok(Stepped { point: edges::kept(&balance, scales, &taken.end).after(here), arrival, length })
+        let length = if taken.side == SingularSide::Smooth { Some(GROWTH * whole) } else { length };
+        Ok(RingStep { point: edges::kept(&balance, scales, &taken.end).after(here), arrival, length })
     }
 
     /// Goes to the state at this value of the control with the same contacts, from the edges `from` of the problem before it changed.

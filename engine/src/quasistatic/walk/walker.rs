@@ -7,7 +7,7 @@ use crate::quasistatic::curve::Curve;
 use crate::quasistatic::equilibrium::Equilibrium;
 use crate::quasistatic::path::course::on_ground;
 use crate::quasistatic::path::{Balance, PathError};
-use crate::quasistatic::{Point, walk::arrival::WalkFailure, walk::edges};
+use crate::quasistatic::{StatePoint, walk::arrival::WalkFailure, walk::edges};
 
 /// A walk leaves the range of the curve by at most this factor in the contact radius.
 pub const ROOM: f64 = 3.0;
@@ -36,7 +36,7 @@ pub struct Walk<'a> {
     /// What is controlled.
     pub control: Control,
     /// Where the walker stands; only moves need no such state.
-    pub from: Option<&'a Point>,
+    pub from: Option<&'a StatePoint>,
     /// What it stands on.
     pub at: At,
     /// Whether the contact is to shrink.
@@ -51,12 +51,12 @@ impl Walk<'_> {
     }
 
     /// The same of a walker that stands elsewhere.
-    pub(super) fn standing<'b>(&'b self, from: &'b Point, at: At) -> Walk<'b> {
+    pub(super) fn standing<'b>(&'b self, from: &'b StatePoint, at: At) -> Walk<'b> {
         Walk { from: Some(from), at, ..*self }
     }
 
     /// The state to begin with, for what `what` says.
-    pub(super) fn begun(&self, what: &'static str) -> Result<&Point, WalkFailure> {
+    pub(super) fn begun(&self, what: &'static str) -> Result<&StatePoint, WalkFailure> {
         self.from.ok_or(WalkFailure::NoState(what))
     }
 

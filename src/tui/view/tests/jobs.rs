@@ -2,7 +2,7 @@
 //! more. A name or a number typed counts as one.
 
 use super::Screen;
-use crate::explorer::Panel;
+use crate::explorer::ScreenPanel;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 /// The size of the screens; more would be offered on none.
@@ -64,7 +64,7 @@ fn is_offered(screen: &Screen, stroke: &str) -> bool {
     }
     let says = |line: &str| line.split([' ', '(', ',', ':', ';']).any(|word| word == stroke);
     // A title with a number of lines has lines to go through.
-    let goes_through = matches!(stroke, "Up" | "Down") && screen.app.model.panel == Panel::Problem;
+    let goes_through = matches!(stroke, "Up" | "Down") && screen.app.model.panel == ScreenPanel::Problem;
     let footer = lines.last().unwrap();
     // `:` parts words, and is one here.
     goes_through && text.contains("Problem ")

@@ -2,7 +2,7 @@
 
 use super::Screen;
 use crate::config::read;
-use crate::explorer::{Id, Panel, View};
+use crate::explorer::{Id, ScreenPanel, View};
 use crate::tui::keymap::Keymap;
 use crossterm::event::KeyCode;
 use pulloff_engine::problem::Control;
@@ -94,9 +94,9 @@ fn the_footer_offers_what_the_selected_panel_has_and_g_the_places() {
     let mut screen = Screen::new("wavy-sphere");
     let footer = |screen: &Screen| screen.text(160, 45).lines().last().unwrap().to_owned();
     assert!(footer(&screen).contains("< less  > more  ? keys  Enter type"), "{}", footer(&screen));
-    screen.app.model.panel = Panel::Log;
+    screen.app.model.panel = ScreenPanel::Log;
     assert!(footer(&screen).contains("Enter go there") && !footer(&screen).contains("more"));
-    screen.app.model.panel = Panel::Charts;
+    screen.app.model.panel = ScreenPanel::Charts;
     assert!(footer(&screen).contains("i cross-hair"), "{}", footer(&screen));
     screen.keys("gm");
     assert!(footer(&screen).contains("Enter quantity"), "{}", footer(&screen));

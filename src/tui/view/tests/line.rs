@@ -4,16 +4,14 @@ use super::Screen;
 use crate::config;
 use crate::explorer::Id;
 use crate::tui::keymap::Keymap;
-use crate::tui::overlay::Overlay;
+use crate::tui::overlay::Dialog;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use pulloff_engine::problem::Control;
 use ratatui::layout::Rect;
 
 fn prompt(screen: &Screen) -> (String, Option<String>, Option<usize>) {
     match &screen.app.overlay {
-        Some(Overlay::Prompt(prompt)) => {
-            (prompt.input.value().to_owned(), prompt.error.clone(), prompt.fault)
-        }
+        Some(Dialog::Prompt(prompt)) => (prompt.input.value().to_owned(), prompt.error.clone(), prompt.fault),
         other => unreachable!("no line to type: {other:?}"),
     }
 }
@@ -31,13 +29,13 @@ fn a_typed_command_does_what_its_key_does() {
     assert!(model.history.current().unwrap().is_limit(Control::Force));
     // What a screen only shows is a command here too; what it asks for, it asks for.
     screen.keys(":help\r\t");
-    assert!(matches!(screen.app.overlay, Some(Overlay::Help(_))));
+    assert!(matches!(screen.app.overlay, Some(Dialog::Help(_))));
     screen.keys("\x1b:export\r");
-    assert!(matches!(screen.app.overlay, Some(Overlay::Choose(_))));
+    assert!(matches!(screen.app.overlay, Some(Dialog::Choose(_))));
     screen.keys("\x1b:quit\r");
-    assert!(matches!(screen.app.overlay, Some(Overlay::Confirm(_))) && !screen.app.model.quit);
+    assert!(matches!(screen.app.overlay, Some(Dialog::Confirm(_))) && !screen.app.model.quit);
     screen.keys("\x1b:open fig-3-jkr\r");
-    assert!(matches!(screen.app.overlay, Some(Overlay::Confirm(_))), "unsaved changes are not lost unasked");
+    assert!(matches!(screen.app.overlay, Some(Dialog::Confirm(_))), "unsaved changes are not lost unasked");
 }
 
 #[test]
@@ -113,7 +111,7 @@ fn what_is_typed_keeps_what_has_it_and_enter_runs_what_is_selected() {
     for _ in 0..50 {
         screen.press(KeyCode::Down);
     }
-    let Some(Overlay::Prompt(prompt)) = &screen.app.overlay else { unreachable!() };
+    let Some(Dialog::Prompt(prompt)) = &screen.app.overlay else { unreachable!() };
     assert_eq!(prompt.selected, Some(prompt.entries.len() - 1));
     let states = screen.app.model.history.nodes().len();
     screen.keys("\x1b?");
@@ -124,7 +122,7 @@ fn what_is_typed_keeps_what_has_it_and_enter_runs_what_is_selected() {
     for _ in 0..2 {
         screen.press(KeyCode::Up);
     }
-    assert!(matches!(&screen.app.overlay, Some(Overlay::Prompt(_))));
+    assert!(matches!(&screen.app.overlay, Some(Dialog::Prompt(_))));
 }
 
 #[test]
@@ -149,7 +147,7 @@ fn the_header_says_what_the_preset_says_and_what_was_changed_and_a_chart_when_it
     );
     screen.keys("\x1buu");
     assert!(header(&mut screen).contains(says), "{}", header(&mut screen));
-    screen.app.model.panel = crate::explorer::Panel::Charts;
+    screen.app.model.panel = crate::explorer::ScreenPanel::Charts;
     let past =
         |screen: &mut Screen| screen.text(120, 40).contains("past the end of the curve: f shows all of it");
     screen.keys("++");
@@ -167,7 +165,7 @@ fn the_header_says_what_the_preset_says_and_what_was_changed_and_a_chart_when_it
 fn the_help_is_searched() {
     let mut screen = Screen::new("fig-3-jkr");
     let found = |screen: &Screen| match &screen.app.overlay {
-        Some(Overlay::Help(help)) => help.found,
+        Some(Dialog::Help(help)) => help.found,
         other => unreachable!("no help: {other:?}"),
     };
     screen.keys("?\t/PRESET\r");
@@ -186,7 +184,7 @@ fn the_help_is_searched() {
     assert!(found(&screen).is_none() && screen.text(80, 24).contains("/qqq: not found"));
     // Typed text is no command, and Esc leaves the text first.
     screen.keys("/nx\x1b");
-    assert!(matches!(screen.app.overlay, Some(Overlay::Help(_))));
+    assert!(matches!(screen.app.overlay, Some(Dialog::Help(_))));
     screen.keys("\x1b");
     assert!(screen.app.overlay.is_none());
 }
@@ -206,7 +204,7 @@ fn a_persons_keys_work_and_are_shown_in_footer_and_help() {
     assert!(help.contains("F4 ") && help.contains("w Ctrl-U") && help.contains("jump"), "{help}");
     // A list is chosen from with Enter all the same.
     screen.keys("\x1be\r");
-    assert!(matches!(screen.app.overlay, Some(Overlay::Prompt(_))));
+    assert!(matches!(screen.app.overlay, Some(Dialog::Prompt(_))));
     assert_eq!(screen.app.keymap.first(Id::Edit), "Z");
 }
 
@@ -236,7 +234,7 @@ fn a_name_that_is_refused_stays_to_be_mended_and_keys_meanwhile_are_no_commands(
 fn text_typed_in_a_list_keeps_the_lines_that_have_it() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("ofig-3");
-    let Some(Overlay::Choose(choose)) = &screen.app.overlay else { unreachable!() };
+    let Some(Dialog::Choose(choose)) = &screen.app.overlay else { unreachable!() };
     assert_eq!(choose.shown().len(), 1);
     assert!(choose.current().unwrap().1.text.starts_with("fig-3-jkr"));
     screen.keys("xx\r");
@@ -247,7 +245,7 @@ fn text_typed_in_a_list_keeps_the_lines_that_have_it() {
     assert_eq!(screen.app.model.source.shown(), "fig-3-jkr");
     screen.keys("o");
     screen.press(KeyCode::End);
-    let Some(Overlay::Choose(choose)) = &screen.app.overlay else { unreachable!() };
+    let Some(Dialog::Choose(choose)) = &screen.app.overlay else { unreachable!() };
     assert_eq!(choose.selected, choose.items.len() - 1);
     screen.keys("\x1b");
     screen.press(KeyCode::End);

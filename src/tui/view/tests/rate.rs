@@ -8,7 +8,7 @@ use crate::figure::{Figure, Role, Sign, Subject};
 use pulloff_engine::preset::edge::RATE;
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::report::PullReport;
-use pulloff_engine::report::pull::Asked;
+use pulloff_engine::report::pull::AskedPulls;
 use std::sync::Arc;
 
 /// Fig. 9 from s = 0.5, pulled at v₀.
@@ -35,7 +35,7 @@ fn least(figure: &Figure) -> f64 {
 #[test]
 fn the_pull_lies_over_the_curve_with_the_largest_pull_of_the_command() {
     let mut screen = pulled();
-    let report = PullReport::compute(&screen.app.model.preset, &Asked::default(), &Unwatched).unwrap();
+    let report = PullReport::compute(&screen.app.model.preset, &AskedPulls::default(), &Unwatched).unwrap();
     assert_eq!(report.runs, pull(&screen).unwrap().report.as_ref().unwrap().runs);
     let critical = report.head.problem.critical_force.unwrap();
     assert!((report.runs[0].peak.force / critical + 2.729_97).abs() < 5e-6);

@@ -2,10 +2,10 @@
 
 use super::{PLAIN, Screen};
 use crate::explorer::studies::StudyData;
-use crate::explorer::{Panel, View, Window};
+use crate::explorer::{ScreenPanel, View, Window};
 use crate::store::{Overwrite, Store};
 use crate::tui::copy::text;
-use crate::tui::overlay::Content;
+use crate::tui::overlay::Excerpt;
 use crossterm::event::{KeyCode, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use pulloff_engine::progress::Unwatched;
 use ratatui::layout::{Position, Rect};
@@ -47,10 +47,10 @@ fn a_click_selects_and_once_more_goes_there() {
     assert_eq!(screen.app.model.selected_knob().unwrap().0.key, "material.work_of_adhesion");
     let at = place(&screen, "Here, step");
     click(&mut screen, at);
-    assert_eq!(screen.app.model.panel, Panel::Here);
+    assert_eq!(screen.app.model.panel, ScreenPanel::Here);
     let at = place(&screen, "2 snap");
     click(&mut screen, at);
-    assert_eq!((screen.app.model.panel, screen.app.model.event), (Panel::Log, 1));
+    assert_eq!((screen.app.model.panel, screen.app.model.event), (ScreenPanel::Log, 1));
     assert_eq!(screen.app.model.history.current().unwrap().step, 0);
     click(&mut screen, at);
     let event = &screen.app.model.path_events()[1];
@@ -82,7 +82,7 @@ fn a_click_on_the_curve_takes_the_walker_there_and_so_does_the_cross_hair() {
     let last = limits.report.as_ref().unwrap().events.last().unwrap().before.as_ref().unwrap().contact_radius;
     let units = *limits.setting.units();
     assert!((at_pull_off * units.length - last).abs() < 0.1 * last, "{at_pull_off} {last}");
-    assert_eq!(screen.app.model.panel, Panel::Charts);
+    assert_eq!(screen.app.model.panel, ScreenPanel::Charts);
     // Far from the curve nothing moves.
     let (before, title) = (at_pull_off, place(&screen, "P/Pc over"));
     click(&mut screen, Position::new(title.x + 12, title.y + 2));
@@ -134,7 +134,7 @@ fn the_wheel_turns_zooms_and_scrolls() {
     mouse(&mut screen, MouseEventKind::ScrollDown, at);
     let events = place(&screen, "2 snap");
     mouse(&mut screen, MouseEventKind::ScrollDown, events);
-    assert_eq!((screen.app.model.panel, screen.app.model.event), (Panel::Log, 1));
+    assert_eq!((screen.app.model.panel, screen.app.model.event), (ScreenPanel::Log, 1));
     for _ in 0..50 {
         mouse(&mut screen, MouseEventKind::ScrollDown, events);
     }
@@ -193,16 +193,16 @@ fn the_mouse_does_nothing_unasked_or_outside_and_answers_no_question() {
 fn what_is_copied_is_text_that_steers_nothing() {
     let mut screen = screen("wavy-sphere");
     screen.keys("n");
-    let state = text(&screen.app, Content::State);
+    let state = text(&screen.app, Excerpt::State);
     assert!(state.starts_with("wavy-sphere\nδ\t0.03571") && state.contains("\nP/Pc\t-0.756"), "{state}");
     assert!(state.contains("\nδ held\tlimit point\nP held\tunstable\n"), "{state}");
-    let events = text(&screen.app, Content::Events);
+    let events = text(&screen.app, Excerpt::Events);
     assert_eq!(events.lines().count(), 7);
     let columns = events.lines().next().unwrap().split('\t').count();
     assert!(events.lines().all(|line| line.split('\t').count() == columns), "{events}");
-    let whole = text(&screen.app, Content::Screen);
+    let whole = text(&screen.app, Excerpt::Screen);
     assert_eq!(whole, screen.text(120, 40));
-    let chart = text(&screen.app, Content::Chart);
+    let chart = text(&screen.app, Excerpt::Chart);
     assert!(chart.starts_with("┬P/Pc over δ") && chart.trim_end().ends_with('│'), "{chart}");
     // Through the list: what was chosen goes out.
     screen.keys("Yj\r");
@@ -216,7 +216,7 @@ fn what_is_copied_is_text_that_steers_nothing() {
         crate::explorer::Command::Set { key: "title".into(), text: "a\u{1b}]52;c;eA==\u{7}b".to_owned() };
     let effects = crate::explorer::update(&mut screen.app.model, title);
     screen.settle(effects);
-    for content in Content::ALL {
+    for content in Excerpt::ALL {
         let copied = text(&screen.app, content);
         assert!(!copied.chars().any(|c| c.is_control() && c != '\n' && c != '\t'), "{copied:?}");
     }

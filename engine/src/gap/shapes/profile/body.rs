@@ -1,10 +1,10 @@
 //! Rows made a curve: the paraboloid taken off, what is left averaged in cells or smoothed.
 
-use super::curve::Profile;
+use super::curve::ProfileGap;
 use super::invalid::{CLOSEST, Cells, FEWEST_ROWS, InvalidProfile, MOST_KNOTS, largest};
 use crate::elementary::{exp2, log2, log10, pow};
 use crate::gap::Jet;
-use crate::gap::shapes::spline::{Fit, Rows, widths};
+use crate::gap::shapes::spline::{SplineFit, SplineRows, widths};
 use std::f64::consts::TAU;
 
 /// Cells in a cutoff.
@@ -44,7 +44,7 @@ pub(super) struct Body {
 }
 
 /// What the spline goes through or near: rows, or the means of cells.
-pub(super) struct Points {
+pub(super) struct SplinePoints {
     x: Vec<f64>,
     values: Vec<f64>,
     weights: Vec<f64>,
@@ -77,12 +77,17 @@ impl Body {
         self.x.len() <= MOST_KNOTS
     }
 
-    pub(super) fn rows(&self) -> Points {
-        Points { x: self.x.clone(), values: self.left.clone(), weights: self.weights.clone(), cells: None }
+    pub(super) fn rows(&self) -> SplinePoints {
+        SplinePoints {
+            x: self.x.clone(),
+            values: self.left.clone(),
+            weights: self.weights.clone(),
+            cells: None,
+        }
     }
 
     /// The means in `count` cells of equal width.
-    pub(super) fn cells(&self, count: usize) -> Result<Points, InvalidProfile> {
+    pub(super) fn cells(&self, count: usize) -> Result<SplinePoints, InvalidProfile> {
         let (x, last) = (&self.x, self.last());
         let width = last / count as f64;
         let widest = width.max(NO_HOLE * self.spacing()) * (1.0 + ROUNDED);
@@ -110,7 +115,7 @@ impl Body {
             values.push(sum / width);
         }
         let middles = (0..count).map(|cell| (cell as f64 + 0.5) * width).collect();
-        Ok(Points { x: middles, values, weights: vec![width; count], cells: Some(count) })
+        Ok(SplinePoints { x: middles, values, weights: vec![width; count], cells: Some(count) })
     }
 
     /// What the paraboloid leaves at x, on the straight line from the row before `next` to this one; to the axis it stays.
@@ -142,12 +147,12 @@ impl Body {
         } else {
             (self.cells(MOST_KNOTS)?, last / MOST_KNOTS as f64)
         };
-        let rows = Rows::new(&points.x, &points.values, &points.weights);
+        let rows = SplineRows::new(&points.x, &points.values, &points.weights);
         Ok(rows.cutoff(2.0 * spacing, last.min(MOST_SPACINGS * spacing)))
     }
 
     /// The curve of a cutoff. One that was `given` is refused where it needs more cells than there may be.
-    pub(super) fn smoothed(&self, cutoff: f64, given: bool) -> Result<Profile, InvalidProfile> {
+    pub(super) fn smoothed(&self, cutoff: f64, given: bool) -> Result<ProfileGap, InvalidProfile> {
         let last = self.last();
         let least = if self.is_small() { 0.0 } else { CELLS_IN_CUTOFF * last / MOST_KNOTS as f64 };
         let (from, to) = (least * (1.0 - ROUNDED), last * (1.0 + ROUNDED));
@@ -171,15 +176,19 @@ impl Body {
     }
 
     /// The curve through the points, or near them.
-    pub(super) fn curve(&self, points: &Points, cutoff: Option<f64>) -> Result<Profile, InvalidProfile> {
-        let rows = Rows::new(&points.x, &points.values, &points.weights);
+    pub(super) fn curve(
+        &self,
+        points: &SplinePoints,
+        cutoff: Option<f64>,
+    ) -> Result<ProfileGap, InvalidProfile> {
+        let rows = SplineRows::new(&points.x, &points.values, &points.weights);
         let unsolved = || InvalidProfile::Unsolved(cutoff.unwrap_or(0.0) * self.length);
         let fit = rows.fit(cutoff.unwrap_or(0.0)).ok_or_else(unsolved)?;
         let last = self.last();
         let axis = axis(&fit, points.x[0]);
         let (knots, pieces) = pieces(&rows, &fit, &points.x, last, self.curvature);
         let count_in = |count: usize| Cells { rows: self.x.len(), count, width: last / count as f64 };
-        let mut profile = Profile {
+        let mut profile = ProfileGap {
             knots,
             pieces,
             curvature: self.curvature,
@@ -222,7 +231,7 @@ fn paraboloid(x: &[f64], y: &[f64], weights: &[f64]) -> f64 {
 }
 
 /// The mean distance of the crests of f; none where f is rounding or wider than the profile.
-fn feature(rows: &Rows, fit: &Fit, height: f64, widest: f64) -> Option<f64> {
+fn feature(rows: &SplineRows, fit: &SplineFit, height: f64, widest: f64) -> Option<f64> {
     let weights = rows.weights();
     let mean = fit.values.iter().zip(weights).map(|(g, w)| g * w).sum::<f64>() / weights.iter().sum::<f64>();
     if rms(fit.values.iter().map(|g| g - mean), weights) <= NO_WAVES * height {
@@ -234,12 +243,12 @@ fn feature(rows: &Rows, fit: &Fit, height: f64, widest: f64) -> Option<f64> {
 }
 
 /// f(0): an even cubic is a parabola, so the second derivative at the first radius stays to the axis.
-fn axis(fit: &Fit, first: f64) -> f64 {
+fn axis(fit: &SplineFit, first: f64) -> f64 {
     fit.values[0] - 0.5 * fit.second[0] * first * first
 }
 
 /// The knots from the axis on to `last`, and the jets of h there.
-fn pieces(rows: &Rows, fit: &Fit, x: &[f64], last: f64, curvature: f64) -> (Vec<f64>, Vec<Jet>) {
+fn pieces(rows: &SplineRows, fit: &SplineFit, x: &[f64], last: f64, curvature: f64) -> (Vec<f64>, Vec<Jet>) {
     let mut jets = rows.pieces(fit);
     let mut knots = x.to_vec();
     let n = x.len() - 1;

@@ -1,7 +1,7 @@
 //! The curve of a profile: cubics between knots, as a gap.
 
 use super::invalid::{Cells, grouped, length};
-use crate::gap::{Axis, Breaks, Disc, Gap, Jet};
+use crate::gap::{Breaks, ComplexDisc, Gap, Jet, Parity};
 use crate::gap::{function::Form, function::Piece};
 use crate::units::UnitSystem;
 
@@ -10,7 +10,7 @@ const ROUNDING: f64 = 1e-15;
 
 /// The gap of a measured profile.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Profile {
+pub struct ProfileGap {
     /// 0, the radii of the rows or the middles of the cells, and the last radius.
     pub(super) knots: Vec<f64>,
     /// The jet at each knot but the last: the cubic from there on.
@@ -22,7 +22,7 @@ pub struct Profile {
     pub(super) cells: Option<Cells>,
 }
 
-impl Profile {
+impl ProfileGap {
     /// R of the paraboloid nearest to the rows, where they rise.
     pub fn radius_of_curvature(&self) -> Option<f64> {
         (self.curvature > 0.0).then_some(self.curvature.recip())
@@ -118,7 +118,7 @@ impl Profile {
     }
 }
 
-impl Gap for Profile {
+impl Gap for ProfileGap {
     fn jet(&self, r: f64) -> Jet {
         self.jet_near(r, &mut 0)
     }
@@ -140,11 +140,11 @@ impl Gap for Profile {
 
     /// The knots without the axis, where the cubic of the first piece is not even.
     fn breaks(&self) -> Breaks<'_> {
-        Breaks { knots: &self.knots[1..], axis: Axis::Odd, cubic: true }
+        Breaks { knots: &self.knots[1..], axis: Parity::Odd, cubic: true }
     }
 
     /// h' is a parabola on each piece.
-    fn slope_bound(&self, Disc { centre, radius, branch }: Disc) -> Option<f64> {
+    fn slope_bound(&self, ComplexDisc { centre, radius, branch }: ComplexDisc) -> Option<f64> {
         if !self.is_known(branch) {
             return Some(f64::INFINITY);
         }
