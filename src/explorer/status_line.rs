@@ -179,6 +179,9 @@ fn happened(model: &Model, node: &Node) -> Option<String> {
         return Some(match event.kind {
             EventKind::Turn => format!("Here the control turns round: {next} goes on down"),
             EventKind::Depin => format!("Here the edge, which rested, begins to move: {next} goes on"),
+            EventKind::FirstTouch if event.before == event.after => {
+                format!("The bodies touch within the zone: {next} goes on")
+            }
             EventKind::LastContact if event.after.is_some() => {
                 format!("Contact has ended, and the zone still holds: {next} goes on")
             }

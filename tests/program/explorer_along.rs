@@ -6,7 +6,7 @@
 use crate::support::session::Session;
 use pulloff::explorer::log::EventMark;
 use pulloff::explorer::session::{Document, Ended, Snapshot};
-use pulloff::explorer::{Command, Id, NodeKind, View};
+use pulloff::explorer::{Command, Id, Node, NodeKind, View};
 use pulloff::figure::{Figure, Role, Subject};
 use pulloff_engine::quasistatic::EventKind;
 
@@ -70,6 +70,9 @@ fn every_event_of_the_path_is_walked_once_and_none_besides() {
         let numbers: Vec<usize> = walk.iter().map(|(_, node)| node.on_path.unwrap()).collect();
         assert!(numbers.windows(2).all(|pair| pair[0] <= pair[1]), "{set:?}: {numbers:?}");
         assert!(session.model.inward, "{set:?}");
+        // Whatever the device holds is said to be held.
+        let is_held = |node: &Node| node.kind == NodeKind::Limit || node.stability.under(node.control);
+        assert!(walk.iter().all(|(_, node)| node.is_apart() || is_held(node)), "{set:?}");
     }
 }
 

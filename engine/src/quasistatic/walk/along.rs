@@ -4,7 +4,6 @@
 //! contact. A walker then goes from state to state of the path of the device, through its events.
 
 use super::arrival::{Ahead, Arrival, Emit, Reached, WalkEnd, WalkFailure};
-use super::edges;
 use crate::continuation::Columns;
 use crate::quasistatic::path::{Direction, EventKind};
 use crate::quasistatic::{Admissibility, Event, Path, PathState, Scales, Stability, StatePoint, Stiffness};
@@ -223,6 +222,12 @@ impl<'a> Along<'a> {
         let (s, held) = (state.contact_radius, state.held_stiffness);
         // A held edge answers as the contact itself does.
         let slopes = if self.rests(at) { Stability { approach: 1.0, force: held } } else { state.slopes };
+        // What a path holds is stable; what it says of other devices neighbours tell where the state does not.
+        let stability = if slopes.approach.is_nan() {
+            Stability { approach: 1.0, force: self.slope(at) }
+        } else {
+            slopes
+        };
         let area_slope = match (self.rests(at), state.zone) {
             (true, _) => 0.0,
             (false, None) => TAU * s / slopes.approach,
@@ -237,7 +242,7 @@ impl<'a> Along<'a> {
         }
         let y = [state.approach / approach, state.force / force].into_iter();
         let y: Vec<f64> = y.chain(radii.iter().map(|r| r / contact_radius)).collect();
-        let along = [slopes.approach / approach, slopes.force / force, 1.0 / contact_radius];
+        let along = [stability.approach / approach, stability.force / force, 1.0 / contact_radius];
         let size = along.iter().map(|x| x * x).sum::<f64>().sqrt();
         let mut tangent = vec![0.0; y.len()];
         if y.len() == along.len() && size.is_finite() {
@@ -248,11 +253,7 @@ impl<'a> Along<'a> {
             arrival,
             point: StatePoint::of(Columns::from_vec([y, tangent, bend].concat()), true),
             state: state.state(),
-            stability: if state.rings() > 0 {
-                edges::stability(1.0, &Stiffness { tangent: self.slope(at), ..stiffness })
-            } else {
-                slopes
-            },
+            stability,
             stiffness,
             // What a path holds has been looked at.
             admissibility: Admissibility { nearest: None, least_pressure: None, holds: true, known_to: None },
