@@ -100,7 +100,8 @@ struct LeapEnd {
     area: Real,
     held_stiffness: Real,
     stable: bool,
-    slopes: [Real; 2],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    slopes: Option<[Real; 2]>,
     control_value: Real,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     zone: Option<Real>,
@@ -114,7 +115,7 @@ impl LeapEnd {
             area: Real(state.contact_area),
             held_stiffness: Real(state.held_stiffness),
             stable: state.stable,
-            slopes: reals([state.slopes.approach, state.slopes.force]),
+            slopes: state.slopes.map(|slopes| reals([slopes.approach, slopes.force])),
             control_value: Real(state.control_value),
             zone: state.zone.map(Real),
         }
@@ -122,7 +123,6 @@ impl LeapEnd {
 
     fn back(self, direction: Direction) -> PathState {
         let State { contact_radius, approach, force, energy } = state_in(self.state);
-        let [by_approach, by_force] = floats(self.slopes);
         PathState {
             zone: self.zone.map(|edge| edge.0),
             contact_radius,
@@ -133,7 +133,10 @@ impl LeapEnd {
             contact_area: self.area.0,
             held_stiffness: self.held_stiffness.0,
             stable: self.stable,
-            slopes: Stability { approach: by_approach, force: by_force },
+            slopes: self.slopes.map(|slopes| {
+                let [approach, force] = floats(slopes);
+                Stability { approach, force }
+            }),
             control_value: self.control_value.0,
             direction,
             piece: 0,

@@ -55,8 +55,9 @@ pub struct PathState {
     pub held_stiffness: f64,
     /// Whether the device holds it: not at a limit point, from which edges run.
     pub stable: bool,
-    /// dδ/ds and dP/ds along the equilibria of one disc, or by the outer edge of its zone; not numbers where there are rings.
-    pub slopes: Stability,
+    /// dδ/ds and dP/ds along the equilibria of one disc, or by the outer edge of its zone, where the state was found on them and no edge
+    /// is on a corner.
+    pub slopes: Option<Stability>,
     /// c: δ, P or Δ.
     pub control_value: f64,
     /// Which way the control goes.
@@ -79,7 +80,7 @@ impl PathState {
             contact_area: contacts.area(),
             held_stiffness: held.state.force[1],
             stable: true,
-            slopes: Stability { approach: f64::NAN, force: f64::NAN },
+            slopes: None,
             control_value: held.control_value,
             direction,
             piece,
@@ -101,7 +102,8 @@ impl PathState {
             contact_area: PI * s * s,
             held_stiffness: 2.0 * s,
             stable: true,
-            slopes: at.stability(),
+            slopes: Some(at.stability())
+                .filter(|slopes| slopes.approach.is_finite() && slopes.force.is_finite()),
             control_value: control.value(approach, force),
             direction,
             piece: 0,

@@ -14,7 +14,6 @@ use super::stepped::{SingularSide, TakenStep};
 use crate::annuli::{Around, Contacts, GapMinimum};
 use crate::disc::chebyshev;
 use crate::problem::{Control, Turn};
-use crate::quasistatic::Stability;
 
 /// A gap below so many waves may be about to close.
 const CLOSING: f64 = 0.02;
@@ -42,7 +41,7 @@ impl Course<'_, '_> {
             contact_area: 0.0,
             held_stiffness: 0.0,
             stable: true,
-            slopes: Stability { approach: f64::NAN, force: f64::NAN },
+            slopes: None,
             control_value: self.setting.control.value(crest.gap, 0.0),
             direction: Direction::Loading,
             piece: 0,

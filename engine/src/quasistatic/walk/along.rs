@@ -221,19 +221,17 @@ impl<'a> Along<'a> {
         let Scales { approach, force, contact_radius } = *self.scales;
         let (s, held) = (state.contact_radius, state.held_stiffness);
         // A held edge answers as the contact itself does.
-        let slopes = if self.rests(at) { Stability { approach: 1.0, force: held } } else { state.slopes };
+        let rests = self.rests(at).then_some(Stability { approach: 1.0, force: held });
+        let slopes = rests.or(state.slopes);
         // What a path holds is stable; what it says of other devices neighbours tell where the state does not.
-        let stability = if slopes.approach.is_nan() {
-            Stability { approach: 1.0, force: self.slope(at) }
-        } else {
-            slopes
+        let stability = slopes.unwrap_or(Stability { approach: 1.0, force: self.slope(at) });
+        let tangent = slopes.map_or(f64::NAN, |slopes| slopes.force / slopes.approach);
+        let area_slope = match (rests, slopes, state.zone) {
+            (Some(_), ..) => 0.0,
+            (None, Some(slopes), None) => TAU * s / slopes.approach,
+            _ => f64::NAN,
         };
-        let area_slope = match (self.rests(at), state.zone) {
-            (true, _) => 0.0,
-            (false, None) => TAU * s / slopes.approach,
-            (false, Some(_)) => f64::NAN,
-        };
-        let stiffness = Stiffness { contact: held, tangent: slopes.force / slopes.approach, area_slope };
+        let stiffness = Stiffness { contact: held, tangent, area_slope };
         let edges = state.contacts.concat();
         // The axis is no edge.
         let mut radii: Vec<f64> = edges.into_iter().filter(|r| *r > 0.0).collect();
