@@ -61,7 +61,7 @@ pub struct Case {
     pub closing: Option<f64>,
     /// Tabor's μ, where it is known.
     pub tabor: Option<f64>,
-    /// The tension and the range of adhesion that has one, reduced; only paths and the trace know it.
+    /// The tension and the range of adhesion that has one, reduced; paths and the curves of its zones know it.
     pub cohesion: Option<Cohesion>,
     /// How the adhesion is stated.
     pub adhesion: Adhesion,
@@ -334,24 +334,11 @@ impl Case {
         setting: &PathSetting<'_>,
         progress: &dyn Progress,
     ) -> Result<Path, CaseError> {
-        unload(curve, setting, progress).map_err(|error| self.no_path(error, setting.control))
-    }
-
-    /// The way down from the start, of adhesion with a range or without: [`unload_in_zone`](Self::unload_in_zone), else
-    /// [`unload`](Self::unload).
-    ///
-    /// # Errors
-    /// As [`Case::unload`].
-    pub fn down(
-        &self,
-        curve: &Curve,
-        setting: &PathSetting<'_>,
-        progress: &dyn Progress,
-    ) -> Result<Path, CaseError> {
-        match self.unload_in_zone(setting, progress)? {
-            Some(path) => Ok(path),
-            None => self.unload(curve, setting, progress),
+        // The equations of a curve of zones are not those of its states.
+        if let Some(path) = self.unload_in_zone(setting, progress)? {
+            return Ok(path);
         }
+        unload(curve, setting, progress).map_err(|error| self.no_path(error, setting.control))
     }
 
     /// The whole loop, reduced: from apart to the first touch, up to `turn` (reduced; that of the preset, or the start of its
@@ -470,7 +457,7 @@ impl Case {
         self.closing?;
         Some(
             "these are states of an opening edge: a closing one gains only material.closing_work_of_adhesion, and rests \
-             in between; the explorer, unload, cycle, pull and sweeps compute that"
+             in between; paths and pulls have both"
                 .to_owned(),
         )
     }

@@ -155,6 +155,9 @@ pub fn run(arguments: &PlotArguments) -> Result<ExitCode, Failure> {
     let curve = Arc::new(curve.checked(&Unwatched).unwrap_or(curve));
     console.warn(&curve.base.warnings);
     let view = arguments.view.0;
+    if view.is_state() || view == View::Stability {
+        console.warn(&curve.case.warning_of_dead_band().into_iter().collect::<Vec<_>>());
+    }
     let inside = if view.is_state() {
         Some(inside(&curve, arguments.contact_radius.as_deref(), arguments.theory)?)
     } else if arguments.contact_radius.is_some() {

@@ -182,7 +182,7 @@ impl CurveData {
             Err(CaseError::Cancelled) => Err(CaseError::Cancelled),
             path => Ok(path.map_err(|error| error.to_string())),
         };
-        let unloading = told(case.down(&curve, &case.setting_of_unloading(), progress))?;
+        let unloading = told(case.unload(&curve, &case.setting_of_unloading(), progress))?;
         let along = if case.cohesion.is_none() && case.closing.is_none() {
             None
         } else if preset.path.begin == Begin::Disc {

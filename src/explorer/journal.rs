@@ -157,7 +157,7 @@ impl Journal {
         // Where a walk begins is no matter of the curve: only a restart asks for it.
         preset.path.begin = match (&walking.action, &self.replay) {
             // A path is that of one beginning.
-            (Action::Begin, _) if walking.curve.along.is_some() => preset.path.begin,
+            _ if walking.curve.along.is_some() => preset.path.begin,
             (Action::Begin, _) => Begin::Touch,
             (Action::MoveTo(s), _) if s.total_cmp(&walking.curve.case.start).is_eq() => Begin::Disc,
             (_, Some(replay)) => replay.preset.path.begin,
@@ -203,12 +203,16 @@ impl Journal {
             Action::MoveTo(s) => {
                 let case = &walking.curve.case;
                 self.sync(preset, None, false);
-                if s.total_cmp(&case.start).is_eq() {
+                if s.total_cmp(&case.start).is_eq() && walking.curve.along.is_none() {
                     self.write(&Id::Restart.into());
                     self.turned(true);
                 } else {
                     self.write(&Command::MoveTo(product(s, case.units().length)));
                 }
+            }
+            Action::MoveToState { command, .. } => {
+                self.sync(preset, None, false);
+                self.write(&command);
             }
             Action::MoveToEvent { event, .. } => {
                 self.sync(preset, None, false);

@@ -6,6 +6,7 @@
 use super::model::Model;
 use super::node::{Node, NodeKind};
 use pulloff_engine::problem::Begin;
+use pulloff_engine::quasistatic::walk::Passing;
 use pulloff_engine::report::PathReport;
 use pulloff_engine::report::path::{EventReport, StateReport};
 
@@ -99,6 +100,49 @@ impl Model {
 
     /// The log.
     pub fn log(&self) -> Log {
+        self.log_along().unwrap_or_else(|| self.log_on_curve())
+    }
+
+    /// That of a walk along the path, where the number of its state says what is done; `None` of one along the curve.
+    fn log_along(&self) -> Option<Log> {
+        let node = self.walker()?;
+        let (at, path) = (node.on_path?, self.curve.as_ref()?.along.as_ref()?.as_ref().ok()?);
+        let (events, passings) = (self.path_events(), Passing::all(path));
+        if events.len() != passings.len() {
+            return None;
+        }
+        let walk = self.history.path();
+        let first = walk.iter().rposition(|(_, node)| node.begins).unwrap_or(0);
+        let made_by = |passing: &Passing<'_>| {
+            let is_it = |node: &Node| {
+                matches!(&node.kind, NodeKind::Jump(event) if event.kind == passing.event.kind)
+                    && node.on_path == Some(passing.after)
+            };
+            walk[first..].iter().find(|(_, node)| self.is_on_curve(node) && is_it(node)).map(|(at, _)| *at)
+        };
+        let is_done = |passing: &Passing<'_>| match &passing.event {
+            event if event.before.is_none() => true,
+            event if event.after.is_none() => node.is_apart(),
+            _ if passing.after > passing.before => passing.after <= at,
+            // Nothing runs there: it is behind unless the walker was sent to where it begins.
+            _ => passing.before < at || passing.before == at && node.kind != NodeKind::Moved,
+        };
+        let here = passings.iter().position(|passing| !is_done(passing) && passing.before == at);
+        let entries = events.iter().zip(&passings).enumerate().map(|(index, (event, passing))| LogEntry {
+            mark: match (here == Some(index), is_done(passing)) {
+                (true, _) => EventMark::Here,
+                (false, true) => EventMark::Done,
+                (false, false) => EventMark::Ahead,
+            },
+            number: Some(index + 1),
+            event: event.clone(),
+            node: made_by(passing),
+        });
+        Some(Log { entries: entries.collect() })
+    }
+
+    /// That of a walk along the curve, by the radii at which jumps begin and end.
+    fn log_on_curve(&self) -> Log {
         let events = self.path_events();
         let walk = self.history.path();
         let first = walk.iter().rposition(|(_, node)| node.begins).unwrap_or(0);

@@ -74,6 +74,11 @@ impl Background for LoopData {
         let turn = key.preset.path.turn;
         let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, base.control));
         let case = Case { turn, ..base.clone() };
+        // Where the walk goes along the loop it is known.
+        if let (Begin::Touch, Some(Ok(along))) = (key.preset.path.begin, &key.curve.along) {
+            let report = Ok(PathReport::new(&key.preset, &case, along));
+            return Some(Self { preset: key.preset.clone(), report });
+        }
         let setting = PathSetting { losses: Losses::Once, ..case.setting() };
         let report = match case.cycle(None, &setting, progress) {
             Err(CaseError::Cancelled) => return None,

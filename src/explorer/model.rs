@@ -193,7 +193,17 @@ pub struct Untried {
 
 /// Whether a state solves the problem of `curve`.
 pub fn is_on_curve(curve: &CurveData, node: &Node) -> bool {
-    same_curve(&node.setting.preset, &curve.setting.preset) && !matches!(node.kind, NodeKind::Stale(_))
+    let [its, ours] = [&node.setting.preset, &curve.setting.preset];
+    // The number of a state is that of one path.
+    let way =
+        |preset: &Preset| (preset.path.control, preset.path.contact, preset.path.begin, preset.path.turn);
+    let same_path = match (node.on_path, &curve.along) {
+        (None, None) => true,
+        (Some(_), Some(_)) => way(its) == way(ours),
+        // Apart there is nothing to solve.
+        (None, Some(_)) | (Some(_), None) => node.is_apart(),
+    };
+    same_curve(its, ours) && same_path && !matches!(node.kind, NodeKind::Stale(_))
 }
 
 impl Model {

@@ -145,6 +145,9 @@ fn next(model: &Model) -> String {
                 "What is held lies beyond the path: this is where it starts. {next} runs to the next event"
             )
         }
+        (true, NodeKind::Solved) if node.on_path.is_some() => {
+            format!("The state of the new path nearest to the {held} held. {next} runs to the next event")
+        }
         (true, NodeKind::Solved) => {
             format!("Solved again {kept}, stable. {next} runs to the next event")
         }
@@ -186,7 +189,8 @@ fn happened(model: &Model, node: &Node) -> Option<String> {
                 format!("Contact has ended, and the zone still holds: {next} goes on")
             }
             EventKind::LastContact | EventKind::SnapOff => {
-                format!("Last contact: the bodies are apart{}. {}", lost.unwrap_or_default(), back_or_anew())
+                let what = if event.kind == EventKind::SnapOff { "Snap-off" } else { "Last contact" };
+                format!("{what}: the bodies are apart{}. {}", lost.unwrap_or_default(), back_or_anew())
             }
             _ => {
                 format!(

@@ -2,7 +2,7 @@
 //!
 //! A request says where the walker stands and what it is to do; the answer is new states, never a change of old ones.
 
-use super::command::Id;
+use super::command::{Command, Id};
 use super::curve::CurveData;
 use super::follow::Before;
 use super::node::{Node, NodeKind};
@@ -39,6 +39,8 @@ pub enum Action {
     Jump,
     /// The state of this contact radius (reduced), on the explicit curve.
     MoveTo(f64),
+    /// The state of this number on the path along which the walker goes, and the command that leads there.
+    MoveToState { at: usize, command: Command },
     /// The limit point of this event.
     MoveToEvent {
         /// The number of the event, from 0, among those of the curve.
@@ -60,6 +62,11 @@ pub enum Action {
 }
 
 impl Action {
+    /// Whether a walk of its own begins with it, wherever the walker stood.
+    pub fn begins(&self) -> bool {
+        matches!(self, Self::MoveTo(_) | Self::MoveToState { .. } | Self::MoveToEvent { .. } | Self::Begin)
+    }
+
     /// Solves the state of a node again for other values.
     pub fn solve(node: &Node) -> Self {
         Self::Solve {
@@ -146,6 +153,7 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(MadeState) -> bool) -> WalkO
             Some(limit) => walk.move_to_limit(limit.contact_radius, &mut arrive),
             None => return WalkOutcome::Stopped("the curve has changed meanwhile".to_owned()),
         },
+        Action::MoveToState { .. } => WalkEnd::Failed(WalkFailure::NoEquilibrium("on a path")),
         Action::Begin => walk.first_touch(&mut arrive),
         Action::Solve { state, rings: Some(before), .. } => before.follow(&request.curve, state, &mut arrive),
         Action::Solve { state, rings: None, was_stable } => {
@@ -218,9 +226,10 @@ fn along(request: &Request, arrive: &mut Emit<'_>) -> WalkEnd {
         Action::Steps(count) | Action::Run(count) => along.steps(*count, arrive),
         Action::ToLimit | Action::ToEvent(_) => along.steps(RUN_POINTS, arrive),
         Action::Jump => along.jump(arrive),
-        Action::Begin => along.begin(arrive),
-        Action::MoveTo(s) => along.move_to(*s, direction, arrive),
-        Action::MoveToEvent { event, .. } => along.before(*event, arrive),
+        Action::Begin => along.move_to(0, arrive),
+        Action::MoveTo(s) => along.move_near(*s, direction, arrive),
+        Action::MoveToState { at, .. } => along.move_to(*at, arrive),
+        Action::MoveToEvent { .. } => WalkEnd::Failed(WalkFailure::NoEquilibrium("on a curve")),
         Action::Solve { state, .. } => {
             let units = case.units();
             let value = request.control.value(state.approach / units.length, state.force / units.force);
@@ -348,7 +357,7 @@ fn made(request: &Request, reached: Reached) -> MadeState {
         digits,
         from_exact: exact,
         on_path,
-        begins: matches!(request.action, Action::MoveTo(_) | Action::MoveToEvent { .. } | Action::Begin),
+        begins: request.action.begins(),
         kind,
         ahead,
         point,

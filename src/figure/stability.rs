@@ -94,6 +94,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     figure.bounds = Bounds::of([(ends[0], floor), (ends[1], most)]);
     let limits = subject.curve.limits.iter().map(|limit| (at(limit.contact_radius), level));
     figure.marks.extend(limits.map(|at| Mark { sign: Sign::Limit, at }));
+    figure.notes.extend(case.warning_of_dead_band());
     if !corners.is_empty() {
         figure.notes.push(
             "the second derivative of the gap jumps: the law has corners there, which are no cusps"

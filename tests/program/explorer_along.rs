@@ -5,7 +5,6 @@
 
 use crate::support::session::Session;
 use pulloff::explorer::log::EventMark;
-use pulloff::explorer::session::{Document, Ended, Snapshot};
 use pulloff::explorer::{Command, Id, Node, NodeKind, View};
 use pulloff::figure::{Figure, Role, Subject};
 use pulloff_engine::quasistatic::EventKind;
@@ -44,13 +43,6 @@ fn to_the_end(session: &mut Session) -> usize {
         assert!(events < 60, "{}", session.status());
     }
     events
-}
-
-fn resume(session: &mut Session) {
-    let bytes = Document::new(&Snapshot::of(&session.model), Ended::Running, 7).json().unwrap();
-    let (model, effects) = Document::read(&bytes).unwrap().snapshot().unwrap().resume(None);
-    session.model = model;
-    session.driver.settle(&mut session.model, effects);
 }
 
 #[test]
@@ -102,7 +94,7 @@ fn a_walk_along_a_path_is_kept_resumed_and_replayed() {
         session.does(Command::Steps(2));
         let last = session.model.walker().unwrap().clone();
         let lines = session.model.script().unwrap();
-        resume(&mut session);
+        session.resume();
         let back = session.model.walker().unwrap();
         assert_eq!((back.state, back.on_path), (last.state, last.on_path), "{set:?}");
         assert_eq!(back.stability.under(back.control), last.stability.under(last.control));
@@ -166,4 +158,64 @@ fn a_zone_pulls_with_its_strength_and_is_no_further_open_than_its_range() {
     assert!(gap[0].1.abs() < 1e-9 && gap.windows(2).all(|pair| pair[0].1 <= pair[1].1), "{gap:?}");
     assert!((gap[gap.len() - 1].1 - range).abs() < 1e-6 * range, "{gap:?}");
     assert!(figure(View::Energy).missing.is_some() && figure(View::Stability).missing.is_some());
+}
+
+#[test]
+fn an_event_that_is_gone_to_is_the_one_where_the_walker_stands() {
+    for set in [RESTS, RESTS_AFTER_LOADING, RANGE, RANGE_FROM_APART] {
+        let mut session = session(set);
+        let count = session.model.path_events().len();
+        // At the start nothing of the way down has begun.
+        assert!(session.model.log().here().is_none(), "{set:?}: {:?}", session.model.log().here());
+        for number in (1..=count).rev() {
+            let is_first = session.model.path_events()[number - 1].before.is_none();
+            session.does(Command::SelectEvent(number));
+            let log = session.model.log();
+            let marks: Vec<EventMark> = log.entries.iter().map(|entry| entry.mark).collect();
+            let at = number - 1;
+            assert!(marks[..at].iter().all(|mark| *mark == EventMark::Done), "{set:?} {number}: {marks:?}");
+            assert!(is_first || marks[at] == EventMark::Here, "{set:?} {number}: {marks:?}");
+            assert!(
+                marks[number..].iter().all(|mark| *mark == EventMark::Ahead),
+                "{set:?} {number}: {marks:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_largest_pull_is_gone_to_from_anywhere() {
+    // A smooth edge that rests to the end: the turn, the end of rest and the pull have one radius.
+    let smooth: &Set = &[
+        ("gap.amplitude", "0"),
+        ("material.closing_work_of_adhesion", "0.0005"),
+        ("path.begin", "touch"),
+        ("path.turn_approach", "-0.001"),
+        ("path.control", "force"),
+    ];
+    for set in [RESTS_AFTER_LOADING, RANGE_FROM_APART, smooth] {
+        let mut session = session(set);
+        session.does(Id::MoveTo);
+        let pull = session.model.path().unwrap().totals.largest_pull.clone().unwrap();
+        let here = session.model.walker().unwrap().state;
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
+        assert!(
+            near(here.force, pull.force) && near(here.approach, pull.approach),
+            "{set:?}: {here:?} {pull:?}"
+        );
+    }
+}
+
+#[test]
+fn another_device_or_turn_has_another_path_and_the_walker_stands_on_it() {
+    for (key, value) in [("path.control", "force"), ("path.turn_approach", "0.06"), ("path.begin", "disc")] {
+        let mut session = session(RESTS_AFTER_LOADING);
+        session.all(&[Id::NextEvent, Id::NextEvent]);
+        session.set(key, value);
+        let node = session.model.walker().unwrap_or_else(|| panic!("{key}: {}", session.status()));
+        let curve = session.model.curve.as_ref().unwrap();
+        let path = curve.along.as_ref().unwrap().as_ref().unwrap();
+        assert_eq!(path.states[node.on_path.unwrap()].state(), node.state, "{key}");
+        to_the_end(&mut session);
+    }
 }

@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 use crate::support::session::Session;
-use pulloff::explorer::session::{Document, Ended, Snapshot};
 use pulloff::explorer::{Command, Id, NodeKind, View};
 use pulloff::figure::{Meaning, Role, Subject};
 
@@ -20,13 +19,6 @@ fn with_ring() -> Session {
     session.all(&[Id::NextEvent, Id::Jump, Id::NextEvent, Id::Jump]);
     assert!(session.model.walker().unwrap().has_rings(), "{}", session.status());
     session
-}
-
-fn resume(session: &mut Session) {
-    let bytes = Document::new(&Snapshot::of(&session.model), Ended::Running, 7).json().unwrap();
-    let (model, effects) = Document::read(&bytes).unwrap().snapshot().unwrap().resume(None);
-    session.model = model;
-    session.driver.settle(&mut session.model, effects);
 }
 
 #[test]
@@ -61,7 +53,7 @@ fn the_loop_is_walked_and_its_states_are_kept_undone_and_resumed() {
     );
     let state = node.state;
     session.does(Command::Steps(2));
-    resume(&mut session);
+    session.resume();
     let node = session.model.walker().unwrap();
     assert!(node.has_rings() && node.stability.under(node.control) && node.admissibility.holds);
     session.does(Id::Undo);

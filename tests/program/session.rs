@@ -22,14 +22,6 @@ fn read(bytes: &[u8]) -> Result<Snapshot, Unreadable> {
     Document::read(bytes)?.snapshot()
 }
 
-/// The session written, read and begun anew, as after a dropped connection.
-fn resume(session: &mut Session) {
-    let snapshot = read(&document(&session.model)).expect("a session");
-    let (model, effects) = snapshot.resume(None);
-    session.model = model;
-    session.driver.settle(&mut session.model, effects);
-}
-
 /// Everything a node knows, every number with all its digits.
 fn told(node: &Node) -> String {
     let Node { parent, kind, setting, control, point, state, step, stiffness, ahead, admissibility, .. } =
@@ -85,10 +77,10 @@ fn told_without_a_break_and_with_many(preset: &str, changes: &[(&'static str, &s
     }
     for command in story() {
         whole.does(command.clone());
-        resume(&mut broken);
+        broken.resume();
         broken.does(command);
     }
-    resume(&mut broken);
+    broken.resume();
     assert!(whole.model.history.len() > 20, "{}", whole.model.history.len());
     assert_same(&whole.model, &broken.model);
     assert_eq!(whole.model.pins.all().len(), broken.model.pins.all().len());
@@ -153,7 +145,7 @@ fn a_value_that_was_being_typed_is_not_kept_but_an_unsolved_one_is() {
     let command = Command::Set { key: "gap.amplitude".into(), text: "0.002".to_owned() };
     session.does(command.clone());
     drop(update(&mut cut.model, command));
-    resume(&mut cut);
+    cut.resume();
     assert_same(&session.model, &cut.model);
 }
 

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use pulloff::explorer::command::by_name;
+use pulloff::explorer::session::{Document, Ended, Snapshot};
 use pulloff::explorer::{Command, Id, Inline, Model, NodeKind, open, update};
 use pulloff::store::Store;
 
@@ -42,6 +43,15 @@ impl Session {
 
     pub fn set(&mut self, key: &'static str, text: &str) -> &mut Self {
         self.does(Command::Set { key: key.into(), text: text.to_owned() })
+    }
+
+    /// Saved, read again, and gone on with.
+    pub fn resume(&mut self) {
+        let bytes = Document::new(&Snapshot::of(&self.model), Ended::Running, 7).json().expect("a session");
+        let snapshot = Document::read(&bytes).expect("a session").snapshot().expect("a session");
+        let (model, effects) = snapshot.resume(None);
+        self.model = model;
+        self.driver.settle(&mut self.model, effects);
     }
 
     pub fn status(&self) -> String {

@@ -215,25 +215,16 @@ impl Curve {
         zones: &Zones,
         progress: &dyn Progress,
     ) -> Result<Self, PathError> {
-        /// The smallest zone, as a share of the largest.
-        const SMALLEST: f64 = 1e-3;
         let solution = Arc::clone(&zones.solution);
-        let start = solution.at(zones.start).contact_radius;
-        let mut ends = [start; 2];
-        let mut samples = Vec::new();
-        for place in places(&*solution, start, SMALLEST * start, Detail::Drawn) {
-            if let Some(fault) = zones.fault(place, progress)? {
-                if samples.is_empty() {
-                    return Err(fault);
-                }
-                break;
-            }
-            let at = solution.at(place);
-            ends[1] = at.contact_radius;
-            let Local { approach, force, .. } = at;
-            let contact_radius = solution.edges(place).contact_radius;
-            samples.push(Sample { contact_radius, approach, force, slopes: at.stability() });
-        }
+        let (places, _) = zones.drawn(progress)?;
+        let sample = |place: &Place| {
+            let at = solution.at(*place);
+            let contact_radius = solution.edges(*place).contact_radius;
+            Sample { contact_radius, approach: at.approach, force: at.force, slopes: at.stability() }
+        };
+        let samples: Vec<Sample> = places.iter().map(sample).collect();
+        let last = places.last().copied().unwrap_or(zones.start);
+        let ends = [zones.start, last].map(|place| solution.at(place).contact_radius);
         let scales = Scales::of(samples.iter().map(|s| [s.approach, s.force, s.contact_radius]));
         let equilibrium = Equilibrium { problem, basis, table, scales };
         Ok(Self { equilibrium, solution, samples, stop: CurveStop::End, ends, held: Vec::new() })

@@ -12,12 +12,9 @@ use crate::gap::{Gap, wave_index};
 use crate::preset::Preset;
 use crate::problem::Control;
 use crate::progress::{Progress, ProgressPart, Unwatched};
-use crate::quasistatic::curve::places;
 use crate::quasistatic::overlap::overlaps;
 use crate::quasistatic::path::Zones;
-use crate::quasistatic::{
-    Curve, CurveStop, Detail, Equilibrium, Monotone, Overlap, State, StatePoint, Stiffness,
-};
+use crate::quasistatic::{Curve, CurveStop, Equilibrium, Monotone, Overlap, State, StatePoint, Stiffness};
 use crate::theory::{self, Exact};
 use crate::units::Quantity;
 use serde::Serialize;
@@ -230,9 +227,6 @@ pub const COLUMNS: &[&str] = &[
 pub const EXACT_COLUMNS: &[&str] =
     &["exact_approach", "exact_force", "exact_energy", "exact_relative_difference"];
 
-/// The edge of the smallest zone that is traced, as a share of that of the largest.
-const SMALLEST: f64 = 1e-4;
-
 /// Why the trace of adhesion with a range ends where nothing cuts it short.
 pub const OUT_OF_RANGE: &str = "the zone has shrunk to nothing: the bodies are out of range";
 
@@ -293,18 +287,10 @@ impl TraceReport {
         let solution = &*zones.solution;
         let start = solution.at(zones.start).contact_radius;
         let radius = |place| solution.at(place).contact_radius;
-        let mut points: Vec<PointReport> = Vec::new();
-        let mut fault = None;
-        for place in places(solution, start, SMALLEST * start, Detail::Drawn) {
-            fault = zones.fault(place, progress).map_err(|error| case.no_path(error, case.control))?;
-            if fault.is_some() {
-                break;
-            }
-            points.push(PointReport::in_zone(case, &zones, points.len(), place));
-        }
-        if let (Some(error), true) = (&fault, points.is_empty()) {
-            return Err(case.no_path(error.clone(), case.control));
-        }
+        let drawn = zones.drawn(progress).map_err(|error| case.no_path(error, case.control));
+        let (places, fault) = drawn?;
+        let point = |(step, place): (usize, &Place)| PointReport::in_zone(case, &zones, step, *place);
+        let points: Vec<PointReport> = places.iter().enumerate().map(point).collect();
         let least = points.last().and_then(|point| point.zone_radius).map_or(0.0, |edge| edge / units.length);
         let limit_points: Vec<LimitReport> = case
             .controls()

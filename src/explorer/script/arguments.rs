@@ -1,6 +1,7 @@
 //! What stands behind the name of a command: what a command takes, and how it is read.
 
 use super::fault::ScriptFault;
+use super::keys::{known, short};
 use super::lexer::Word;
 use super::offers::{Offer, PICTURES, Typing};
 use crate::explorer::command::{Assignment, Command, Id, LENGTHS, MOST_STEPS};
@@ -8,13 +9,10 @@ use crate::explorer::export::{ExportKind, Picture, ends_in};
 use crate::explorer::map_axes::CURVES;
 use crate::explorer::pins;
 use crate::explorer::view::{Home, Overlay, View};
-use pulloff_engine::preset::family::parameter_key;
-use pulloff_engine::preset::groups::{self, GROUPS};
-use pulloff_engine::preset::{Key, PARAMETERS, Parameter, Preset, parameter};
+use pulloff_engine::preset::Key;
 use pulloff_engine::stability::COMPLIANCE;
 use pulloff_engine::sweep::QuantityColumn;
-use pulloff_engine::text::{closest, closest_key, greek, quote};
-use std::borrow::Cow;
+use pulloff_engine::text::{closest, quote};
 
 /// What a command takes.
 #[derive(Debug, Clone, Copy)]
@@ -279,59 +277,6 @@ fn assignment(word: &Word, read: ReadKey) -> Result<Assignment, ScriptFault> {
         return Err(ScriptFault::new(word.column, what));
     };
     Ok((read(key, word.column)?, text.to_owned()))
-}
-
-/// A key, a group, or a short name of one: the preset says of which.
-fn short(key: &str, column: usize) -> Result<Key, ScriptFault> {
-    let is_short = PARAMETERS.iter().chain(&GROUPS).any(|row| is_called(row, key));
-    // A formula has letters of its own; to one or two of them too much is alike.
-    let is_letter = || parameter(&parameter_key(key)).is_some() && (key.len() <= 2 || meant(key).is_none());
-    if is_short || is_letter() { Ok(key.to_owned().into()) } else { known(key, column) }
-}
-
-/// The key that is most like an unknown one.
-fn meant(key: &str) -> Option<&'static str> {
-    closest_key(key, PARAMETERS.iter().chain(&GROUPS).map(|row| (&*row.key, &*row.label)))
-}
-
-/// Whether a row is called so: by its key, the last part of it, or the symbol that the screen has.
-fn is_called(row: &Parameter, name: &str) -> bool {
-    let last = row.key.rsplit('.').next().unwrap_or_default();
-    [&*row.key, last, &*row.label, &*greek(&row.label)].contains(&name)
-}
-
-/// The rows of a preset, and the groups.
-pub(super) fn settable(preset: &Preset) -> impl Iterator<Item = Parameter> {
-    preset.rows().map(Cow::into_owned).chain(GROUPS.iter().cloned())
-}
-
-/// Those that are called so: where some have a value in this preset, these.
-pub(super) fn rows_called(preset: &Preset, name: &str) -> Vec<Parameter> {
-    let rows = settable(preset).filter(|row| is_called(row, name));
-    let (own, others): (Vec<_>, Vec<_>) = rows.partition(|row| preset.get(&row.key).is_some());
-    if own.is_empty() { others } else { own }
-}
-
-/// The key of a preset that is called so, or why it is none or several.
-pub(in crate::explorer) fn key_called(preset: &Preset, name: &str) -> Result<Key, String> {
-    if parameter(name).is_some() || groups::row(name).is_some() {
-        return Ok(name.to_owned().into());
-    }
-    let keys: Vec<Key> = rows_called(preset, name).into_iter().map(|row| row.key).collect();
-    match &keys[..] {
-        [key] => Ok(key.clone()),
-        [] => Err(format!("unknown key {}", quote(name))),
-        several => Err(format!("{} is short for several: {}", quote(name), several.join(", "))),
-    }
-}
-
-/// A key or a group.
-fn known(key: &str, column: usize) -> Result<Key, ScriptFault> {
-    if parameter(key).is_none() && groups::row(key).is_none() {
-        let hint = meant(key).map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
-        return Err(ScriptFault::new(column, format!("unknown key {}{hint}", quote(key))));
-    }
-    Ok(key.to_owned().into())
 }
 
 /// What stands on an axis of a map: a key, a group, the compliance, or one of these words.

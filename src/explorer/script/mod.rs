@@ -27,6 +27,7 @@
 //! |---|---|
 //! | `lexer` | a line → words with their columns, and the quoting |
 //! | [`arguments`] | what commands take, and how it is read |
+//! | `keys` | short names of keys |
 //! | [`offers`] | what can be typed there |
 //! | `parse` | words → a command |
 //! | `read` | the lines of a whole script |
@@ -38,6 +39,7 @@
 
 pub mod arguments;
 mod fault;
+mod keys;
 mod lexer;
 pub mod offers;
 mod palette;
@@ -47,8 +49,8 @@ pub mod play;
 mod print;
 mod read;
 
-pub(super) use arguments::key_called;
 pub use fault::{LONGEST, ScriptFault};
+pub(super) use keys::key_called;
 /// The first line of a script that a session writes.
 pub(super) const HEAD: &str = "# A session of pulloff: `pulloff run` walks it again.";
 pub use palette::{PaletteEntry, palette};

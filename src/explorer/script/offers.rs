@@ -1,6 +1,6 @@
 //! What can be typed behind the name of a command, as the screen lists it.
 
-use super::arguments::settable;
+use super::keys::settable;
 use super::lexer::quoted;
 use crate::explorer::branches;
 use crate::explorer::command::Command;

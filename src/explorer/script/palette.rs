@@ -1,6 +1,6 @@
 //! The one list behind a typed line: commands, charts, quantities, presets, files and keys, of which the text keeps those that have it.
 
-use super::arguments::rows_called;
+use super::keys::rows_called;
 use super::offers::{FolderNames, Offer, Typing};
 use super::parse::parse;
 use crate::explorer::command::Id;

@@ -2,10 +2,12 @@
 
 use super::travel::travel_to;
 use super::walk::walk;
+use crate::explorer::command::{Command, Id};
 use crate::explorer::effect::Effect;
 use crate::explorer::model::{Level, Model};
 use crate::explorer::walk::{Action, ROOM};
 use pulloff_engine::problem::Begin;
+use pulloff_engine::quasistatic::walk::Passing;
 use pulloff_engine::report::number::{short, with_unit};
 use pulloff_engine::report::path::EventReport;
 use pulloff_engine::units::Quantity;
@@ -28,6 +30,9 @@ pub(super) fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
                 "contact radius {asked} is out of range: it must be at most {largest}, three times that of the start"
             ));
     }
+    if curve.along.is_some() {
+        model.tell(Level::Info, "the walk goes along the path: this is the nearest state of it");
+    }
     walk(model, Action::MoveTo(reduced))
 }
 
@@ -42,6 +47,12 @@ pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
         };
         return model.refuse(format!("there is no path, and so no largest pull of it: {why}"));
     };
+    if let Some(Ok(along)) = &curve.along {
+        let least = along.largest_pull();
+        let at = along.states.iter().position(|state| least.is_some_and(|least| std::ptr::eq(state, least)));
+        let command = Id::MoveTo.into();
+        return at.map_or_else(Vec::new, |at| walk(model, Action::MoveToState { at, command }));
+    }
     let Some(pull) = &path.totals.largest_pull else { return Vec::new() };
     let radius = pull.contact_radius;
     // Under a dead load it is where an event begins, and is reached as that.
@@ -83,9 +94,10 @@ pub(super) fn go_to_event(model: &mut Model) -> Vec<Effect> {
         return Vec::new();
     };
     let Some(curve) = model.curve.clone() else { return Vec::new() };
-    if let (Some(number), true) = (entry.number, curve.along.is_some()) {
-        model.inward = entry.event.direction == "unloading";
-        return walk(model, Action::MoveToEvent { event: number - 1, limit: 0 });
+    if let (Some(number), Some(Ok(along))) = (entry.number, &curve.along) {
+        let at = Passing::all(along).get(number - 1).map(|passing| passing.before);
+        let command = Command::SelectEvent(number);
+        return at.map_or_else(Vec::new, |at| walk(model, Action::MoveToState { at, command }));
     }
     let before = entry.event.before.as_ref().filter(|before| matches!(before.contacts[..], [[0.0, _]]));
     let (Some(number), Some(before)) = (entry.number, before) else {

@@ -31,10 +31,7 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
         return model.refuse(reason.unwrap_or_else(of_before));
     }
     let control = curve.case.control;
-    let moves = matches!(
-        action,
-        Action::MoveTo(_) | Action::MoveToEvent { .. } | Action::Solve { .. } | Action::Begin
-    );
+    let moves = action.begins() || matches!(action, Action::Solve { .. });
     let node = model.history.current();
     if !moves {
         if node.is_some_and(Node::is_apart) {

@@ -12,6 +12,7 @@ use crate::disc::{Local, Place, Solution, Table};
 use crate::elementary::{atan2, cbrt, sin};
 use crate::problem::{Cohesion, Control, Start, Turn};
 use crate::progress::Progress;
+use crate::quasistatic::curve::{Detail, places};
 use crate::quasistatic::descent::{descend, stable_start};
 use crate::quasistatic::energy::{self, Losses};
 use crate::quasistatic::equilibrium::State;
@@ -36,6 +37,9 @@ const HALVINGS: usize = 24;
 
 /// How many times as far out as a value is first taken it is looked for at most.
 const FARTHER: f64 = 4.0;
+
+/// The edge of the smallest zone that is drawn, as a share of that of the largest.
+const SMALLEST: f64 = 1e-4;
 
 /// How far beyond a corner the edge of a contact that passes it is looked at, of the radius.
 const BEYOND_CORNER: f64 = 1e-3;
@@ -256,6 +260,24 @@ impl Zones {
     pub fn fault(&self, place: Place, progress: &dyn Progress) -> Result<Option<PathError>, PathError> {
         let found = fault(&self.equilibria, &*self.solution, place, Ends::Both, progress)?;
         Ok(found.map(|found| beyond(&*self.solution, place, Some(found))))
+    }
+
+    /// The places from the start inward, as dense as they are drawn, as far as each is one disc in one zone, and the error of the first that
+    /// is not.
+    ///
+    /// # Errors
+    /// [`PathError`] of the start where that is none, and where it cannot be known.
+    pub fn drawn(&self, progress: &dyn Progress) -> Result<(Vec<Place>, Option<PathError>), PathError> {
+        let start = self.solution.at(self.start).contact_radius;
+        let mut found = Vec::new();
+        for place in places(&*self.solution, start, SMALLEST * start, Detail::Drawn) {
+            match self.fault(place, progress)? {
+                None => found.push(place),
+                Some(fault) if found.is_empty() => return Err(fault),
+                fault => return Ok((found, fault)),
+            }
+        }
+        Ok((found, None))
     }
 
     /// ds/dc at a place: the edge of the disc follows that of its zone as ω does, which vanishes there.

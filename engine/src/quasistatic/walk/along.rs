@@ -27,73 +27,83 @@ pub struct Along<'a> {
     pub length: f64,
 }
 
-/// An event with the numbers of the states before and after it; of bodies that come apart the two are one.
-struct Passing<'a> {
-    event: &'a Event,
-    before: usize,
-    after: usize,
+/// An event of a path with the numbers of the states before and after it: the two are one where nothing runs, and where no state stands on
+/// one side of it, because the bodies are apart there.
+#[derive(Debug, Clone, Copy)]
+pub struct Passing<'a> {
+    /// The event.
+    pub event: &'a Event,
+    /// The number of the state before it, from 0.
+    pub before: usize,
+    /// That of the state after it.
+    pub after: usize,
 }
 
-impl Passing<'_> {
-    /// Whether edges run, so that the walker waits before it.
-    fn is_jump(&self) -> bool {
-        self.after != self.before && !matches!(self.event.kind, EventKind::Turn) || self.event.after.is_none()
-    }
-}
-
-/// How the walker comes to the state before a jump.
-fn arrival(passing: &Passing<'_>) -> Arrival {
-    match (passing.event.kind, passing.event.radius) {
-        (EventKind::Touch, Some(radius)) => Arrival::Touch(radius),
-        _ => Arrival::Limit(Some(Ahead {
-            after: passing.event.after.as_ref().map(PathState::state),
-            dissipated: passing.event.dissipated,
-        })),
-    }
-}
-
-impl<'a> Along<'a> {
-    /// The events that begin in a state, in order.
-    fn events(&self) -> Vec<Passing<'a>> {
-        let states = &self.path.states;
+impl<'a> Passing<'a> {
+    /// The events of a path, in order.
+    pub fn all(path: &'a Path) -> Vec<Self> {
+        let states = &path.states;
         let mut from = 0;
         let mut passing = |event: &'a Event| {
-            let before = event.before.as_ref()?;
+            let Some(before) = &event.before else { return Self { event, before: from, after: from } };
             let is_before = |state: &PathState| {
                 let [a, b] = [state, before].map(|state| (state.approach, state.force));
                 state.piece == before.piece && a == b
             };
             let last = || states.iter().rposition(|state| state.piece == before.piece);
-            let at = (from..states.len()).find(|at| is_before(&states[*at])).or_else(last)?;
-            // What a state is pinned at it may be pinned at twice: the last of them is where it goes on.
+            let at = (from..states.len()).find(|at| is_before(&states[*at])).or_else(last).unwrap_or(from);
+            // The path may have one state twice: the last of them is where it goes on.
             let same = (at..states.len()).take_while(|at| is_before(&states[*at])).last();
             let before = same.unwrap_or(at);
-            let has_next = states.get(before + 1).is_some_and(|next| next.piece != states[before].piece);
-            let after = if event.after.is_some() && has_next { before + 1 } else { before };
+            let next = states.get(before + 1).filter(|next| next.piece != states[before].piece);
+            let after = before + usize::from(event.after.is_some() && next.is_some());
             from = after;
-            Some(Passing { event, before, after })
+            Self { event, before, after }
         };
-        self.path.events.iter().filter_map(&mut passing).collect()
+        path.events.iter().map(&mut passing).collect()
     }
 
-    /// The jump that waits where the walker stands.
-    fn waiting(&self) -> Option<Passing<'a>> {
-        self.events().into_iter().find(|passing| passing.is_jump() && Some(passing.before) == self.from)
+    /// Whether edges run, so that a walker waits before it.
+    pub fn is_jump(&self) -> bool {
+        let runs = self.after != self.before && self.event.kind != EventKind::Turn;
+        runs || self.event.after.is_none()
+    }
+
+    /// How a walker comes to the state before it, where edges run.
+    fn arrival(&self) -> Arrival {
+        match (self.event.kind, self.event.radius) {
+            (EventKind::Touch, Some(radius)) => Arrival::Touch(radius),
+            _ => Arrival::Limit(Some(Ahead {
+                after: self.event.after.as_ref().map(PathState::state),
+                dissipated: self.event.dissipated,
+            })),
+        }
+    }
+}
+
+impl<'a> Along<'a> {
+    /// The jump that waits in a state.
+    fn waiting(&self, at: usize) -> Option<Passing<'a>> {
+        Passing::all(self.path).into_iter().find(|passing| passing.is_jump() && passing.before == at)
+    }
+
+    /// Where the walker stands; `None` where the path has no such state.
+    fn here(&self) -> Option<usize> {
+        self.from.filter(|at| *at < self.path.states.len())
     }
 
     /// So many steps, or as many of a run; stops where edges run and where the path turns, or a held edge begins to move.
     pub fn steps(&self, count: usize, emit: &mut Emit<'_>) -> WalkEnd {
         let states = &self.path.states;
-        let Some(mut at) = self.from else { return WalkEnd::Failed(WalkFailure::NoState("walk")) };
-        if let Some(passing) = self.waiting() {
+        let Some(mut at) = self.here() else { return WalkEnd::Failed(WalkFailure::NoState("walk")) };
+        if let Some(passing) = self.waiting(at) {
             // Edges may run at once where a held one is let go. The path goes on behind the jump alone.
-            emit(self.reached(at, arrival(&passing)));
+            emit(self.reached(at, passing.arrival()));
             return WalkEnd::AtLimit;
         }
-        let ahead = self
-            .events()
-            .into_iter()
-            .find(|passing| passing.before > at || passing.before == at && passing.after > at);
+        let is_ahead =
+            |passing: &Passing<'_>| passing.before > at || passing.before == at && passing.after > at;
+        let ahead = Passing::all(self.path).into_iter().find(is_ahead);
         let last = ahead.as_ref().map_or(states.len().saturating_sub(1), |passing| passing.before);
         for _ in 0..count {
             let mut gone = 0.0;
@@ -103,7 +113,7 @@ impl<'a> Along<'a> {
             }
             match &ahead {
                 Some(passing) if at == last && passing.is_jump() => {
-                    emit(self.reached(at, arrival(passing)));
+                    emit(self.reached(at, passing.arrival()));
                     return WalkEnd::AtLimit;
                 }
                 Some(passing) if at == last => {
@@ -127,35 +137,26 @@ impl<'a> Along<'a> {
 
     /// Lets the edges run that wait.
     pub fn jump(&self, emit: &mut Emit<'_>) -> WalkEnd {
-        let Some(passing) = self.waiting() else { return WalkEnd::Failed(WalkFailure::Stable) };
+        let Some(passing) = self.here().and_then(|at| self.waiting(at)) else {
+            return WalkEnd::Failed(WalkFailure::Stable);
+        };
         emit(self.reached(passing.after, Arrival::Jump(Box::new(passing.event.clone()))));
         WalkEnd::Done
     }
 
-    /// Goes to where the path begins.
-    pub fn begin(&self, emit: &mut Emit<'_>) -> WalkEnd {
-        self.go(Some(0).filter(|_| !self.path.states.is_empty()), "where the path begins", emit)
-    }
-
-    /// Goes to the state before the event of this number, from 0.
-    pub fn before(&self, event: usize, emit: &mut Emit<'_>) -> WalkEnd {
-        let Some(event) = self.path.events.get(event) else {
-            return WalkEnd::Failed(WalkFailure::NoEquilibrium("before that event"));
-        };
-        let found = self.events().into_iter().find(|passing| std::ptr::eq(passing.event, event));
-        match found {
-            Some(passing) if passing.is_jump() => {
-                emit(self.reached(passing.before, arrival(&passing)));
-                WalkEnd::AtLimit
-            }
-            found => self.go(found.map(|passing| passing.before).or(Some(0)), "before that event", emit),
+    /// Goes to the state of this number, from 0.
+    pub fn move_to(&self, at: usize, emit: &mut Emit<'_>) -> WalkEnd {
+        if at >= self.path.states.len() {
+            return WalkEnd::Failed(WalkFailure::NoEquilibrium("on the path"));
         }
+        emit(self.reached(at, self.waiting(at).map_or(Arrival::Moved, |passing| passing.arrival())));
+        WalkEnd::Done
     }
 
     /// Goes to the state whose contact radius is nearest to `s`, on the way in `direction`.
-    pub fn move_to(&self, s: f64, direction: Direction, emit: &mut Emit<'_>) -> WalkEnd {
+    pub fn move_near(&self, s: f64, direction: Direction, emit: &mut Emit<'_>) -> WalkEnd {
         let found = self.nearest(direction, &|state| [(state.contact_radius - s).abs(), 0.0]);
-        self.go(found, "at that contact radius", emit)
+        self.move_to(found.unwrap_or(usize::MAX), emit)
     }
 
     /// Goes to the state at this value of the control on the way in `direction`; of several, as around a jump, to that of the contact radius
@@ -171,12 +172,6 @@ impl<'a> Along<'a> {
             return WalkEnd::Failed(WalkFailure::NotSolved);
         };
         emit(self.reached(at, Arrival::Solved));
-        WalkEnd::Done
-    }
-
-    fn go(&self, at: Option<usize>, what: &'static str, emit: &mut Emit<'_>) -> WalkEnd {
-        let Some(at) = at else { return WalkEnd::Failed(WalkFailure::NoEquilibrium(what)) };
-        emit(self.reached(at, Arrival::Moved));
         WalkEnd::Done
     }
 

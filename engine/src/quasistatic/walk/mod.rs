@@ -23,7 +23,7 @@ mod land;
 mod rings;
 pub mod walker;
 
-pub use along::Along;
+pub use along::{Along, Passing};
 pub use arrival::{Ahead, Arrival, Emit, Reached, WalkEnd, WalkFailure};
 pub use walker::{At, ROOM, Walk};
 
