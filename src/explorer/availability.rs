@@ -36,10 +36,7 @@ pub(super) fn walker(model: &Model) -> Available {
 pub(super) fn turns(model: &Model) -> Available {
     walker(model)?;
     when(model.curve.as_ref().is_none_or(|curve| curve.along.is_none()), || {
-        format!(
-            "the walk goes along the path, which turns where path.turn_* says; {} takes steps back",
-            Id::Undo.named()
-        )
+        format!("the walk goes along the path, which turns by itself; {} takes steps back", Id::Undo.named())
     })
 }
 

@@ -145,7 +145,7 @@ fn next(model: &Model) -> String {
                 "What is held lies beyond the path: this is where it starts. {next} runs to the next event"
             )
         }
-        (true, NodeKind::Solved) if node.on_path.is_some() => {
+        (_, NodeKind::Solved) if node.on_path.is_some() => {
             format!("The state of the new path nearest to the {held} held. {next} runs to the next event")
         }
         (true, NodeKind::Solved) => {

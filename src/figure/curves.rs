@@ -20,7 +20,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let points: Vec<(f64, f64)> =
         subject.curve.points.iter().map(|point| scale.place(view, place(point))).collect();
     theory(subject, scale, view, &mut figure);
-    cycle(subject, scale, view, &mut figure);
+    let rested = cycle(subject, scale, view, &mut figure);
     // Below the curve: what lies on it is known.
     branches(subject, scale, view, &mut figure);
     let pinned = pins(subject, view, &mut figure);
@@ -33,15 +33,15 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     walk(subject, scale, view, &mut figure);
     // The walker may have left the range of the curve: the figure follows it there.
     let walker = figure.marks.last().filter(|mark| mark.sign == Sign::Walker).map(|mark| mark.at);
-    figure.bounds = Bounds::of(points.into_iter().chain(walker).chain(pinned).chain(pulled));
+    figure.bounds = Bounds::of(points.into_iter().chain(walker).chain(pinned).chain(pulled).chain(rested));
     figure
 }
 
-/// The loop, loading and unloading apart: of each contact its edges, where radii are shown.
-fn cycle(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
-    // The way of an edge that rests lies off the curve.
+/// The loop, loading and unloading apart: of each contact its edges, where radii are shown. Gives the places of an edge that rests for the
+/// bounds: they lie off the curve.
+fn cycle(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) -> Vec<(f64, f64)> {
     let rests = subject.curve.case.closing.is_some();
-    let Some(report) = subject.cycle.or(subject.path.filter(|_| rests)) else { return };
+    let Some(report) = subject.cycle.or(subject.path.filter(|_| rests)) else { return Vec::new() };
     let pieces = report.states.chunk_by(|a, b| {
         (a.piece, a.direction, a.state.contacts.len()) == (b.piece, b.direction, b.state.contacts.len())
     });
@@ -66,6 +66,8 @@ fn cycle(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figur
             }
         }
     }
+    let all = report.states.iter().filter(|_| rests);
+    all.map(|at| scale.place(view, [at.state.approach, at.state.force, at.state.contact_radius])).collect()
 }
 
 /// δ, P and s of a point of the curve.

@@ -159,10 +159,10 @@ impl MapReport {
     ///
     /// ```
     /// use pulloff_engine::report::map::{MapReport, Ordinate};
-    /// use pulloff_engine::{Unwatched, preset, stability::Axis};
+    /// use pulloff_engine::{Unwatched, preset, stability::MapAxis};
     ///
     /// let wavy = preset::read_shipped("fig-9").ok_or("no such preset")?;
-    /// let amplitudes = Axis::new("gap.amplitude", [1e-4, 4e-3], false, 1.0)?;
+    /// let amplitudes = MapAxis::new("gap.amplitude", [1e-4, 4e-3], false, 1.0)?;
     /// let folds = MapReport::compute(&wavy, amplitudes, &Ordinate::Control, [0, 0], &Unwatched)?;
     /// assert!(folds.rows.iter().any(|row| row.kind == "cusp"), "where a pair of limit points is born");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
