@@ -12,13 +12,14 @@ use pulloff_engine::disc::{Basis, Evaluation, ExactBasis, Order, Table};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::BasisSpec;
 use pulloff_engine::problem::Turn;
-use pulloff_engine::problem::{Control, Part, Problem};
+use pulloff_engine::problem::{Cohesion, Control, Part, Problem};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::Detail;
-use pulloff_engine::quasistatic::path::{Losses, PathSetting, cycle};
+use pulloff_engine::quasistatic::path::{Losses, PathSetting, cycle, cycle_in_zone};
 use pulloff_engine::rate::{EdgeLaw, MovingEdge, Pull, PullSettings, Puller};
 use pulloff_engine::ritz::{Grading, Rings};
 use pulloff_engine::stability::{Family, Law, MapAxis};
+use pulloff_engine::zone::Zone;
 use std::sync::Arc;
 
 /// The ring numbers.
@@ -240,6 +241,30 @@ fn loop_of_weak_adhesion(bencher: Bencher) {
 #[divan::bench(max_time = 5)]
 fn loop_of_very_weak_adhesion(bencher: Bencher) {
     whole_loop(bencher, 1e-5, 0.14);
+}
+
+/// The tension E* in the gap of Fig. 9, with its work of adhesion.
+fn cohesion() -> Cohesion {
+    Cohesion { strength: 1.0, range: problem().work_of_adhesion }
+}
+
+/// The state of one zone of adhesion with a range, in contact.
+#[divan::bench]
+fn state_with_a_range(bencher: Bencher) {
+    let ground = ground();
+    let zone = Zone::new(Arc::clone(&ground.gap), Arc::clone(&ground.panels), cohesion());
+    bencher.bench_local(|| zone.state(black_box(0.16), None).unwrap());
+}
+
+/// The loop on the waves of Fig. 9 to δ = 0.02 with a range, its table made anew, losses twice.
+#[divan::bench(max_time = 5)]
+fn loop_with_a_range(bencher: Bencher) {
+    let gap = problem().gap;
+    let setting = PathSetting::new(Control::Displacement);
+    bencher.bench_local(|| {
+        let table = Arc::new(Table::new(Arc::clone(&gap), 0.5, &Unwatched).unwrap());
+        cycle_in_zone(&table, black_box(cohesion()), Turn::Approach(0.02), &setting, &Unwatched).unwrap()
+    });
 }
 
 /// The adhesion at which each of 2000 states is a limit point, from a table that is there.

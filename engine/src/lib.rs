@@ -57,7 +57,7 @@
 //!
 //! | room | what lives there |
 //! |---|---|
-//! | [`elementary`] | sin, exp, ln and such, the same on every machine |
+//! | [`elementary`], [`root`] | sin, exp, ln and such, the same on every machine; roots of functions of one number |
 //! | [`text`], [`units`], [`expression`] | quoting foreign text, dimensions and units, the one grammar of formulas and values |
 //! | [`cells`] | tables of text from instruments |
 //! | [`gap`] | r → (h, h', h'', …), its breaks, panels on which it is resolved; one file per shape |
@@ -109,6 +109,7 @@ pub mod quasistatic;
 pub mod rate;
 pub mod report;
 pub mod ritz;
+pub mod root;
 pub mod stability;
 pub mod sweep;
 pub mod text;

@@ -16,6 +16,7 @@
 use super::nodes::{Graded, Nodes};
 use super::rule::RingRule;
 use crate::elementary::{atan2, pow, sin};
+use crate::root;
 use std::f64::consts::PI;
 use wide::f64x4;
 
@@ -81,16 +82,8 @@ impl Graded {
         let last = self.pieces.len() - 1;
         let j = self.borders[1..].partition_point(|border| *border < theta).min(last);
         let width = self.borders[j + 1] - self.borders[j];
-        let (mut lo, mut hi) = (0.0, 1.0);
-        for _ in 0..60 {
-            let u = 0.5 * (lo + hi);
-            if place(u, width, j == 0, j == last).from_lower < theta - self.borders[j] {
-                lo = u;
-            } else {
-                hi = u;
-            }
-        }
-        let u = 0.5 * (lo + hi);
+        let within = theta - self.borders[j];
+        let [u, _] = root::halved(0.0, 1.0, |u| place(u, width, j == 0, j == last).from_lower < within);
         let before: usize = self.pieces[..j].iter().sum();
         let (n, here) = (self.n as f64, self.pieces[j] as f64);
         let slope = place(u, width, j == 0, j == last).slope * n / (PI * here);

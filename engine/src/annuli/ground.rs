@@ -7,6 +7,7 @@ use crate::disc::{Panel, Panels, Table, TableError, outside};
 use crate::elementary::{cbrt, cosh, ln, tanh};
 use crate::gap::{Form, Gap};
 use crate::progress::Progress;
+use crate::root;
 use gauss_quad::GaussLegendre;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::num::NonZeroUsize;
@@ -23,9 +24,6 @@ const DIGITS: f64 = 34.6;
 const SAMPLES: u32 = 4000;
 const MOST_ON_PANELS: usize = 200_000;
 const ON_PANEL: [usize; 2] = [2, 16];
-
-/// Halvings of a radius.
-const HALVINGS: usize = 60;
 
 /// The share of a gap that ends up to which its lengths are looked for.
 const INSIDE: f64 = 0.9;
@@ -249,12 +247,8 @@ impl Ground {
     pub fn can_touch_up_to(&self, delta: f64) -> f64 {
         if self.grows {
             // One panel may be the whole gap, whose transform takes each value once.
-            let [mut lo, mut hi] = [0.0, self.reach()];
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (lo + hi);
-                if self.transform(middle) < delta { lo = middle } else { hi = middle }
-            }
-            return if delta > 0.0 { hi } else { 0.0 };
+            let [_, beyond] = root::halved(0.0, self.reach(), |a| self.transform(a) < delta);
+            return if delta > 0.0 { beyond } else { 0.0 };
         }
         let after = self.least.partition_point(|least| *least < delta);
         after.checked_sub(1).map_or(0.0, |panel| self.panels.list()[panel].span.hi)

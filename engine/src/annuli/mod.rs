@@ -52,4 +52,6 @@ pub use contacts::Edge;
 pub use contacts::MOST_CONTACTS;
 pub use ground::Ground;
 pub use rule::MOST_POINTS;
-pub use state::{AnnuliError, AnnuliState, MOST_POINTS_IN_ALL, Resolution, Wanted, points};
+pub use state::{
+    AnnuliError, AnnuliState, MOST_POINTS_IN_ALL, Resolution, Wanted, points, points_on_the_way,
+};

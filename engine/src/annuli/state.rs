@@ -11,7 +11,7 @@ use super::rule::MOST_POINTS;
 use crate::elementary::{atan2, cbrt, ln, log10};
 use crate::gap::Gap;
 use crate::progress::Unwatched;
-use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, PI};
+use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, LN_10, PI};
 use std::sync::Arc;
 use wide::f64x4;
 
@@ -21,8 +21,9 @@ pub const MOST_POINTS_IN_ALL: usize = 2000;
 /// The fewest points on a ring.
 const FEWEST_POINTS: f64 = 12.0;
 
-/// What the points of a ring leave: ln of its reciprocal, for 1e-12.
-const TOLERANCE: f64 = 27.63;
+/// Digits that the points of a ring leave of a state in equilibrium, and of one on the way there: enough to tell where its edges go.
+const DIGITS: f64 = 12.0;
+const DIGITS_ON_THE_WAY: f64 = 9.0;
 
 /// Points on a piece of a ring between breaks beside those that an unbroken ring takes, and on a ring with many breaks.
 const ON_A_PIECE: f64 = 36.0;
@@ -150,12 +151,22 @@ fn ellipse(contacts: &Contacts, ring: usize) -> f64 {
 
 /// Points for every ring of `contacts`: enough for 1e-12, 400 at most. The same contacts take the same.
 pub fn points(ground: &Ground, contacts: &Contacts) -> Resolution {
+    points_for(ground, contacts, DIGITS)
+}
+
+/// The same for contacts that are passed on the way to others, where 1e-9 is enough.
+pub fn points_on_the_way(ground: &Ground, contacts: &Contacts) -> Resolution {
+    points_for(ground, contacts, DIGITS_ON_THE_WAY)
+}
+
+fn points_for(ground: &Ground, contacts: &Contacts, digits: f64) -> Resolution {
     let most = MOST_POINTS as f64;
+    let tolerance = digits * LN_10;
     let wants = |j: usize| {
         let [a, b] = contacts.rings[j];
         let phase = PI * (b - a) / ground.shortest_between([a, b]);
         let waves = phase + 8.0 * cbrt(phase) + 8.0;
-        FEWEST_POINTS.max(waves).max(TOLERANCE / ln(ellipse(contacts, j))).min(most)
+        FEWEST_POINTS.max(waves).max(tolerance / ln(ellipse(contacts, j))).min(most)
     };
     let up = |n: f64, step: usize| {
         // Positive, and some hundred at most.

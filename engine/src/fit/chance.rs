@@ -9,6 +9,7 @@
 //! whose last digits differ from machine to machine.
 
 use crate::elementary::{exp, ln, ln_1p};
+use crate::root;
 
 /// The incomplete beta function.
 fn incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
@@ -65,16 +66,11 @@ pub fn beyond_f(f: f64, above: f64, below: f64) -> f64 {
 /// t that is passed on either side by this share alone: 1.96 for 0.05 and many degrees of freedom.
 #[must_use]
 pub fn t_of(share: f64, degrees: f64) -> f64 {
-    const HALVINGS: usize = 100;
-    let (mut lo, mut hi) = (0.0, 1.0);
+    let mut hi = 1.0;
     while beyond_t(hi, degrees) > share && hi < 1e300 {
         hi *= 2.0;
     }
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (lo + hi);
-        if beyond_t(middle, degrees) > share { lo = middle } else { hi = middle }
-    }
-    0.5 * (lo + hi)
+    root::halved(0.0, hi, |t| beyond_t(t, degrees) > share)[0]
 }
 
 #[cfg(test)]

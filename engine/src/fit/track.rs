@@ -13,6 +13,7 @@ use crate::progress::Unwatched;
 use crate::quasistatic::curve::places;
 use crate::quasistatic::path::{PathError, Zones};
 use crate::quasistatic::{Curve, Detail, Monotone, Sample};
+use crate::root;
 use crate::zone::ZoneState;
 use crate::zone::equilibria::about;
 use std::sync::Arc;
@@ -158,12 +159,8 @@ impl Track {
                 if !is_enough(end)? {
                     return None;
                 }
-                let (mut lo, mut hi) = (solution.begin(), end);
-                for _ in 0..HALVINGS {
-                    let middle = 0.5 * (lo + hi);
-                    if is_enough(middle).unwrap_or(false) { hi = middle } else { lo = middle }
-                }
-                (MARGIN * hi).min(end)
+                let [_, enough] = root::halved(solution.begin(), end, |c| !is_enough(c).unwrap_or(false));
+                (MARGIN * enough).min(end)
             }
         };
         let monotone = Arc::new(Monotone::of(&*solution, held));

@@ -27,6 +27,7 @@ use crate::gap::wave_index;
 use crate::gap::{Form, Gap};
 use crate::problem::Reduced;
 use crate::progress::Progress;
+use crate::root;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
@@ -53,8 +54,6 @@ const PRESSED: f64 = 1e-7;
 const SLOPE_STEPS_PER_WAVE: f64 = 32.0;
 const SLOPE_STEPS: f64 = 200.0;
 const MOST_SLOPE_STEPS: f64 = 40_000.0;
-/// Halvings of a step for the least slope in it: its value is then good to rounding.
-const HALVINGS: usize = 30;
 /// Points of the pressure without adhesion, even in the angle of r = s sin θ, and for each wave.
 const PRESSURES: f64 = 100.0;
 const PRESSURES_PER_WAVE: f64 = 16.0;
@@ -262,12 +261,7 @@ pub fn falls(gap: &dyn Gap, largest: f64) -> bool {
         }
         // Where h'' turns from falling to rising the slope is least, between two radii of the search.
         if gap.jet(last).second < 0.0 && jet.second > 0.0 {
-            let (mut falling, mut rising) = (last, r);
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (falling + rising);
-                let side = if gap.jet(middle).second < 0.0 { &mut falling } else { &mut rising };
-                *side = middle;
-            }
+            let [_, rising] = root::halved(last, r, |r| gap.jet(r).second < 0.0);
             if gap.jet(rising).first < 0.0 {
                 return true;
             }

@@ -9,6 +9,7 @@ use crate::disc::{Basis, Local, Place, Solution, Table};
 use crate::gap::Gap;
 use crate::problem::{Control, Reduced, Units};
 use crate::progress::{Progress, Unwatched};
+use crate::root;
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::fmt;
@@ -335,13 +336,8 @@ impl Curve {
             let point = self.equilibrium.explicit(span.radius(x));
             point.map_or(f64::INFINITY, |point| (point.y() - corner.y()).norm())
         };
-        let (mut near, mut far) = (-1.0, 1.0);
-        if distance(far) > length {
-            for _ in 0..60 {
-                let middle = 0.5 * (near + far);
-                if distance(middle) > length { far = middle } else { near = middle }
-            }
-        }
+        let far =
+            if distance(1.0) > length { root::halved(-1.0, 1.0, |x| distance(x) <= length)[1] } else { 1.0 };
         self.equilibrium.explicit(span.radius(far))
     }
 

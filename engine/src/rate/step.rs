@@ -10,6 +10,7 @@
 use super::equation::{Equation, StretchMoment};
 use super::radau::{ERROR_WEIGHTS, NODES, REAL_EIGENVALUE, STAGES, WEIGHTS, dot};
 use super::settings::PullSettings;
+use crate::root::RootBracket;
 use nalgebra::{SMatrix, SVector};
 
 /// A step that was solved.
@@ -48,9 +49,7 @@ impl SolvedStep {
     }
 }
 
-/// Solutions of one step by which its end is brought to a place.
-const LANDED: usize = 60;
-/// It is there at this share of the step.
+/// The end of a step is brought to a place within this share of it.
 const THERE: f64 = 1e-14;
 /// φ stays this share of the way from where it was to a bound that Newton's method would pass.
 const TOWARDS_BOUND: f64 = 0.1;
@@ -129,33 +128,21 @@ pub fn solve(
 /// longer one.
 pub fn landed(
     step: &dyn Fn(f64) -> Option<SolvedStep>,
-    [mut from, mut to]: [f64; 2],
-    mut before: f64,
+    [from, to]: [f64; 2],
+    before: f64,
     longest: &SolvedStep,
     of: &dyn Fn(&StretchMoment) -> f64,
 ) -> Option<SolvedStep> {
-    let mut after = of(longest.end());
     let mut found = *longest;
-    let mut side = 0;
-    for _ in 0..LANDED {
-        if after == 0.0 || (to - from) <= THERE * to {
-            break;
-        }
-        // False position; the end that stays counts half each time (Illinois).
-        let share = before / (before - after);
-        let share = if share.is_finite() { share.clamp(1e-3, 1.0 - 1e-3) } else { 0.5 };
-        let h = from + share * (to - from);
+    let after = of(longest.end());
+    let Some(mut bracket) = RootBracket::new([from, before], [to, after]) else { return Some(found) };
+    bracket.close(THERE * to, |h| {
         let tried = step(h)?;
         let value = of(tried.end());
         if value == 0.0 || (value > 0.0) == (after > 0.0) {
-            (to, after, found) = (h, value, tried);
-            before *= if side > 0 { 0.5 } else { 1.0 };
-            side = 1;
-        } else {
-            (from, before) = (h, value);
-            after *= if side < 0 { 0.5 } else { 1.0 };
-            side = -1;
+            found = tried;
         }
-    }
+        Some(value)
+    })?;
     Some(found)
 }

@@ -20,6 +20,7 @@ use crate::preset::Preset;
 use crate::problem::{Control, Units};
 use crate::progress::Progress;
 use crate::rate::equation::HeldDisc;
+use crate::root;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -218,23 +219,15 @@ impl RowReading {
 
     /// The disc that has the force `force` at the approach `approach` and pulls at its edge.
     fn at_force(&self, approach: f64, force: f64) -> Option<HeldDisc> {
-        /// Halvings of an interval: to the last digit.
-        const TIMES: usize = 200;
         let at = |s: f64| HeldDisc::new(&self.panels, Control::Displacement, s, approach);
-        let (mut lo, mut hi) = (self.panels.smallest(), self.panels.reach());
+        let (lo, hi) = (self.panels.smallest(), self.panels.reach());
         // Below the disc whose edge is free the force rises with s: it is behind that one.
         let is_beyond = |held: &HeldDisc| held.opening > 0.0 && held.force < force;
         if !is_beyond(&at(hi)) {
             return None;
         }
-        for _ in 0..TIMES {
-            let middle = 0.5 * (lo + hi);
-            if middle <= lo || middle >= hi {
-                break;
-            }
-            if is_beyond(&at(middle)) { hi = middle } else { lo = middle }
-        }
-        Some(at(hi)).filter(|held| (held.force - force).abs() <= 1e-6 * (force.abs() + held.force.abs()))
+        let [_, found] = root::halved(lo, hi, |s| !is_beyond(&at(s)));
+        Some(at(found)).filter(|held| (held.force - force).abs() <= 1e-6 * (force.abs() + held.force.abs()))
     }
 }
 

@@ -13,6 +13,7 @@ use super::law::{EdgeJet, adhesion_of};
 use crate::elementary::hypot;
 use crate::problem::Control;
 use crate::progress::Progress;
+use crate::root;
 
 /// Radii at which a line is sampled: so many on each stretch of this share of a wave or a panel.
 const PER_PANEL: f64 = 24.0;
@@ -254,12 +255,8 @@ fn third_of(local: &LocalLaw, control: Control, s: f64) -> [f64; 3] {
 }
 
 /// The last radius on the way from `inside` to `outside`, where there is none, at which `good` has an answer.
-fn last<T>(good: &dyn Fn(f64) -> Option<T>, mut outside: f64, mut inside: f64) -> f64 {
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (outside + inside);
-        if good(middle).is_some() { inside = middle } else { outside = middle }
-    }
-    inside
+fn last<T>(good: &dyn Fn(f64) -> Option<T>, outside: f64, inside: f64) -> f64 {
+    root::halved(inside, outside, |s| good(s).is_some())[0]
 }
 
 /// A radius between two, at neither of which the line is on the map, at which it is. A line may cross the whole map in a small

@@ -10,11 +10,11 @@
 //! D. Maugis, J. Colloid Interface Sci. 150, 243 (1992), doi:10.1016/0021-9797(92)90285-T, eqs. (6.17)-(6.22) with m = 1/cos ψ.
 
 use crate::elementary::{cbrt, sin_cos};
+use crate::root;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Angles at which the largest pull is looked for, and steps of its golden section.
 const ANGLES: u32 = 200;
-const STEPS: u32 = 60;
 
 /// A sphere of R = E* = 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,12 +58,8 @@ impl Maugis {
         let force = |angle: f64| self.state(angle)[2];
         let at = |k: u32| FRAC_PI_2 * f64::from(k) / f64::from(ANGLES);
         let least = (1..=ANGLES).min_by(|a, b| force(at(*a)).total_cmp(&force(at(*b)))).unwrap_or(ANGLES);
-        let (mut lo, mut hi) = (at(least - 1).max(1e-6), at((least + 1).min(ANGLES)));
-        for _ in 0..STEPS {
-            let third = (hi - lo) / 3.0;
-            if force(lo + third) < force(hi - third) { hi -= third } else { lo += third }
-        }
-        -force(0.5 * (lo + hi)) / (PI * self.work_of_adhesion)
+        let angle = root::least(at(least - 1).max(1e-6), at((least + 1).min(ANGLES)), force);
+        -force(angle) / (PI * self.work_of_adhesion)
     }
 }
 

@@ -21,7 +21,6 @@
 //! | [`exact`] | the best of these for a problem |
 //! | [`unloading`] | the quasi-static path of an exact disc: limit points, landings, losses |
 //! | [`quadrature`] | integrals to rounding: Gauss-Legendre panels that halve where they must |
-//! | [`root`] | a root by halving |
 //!
 //! Any consistent units.
 
@@ -36,7 +35,6 @@ pub mod maugis;
 pub mod onset;
 pub mod power_law;
 pub mod quadrature;
-pub mod root;
 pub mod sneddon;
 pub mod sphere;
 pub mod struve;

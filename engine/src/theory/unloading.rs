@@ -16,8 +16,8 @@
 //! 55, 445 (2007), doi:10.1016/j.jmps.2006.09.004, and of Fig. 10 of the paper.
 
 use super::disc::{Disc, ExactEquilibrium};
-use super::root::halved;
 use crate::problem::Control;
+use crate::root;
 
 /// Steps of the grid per wave: two limit points closer than this share of a wave would be overlooked.
 const STEPS_PER_WAVE: f64 = 200.0;
@@ -103,7 +103,7 @@ fn nodes(disc: &dyn Disc, control: Control, from: f64, to: f64) -> Vec<GridNode>
         let here = slope(disc, control, s);
         if let Some((outer, rise)) = before.filter(|(_, rise)| (*rise > 0.0) != (here > 0.0)) {
             // Outside a minimum the control grows with s.
-            nodes.push(node(halved(outer, s, |s| slope(disc, control, s)), Some(rise > 0.0)));
+            nodes.push(node(root::sign_change(outer, s, |s| slope(disc, control, s)), Some(rise > 0.0)));
         }
         nodes.push(node(s, None));
         before = Some((s, here));
@@ -143,7 +143,7 @@ fn stable_start(disc: &dyn Disc, control: Control, from: f64) -> Option<f64> {
         let nodes = nodes(disc, control, reach, inner);
         let risen = nodes.windows(2).rfind(|pair| pair[0].value >= held && pair[1].value < held);
         if let Some([outer, inner]) = risen {
-            return Some(halved(outer.radius, inner.radius, |s| value(disc, control, s) - held));
+            return Some(root::sign_change(outer.radius, inner.radius, |s| value(disc, control, s) - held));
         }
     }
     None
@@ -161,8 +161,9 @@ pub fn unload(disc: &dyn Disc, control: Control, from: f64) -> Option<ExactPath>
     while let Some(limit) = (at..nodes.len()).find(|&k| nodes[k].minimum == Some(true)) {
         let held = nodes[limit].value;
         let fallen = (limit + 1..nodes.len()).find(|&k| nodes[k].value <= held && nodes[k - 1].value > held);
-        let landing =
-            fallen.map(|k| halved(nodes[k - 1].radius, nodes[k].radius, |s| value(disc, control, s) - held));
+        let landing = fallen.map(|k| {
+            root::sign_change(nodes[k - 1].radius, nodes[k].radius, |s| value(disc, control, s) - held)
+        });
         jumps.push((nodes[limit].radius, held, landing));
         let Some(k) = fallen else { break };
         at = k;

@@ -18,13 +18,11 @@ use super::jkr::Jkr;
 use super::kesari_lew::KesariLew;
 use super::struve::struve;
 use crate::elementary::{cbrt, exp, ln};
+use crate::root;
 use std::f64::consts::{PI, TAU};
 
 /// Radii at which the force is looked at before the least is enclosed.
 const RADII: i32 = 24;
-
-/// Each step leaves 0.618 of the interval: 1e-5 of a radius is left, and 1e-9 of the force.
-const STEPS: u32 = 24;
 
 /// A paraboloid with waves of unknown phases and the adhesion `smooth` has.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,13 +86,7 @@ impl WorstPhase {
         let at = |k: i32| lo + (hi - lo) * f64::from(k) / f64::from(RADII);
         let force = |log: f64| self.force(exp(log));
         let least = (0..=RADII).min_by(|a, b| force(at(*a)).total_cmp(&force(at(*b))))?;
-        let (mut lo, mut hi) = (at(least - 1), at(least + 1));
-        for _ in 0..STEPS {
-            const GOLDEN: f64 = 0.618_033_988_749_894_9;
-            let [inner, outer] = [hi - GOLDEN * (hi - lo), lo + GOLDEN * (hi - lo)];
-            if force(inner) < force(outer) { hi = outer } else { lo = inner }
-        }
-        Some(-force(0.5 * (lo + hi)) / critical)
+        Some(-force(root::least(at(least - 1), at(least + 1), force)) / critical)
     }
 }
 

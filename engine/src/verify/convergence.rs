@@ -18,8 +18,8 @@ use crate::elementary::{ln, pow};
 use crate::problem::Control;
 use crate::progress::Unwatched;
 use crate::ritz::{Grading, NewtonSettings, Rings, solve};
+use crate::root;
 use crate::theory::jkr::Jkr;
-use crate::theory::root::halved;
 
 /// δ/R of the comparison.
 const APPROACH: f64 = 0.1;
@@ -78,7 +78,7 @@ const STUDIES: [Study; 4] = [
 pub fn radius_at(exact: &Jkr, delta: f64) -> f64 {
     // Far beyond any approach asked for here.
     let far = 10.0 * exact.radius_of_curvature;
-    halved(exact.fixed_grips_radius(), far, |s| exact.approach(s) - delta)
+    root::sign_change(exact.fixed_grips_radius(), far, |s| exact.approach(s) - delta)
 }
 
 /// Both spheres on every kind of mesh, from a quarter of the rings of `settings`.

@@ -7,6 +7,7 @@ use super::row::{Group, VerifyRow};
 use crate::disc::{Table, TableError};
 use crate::problem::Control;
 use crate::progress::Unwatched;
+use crate::root;
 use crate::stability::Law;
 use crate::stability::law::adhesion_of;
 use crate::theory::Exact;
@@ -18,9 +19,6 @@ const BOUND: f64 = 1e-10;
 
 /// The innermost cusps that are compared.
 const CUSPS: usize = 4;
-
-/// Rounds of the golden section.
-const ROUNDS: usize = 80;
 
 /// The law on the waves of `figure`.
 ///
@@ -56,7 +54,7 @@ pub fn group(figure: &PaperFigure) -> Result<Group, TableError> {
     for (number, cusp) in cusps.iter().take(CUSPS).enumerate() {
         let law = |s: f64| s.sqrt() * exact.transform(s).slope;
         let s = cusp.contact_radius;
-        let highest = highest([s - 0.1 * wave, s + 0.1 * wave], &law);
+        let highest = root::least(s - 0.1 * wave, s + 0.1 * wave, |s| -law(s));
         let adhesion = TAU * law(highest).powi(2) / FRAC_PI_2;
         let name = format!("cusp {}", number + 1);
         rows.push(VerifyRow::relative(
@@ -70,14 +68,4 @@ pub fn group(figure: &PaperFigure) -> Result<Group, TableError> {
     }
     let title = format!("{}, the law of stability, exact", figure.name);
     Ok(Group { title, measure: "relative", rows })
-}
-
-/// Where `f` is largest between two radii, by the golden section.
-fn highest([mut lo, mut hi]: [f64; 2], f: &dyn Fn(f64) -> f64) -> f64 {
-    let golden = 0.5 * (5f64.sqrt() - 1.0);
-    for _ in 0..ROUNDS {
-        let [a, b] = [hi - golden * (hi - lo), lo + golden * (hi - lo)];
-        if f(a) > f(b) { hi = b } else { lo = a }
-    }
-    0.5 * (lo + hi)
 }

@@ -29,6 +29,7 @@ use crate::elementary::asin;
 use crate::gap::Gap;
 use crate::gap::panels::Variable;
 use crate::problem::Cohesion;
+use crate::root;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
@@ -40,9 +41,6 @@ const HALF: f64 = 0.5;
 
 /// What is left of a share where Newton's method goes below nothing.
 const TOWARDS_NOTHING: f64 = 0.1;
-
-/// Halvings of a radius at which D turns.
-const HALVINGS: usize = 40;
 
 /// Below this angle ψ − sin ψ cos ψ is a series.
 const SMALL_ANGLE: f64 = 0.2;
@@ -277,12 +275,8 @@ impl Zone {
                 break;
             }
             let Some(closing) = self.closing(c, [fall.lo, hi], -fall.slope) else { continue };
-            let ends = [hi, fall.lo].map(|mut opens| {
-                let mut closes = closing;
-                for _ in 0..HALVINGS {
-                    let middle = 0.5 * (opens + closes);
-                    if self.opening(c, middle) < 0.0 { closes = middle } else { opens = middle }
-                }
+            let ends = [hi, fall.lo].map(|opens| {
+                let [closes, _] = root::halved(closing, opens, |s| self.opening(c, s) < 0.0);
                 (c - closes) * (c + closes) / (c * c)
             });
             turns.push(ends);

@@ -336,7 +336,7 @@ fn of_two_limit_points_within_a_step_the_first_is_met() {
         let way = (2.0 * away + width(&pair)) / from.scales.edges[0];
         let length = way / from.tangent[0].abs();
         let ends = PathStep::new(&balance, &from).taken(length);
-        let mut taken = balance.step(&from, length, None, &|_| true).unwrap();
+        let mut taken = balance.step(&from, length, &[], &|_| true).unwrap();
         passed += usize::from(ends.is_some_and(|end| end.along_control() * from.along_control() > 0.0));
         assert!(taken.to_limit().unwrap(), "{share}");
         let met = taken.end.contacts().disc;

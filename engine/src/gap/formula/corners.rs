@@ -16,12 +16,13 @@
 //!
 //! which the paraboloid leaves out.
 
-use super::bisect::{NARROW, bisect};
 use super::bound::Bound;
 use super::fold::{Switch, Zero};
+use super::survey::NARROW;
 use crate::elementary::log2;
 use crate::gap::Parity;
 use crate::gap::function::MOST_BREAKS;
+use crate::root;
 
 /// Intervals to begin with.
 const FIRST: usize = 16;
@@ -136,7 +137,7 @@ impl Bound {
         }
         let around = [(near - MARGIN * near).max(lo), (near + MARGIN * near).min(hi)];
         let [from, to] = if is_before(around[0]) && !is_before(around[1]) { around } else { [lo, hi] };
-        Some(exact(bisect(from, to, is_before)))
+        Some(exact(root::halved(from, to, is_before)[1]))
     }
 
     /// The break in an interval of some units in the last place.
@@ -146,7 +147,7 @@ impl Bound {
         for n in 0..2 {
             let sign = before[n].signum();
             if before[n] != 0.0 && sign * after[n] < 0.0 {
-                let radius = bisect(lo, hi, |r| self.zero(switch, r)[n] * sign > 0.0);
+                let radius = root::halved(lo, hi, |r| self.zero(switch, r)[n] * sign > 0.0)[1];
                 return Break { radius, exact: true };
             }
         }

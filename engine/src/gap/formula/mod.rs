@@ -21,7 +21,6 @@
 //! | [`typed`] | its text and its parameters, with the lengths that follow |
 
 mod ball;
-mod bisect;
 pub mod bound;
 pub mod corners;
 mod discs;

@@ -5,13 +5,16 @@
 //! are not finite, or grow without end towards it, or it is a corner or a branch point that they pass. A curvature
 //! that overflows before the slope is seen in the middles of the intervals, and followed to its edge by bisection.
 
-use super::bisect::{NARROW, bisect};
 use super::bound::Bound;
 use super::fold::FormulaWave;
+use crate::root;
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::ops::Range;
 use thiserror::Error;
+
+/// The width at which an interval is no longer halved, as a share of the largest radius.
+pub(super) const NARROW: f64 = 2e-15;
 
 /// Intervals open at a time at most: rounding then hides what the formula is.
 const MOST_OPEN: usize = 1 << 15;
@@ -130,7 +133,7 @@ impl Bound {
         }
         if let Some(radius) = right.as_ref().and_then(bad) {
             let from = if axis { return Some(0.0) } else { (lo - beside[0]).max(0.0) };
-            return Some(bisect(from, radius, |r| self.is_finite::<3>(r)));
+            return Some(root::halved(from, radius, |r| self.is_finite::<3>(r))[1]);
         }
         let endless = |radii: [f64; 3]| {
             let [near, between, far] = radii.map(|r| self.whole::<2>(r)[1]);
@@ -153,7 +156,7 @@ impl Bound {
             if self.is_finite::<3>(middle) {
                 good = middle;
             } else if let Some(bad) = self.blank::<3>(interval) {
-                return Some(bisect(good, bad, |r| self.is_finite::<3>(r)));
+                return Some(root::halved(good, bad, |r| self.is_finite::<3>(r))[1]);
             }
         }
         None

@@ -4,9 +4,9 @@
 //! −∫ Σ 2πe_i (G_i − γ) dα_i      at held control, along straight lines from the edges before to those after
 //! ```
 //!
-//! The potential knows no way, so any will do: a new contact opens from a point, a gap closes to its middle, by t = ½(1 − cos πu) with
-//! the nodes of Clenshaw and Curtis in u (C. W. Clenshaw and A. R. Curtis, Numer. Math. 2, 197 (1960), doi:10.1007/BF01386223), which
-//! are doubled until two sums agree. A stretched ring that vanishes holds an energy that falls with the logarithm of its width alone, and is integrated
+//! The potential knows no way, so any will do: a new contact opens from a point, a gap closes to its middle. The sum is Fejér's second
+//! rule, whose nodes are doubled until two sums agree (J. Waldvogel, BIT Numer. Math. 46, 195 (2006), doi:10.1007/s10543-006-0045-4). It
+//! runs over the root of the time from where a contact opens, or from where an edge passes a corner; as a gap closes G is smooth. A stretched ring that vanishes holds an energy that falls with the logarithm of its width alone, and is integrated
 //! in that variable,
 //!
 //! ```text
@@ -120,9 +120,16 @@ impl Balance<'_> {
         if !ways.is_empty() {
             for pair in self.borders(&ways).windows(2) {
                 let (from, width) = (pair[0], pair[1] - pair[0]);
+                let opens = from > 0.0 || ways.iter().any(|way| matches!(way, EdgeWay::Open(..)));
+                let rooted = [opens, pair[1] < 1.0];
                 sum += integral(most, &mut |u| {
-                    let t = from + width * sin(FRAC_PI_2 * u).powi(2);
-                    let speed = 0.5 * PI * width * sin(PI * u);
+                    let [share, speed] = match rooted {
+                        [true, true] => [sin(FRAC_PI_2 * u).powi(2), 0.5 * PI * sin(PI * u)],
+                        [true, false] => [u * u, 2.0 * u],
+                        [false, true] => [u * (2.0 - u), 2.0 * (1.0 - u)],
+                        [false, false] => [u, 1.0],
+                    };
+                    let (t, speed) = (from + width * share, width * speed);
                     let mut edges: Moving = ways.iter().map(|way| way.at(t)).collect();
                     edges.extend(vanishing.iter().map(|ring| ring.map(|edge| [edge, 0.0])));
                     Some(speed * self.rate(edges, value)?)
@@ -202,28 +209,28 @@ impl Balance<'_> {
     }
 }
 
-/// ∫₀¹ f du of a function that vanishes at both ends, with up to about so many intervals.
+/// ∫₀¹ f du, with up to about so many intervals; the ends are not asked.
 fn integral(most: usize, f: &mut dyn FnMut(f64) -> Option<f64>) -> Option<f64> {
     const FEWEST: usize = 16;
-    let mut values = vec![0.0, f(0.5)?, 0.0];
+    // Between the ends: of n intervals n − 1 values.
+    let mut values = vec![f(0.5)?];
     let (mut coarser, mut differed) = (f64::NAN, f64::NAN);
     loop {
-        let n = 2 * (values.len() - 1);
+        let n = 2 * (values.len() + 1);
         let angle = PI / n as f64;
-        let cosines: Vec<f64> = (0..2 * n).map(|j| cos(angle * j as f64)).collect();
-        let mut finer = Vec::with_capacity(n + 1);
-        for (j, cosine) in cosines.iter().take(n + 1).enumerate() {
-            finer.push(if j % 2 == 0 { values[j / 2] } else { f(0.5 * (1.0 - cosine))? });
-        }
-        values = finer;
-        let weight = |j: usize| {
-            let terms = (1..=n / 2).map(|k| {
-                let [twice, order] = [if 2 * k == n { 1.0 } else { 2.0 }, (4 * k * k - 1) as f64];
-                twice / order * cosines[(2 * k * j) % (2 * n)]
+        values = (1..n)
+            .map(
+                |k| if k % 2 == 0 { Some(values[k / 2 - 1]) } else { f(0.5 * (1.0 - cos(angle * k as f64))) },
+            )
+            .collect::<Option<_>>()?;
+        let weight = |k: usize| {
+            let terms = (1..=n / 2).map(|j| {
+                let order = (2 * j - 1) as f64;
+                sin(order * angle * k as f64) / order
             });
-            (1.0 - terms.sum::<f64>()) / n as f64
+            2.0 * sin(angle * k as f64) / n as f64 * terms.sum::<f64>()
         };
-        let parts: Vec<f64> = (1..n).map(|j| weight(j) * values[j]).collect();
+        let parts: Vec<f64> = (1..n).map(|k| weight(k) * values[k - 1]).collect();
         let (sum, size): (f64, f64) = (parts.iter().sum(), parts.iter().map(|part| part.abs()).sum());
         let differs = (sum - coarser).abs();
         let off = differs * (differs / differed).min(1.0);

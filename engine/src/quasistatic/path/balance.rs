@@ -12,6 +12,7 @@
 use super::lane::Lane;
 use crate::annuli::{
     AnnuliError, AnnuliState, Around, Contacts, GapMinimum, Ground, Resolution, Wanted, points,
+    points_on_the_way,
 };
 use crate::disc::outside;
 use crate::problem::{ContactKind, Control};
@@ -197,12 +198,13 @@ impl Balance<'_> {
         }
     }
 
-    /// κ of every edge at the control value.
+    /// κ of every edge at the control value, to what a way takes.
     ///
     /// # Errors
     /// [`AnnuliError`].
     pub fn intensities(&self, contacts: &Contacts, value: f64) -> Result<Vec<f64>, AnnuliError> {
-        let state = self.ground.state(contacts, Wanted::Values)?;
+        let points = points_on_the_way(self.ground, contacts);
+        let state = self.ground.state_with(contacts, &points, Wanted::Values)?;
         let (delta, ..) = self.approach(&state, value);
         Ok(state.intensities(delta))
     }

@@ -12,6 +12,7 @@ use crate::gap::Form;
 use crate::problem::{ContactKind, Control, Turn};
 use crate::progress::Progress;
 use crate::quasistatic::energy::Losses;
+use crate::root;
 use nalgebra::DVector;
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -188,12 +189,9 @@ fn first_crest(ground: &Ground, progress: &dyn Progress) -> Option<GapMinimum> {
     }
     // h' changes its sign at a smooth minimum; at a corner the bisection ends on it.
     let at = radii.partition_point(|r| *r < best);
-    let (mut lo, mut hi) = (radii[at.saturating_sub(1)], *radii.get(at + 1)?);
-    for _ in 0..100 {
-        let middle = 0.5 * (lo + hi);
-        if ground.gap.jet(middle).first > 0.0 { hi = middle } else { lo = middle }
-    }
-    let radius = if value(best) < value(hi) { best } else { hi };
+    let falls = |r: f64| ground.gap.jet(r).first <= 0.0;
+    let [_, found] = root::halved(radii[at.saturating_sub(1)], *radii.get(at + 1)?, falls);
+    let radius = if value(best) < value(found) { best } else { found };
     Some(GapMinimum { radius, gap: value(radius) })
 }
 

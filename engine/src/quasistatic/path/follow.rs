@@ -15,13 +15,16 @@ use crate::quasistatic::energy::Losses;
 const STEPS: usize = 200_000;
 
 /// The first step of a stretch, in the units of the arc length.
-const FIRST: f64 = 0.02;
+pub const FIRST: f64 = 0.02;
 
 /// The longest step of many, in the units of the arc length.
 pub const LONGEST: f64 = 0.15;
 
 /// How much longer than the one before a step may be.
 pub const GROWTH: f64 = 1.5;
+
+/// Points behind a step by which it is foreseen.
+pub const PAST: usize = 2;
 
 /// The way of a step is known where a state lies on it to this, in the units of the arc length: with it the balance of loops closes
 /// within 1e-8 of their losses.
@@ -39,10 +42,10 @@ impl Course<'_, '_> {
         let (balance, sense) = (self.balance, self.record.direction.sense());
         let lost = PathError::Lost { control_value: held.control_value };
         let mut point = balance.point(held.clone(), sense).ok_or(lost)?;
-        let (mut length, mut bend) = (FIRST, None);
+        let (mut length, mut past) = (FIRST, Vec::new());
         loop {
             self.counted(&point.held)?;
-            let taken = balance.step(&point, length, bend, &|next| !self.goes_back(next));
+            let taken = balance.step(&point, length, &past, &|next| !self.goes_back(next));
             let mut taken = taken.ok_or_else(|| self.stopped(&point.held))?;
             let to_held = &taken.end.held;
             let forth = (to_held.control_value - point.held.control_value) * sense > 0.0;
@@ -65,10 +68,15 @@ impl Course<'_, '_> {
             if let Some(end) = end {
                 return Ok((end, next.held));
             }
-            ((point, bend), length) = match side {
-                SingularSide::Smooth => (step.left_at(taken, next), (GROWTH * length).min(LONGEST)),
-                _ => ((next.rescaled(balance), None), FIRST),
-            };
+            let before = std::mem::replace(&mut point, next.rescaled(balance));
+            if side == SingularSide::Smooth {
+                past.push(before);
+                past.drain(..past.len().saturating_sub(PAST));
+                length = (GROWTH * length).min(LONGEST);
+            } else {
+                past.clear();
+                length = FIRST;
+            }
         }
     }
 

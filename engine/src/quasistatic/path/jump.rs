@@ -11,7 +11,7 @@
 use super::balance::{Balance, CONVERGED, HeldEdges, keeps_widths, moved};
 use super::error::PathError;
 use super::event::{Passed, PassedKind};
-use crate::annuli::{Contacts, points};
+use crate::annuli::{Contacts, points, points_on_the_way};
 use crate::elementary::cbrt;
 use crate::quasistatic::jump::EdgeDirection;
 use nalgebra::DVector;
@@ -33,6 +33,10 @@ const KICK_OF_WIDTH: f64 = 0.1;
 /// Widths that close or vanish: in waves, and in (γρ²)^{1/3}.
 const NARROW: f64 = 0.004;
 const NARROW_BY_ADHESION: f64 = 0.05;
+
+/// A gap of so many such widths closes: G at its edges falls with its width, and below a good part of (γρ²)^{1/3} nothing holds it
+/// open. The last of its way would take the most points.
+const CLOSES: f64 = 5.0;
 
 /// How fast edges move at a radius: nothing that lasts depends on it.
 pub type Mobility<'a> = &'a (dyn Fn(f64) -> f64 + Sync);
@@ -118,7 +122,9 @@ impl Balance<'_> {
                 (contacts, last) = (touched, f64::INFINITY);
                 continue;
             }
-            let held = self.held(&contacts, &points(self.ground, &contacts), value)?;
+            // Newton's method comes near the end of the run: that alone is found to all digits.
+            let resolution = if last.is_finite() { points } else { points_on_the_way };
+            let held = self.held(&contacts, &resolution(self.ground, &contacts), value)?;
             if sense < 0.0 && self.lets_go(&held) {
                 continue;
             }
@@ -127,7 +133,7 @@ impl Balance<'_> {
                 let newton = held.jacobian.clone().lu().solve(&-&held.excess);
                 if let Some(step) = newton.filter(|step| step.iter().all(|x| x.is_finite())) {
                     let size = step.component_div(&self.scales(&contacts).edges).amax();
-                    if size <= CONVERGED || (size <= 1e-10 && size > 0.3 * last) {
+                    if last.is_finite() && size <= CONVERGED || (size <= 1e-10 && size > 0.3 * last) {
                         if sense < 0.0 {
                             return Ok(Some(held));
                         }
@@ -145,11 +151,13 @@ impl Balance<'_> {
                 }
             }
             last = f64::INFINITY;
-            if sense > 0.0
-                && let Some(touched) = self.touched(&held, value, passed)?
-            {
-                contacts = touched;
-                continue;
+            if sense > 0.0 && self.least_gap(&held).is_some_and(|crest| crest.gap < 0.0) {
+                // Told by all digits: beside an edge the gap is small.
+                let held = self.held(&contacts, &points(self.ground, &contacts), value)?;
+                if let Some(touched) = self.touched(&held, value, passed)? {
+                    contacts = touched;
+                    continue;
+                }
             }
             contacts = moved(&contacts, &self.damped(&held, lowest, sense, mobility)?);
         }
@@ -215,9 +223,10 @@ impl Balance<'_> {
             let inner = if k > 0 { contacts.rings[k - 1][1] } else { contacts.disc };
             let [a, b] = contacts.rings[k];
             let width = if inner > 0.0 { a - inner } else { 0.5 * a };
+            let closes = if inner > 0.0 && self.work_of_adhesion > 0.0 { CLOSES * narrow } else { narrow };
             // Without adhesion a dimple at the axis stays open.
             let dimple = inner <= 0.0 && self.work_of_adhesion == 0.0 && self.ground.is_dimpled();
-            if width >= narrow || dimple {
+            if width >= closes || dimple {
                 k += 1;
                 continue;
             }

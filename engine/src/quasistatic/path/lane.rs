@@ -13,6 +13,7 @@ use crate::quasistatic::curve::Curve;
 use crate::quasistatic::energy;
 use crate::quasistatic::jump::{self, EdgeDirection};
 use crate::quasistatic::monotone::Monotone;
+use crate::root;
 use std::sync::Arc;
 
 /// Control values nearer to each other than this share of themselves are one.
@@ -106,8 +107,6 @@ impl Lane {
 
     /// The first place between two on a stable stretch of zones at which contact has the radius `s`; `None` where it has not.
     fn reaches(&self, s: f64, [from, to]: [Place; 2]) -> Option<Place> {
-        /// Halvings of the edge of the zone.
-        const HALVINGS: usize = 60;
         let contact = |place: Place| self.solution.edges(place).contact_radius;
         if contact(from) >= s {
             return Some(from);
@@ -115,13 +114,9 @@ impl Lane {
         if contact(to) < s {
             return None;
         }
-        let [mut lo, mut hi] = [from, to].map(|place| self.solution.at(place).contact_radius);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (lo + hi);
-            let reached = self.solution.place(middle).is_none_or(|place| contact(place) >= s);
-            if reached { hi = middle } else { lo = middle }
-        }
-        self.solution.place(hi)
+        let [lo, hi] = [from, to].map(|place| self.solution.at(place).contact_radius);
+        let [_, c] = root::halved(lo, hi, |c| self.solution.place(c).is_some_and(|place| contact(place) < s));
+        self.solution.place(c)
     }
 
     /// The first place between two on a stable stretch at which `turn` is reached; `None` where it is not.

@@ -11,12 +11,10 @@ use crate::annuli::{Around, Contacts, GapMinimum, points};
 use crate::disc::{Local, Place};
 use crate::quasistatic::descent::stable_start;
 use crate::quasistatic::jump::{self, EdgeDirection};
+use crate::root::RootBracket;
 
 /// A gap that is nothing, in waves.
 const TOUCHES: f64 = 1e-11;
-
-/// Halvings and secants by which a touch is located.
-const LOCATED: usize = 80;
 
 impl Course<'_, '_> {
     /// The disc at a place, held at its own control value.
@@ -96,35 +94,33 @@ impl Course<'_, '_> {
         /// The part of the gap's own length around the last place of the crest in which it is looked for.
         const NEAR: f64 = 1.0 / 14.0;
         let (solution, ground) = (&lane.solution, self.balance.ground);
-        let [mut lo, mut hi] = [from, to].map(|place| solution.at(place).contact_radius);
+        let [lo, hi] = [from, to].map(|place| solution.at(place).contact_radius);
         let on = |s: f64| solution.place(s).unwrap_or(to);
-        let (mut below, mut above, mut best) = (f64::NAN, crest.gap, crest);
-        let mut side = 0;
-        for k in 0..LOCATED {
-            if self.balance.progress.stop() {
-                return Err(PathError::Cancelled);
-            }
-            let secant = (lo * above - hi * below) / (above - below);
-            let s = if k > 2 && secant > lo && secant < hi { secant } else { 0.5 * (lo + hi) };
-            if s <= lo || s >= hi || hi - lo <= 4.0 * f64::EPSILON * hi {
-                break;
-            }
-            let held = self.disc(&solution.at(on(s)))?;
+        let (mut best, mut failed) = (crest, None);
+        let mut gap = |s: f64| {
+            let held = self.disc(&solution.at(on(s))).map_err(|error| failed = Some(error)).ok()?;
             let around = Around::new(ground, &held.state, held.approach);
             let near = NEAR * ground.length_at(best.radius);
             let found =
                 around.minimum([(best.radius - near).max(s), (best.radius + near).min(ground.reach())]);
-            if found.gap < 0.0 {
-                (hi, above, best) = (s, found.gap, found);
-                below = if side == 1 { 0.5 * below } else { below };
-                side = 1;
-            } else {
-                (lo, below) = (s, found.gap);
-                above = if side == -1 { 0.5 * above } else { above };
-                side = -1;
+            if found.gap <= 0.0 {
+                best = found;
             }
+            (!self.balance.progress.stop()).then_some(found.gap)
+        };
+        let bracket = gap(lo).and_then(|below| RootBracket::new([lo, below], [hi, crest.gap]));
+        let touch = bracket.and_then(|mut bracket| {
+            bracket.close(4.0 * f64::EPSILON * hi, &mut gap)?;
+            Some(bracket.end(false))
+        });
+        if let Some(error) = failed {
+            return Err(error);
         }
-        Ok((on(hi), best))
+        if self.balance.progress.stop() {
+            return Err(PathError::Cancelled);
+        }
+        // Where the first place touches already, it is the first touch.
+        Ok((on(touch.unwrap_or(lo)), best))
     }
 
     /// Runs from the limit point at the outer end of a stretch to where the edge lands, with what touches on the way.

@@ -3,6 +3,7 @@
 use super::balance::{Balance, HeldEdges, keeps_widths, moved};
 use crate::annuli::{Contacts, Resolution, points};
 use crate::problem::Control;
+use crate::root::RootBracket;
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 use std::f64::consts::PI;
 
@@ -40,6 +41,16 @@ pub struct ArcScales {
     pub control: f64,
 }
 
+impl ArcScales {
+    /// A change of edges and control that is told in these units, in others.
+    fn changed(&self, to: &Self, change: &DVector<f64>) -> DVector<f64> {
+        DVector::from_fn(change.len(), |i, _| match (self.edges.get(i), to.edges.get(i)) {
+            (Some(before), Some(after)) => change[i] * before / after,
+            _ => change[i] * self.control / to.control,
+        })
+    }
+}
+
 impl PathPoint {
     /// The part of the tangent that is the control's.
     pub fn along_control(&self) -> f64 {
@@ -66,8 +77,8 @@ pub struct PathStep<'a, 'b> {
     from: &'a PathPoint,
     points: Resolution,
     row: DVector<f64>,
-    /// The second derivative by the length at the start, as the step before left it.
-    bend: Option<DVector<f64>>,
+    /// The curve up to the start, where points before it are known.
+    past: Option<Interpolant>,
 }
 
 impl Balance<'_> {
@@ -155,15 +166,7 @@ impl PathPoint {
     #[must_use]
     pub fn rescaled(self, balance: &Balance<'_>) -> Self {
         let scales = balance.scales(self.contacts());
-        let n = scales.edges.len();
-        let mut tangent = DVector::from_fn(n + 1, |i, _| {
-            let ratio = if i < n {
-                self.scales.edges[i] / scales.edges[i]
-            } else {
-                self.scales.control / scales.control
-            };
-            self.tangent[i] * ratio
-        });
+        let mut tangent = self.scales.changed(&scales, &self.tangent);
         let norm = tangent.norm();
         tangent /= norm;
         Self { tangent, scales, ..self }
@@ -174,13 +177,27 @@ impl<'a, 'b> PathStep<'a, 'b> {
     /// Steps from `from`.
     pub fn new(balance: &'a Balance<'b>, from: &'a PathPoint) -> Self {
         let row = from.tangent.clone();
-        Self { balance, from, points: points(balance.ground, from.contacts()), row, bend: None }
+        Self { balance, from, points: points(balance.ground, from.contacts()), row, past: None }
     }
 
-    /// The same where the curve is known to bend so.
+    /// The same where the curve has come through these points with the contacts of the start: it goes on as the polynomial through all of
+    /// them and their tangents.
     #[must_use]
-    pub fn bent(self, bend: Option<DVector<f64>>) -> Self {
-        Self { bend, ..self }
+    pub fn after(self, past: &[PathPoint]) -> Self {
+        let known = past.iter().map(|point| (self.offset(point).dot(&self.row), point));
+        let known: Vec<_> = known.chain([(0.0, self.from)]).collect();
+        let past = (known.len() > 1).then(|| self.through(&known));
+        Self { past, ..self }
+    }
+
+    /// The polynomial through points at their distances, with their tangents.
+    fn through(&self, points: &[(f64, &PathPoint)]) -> Interpolant {
+        let mut way = Interpolant::default();
+        for (length, point) in points {
+            way.through(*length, self.offset(point));
+            way.touching(*length, &self.rate_of(point));
+        }
+        way
     }
 
     /// Steps measured by the way of one edge, in waves, on the side to which it goes along the tangent: close to a corner of the gap
@@ -188,7 +205,7 @@ impl<'a, 'b> PathStep<'a, 'b> {
     pub fn of_edge(balance: &'a Balance<'b>, from: &'a PathPoint, edge: usize) -> Self {
         let mut row = DVector::zeros(from.tangent.len());
         row[edge] = if from.tangent[edge] < 0.0 { -1.0 } else { 1.0 };
-        Self { balance, from, points: points(balance.ground, from.contacts()), row, bend: None }
+        Self { balance, from, points: points(balance.ground, from.contacts()), row, past: None }
     }
 
     /// Where it starts.
@@ -212,9 +229,10 @@ impl<'a, 'b> PathStep<'a, 'b> {
         &self.from.tangent * (length / along.max(1e-6))
     }
 
-    /// The tangent at a point of the step, scaled to 1 along that of the start.
+    /// The tangent at a point with the contacts of the start, in the units of that, scaled to 1 along its tangent.
     pub fn rate_of(&self, point: &PathPoint) -> DVector<f64> {
-        &point.tangent / point.tangent.dot(&self.row)
+        let tangent = point.scales.changed(&self.from.scales, &point.tangent);
+        &tangent / tangent.dot(&self.row)
     }
 
     /// The point at the distance `length` along the tangent of the start, beginning at the sum of the start and `guess` in the units of
@@ -256,33 +274,11 @@ impl<'a, 'b> PathStep<'a, 'b> {
         None
     }
 
-    /// The point at the distance `length`, from the tangent and the bend; `None` where the step is too long for its rules.
+    /// The point at the distance `length`, from what is known of the curve; `None` where the step is too long for its rules.
     pub fn taken(&self, length: f64) -> Option<PathPoint> {
-        let line = self.line(length);
-        let guess = self.bend.as_ref().map(|bend| &line + bend * (0.5 * length * length));
-        let bent = guess.and_then(|guess| self.to(length, &guess));
-        let (point, _) = bent.or_else(|| self.to(length, &line))?;
+        let going_on = self.past.as_ref().and_then(|past| self.to(length, &past.at(length).0));
+        let (point, _) = going_on.or_else(|| self.to(length, &self.line(length)))?;
         self.allowed(&point).then_some(point)
-    }
-
-    /// A point of the step as the start of the next one, and how the curve bends there: as the cubic with the tangents of both ends.
-    pub fn left_at(&self, length: f64, end: PathPoint) -> (PathPoint, Option<DVector<f64>>) {
-        let (offset, [before, after]) = (self.offset(&end), [self.line(1.0), self.rate_of(&end)]);
-        let bend = ((before * 2.0 + &after * 4.0) - offset * (6.0 / length)) / length;
-        let scales = end.scales.clone();
-        let next = end.rescaled(self.balance);
-        let n = scales.edges.len();
-        let rescaled = |x: &DVector<f64>| {
-            DVector::from_fn(n + 1, |i, _| match (scales.edges.get(i), next.scales.edges.get(i)) {
-                (Some(before), Some(after)) => x[i] * before / after,
-                _ => x[i] * scales.control / next.scales.control,
-            })
-        };
-        // By the length along the new tangent.
-        let (speed, bend) = (rescaled(&after).norm(), rescaled(&bend));
-        let across = (&bend - &next.tangent * next.tangent.dot(&bend)) / (speed * speed);
-        let known = across.iter().all(|x| x.is_finite()).then_some(across);
-        (next, known)
     }
 
     /// The step up to `end`, at the distance `length`, as a polynomial in the length, through states that are added until one lies on it
@@ -296,13 +292,12 @@ impl<'a, 'b> PathStep<'a, 'b> {
             x.insert_row(n, last)
         };
         let slope = |[approach, force]: [f64; 2]| if by_force { -approach } else { force };
-        let ends =
-            [(DVector::zeros(self.row.len()), self.from), (self.offset(end), end)].map(|(x, point)| {
-                let value = slope([point.held.approach, point.held.force]);
-                let rate = slope(balance.slopes(point)) / point.tangent.dot(&self.row);
-                [with(x, value), with(self.rate_of(point), rate)]
-            });
-        let mut way = Interpolant::between(length, ends);
+        let mut way = Interpolant::default();
+        for (length, point) in [(0.0, self.from), (length, end)] {
+            way.through(length, with(self.offset(point), slope([point.held.approach, point.held.force])));
+            let rate = slope(balance.slopes(point)) / point.tangent.dot(&self.row);
+            way.touching(length, &with(self.rate_of(point), rate));
+        }
         for share in ADDED {
             let guess = way.at(length * share).0;
             let (x, value, off) = self.near(length * share, guess.rows(0, self.row.len()).into_owned())?;
@@ -382,73 +377,53 @@ impl<'a, 'b> PathStep<'a, 'b> {
         measure: &mut dyn FnMut(&PathPoint) -> Option<f64>,
     ) -> Option<(f64, PathPoint)> {
         const ROUNDING: f64 = 1e-14;
-        let (mut lo, mut f_lo) = (0.0, at_start);
-        let (mut hi, mut f_hi) = (end.0, measure(end.1)?);
+        /// Places nearer to each other than this share of the step add nothing to the polynomial but their rounding.
+        const APART: f64 = 1e-4;
+        let near = ROUNDING * end.0.max(1e-3);
         let mut best = (end.0, end.1.clone());
-        if (f_lo > 0.0) == (f_hi > 0.0) {
+        let Some(mut bracket) = RootBracket::new([0.0, at_start], [end.0, measure(end.1)?]) else {
             return Some(best);
-        }
-        let mut side = 0;
+        };
+        let mut way = self.through(&[(0.0, self.from), end]);
         let curve = self.offset(end.1) - self.line(end.0);
-        for _ in 0..80 {
-            if (hi - lo).abs() <= ROUNDING * end.0.max(1e-3) {
-                break;
-            }
-            // The Illinois rule, kept off the ends of its bracket.
-            let mut length = (lo * f_hi - hi * f_lo) / (f_hi - f_lo);
-            if !(length > lo && length < hi) {
-                length = 0.5 * (lo + hi);
-            }
+        bracket.find(near, |length| {
             let share = length / end.0;
-            let guess = if (best.0 - length).abs() < 1e-3 * end.0 {
-                self.offset(&best.1)
-                    + &best.1.tangent * ((length - best.0) / best.1.tangent.dot(&self.row).max(1e-6))
-            } else {
-                self.line(length) + &curve * (share * share)
-            };
-            let (point, _) = self.to(length, &guess)?;
-            let f = measure(&point)?;
-            let moved = (length - best.0).abs();
+            let (point, _) = self
+                .to(length, &way.at(length).0)
+                .or_else(|| self.to(length, &(self.line(length) + &curve * (share * share))))?;
+            if way.nodes.iter().all(|node| (node - length).abs() > APART * end.0) {
+                way.through(length, self.offset(&point));
+                way.touching(length, &self.rate_of(&point));
+            }
+            let value = measure(&point);
             best = (length, point);
-            if f == 0.0 || moved <= ROUNDING * end.0 {
-                break;
-            }
-            if (f > 0.0) == (f_hi > 0.0) {
-                (hi, f_hi) = (length, f);
-                if side == 1 {
-                    f_lo *= 0.5;
-                }
-                side = 1;
-            } else {
-                (lo, f_lo) = (length, f);
-                if side == -1 {
-                    f_hi *= 0.5;
-                }
-                side = -1;
-            }
-        }
+            value
+        })?;
         Some(best)
     }
 }
 
 /// A way as a polynomial in Newton's form: what is known of it at each node in turn.
+#[derive(Default)]
 pub struct Interpolant {
     nodes: Vec<f64>,
     coefficients: Vec<DVector<f64>>,
 }
 
 impl Interpolant {
-    /// The cubic from 0 to `length` with value and rate at both ends.
-    fn between(length: f64, [[start, rate], [end, last]]: [[DVector<f64>; 2]; 2]) -> Self {
-        let chord = (end - &start) / length;
-        let second = (&chord - &rate) / length;
-        let third = (last - chord * 2.0 + &rate) / (length * length);
-        Self { nodes: vec![0.0, 0.0, length, length], coefficients: vec![start, rate, second, third] }
-    }
-
     /// Adds the value at one more place.
     fn through(&mut self, x: f64, value: DVector<f64>) {
-        let left = self.nodes.iter().fold(value - self.at(x).0, |left, node| left / (x - node));
+        let known = if self.nodes.is_empty() { value } else { value - self.at(x).0 };
+        let left = self.nodes.iter().fold(known, |left, node| left / (x - node));
+        self.nodes.push(x);
+        self.coefficients.push(left);
+    }
+
+    /// Adds the derivative at the place that was added last.
+    fn touching(&mut self, x: f64, rate: &DVector<f64>) {
+        let known = rate - self.at(x).1;
+        let others = self.nodes.len().saturating_sub(1);
+        let left = self.nodes[..others].iter().fold(known, |left, node| left / (x - node));
         self.nodes.push(x);
         self.coefficients.push(left);
     }

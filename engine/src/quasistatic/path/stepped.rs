@@ -7,7 +7,6 @@ use super::balance::Balance;
 use super::error::PathError;
 use super::point::{PathPoint, PathStep};
 use crate::annuli::{Around, Contacts, GapMinimum};
-use nalgebra::DVector;
 
 /// The shortest step, in the units of the arc length.
 const SHORTEST: f64 = 1e-9;
@@ -60,19 +59,19 @@ pub struct TakenStep<'a, 'b> {
 }
 
 impl<'b> Balance<'b> {
-    /// The step from `from`, of the length asked for where no rule makes it shorter; `None` where even the shortest breaks one. `fits`
-    /// says whether it may end at a point.
+    /// The step from `from`, to which the curve has come through the points of `past`, of the length asked for where no rule makes it
+    /// shorter; `None` where even the shortest breaks one. `fits` says whether it may end at a point.
     pub fn step<'a>(
         &'a self,
         from: &'a PathPoint,
         mut length: f64,
-        bend: Option<DVector<f64>>,
+        past: &[PathPoint],
         fits: &dyn Fn(&PathPoint) -> bool,
     ) -> Option<TakenStep<'a, 'b>> {
         if let Some((edge, way, side)) = self.corner_ahead(from, length) {
             return self.led(from, edge, way, side);
         }
-        let step = PathStep::new(self, from).bent(bend);
+        let step = PathStep::new(self, from).after(past);
         // Faster than its tangent said, or on other equilibria: shorter steps see it coming.
         let taken = |length: f64| step.taken(length).filter(|end| !self.crosses(from, end) && fits(end));
         while length >= SHORTEST {

@@ -8,12 +8,14 @@ use super::balance::HeldEdges;
 use super::course::Course;
 use super::error::PathError;
 use super::event::{Direction, Event, EventKind, PathState};
+use super::follow::{FIRST, GROWTH, LONGEST, PAST};
 use super::point::PathStep;
 use super::setting::{Path, PathStop, TurnReached};
 use super::stepped::{SingularSide, TakenStep};
 use crate::annuli::{Around, Contacts, GapMinimum};
 use crate::disc::chebyshev;
 use crate::problem::{Control, Turn};
+use crate::root::RootBracket;
 
 /// A gap below so many waves may be about to close.
 const CLOSING: f64 = 0.02;
@@ -120,15 +122,13 @@ impl Course<'_, '_> {
 
     /// Follows the contacts up to the next event, which is passed.
     fn risen(&mut self, from: &HeldEdges) -> Result<HeldEdges, PathError> {
-        const FIRST: f64 = 0.02;
-        const LONGEST: f64 = 0.15;
         const SHORTEST: f64 = 1e-10;
         let lost = |held: &HeldEdges| PathError::Lost { control_value: held.control_value };
         let mut point = self.balance.point(from.clone(), 1.0).ok_or_else(|| lost(from))?;
-        let mut length = FIRST;
+        let (mut length, mut past) = (FIRST, Vec::new());
         loop {
             self.counted(&point.held)?;
-            let step = PathStep::new(self.balance, &point);
+            let step = PathStep::new(self.balance, &point).after(&past);
             let Some(next) = step.taken(length) else {
                 length *= 0.5;
                 if length < SHORTEST {
@@ -169,8 +169,9 @@ impl Course<'_, '_> {
                 let (contacts, delta) = (next.contacts().clone(), next.held.approach);
                 return self.begun(&contacts, crest.radius, delta);
             }
-            point = next;
-            length = (1.5 * length).min(LONGEST);
+            past.push(std::mem::replace(&mut point, next));
+            past.drain(..past.len().saturating_sub(PAST));
+            length = (GROWTH * length).min(LONGEST);
         }
     }
 
@@ -221,36 +222,12 @@ impl Course<'_, '_> {
                 return None;
             }
         }
-        let (mut hi, mut f_hi, mut best, mut radius) = high?;
-        let mut side = 0;
-        for _ in 0..60 {
-            let mut delta = (lo * f_hi - hi * f_lo) / (f_hi - f_lo);
-            if !(delta > lo && delta < hi) {
-                delta = 0.5 * (lo + hi);
-            }
-            if hi - lo <= 1e-15 * hi.abs().max(1e-3 * wave) {
-                break;
-            }
-            let (next, [at, p]) = least(delta, &best.state.contacts)?;
-            let moved = (delta - best.approach).abs();
+        let (hi, f_hi, mut best, mut radius) = high?;
+        RootBracket::new([lo, f_lo], [hi, f_hi])?.find(1e-15 * hi.abs().max(wave), |delta| {
+            let (next, [at, pressure]) = least(delta, &best.state.contacts)?;
             (best, radius) = (next, at);
-            if p >= 0.0 {
-                (hi, f_hi) = (delta, p);
-                if side == 1 {
-                    f_lo *= 0.5;
-                }
-                side = 1;
-            } else {
-                (lo, f_lo) = (delta, p);
-                if side == -1 {
-                    f_hi *= 0.5;
-                }
-                side = -1;
-            }
-            if moved <= 1e-15 * wave {
-                break;
-            }
-        }
+            Some(pressure)
+        })?;
         let touches = self.balance.least_gap(&best).is_some_and(|crest| crest.gap < 0.0);
         (!touches && before.is_none_or(|before| best.approach <= before)).then_some((radius, best))
     }

@@ -18,6 +18,7 @@ use crate::quasistatic::energy::{self, Losses};
 use crate::quasistatic::equilibrium::State;
 use crate::quasistatic::jump::{self, EdgeDirection, Landing};
 use crate::quasistatic::monotone::{Monotone, weighted};
+use crate::root;
 use crate::zone::{Ends, Equilibria, FaultKind, ZoneAt, ZoneFault, ZoneState, equilibria};
 use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
@@ -43,9 +44,6 @@ const SMALLEST: f64 = 1e-4;
 
 /// How far beyond a corner the edge of a contact that passes it is looked at, of the radius.
 const BEYOND_CORNER: f64 = 1e-3;
-
-/// Halvings of a place with a given contact radius.
-const OF_RADIUS: usize = 80;
 
 /// The loop of the gap of `table` with adhesion that has a range (E* = 1): from apart to the turn and back until the bodies are apart.
 ///
@@ -332,15 +330,11 @@ fn beyond(solution: &dyn Solution, place: Place, fault: Option<ZoneFault>) -> Pa
 /// The place of the outermost zone with contact of the radius `s`.
 fn place_of(solution: &dyn Solution, s: f64) -> Option<Place> {
     let contact = |c: f64| solution.place(c).map(|place| solution.edges(place).contact_radius);
-    let (mut lo, mut hi) = (s, solution.reach());
-    if contact(hi)? < s {
+    if contact(solution.reach())? < s {
         return None;
     }
-    for _ in 0..OF_RADIUS {
-        let middle = 0.5 * (lo + hi);
-        if contact(middle).is_some_and(|found| found >= s) { hi = middle } else { lo = middle }
-    }
-    solution.place(hi)
+    let [_, c] = root::halved(s, solution.reach(), |c| contact(c).is_none_or(|found| found < s));
+    solution.place(c)
 }
 
 /// What is known of a path beside its states.

@@ -15,6 +15,7 @@ use crate::quasistatic::path::stepped::ROUNDING;
 use crate::quasistatic::path::{Event, Losses};
 use crate::quasistatic::{StatePoint, energy, landscape};
 use crate::ritz::{self, NewtonSettings};
+use crate::root::RootBracket;
 
 /// A landing outward is looked for further out by this factor, and up to this multiple of the radius.
 const OUTWARD_STEP: f64 = 1.5;
@@ -25,9 +26,6 @@ const NEAR: f64 = 0.5;
 
 /// Within this share of its radius the walker stands on a stop.
 const LEFT: f64 = 1e-12;
-
-/// How often the place of a touch is narrowed.
-const ROUNDS: usize = 80;
 
 /// A place at which a step ends: a limit point of the control, or a corner of the curve.
 #[derive(Debug, Clone, Copy)]
@@ -226,41 +224,17 @@ impl Walk<'_> {
         };
         let wave = equilibrium.problem.gap.feature_length().unwrap_or(from);
         let [start, end] = [from, to].map(crest);
-        let (mut near, mut far) = ((from, start?.gap), (to, end?.gap));
-        if near.1 <= ROUNDING * wave || far.1 >= 0.0 || near.1.is_nan() {
+        let ([near, far], mut at) = ([start?.gap, end?.gap], end?.radius);
+        if near <= ROUNDING * wave || far >= 0.0 || near.is_nan() {
             return None;
         }
-        let mut at = end?.radius;
-        let mut side = 0;
-        for _ in 0..ROUNDS {
-            // The Illinois rule.
-            let mut s = (near.0 * far.1 - far.0 * near.1) / (far.1 - near.1);
-            if !((s > near.0 && s < far.0) || (s < near.0 && s > far.0)) {
-                s = 0.5 * (near.0 + far.0);
-            }
-            if (far.0 - near.0).abs() <= 4.0 * f64::EPSILON * s {
-                break;
-            }
+        let mut bracket = RootBracket::new([from, near], [to, far])?;
+        bracket.close(4.0 * f64::EPSILON * from.max(to), |s| {
             let found = crest(s)?;
             at = found.radius;
-            if found.gap > 0.0 {
-                near = (s, found.gap);
-                if side == 1 {
-                    far.1 *= 0.5;
-                }
-                side = 1;
-            } else {
-                far = (s, found.gap);
-                if side == -1 {
-                    near.1 *= 0.5;
-                }
-                side = -1;
-                if found.gap == 0.0 {
-                    break;
-                }
-            }
-        }
-        Some((rounded(far.0), at))
+            Some(found.gap)
+        })?;
+        Some((rounded(bracket.end(false)), at))
     }
 
     /// A jump outward on whose way a crest touches, so that rings take part in it; `None` where the disc alone runs.

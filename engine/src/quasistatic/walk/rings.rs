@@ -100,7 +100,7 @@ impl Walk<'_> {
         // From a limit point to the side on which its bend says that the control goes on: a step that ends elsewhere passes another.
         let bend = edges::of_control(self.control, scales, &here.curvature());
         let goes_on = |end: &path::PathPoint| at != At::Limit || end.along_control() * bend > 0.0;
-        let mut taken = balance.step(&from, wanted, None, &goes_on).ok_or_else(lost)?;
+        let mut taken = balance.step(&from, wanted, &[], &goes_on).ok_or_else(lost)?;
         let whole = taken.length;
         let mut arrival = Arrival::Step;
         let said = |error: PathError| WalkFailure::Edges(error.to_string());
