@@ -17,10 +17,10 @@
 
 use super::chebyshev::{self, ChebyshevRule};
 use super::clusters::SumPart;
-use super::panels::{Panel, Panels};
+use super::panels::Panels;
 use super::span::Place;
 use crate::elementary::{acosh, asin, asinh, cosh, pow, sin, sinh};
-use crate::gap::panels::{Span, Variable};
+use crate::gap::panels::Variable;
 use crate::progress::Progress;
 use gauss_quad::GaussLegendre;
 use std::f64::consts::{FRAC_1_PI, FRAC_2_PI};
@@ -69,7 +69,7 @@ fn rule(distance: f64, width: f64) -> &'static [[f64; 2]] {
 
 /// The deformed gap at `r ≥ s` around a disc of radius `s` at the approach `delta`; the panels must reach to `r`.
 pub fn gap_from(panels: &Panels, s: f64, delta: f64, r: f64) -> f64 {
-    gap_by(panels, s, r, |i, ends| stretch_outside(panels, i, &panels.list()[i], delta, r, ends))
+    gap_by(panels, s, r, |i, ends| stretch_outside(panels, i, delta, r, ends))
 }
 
 /// The sum over the panels between s and r of what `stretch` makes of each, and of its ends there, times 2/π.
@@ -90,14 +90,14 @@ fn over_panels(panels: &Panels, s: f64, r: f64, stretch: impl Fn(usize, [f64; 2]
     (first..=last).map(part).sum::<f64>()
 }
 
-/// ∫_s^r f/√(r² − a²) da of a function asked at places of the panels, which must reach to `r`: to the last digits of the table where
+/// ∫_s^r f/√(r² − a²) da of a function of places of the panels and of g there; these must reach to `r`: to the last digits of the table where
 /// f is as smooth on every panel as g is.
-pub fn sum_from(panels: &Panels, s: f64, r: f64, f: &dyn Fn(Place) -> f64) -> f64 {
+pub fn sum_from(panels: &Panels, s: f64, r: f64, f: &dyn Fn(Place, f64) -> f64) -> f64 {
     over_panels(panels, s, r, |i, ends| {
         let span = panels.list()[i].span;
         // A small part of a panel is nearly a line.
         let small = ends[1] - ends[0] <= SMALL * (span.hi - span.lo) && span.variable != Variable::Fifth;
-        sum_by(span, i, r, ends, &RULES[usize::from(small)], f)
+        sum_by(panels, i, r, ends, &RULES[usize::from(small)], f)
     })
 }
 
@@ -110,66 +110,89 @@ pub fn rise_from(panels: &Panels, s: f64, r: f64) -> f64 {
 pub fn gap_far(panels: &Panels, gap: f64, s: f64, delta: f64, r: f64) -> f64 {
     let last = panels.place(s).panel;
     let part = |i: usize| {
-        let panel = &panels.list()[i];
-        stretch_outside(panels, i, panel, delta, r, [panel.span.lo, panel.span.hi.min(s)])
+        let span = panels.list()[i].span;
+        stretch_outside(panels, i, delta, r, [span.lo, span.hi.min(s)])
     };
     gap - delta - FRAC_2_PI * (0..=last).map(part).sum::<f64>()
 }
 
 /// ∫ (g − δ)/√(r² − a²) da from `lo` to `hi` on one panel.
-fn stretch_outside(
-    panels: &Panels,
-    index: usize,
-    panel: &Panel,
-    delta: f64,
-    r: f64,
-    [lo, hi]: [f64; 2],
-) -> f64 {
+fn stretch_outside(panels: &Panels, index: usize, delta: f64, r: f64, [lo, hi]: [f64; 2]) -> f64 {
     if hi <= lo {
         return 0.0;
     }
     let rule = rule(r - hi, hi - lo);
-    sum_by(panel.span, index, r, [lo, hi], rule, &|place| panels.value(place) - delta)
+    sum_by(panels, index, r, [lo, hi], rule, &|_, g| g - delta)
 }
 
-/// ∫ f/√(r² − a²) da from `lo` to `hi` on one panel by a rule.
+/// Four numbers at four places of a panel.
+type Fours<'a> = &'a dyn Fn([f64; 4]) -> [f64; 4];
+
+/// ∫ f dv by a rule. `node` gives the place of v on a panel and a number of its own, `of` what the panel says there, four places at
+/// once, and `f` takes all three.
+fn by_fours(
+    rule: &[[f64; 2]],
+    [from, to]: [f64; 2],
+    node: &dyn Fn(f64) -> [f64; 2],
+    of: Fours<'_>,
+    f: &dyn Fn([f64; 2], f64) -> f64,
+) -> f64 {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let mut sum = 0.0;
+    for four in rule.chunks(4) {
+        let nodes: [_; 4] = std::array::from_fn(|k| node(middle + half * four.get(k).unwrap_or(&four[0])[0]));
+        let found = of(nodes.map(|[x, _]| x));
+        for (([_, weight], node), found) in four.iter().zip(nodes).zip(found) {
+            sum += weight * f(node, found);
+        }
+    }
+    half * sum
+}
+
+/// ∫ f/√(r² − a²) da from `lo` to `hi` on one panel by a rule, of a function of places and of g there.
 fn sum_by(
-    span: Span,
+    panels: &Panels,
     index: usize,
     r: f64,
     [lo, hi]: [f64; 2],
     rule: &[[f64; 2]],
-    f: &dyn Fn(Place) -> f64,
+    f: &dyn Fn(Place, f64) -> f64,
 ) -> f64 {
     if hi <= lo {
         return 0.0;
     }
+    let span = panels.list()[index].span;
     let [centre, half] = span.line();
-    let value = |v: f64| f(Place { panel: index, x: ((v - centre) / half).clamp(-1.0, 1.0) });
-    let over = |from: f64, to: f64, f: &dyn Fn(f64) -> f64| -> f64 {
-        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        half * rule.iter().map(|[x, weight]| weight * f(middle + half * x)).sum::<f64>()
-    };
+    let x = |v: f64| ((v - centre) / half).clamp(-1.0, 1.0);
+    let g: Fours<'_> = &|x| panels.four_values(index, x);
+    let value = |x: f64, g: f64| f(Place { panel: index, x }, g);
+    let plain = |[x, _]: [f64; 2], g: f64| value(x, g);
     match span.variable {
         Variable::Fifth if r - hi >= hi => {
             let end = span.hi;
             let at = |a: f64| pow(a / end, 0.2);
-            over(at(lo), at(hi), &|u| {
+            by_fours(rule, [at(lo), at(hi)], &|u| [x(u), u], g, &|[x, u], g| {
                 let a = end * u.powi(5);
-                value(u) * 5.0 * end * u.powi(4) / ((r - a) * (r + a)).sqrt()
+                value(x, g) * 5.0 * end * u.powi(4) / ((r - a) * (r + a)).sqrt()
             })
         }
         Variable::Fifth => {
-            let end = span.hi;
-            over(asin(lo / r), asin((hi / r).min(1.0)), &|psi| value(pow(r * sin(psi) / end, 0.2)))
+            let node = |psi: f64| [x(pow(r * sin(psi) / span.hi, 0.2)), psi];
+            by_fours(rule, [asin(lo / r), asin((hi / r).min(1.0))], &node, g, &plain)
         }
-        Variable::Radius => over(asin(lo / r), asin((hi / r).min(1.0)), &|psi| value(r * sin(psi))),
+        Variable::Radius => {
+            let node = |psi: f64| [x(r * sin(psi)), psi];
+            by_fours(rule, [asin(lo / r), asin((hi / r).min(1.0))], &node, g, &plain)
+        }
         Variable::Root { base } => {
             let height = (r - base).sqrt();
             let angle = |a: f64| asin(((a - base).max(0.0).sqrt() / height).min(1.0));
-            over(angle(lo), angle(hi), &|psi| {
+            let node = |psi: f64| {
                 let y = height * sin(psi);
-                value(y) * 2.0 * y / (r + base + y * y).sqrt()
+                [x(y), y]
+            };
+            by_fours(rule, [angle(lo), angle(hi)], &node, g, &|[x, y], g| {
+                value(x, g) * 2.0 * y / (r + base + y * y).sqrt()
             })
         }
     }
@@ -202,26 +225,28 @@ fn slope_outside(panels: &Panels, index: usize, r: f64, [lo, hi]: [f64; 2]) -> f
     if hi <= lo {
         return 0.0;
     }
-    let span = panels.list()[index].span;
-    let rule = &RULES[0];
-    let over = |from: f64, to: f64, f: &dyn Fn(f64) -> f64| -> f64 {
-        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        half * rule.iter().map(|[x, weight]| weight * f(middle + half * x)).sum::<f64>()
-    };
-    let place = |a: f64| Place { panel: index, x: span.place(a) };
+    let panel = &*panels.list()[index];
+    let (span, rule) = (panel.span, &RULES[0]);
+    let slope: Fours<'_> = &|x| panels.four_weighted_slopes(index, x);
     match span.variable {
-        Variable::Fifth | Variable::Radius => over(asin(lo / r), asin((hi / r).min(1.0)), &|psi| {
-            panels.values(place(r * sin(psi))).slope * sin(psi)
-        }),
+        Variable::Fifth | Variable::Radius => {
+            let node = |psi: f64| [span.place(r * sin(psi)), sin(psi)];
+            by_fours(rule, [asin(lo / r), asin((hi / r).min(1.0))], &node, slope, &|[x, sine], slope| {
+                slope / panel.weight(x) * sine
+            })
+        }
         Variable::Root { base } => {
             let height = (r - base).sqrt();
             let [centre, half] = span.line();
             let angle = |a: f64| asin(((a - base).max(0.0).sqrt() / height).min(1.0));
-            over(angle(lo), angle(hi), &|psi| {
+            let node = |psi: f64| {
                 let y = height * sin(psi);
+                [((y - centre) / half).clamp(-1.0, 1.0), y]
+            };
+            by_fours(rule, [angle(lo), angle(hi)], &node, slope, &|[x, y], slope| {
                 let a = base + y * y;
-                let x = ((y - centre) / half).clamp(-1.0, 1.0);
-                panels.slope_by_variable(Place { panel: index, x }) * (a / r) / (r + a).sqrt()
+                let by_variable = if panel.is_steep() { slope } else { slope * span.stretch(x) };
+                by_variable * (a / r) / (r + a).sqrt()
             })
         }
     }

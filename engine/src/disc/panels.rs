@@ -7,6 +7,7 @@ use super::sources::GAUSS;
 use super::span::{Place, panel_of};
 use crate::gap::{panels::Span, panels::Variable};
 use std::sync::{Arc, OnceLock};
+use wide::f64x4;
 
 /// A series ends where its coefficients fall below this share of the largest.
 const CHOP: f64 = 1e-17;
@@ -196,6 +197,24 @@ impl Panels {
         match &self.law {
             Some(law) => law.value(panel.span.radius(at.x)),
             None => chebyshev::sum(&panel.value, at.x),
+        }
+    }
+
+    /// g at four places of a panel.
+    pub fn four_values(&self, panel: usize, x: [f64; 4]) -> [f64; 4] {
+        let panel = &*self.list[panel];
+        match &self.law {
+            Some(law) => x.map(|x| law.value(panel.span.radius(x))),
+            None => chebyshev::sum4(&panel.value, f64x4::new(x)).to_array(),
+        }
+    }
+
+    /// [`Panels::weighted_slope`] at four places of a panel.
+    pub fn four_weighted_slopes(&self, panel: usize, x: [f64; 4]) -> [f64; 4] {
+        let panel = &*self.list[panel];
+        match &self.law {
+            Some(law) => x.map(|x| law.slope(panel.span.radius(x))),
+            None => chebyshev::sum4(&panel.slope, f64x4::new(x)).to_array(),
         }
     }
 

@@ -199,26 +199,31 @@ impl<'a> Equation<'a> {
 
     /// The moment at ξ and y; `None` where the disc would have no radius there, or one beyond the table.
     pub fn at(&self, xi: f64, y: f64) -> Option<StretchMoment> {
-        self.at_all(&[xi], &[y]).map(|[at]| at)
+        let mut moment = [StretchMoment::default()];
+        self.fill(&[xi], &[y], &mut moment).map(|()| moment[0])
     }
 
-    /// Several moments at once.
-    pub fn at_all<const N: usize>(&self, xi: &[f64; N], y: &[f64; N]) -> Option<[StretchMoment; N]> {
+    /// Several moments at once, into `all`.
+    pub fn fill<const N: usize>(
+        &self,
+        xi: &[f64; N],
+        y: &[f64; N],
+        all: &mut [StretchMoment; N],
+    ) -> Option<()> {
         let (sense, reach) = (self.motion.sense(), self.panels.reach());
         let radii = y.map(|y| self.radius + sense * self.radius * y);
         if !radii.iter().all(|s| *s > 0.0 && *s <= reach) {
             return None;
         }
         let values = self.panels.values_at(&radii);
-        let mut all = [StretchMoment::default(); N];
         for (i, at) in all.iter_mut().enumerate() {
-            *at = self.moment([xi[i], y[i]], radii[i], values[i])?;
+            self.moment([xi[i], y[i]], radii[i], values[i], at)?;
         }
-        Some(all)
+        Some(())
     }
 
     /// The moment at ξ and y, where the radius is s and g, ∫g and g' are `values`.
-    fn moment(&self, [xi, y]: [f64; 2], s: f64, values: [f64; 3]) -> Option<StretchMoment> {
+    fn moment(&self, [xi, y]: [f64; 2], s: f64, values: [f64; 3], into: &mut StretchMoment) -> Option<()> {
         let (sense, ls, lt) = (self.motion.sense(), self.radius, self.unit_of_time);
         let passed = lt * (xi - y);
         let control = self.value + self.rate * passed;
@@ -251,7 +256,7 @@ impl<'a> Equation<'a> {
             Control::Force => -held.approach,
             Control::Displacement | Control::Stiffness(_) => held.force,
         };
-        Some(StretchMoment {
+        *into = StretchMoment {
             time: self.time + passed,
             control,
             held,
@@ -265,7 +270,8 @@ impl<'a> Equation<'a> {
             // (G − γ) 2πs ds, of which 2πs is in the gain.
             loss: -sense * gain * ls,
             done: done * self.rate * lt,
-        })
+        };
+        Some(())
     }
 
     /// v/v₀ that belongs to φ, as the drive there, with its derivative.

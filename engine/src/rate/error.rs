@@ -1,6 +1,7 @@
 //! Why there is no pull.
 
 use crate::problem::Units;
+use crate::progress::Stopped;
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 
@@ -32,7 +33,7 @@ pub enum RateError {
     /// Without adhesion the law of the edge says nothing.
     NoAdhesion,
     /// It was no longer wanted.
-    Cancelled,
+    Stopped(Stopped),
 }
 
 impl RateError {
@@ -81,7 +82,7 @@ impl RateError {
                 "without adhesion an edge has no speed of its own: material.work_of_adhesion must be above 0"
                     .to_owned()
             }
-            Self::Cancelled => "cancelled".to_owned(),
+            Self::Stopped(Stopped) => "cancelled".to_owned(),
         }
     }
 }

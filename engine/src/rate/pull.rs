@@ -19,7 +19,7 @@ use super::snaps::{Snap, snaps};
 use super::stretch::{MotionStretch, StretchEnd};
 use crate::disc::{Panels, Table, TableError};
 use crate::problem::{Control, Part};
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -160,7 +160,7 @@ impl Puller<'_> {
     fn panels(&self, programme: &[Part], progress: &dyn Progress) -> Result<Arc<Panels>, RateError> {
         let up_to = |reach: f64| {
             self.table.up_to_while(reach, 0, progress).map_err(|error| match error {
-                TableError::Cancelled => RateError::Cancelled,
+                TableError::Stopped(Stopped) => RateError::Stopped(Stopped),
                 TableError::TooFine(refused) => RateError::Beyond { radius: refused.radius },
             })
         };

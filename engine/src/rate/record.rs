@@ -105,18 +105,19 @@ impl Record {
         &mut self,
         start: &StretchMoment,
         step: &SolvedStep,
-        again: &dyn Fn(f64) -> Option<SolvedStep>,
+        again: &dyn Fn(f64) -> Option<Box<SolvedStep>>,
     ) {
         self.steps += 1;
         let (lost, done) = (step.sums(StretchMoment::dissipation), step.sums(StretchMoment::work));
         let mut before = (0.0, start.force_rate);
         for (i, node) in step.nodes.iter().enumerate() {
             if before.1 < 0.0 && node.force_rate >= 0.0 {
-                let longest = if i + 1 == STAGES { Some(*step) } else { again(step.length * NODES[i]) };
+                let longest =
+                    if i + 1 == STAGES { Some(Box::new(*step)) } else { again(step.length * NODES[i]) };
                 let rate: &dyn Fn(&StretchMoment) -> f64 = &|at| at.force_rate;
                 let bracket = [step.length * before.0, step.length * NODES[i]];
-                let found = longest.and_then(|longest| landed(again, bracket, before.1, &longest, rate));
-                let at = found.map_or(*node, |found| *found.end());
+                let found = longest.and_then(|longest| landed(again, bracket, before.1, longest, rate));
+                let at = found.as_ref().map_or(*node, |found| *found.end());
                 let lost = found.map_or(lost[i], |found| found.sums(StretchMoment::dissipation)[STAGES - 1]);
                 let at = self.moment(&at, self.dissipated + lost);
                 self.least.push(LeastForce { at, then: at.force });

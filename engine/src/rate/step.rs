@@ -14,7 +14,7 @@ use crate::root::RootBracket;
 use nalgebra::{SMatrix, SVector};
 
 /// A step that was solved.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct SolvedStep {
     /// ξ at its beginning.
     pub from: f64,
@@ -64,11 +64,13 @@ pub fn solve(
     guess: [f64; STAGES],
     tolerance: f64,
     settings: &PullSettings,
-) -> Option<SolvedStep> {
+) -> Option<Box<SolvedStep>> {
     let mut p = guess;
+    let mut found = Box::new(SolvedStep { from: xi, length: h, ..SolvedStep::default() });
+    let nodes = &mut found.nodes;
     for _ in 0..settings.newton {
         let ways: [f64; STAGES] = std::array::from_fn(|i| y + h * dot(&WEIGHTS[i], &p));
-        let mut nodes = equation.at_all(&NODES.map(|c| xi + c * h), &ways)?;
+        equation.fill(&NODES.map(|c| xi + c * h), &ways, nodes)?;
         let mut matrix = SMatrix::<f64, STAGES, STAGES>::zeros();
         let mut right = SVector::<f64, STAGES>::zeros();
         let mut inverse = [false; STAGES];
@@ -88,10 +90,12 @@ pub fn solve(
             }
             matrix[(i, i)] += own;
         }
-        let change = matrix.lu().solve(&right)?;
+        if !matrix.lu().solve_mut(&mut right) {
+            return None;
+        }
         let mut size = 0.0_f64;
         for (i, p) in p.iter_mut().enumerate() {
-            let mut next = *p - change[i];
+            let mut next = *p - right[i];
             if next.is_nan() {
                 return None;
             }
@@ -111,14 +115,8 @@ pub fn solve(
             let damped = 1.0 - h * REAL_EIGENVALUE * start.phi_by_y;
             // An estimate that grows where the edge runs away by itself would be none.
             let error = if damped.is_finite() { h * along / damped.abs().max(1.0) } else { 0.0 };
-            return Some(SolvedStep {
-                from: xi,
-                length: h,
-                slopes: p,
-                nodes,
-                y: y + h * dot(&WEIGHTS[STAGES - 1], &p),
-                error,
-            });
+            (found.slopes, found.y, found.error) = (p, y + h * dot(&WEIGHTS[STAGES - 1], &p), error);
+            return Some(found);
         }
     }
     None
@@ -127,14 +125,14 @@ pub fn solve(
 /// The step that ends where `of` vanishes, by its length in `[from, to]`; `before` is its value at the shorter, `longest` the step at the
 /// longer one.
 pub fn landed(
-    step: &dyn Fn(f64) -> Option<SolvedStep>,
+    step: &dyn Fn(f64) -> Option<Box<SolvedStep>>,
     [from, to]: [f64; 2],
     before: f64,
-    longest: &SolvedStep,
+    longest: Box<SolvedStep>,
     of: &dyn Fn(&StretchMoment) -> f64,
-) -> Option<SolvedStep> {
-    let mut found = *longest;
-    let after = of(longest.end());
+) -> Option<Box<SolvedStep>> {
+    let mut found = longest;
+    let after = of(found.end());
     let Some(mut bracket) = RootBracket::new([from, before], [to, after]) else { return Some(found) };
     bracket.close(THERE * to, |h| {
         let tried = step(h)?;

@@ -12,7 +12,7 @@ use super::record::{Moment, Record};
 use super::settings::PullSettings;
 use super::step::{self, SolvedStep, landed};
 use super::variation::Variation;
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 
 /// Why a stretch ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,10 +88,10 @@ impl MotionStretch<'_> {
             record.moved.extend(resting);
         }
         let mut h = FIRST;
-        let mut last: Option<SolvedStep> = None;
+        let mut last: Option<Box<SolvedStep>> = None;
         for count in 0..self.settings.steps {
             if count % ASKED == 0 && progress.stop() {
-                return Err(RateError::Cancelled);
+                return Err(RateError::Stopped(Stopped));
             }
             self.onto_break(&mut here);
             let rest = 1.0 - here.y;
@@ -112,7 +112,7 @@ impl MotionStretch<'_> {
                     RateError::Lost { contact_radius: s }
                 });
             }
-            let Some(step) = self.step(&here, h, last.as_ref()) else {
+            let Some(step) = self.step(&here, h, last.as_deref()) else {
                 h *= AGAIN;
                 continue;
             };
@@ -131,7 +131,7 @@ impl MotionStretch<'_> {
                 h *= factor.min(shorter).clamp(CHANGE[0], SAFETY);
                 continue;
             }
-            let Some((step, end)) = self.cut(&here, &step) else {
+            let Some((step, end)) = self.cut(&here, step) else {
                 // The way to a break of the gap is as steep as a root: shorter steps come near.
                 h *= AGAIN;
                 continue;
@@ -171,7 +171,7 @@ impl MotionStretch<'_> {
     }
 
     /// The step of the length `h` from here, with what the step before expects of it.
-    fn step(&self, here: &Here, h: f64, last: Option<&SolvedStep>) -> Option<SolvedStep> {
+    fn step(&self, here: &Here, h: f64, last: Option<&SolvedStep>) -> Option<Box<SolvedStep>> {
         let guess = match last {
             Some(last) => {
                 let ahead = |c: f64| (here.xi - last.from + c * h) / last.length;
@@ -191,27 +191,24 @@ impl MotionStretch<'_> {
     }
 
     /// The step as far as the first of what ends it; `None` where its end is not found.
-    fn cut(&self, here: &Here, step: &SolvedStep) -> Option<(SolvedStep, Option<StretchEnd>)> {
+    fn cut(&self, here: &Here, step: Box<SolvedStep>) -> Option<(Box<SolvedStep>, Option<StretchEnd>)> {
         let at_break = self.caps.next_break(self.equation.motion, here.at.held.contact_radius);
         let sense = self.equation.motion.sense();
         let past_break = |at: &StretchMoment| at_break.map_or(-1.0, |s| sense * (at.held.contact_radius - s));
         let past_time = |at: &StretchMoment| self.until.map_or(-1.0, |until| at.time - until);
         let past_rest = |at: &StretchMoment| if self.rests { -at.drive } else { -1.0 };
-        let mut first = (*step, None);
+        let (mut first, mut ended) = (step, None);
         let ends = [None, Some(StretchEnd::Time), Some(StretchEnd::Rest)];
         let pasts: [&dyn Fn(&StretchMoment) -> f64; 3] = [&past_break, &past_time, &past_rest];
         for (past, end) in pasts.into_iter().zip(ends) {
-            if past(first.0.end()) >= 0.0 {
-                let landed = landed(
-                    &|h| self.step(here, h, Some(step)),
-                    [0.0, first.0.length],
-                    past(&here.at),
-                    &first.0,
-                    past,
-                );
-                first = (landed?, end);
+            if past(first.end()) >= 0.0 {
+                // What is asked again begins as this one.
+                let (longest, whole) = (first.length, *first);
+                let again = |h: f64| self.step(here, h, Some(&whole));
+                first = landed(&again, [0.0, longest], past(&here.at), first, past)?;
+                ended = end;
             }
         }
-        Some(first)
+        Some((first, ended))
     }
 }

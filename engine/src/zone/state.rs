@@ -29,7 +29,7 @@ use crate::elementary::asin;
 use crate::gap::Gap;
 use crate::gap::panels::Variable;
 use crate::problem::Cohesion;
-use crate::root;
+use crate::root::RootBracket;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
@@ -57,6 +57,9 @@ const ON_FALL: u32 = 8;
 /// A share of the slope of g below which an opening may close beside, and the shortest way there as a share of that between places.
 const NEARLY: f64 = 0.3;
 const SHORTEST: f64 = 1e-4;
+
+/// A turn of D is found to this share of c.
+const TURN: f64 = 1e-14;
 
 /// Inside an s with a gap at c of so many ranges there is no other.
 const FAR: f64 = 2.0;
@@ -214,9 +217,9 @@ impl Zone {
     fn energy(&self, c: f64, s: f64, approach: f64) -> f64 {
         let Cohesion { strength, .. } = self.cohesion;
         let panels = &*self.panels;
-        let pulled = outside::sum_from(panels, s, c, &|place| {
+        let pulled = outside::sum_from(panels, s, c, &|place, g| {
             let a = panels.radius(place);
-            (c - a) * (c + a) * (approach - panels.value(place))
+            (c - a) * (c + a) * (approach - g)
         });
         let width = c - s;
         // ∫_s^c (c² − a²) da.
@@ -276,7 +279,11 @@ impl Zone {
             }
             let Some(closing) = self.closing(c, [fall.lo, hi], -fall.slope) else { continue };
             let ends = [hi, fall.lo].map(|opens| {
-                let [closes, _] = root::halved(closing, opens, |s| self.opening(c, s) < 0.0);
+                let at = |s: f64| [s, self.opening(c, s)];
+                let closes = RootBracket::new(at(closing), at(opens)).map_or(opens, |mut turn| {
+                    turn.close(TURN * c, |s| Some(self.opening(c, s)));
+                    turn.end(false)
+                });
                 (c - closes) * (c + closes) / (c * c)
             });
             turns.push(ends);
@@ -299,7 +306,7 @@ impl Zone {
         let [angle, sine, cosine] = at.angle();
         let s = c * cosine;
         let values = panels.values(panels.place(s));
-        let ring = outside::sum_from(panels, s, c, &|place| panels.value(place) - values.value);
+        let ring = outside::sum_from(panels, s, c, &|_, g| g - values.value);
         let pull = 4.0 * strength * c / PI * (angle * sine - at.free / (1.0 + cosine));
         let slope = angle * c / PI * (values.slope / cosine + 2.0 * strength / sine);
         (2.0 / PI * ring + pull - range, slope)
