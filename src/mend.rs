@@ -71,7 +71,7 @@ impl Mend for CaseError {
     /// A start or an end that cannot be is a value; what is computed from them may fail.
     fn can_be_mended(&self) -> bool {
         match self {
-            Self::Cancelled => false,
+            Self::Stopped(_) => false,
             Self::Path { error, .. } => error.is_of_values(),
             _ => true,
         }
@@ -95,7 +95,7 @@ impl Mend for pulloff_engine::report::map::MapError {
         match self {
             Self::Case(error) => error.can_be_mended(),
             Self::Family(_) => true,
-            Self::Cancelled => false,
+            Self::Stopped(_) => false,
         }
     }
 }

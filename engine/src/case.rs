@@ -16,7 +16,7 @@ use crate::problem::groups::LARGE_TABOR;
 use crate::problem::{
     Adhesion, Cohesion, ContactKind, Control, Groups, Problem, Reduced, Start, Turn, Units,
 };
-use crate::progress::{Progress, Unwatched};
+use crate::progress::{Progress, Stopped, Unwatched};
 use crate::quasistatic::admissible::{Judge, falls};
 use crate::quasistatic::path::{
     Losses, Path, PathError, PathSetting, Zones, cycle, cycle_in_zone, start_in_zone, unload, unload_in_zone,
@@ -124,8 +124,8 @@ pub enum CaseError {
         shown: Box<UnitSystem>,
     },
     /// It was no longer wanted.
-    #[error("cancelled")]
-    Cancelled,
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }
 
 impl Case {
@@ -140,7 +140,7 @@ impl Case {
     /// The same for a basis that takes long: `progress` is told the share of it that is built, and may stop it.
     ///
     /// # Errors
-    /// As [`Case::new`], and [`CaseError::Cancelled`] when `progress` said stop. [`CaseError::HasRange`] where the adhesion has a range:
+    /// As [`Case::new`], and [`CaseError::Stopped`] when `progress` said stop. [`CaseError::HasRange`] where the adhesion has a range:
     /// who asks for a case expects the states of short-range adhesion.
     pub fn prepare(preset: &Preset, progress: &dyn Progress) -> Result<Self, CaseError> {
         if preset.cohesion().is_some() {
@@ -168,7 +168,7 @@ impl Case {
         let mut basis: Arc<dyn Basis> = match preset.basis {
             BasisSpec::Rings { rings, grading } => {
                 Rings::shared_with(rings, grading, progress).map_err(|error| match error {
-                    RingsError::Cancelled => CaseError::Cancelled,
+                    RingsError::Stopped(Stopped) => CaseError::Stopped(Stopped),
                     error => CaseError::Basis(error),
                 })?
             }
@@ -221,7 +221,7 @@ impl Case {
     /// The table of g from the axis to the start.
     ///
     /// # Errors
-    /// [`CaseError::Table`], and [`CaseError::Cancelled`] when `progress` said stop.
+    /// [`CaseError::Table`], and [`CaseError::Stopped`] when `progress` said stop.
     pub fn panels(&self, progress: &dyn Progress) -> Result<Arc<Panels>, CaseError> {
         let made = self.table.up_to_while(self.start, 0, progress);
         made.map_err(|error| refusal(error, self.units().length, &self.shown))
@@ -249,7 +249,7 @@ impl Case {
     /// The curve from start to end.
     ///
     /// # Errors
-    /// [`CaseError::Start`] when there is no equilibrium at the start, [`CaseError::Cancelled`] when `progress` said stop.
+    /// [`CaseError::Start`] when there is no equilibrium at the start, [`CaseError::Stopped`] when `progress` said stop.
     pub fn curve(&self, progress: &dyn Progress) -> Result<Curve, CaseError> {
         self.curve_in(Detail::Drawn, progress)
     }
@@ -283,9 +283,7 @@ impl Case {
                 .map_err(|error| self.no_path(error, self.control));
         }
         let curve = Curve::new(self.reduced.clone(), basis, table, ends, detail, progress);
-        if progress.stop() {
-            return Err(CaseError::Cancelled);
-        }
+        progress.go_on()?;
         curve.ok_or_else(|| self.no_start())
     }
 
@@ -300,16 +298,14 @@ impl Case {
     /// The same; `progress` is asked before each point.
     ///
     /// # Errors
-    /// As [`Case::trace`], and [`CaseError::Cancelled`] when `progress` said stop.
+    /// As [`Case::trace`], and [`CaseError::Stopped`] when `progress` said stop.
     pub fn trace_while(
         &self,
         curve: &Curve,
         progress: &dyn Progress,
     ) -> Result<(Branch, CurveStop), CaseError> {
         let traced = curve.traced(|settings| settings.points = TRACE_POINTS, progress);
-        if progress.stop() {
-            return Err(CaseError::Cancelled);
-        }
+        progress.go_on()?;
         traced.ok_or_else(|| self.no_start())
     }
 
@@ -327,7 +323,7 @@ impl Case {
     /// The quasi-static unloading along `curve`, reduced; `progress` is asked often.
     ///
     /// # Errors
-    /// [`CaseError::Path`] where there is none, [`CaseError::Cancelled`] when `progress` said stop.
+    /// [`CaseError::Path`] where there is none, [`CaseError::Stopped`] when `progress` said stop.
     pub fn unload(
         &self,
         curve: &Curve,
@@ -382,7 +378,7 @@ impl Case {
     /// The equilibria of adhesion with a range as far out as the start.
     ///
     /// # Errors
-    /// [`CaseError::Path`] where the start has none, [`CaseError::Cancelled`] when `progress` said stop.
+    /// [`CaseError::Path`] where the start has none, [`CaseError::Stopped`] when `progress` said stop.
     pub fn zones(&self, progress: &dyn Progress) -> Result<Zones, CaseError> {
         let law = self.cohesion.unwrap_or(Cohesion { strength: f64::NAN, range: f64::NAN });
         Zones::up_to(&self.table, law, self.start, progress)
@@ -544,7 +540,7 @@ pub(crate) fn table(
 
 fn refusal(error: TableError, length: f64, shown: &UnitSystem) -> CaseError {
     match error {
-        TableError::Cancelled => CaseError::Cancelled,
+        TableError::Stopped(Stopped) => CaseError::Stopped(Stopped),
         TableError::TooFine(refused) => {
             let (radius, largest) = (refused.radius * length, refused.largest * length);
             let error = TableError::TooFine(Unresolved { radius, largest, ..refused });
@@ -555,7 +551,7 @@ fn refusal(error: TableError, length: f64, shown: &UnitSystem) -> CaseError {
 
 fn refused_path(error: PathError, control: Control, units: &Units, shown: &UnitSystem) -> CaseError {
     match error {
-        PathError::Cancelled => CaseError::Cancelled,
+        PathError::Stopped(Stopped) => CaseError::Stopped(Stopped),
         error => CaseError::Path {
             error: Box::new(error.in_units(control, units)),
             control: control.in_units(1.0 / units.stiffness),
@@ -571,6 +567,6 @@ fn words_of_path(error: &PathError, control: Control, shown: &UnitSystem) -> Str
 fn words_of_table(error: &TableError, shown: &UnitSystem) -> String {
     match error {
         TableError::TooFine(refused) => refused.words(shown),
-        TableError::Cancelled => error.to_string(),
+        TableError::Stopped(Stopped) => error.to_string(),
     }
 }

@@ -12,7 +12,20 @@ pub trait Progress {
 
     /// Whether to end, for the result is not wanted any more. Once yes, it must stay yes.
     fn stop(&self) -> bool;
+
+    /// Asks [`Progress::stop`].
+    ///
+    /// # Errors
+    /// [`Stopped`] where it says yes.
+    fn go_on(&self) -> Result<(), Stopped> {
+        if self.stop() { Err(Stopped) } else { Ok(()) }
+    }
 }
+
+/// A computation was ended before it had a result: its [`Progress`] said stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
+#[error("cancelled")]
+pub struct Stopped;
 
 impl<F: Fn() -> bool> Progress for F {
     fn stop(&self) -> bool {

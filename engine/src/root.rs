@@ -83,7 +83,7 @@ impl RootBracket {
     fn is_narrow(&self, near: f64) -> bool {
         let [a, b] = [self.last[0], self.other[0]];
         let middle = 0.5 * (a + b);
-        (a - b).abs() <= near || middle == a || middle == b
+        (a - b).abs() <= near || !(a.min(b) < middle && middle < a.max(b))
     }
 
     /// Where to look next: no nearer to an end than `near`.
@@ -139,7 +139,8 @@ mod tests {
 
     #[test]
     fn interpolation_takes_few_values_and_never_many() {
-        let functions: [(fn(f64) -> f64, f64, usize); 4] = [
+        type Case = (fn(f64) -> f64, f64, usize);
+        let functions: [Case; 4] = [
             (|x| x * x * x - 2.0, 2f64.cbrt(), 14),
             (|x| x.exp() - 2.0, 2f64.ln(), 14),
             (|x| 2.0 * x - 1.0, 0.5, 4),

@@ -2,6 +2,7 @@
 
 use pulloff_engine::CaseError;
 use pulloff_engine::preset::{Invalid, Mistake, ReadError, ValueOrigin};
+use pulloff_engine::progress::Stopped;
 use pulloff_engine::quasistatic::path::PathError;
 use pulloff_engine::report::map::MapError;
 use pulloff_engine::report::pull::PullError;
@@ -126,7 +127,7 @@ pub fn of_case(py: Python<'_>, error: &CaseError) -> PyErr {
             "UnstableStart"
         }
         CaseError::Path { .. } | CaseError::HasRange { .. } => "NoPath",
-        CaseError::Cancelled => "Cancelled",
+        CaseError::Stopped(Stopped) => "Cancelled",
     };
     plain(py, name, &error.to_string())
 }
@@ -135,7 +136,7 @@ pub fn of_case(py: Python<'_>, error: &CaseError) -> PyErr {
 pub fn of_map(py: Python<'_>, error: &MapError) -> PyErr {
     match error {
         MapError::Case(error) => of_case(py, error),
-        MapError::Cancelled => plain(py, "Cancelled", &error.to_string()),
+        MapError::Stopped(Stopped) => plain(py, "Cancelled", &error.to_string()),
         MapError::Family(_) => plain(py, "MapError", &error.to_string()),
     }
 }

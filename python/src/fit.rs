@@ -7,6 +7,7 @@ use crate::running::long;
 use pulloff_engine::fit::{FitError, Model, Options, fit_models, fit_together};
 use pulloff_engine::measured::{Asked, PointsFile, ValueRange};
 use pulloff_engine::preset::{Invalid, Preset, Value as PresetValue, data as data_keys};
+use pulloff_engine::progress::Stopped;
 use pulloff_engine::report;
 use pulloff_engine::report::fit::{FitReport, ModelsReport, ParameterReport, TogetherReport};
 use pulloff_engine::report::residuals;
@@ -213,7 +214,7 @@ pub fn fitted(
 /// Why the points called `name` could not be fitted.
 fn of_fit(py: Python<'_>, name: &str, error: &FitError) -> PyErr {
     match error {
-        FitError::NoStart | FitError::Cancelled => errors::of_fit(py, &error.to_string()),
+        FitError::NoStart | FitError::Stopped(Stopped) => errors::of_fit(py, &error.to_string()),
         FitError::NothingFree => errors::of_data(
             py,
             "nothing is free: name the keys to fit, as in free=[\"material.effective_modulus\"], or in data.free",

@@ -19,7 +19,7 @@ use pulloff_engine::preset::read::{HeldFiles, read_holding, read_in};
 use pulloff_engine::preset::{Preset, Value, profile, shipped, write};
 use pulloff_engine::problem::Control;
 use pulloff_engine::problem::Turn;
-use pulloff_engine::progress::Progress;
+use pulloff_engine::progress::{Progress, Stopped};
 use pulloff_engine::quasistatic::Losses;
 use pulloff_engine::report::map::Ordinate;
 use pulloff_engine::report::path::Extent;
@@ -492,7 +492,7 @@ impl Across {
         let s = s / units.length;
         // A large contact takes long: here it can be stopped.
         match case.table.up_to_while(s, 0, progress) {
-            Err(TableError::Cancelled) => return Err(CaseError::Cancelled),
+            Err(TableError::Stopped(Stopped)) => return Err(CaseError::Stopped(Stopped)),
             Err(TableError::TooFine(refused)) => {
                 let (radius, largest) = (refused.radius * units.length, refused.largest * units.length);
                 let error = TableError::TooFine(Unresolved { radius, largest, ..refused });

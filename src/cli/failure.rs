@@ -11,6 +11,7 @@ use crate::sweep::OutputError;
 use crate::sweep::merge::MergeError;
 use crate::sweep::spec::LoadError;
 use pulloff_engine::case::CaseError;
+use pulloff_engine::progress::Stopped;
 use pulloff_engine::report::map::MapError;
 use pulloff_engine::report::pull::PullError;
 use pulloff_engine::report::rows::RowsError;
@@ -270,9 +271,9 @@ impl Failure {
         match (signal, &self) {
             (
                 Some(signal),
-                Self::Case(CaseError::Cancelled)
-                | Self::Pull(PullError::Case(CaseError::Cancelled))
-                | Self::Lines(MapError::Cancelled | MapError::Case(CaseError::Cancelled)),
+                Self::Case(CaseError::Stopped(Stopped))
+                | Self::Pull(PullError::Case(CaseError::Stopped(Stopped)))
+                | Self::Lines(MapError::Stopped(Stopped) | MapError::Case(CaseError::Stopped(Stopped))),
             ) => Self::Interrupted { signal, text: "stopped: nothing was written".to_owned() },
             _ => self,
         }

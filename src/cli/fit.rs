@@ -27,7 +27,7 @@ use pulloff_engine::measured::asked::AskedError;
 use pulloff_engine::measured::{Asked, ValueRange};
 use pulloff_engine::preset::edge::RATE;
 use pulloff_engine::preset::{Preset, Value, data, write};
-use pulloff_engine::progress::Progress;
+use pulloff_engine::progress::{Progress, Stopped};
 use pulloff_engine::text::{quote, show_path};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -204,7 +204,7 @@ fn with_points(path: &Path, loaded: &Loaded, said: &[(&'static str, Value)]) -> 
 fn refused(path: &Path, error: &FitError) -> Failure {
     let named = format!("{}: {error}", show_path(path));
     match error {
-        FitError::NoStart | FitError::Cancelled => Failure::Incomplete(named),
+        FitError::NoStart | FitError::Stopped(Stopped) => Failure::Incomplete(named),
         _ => Failure::Usage(named),
     }
 }

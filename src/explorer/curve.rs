@@ -12,7 +12,7 @@ use super::theory::Theory;
 use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::{Begin, Control, Groups};
-use pulloff_engine::progress::Progress;
+use pulloff_engine::progress::{Progress, Stopped};
 use pulloff_engine::quasistatic::overlap::overlaps;
 use pulloff_engine::quasistatic::{
     Admissibility, Curve, Detail, Limit, Overlap, Path, Sample, Stability, Stiffness,
@@ -101,7 +101,7 @@ impl ProblemCurve {
         progress.enter(CurveStage::Limits);
         for control in SHOWN {
             if progress.stop() {
-                return Err(CaseError::Cancelled);
+                return Err(CaseError::Stopped(Stopped));
             }
             curve.hold(control);
         }
@@ -114,7 +114,7 @@ impl ProblemCurve {
             preset: preset.clone(),
             start: start.as_ref().map(|point| curve.equilibrium.admissibility(point, progress)),
             inadmissible: in_zone.then(Vec::new),
-            theory: Theory::of(&case, &curve, progress).ok_or(CaseError::Cancelled)?,
+            theory: Theory::of(&case, &curve, progress).ok_or(CaseError::Stopped(Stopped))?,
             groups: Groups::of(&case.problem, preset.range_of_action(), preset.cohesion()),
             digits,
             stiffness: start.as_ref().map(|point| curve.equilibrium.state_and_stiffness(point).1),
@@ -179,7 +179,7 @@ impl CurveData {
             .collect();
         progress.enter(CurveStage::Events(0));
         let told = |path: Result<Path, CaseError>| match path {
-            Err(CaseError::Cancelled) => Err(CaseError::Cancelled),
+            Err(CaseError::Stopped(Stopped)) => Err(CaseError::Stopped(Stopped)),
             path => Ok(path.map_err(|error| error.to_string())),
         };
         let unloading = told(case.unload(&curve, &case.setting_of_unloading(), progress))?;
@@ -245,7 +245,7 @@ impl CurveData {
         }
         let mut base = Arc::clone(&self.base);
         if base.inadmissible.is_none() {
-            let overlaps = overlaps(&base.curve, progress)?;
+            let overlaps = overlaps(&base.curve, progress).ok()?;
             let reports = OverlapReport::all(&overlaps, base.case.units());
             let parts = overlaps.iter().zip(reports).map(|(overlap, report)| base.part(overlap, report));
             base = Arc::new(ProblemCurve { inadmissible: Some(parts.collect()), ..(*base).clone() });

@@ -21,7 +21,7 @@ use crate::fault;
 use crate::mend::WordedFault;
 use crate::store::Store;
 use pulloff_engine::case::CaseError;
-use pulloff_engine::progress::Unwatched;
+use pulloff_engine::progress::{Stopped, Unwatched};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -83,7 +83,7 @@ fn compute(wish: &Wish, progress: &Staged<'_>) -> Option<Reply> {
         None => CurveData::compute(&wish.preset, progress),
     };
     match result {
-        Err(CaseError::Cancelled) => None,
+        Err(CaseError::Stopped(Stopped)) => None,
         result => {
             let result = result.map(Arc::new).map_err(|error| WordedFault::of("", &error));
             Some(Reply::Curve { id: wish.id, result })

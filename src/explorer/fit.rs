@@ -11,7 +11,7 @@ use pulloff_engine::fit::least_squares::Ending;
 use pulloff_engine::fit::{Fit, FitError, Options, Verdict, fit_own};
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{Preset, Value, data};
-use pulloff_engine::progress::Progress;
+use pulloff_engine::progress::{Progress, Stopped};
 use pulloff_engine::report::number::short;
 use pulloff_engine::text::greek;
 use std::cell::{Cell, RefCell};
@@ -86,7 +86,7 @@ impl Background for FitProgress {
         let options = Options { free, ..Options::default() };
         let watch = Told { percent: Cell::new(0), progress, tell: RefCell::new(told) };
         let found = fit_own(preset, &options, &watch).map(Arc::new).map_err(|error| {
-            let can_be_mended = !matches!(error, FitError::NoStart | FitError::Cancelled);
+            let can_be_mended = !matches!(error, FitError::NoStart | FitError::Stopped(Stopped));
             WordedFault { text: format!("not fitted: {error}"), can_be_mended }
         });
         Some(Self::Done(found))

@@ -13,6 +13,7 @@ use crate::mend::WordedFault;
 use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Begin;
+use pulloff_engine::progress::Stopped;
 use pulloff_engine::quasistatic::admissible::falls;
 use pulloff_engine::quasistatic::path::{Losses, PathSetting};
 use pulloff_engine::report::PathReport;
@@ -81,7 +82,7 @@ impl Background for LoopData {
         }
         let setting = PathSetting { losses: Losses::Once, ..case.setting() };
         let report = match case.cycle(None, &setting, progress) {
-            Err(CaseError::Cancelled) => return None,
+            Err(CaseError::Stopped(Stopped)) => return None,
             Err(error) => Err(WordedFault::of("", &error)),
             Ok(cycle) => Ok(PathReport::new(&key.preset, &case, &cycle)),
         };

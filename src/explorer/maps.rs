@@ -8,7 +8,7 @@ use super::model::Model;
 use super::view::View;
 use crate::mend::WordedFault;
 use pulloff_engine::preset::Preset;
-use pulloff_engine::progress::Progress;
+use pulloff_engine::progress::{Progress, Stopped};
 use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::MapError;
 use pulloff_engine::stability::COMPLIANCE;
@@ -59,7 +59,7 @@ impl MapData {
         let report = if preset.material.work_of_adhesion > 0.0 {
             match axes.ranges(preset) {
                 Ok((x, y)) => match MapReport::compute(preset, x, &y, CELLS, progress) {
-                    Err(MapError::Cancelled) => return None,
+                    Err(MapError::Stopped(Stopped)) => return None,
                     found => found.map_err(|error| WordedFault::of("", &error)),
                 },
                 Err(why) => Err(WordedFault::mendable(why)),

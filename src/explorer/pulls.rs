@@ -8,7 +8,7 @@ use pulloff_engine::case::CaseError;
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::{Control, Start};
-use pulloff_engine::progress::Progress;
+use pulloff_engine::progress::{Progress, Stopped};
 use pulloff_engine::report::PullReport;
 use pulloff_engine::report::number::{short, with_unit};
 use pulloff_engine::report::pull::{AskedPulls, PullError, RunReport, missing};
@@ -59,7 +59,7 @@ impl PullData {
     pub fn of(preset: &Preset, progress: &dyn Progress) -> Option<Self> {
         let pulled = |preset: &Preset| PullReport::compute(preset, &AskedPulls::default(), progress);
         let report = match pulled(preset) {
-            Err(PullError::Case(CaseError::Cancelled)) => return None,
+            Err(PullError::Case(CaseError::Stopped(Stopped))) => return None,
             report => report.map_err(|error| WordedFault::of("", &error)),
         };
         let start = report.as_ref().ok().and_then(|report| report.runs.first()).map(|run| &run.start);

@@ -98,7 +98,7 @@ impl Blend {
         let sources: Vec<Sources> = self
             .gaps
             .iter()
-            .map(|gap| Sources::new(&**gap, &spans, &breaks, progress).ok_or(TableError::Cancelled))
+            .map(|gap| Sources::new(&**gap, &spans, &breaks, progress))
             .collect::<Result<_, _>>()?;
         for (steep, span) in steep.iter_mut().zip(&spans) {
             *steep = span.is_steep(|base| sources.iter().any(|sources| sources.jumps_at(base)));
@@ -107,9 +107,7 @@ impl Blend {
         for (gap, sources) in self.gaps.iter().zip(&sources) {
             let mut of_gap = Vec::with_capacity(spans.len());
             for (span, steep) in spans.iter().zip(&steep) {
-                if progress.stop() {
-                    return Err(TableError::Cancelled);
-                }
+                progress.go_on()?;
                 let mut own: PanelSamples = [[0.0; NODES]; 2];
                 let by_variable = span.is_steep(|base| sources.jumps_at(base));
                 for (j, x) in rule.nodes.iter().enumerate() {

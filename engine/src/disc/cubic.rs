@@ -20,7 +20,7 @@
 
 use crate::elementary::{atan2, cos, sin};
 use crate::gap::Piece;
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use gauss_quad::GaussLegendre;
 use std::array;
 use std::f64::consts::PI;
@@ -73,25 +73,31 @@ pub fn nodes() -> [f64; NODES] {
     array::from_fn(|j| cos(PI * (2 * j + 1) as f64 / (4 * NODES) as f64).powi(2))
 }
 
-/// g and dg/dy, y = √(a − lo), at the [`nodes`] of every piece of `pieces[from..]`; `None` when `progress` said stop, which is
-/// asked now and then.
+/// g and dg/dy, y = √(a − lo), at the [`nodes`] of every piece of `pieces[from..]`; `progress` is asked now and then.
 ///
 /// The pieces begin at the axis, each where the one before ends, and h' does not jump between them: a jump would need a
 /// term in dg/dy. h' on the axis may have any value.
-pub fn transform(pieces: &[Piece], from: usize, progress: &dyn Progress) -> Option<Vec<[[f64; NODES]; 2]>> {
+///
+/// # Errors
+/// [`Stopped`].
+pub fn transform(
+    pieces: &[Piece],
+    from: usize,
+    progress: &dyn Progress,
+) -> Result<Vec<[[f64; NODES]; 2]>, Stopped> {
     let sources = PieceSamples::new(pieces);
     let nodes = nodes();
     let mut panels = Vec::with_capacity(pieces.len().saturating_sub(from));
     for (i, piece) in pieces.iter().enumerate().skip(from) {
-        if (i - from).is_multiple_of(PANELS_PER_QUESTION) && progress.stop() {
-            return None;
+        if (i - from).is_multiple_of(PANELS_PER_QUESTION) {
+            progress.go_on()?;
         }
         let y = nodes.map(|x| x * piece.width().sqrt());
         let mut panel = PanelSums::new(piece.lo, &y);
         sources.gather(&mut panel, i);
         panels.push(panel.finish(&y));
     }
-    Some(panels)
+    Ok(panels)
 }
 
 /// The nodes of a panel and the sums there: ∫h'/√(a² − r²) dr and ∫r h''/√(a² − r²) dr.
@@ -448,8 +454,8 @@ mod tests {
         let pieces = rough(&knots(100, 10.0, &mut random), &mut random);
         let tail = transform(&pieces, 63, &Unwatched).unwrap();
         assert_eq!(tail, transformed(&pieces)[63..]);
-        assert_eq!(transform(&pieces, 100, &Unwatched), Some(Vec::new()));
-        assert_eq!(transform(&[], 0, &Unwatched), Some(Vec::new()));
+        assert_eq!(transform(&pieces, 100, &Unwatched), Ok(Vec::new()));
+        assert_eq!(transform(&[], 0, &Unwatched), Ok(Vec::new()));
     }
 
     #[test]
@@ -461,7 +467,7 @@ mod tests {
             asked.set(asked.get() + 1);
             asked.get() == 3
         };
-        assert_eq!(transform(&pieces, 0, &until), None);
+        assert_eq!(transform(&pieces, 0, &until), Err(Stopped));
         assert_eq!(asked.get(), 3);
     }
 }

@@ -11,7 +11,7 @@ use super::span::Place;
 use crate::gap::Gap;
 use crate::gap::{panels::Span, panels::Variable};
 use crate::problem::{Control, Reduced};
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use std::sync::Arc;
 
 /// Equilibria on a panel.
@@ -118,7 +118,7 @@ impl Sampled {
         };
         for pair in borders.windows(2) {
             let span = Span { lo: pair[0], hi: pair[1], variable: Variable::Root { base: 0.0 } };
-            resolve(&source, span, OF_RINGS, progress, &mut panels)?;
+            resolve(&source, span, OF_RINGS, progress, &mut panels).ok()?;
         }
         (!panels.is_empty()).then_some(Self { panels, touches: None })
     }
@@ -134,18 +134,21 @@ impl Sampled {
 /// What is asked for the equilibria at radii: as many of them as there are, up to the first radius that has none.
 type SampleSource<'a> = dyn Fn(&[f64]) -> Vec<SampledState> + 'a;
 
-/// Adds panels on which what `source` gives on `span` is resolved; `None` when `progress` said stop.
+/// Adds panels on which what `source` gives on `span` is resolved.
+///
+/// # Errors
+/// [`Stopped`].
 pub fn resolve(
     source: &SampleSource<'_>,
     span: Span,
     fineness: Fineness,
     progress: &dyn Progress,
     panels: &mut Vec<Arc<SampledPanel>>,
-) -> Option<()> {
+) -> Result<(), Stopped> {
     panel(source, span, fineness, 0, progress, panels)
 }
 
-/// Adds the panels of a span; `None` when `progress` said stop.
+/// Adds the panels of a span.
 fn panel(
     source: &SampleSource<'_>,
     span: Span,
@@ -153,12 +156,12 @@ fn panel(
     depth: usize,
     progress: &dyn Progress,
     panels: &mut Vec<Arc<SampledPanel>>,
-) -> Option<()> {
+) -> Result<(), Stopped> {
     let rule = ChebyshevRule::of(NODES);
     let radii: Vec<f64> = rule.nodes.iter().map(|x| span.radius(*x)).collect();
     let found = source(&radii);
-    if found.len() < NODES && progress.stop() {
-        return None;
+    if found.len() < NODES {
+        progress.go_on()?;
     }
     let whole = found.len() == NODES && found.iter().all(|e| e.approach.is_finite() && e.force.is_finite());
     if whole {
@@ -189,11 +192,11 @@ fn panel(
         let is_last = depth >= fineness.halvings;
         if ends(fineness.tail) || is_last && ends(fineness.loose) {
             panels.push(Arc::new(made));
-            return Some(());
+            return Ok(());
         }
     }
     if depth >= fineness.of_holes {
-        return Some(());
+        return Ok(());
     }
     let middle = span.radius(0.0);
     panel(source, Span { hi: middle, ..span }, fineness, depth + 1, progress, panels)?;

@@ -17,7 +17,7 @@ use super::span::panel_of;
 use crate::elementary::{atan2, cos};
 use crate::gap::Gap;
 use crate::gap::{panels::Span, panels::Variable};
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use gauss_quad::GaussLegendre;
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
@@ -155,11 +155,18 @@ impl TargetRadius {
 }
 
 impl Sources {
-    /// The samples of `gap` on `spans`, panels from the axis on, and its jumps at those of `breaks`; `None` when `progress`
-    /// said stop.
-    pub fn new(gap: &dyn Gap, spans: &[Span], breaks: &[f64], progress: &dyn Progress) -> Option<Self> {
-        let part = |span: &Span| (!progress.stop()).then(|| PanelSource::new(gap, *span));
-        let (parts, samples) = spans.iter().map(part).collect::<Option<(Vec<_>, Vec<_>)>>()?;
+    /// The samples of `gap` on `spans`, panels from the axis on, and its jumps at those of `breaks`.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn new(
+        gap: &dyn Gap,
+        spans: &[Span],
+        breaks: &[f64],
+        progress: &dyn Progress,
+    ) -> Result<Self, Stopped> {
+        let part = |span: &Span| progress.go_on().map(|()| PanelSource::new(gap, *span));
+        let (parts, samples) = spans.iter().map(part).collect::<Result<(Vec<_>, Vec<_>), _>>()?;
         let samples = Clusters::new(samples, MANY);
         let mut jumps = Vec::new();
         for &q in breaks {
@@ -171,7 +178,7 @@ impl Sources {
                 jumps.push([q, jump]);
             }
         }
-        Some(Self { parts, samples, jumps })
+        Ok(Self { parts, samples, jumps })
     }
 
     /// Whether h' jumps at `base`.

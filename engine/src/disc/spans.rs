@@ -3,6 +3,7 @@
 use crate::elementary::{ln, pow};
 use crate::gap::Gap;
 use crate::gap::{panels::Span, panels::Unresolved, panels::Variable};
+use crate::progress::Stopped;
 
 /// The slope of a gap grows on a panel by this factor at most, in so many parts at most.
 const GRADED: f64 = 1e3;
@@ -15,8 +16,8 @@ pub enum TableError {
     #[error(transparent)]
     TooFine(Unresolved),
     /// It was no longer wanted.
-    #[error("cancelled")]
-    Cancelled,
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }
 
 /// The panels of a gap, parted where its slope grows so much on one that its inner end had no relative digits: a gap may rise

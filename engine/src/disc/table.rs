@@ -223,7 +223,7 @@ impl Table {
             }
             Form::Cubic(pieces) => {
                 let pieces = &parted(pieces, panels.smallest);
-                let samples = cubic::transform(pieces, 0, progress).ok_or(TableError::Cancelled)?;
+                let samples = cubic::transform(pieces, 0, progress)?;
                 let rule = ChebyshevRule::of(cubic::NODES);
                 for (piece, [value, by_variable]) in pieces.iter().zip(samples) {
                     let span =
@@ -238,8 +238,7 @@ impl Table {
             }
             Form::Waves { curvature, waves } if few(waves, reach) => {
                 let spans = wave_spans(waves, reach, panels.smallest)?;
-                let samples =
-                    waves::transform(*curvature, waves, &spans, progress).ok_or(TableError::Cancelled)?;
+                let samples = waves::transform(*curvature, waves, &spans, progress)?;
                 let rule = ChebyshevRule::of(waves::NODES);
                 for (span, [value, slope]) in spans.into_iter().zip(samples) {
                     panels.push(span, rule, &value, &slope, false);
@@ -255,13 +254,10 @@ impl Table {
                             .map_err(TableError::TooFine)?,
                     ),
                 };
-                let sampled =
-                    Sources::new(&*self.gap, &spans, &breaks, progress).ok_or(TableError::Cancelled)?;
+                let sampled = Sources::new(&*self.gap, &spans, &breaks, progress)?;
                 let rule = ChebyshevRule::of(NODES);
                 for span in spans {
-                    if progress.stop() {
-                        return Err(TableError::Cancelled);
-                    }
+                    progress.go_on()?;
                     let [mut value, mut slope] = [[0.0; NODES]; 2];
                     for (j, x) in rule.nodes.iter().enumerate() {
                         [value[j], slope[j]] = sampled.transform(&*self.gap, &span, *x);

@@ -13,7 +13,7 @@ use super::chebyshev::ChebyshevRule;
 use crate::elementary::{sin, sin_cos};
 use crate::gap::Wave;
 use crate::gap::panels::Span;
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use gauss_quad::GaussLegendre;
 use std::f64::consts::FRAC_PI_2;
 use std::num::NonZeroUsize;
@@ -34,13 +34,16 @@ const MORE: f64 = 14.0;
 const GROUP: usize = 4;
 const KEPT: usize = 256;
 
-/// g and g' at the nodes of each of `spans`, which are panels in the radius itself; `None` when `progress` said stop.
+/// g and g' at the nodes of each of `spans`, which are panels in the radius itself.
+///
+/// # Errors
+/// [`Stopped`].
 pub fn transform(
     curvature: f64,
     waves: &[Wave],
     spans: &[Span],
     progress: &dyn Progress,
-) -> Option<Vec<[[f64; NODES]; 2]>> {
+) -> Result<Vec<[[f64; NODES]; 2]>, Stopped> {
     let rule = ChebyshevRule::of(NODES);
     let mut samples: Vec<[[f64; NODES]; 2]> = spans
         .iter()
@@ -49,15 +52,13 @@ pub fn transform(
             [radii.map(|a| curvature * a * a), radii.map(|a| 2.0 * curvature * a)]
         })
         .collect();
-    let Some(farthest) = spans.last().map(|span| span.hi) else { return Some(samples) };
+    let Some(farthest) = spans.last().map(|span| span.hi) else { return Ok(samples) };
     let steepest = waves.iter().fold(0.0_f64, |most, wave| most.max(wave.wavenumber));
     let theta = &*WaveAngles::of(PER_RADIAN * steepest * farthest + MORE);
     for wave in waves {
         let mut shared: Option<(f64, PhaseTable)> = None;
         for (span, samples) in spans.iter().zip(&mut samples) {
-            if progress.stop() {
-                return None;
-            }
+            progress.go_on()?;
             let [centre, half] = span.line();
             if shared.as_ref().is_none_or(|(width, _)| width.to_bits() != half.to_bits()) {
                 shared = Some((half, PhaseTable::new(theta, wave.wavenumber * half)));
@@ -67,7 +68,7 @@ pub fn transform(
             }
         }
     }
-    Some(samples)
+    Ok(samples)
 }
 
 /// g, ∫₀ᵃ g, and g', g'', g''' at one radius, without a table.

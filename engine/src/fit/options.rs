@@ -6,6 +6,7 @@ use crate::measured::{Abscissa, BranchError};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::schema::{CHOOSERS, Kind, RANGE_KEYS, Row};
 use crate::preset::{Preset, Value, edge};
+use crate::progress::Stopped;
 use crate::text::{closest_key, greek, quote};
 use thiserror::Error;
 
@@ -113,9 +114,9 @@ pub enum FitError {
         "no values near those of the preset give a curve that reaches the points: check the unit of x and of the force"
     )]
     NoStart,
-    /// It was no longer wanted, before there was anything.
-    #[error("cancelled")]
-    Cancelled,
+    /// It was no longer wanted.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }
 
 /// What a name after `--free` says.

@@ -171,7 +171,7 @@ impl FitPath {
             PathPiece::Arc([outer, inner]) if *inner < to => Some([reduced(*outer), reduced(*inner)]),
             _ => None,
         });
-        let found = passed(curve, &arcs.collect::<Vec<_>>(), &Unwatched)?;
+        let found = passed(curve, &arcs.collect::<Vec<_>>(), &Unwatched).ok()?;
         found.iter().map(|overlap| overlap.to * length).reduce(f64::min)
     }
 

@@ -25,7 +25,7 @@ use crate::disc::{Basis, Evaluation, Table};
 use crate::elementary::{exp2, log2};
 use crate::gap::{Gap, wave_index};
 use crate::problem::{Control, Reduced, Units};
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -229,12 +229,15 @@ impl Equilibrium {
         self.known(point, &self.basis.evaluate(&self.problem, s, delta))
     }
 
-    /// The same at each of `points`; `None` when `progress` said stop.
+    /// The same at each of `points`.
+    ///
+    /// # Errors
+    /// [`Stopped`].
     pub fn states_and_stiffnesses(
         &self,
         points: &[StatePoint],
         progress: &dyn Progress,
-    ) -> Option<Vec<(State, Stiffness)>> {
+    ) -> Result<Vec<(State, Stiffness)>, Stopped> {
         let place = |point: &StatePoint| {
             let [delta, _, s] = self.quantities(point.y());
             [s, delta]
@@ -242,7 +245,7 @@ impl Equilibrium {
         let places: Vec<[f64; 2]> = points.iter().map(place).collect();
         let found = self.basis.evaluations(&self.problem, &places, progress);
         let all = points.iter().zip(&found).map(|(point, here)| self.known(point, here));
-        (found.len() == points.len()).then(|| all.collect())
+        if found.len() == points.len() { Ok(all.collect()) } else { Err(Stopped) }
     }
 
     /// The state and the stiffnesses at a point, which is evaluated.

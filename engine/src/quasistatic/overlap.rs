@@ -13,7 +13,7 @@ use super::admissible::{Admissibility, Crest, Judge};
 use super::curve::Curve;
 use super::monotone::Monotone;
 use crate::problem::Control;
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use std::sync::Arc;
 
 /// An end is located when its bracket is this small relative to it.
@@ -37,16 +37,22 @@ impl Overlap {
     }
 }
 
-/// The states of `curve` that are not admissible, from its start inward; `None` when `progress`, asked before each, said stop.
-pub fn overlaps(curve: &Curve, progress: &dyn Progress) -> Option<Vec<Overlap>> {
+/// The states of `curve` that are not admissible, from its start inward; `progress` is asked before each.
+///
+/// # Errors
+/// [`Stopped`].
+pub fn overlaps(curve: &Curve, progress: &dyn Progress) -> Result<Vec<Overlap>, Stopped> {
     passed(curve, &[[curve.outermost(), curve.innermost()]], progress)
 }
 
 /// The states that are not admissible on pieces of the curve from one contact radius inward to another, both included:
 /// what a path passes, see [`Path::pieces`](super::Path::pieces).
 ///
-/// `progress` is asked before each state, `None` when it said stop.
-pub fn passed(curve: &Curve, pieces: &[[f64; 2]], progress: &dyn Progress) -> Option<Vec<Overlap>> {
+/// `progress` is asked before each state.
+///
+/// # Errors
+/// [`Stopped`].
+pub fn passed(curve: &Curve, pieces: &[[f64; 2]], progress: &dyn Progress) -> Result<Vec<Overlap>, Stopped> {
     let mut curve = curve.clone();
     curve.reach(pieces.iter().map(|[from, _]| *from).fold(0.0, f64::max));
     let mut search = OverlapSearch {
@@ -61,7 +67,7 @@ pub fn passed(curve: &Curve, pieces: &[[f64; 2]], progress: &dyn Progress) -> Op
         search.piece(from, to)?;
         search.open = None;
     }
-    Some(search.found)
+    Ok(search.found)
 }
 
 /// Why a state is not admissible.
@@ -84,19 +90,17 @@ struct OverlapSearch<'a> {
 }
 
 impl OverlapSearch<'_> {
-    /// The state of radius `s`; `None` when it is no longer wanted.
-    fn state(&mut self, s: f64) -> Option<Admissibility> {
-        if self.progress.stop() {
-            return None;
-        }
-        let place = self.curve.solution.place(s)?;
+    /// The state of radius `s`.
+    fn state(&mut self, s: f64) -> Result<Admissibility, Stopped> {
+        self.progress.go_on()?;
+        let place = self.curve.solution.place(s).ok_or(Stopped)?;
         let verdict = self.judge.verdict(s, self.curve.solution.at(place).approach, self.progress);
         // The first needs the table far out, which may take long.
-        (!self.progress.stop()).then_some(verdict)
+        self.progress.go_on().map(|()| verdict)
     }
 
     /// One piece, from `from` inward to `to`.
-    fn piece(&mut self, from: f64, to: f64) -> Option<()> {
+    fn piece(&mut self, from: f64, to: f64) -> Result<(), Stopped> {
         let monotone = Arc::clone(&self.stretches);
         let adhesive = self.curve.equilibrium.problem.work_of_adhesion > 0.0;
         for stretch in monotone.stretches.iter().rev() {
@@ -110,15 +114,15 @@ impl OverlapSearch<'_> {
                 self.each(outer, inner)?;
             }
         }
-        Some(())
+        Ok(())
     }
 
     /// A stretch on which the verdict can change once, from inadmissible outside to admissible inside.
-    fn once(&mut self, outer: f64, inner: f64) -> Option<()> {
+    fn once(&mut self, outer: f64, inner: f64) -> Result<(), Stopped> {
         let outside = self.state(outer)?;
         if outside.holds {
             self.open = None;
-            return Some(());
+            return Ok(());
         }
         let inside = self.state(inner)?;
         let end = if inside.holds { self.end(outer, inner)? } else { inner };
@@ -126,11 +130,11 @@ impl OverlapSearch<'_> {
         if inside.holds {
             self.open = None;
         }
-        Some(())
+        Ok(())
     }
 
     /// A stretch whose states are looked at one by one.
-    fn each(&mut self, outer: f64, inner: f64) -> Option<()> {
+    fn each(&mut self, outer: f64, inner: f64) -> Result<(), Stopped> {
         let curve = self.curve;
         let between = curve.samples.iter().map(|at| at.contact_radius).filter(|s| inner < *s && *s < outer);
         let mut last: Option<(f64, bool)> = None;
@@ -153,7 +157,7 @@ impl OverlapSearch<'_> {
             }
             last = Some((s, here.holds));
         }
-        Some(())
+        Ok(())
     }
 
     /// Adds the states from `from` inward to `to`, at fault as `state`, to the interval that is open, or begins one: at another
@@ -175,12 +179,12 @@ impl OverlapSearch<'_> {
     }
 
     /// The last radius that is not admissible between one that is not and one that is, by halving.
-    fn end(&mut self, mut bad: f64, mut good: f64) -> Option<f64> {
+    fn end(&mut self, mut bad: f64, mut good: f64) -> Result<f64, Stopped> {
         while (good - bad).abs() > LOCATED * bad {
             let middle = 0.5 * (good + bad);
             if self.state(middle)?.holds { good = middle } else { bad = middle }
         }
-        Some(bad)
+        Ok(bad)
     }
 }
 
@@ -254,8 +258,8 @@ mod tests {
             let unseen = on_curve.iter().filter(|o| on_path(0.5 * (o.from + o.to)));
             assert!(unseen.clone().all(|o| met.iter().any(|p| p.contains(0.5 * (o.from + o.to)))));
             // No more than asked for is looked at.
-            assert_eq!(passed(&whole, &pieces, &until(3)), None);
+            assert_eq!(passed(&whole, &pieces, &until(3)), Err(Stopped));
         }
-        assert_eq!(overlaps(&whole, &|| true), None);
+        assert_eq!(overlaps(&whole, &|| true), Err(Stopped));
     }
 }

@@ -5,7 +5,7 @@ use super::rows::{ReportTable, RowsError};
 use crate::case::Case;
 use crate::preset::{BasisSpec, Preset};
 use crate::problem::Control;
-use crate::progress::{Progress, ProgressPart};
+use crate::progress::{Progress, ProgressPart, Stopped};
 use crate::stability::{Counts, Family, FamilyError, Folds, Map, MapAxis, MapPoint, Onset, Sort, Spacing};
 use serde::Serialize;
 
@@ -145,13 +145,22 @@ pub(super) const EXACT: &str =
 pub enum MapError {
     /// A family cannot be made.
     #[error(transparent)]
-    Family(#[from] FamilyError),
+    Family(FamilyError),
     /// The preset cannot be computed.
     #[error(transparent)]
     Case(#[from] crate::case::CaseError),
     /// It was no longer wanted.
-    #[error("cancelled")]
-    Cancelled,
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+impl From<FamilyError> for MapError {
+    fn from(error: FamilyError) -> Self {
+        match error {
+            FamilyError::Stopped(stopped) => Self::Stopped(stopped),
+            error => Self::Family(error),
+        }
+    }
 }
 
 impl MapReport {
@@ -206,8 +215,7 @@ impl MapReport {
         if let Ordinate::Key(axis) = y {
             report.y = AxisReport::of(axis);
             let mut family = Family::new(preset, vec![x, axis.clone()])?;
-            let found = family.map(cells, &ProgressPart::new(progress, [0.1, 1.0]))?;
-            let (map, counts) = found.ok_or(MapError::Cancelled)?;
+            let (map, counts) = family.map(cells, &ProgressPart::new(progress, [0.1, 1.0]))?;
             report.rows_of_map(&family, &map);
             report.counts = Some(CountsReport::of(&family, counts));
             report.notes.extend(map.notes);
@@ -216,7 +224,8 @@ impl MapReport {
             let folds = family.folds(progress)?;
             report.rows_of_folds(&family, &folds, y);
         }
-        if progress.stop() { Err(MapError::Cancelled) } else { Ok(report) }
+        progress.go_on()?;
+        Ok(report)
     }
 
     /// The points under the names of their columns.

@@ -9,7 +9,7 @@ use crate::gap::{Gap, wave_index};
 use crate::preset::{BasisSpec, Preset};
 use crate::problem::cohesion::TABOR_OVER_MAUGIS;
 use crate::problem::{ContactKind, Control, Reduced, Turn, Units};
-use crate::progress::{Progress, ProgressPart};
+use crate::progress::{Progress, ProgressPart, Stopped};
 use crate::quasistatic::overlap::passed;
 use crate::quasistatic::path::{
     AskedState, Direction, Event, Losses, Passed, Path, PathSetting, PathState, Totals, TurnReached, WhyNot,
@@ -319,7 +319,8 @@ impl PathReport {
         }
         report.warnings.extend(case.unsettled(&path, progress));
         // What was given up may lack its warning.
-        if progress.stop() { Err(CaseError::Cancelled) } else { Ok(report) }
+        progress.go_on()?;
+        Ok(report)
     }
 
     /// The loop of `preset`, turned round at `turn`, in the units of the preset, in place of what that says.
@@ -400,7 +401,7 @@ impl PathReport {
     /// The same document with the inadmissible states that a path of one disc passes on `curve`, which reaches as far out.
     ///
     /// # Errors
-    /// [`CaseError::Cancelled`] when `progress` said stop.
+    /// [`CaseError::Stopped`] when `progress` said stop.
     pub fn checked(
         self,
         case: &Case,
@@ -411,14 +412,13 @@ impl PathReport {
         if path.contact == ContactKind::Rings {
             return Ok(self);
         }
-        let on =
-            |curve: &Curve, pieces: &[[f64; 2]]| passed(curve, pieces, progress).ok_or(CaseError::Cancelled);
+        let on = |curve: &Curve, pieces: &[[f64; 2]]| passed(curve, pieces, progress);
         let Some(closing) = case.closing else {
             let found = on(curve, &path.pieces())?;
             return Ok(self.with_overlaps(case, path, [&[], &found]));
         };
         // What has closed is on the equilibria of a closing edge, the start of an unloading too.
-        let growing = curve.under(closing, progress).ok_or(CaseError::Cancelled)?;
+        let growing = curve.under(closing, progress).ok_or(Stopped)?;
         let start = path.start().map_or(0.0, |start| start.contact_radius);
         let up = if path.turn.is_some() { path.pieces_on(&[Direction::Loading]) } else { vec![[start; 2]] };
         let grown = on(&growing, &up)?;

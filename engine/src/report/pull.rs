@@ -8,7 +8,7 @@ use super::table::{aligned, ascii_unit, control, head};
 use crate::case::{Case, CaseError};
 use crate::preset::{BasisSpec, Preset, edge};
 use crate::problem::{Control, Part};
-use crate::progress::{self, Progress};
+use crate::progress::{self, Progress, Stopped};
 use crate::quasistatic::admissible::Judge;
 use crate::rate::failure::time_to_failure;
 use crate::rate::{EdgeLaw, Moment, MovingEdge, Pull, PullSettings, Puller, RateError};
@@ -324,7 +324,7 @@ impl PullReport {
             settings: PullSettings::default(),
         };
         let refused = |error: RateError| match error {
-            RateError::Cancelled => PullError::Case(CaseError::Cancelled),
+            RateError::Stopped(Stopped) => PullError::Case(CaseError::Stopped(Stopped)),
             error => PullError::Rate { error: error.in_units(&units), shown: Box::new(case.shown.clone()) },
         };
         let programmes = programmes(preset, asked)?;

@@ -268,7 +268,7 @@ impl TraceReport {
     /// The same; `progress` is asked often.
     ///
     /// # Errors
-    /// As [`TraceReport::compute`], and [`CaseError::Cancelled`] when `progress` said stop.
+    /// As [`TraceReport::compute`], and [`CaseError::Stopped`] when `progress` said stop.
     pub fn compute_while(preset: &Preset, progress: &dyn Progress) -> Result<Self, CaseError> {
         let case = Case::with_range(preset, &ProgressPart::new(progress, [0.0, 0.4]))?;
         if case.cohesion.is_some() {
@@ -363,7 +363,7 @@ impl TraceReport {
     /// The document of a curve of `case`, its points `traced` along it by arc length.
     ///
     /// # Errors
-    /// [`CaseError::Cancelled`] when `progress` said stop.
+    /// [`CaseError::Stopped`] when `progress` said stop.
     pub fn new(
         preset: &Preset,
         case: &Case,
@@ -374,9 +374,9 @@ impl TraceReport {
     ) -> Result<Self, CaseError> {
         let units = case.units();
         let equilibrium = &curve.equilibrium;
-        let overlapping = overlaps(curve, progress).ok_or(CaseError::Cancelled)?;
+        let overlapping = overlaps(curve, progress)?;
         let inadmissible = OverlapReport::all(&overlapping, units);
-        let known = equilibrium.states_and_stiffnesses(traced, progress).ok_or(CaseError::Cancelled)?;
+        let known = equilibrium.states_and_stiffnesses(traced, progress)?;
         let points: Vec<PointReport> = traced
             .iter()
             .zip(known)
@@ -446,7 +446,7 @@ impl TraceReport {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::progress::until;
+    use crate::progress::{Stopped, until};
     use crate::report::PathReport;
     use crate::report::path::Extent;
     use crate::{Adhesion, Material, Shape, Start};
@@ -482,7 +482,11 @@ mod tests {
             let all = asked.get();
             assert!(all >= 5, "{all}");
             for number in 1..=all {
-                assert_eq!(compute(&until(number - 1)), Some(CaseError::Cancelled), "{number} of {all}");
+                assert_eq!(
+                    compute(&until(number - 1)),
+                    Some(CaseError::Stopped(Stopped)),
+                    "{number} of {all}"
+                );
             }
         }
     }

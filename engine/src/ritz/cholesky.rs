@@ -10,7 +10,7 @@
 //! and L x = b is solved the same way, `x_k = L_kk⁻¹ (b_k − L[k, ..k] x[..k])`, for many b at once. Nearly all the work is
 //! matrix products, and between blocks the factorization can be asked to stop.
 
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::array;
 use wide::f64x4;
@@ -25,12 +25,14 @@ const MANY: usize = 6;
 const PANEL: usize = 4;
 
 /// Why there is no factor.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NoFactor {
     /// The matrix is not positive definite.
+    #[error("not positive definite")]
     NotPositiveDefinite,
     /// It was no longer wanted.
-    Cancelled,
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }
 
 /// L of `A = LLᵀ`.
@@ -52,9 +54,7 @@ impl CholeskyFactor {
         let mut inverses = Vec::with_capacity(n.div_ceil(BLOCK));
         for begin in (0..n).step_by(BLOCK) {
             progress.report(begin as f64 / n as f64);
-            if progress.stop() {
-                return Err(NoFactor::Cancelled);
-            }
+            progress.go_on()?;
             let end = (begin + BLOCK).min(n);
             let width = end - begin;
             let (done, mut panel) = a.columns_range_pair_mut(..begin, begin..end);
@@ -182,7 +182,7 @@ mod tests {
     fn it_stops_when_asked_and_refuses_what_is_not_positive_definite() {
         let heard = Heard::until(0.5);
         let stopped = CholeskyFactor::new(example(4 * BLOCK), &heard);
-        assert_eq!(stopped.unwrap_err(), NoFactor::Cancelled);
+        assert_eq!(stopped.unwrap_err(), NoFactor::Stopped(Stopped));
         let told = heard.told.into_inner();
         assert_eq!(told, [0.0, 0.25, 0.5]);
         for bad in [-1.0, f64::NAN] {

@@ -29,7 +29,7 @@ use crate::disc::{Basis, Evaluation, Order, Solution};
 use crate::elementary::{exp2, log2, log10};
 use crate::gap::Gap;
 use crate::problem::Reduced;
-use crate::progress::{Progress, ProgressPart, Unwatched};
+use crate::progress::{Progress, ProgressPart, Stopped, Unwatched};
 use nalgebra::{DMatrix, DMatrixView, DVector};
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -67,8 +67,8 @@ pub enum RingsError {
     #[error("the pressure matrix of {0} rings is not positive definite")]
     NotPositiveDefinite(usize),
     /// It was no longer wanted.
-    #[error("cancelled")]
-    Cancelled,
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }
 
 /// Ring elements with their factored matrix; geometry independent, so one serves every problem.
@@ -127,7 +127,7 @@ impl Rings {
     ///
     /// # Errors
     /// [`RingsError::OutOfRange`] outside [`Grading::ring_range`], [`RingsError::NotPositiveDefinite`], and
-    /// [`RingsError::Cancelled`] when `progress` said stop.
+    /// [`RingsError::Stopped`] when `progress` said stop.
     pub fn new(rings: usize, grading: Grading, progress: &dyn Progress) -> Result<Self, RingsError> {
         /// The assembly's share of the work; with the N² of the one and N³ of the other it is about half.
         const ASSEMBLY: f64 = 0.5;
@@ -135,12 +135,11 @@ impl Rings {
             return Err(RingsError::OutOfRange { rings, grading });
         }
         let (edges, radius) = grading.edges(rings);
-        let matrix = pressure_matrix(&edges, radius, &ProgressPart::new(progress, [0.0, ASSEMBLY]))
-            .ok_or(RingsError::Cancelled)?;
+        let matrix = pressure_matrix(&edges, radius, &ProgressPart::new(progress, [0.0, ASSEMBLY]))?;
         let factor = CholeskyFactor::new(matrix, &ProgressPart::new(progress, [ASSEMBLY, 1.0])).map_err(
             |failure| match failure {
                 NoFactor::NotPositiveDefinite => RingsError::NotPositiveDefinite(rings),
-                NoFactor::Cancelled => RingsError::Cancelled,
+                NoFactor::Stopped(Stopped) => RingsError::Stopped(Stopped),
             },
         )?;
         let nodes: Vec<f64> = edges.iter().map(|edge| edge / radius).collect();
@@ -270,24 +269,20 @@ fn equilibrium_of(forms: &Forms, s: f64, gamma: f64) -> Option<Evaluation> {
 }
 
 /// B̃ of the rings between `edges` on the disc of radius `radius`, for the unit disc: its lower triangle.
-///
-/// `None` when `progress` said stop.
-fn pressure_matrix(edges: &[f64], radius: f64, progress: &dyn Progress) -> Option<DMatrix<f64>> {
+fn pressure_matrix(edges: &[f64], radius: f64, progress: &dyn Progress) -> Result<DMatrix<f64>, Stopped> {
     let rings = edges.len() - 1;
     let unit = radius.powi(-3);
     let mut matrix = DMatrix::zeros(rings, rings);
     let together = BLOCK * parallel::cores();
     for (round, columns) in matrix.as_mut_slice().chunks_mut(rings * together).enumerate() {
         progress.report((round * together) as f64 / rings as f64);
-        if progress.stop() {
-            return None;
-        }
+        progress.go_on()?;
         let parts = columns.chunks_mut(rings * BLOCK).enumerate();
         parallel::each(parts, |(part, columns)| {
             fill(columns, round * together + part * BLOCK, edges, unit);
         });
     }
-    Some(matrix)
+    Ok(matrix)
 }
 
 /// The columns of the lower triangle from the one of ring `first` on.
@@ -493,7 +488,7 @@ mod tests {
         );
         for stop in [0.0, 0.4, 0.7] {
             let stopped = Rings::shared_with(333, Grading::Edge, &Heard::until(stop));
-            assert_eq!(stopped.unwrap_err(), RingsError::Cancelled);
+            assert_eq!(stopped.unwrap_err(), RingsError::Stopped(Stopped));
         }
     }
 

@@ -12,7 +12,7 @@ use crate::disc::{ExactBasis, Panels, Table, TableError, waves};
 use crate::gap::{Form, Gap, Shape, Wave};
 use crate::preset::{Invalid, Preset};
 use crate::problem::{Control, Reduced, Start};
-use crate::progress::Unwatched;
+use crate::progress::{Stopped, Unwatched};
 use crate::quasistatic::monotone::weighted;
 use crate::quasistatic::start::{StartError, contact_radius};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -94,6 +94,9 @@ pub enum FamilyError {
     /// The start state does not exist.
     #[error(transparent)]
     Start(#[from] StartError),
+    /// It was no longer wanted.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// The key holds no number.
     #[error("{0}: an axis of a map is a number of the preset, a group, or compliance")]
     NoNumber(String),
@@ -485,7 +488,7 @@ impl Family {
             source
         } else {
             let reach = self.radii[1].max(self.reach(&self.preset));
-            let own = self.own.as_ref().ok_or(TableError::Cancelled)?;
+            let own = self.own.as_ref().ok_or(Stopped)?;
             TransformSource::One(own.up_to(reach)?)
         };
         Ok(Member { family: self, source, root: root_of(work_of_adhesion), work_of_adhesion, control })

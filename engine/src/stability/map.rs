@@ -7,7 +7,7 @@ use super::law::adhesion_of;
 use super::lines::Traced;
 use crate::elementary::hypot;
 use crate::gap::Gap;
-use crate::progress::{Progress, ProgressPart};
+use crate::progress::{Progress, ProgressPart, Stopped};
 
 /// Columns of the map in which cusps are looked for.
 const CUSP_COLUMNS: u32 = 24;
@@ -70,19 +70,14 @@ pub struct Counts {
 
 impl Family {
     /// The map of both axes, with the snaps on a grid of so many columns and rows: between two neighbouring cells with different
-    /// numbers of snaps there is a line. `None` when `progress` said stop.
+    /// numbers of snaps there is a line.
     ///
     /// # Errors
-    /// The gap cannot be tabulated somewhere, or a value is out of its range.
-    pub fn map(
-        &mut self,
-        cells: [u32; 2],
-        progress: &dyn Progress,
-    ) -> Result<Option<(Map, Counts)>, FamilyError> {
+    /// [`FamilyError::Stopped`]; the gap cannot be tabulated somewhere, or a value is out of its range.
+    pub fn map(&mut self, cells: [u32; 2], progress: &dyn Progress) -> Result<(Map, Counts), FamilyError> {
         let mut map = Map::default();
-        let Some((counts, radii)) = self.counts(cells, &ProgressPart::new(progress, [0.0, 0.4])) else {
-            return Ok(None);
-        };
+        let counted = self.counts(cells, &ProgressPart::new(progress, [0.0, 0.4]));
+        let (counts, radii) = counted.ok_or(Stopped)?;
         if let Some(radii) = radii {
             map.notes.extend(self.widen(radii).err());
         }
@@ -97,7 +92,7 @@ impl Family {
                     .to_owned(),
             );
         }
-        Ok((!progress.stop()).then_some((map, counts)))
+        Ok(progress.go_on().map(|()| (map, counts))?)
     }
 
     /// The lines that are looked for all over the map, whether the number of snaps changes across them or not.

@@ -3,6 +3,7 @@
 use crate::case::CaseError;
 use crate::fit::FitError;
 use crate::preset::Invalid;
+use crate::progress::Stopped;
 use crate::quasistatic::path::PathError;
 use crate::report::pull::PullError;
 use crate::text::sanitize;
@@ -58,7 +59,7 @@ impl Fault {
             CaseError::Start { .. } | CaseError::EndOutsideStart { .. } => REASONS[2],
             CaseError::Path { error, .. } if matches!(**error, PathError::UnstableStart { .. }) => REASONS[3],
             CaseError::Path { .. } => REASONS[7],
-            CaseError::Cancelled => REASONS[4],
+            CaseError::Stopped(Stopped) => REASONS[4],
             CaseError::HasRange { .. } => REASONS[12],
         };
         Self::new(reason, &error.to_string())

@@ -181,7 +181,7 @@ impl Equilibria {
         let span = Span { hi, ..span };
         let zone = &self.zone;
         let source = |radii: &[f64]| samples(zone, radii, progress);
-        resolve(&source, span, FINENESS, progress, &mut self.panels).ok_or(TableError::Cancelled)?;
+        resolve(&source, span, FINENESS, progress, &mut self.panels)?;
         self.at = hi;
         if touch == Some(hi) {
             self.touches.push(hi);

@@ -35,7 +35,7 @@ use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::disc::Table;
 use pulloff_engine::preset::{self, shipped};
 use pulloff_engine::problem::{Control, Turn};
-use pulloff_engine::progress::{Progress, Unwatched};
+use pulloff_engine::progress::{Progress, Stopped, Unwatched};
 use pulloff_engine::quasistatic::path::{EventKind, Path, PathSetting, PathState, Warning, cycle};
 use pulloff_engine::report::map::{MapError, Ordinate};
 use pulloff_engine::report::path::Extent;
@@ -309,7 +309,7 @@ fn stops(name: &str, times: usize, computed: &dyn Fn(&dyn Progress) -> Result<bo
 fn every_report_stops(times: usize) {
     let of_case = |found: Result<(), CaseError>| match found {
         Ok(()) => Ok(false),
-        Err(CaseError::Cancelled) => Ok(true),
+        Err(CaseError::Stopped(Stopped)) => Ok(true),
         Err(other) => Err(other.to_string()),
     };
     for name in ["fig-9-weak", "formula", "power-law"] {
@@ -340,7 +340,7 @@ fn every_report_stops(times: usize) {
             progress,
         ) {
             Ok(_) => Ok(false),
-            Err(MapError::Cancelled | MapError::Case(CaseError::Cancelled)) => Ok(true),
+            Err(MapError::Stopped(Stopped) | MapError::Case(CaseError::Stopped(Stopped))) => Ok(true),
             Err(other) => Err(other.to_string()),
         });
     }

@@ -15,7 +15,7 @@ use pulloff_engine::gap::{formula::FormulaParameter, formula::TypedGap};
 use pulloff_engine::preset::{self, shipped};
 use pulloff_engine::problem::Turn;
 use pulloff_engine::problem::{ContactKind, Control};
-use pulloff_engine::progress::Unwatched;
+use pulloff_engine::progress::{Stopped, Unwatched};
 use pulloff_engine::quasistatic::path::{
     Balance, Direction, EVEN, EventKind, Losses, Path, PathError, PathSetting, PathState, Warning, WhyNot,
     cycle, cycle_on,
@@ -329,7 +329,7 @@ fn bad_turns_are_refused_with_the_number_that_would_do() {
     let setting = PathSetting { losses: Losses::Once, ..PathSetting::new(Control::Force) };
     assert_eq!(
         cycle_on(&ground, 1e-4, Turn::Force(0.01), &setting, &|| true).unwrap_err(),
-        PathError::Cancelled
+        PathError::Stopped(Stopped)
     );
 }
 

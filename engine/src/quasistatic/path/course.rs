@@ -10,7 +10,7 @@ use crate::annuli::{AnnuliError, Contacts, ContactsError, GapMinimum, Ground, po
 use crate::disc::Table;
 use crate::gap::Form;
 use crate::problem::{ContactKind, Control, Turn};
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use crate::quasistatic::energy::Losses;
 use crate::root;
 use nalgebra::DVector;
@@ -269,7 +269,7 @@ impl Course<'_, '_> {
         let Some(crest) = crest else {
             let searched = ground.reach();
             return Err(if progress.stop() {
-                PathError::Cancelled
+                PathError::Stopped(Stopped)
             } else {
                 PathError::NeverTouches { searched }
             });

@@ -41,7 +41,7 @@ impl PathError {
                 | Self::NoLanding { .. }
                 | Self::Lost { .. }
                 | Self::TooLong { .. }
-                | Self::Cancelled
+                | Self::Stopped(_)
         )
     }
 

@@ -3,6 +3,7 @@
 use crate::annuli::AnnuliError;
 use crate::disc::TableError;
 use crate::problem::Control;
+use crate::progress::Stopped;
 use crate::zone::FaultKind;
 
 /// Why there is no path. All numbers are in reduced units.
@@ -116,8 +117,8 @@ pub enum PathError {
     #[error(transparent)]
     Table(TableError),
     /// It was no longer wanted.
-    #[error("cancelled")]
-    Cancelled,
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }
 
 /// What ends a path of one disc in one zone.
@@ -135,7 +136,7 @@ pub(super) fn beyond_zone(kind: Option<FaultKind>, radius: &str) -> String {
 impl From<TableError> for PathError {
     fn from(error: TableError) -> Self {
         match error {
-            TableError::Cancelled => Self::Cancelled,
+            TableError::Stopped(Stopped) => Self::Stopped(Stopped),
             error @ TableError::TooFine(_) => Self::Table(error),
         }
     }

@@ -119,7 +119,7 @@ impl Course<'_, '_> {
         }
         self.within_reach(held.approach, held.force)?;
         self.balance.progress.report(self.share(held));
-        if self.balance.progress.stop() { Err(PathError::Cancelled) } else { Ok(()) }
+        Ok(self.balance.progress.go_on()?)
     }
 
     /// Whether all that could touch at an approach lies within the table, where the gap goes on.

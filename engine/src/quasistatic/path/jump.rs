@@ -101,9 +101,7 @@ impl Balance<'_> {
         let mut contacts = start;
         let mut last = f64::INFINITY;
         for _ in 0..STEPS {
-            if self.progress.stop() {
-                return Err(PathError::Cancelled);
-            }
+            self.progress.go_on()?;
             contacts = self.tidied(contacts, sense, passed);
             if contacts.is_empty() {
                 return Ok(None);

@@ -116,9 +116,7 @@ impl Course<'_, '_> {
         if let Some(error) = failed {
             return Err(error);
         }
-        if self.balance.progress.stop() {
-            return Err(PathError::Cancelled);
-        }
+        self.balance.progress.go_on()?;
         // Where the first place touches already, it is the first touch.
         Ok((on(touch.unwrap_or(lo)), best))
     }

@@ -83,7 +83,7 @@ impl<'a> Record<'a> {
     /// Adds the stable states of one disc between two places, in the order of the way and the first left out, with their area.
     ///
     /// # Errors
-    /// [`PathError::Cancelled`].
+    /// [`PathError::Stopped`].
     pub fn along(&mut self, lane: &Lane, [mut from, to]: [Place; 2]) -> Result<(), PathError> {
         let radius = |place: Place| lane.solution.at(place).contact_radius;
         let is_inward = radius(to) < radius(from);
@@ -122,9 +122,7 @@ impl<'a> Record<'a> {
             between.reverse();
         }
         for some in between.chunks(TOGETHER) {
-            if self.progress.stop() {
-                return Err(PathError::Cancelled);
-            }
+            self.progress.go_on()?;
             let states: Vec<PathState> = some.iter().map(|(_, place)| self.disc(lane, *place)).collect();
             self.states.extend(states);
         }
@@ -138,7 +136,7 @@ impl<'a> Record<'a> {
     /// The way of one disc down to the radius `to`, jump by jump, from a stable state that is recorded.
     ///
     /// # Errors
-    /// [`PathError::Cancelled`].
+    /// [`PathError::Stopped`].
     pub fn descend(&mut self, lane: &Lane, from: Landing, to: f64) -> Result<Descent, PathError> {
         let descent = descend(&*lane.solution, &lane.monotone, from, to);
         let mut jumps = descent.jumps.iter();

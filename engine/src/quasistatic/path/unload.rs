@@ -16,7 +16,7 @@ use super::record::{Record, stop_of};
 use super::setting::{AskedState, Path, PathSetting, WhyNot};
 use crate::annuli::{Contacts, Ground, points};
 use crate::problem::{ContactKind, Control, Turn};
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use crate::quasistatic::admissible::falls;
 use crate::quasistatic::curve::Curve;
 use crate::quasistatic::descent::stable_start;
@@ -33,7 +33,7 @@ const BEYOND: f64 = 1.3;
 /// Unloads along `curve`, from its outermost state down to its innermost.
 ///
 /// # Errors
-/// [`PathError::UnstableStart`] when the start is unstable and no stable state lies outward, [`PathError::Cancelled`] when `progress`
+/// [`PathError::UnstableStart`] when the start is unstable and no stable state lies outward, [`PathError::Stopped`] when `progress`
 /// said stop, others where contact in rings cannot be followed.
 pub fn unload(curve: &Curve, setting: &PathSetting<'_>, progress: &dyn Progress) -> Result<Path, PathError> {
     let control = setting.control;
@@ -43,7 +43,7 @@ pub fn unload(curve: &Curve, setting: &PathSetting<'_>, progress: &dyn Progress)
     let growing = match setting.closing_below(gamma) {
         Some(closing) => {
             let none = PathError::UnstableStart { contact_radius: from, searched: from };
-            let none = if progress.stop() { PathError::Cancelled } else { none };
+            let none = if progress.stop() { PathError::Stopped(Stopped) } else { none };
             Some(curve.under(closing, progress).ok_or(none)?)
         }
         None => None,
@@ -86,9 +86,7 @@ pub fn unload(curve: &Curve, setting: &PathSetting<'_>, progress: &dyn Progress)
     }
     record.begun(first);
     let descent = record.descend(&lane, here, to)?;
-    if progress.stop() {
-        return Err(PathError::Cancelled);
-    }
+    progress.go_on()?;
     Ok(record.finished(asked, None, None, stop_of(&descent)))
 }
 

@@ -308,9 +308,7 @@ fn fault(
     ends: Ends,
     progress: &dyn Progress,
 ) -> Result<Option<ZoneFault>, PathError> {
-    if progress.stop() {
-        return Err(PathError::Cancelled);
-    }
+    progress.go_on()?;
     let at = zone_at(solution, place);
     let radius = zone.sees(ground, at);
     if radius >= ground.reach() && ground.reach() < ground.table.end() * (1.0 - 1e-9) {
