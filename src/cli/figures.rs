@@ -3,6 +3,7 @@
 use super::Failure;
 use super::console::Messages;
 use super::output::{Inputs, OUTPUT, OutputSink, Outputs, Replacing, shown};
+use crate::plot::paper::PaperSheet;
 use crate::plot::{Width, adhesion, paper, svg, table};
 #[cfg(feature = "png")]
 use crate::print::PictureFormat;
@@ -61,27 +62,31 @@ pub fn run(arguments: &FiguresArguments) -> Result<ExitCode, Failure> {
         files.insert(name, arguments.files(&mut outputs, name)?);
     }
     let last = outputs.file(OUTPUT, &folder.join(CAPTIONS))?;
-    let mut sheets = paper::sheets(|name| console.say(name))?;
-    console.say("Adhesion with a range");
-    sheets.extend(adhesion::sheets()?);
     let mut captions = String::from("# The figures of the paper, computed again\n");
-    for sheet in &sheets {
-        let missing = || Failure::Incomplete(format!("{}: its files were not looked at", sheet.name));
-        let files = files.get(sheet.name).ok_or_else(missing)?;
-        files.numbers.write(table::csv(&sheet.figure)?)?;
-        let picture = svg::svg(&sheet.figure, Width::ONE_COLUMN);
-        files.picture.write(&picture)?;
-        #[cfg(feature = "png")]
-        if let Some(png) = &files.png {
-            png.write(PictureFormat::Png.bytes(&picture)?)?;
+    let mut write = |sheets: &[PaperSheet]| -> Result<(), Failure> {
+        for sheet in sheets {
+            let missing = || Failure::Incomplete(format!("{}: its files were not looked at", sheet.name));
+            let files = files.get(sheet.name).ok_or_else(missing)?;
+            files.numbers.write(table::csv(&sheet.figure)?)?;
+            let picture = svg::svg(&sheet.figure, Width::ONE_COLUMN);
+            files.picture.write(&picture)?;
+            #[cfg(feature = "png")]
+            if let Some(png) = &files.png {
+                png.write(PictureFormat::Png.bytes(&picture)?)?;
+            }
+            #[cfg(feature = "pdf")]
+            if let Some(pdf) = &files.pdf {
+                pdf.write(PictureFormat::Pdf.bytes(&picture)?)?;
+            }
+            // Writing to a String cannot fail.
+            let _ = write!(captions, "\n![{0}]({0}.svg)\n\n**{0}.** {1}\n", sheet.name, sheet.caption);
         }
-        #[cfg(feature = "pdf")]
-        if let Some(pdf) = &files.pdf {
-            pdf.write(PictureFormat::Pdf.bytes(&picture)?)?;
-        }
-        // Writing to a String cannot fail.
-        let _ = write!(captions, "\n![{0}]({0}.svg)\n\n**{0}.** {1}\n", sheet.name, sheet.caption);
-    }
+        Ok(())
+    };
+    // Those of the paper are there before the others, which take longer.
+    write(&paper::sheets(|name| console.say(name))?)?;
+    console.say("Adhesion with a range");
+    write(&adhesion::sheets()?)?;
     last.write(captions)?;
     console.end()
 }

@@ -65,13 +65,16 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
             model.stiffness = Some(k);
         }
     }
+    let selected = model.selected_knob().map(|(row, _)| row.key.clone());
     model.preset = preset;
     if same_problem {
         return Vec::new();
     }
     model.is_tried = false;
-    let knobs = model.knobs().len();
-    model.parameter = model.parameter.min(knobs.saturating_sub(1));
+    // A key more or less moves the lines: the one that is turned stays the same.
+    let knobs = model.knobs();
+    let stays = knobs.iter().position(|(row, _)| selected.as_ref() == Some(&row.key));
+    model.parameter = stays.unwrap_or(model.parameter.min(knobs.len().saturating_sub(1)));
     let mut effects = stop_walk(model);
     if model.shows_its_curve() {
         // Back at the values of the curve on the screen: the one being computed is no longer wanted.

@@ -238,3 +238,29 @@ fn short_keys_are_the_last_part_of_a_key_or_its_symbol() {
     session.does(parse("set amplitude=0.003").unwrap().unwrap());
     assert!(session.status().starts_with("amplitude is short for several: gap."), "{}", session.status());
 }
+
+#[test]
+fn the_value_that_is_turned_stays_selected_when_a_key_comes_before_it() {
+    let mut session = Session::new("wavy-sphere");
+    let selected = |session: &Session| session.model.selected_knob().unwrap().0.key.to_string();
+    assert_eq!(selected(&session), "gap.amplitude");
+    session.does(Command::Assign(vec![("material.closing_work_of_adhesion".into(), "0.003".to_owned())]));
+    assert_eq!(session.model.preset.material.adhesion.name(), "short-range");
+    assert_eq!(selected(&session), "gap.amplitude");
+    session.does(Id::Undo);
+    assert_eq!(selected(&session), "gap.amplitude");
+}
+
+#[test]
+fn values_that_need_each_other_are_set_in_any_order() {
+    let range = ("material.cohesive_range".into(), "0.005".to_owned());
+    let word = ("material.adhesion".into(), "dugdale".to_owned());
+    for all in [vec![range.clone(), word.clone()], vec![word, range]] {
+        let mut session = Session::new("wavy-sphere");
+        session.does(Command::Assign(all));
+        assert_eq!(session.model.preset.material.adhesion.name(), "dugdale", "{}", session.status());
+    }
+    let mut session = Session::new("wavy-sphere");
+    session.does(Command::Assign(vec![("material.adhesion".into(), "dugdale".to_owned())]));
+    assert!(session.status().contains("needs material.cohesive_strength"), "{}", session.status());
+}

@@ -243,7 +243,7 @@ pub(super) fn assign(model: &mut Model, assignments: Vec<Assignment>) -> Vec<Eff
     if assignments.iter().any(|(key, _)| is_file(key)) {
         return vec![file(Job::Assign { preset: Box::new(preset), assignments })];
     }
-    match assignments.iter().try_for_each(|(key, text)| preset.assign(key, text)) {
+    match preset.assign_all(&assignments) {
         Ok(()) => assigned(model, preset),
         Err(invalid) => model.refuse(invalid.to_string()),
     }

@@ -10,7 +10,7 @@ use crate::preset::invalid::Invalid;
 use crate::preset::measured;
 use crate::preset::resolve::{count_in_own_units, in_units};
 use crate::preset::rows::parameter;
-use crate::preset::schema::{CHOOSERS, Fallback, Kind, Parameter, SYSTEMS, rivals};
+use crate::preset::schema::{CHOOSERS, Fallback, Key, Kind, Parameter, SYSTEMS, rivals};
 use crate::preset::shape;
 use crate::preset::value::Value;
 use crate::preset::values::Values;
@@ -161,10 +161,33 @@ impl Preset {
     /// # Errors
     /// As [`Parameter::parse`] and [`Preset::set`].
     pub fn assign(&mut self, key: &str, text: &str) -> Result<(), Invalid> {
+        self.set(key, self.assigned(key, text)?)
+    }
+
+    /// The value that an assignment gives to a key.
+    fn assigned(&self, key: &str, text: &str) -> Result<Value, Invalid> {
         let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
         let own = row.own_unit_in(&self.units).is_some();
-        let value = if own { self.typed(&row, text)? } else { row.parse(text)? };
-        self.set(key, value)
+        if own { self.typed(&row, text) } else { row.parse(text) }
+    }
+
+    /// Gives several keys the values of texts, one after the other as on a command line; where one of them needs a later one, all at once.
+    ///
+    /// # Errors
+    /// As [`assign`](Self::assign), for the first that is refused either way; the preset is left as it was.
+    pub fn assign_all(&mut self, assignments: &[(Key, String)]) -> Result<(), Invalid> {
+        let mut changed = self.clone();
+        let refused = assignments.iter().try_for_each(|(key, text)| changed.assign(key, text));
+        if let Err(refused) = refused {
+            changed = self.clone();
+            let values = assignments.iter().map(|(key, text)| Ok((&**key, self.assigned(key, text)?)));
+            let at_once = values.collect::<Result<Vec<_>, Invalid>>().and_then(|all| changed.set_all(all));
+            if at_once.is_err() {
+                return Err(refused);
+            }
+        }
+        *self = changed;
+        Ok(())
     }
 
     /// The value of a row as a person types it beside its unit: in SI a bare number counts in the unit shown there.
