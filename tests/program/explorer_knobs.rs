@@ -264,3 +264,14 @@ fn values_that_need_each_other_are_set_in_any_order() {
     session.does(Command::Assign(vec![("material.adhesion".into(), "dugdale".to_owned())]));
     assert!(session.status().contains("needs material.cohesive_strength"), "{}", session.status());
 }
+
+#[test]
+fn a_rate_without_a_law_of_the_edge_says_that_it_changes_nothing() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Command::Assign(vec![("path.rate".into(), "0.001".to_owned())]));
+    assert!(session.status().contains("until edge.exponent"), "{}", session.status());
+    let both =
+        [("edge.exponent", "0.5"), ("path.rate", "0.01")].map(|(key, text)| (key.into(), text.to_owned()));
+    session.does(Command::Assign(both.to_vec()));
+    assert!(!session.status().contains("changes nothing"), "{}", session.status());
+}

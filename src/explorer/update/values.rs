@@ -66,6 +66,13 @@ fn tell_effect(model: &mut Model, key: &str, changed: &Preset) {
     }
 }
 
+/// A value that changes nothing yet is no mistake, but worth a word.
+fn tell_idle(model: &mut Model, key: &str, changed: &Preset) {
+    if matches!(key, "path.rate" | "path.steps") && changed.edge.exponent.is_none() {
+        model.tell(Level::Info, format!("{key} changes nothing until edge.exponent gives the edge a speed"));
+    }
+}
+
 /// What a formula's parameters that the one before had not begin with; a like name that is gone may be what was meant.
 fn tell_new_parameters(model: &mut Model, before: &Preset, changed: &Preset) {
     let names = |preset: &Preset| -> Vec<Row> {
@@ -112,6 +119,7 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
             }
             model.untried = None;
             tell_effect(model, &row.key, &preset);
+            tell_idle(model, &row.key, &preset);
             tell_points(model, &preset);
             if let Some(said) = said {
                 model.tell(Level::Info, said);
@@ -244,7 +252,12 @@ pub(super) fn assign(model: &mut Model, assignments: Vec<Assignment>) -> Vec<Eff
         return vec![file(Job::Assign { preset: Box::new(preset), assignments })];
     }
     match preset.assign_all(&assignments) {
-        Ok(()) => assigned(model, preset),
+        Ok(()) => {
+            for (key, _) in &assignments {
+                tell_idle(model, key, &preset);
+            }
+            assigned(model, preset)
+        }
         Err(invalid) => model.refuse(invalid.to_string()),
     }
 }
