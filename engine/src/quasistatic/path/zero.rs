@@ -223,11 +223,14 @@ impl Course<'_, '_> {
             }
         }
         let (hi, f_hi, mut best, mut radius) = high?;
-        RootBracket::new([lo, f_lo], [hi, f_hi])?.find(1e-15 * hi.abs().max(wave), |delta| {
-            let (next, [at, pressure]) = least(delta, &best.state.contacts)?;
-            (best, radius) = (next, at);
-            Some(pressure)
-        })?;
+        // Where the pressure vanishes there to the last digit, that is the place.
+        if let Some(mut bracket) = RootBracket::new([lo, f_lo], [hi, f_hi]) {
+            bracket.find(1e-15 * hi.abs().max(wave), |delta| {
+                let (next, [at, pressure]) = least(delta, &best.state.contacts)?;
+                (best, radius) = (next, at);
+                Some(pressure)
+            })?;
+        }
         let touches = self.balance.least_gap(&best).is_some_and(|crest| crest.gap < 0.0);
         (!touches && before.is_none_or(|before| best.approach <= before)).then_some((radius, best))
     }
