@@ -68,7 +68,7 @@
 //! | [`annuli`] | the state of a disc and any number of rings of contact |
 //! | [`zone`] | adhesion with a range: one disc of contact in one zone |
 //! | [`rate`] | one disc whose edge has a speed: pulls, times to failure |
-//! | [`theory`] | closed forms that share nothing with the above: Hertz, JKR, Guduru, Kesari-Lew; the judges |
+//! | [`theory`] | closed forms that share only functions and roots of one number with the above: Hertz, JKR, Guduru, Kesari-Lew; the judges |
 //! | [`quasistatic`] | the curve, devices, stability, jumps, losses, unloading, admissibility |
 //! | [`preset`], [`case`] | the table of keys, reading and writing presets; a preset made ready |
 //! | [`stability`] | the law of stability, limit points in two parameters, counts of snaps |

@@ -1,4 +1,4 @@
-//! Roots of a function of one number: halving where only a side is told, interpolation where a value is.
+//! Roots of a function of one number: halving where only the side of the root is known, interpolation where the value is.
 
 /// The last number found from `from` towards `to`, which may stand in either order, at which `stays` holds, and the first at which it
 /// does not: the interval is halved until no number lies between.

@@ -83,7 +83,7 @@ pub fn run(arguments: &FiguresArguments) -> Result<ExitCode, Failure> {
         }
         Ok(())
     };
-    // Those of the paper are there before the others, which take longer.
+    // The figures of the paper are written first: the others take longer.
     write(&paper::sheets(|name| console.say(name))?)?;
     console.say("Adhesion with a range");
     write(&adhesion::sheets()?)?;

@@ -100,9 +100,7 @@ impl ProblemCurve {
         let mut curve = case.curve(progress)?;
         progress.enter(CurveStage::Limits);
         for control in SHOWN {
-            if progress.stop() {
-                return Err(CaseError::Stopped(Stopped));
-            }
+            progress.go_on()?;
             curve.hold(control);
         }
         // Of adhesion with a range each state has been looked at, and the equations of the curve are not theirs.
@@ -114,7 +112,7 @@ impl ProblemCurve {
             preset: preset.clone(),
             start: start.as_ref().map(|point| curve.equilibrium.admissibility(point, progress)),
             inadmissible: in_zone.then(Vec::new),
-            theory: Theory::of(&case, &curve, progress).ok_or(CaseError::Stopped(Stopped))?,
+            theory: Theory::of(&case, &curve, progress).ok_or(Stopped)?,
             groups: Groups::of(&case.problem, preset.range_of_action(), preset.cohesion()),
             digits,
             stiffness: start.as_ref().map(|point| curve.equilibrium.state_and_stiffness(point).1),
@@ -179,7 +177,7 @@ impl CurveData {
             .collect();
         progress.enter(CurveStage::Events(0));
         let told = |path: Result<Path, CaseError>| match path {
-            Err(CaseError::Stopped(Stopped)) => Err(CaseError::Stopped(Stopped)),
+            Err(CaseError::Stopped(stopped)) => Err(stopped),
             path => Ok(path.map_err(|error| error.to_string())),
         };
         let unloading = told(case.unload(&curve, &case.setting_of_unloading(), progress))?;

@@ -1,7 +1,10 @@
 //! What can be written to a file: the kinds of export and the endings of their files.
 
+use super::model::Model;
 use super::view::View;
 use crate::print::PictureFormat;
+use crate::store::Source;
+use pulloff_engine::text::sanitize;
 use std::path::Path;
 
 /// What can be exported.
@@ -27,6 +30,17 @@ impl ExportKind {
             Self::Events => "events",
             Self::Script => "script",
             Self::Study => "study",
+        }
+    }
+
+    /// What it is.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Curve => "every point of the equilibrium curve",
+            Self::Walk => "the states walked by hand",
+            Self::Events => "the instabilities listed",
+            Self::Script => "what was done, for pulloff run",
+            Self::Study => "the study: its values, or in a .toml the sweep that repeats it",
         }
     }
 
@@ -64,12 +78,35 @@ impl Picture {
         }
     }
 
+    /// What it is.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Screen => "what is on the screen, as text",
+            Self::Figure(_) => "the first view for print: zoom, pins and theory with it",
+        }
+    }
+
     /// The endings its file may have, the usual one first.
     pub fn endings(self) -> &'static [&'static str] {
         match self {
             Self::Screen => &["txt"],
             Self::Figure(_) => PictureFormat::ENDINGS,
         }
+    }
+}
+
+impl Model {
+    /// The name of a file for a document of this name: that of the preset is in it.
+    pub fn file_for(&self, document: &str, ending: &str) -> String {
+        let base = match &self.source {
+            Source::User { name, .. } => name.clone(),
+            Source::Shipped(shipped) => shipped.name.to_owned(),
+            Source::Piped { .. } => "preset".to_owned(),
+            Source::File(path) => {
+                path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
+            }
+        };
+        format!("{}-{document}.{ending}", sanitize(&base, 60))
     }
 }
 

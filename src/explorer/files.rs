@@ -35,11 +35,11 @@ impl Page {
     }
 }
 
-/// Gives `preset` other values one after the other; a measured curve comes last, together with what is said of its columns.
+/// Gives `preset` other values; a measured curve comes last, together with what is said of its columns.
 fn assign(preset: &mut Preset, assignments: &[Assignment]) -> Result<(), Invalid> {
     let is_curve = |assignment: &&Assignment| [data_keys::FILE, data_keys::COLUMNS].contains(&&*assignment.0);
     let (curve, others): (Vec<_>, Vec<_>) = assignments.iter().partition(is_curve);
-    others.into_iter().try_for_each(|(key, text)| preset.assign(key, text))?;
+    preset.assign_all(&others.into_iter().cloned().collect::<Vec<_>>())?;
     preset.set_all(curve.into_iter().map(|(key, text)| (&**key, Value::Text(text.clone()))))
 }
 

@@ -140,18 +140,25 @@ fn taken(model: &mut Model, found: &Arc<Fit>) -> Vec<Effect> {
 /// What a fit found, in a line: the verdict first, since narrow screens cut the end.
 fn told(fit: &Fit) -> String {
     let ended = match (fit.ending, fit.verdict) {
-        (Ending::Rounds, _) => "not converged, the best so far",
-        (Ending::Cancelled, _) => "stopped, the best so far",
-        (Ending::Converged, Verdict::Describes) => "fitted",
-        (Ending::Converged, _) => "fitted, but the model does NOT describe the points",
+        (Ending::Rounds, _) => "not converged, the best so far".to_owned(),
+        (Ending::Cancelled, _) => "stopped, the best so far".to_owned(),
+        (Ending::Converged, Verdict::Describes) => "fitted".to_owned(),
+        (Ending::Converged, verdict) => format!("fitted, but {}", verdict.sentence()),
     };
-    let reasons = fit.reasons.iter().map(|reason| &reason.sentence).chain(&fit.warnings);
+    let holds = (fit.verdict == Verdict::Describes).then(|| fit.verdict.sentence());
+    let reasons = fit.reasons.iter().map(|reason| &*reason.sentence);
+    let reasons = holds.into_iter().chain(reasons).chain(fit.warnings.iter().map(String::as_str));
     let begins = format!("{ended}: χ² {}", short(fit.chi_squared, 3));
-    let parts: Vec<&str> = std::iter::once(&*begins).chain(reasons.map(String::as_str)).collect();
+    let parts: Vec<&str> = std::iter::once(&*begins).chain(reasons).collect();
     greek(&parts.join("; "))
 }
 
 impl Model {
+    /// What the fit found whose values these are.
+    pub(super) fn fit_said(&self) -> Option<String> {
+        self.fit.as_deref().filter(|fit| fit.holds_for(&self.preset)).map(told)
+    }
+
     /// The standard error of the value of `key`, for as long as all is as the fit found it: of another file, another R or another
     /// column nothing is known. There is none where the model does not describe the points.
     pub fn standard_error(&self, key: &str) -> Option<f64> {

@@ -20,6 +20,8 @@ pub enum EventMark {
     /// The walker stands where it begins.
     Here,
     Ahead,
+    /// Behind the walker, who left the path before it and came back after it.
+    PassedBy,
 }
 
 /// One line of the log.
@@ -42,8 +44,17 @@ pub struct Log {
 impl Log {
     /// The energy lost so far, and whether a loss without bound is among it.
     pub fn lost(&self) -> (f64, bool) {
-        let done = self.entries.iter().filter(|entry| entry.mark == EventMark::Done);
-        done.fold((0.0, false), |(sum, unbounded), entry| match entry.event.dissipated {
+        self.sum(|mark| mark == EventMark::Done)
+    }
+
+    /// The energy lost when all that lies ahead has happened too, and whether a loss without bound is among it.
+    pub fn lost_in_all(&self) -> (f64, bool) {
+        self.sum(|mark| mark != EventMark::PassedBy)
+    }
+
+    fn sum(&self, counts: impl Fn(EventMark) -> bool) -> (f64, bool) {
+        let counted = self.entries.iter().filter(|entry| counts(entry.mark));
+        counted.fold((0.0, false), |(sum, unbounded), entry| match entry.event.dissipated {
             Some(lost) => (sum + lost, unbounded),
             None => (sum, true),
         })
@@ -77,6 +88,17 @@ fn is_same(a: &EventReport, b: &EventReport) -> bool {
     a.direction == b.direction
         && near(radius(a.before.as_ref()), radius(b.before.as_ref()))
         && near(radius(a.after.as_ref()), radius(b.after.as_ref()))
+}
+
+/// How many events of a path lie behind a state on its way in a direction.
+fn behind(events: &[EventReport], s: f64, direction: &str) -> usize {
+    let is_behind = |event: &&EventReport| match (event.direction, direction) {
+        ("loading", "unloading") => true,
+        ("unloading", "unloading") => radius(event.before.as_ref()).is_some_and(|r| r > s),
+        ("loading", _) => radius(event.after.as_ref()).is_none_or(|r| r < s),
+        _ => false,
+    };
+    events.iter().take_while(is_behind).count()
 }
 
 impl Model {
@@ -157,6 +179,8 @@ impl Model {
         // What was walked and is no event of the path stands behind the last one that was.
         let mut strays: Vec<(usize, LogEntry)> = Vec::new();
         let mut last = done.iter().rposition(Option::is_some).map_or(0, |at| at + 1);
+        // How many events lie behind the last state that a jump led to.
+        let mut passed = 0;
         for (number, event) in self.walked_events() {
             if !of_curve.iter().any(|(of_curve, _)| *of_curve == number) {
                 continue;
@@ -165,12 +189,17 @@ impl Model {
                 Some(at) => {
                     done[at] = Some(Some(number));
                     last = at + 1;
+                    passed = last;
                 }
                 None => {
+                    if let Some(lands) = radius(event.after.as_ref()) {
+                        passed = behind(events, lands, event.direction);
+                    }
                     strays.push((
                         last,
                         LogEntry { mark: EventMark::Done, number: None, event, node: Some(number) },
                     ));
+                    last = last.max(passed);
                 }
             }
         }
@@ -205,6 +234,7 @@ impl Model {
             let mark = match (at == Some(index), done[index]) {
                 (true, _) => EventMark::Here,
                 (false, Some(_)) => EventMark::Done,
+                (false, None) if index < passed => EventMark::PassedBy,
                 (false, None) => EventMark::Ahead,
             };
             entries.push(LogEntry {
@@ -228,18 +258,9 @@ impl Model {
                 events.iter().position(|event| radius(event.after.as_ref()).is_some_and(|r| is_near(r, s)));
             return landed.filter(|_| self.preset.path.begin == Begin::Touch).map_or(0, |at| at + 1);
         }
-        let begins = |event: &EventReport| radius(event.before.as_ref());
-        let at = events
-            .iter()
-            .position(|event| event.direction == direction && begins(event).is_some_and(|r| is_near(r, s)));
-        at.unwrap_or_else(|| {
-            let is_behind = |event: &&EventReport| match (event.direction, direction) {
-                ("loading", "unloading") => true,
-                ("unloading", "unloading") => begins(event).is_some_and(|r| r > s),
-                ("loading", _) => radius(event.after.as_ref()).is_none_or(|r| r < s),
-                _ => false,
-            };
-            events.iter().take_while(is_behind).count()
-        })
+        let begins_here = |event: &EventReport| {
+            event.direction == direction && radius(event.before.as_ref()).is_some_and(|r| is_near(r, s))
+        };
+        events.iter().position(begins_here).unwrap_or_else(|| behind(events, s, direction))
     }
 }

@@ -235,6 +235,11 @@ pub fn changes(before: &Preset, after: &Preset) -> Vec<String> {
     told.collect()
 }
 
+/// The labels of the values that `after` has otherwise than `before`.
+pub fn changed_labels(before: &Preset, after: &Preset) -> Vec<String> {
+    differences(after, before).into_iter().map(|(row, _)| row.label.to_string()).collect()
+}
+
 /// The values of `after` that `before` has not, as labels and values; `None` where there are none.
 pub fn changed(after: &Preset, before: &Preset) -> Option<String> {
     named(&differences(after, before), &after.units)

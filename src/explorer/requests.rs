@@ -71,7 +71,7 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
         return Vec::new();
     }
     model.is_tried = false;
-    // A key more or less moves the lines: the one that is turned stays the same.
+    // The list may have a key more or less now: the same value stays selected.
     let knobs = model.knobs();
     let stays = knobs.iter().position(|(row, _)| selected.as_ref() == Some(&row.key));
     model.parameter = stays.unwrap_or(model.parameter.min(knobs.len().saturating_sub(1)));

@@ -3,7 +3,7 @@
 use super::command::Id;
 use super::model::{Level, Model, Walking};
 use super::node::{Node, NodeKind};
-use super::view::View;
+use super::view::{Home, View};
 use pulloff_engine::gap::{Gap, wave_index};
 use pulloff_engine::preset::edge;
 use pulloff_engine::problem::{Begin, Control};
@@ -40,8 +40,8 @@ impl Model {
 
 /// The state and the next command; if the state is inadmissible, the reason first.
 pub fn hint(model: &Model) -> String {
-    let fault =
-        model.walker().filter(|_| model.curve_error.is_none() && model.walking.is_none()).and_then(fault);
+    let walker = model.walker().filter(|_| model.curve_error.is_none() && model.walking.is_none());
+    let fault = walker.and_then(|node| fault(model, node));
     let next = next(model);
     match fault {
         Some(fault) => format!("Inadmissible: {fault}. {next}"),
@@ -62,19 +62,22 @@ fn energy(node: &Node, lost: f64) -> String {
 }
 
 /// Why a state cannot be, in words: the crest that would touch, or where the disc would have to pull.
-fn fault(node: &Node) -> Option<String> {
+fn fault(model: &Model, node: &Node) -> Option<String> {
     let (radius, crest) = node.fault_radius()?;
     let radius = length(node, radius);
     Some(match crest {
-        Some(Some(number)) => format!("crest {number} at r {radius} would touch; {}", real_path()),
-        Some(None) => format!("the crest at r {radius} would touch; {}", real_path()),
+        Some(Some(number)) => format!("crest {number} would touch at r {radius}; {}", real_path(model)),
+        Some(None) => format!("a crest would touch at r {radius}; {}", real_path(model)),
         None => format!("the disc would have to pull at r {radius}"),
     })
 }
 
 /// What happens instead of a state that one disc cannot be in.
-fn real_path() -> String {
-    "the real path has rings: begin = touch leads along it, as pulloff cycle does".to_owned()
+fn real_path(model: &Model) -> String {
+    match model.preset.path.begin {
+        Begin::Touch => format!("{} leads back to the path", Id::Undo.named()),
+        Begin::Disc => "begin = touch follows its rings".to_owned(),
+    }
 }
 
 fn next(model: &Model) -> String {
@@ -123,6 +126,9 @@ fn next(model: &Model) -> String {
     if let Some(said) = asks_of_pull(model).then(|| model.pull_said()).flatten() {
         return said;
     }
+    if let Some(said) = (model.view.home() == Home::Data).then(|| model.fit_said()).flatten() {
+        return said;
+    }
     let [next, step] = [Id::NextEvent, Id::Step].map(Id::named);
     if !model.inward && model.is_at_outer_end() && node.stability.under(control) {
         let turn = Id::Reverse.named();
@@ -141,12 +147,10 @@ fn next(model: &Model) -> String {
             format!("Start, stable under {held} control. {next} runs to the first event, {help} helps")
         }
         (true, NodeKind::Solved) if model.is_at_start() => {
-            format!(
-                "What is held lies beyond the path: this is where it starts. {next} runs to the next event"
-            )
+            format!("What is held lies beyond the path, which starts here; {next} runs to the next event")
         }
         (_, NodeKind::Solved) if node.on_path.is_some() => {
-            format!("The state of the new path nearest to the {held} held. {next} runs to the next event")
+            format!("Nearest of the new path to the {held} held; {next} runs to the next event")
         }
         (true, NodeKind::Solved) => {
             format!("Solved again {kept}, stable. {next} runs to the next event")
@@ -158,12 +162,10 @@ fn next(model: &Model) -> String {
             format!("This start is unstable under {held} control: {next} lets the edge run outward")
         }
         (false, NodeKind::Solved) => {
-            format!("Solved again {kept}, unstable there: {next} lets the edge run")
+            format!("Solved again {kept}, unstable: {next} lets the edge run")
         }
         (false, _) => {
-            format!(
-                "Off the path, unstable under {held} control: {next} lets the edge run, {step} steps {way}"
-            )
+            format!("Off the path, unstable under {held} control: {next} lets the edge run")
         }
     }
 }
@@ -207,7 +209,7 @@ fn happened(model: &Model, node: &Node) -> Option<String> {
         let [next, step] = [Id::NextEvent, Id::Step].map(Id::named);
         let name = event_here(model).map_or_else(String::new, |name| format!("{name}: "));
         return Some(format!(
-            "{name}a crest touches at r {radius}: {next} takes it in, {step} goes on without it, inadmissible"
+            "{name}a crest touches at r {radius}; {next} takes it in; {step}: inadmissible"
         ));
     }
     None
@@ -221,7 +223,7 @@ fn event_here(model: &Model) -> Option<String> {
 
 /// At the limit point `node`: where the edge would run and what that would cost.
 fn limit_hint(model: &Model, node: &Node) -> String {
-    let name = event_here(model).unwrap_or_else(|| "Limit point off the path".to_owned());
+    let name = event_here(model).unwrap_or_else(|| "Off the path".to_owned());
     let [next, jump, step] = [Id::NextEvent, Id::Jump, Id::Step].map(Id::named);
     let Some(ahead) = node.ahead else {
         return format!("{name}: {next} or {jump} lets the edge run, {step} goes on along the curve");
@@ -241,6 +243,8 @@ fn limit_hint(model: &Model, node: &Node) -> String {
         return format!("{name}: {next} or {jump} {lands}");
     }
     // The log has the losses of its events.
-    let lost = lost.filter(|_| model.log().here().is_none()).unwrap_or_default();
-    format!("{name}: {next} or {jump} {lands}{lost}; {step} goes on, {part}")
+    match lost.filter(|_| model.log().here().is_none()) {
+        Some(lost) => format!("{name}: {next} or {jump} {lands}{lost}"),
+        None => format!("{name}: {next} or {jump} {lands}; {step} goes on, {part}"),
+    }
 }

@@ -195,6 +195,12 @@ impl Keymap {
         self.0.iter().find(|(_, keys)| keys.iter().any(|k| k.matches(key))).map(|(id, _)| *id)
     }
 
+    /// The command of a key that is written out, as in the help.
+    pub fn called(&self, label: &str) -> Option<Id> {
+        let key = Keystroke::parse(label).ok()?;
+        self.0.iter().find(|(_, keys)| keys.contains(&key)).map(|(id, _)| *id)
+    }
+
     /// The command of a key in a list: arrows, Enter and Esc do there what they do everywhere.
     pub fn in_list(&self, key: KeyEvent) -> Option<Id> {
         match key.code {

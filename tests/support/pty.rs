@@ -6,7 +6,7 @@
 
 use std::{
     fs::OpenOptions,
-    io::{Read, Write},
+    io::{ErrorKind, Read, Write},
     num::NonZeroU16,
     os::unix::fs::OpenOptionsExt,
     path::Path,
@@ -24,8 +24,11 @@ use rustix::{
     process::{Pid, Signal, kill_process},
 };
 
-/// How long any wait may take.
-pub const LIMIT: Duration = Duration::from_secs(30);
+/// How long any wait may take, on a machine that stands still for a while.
+pub const LIMIT: Duration = Duration::from_secs(60);
+
+/// How many of the last bytes a failed wait shows.
+const TAIL: usize = 500;
 
 /// Between two looks at a condition.
 const LOOK: Duration = Duration::from_millis(2);
@@ -120,7 +123,12 @@ impl Pty {
             let (output, stop, paused) = (Arc::clone(&output), Arc::clone(&stop), Arc::clone(&paused));
             move || {
                 let mut buffer = [0; 4096];
-                while let Ok(count @ 1..) = source.read(&mut buffer) {
+                loop {
+                    let count = match source.read(&mut buffer) {
+                        Ok(count @ 1..) => count,
+                        Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+                        _ => return,
+                    };
                     if stop.load(Ordering::SeqCst) {
                         return;
                     }
@@ -168,7 +176,7 @@ impl Pty {
     pub fn wait_until(&self, wanted: impl Fn(&Self) -> bool, what: &str) {
         let start = Instant::now();
         while !wanted(self) {
-            assert!(start.elapsed() < LIMIT, "still waiting for {what}; the screen is:\n{}", self.screen());
+            assert!(start.elapsed() < LIMIT, "still waiting for {what}; {}", self.account());
             thread::sleep(LOOK);
         }
     }
@@ -206,6 +214,19 @@ impl Pty {
     /// Looks at the parsed screen: cells with their styles, the cursor, the modes.
     pub fn with_screen<R>(&self, look: impl FnOnce(&vt100::Screen) -> R) -> R {
         look(self.output.lock().unwrap_or_else(PoisonError::into_inner).parser.screen())
+    }
+
+    /// How things stand, for whoever reads why a wait failed.
+    fn account(&self) -> String {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.pid().as_raw_nonzero()));
+        let state = stat.ok().and_then(|stat| Some(stat.rsplit_once(") ")?.1.chars().next()?.to_string()));
+        let raw = self.raw();
+        let tail = String::from_utf8_lossy(&raw[raw.len().saturating_sub(TAIL)..]).into_owned();
+        let state = state.unwrap_or_else(|| "gone".to_owned());
+        format!(
+            "its process is {state} (Z: ended); the last bytes are {tail:?}; the screen is:\n{}",
+            self.screen()
+        )
     }
 
     /// Every byte written so far.
@@ -299,7 +320,7 @@ impl Pty {
             if let Some(status) = self.child.try_wait().expect("the program can be waited for") {
                 break status;
             }
-            assert!(start.elapsed() < LIMIT, "the program does not end; the screen is:\n{}", self.screen());
+            assert!(start.elapsed() < LIMIT, "the program does not end; {}", self.account());
             thread::sleep(LOOK);
         };
         if self.master.is_some() && !self.paused.load(Ordering::SeqCst) {

@@ -26,6 +26,10 @@ const WANTED: &str = "PULLOFF_SSH_TESTS";
 /// How long a thread of the wire sleeps before it looks whether the wire was cut.
 const LOOK: Duration = Duration::from_millis(10);
 
+/// Nothing came, and the wire stands.
+const NOT_YET: [io::ErrorKind; 3] =
+    [io::ErrorKind::WouldBlock, io::ErrorKind::TimedOut, io::ErrorKind::Interrupted];
+
 /// How often a server is started before it counts as not to be had.
 const STARTS: usize = 5;
 
@@ -213,7 +217,7 @@ fn carry(mut from: TcpStream, mut to: TcpStream, is_cut: &AtomicBool) {
     while !is_cut.load(Ordering::SeqCst) {
         match from.read(&mut buffer) {
             Ok(count @ 1..) if to.write_all(&buffer[..count]).is_ok() => {}
-            Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {}
+            Err(error) if NOT_YET.contains(&error.kind()) => {}
             _ => is_cut.store(true, Ordering::SeqCst),
         }
     }

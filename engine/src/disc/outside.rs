@@ -90,7 +90,7 @@ fn over_panels(panels: &Panels, s: f64, r: f64, stretch: impl Fn(usize, [f64; 2]
     (first..=last).map(part).sum::<f64>()
 }
 
-/// ∫_s^r f/√(r² − a²) da of a function of places of the panels and of g there; these must reach to `r`: to the last digits of the table where
+/// ∫_s^r f/√(r² − a²) da, f a function of places of the panels and of g there. The panels must reach to `r`. To the last digits of the table where
 /// f is as smooth on every panel as g is.
 pub fn sum_from(panels: &Panels, s: f64, r: f64, f: &dyn Fn(Place, f64) -> f64) -> f64 {
     over_panels(panels, s, r, |i, ends| {

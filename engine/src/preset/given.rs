@@ -108,7 +108,7 @@ impl GivenValues<'_> {
             Fallback::Number(x) => Some(Value::Number(x)),
             Fallback::Integer(n) => Some(Value::Integer(n)),
             Fallback::Text(text) => row.check(text.into()).ok(),
-            Fallback::Required | Fallback::Described(_) => None,
+            Fallback::Required | Fallback::Described(_) | Fallback::Computed => None,
         };
         if fallback.is_none() {
             self.faults.push(Invalid::Missing { key: row.key.clone(), allowed: row.allowed() });

@@ -17,7 +17,7 @@ const WAVY: Applies = Applies::With { key: CHOOSERS[0], words: &["wavy-sphere"] 
 
 /// The row of a group.
 const fn group(key: &'static str, label: &'static str, meaning: &'static str, kind: Kind) -> Parameter {
-    schema::row(key, label, meaning, kind).or(Fallback::Described("computed"))
+    schema::row(key, label, meaning, kind).or(Fallback::Computed)
 }
 
 /// The groups that can be set.

@@ -86,8 +86,10 @@ pub enum Fallback {
     Integer(i64),
     /// This text, choice or control.
     Text(&'static str),
-    /// It follows from other values, in these words.
+    /// It follows from other values, in these words, or is none.
     Described(&'static str),
+    /// It always follows from other values, which are changed in its place.
+    Computed,
 }
 
 /// Where a parameter means something.
@@ -213,6 +215,18 @@ impl Parameter {
         PARAMETERS.iter().any(is_whole)
     }
 
+    /// Whether the word [`NONE`] takes its value away: a number that follows from others, or is none, where it is not given.
+    #[must_use]
+    pub fn is_optional(&self) -> bool {
+        let is_described = matches!(self.fallback, Fallback::Described(_));
+        is_described && self.kind.is_number()
+    }
+
+    /// The key whose value holds its own.
+    pub(super) fn whole(&self) -> &str {
+        self.table().filter(|_| self.is_part()).unwrap_or(&self.key)
+    }
+
     /// The unit in which a preset of these units has it typed and shown, if there is one.
     #[must_use]
     pub fn unit_in<'a>(&'a self, units: &'a UnitSystem) -> Option<&'a Unit> {
@@ -284,6 +298,7 @@ impl Parameter {
             Fallback::Integer(n) => n.to_string(),
             Fallback::Text(text) => format!("\"{text}\""),
             Fallback::Described(words) => words.to_owned(),
+            Fallback::Computed => "computed".to_owned(),
         }
     }
 }

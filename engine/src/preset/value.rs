@@ -33,7 +33,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Whether it is the word that takes a file away.
+    /// Whether it is the word that takes a value away.
     pub(in crate::preset) fn is_none(&self) -> bool {
         matches!(self, Self::Text(word) if word == NONE)
     }
@@ -133,6 +133,11 @@ impl From<Control> for Value {
 }
 
 impl Parameter {
+    /// Whether the value is the word that takes its own away.
+    pub(super) fn takes_away(&self, value: &Value) -> bool {
+        value.is_none() && self.is_optional()
+    }
+
     /// The value in this row's own type, if the row takes it: whole numbers are numbers, and the words `displacement` and
     /// `force` are controls. The name of a file is a text until the file is read.
     ///
@@ -182,6 +187,7 @@ impl Parameter {
             }
             (Kind::Control, Value::Control(control)) => Ok(Value::Control(control)),
             (Kind::Control, Value::Typed(text)) => Ok(Value::Typed(text)),
+            (_, Value::Text(word)) if word == NONE && self.is_optional() => Ok(Value::Text(word)),
             (kind, Value::Text(text) | Value::Typed(text)) if kind.is_number() => self.check_typed(text),
             (Kind::Control, Value::Text(word)) => match word.as_str() {
                 "displacement" => Ok(Value::Control(Control::Displacement)),
@@ -287,6 +293,7 @@ mod tests {
         assert_eq!(parse("title", "Fig. 9, γ"), Ok("Fig. 9, γ".into()));
         assert_eq!(parse("path.control", "force"), Ok(Control::Force.into()));
         assert_eq!(parse("path.control", "stiffness=0.15"), Ok(Control::Stiffness(0.15).into()));
+        assert_eq!(parse("path.rate", "none"), Ok("none".into()));
         assert_eq!(parse("path.control", " 15 "), Ok(Control::Stiffness(15.0).into()));
     }
 
@@ -305,6 +312,7 @@ mod tests {
             ("gap.wavelength", "1e-31", "out of range"),
             ("path.start_approach", "-inf", "out of range"),
             ("gap.wavelength", "1 2", "must be a number"),
+            ("gap.wavelength", "none", "must be a number"),
             ("gap.wavelength", "1\nx = 2", "must be a number"),
             ("gap.wavelength", "", "must be a number"),
             ("gap.wavelength", "true", "not the boolean true"),

@@ -133,7 +133,10 @@ pub fn landed(
 ) -> Option<Box<SolvedStep>> {
     let mut found = longest;
     let after = of(found.end());
-    let Some(mut bracket) = RootBracket::new([from, before], [to, after]) else { return Some(found) };
+    let Some(mut bracket) = RootBracket::new([from, before], [to, after]) else {
+        // Passed before it begins, it ends where it begins.
+        return if after == 0.0 { Some(found) } else { step(THERE * to) };
+    };
     bracket.close(THERE * to, |h| {
         let tried = step(h)?;
         let value = of(tried.end());
@@ -143,4 +146,24 @@ pub fn landed(
         Some(value)
     })?;
     Some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_passed_before_a_step_ends_it_where_it_begins() {
+        let step = |h: f64| {
+            let mut found = Box::new(SolvedStep { length: h, ..SolvedStep::default() });
+            found.nodes[STAGES - 1].time = h;
+            Some(found)
+        };
+        let passed = |from: f64| move |at: &StretchMoment| at.time - from;
+        let found =
+            |from: f64| landed(&step, [0.0, 1.0], -from, step(1.0).unwrap(), &passed(from)).unwrap().length;
+        assert!((found(0.3) - 0.3).abs() < 1e-13);
+        assert_eq!(found(1.0).to_bits(), 1f64.to_bits());
+        assert!(found(-1e-17) < 1e-12);
+    }
 }

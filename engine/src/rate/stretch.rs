@@ -202,7 +202,7 @@ impl MotionStretch<'_> {
         let pasts: [&dyn Fn(&StretchMoment) -> f64; 3] = [&past_break, &past_time, &past_rest];
         for (past, end) in pasts.into_iter().zip(ends) {
             if past(first.end()) >= 0.0 {
-                // What is asked again begins as this one.
+                // Shorter steps begin from the stages of the whole one.
                 let (longest, whole) = (first.length, *first);
                 let again = |h: f64| self.step(here, h, Some(&whole));
                 first = landed(&again, [0.0, longest], past(&here.at), first, past)?;

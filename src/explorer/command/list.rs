@@ -141,7 +141,7 @@ macro_rules! each_command {
         About "about" "I" "about" always Nothing Screen "what the preset says of itself, and what was changed since" {}
         Help "help" "?" "keys" always Nothing Screen "what can be done here, by key and name; Tab: how to read the screen" { words: "manual keys" }
         Cancel "cancel" "Esc" "back" always Nothing Screen "take typed text back, close, stop a run or a curve" { run: cancel }
-        Quit "quit" "q Ctrl-C" "quit" always Nothing Yes "quit; asks only if the preset has unsaved changes"
+        Quit "quit" "q Ctrl-C" "quit" always Nothing Yes "quit; --resume comes back; asks if changes are unsaved"
             { words: "exit leave wq close bye", look: |model| model.quit = true }
     }
         }

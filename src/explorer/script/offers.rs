@@ -176,8 +176,20 @@ pub(in crate::explorer) fn presets(typing: &Typing<'_>) -> Vec<Offer> {
 
 /// What is exported, and for a figure which view.
 pub(in crate::explorer) fn documents(typing: &Typing<'_>) -> Vec<Offer> {
+    let documents = ExportKind::ALL.map(|what| (what.name(), what.meaning(), what.endings()));
+    let pictures = PICTURES.map(|what| (what.name(), what.meaning(), what.endings()));
+    let all = documents.into_iter().chain(pictures);
     match typing.words {
-        [] => words(ExportKind::ALL.map(ExportKind::name).into_iter().chain(PICTURES.map(Picture::name))),
+        [] => all.map(|(name, meaning, _)| Offer::new(name, meaning)).collect(),
+        // Any name will do; these are there to be taken.
+        [document] => {
+            let named = |endings: &[&str]| {
+                let shown = if *document == "figure" { typing.model.view.name() } else { document };
+                endings.iter().map(|ending| typing.model.file_for(shown, ending)).collect::<Vec<_>>()
+            };
+            let of = all.filter(|(name, ..)| name == document).flat_map(|(_, _, endings)| named(endings));
+            of.filter_map(|file| Some(Offer::new(quoted(&file)?, ""))).collect()
+        }
         ["figure", _] => words(View::ALL.map(View::name).into_iter().chain(["replace"])),
         [_, _] => words(["replace"]),
         _ => Vec::new(),
@@ -209,10 +221,12 @@ pub(in crate::explorer) fn assignments_of(typing: &Typing<'_>) -> Vec<Offer> {
         let rows = settable(preset).filter(|row| row.key != "format");
         return rows.map(|row| Offer::new(format!("{}=", row.key), &*row.meaning)).collect();
     };
-    let values: &[&str] = match preset.row(key).map(|row| row.kind) {
+    let row = preset.row(key);
+    let values: &[&str] = match row.as_ref().map(|row| row.kind) {
         Some(Kind::Choice(words)) => words,
         Some(Kind::Smoothing) => &[AUTO, NONE],
         Some(Kind::Control) => &CONTROLS,
+        _ if row.is_some_and(|row| row.is_optional() && preset.get(key).is_some()) => &[NONE],
         _ => &[],
     };
     values.iter().map(|value| Offer::new(format!("{key}={value}"), "")).collect()

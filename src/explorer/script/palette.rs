@@ -38,8 +38,14 @@ impl PaletteEntry {
 }
 
 /// What `line` could become: below no text all commands, those of `first` before the others; behind the name of a command what it takes;
-/// else whatever has all words of the text, the best match first.
-pub fn palette(line: &str, first: &[Id], model: &Model, files: FolderNames<'_>) -> Vec<PaletteEntry> {
+/// else the command `keyed`, whose key the text is, and whatever has all words of the text, the best match first.
+pub fn palette(
+    line: &str,
+    first: &[Id],
+    keyed: Option<Id>,
+    model: &Model,
+    files: FolderNames<'_>,
+) -> Vec<PaletteEntry> {
     let start = line.rfind([' ', '\t']).map_or(0, |at| at + 1);
     let (before, word) = line.split_at(start);
     let words: Vec<&str> = before.split_whitespace().collect();
@@ -48,9 +54,9 @@ pub fn palette(line: &str, first: &[Id], model: &Model, files: FolderNames<'_>) 
         return Vec::new();
     }
     let Some((name, words)) = words.split_first() else {
-        return if word.is_empty() { commands(first, model) } else { anything(word, model, files) };
+        return if word.is_empty() { commands(first, model) } else { anything(word, keyed, model, files) };
     };
-    let Some(row) = called(name) else { return anything(line.trim(), model, files) };
+    let Some(row) = called(name) else { return anything(line.trim(), keyed, model, files) };
     // Behind a word that is all there is nothing more.
     if !words.is_empty() && !row.takes.goes_on {
         return Vec::new();
@@ -68,7 +74,7 @@ fn commands(first: &[Id], model: &Model) -> Vec<PaletteEntry> {
 }
 
 /// Whatever has all words of `text`, or else most of them.
-fn anything(text: &str, model: &Model, files: FolderNames<'_>) -> Vec<PaletteEntry> {
+fn anything(text: &str, keyed: Option<Id>, model: &Model, files: FolderNames<'_>) -> Vec<PaletteEntry> {
     let wanted: Vec<&str> = text.split_whitespace().collect();
     let known =
         |line: &str| called(line).map_or_else(String::new, |row| format!("{} {}", row.short, row.words));
@@ -78,7 +84,9 @@ fn anything(text: &str, model: &Model, files: FolderNames<'_>) -> Vec<PaletteEnt
         let offers = (row.takes.offers)(&Typing { model, words: &[], word: last, files });
         offers.into_iter().map(move |offer| PaletteEntry::offer(&before, &offer))
     });
-    let mut found = of_key(&wanted, model);
+    let keyed = ROWS.iter().filter(|row| Some(row.id) == keyed).map(|row| PaletteEntry::command(row, model));
+    let mut found: Vec<PaletteEntry> =
+        keyed.chain(of_key(&wanted, model)).chain(of_event(&wanted, model)).collect();
     let all = ROWS.iter().map(|row| PaletteEntry::command(row, model)).chain(offered);
     let all: Vec<PaletteEntry> = all.filter(|entry| found.iter().all(|key| key.line != entry.line)).collect();
     // Where nothing has all words, whatever has most of them.
@@ -103,6 +111,16 @@ fn of_key(wanted: &[&str], model: &Model) -> Vec<PaletteEntry> {
     };
     let entry = |row: &Parameter| PaletteEntry::new(format!("set {}={value}", row.key), &*row.meaning);
     rows_called(&model.preset, symbol).iter().map(entry).collect()
+}
+
+/// An event by its number: `event 3`, `snap 3`.
+fn of_event(wanted: &[&str], model: &Model) -> Option<PaletteEntry> {
+    let [word, number] = wanted else { return None };
+    let number = number.parse::<usize>().ok()?;
+    let event = model.path_events().iter().find(|event| event.number == number)?;
+    let kind = event.kind.replace('-', " ");
+    let is_meant = *word == "event" || kind.split(' ').any(|part| part == *word);
+    is_meant.then(|| PaletteEntry::new(format!("move-to event {number}"), format!("the {kind}")))
 }
 
 /// Those that have a rank, the best first, equals in their order.
@@ -152,7 +170,7 @@ mod tests {
             "curves/" => vec!["curves/first.csv".to_owned()],
             _ => Vec::new(),
         };
-        palette(line, &[Id::Pin], &model, &files)
+        palette(line, &[Id::Pin], None, &model, &files)
     }
 
     #[test]
@@ -170,6 +188,10 @@ mod tests {
             ("lab-4", "open lab-4", true),
             ("glass", "open lab-3", true),
             ("mine", "data mine.csv", true),
+            ("svg", "export", true),
+            ("export figure ", "export figure wavy-sphere-force-approach.svg", true),
+            ("export events ", "export events wavy-sphere-events.csv", true),
+            ("resume", "quit", true),
             ("curves/fi", "data curves/first.csv", true),
             ("A 0.003", "set gap.amplitude=0.003", true),
             ("A=0.003", "set gap.amplitude=0.003", true),
@@ -197,6 +219,16 @@ mod tests {
         for line in ["zzz", "set title=\"a ", "quit 3"] {
             assert_eq!(found(line), [], "{line}");
         }
+    }
+
+    #[test]
+    fn the_command_of_a_key_stands_first() {
+        let text = shipped::find("wavy-sphere").unwrap();
+        let preset = read("t", text.text).unwrap();
+        let loaded = Loaded { source: Source::Shipped(text), preset, text: String::new(), fingerprint: None };
+        let found = palette("L", &[], Some(Id::MoveTo), &Model::new(loaded), &|_| Vec::new());
+        assert_eq!(found[0].id, Some(Id::MoveTo));
+        assert_eq!(found.iter().filter(|entry| entry.id == Some(Id::MoveTo)).count(), 1);
     }
 
     #[test]

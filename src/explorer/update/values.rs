@@ -66,7 +66,7 @@ fn tell_effect(model: &mut Model, key: &str, changed: &Preset) {
     }
 }
 
-/// A value that changes nothing yet is no mistake, but worth a word.
+/// Tells of a value that has no effect without another.
 fn tell_idle(model: &mut Model, key: &str, changed: &Preset) {
     if matches!(key, "path.rate" | "path.steps") && changed.edge.exponent.is_none() {
         model.tell(Level::Info, format!("{key} changes nothing until edge.exponent gives the edge a speed"));

@@ -5,11 +5,9 @@ use crate::explorer::export::{ExportKind, Page, Picture};
 use crate::explorer::model::Level;
 use crate::explorer::{Command, Effect, Id};
 use crate::plot::picture::picture;
-use crate::print::PictureFormat;
 use crate::store::Source;
 use crate::tui::copy;
 use crate::tui::overlay::{Choice, Dialog, Excerpt, Item, Prompt, Purpose};
-use pulloff_engine::text::sanitize;
 
 impl App {
     pub(super) fn ask_name(&mut self) -> Vec<Effect> {
@@ -36,46 +34,26 @@ impl App {
     }
 
     pub(super) fn ask_export(&mut self) -> Vec<Effect> {
-        let base = match &self.model.source {
-            Source::User { name, .. } => name.clone(),
-            Source::Shipped(shipped) => shipped.name.to_owned(),
-            Source::Piped { .. } => "preset".to_owned(),
-            Source::File(path) => {
-                path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
-            }
-        };
         let items = ExportKind::ALL.map(|what| {
-            let file = format!("{}-{}.{}", sanitize(&base, 60), what.name(), what.endings()[0]);
+            let file = self.model.file_for(what.name(), what.endings()[0]);
             let title = format!("Export the {} to", what.name());
             let note = format!("a file ending in .{}", what.endings().join(" or ."));
             let prompt = Prompt::new(title, &note, file, Purpose::File(what));
-            let text = match what {
-                ExportKind::Curve => "curve   every point of the equilibrium curve",
-                ExportKind::Walk => "walk    the states walked by hand",
-                ExportKind::Events => "events  the instabilities listed",
-                ExportKind::Script => "script  what was done, for pulloff run",
-                ExportKind::Study => "study   the study: its values, or in a .toml the sweep that repeats it",
-            };
+            let text = format!("{:<7} {}", what.name(), what.meaning());
             Item::new(text, Choice::Prompt(Box::new(prompt)))
         });
-        let text = copy::text(self, Excerpt::Screen);
-        let file = format!("{}-screen.txt", sanitize(&base, 60));
-        let prompt = Prompt::new(
-            "Export the screen to",
-            "a file ending in .txt",
-            file,
-            Purpose::Page(Page::Screen(text)),
-        );
-        let screen = Item::new("screen  what is on the screen, as text", Choice::Prompt(Box::new(prompt)));
-        let figure = picture(&self.model, self.model.view).ok().map(|svg| {
-            let file = format!("{}-{}.svg", sanitize(&base, 60), self.model.view.name());
-            let note = format!("a file ending in .{}", PictureFormat::ENDINGS.join(" or ."));
-            let prompt = Prompt::new("Export the figure to", &note, file, Purpose::Page(Page::Figure(svg)));
-            Item::new(
-                "figure  the first view for print: zoom, pins and theory with it",
-                Choice::Prompt(Box::new(prompt)),
-            )
-        });
+        let item = |what: Picture, page| {
+            let endings = what.endings();
+            let title = format!("Export the {} to", what.name());
+            let note = format!("a file ending in .{}", endings.join(" or ."));
+            let named = if let Picture::Figure(_) = what { self.model.view.name() } else { what.name() };
+            let file = self.model.file_for(named, endings[0]);
+            let prompt = Prompt::new(title, &note, file, Purpose::Page(page));
+            Item::new(format!("{:<7} {}", what.name(), what.meaning()), Choice::Prompt(Box::new(prompt)))
+        };
+        let screen = item(Picture::Screen, Page::Screen(copy::text(self, Excerpt::Screen)));
+        let figure = picture(&self.model, self.model.view).ok();
+        let figure = figure.map(|svg| item(Picture::Figure(None), Page::Figure(svg)));
         self.choose("Export", items.into_iter().chain([screen]).chain(figure).collect(), 0);
         Vec::new()
     }

@@ -81,7 +81,9 @@ impl App {
         let head: String = prompt.input.value().chars().take(prompt.input.cursor()).collect();
         let files = |folder: &str| self.files(folder);
         let first: Vec<Id> = status::offered(self).into_iter().map(|(id, _)| id).collect();
-        prompt.entries = palette(&head, &first, &self.model, &files);
+        let asked = head.trim();
+        let keyed = self.keymap.called(asked.strip_prefix("key ").unwrap_or(asked));
+        prompt.entries = palette(&head, &first, keyed, &self.model, &files);
         // A line that is a command is run as it stands.
         let is_command = parse(prompt.input.value()).is_ok();
         prompt.selected = (!is_command && !prompt.entries.is_empty()).then_some(0);

@@ -16,7 +16,7 @@ use crate::tui::view::help::ABOUT;
 use crate::tui::view::{cells, places};
 use crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
 use pulloff_engine::preset::data;
-use pulloff_engine::preset::schema::Kind;
+use pulloff_engine::preset::schema::{Kind, NONE};
 use pulloff_engine::preset::{Row, Value};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::with_unit;
@@ -408,6 +408,8 @@ impl App {
             Some(unit) => format!("a value with a unit; a bare number counts in {}", unit.ascii()),
             None => row.allowed(),
         };
+        let can_go = row.is_optional() && self.model.preset.get(&row.key).is_some();
+        let note = if can_go { format!("{note}; {NONE} takes it away") } else { note };
         let title = format!("{}: {}", row.label, row.meaning);
         Prompt::new(title, &note, text, Purpose::Value(row.key.clone()))
     }

@@ -1,7 +1,7 @@
 //! The first line: which preset, what is controlled, what to be careful about.
 
 use super::parts::fitted;
-use crate::explorer::pins::changes;
+use crate::explorer::pins::{changed_labels, changes};
 use crate::explorer::{Axes, Home, Id, Model};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
@@ -99,7 +99,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     if let Some(text) = warned(&app.keymap, &warnings, room) {
         spans.push(Span::styled(format!("  {text}"), theme.error()));
     } else {
-        let text = theme.whole_words(&theme.text(&said(&app.model)), room);
+        let text = theme.whole_words(&theme.text(&said(&app.model, room)), room);
         spans.push(Span::styled(format!("  {text}"), theme.dim()));
     }
     frame.render_widget(Line::from(spans), area);
@@ -137,14 +137,22 @@ fn places(app: &App) -> Vec<Span<'static>> {
     Home::ALL.into_iter().map(name).chain([key]).collect()
 }
 
-/// What there is to read of the preset, the first that there is: what was changed since it was read, what it says, its title.
-fn said(model: &Model) -> String {
+/// Columns in which nothing of a title can be read.
+const FEW: usize = 8;
+
+/// What there is to read of the preset in `room` columns, the first that there is: what was changed since it was read, what it says, its title.
+fn said(model: &Model, room: usize) -> String {
     let changes = changes(&model.saved, &model.preset);
     if !changes.is_empty() {
-        return greek(&changes.join(", "));
+        let labels = changed_labels(&model.saved, &model.preset).join(", ");
+        // Cut, a value that was would look like the one that is.
+        let texts = [changes.join(", "), format!("changed: {labels}"), format!("{} changed", changes.len())];
+        let texts = texts.map(|text| greek(&text));
+        return texts.into_iter().find(|text| text.chars().count() <= room).unwrap_or_default();
     }
     let comment = model.comment.lines().next().filter(|line| !line.is_empty());
-    comment.unwrap_or(&model.preset.title).to_owned()
+    let text = comment.unwrap_or(&model.preset.title);
+    if room < FEW { String::new() } else { text.to_owned() }
 }
 
 /// The first warning, as much of it as `room` holds, and the key that tells the rest.

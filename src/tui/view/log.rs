@@ -28,7 +28,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
     let log = model.log();
     let selected = is_selected(app, ScreenPanel::Log);
-    let head = title(model, theme, usize::from(area.width));
+    let head = title(model, &log, theme, usize::from(area.width));
     let room = usize::from(area.width).saturating_sub(head.chars().count() + 4);
     let block = panel(theme, &head, selected)
         .title_top(Line::styled(theme.text(&sums(model, &log, room)), theme.strong()).right_aligned());
@@ -68,7 +68,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
             _ if chosen => theme.selection(),
             Some(EventMark::Here) => theme.strong(),
             Some(EventMark::Ahead) | None => Style::new(),
-            Some(EventMark::Done) => theme.dim(),
+            Some(EventMark::Done | EventMark::PassedBy) => theme.dim(),
         };
         Line::styled(text.trim_end().to_owned(), style)
     }));
@@ -116,12 +116,15 @@ fn part(part: &Inadmissible, units: &UnitSystem, ascii: bool) -> String {
 }
 
 /// What the marks mean, and whether all of it is of values before.
-fn title(model: &Model, theme: Theme, width: usize) -> String {
+fn title(model: &Model, log: &Log, theme: Theme, width: usize) -> String {
     let is_old = model.preset.path.begin == Begin::Touch
         && model.cycle().is_some_and(|cycle| !cycle.is_of_preset(&model.preset));
     let old = if is_old { ", of the values before" } else { "" };
+    let is_left = log.entries.iter().any(|entry| entry.mark == EventMark::PassedBy);
+    let passed =
+        if is_left { format!(" {} passed by", mark(theme, EventMark::PassedBy)) } else { String::new() };
     let marks = format!(
-        "Log{old} {} done {} here {} ahead",
+        "Log{old} {} done {} here {} ahead{passed}",
         mark(theme, EventMark::Done),
         mark(theme, EventMark::Here),
         mark(theme, EventMark::Ahead)
@@ -134,6 +137,7 @@ fn mark(theme: Theme, mark: EventMark) -> &'static str {
         EventMark::Done => theme.glyph("✓", "x"),
         EventMark::Here => "@",
         EventMark::Ahead => theme.glyph("·", "."),
+        EventMark::PassedBy => "-",
     }
 }
 
@@ -147,11 +151,10 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
         format!("{text}{}", if unbounded { "+" } else { "" })
     };
     let (lost, unbounded) = log.lost();
-    let totals = &path.totals;
-    let all = totals.dissipated.unwrap_or(totals.dissipated_before_last_contact);
+    let (all, open) = log.lost_in_all();
     let unit = units.unit(Quantity::Energy).map_or_else(String::new, |unit| format!(" {unit}"));
-    let of = format!("{} of {}{unit}", energy(lost, unbounded), energy(all, totals.dissipated.is_none()));
-    let pull = totals.largest_pull.as_ref().map(|at| {
+    let of = format!("{} of {}{unit}", energy(lost, unbounded), energy(all, open));
+    let pull = path.totals.largest_pull.as_ref().map(|at| {
         let critical = model.curve.as_ref().map_or(0.0, |curve| curve.base.critical_force);
         if model.axes == Axes::Reduced && critical > 0.0 {
             format!("A {} Pc  ", significant(at.force / critical, 4))

@@ -21,6 +21,8 @@ use crate::units::{Quantity, UnitSystem, parse_quantity};
 impl Preset {
     /// Gives a key another value.
     ///
+    /// The word `none` takes the value of an [optional](Parameter::is_optional) key away.
+    ///
     /// A start replaces another start, a turn another turn; `path.control.stiffness` makes the device a spring; a `gap.shape` drops
     /// the keys of the old shape, and takes for its waves the proportions of the paper's Fig. 9; a `gap.formula` keeps the
     /// parameters it has in common with the old one, its others begin with the value of an old one of a like name, or with 1; a `basis.kind` drops the keys of the old
@@ -73,6 +75,10 @@ impl Preset {
 
     /// Lays a value over the others, with what it drops and begins.
     fn lay(&self, values: &mut Values, row: &Parameter, value: Value) {
+        if row.takes_away(&value) {
+            values.remove(row.whole());
+            return;
+        }
         if CHOOSERS.contains(&&*row.key) {
             values.retain(|key, _| {
                 parameter(key).is_some_and(|other| other.fits(&row.key, &value.to_string()))
@@ -230,8 +236,7 @@ impl Preset {
     pub fn reset(&mut self, key: &str) -> Result<(), Invalid> {
         let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
         let mut values = self.keyed();
-        let parent = row.table().filter(|_| row.is_part());
-        values.remove(parent.unwrap_or(&row.key));
+        values.remove(row.whole());
         if let (Fallback::Text(word), true) = (row.fallback, CHOOSERS.contains(&&*row.key)) {
             values.retain(|key, _| parameter(key).is_some_and(|other| other.fits(&row.key, word)));
         }

@@ -92,6 +92,10 @@ impl Sheet {
     /// Stores what was found for a key. An assignment replaces what the file said in another way: another start,
     /// the waves of another shape, the size of another basis.
     pub(super) fn put(&mut self, row: &Parameter, value: Result<Value, Invalid>, origin: ValueOrigin) {
+        if value.as_ref().is_ok_and(|value| row.takes_away(value)) {
+            self.entries.remove(row.whole());
+            return;
+        }
         if matches!(origin, ValueOrigin::Assignment(_)) {
             self.refit = self.refit || row.key == "gap.formula";
             let rivals = rivals(&row.key);
@@ -113,8 +117,8 @@ impl Sheet {
                 }
             }
             Err(invalid) => {
-                let whole = row.table().filter(|_| row.is_part()).unwrap_or(&row.key).to_owned();
-                self.entries.insert(whole.into(), SheetEntry { value: Err(invalid), origin });
+                self.entries
+                    .insert(row.whole().to_owned().into(), SheetEntry { value: Err(invalid), origin });
             }
         }
     }

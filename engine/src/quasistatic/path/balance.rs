@@ -198,7 +198,7 @@ impl Balance<'_> {
         }
     }
 
-    /// κ of every edge at the control value, to what a way takes.
+    /// κ of every edge at the control value, to the nine digits that a way between states needs.
     ///
     /// # Errors
     /// [`AnnuliError`].

@@ -34,8 +34,8 @@ const KICK_OF_WIDTH: f64 = 0.1;
 const NARROW: f64 = 0.004;
 const NARROW_BY_ADHESION: f64 = 0.05;
 
-/// A gap of so many such widths closes: G at its edges falls with its width, and below a good part of (γρ²)^{1/3} nothing holds it
-/// open. The last of its way would take the most points.
+/// An adhesive gap narrower than so many of these widths closes. In a valley G falls with the width of the gap, so that none this narrow is
+/// stable, and following it to nothing would take the most points of all.
 const CLOSES: f64 = 5.0;
 
 /// How fast edges move at a radius: nothing that lasts depends on it.
@@ -120,7 +120,7 @@ impl Balance<'_> {
                 (contacts, last) = (touched, f64::INFINITY);
                 continue;
             }
-            // Newton's method comes near the end of the run: that alone is found to all digits.
+            // Only the end of the run, which Newton's method finds, needs all digits.
             let resolution = if last.is_finite() { points } else { points_on_the_way };
             let held = self.held(&contacts, &resolution(self.ground, &contacts), value)?;
             if sense < 0.0 && self.lets_go(&held) {
@@ -150,7 +150,7 @@ impl Balance<'_> {
             }
             last = f64::INFINITY;
             if sense > 0.0 && self.least_gap(&held).is_some_and(|crest| crest.gap < 0.0) {
-                // Told by all digits: beside an edge the gap is small.
+                // Checked with all digits: beside an edge the gap is as small as the error.
                 let held = self.held(&contacts, &points(self.ground, &contacts), value)?;
                 if let Some(touched) = self.touched(&held, value, passed)? {
                     contacts = touched;

@@ -30,6 +30,30 @@ fn assignments_are_laid_over_the_file_in_order() {
 }
 
 #[test]
+fn none_takes_an_optional_value_away() {
+    let text = WAVY.replace("[path]", "[path]\nrate = 2.0");
+    let rated = read("w.toml", &text).unwrap();
+    assert_eq!(rated.get("path.rate"), Some(2.0.into()));
+    let mut preset = read_with("w.toml", &text, &["path.rate=none"]).unwrap();
+    assert_eq!(preset.get("path.rate"), None);
+    // The start given instead stays: none is no rival.
+    assert_eq!(
+        read_with("w.toml", &text, &["path.start_approach=none"]).unwrap().path.start,
+        rated.path.start
+    );
+    for value in ["3", "none", "none"] {
+        preset.assign("path.rate", value).unwrap();
+    }
+    assert_eq!(preset.get("path.rate"), None);
+    let spring = set(&["path.control.stiffness=2", "path.control.stiffness=none"]);
+    assert_eq!(spring.path.control, Control::Displacement);
+    for key in ["gap.amplitude", "groups.amplitude_over_wavelength", "basis.rings"] {
+        assert!(preset.assign(key, "none").is_err(), "{key}");
+        assert!(read_with("w.toml", &text, &[&format!("{key}=none")]).is_err(), "{key}");
+    }
+}
+
+#[test]
 fn a_basis_drops_and_brings_its_keys() {
     assert_eq!(set(&["basis.kind=exact"]).basis, BasisSpec::Exact);
     let text = WAVY.replace("\"rings\"\nrings = 200", "\"exact\"");
