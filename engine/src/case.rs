@@ -184,8 +184,9 @@ impl Case {
             let work_of_adhesion = closing.unwrap_or(reduced.work_of_adhesion);
             let grown = Reduced { work_of_adhesion, ..reduced.clone() };
             contact_radius(&grown, &*basis, wanted, progress)
-                .map_err(|e| CaseError::Start { error: e.in_units(&units), shown: Box::new(shown.clone()) })?
         };
+        let start = start
+            .map_err(|e| CaseError::Start { error: e.in_units(&units), shown: Box::new(shown.clone()) })?;
         if preset.basis == BasisSpec::Exact {
             // From here on the start decides how far it reaches, however it was given.
             basis = Arc::new(ExactBasis::new(Arc::clone(&table), start));

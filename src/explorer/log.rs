@@ -171,16 +171,22 @@ impl Model {
         let walk = &walk[first..];
         let of_curve: Vec<&(usize, &Node)> = walk.iter().filter(|(_, node)| self.is_on_curve(node)).collect();
         let mut done: Vec<Option<Option<usize>>> = vec![None; events.len()];
-        // Solved again for other values it stands where it stood, behind what had happened.
-        let goes_on = |node: &Node| node.begins || node.kind == NodeKind::Solved;
-        if let Some((_, node)) = of_curve.first().filter(|(_, node)| goes_on(node)) {
-            done.iter_mut().take(self.passed_before(events, node)).for_each(|done| *done = Some(None));
+        // How many events lie behind the last state that no event of the path led to.
+        let mut passed = 0;
+        match of_curve.first() {
+            // Bodies that touch have come together; a disc to begin with is where the path begins, or inside of that.
+            Some((_, node)) if node.begins && self.preset.path.begin == Begin::Touch => {
+                done.iter_mut().take(self.passed_before(events, node)).for_each(|done| *done = Some(None));
+            }
+            // Solved again for other values it stands where it stood, and what lies behind did not happen at them.
+            Some((_, node)) if !node.begins && matches!(node.kind, NodeKind::Solved | NodeKind::Limit) => {
+                passed = self.passed_before(events, node);
+            }
+            _ => {}
         }
         // What was walked and is no event of the path stands behind the last one that was.
         let mut strays: Vec<(usize, LogEntry)> = Vec::new();
-        let mut last = done.iter().rposition(Option::is_some).map_or(0, |at| at + 1);
-        // How many events lie behind the last state that a jump led to.
-        let mut passed = 0;
+        let mut last = done.iter().rposition(Option::is_some).map_or(passed, |at| at + 1);
         for (number, event) in self.walked_events() {
             if !of_curve.iter().any(|(of_curve, _)| *of_curve == number) {
                 continue;

@@ -145,8 +145,8 @@ fn theory(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figu
 }
 
 /// The divisors of a pinned curve, on the axes of the one that is not pinned.
-pub fn pinned_scale<'a>(subject: &Subject<'a>, pin: &'a Pin) -> Scale<'a> {
-    Scale { units: subject.scale().units, ..Scale::of(&pin.curve, subject.axes) }
+pub fn pinned_scale<'a>(subject: &Subject<'a>, pin: &Pin) -> Scale<'a> {
+    subject.scale().of_other(&pin.curve, subject.axes)
 }
 
 /// The pinned curves, each over its own divisors; their points are given back for the bounds.

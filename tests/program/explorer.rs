@@ -97,6 +97,45 @@ fn a_step_past_a_limit_point_says_so_and_the_next_event_goes_on_from_there() {
 }
 
 #[test]
+fn a_change_that_leaves_the_curve_as_it_was_leaves_the_walker_at_its_limit_point() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::NextEvent);
+    let before = session.model.walker().unwrap().clone();
+    session.set("material.range_of_action", "0.005");
+    let after = session.model.walker().unwrap();
+    assert_eq!((&after.kind, after.state), (&NodeKind::Limit, before.state));
+    session.does(Id::NextEvent);
+    let NodeKind::Jump(event) = session.kind() else { panic!("{:?}", session.kind()) };
+    assert_eq!(event.kind, pulloff_engine::quasistatic::EventKind::Snap);
+    // What lies behind did not happen at these values, and is not counted.
+    session.does(Id::NextEvent).set("gap.amplitude", "0.0026");
+    let log = session.model.log();
+    assert_eq!(log.entries[0].mark, EventMark::PassedBy, "{log:?}");
+    assert!(log.lost().0.abs() < f64::EPSILON, "{log:?}");
+}
+
+#[test]
+fn an_event_that_a_jump_off_the_path_went_round_is_passed_by_and_no_longer_counted() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::NextEvent).does(Command::Steps(4));
+    let all = session.model.log().lost_in_all().0;
+    session.does(Id::Jump);
+    let log = session.model.log();
+    let marks: Vec<(Option<usize>, EventMark)> =
+        log.entries.iter().take(3).map(|entry| (entry.number, entry.mark)).collect();
+    let expected = [(None, EventMark::Done), (Some(1), EventMark::PassedBy), (Some(2), EventMark::Ahead)];
+    assert_eq!(marks, expected);
+    let [walked, passed] = [0, 1].map(|at: usize| log.entries[at].event.dissipated.unwrap());
+    assert!((log.lost().0 - walked).abs() <= 1e-12 * all);
+    assert!((log.lost_in_all().0 - (all + walked - passed)).abs() <= 1e-9 * all);
+    // What follows is numbered as ever.
+    session.does(Id::NextEvent).does(Id::NextEvent);
+    assert_eq!(session.model.log().entries[2].mark, EventMark::Done);
+    session.all(&[Id::Undo; 4]);
+    assert_eq!(session.model.log().entries[0].mark, EventMark::Here);
+}
+
+#[test]
 fn outward_the_next_event_ends_where_the_path_does() {
     let mut session = Session::new("wavy-sphere");
     let start = session.radius();
@@ -306,8 +345,8 @@ fn selecting_an_event_moves_the_walker_to_its_limit_point() {
     assert_eq!(
         marks,
         [
-            EventMark::Done,
-            EventMark::Done,
+            EventMark::PassedBy,
+            EventMark::PassedBy,
             EventMark::Done,
             EventMark::Here,
             EventMark::Ahead,

@@ -23,7 +23,7 @@ use crate::elementary::{acosh, asin, asinh, cosh, pow, sin, sinh};
 use crate::gap::panels::Variable;
 use crate::progress::Progress;
 use gauss_quad::GaussLegendre;
-use std::f64::consts::{FRAC_1_PI, FRAC_2_PI};
+use std::f64::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_2};
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 
@@ -53,6 +53,9 @@ const TAIL: f64 = 1e-7;
 
 /// Values of g − δ below this share of g's size on a panel are rounding.
 const ROUNDING: f64 = 1e-14;
+
+/// A ring of at most this share of the way to the next border of the table inward is thin.
+const THIN: f64 = 1e-3;
 
 fn gauss(nodes: usize) -> Vec<[f64; 2]> {
     let rule = GaussLegendre::new(NonZeroUsize::new(nodes).unwrap_or(NonZeroUsize::MIN));
@@ -101,8 +104,20 @@ pub fn sum_from(panels: &Panels, s: f64, r: f64, f: &dyn Fn(Place, f64) -> f64) 
     })
 }
 
-/// ∫_s^r g' (a/r)/√(r² − a²) da; the panels must reach to `r`.
-pub fn rise_from(panels: &Panels, s: f64, r: f64) -> f64 {
+/// ∫_s^r g' (a/r)/√(r² − a²) da; the panels must reach to `r`. `angle` is that whose cosine is s/r: of a thin ring s and r know its width
+/// to fewer digits than the angle has.
+pub fn rise_from(panels: &Panels, s: f64, r: f64, angle: f64) -> f64 {
+    let (inner, outer) = (panels.place(s), panels.place(r));
+    let from_border = s - panels.list()[inner.panel].span.lo;
+    if inner.panel == outer.panel && r - s <= THIN * from_border {
+        // a = r cos t, on a stretch on which g' is nearly a line.
+        let rule = &RULES[2];
+        let at = |x: f64| {
+            let cosine = sin(FRAC_PI_2 - 0.5 * angle * (1.0 + x));
+            panels.values(panels.place((r * cosine).clamp(s, r))).slope * cosine
+        };
+        return 0.5 * angle * rule.iter().map(|[x, weight]| weight * at(*x)).sum::<f64>();
+    }
     over_panels(panels, s, r, |i, ends| slope_outside(panels, i, r, ends))
 }
 

@@ -79,6 +79,12 @@ impl Equilibria {
         Arc::new(Sampled::of_zones(self.panels.clone(), &self.touches))
     }
 
+    /// The outer edges of the zone at which contact in it begins or ends, lengths.
+    #[must_use]
+    pub fn touches(&self) -> &[f64] {
+        &self.touches
+    }
+
     /// How far out they have been looked for, a length.
     #[must_use]
     pub fn reach(&self) -> f64 {

@@ -377,7 +377,7 @@ impl Zone {
         let s = c * cosine;
         let [value, area] = panels.value_and_area(panels.place(s));
         let approach = value - 2.0 * strength * c * sine;
-        let rise = outside::rise_from(panels, s, c);
+        let rise = outside::rise_from(panels, s, c, angle);
         let slope = (rise - 2.0 * strength * shares.free / (1.0 + cosine)) / angle;
         let ring = 2.0 * strength * c * c * sliver(angle, [sine, cosine]);
         approach.is_finite().then(|| ZoneState {

@@ -278,7 +278,10 @@ fn judged(number: u64) -> (Came, String) {
         Err(error) => {
             let words = error.to_string();
             let further = words.contains("one disc of contact in one zone alone");
-            return (if further { Came::Further } else { Came::Refused }, format!("{name}: {words}"));
+            let came = if further { Came::Further } else { Came::Refused };
+            // The preset is for whoever looks for the reason.
+            let of = if further { String::new() } else { pulloff_engine::preset::write(&preset) };
+            return (came, format!("{name}: {words}\n{of}"));
         }
     };
     balanced(&path, 1e-9, &name);

@@ -37,7 +37,7 @@ macro_rules! each_command {
             { look: |model| scale_length(model, 2.0) }
         StepLength "step-length" "" "step length" always InOrder Yes "the longest step, as a share of every quantity's range"
             { takes: takes("length", |rest| Ok(Command::StepLength(rest.length()?))).always() }
-        Undo "undo" "u" "undo" undo InOrder Yes "take the last command back, whatever it was; no state is erased"
+        Undo "undo" "u" "undo" undo InOrder Yes "take the last change of a value or move back; no state is erased"
             { words: "back take", run: |model| travel(model, Id::Undo, 1), takes: takes("number", |rest| travelled(rest, Id::Undo)) }
         Redo "redo" "Ctrl-R" "redo" redo InOrder Yes "do again what was taken back" { run: |model| travel(model, Id::Redo, 1),
             takes: takes("number", |rest| travelled(rest, Id::Redo)) }
@@ -117,7 +117,7 @@ macro_rules! each_command {
         Rings "rings" "#" "rings" curve Nothing Screen
             "the same problem in the ring elements of the paper over the chart, or its exact solution over those; again: away"
             { words: "elements", look: look::in_rings }
-        Pins "pins" "P" "pins" pins Nothing Needs("the number of a pin, or all") "take pinned curves away"
+        Pins "pins" "P" "pins" pins Nothing Needs("the number of a pin, or all") "the pinned curves; Enter takes one away"
             { takes: takes("number", pin).listing(pins_of) }
     }
     "Presets and files" {
@@ -129,7 +129,7 @@ macro_rules! each_command {
             { takes: takes("name", saved_as).going_on(names) }
         Export "export" "e" "export" always Nothing Needs("a document and a file")
             "write curve, walk or events as CSV or JSON, the session as a script, the screen as text"
-            { words: "figure plot picture svg pdf csv json image", takes: takes("file", exported).going_on(documents) }
+            { words: "figure plot picture svg pdf csv json image", takes: takes("WHAT FILE", exported).going_on(documents) }
         Copy "copy" "Y" "copy" always Nothing Screen
             "the state, the events, the chart or the screen into the terminal's clipboard" { words: "clipboard yank" }
     }

@@ -66,10 +66,15 @@ fn tell_effect(model: &mut Model, key: &str, changed: &Preset) {
     }
 }
 
-/// Tells of a value that has no effect without another.
+/// Tells of a value that has no effect yet.
 fn tell_idle(model: &mut Model, key: &str, changed: &Preset) {
-    if matches!(key, "path.rate" | "path.steps") && changed.edge.exponent.is_none() {
+    let is_given = changed.get(key).is_some();
+    if matches!(key, "path.rate" | "path.steps") && is_given && changed.edge.exponent.is_none() {
         model.tell(Level::Info, format!("{key} changes nothing until edge.exponent gives the edge a speed"));
+    }
+    if key == "path.begin" {
+        let start = Id::Restart.named();
+        model.tell(Level::Info, format!("the walker stays; {start} goes to where the path begins now"));
     }
 }
 

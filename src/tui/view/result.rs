@@ -78,7 +78,8 @@ fn beside(
     (pin, other): (&Pin, &PathReport),
 ) -> Vec<Line<'static>> {
     let Some(curve) = model.curve.as_deref() else { return Vec::new() };
-    let scales = [Scale::of(curve, model.axes), Scale::of(&pin.curve, model.axes)];
+    let here = Scale::of(curve, model.axes);
+    let scales = [here, here.of_other(&pin.curve, model.axes)];
     let [now_width, pin_width, change_width] = COLUMNS;
     let head = |name: String, now: &str, pin: &str, change: &str| {
         // A long name takes its room from a short value.
@@ -116,8 +117,13 @@ fn beside(
     let counts = [path, other].map(|path| Some(snaps(path) as f64));
     lines.push(row("snaps", counts));
     let units = &model.preset.units;
-    let lost = totals.map(|totals| totals.dissipated.unwrap_or(totals.dissipated_before_last_contact));
-    lines.push(row("W", lost.map(|lost| Some(units.shown(Quantity::Energy, lost).number))));
+    let lost = totals.map(|totals| totals.dissipated.map(|lost| units.shown(Quantity::Energy, lost).number));
+    if let [Some(_), Some(_)] = lost {
+        lines.push(row("W", lost));
+    } else {
+        let [now, was] = lost.map(|lost| lost.map_or_else(|| "no bound".to_owned(), cell));
+        lines.push(head(" W".to_owned(), &now, &was, ""));
+    }
     lines
 }
 

@@ -18,6 +18,7 @@ use crate::quasistatic::energy::{self, Losses};
 use crate::quasistatic::equilibrium::State;
 use crate::quasistatic::jump::{self, EdgeDirection, Landing};
 use crate::quasistatic::monotone::{Monotone, weighted};
+use crate::quasistatic::start::StartError;
 use crate::root;
 use crate::zone::{Ends, Equilibria, FaultKind, ZoneAt, ZoneFault, ZoneState, equilibria};
 use std::cell::Cell;
@@ -109,20 +110,21 @@ pub fn unload_in_zone(
     })
 }
 
-/// The contact radius of the largest state in equilibrium at an approach or a force; that of a start by radius itself.
+/// The contact radius of the largest state in equilibrium at an approach or a force; that of a start by radius itself. Where no state with
+/// contact takes the value, [`StartError::OutOfReach`].
 ///
 /// # Errors
-/// [`PathError`] where there is none.
+/// [`PathError`] where the equilibria cannot be had.
 pub fn start_in_zone(
     table: &Arc<Table>,
     cohesion: Cohesion,
     start: Start,
     progress: &dyn Progress,
-) -> Result<f64, PathError> {
-    let (control, value) = match start {
-        Start::ContactRadius(radius) => return Ok(radius),
-        Start::Approach(approach) => (Control::Displacement, approach),
-        Start::Force(force) => (Control::Force, force),
+) -> Result<Result<f64, StartError>, PathError> {
+    let (control, value, name) = match start {
+        Start::ContactRadius(radius) => return Ok(Ok(radius)),
+        Start::Approach(approach) => (Control::Displacement, approach, "approach"),
+        Start::Force(force) => (Control::Force, force, "force"),
     };
     // Further out than where it is first taken, as far as a paraboloid would have it.
     let elastic = if control == Control::Force { cbrt(value.abs()) } else { value.abs().sqrt() };
@@ -142,7 +144,14 @@ pub fn start_in_zone(
     let monotone = Monotone::of(&*solution, control);
     let crossings = monotone.crossings(&*solution, weighted(control, value, value));
     let last = crossings.last().map(|(place, _)| solution.edges(*place).contact_radius);
-    last.filter(|radius| *radius > 0.0).ok_or(PathError::Lost { control_value: value })
+    Ok(last.filter(|radius| *radius > 0.0).ok_or_else(|| {
+        // Contact begins at a touch, and may pull more further out.
+        let ends = monotone.stretches.iter().flat_map(|stretch| [stretch.inner, stretch.outer]);
+        let in_contact = ends.filter(|place| solution.edges(*place).contact_radius > 0.0);
+        let touches = found.touches().iter().filter_map(|edge| solution.place(*edge));
+        let values = in_contact.chain(touches).map(|place| monotone.value(&solution.at(place)));
+        StartError::OutOfReach { name, value, smallest: values.fold(f64::INFINITY, f64::min) }
+    }))
 }
 
 /// A path on as much of the equilibria as it needs.

@@ -99,8 +99,27 @@ impl Walk<'_> {
         let Some(point) = stable(found) else {
             return WalkEnd::Failed(WalkFailure::NotSolved);
         };
+        // Where the control is at its limit, as after a change that leaves the curve as it was, the state is at the limit point itself.
+        if let Some(limit) = self.limit_at(value, equilibrium.contact_radius(&point)) {
+            return self.move_to_limit(limit, emit);
+        }
         emit(self.of_disc(Arrival::Solved, point));
         WalkEnd::Done
+    }
+
+    /// The radius of the limit point beside the state of radius `s` at which the control takes this value; `None` where none does.
+    fn limit_at(&self, value: f64, s: f64) -> Option<f64> {
+        /// How far the value may be off, over the scale of the control: beside a limit point that is a millionth of the way.
+        const AT_LIMIT: f64 = 1e-12;
+        let equilibrium = self.equilibrium();
+        let away = |stop: &StepStop| (stop.contact_radius - s).abs();
+        let limits = self.stops(s).into_iter().filter(|stop| stop.is_limit);
+        let stop = self.located(limits.min_by(|a, b| away(a).total_cmp(&away(b)))?);
+        let state = equilibrium.state(&equilibrium.explicit(stop.contact_radius)?);
+        let scale = self.control.value(equilibrium.scales.approach, equilibrium.scales.force);
+        let off = self.control.value(state.approach, state.force) - value;
+        let near = NEAR * equilibrium.problem.gap.feature_length().unwrap_or(s).min(s);
+        (off.abs() <= AT_LIMIT * scale && away(&stop) <= near).then_some(stop.contact_radius)
     }
 
     /// The stops on the curve up to the radius `reach`, ascending.

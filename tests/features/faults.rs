@@ -1,13 +1,11 @@
 //! A panic in any thread ends the program in order. Needs a build that panics on demand (`fault-injection`).
 
-mod support;
-
 use std::{
     fs,
     path::{Path, PathBuf},
 };
 
-use support::pty::Pty;
+use crate::support::pty::Pty;
 
 fn program() -> PathBuf {
     PathBuf::from(env!("CARGO_BIN_EXE_pulloff"))
