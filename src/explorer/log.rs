@@ -191,23 +191,17 @@ impl Model {
             if !of_curve.iter().any(|(of_curve, _)| *of_curve == number) {
                 continue;
             }
-            match events.iter().position(|other| is_same(&event, other)) {
-                Some(at) => {
-                    done[at] = Some(Some(number));
-                    last = at + 1;
-                    passed = last;
-                }
-                None => {
-                    if let Some(lands) = radius(event.after.as_ref()) {
-                        passed = behind(events, lands, event.direction);
-                    }
-                    strays.push((
-                        last,
-                        LogEntry { mark: EventMark::Done, number: None, event, node: Some(number) },
-                    ));
-                    last = last.max(passed);
-                }
+            if let Some(at) = events.iter().position(|other| is_same(&event, other)) {
+                done[at] = Some(Some(number));
+                last = at + 1;
+                passed = last;
+                continue;
             }
+            if let Some(lands) = radius(event.after.as_ref()) {
+                passed = behind(events, lands, event.direction);
+            }
+            strays.push((last, LogEntry { mark: EventMark::Done, number: None, event, node: Some(number) }));
+            last = last.max(passed);
         }
         let here = self.walker().filter(|node| {
             !node.is_apart()
