@@ -15,6 +15,7 @@ mod explorer_along;
 mod explorer_data;
 mod explorer_fit;
 mod explorer_knobs;
+mod explorer_log;
 mod explorer_map;
 mod explorer_rings;
 mod explorer_screen;

@@ -93,8 +93,8 @@ fn over_panels(panels: &Panels, s: f64, r: f64, stretch: impl Fn(usize, [f64; 2]
     (first..=last).map(part).sum::<f64>()
 }
 
-/// ∫_s^r f/√(r² − a²) da, f a function of places of the panels and of g there. The panels must reach to `r`. To the last digits of the table where
-/// f is as smooth on every panel as g is.
+/// ∫_s^r f/√(r² − a²) da, f a function of places of the panels and of g there; the panels must reach to `r`. All digits of the table are
+/// kept where f is as smooth on every panel as g is.
 pub fn sum_from(panels: &Panels, s: f64, r: f64, f: &dyn Fn(Place, f64) -> f64) -> f64 {
     over_panels(panels, s, r, |i, ends| {
         let span = panels.list()[i].span;
@@ -104,8 +104,8 @@ pub fn sum_from(panels: &Panels, s: f64, r: f64, f: &dyn Fn(Place, f64) -> f64) 
     })
 }
 
-/// ∫_s^r g' (a/r)/√(r² − a²) da; the panels must reach to `r`. `angle` is that whose cosine is s/r: of a thin ring s and r know its width
-/// to fewer digits than the angle has.
+/// ∫_s^r g' (a/r)/√(r² − a²) da; the panels must reach to `r`. `angle` has the cosine s/r: for a thin ring it has more
+/// digits than the difference of `s` and `r`.
 pub fn rise_from(panels: &Panels, s: f64, r: f64, angle: f64) -> f64 {
     let (inner, outer) = (panels.place(s), panels.place(r));
     let from_border = s - panels.list()[inner.panel].span.lo;

@@ -1,15 +1,16 @@
 //! Adhesion with a range against closed forms, differences and the numbers of an independent prototype.
 
-#![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 #![allow(clippy::disallowed_methods, reason = "the judge needs no reproducible last digit")]
 
 use pulloff_engine::Shape;
 use pulloff_engine::disc::Table;
-use pulloff_engine::gap::shapes::{Harmonic, Harmonics, PowerLaw};
-use pulloff_engine::problem::{Cohesion, Control, Problem, Turn};
+use pulloff_engine::gap::shapes::{ExactSphere, Harmonic, Harmonics, PowerLaw};
+use pulloff_engine::problem::{Cohesion, Control, Problem, Start, Turn};
 use pulloff_engine::progress::Unwatched;
+use pulloff_engine::quasistatic::StartError;
 use pulloff_engine::quasistatic::path::{
-    Event, EventKind, Path, PathError, PathSetting, PathStop, cycle_in_zone, unload_in_zone,
+    Event, EventKind, Path, PathError, PathSetting, PathStop, cycle_in_zone, start_in_zone, unload_in_zone,
 };
 use pulloff_engine::zone::{Equilibria, ZoneAt, ZoneState};
 use std::f64::consts::PI;
@@ -257,6 +258,30 @@ fn the_slopes_of_a_thin_zone_have_all_their_digits() {
             assert!(sixth.abs() < 1e-13 * size, "{edge}, part {part}: {sixth} of {size}");
         }
     }
+}
+
+#[test]
+fn a_start_without_contact_says_why_there_is_none() {
+    let law = cohesion(GAMMA, strength(GAMMA, 1.0));
+    let start = |shape: &Shape, approach| {
+        start_in_zone(&table(shape), law, Start::Approach(approach), &Unwatched).unwrap()
+    };
+    let found = start(&SPHERE, 0.01).unwrap();
+    let of = equilibria(&SPHERE, GAMMA, law.strength, 0.4);
+    let states: Vec<ZoneState> =
+        (1..=4000).filter_map(|k| of.zone.state(1e-4 * f64::from(k), None)).collect();
+    let contact: Vec<&ZoneState> = states.iter().filter(|state| state.contact_radius > 0.0).collect();
+    let at = contact.iter().rev().find(|state| state.approach <= 0.01).unwrap();
+    assert!((at.contact_radius - found).abs() < 2e-4, "{found} {at:?}");
+    // No contact is so far apart.
+    let least = contact.iter().map(|state| state.approach).fold(f64::INFINITY, f64::min);
+    let Err(StartError::OutOfReach { name: "approach", smallest, .. }) = start(&SPHERE, -1.0) else {
+        panic!()
+    };
+    assert!(smallest <= least && smallest > least - 1e-6, "{smallest} {least}");
+    // What is known of the gap ends before.
+    let known = start(&Shape::ExactSphere(ExactSphere { radius: 1.0 }), 50.0);
+    assert!(matches!(known, Err(StartError::NotKnown { known: 1.0, .. })), "{known:?}");
 }
 
 fn median(runs: usize, mut run: impl FnMut()) -> f64 {

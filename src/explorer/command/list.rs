@@ -37,7 +37,7 @@ macro_rules! each_command {
             { look: |model| scale_length(model, 2.0) }
         StepLength "step-length" "" "step length" always InOrder Yes "the longest step, as a share of every quantity's range"
             { takes: takes("length", |rest| Ok(Command::StepLength(rest.length()?))).always() }
-        Undo "undo" "u" "undo" undo InOrder Yes "take the last change of a value or move back; no state is erased"
+        Undo "undo" "u" "undo" undo InOrder Yes "take back the last change of a value or walk; no state is erased"
             { words: "back take", run: |model| travel(model, Id::Undo, 1), takes: takes("number", |rest| travelled(rest, Id::Undo)) }
         Redo "redo" "Ctrl-R" "redo" redo InOrder Yes "do again what was taken back" { run: |model| travel(model, Id::Redo, 1),
             takes: takes("number", |rest| travelled(rest, Id::Redo)) }

@@ -59,6 +59,10 @@ const SHORT: &[(&str, &str)] = &[
     ("dA/dδ", "how fast the area of contact grows with the approach along the curve"),
     ("c7", "on maps: the line of limit points at the seventh crest from the axis"),
     ("snap", "a jump of the edge, at constant control, before the bodies come apart"),
+    (
+        "-2",
+        "an event that lies behind and did not happen: a jump off the path went round it, or a value was changed",
+    ),
     ("last contact", "the event from which nothing stable is left: the bodies come apart"),
     ("A  B", "largest pull: where a dead load lets go; farthest: where fixed grips let go"),
     ("○ landing", "where a jump comes to rest"),

@@ -151,9 +151,9 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
         format!("{text}{}", if unbounded { "+" } else { "" })
     };
     let (lost, unbounded) = log.lost();
-    let (all, open) = log.lost_in_all();
+    let (all, all_unbounded) = log.lost_in_all();
     let unit = units.unit(Quantity::Energy).map_or_else(String::new, |unit| format!(" {unit}"));
-    let of = format!("{} of {}{unit}", energy(lost, unbounded), energy(all, open));
+    let of = format!("{} of {}{unit}", energy(lost, unbounded), energy(all, all_unbounded));
     let pull = path.totals.largest_pull.as_ref().map(|at| {
         let critical = model.curve.as_ref().map_or(0.0, |curve| curve.base.critical_force);
         if model.axes == Axes::Reduced && critical > 0.0 {

@@ -110,8 +110,7 @@ pub fn unload_in_zone(
     })
 }
 
-/// The contact radius of the largest state in equilibrium at an approach or a force; that of a start by radius itself. Where no state with
-/// contact takes the value, [`StartError::OutOfReach`].
+/// The contact radius of the largest state with contact at an approach or a force, or why there is none; that of a start by radius itself.
 ///
 /// # Errors
 /// [`PathError`] where the equilibria cannot be had.
@@ -143,14 +142,19 @@ pub fn start_in_zone(
     let solution = found.solution();
     let monotone = Monotone::of(&*solution, control);
     let crossings = monotone.crossings(&*solution, weighted(control, value, value));
-    let last = crossings.last().map(|(place, _)| solution.edges(*place).contact_radius);
-    Ok(last.filter(|radius| *radius > 0.0).ok_or_else(|| {
+    let radii = crossings.iter().rev().map(|(place, _)| solution.edges(*place).contact_radius);
+    Ok(radii.into_iter().find(|radius| *radius > 0.0).ok_or_else(|| {
         // Contact begins at a touch, and may pull more further out.
         let ends = monotone.stretches.iter().flat_map(|stretch| [stretch.inner, stretch.outer]);
         let in_contact = ends.filter(|place| solution.edges(*place).contact_radius > 0.0);
         let touches = found.touches().iter().filter_map(|edge| solution.place(*edge));
         let values = in_contact.chain(touches).map(|place| monotone.value(&solution.at(place)));
-        StartError::OutOfReach { name, value, smallest: values.fold(f64::INFINITY, f64::min) }
+        let (smallest, searched) = (values.fold(f64::INFINITY, f64::min), found.reach());
+        match found.zone.gap.largest_radius() {
+            _ if value < smallest && smallest.is_finite() => StartError::OutOfReach { name, value, smallest },
+            Some(known) => StartError::NotKnown { name, value, searched, known },
+            None => StartError::NotReached { name, value, largest: searched },
+        }
     }))
 }
 

@@ -112,14 +112,19 @@ impl Walk<'_> {
         /// How far the value may be off, over the scale of the control: beside a limit point that is a millionth of the way.
         const AT_LIMIT: f64 = 1e-12;
         let equilibrium = self.equilibrium();
-        let away = |stop: &StepStop| (stop.contact_radius - s).abs();
-        let limits = self.stops(s).into_iter().filter(|stop| stop.is_limit);
-        let stop = self.located(limits.min_by(|a, b| away(a).total_cmp(&away(b)))?);
-        let state = equilibrium.state(&equilibrium.explicit(stop.contact_radius)?);
-        let scale = self.control.value(equilibrium.scales.approach, equilibrium.scales.force);
-        let off = self.control.value(state.approach, state.force) - value;
+        let mut curve = self.curve.clone();
+        curve.reach(s);
+        let (_, limit) = nearest_limit(&curve.monotone(self.control), s)?;
         let near = NEAR * equilibrium.problem.gap.feature_length().unwrap_or(s).min(s);
-        (off.abs() <= AT_LIMIT * scale && away(&stop) <= near).then_some(stop.contact_radius)
+        if (limit.contact_radius - s).abs() > near {
+            return None;
+        }
+        let stop = StepStop { contact_radius: limit.contact_radius, is_limit: true, is_corner: limit.corner };
+        let radius = self.located(stop).contact_radius;
+        let state = equilibrium.state(&equilibrium.explicit(radius)?);
+        let off = self.control.value(state.approach, state.force) - value;
+        let scale = self.control.value(equilibrium.scales.approach, equilibrium.scales.force);
+        (off.abs() <= AT_LIMIT * scale).then_some(radius)
     }
 
     /// The stops on the curve up to the radius `reach`, ascending.
