@@ -173,16 +173,17 @@ impl Model {
         let mut done: Vec<Option<Option<usize>>> = vec![None; events.len()];
         // How many events lie behind the last state that no event of the path led to.
         let mut passed = 0;
-        match of_curve.first() {
-            // Bodies that touch have come together; a disc to begin with is where the path begins, or inside of that.
-            Some((_, node)) if node.begins && self.preset.path.begin == Begin::Touch => {
-                done.iter_mut().take(self.passed_before(events, node)).for_each(|done| *done = Some(None));
+        if let Some((_, node)) = of_curve.first() {
+            let behind = self.passed_before(events, node);
+            match node.kind {
+                // Bodies that touch have come together.
+                NodeKind::Start => done.iter_mut().take(behind).for_each(|done| *done = Some(None)),
+                // Sent there, or solved again for other values where it stood: what lies behind did not happen.
+                NodeKind::Moved | NodeKind::Solved | NodeKind::Limit if !self.is_start(node) => {
+                    passed = behind;
+                }
+                _ => {}
             }
-            // Solved again for other values it stands where it stood, and what lies behind did not happen at them.
-            Some((_, node)) if !node.begins && matches!(node.kind, NodeKind::Solved | NodeKind::Limit) => {
-                passed = self.passed_before(events, node);
-            }
-            _ => {}
         }
         // What was walked and is no event of the path stands behind the last one that was.
         let mut strays: Vec<(usize, LogEntry)> = Vec::new();
@@ -246,6 +247,12 @@ impl Model {
         }
         entries.extend(strays.map(|(_, entry)| entry));
         Log { entries }
+    }
+
+    /// Whether a walk begins with the disc of the preset's start: the path begins there, or further out where that is unstable.
+    fn is_start(&self, node: &Node) -> bool {
+        let start = self.curve.as_ref().map(|curve| curve.case.start);
+        node.begins && start.is_some_and(|start| is_near(node.state.contact_radius, start))
     }
 
     /// How many events of the path lie before a state with which a walk begins.

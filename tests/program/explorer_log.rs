@@ -97,6 +97,23 @@ fn an_event_that_a_jump_off_the_path_went_round_is_passed_by_and_no_longer_count
 }
 
 #[test]
+fn nothing_has_happened_at_an_unstable_start() {
+    let mut session = Session::with("wavy-sphere", &["path.start_contact_radius=0.385"]);
+    for _ in 0..2 {
+        let log = session.model.log();
+        assert!(log.entries.iter().all(|entry| entry.mark == EventMark::Ahead), "{log:?}");
+        session.does(Id::Restart);
+    }
+    let lost = |session: &Session| session.model.log().lost().0;
+    let mut before = 0.0;
+    for _ in 0..6 {
+        session.does(Id::NextEvent);
+        assert!(lost(&session) >= before, "what was lost stays lost: {:?}", session.model.log());
+        before = lost(&session);
+    }
+}
+
+#[test]
 fn selecting_an_event_moves_the_walker_to_its_limit_point() {
     let mut session = Session::new("wavy-sphere");
     session.model.panel = ScreenPanel::Log;
@@ -104,6 +121,8 @@ fn selecting_an_event_moves_the_walker_to_its_limit_point() {
     let event = &session.model.path_events()[2];
     assert!((session.radius() / event.before.as_ref().unwrap().contact_radius - 1.0).abs() < 1e-9);
     assert!(session.status().contains("snap to crest 5"), "{}", session.status());
+    let marks: Vec<EventMark> = session.model.log().entries.iter().map(|entry| entry.mark).take(4).collect();
+    assert_eq!(marks, [EventMark::PassedBy, EventMark::PassedBy, EventMark::Here, EventMark::Ahead]);
     assert!(!session.model.is_unsaved());
     // Done, it is ticked, and one goes back to it.
     session.all(&[Id::Jump, Id::NextEvent]);
