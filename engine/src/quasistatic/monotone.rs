@@ -13,6 +13,9 @@ use std::ops::Range;
 /// Values of the slope below this share of its terms are rounding.
 const ROUNDING: f64 = 1e-14;
 
+/// A root this near to an end of a panel, which is 2 long, is at the end.
+const AT_END: f64 = 1e-13;
+
 /// Limit points nearer to each other than this share of their radius are none.
 const SAME: f64 = 1e-13;
 
@@ -101,7 +104,11 @@ impl Monotone {
         let first = panels.start;
         for panel in panels {
             let (series, size) = solution.tendency(panel, control);
-            let starts = chebyshev::sum(&series, -1.0) > 0.0;
+            // At an end of a panel the slope may be nothing but rounding: its sign is that between the roots inside.
+            let mut roots = chebyshev::roots(&series, ROUNDING * size);
+            roots.retain(|x| x.abs() < 1.0 - AT_END);
+            let first_root = roots.first().copied().unwrap_or(1.0);
+            let starts = chebyshev::sum(&series, 0.5 * (first_root - 1.0)) > 0.0;
             let begin = Place { panel, x: -1.0 };
             if let Some((end, ended)) = before {
                 let joined = solution.is_joined(end.panel);
@@ -113,7 +120,7 @@ impl Monotone {
                 signs.push(starts);
             }
             let mut sign = starts;
-            for x in chebyshev::roots(&series, ROUNDING * size) {
+            for x in roots {
                 sign = !sign;
                 let at = Place { panel, x };
                 cuts.push(Cut { before: at, after: at, joined: true });
