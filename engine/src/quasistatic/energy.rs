@@ -99,7 +99,8 @@ fn on_panel(
 
 /// The energy lost in a jump as the area between the curve and the control line, from `before` to `after`.
 ///
-/// In a narrow hole the work left over is the step of the energy. `None` for a pull-off under a dead load, or where the basis has no
+/// In a narrow hole the work left over is the step of the energy, and at a border at which zones go from one root to another without
+/// a hole. `None` for a pull-off under a dead load, or where the basis has no
 /// equilibrium on the way.
 pub fn area(solution: &dyn Solution, control: Control, before: Place, after: Option<Place>) -> Option<f64> {
     let line = solution.at(before);
@@ -113,12 +114,14 @@ pub fn area(solution: &dyn Solution, control: Control, before: Place, after: Opt
     // Outward the same stretch is passed the other way.
     let is_inward = (end.panel, end.x) <= (before.panel, before.x);
     let (end, before, sign) = if is_inward { (end, before, 1.0) } else { (before, end, -1.0) };
+    let in_zones = solution.edges(before).zone.is_some();
     let mut sum = 0.0;
     for panel in end.panel..=before.panel {
-        if panel < before.panel && !solution.is_joined(panel) {
-            if !solution.is_passed(panel) {
-                return None;
-            }
+        let is_joined = panel == before.panel || solution.is_joined(panel);
+        if !is_joined && !solution.is_passed(panel) {
+            return None;
+        }
+        if panel < before.panel && (in_zones || !is_joined) {
             let [inner, outer] = [Place { panel, x: 1.0 }, Place { panel: panel + 1, x: -1.0 }];
             let step = solution.at(outer).approach - solution.at(inner).approach;
             sum += solution.energy(outer) - solution.energy(inner) - line.force * step;
@@ -126,7 +129,7 @@ pub fn area(solution: &dyn Solution, control: Control, before: Place, after: Opt
         if panel == 0 && after.is_none() {
             // To the axis: where adhesion alone rules, δ is a power of √s.
             let span = solution.span(0);
-            let outer = if before.panel == 0 { solution.at(before).contact_radius } else { span.hi };
+            let outer = if before.panel == 0 { solution.radius(before) } else { span.hi };
             let [from, to] = [span.lo.sqrt(), outer.sqrt()];
             for [x, weight] in GAUSS.iter() {
                 let root = 0.5 * (from + to) + 0.5 * (to - from) * x;
