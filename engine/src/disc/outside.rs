@@ -26,6 +26,7 @@ use gauss_quad::GaussLegendre;
 use std::f64::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_2};
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
+use wide::f64x4;
 
 /// Nodes on a panel near r, on one at least as far as it is wide, and on one at least [`VERY_FAR`] times as far.
 const NODES: [usize; 3] = [32, 14, 8];
@@ -93,9 +94,9 @@ fn over_panels(panels: &Panels, s: f64, r: f64, stretch: impl Fn(usize, [f64; 2]
     (first..=last).map(part).sum::<f64>()
 }
 
-/// ∫_s^r f/√(r² − a²) da, f a function of places of the panels and of g there; the panels must reach to `r`. All digits of the table are
-/// kept where f is as smooth on every panel as g is.
-pub fn sum_from(panels: &Panels, s: f64, r: f64, f: &dyn Fn(Place, f64) -> f64) -> f64 {
+/// ∫_s^r f/√(r² − a²) da, f a function of the radius a and of g there; the panels must reach to `r`. All digits of the table are kept
+/// where f is as smooth on every panel as g is.
+pub fn sum_from(panels: &Panels, s: f64, r: f64, f: OfRadii<'_>) -> f64 {
     over_panels(panels, s, r, |i, ends| {
         let span = panels.list()[i].span;
         // A small part of a panel is nearly a line.
@@ -141,73 +142,89 @@ fn stretch_outside(panels: &Panels, index: usize, delta: f64, r: f64, [lo, hi]: 
 }
 
 /// Four numbers at four places of a panel.
-type Fours<'a> = &'a dyn Fn([f64; 4]) -> [f64; 4];
+type Fours<'a> = &'a dyn Fn(f64x4) -> f64x4;
 
-/// ∫ f dv by a rule. `node` gives the place of v on a panel and a number of its own, `of` what the panel says there, four places at
-/// once, and `f` takes all three.
+/// A function of four radii and of g at them.
+pub type OfRadii<'a> = &'a dyn Fn(f64x4, f64x4) -> f64x4;
+
+/// A function of four numbers one by one.
+fn each(of: f64x4, f: impl FnMut(f64) -> f64) -> f64x4 {
+    f64x4::new(of.to_array().map(f))
+}
+
+/// ∫ f dv by a rule. `node` gives the place of v on a panel and a number of its own, `of` what the panel says there, and `f` takes all
+/// three.
 fn by_fours(
     rule: &[[f64; 2]],
     [from, to]: [f64; 2],
-    node: &dyn Fn(f64) -> [f64; 2],
+    node: &dyn Fn(f64x4) -> [f64x4; 2],
     of: Fours<'_>,
-    f: &dyn Fn([f64; 2], f64) -> f64,
+    f: &dyn Fn([f64x4; 2], f64x4) -> f64x4,
 ) -> f64 {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    let mut sum = 0.0;
+    let mut sum = f64x4::ZERO;
     for four in rule.chunks(4) {
-        let nodes: [_; 4] = std::array::from_fn(|k| node(middle + half * four.get(k).unwrap_or(&four[0])[0]));
-        let found = of(nodes.map(|[x, _]| x));
-        for (([_, weight], node), found) in four.iter().zip(nodes).zip(found) {
-            sum += weight * f(node, found);
-        }
+        // The last ones may be fewer: the first of them again, without weight.
+        let of_rule = |k: usize| {
+            f64x4::new(std::array::from_fn(|i| four.get(i).map_or([four[0][0], 0.0][k], |at| at[k])))
+        };
+        let node = node(of_rule(0) * half + middle);
+        sum += of_rule(1) * f(node, of(node[0]));
     }
-    half * sum
+    half * sum.reduce_add()
 }
 
-/// ∫ f/√(r² − a²) da from `lo` to `hi` on one panel by a rule, of a function of places and of g there.
+/// ∫ f/√(r² − a²) da from `lo` to `hi` on one panel by a rule.
 fn sum_by(
     panels: &Panels,
     index: usize,
     r: f64,
     [lo, hi]: [f64; 2],
     rule: &[[f64; 2]],
-    f: &dyn Fn(Place, f64) -> f64,
+    f: OfRadii<'_>,
 ) -> f64 {
     if hi <= lo {
         return 0.0;
     }
     let span = panels.list()[index].span;
     let [centre, half] = span.line();
-    let x = |v: f64| ((v - centre) / half).clamp(-1.0, 1.0);
+    let x = |v: f64x4| ((v - centre) / half).max(-f64x4::ONE).min(f64x4::ONE);
     let g: Fours<'_> = &|x| panels.four_values(index, x);
-    let value = |x: f64, g: f64| f(Place { panel: index, x }, g);
-    let plain = |[x, _]: [f64; 2], g: f64| value(x, g);
+    let angles = [asin(lo / r), asin((hi / r).min(1.0))];
     match span.variable {
         Variable::Fifth if r - hi >= hi => {
             let end = span.hi;
             let at = |a: f64| pow(a / end, 0.2);
-            by_fours(rule, [at(lo), at(hi)], &|u| [x(u), u], g, &|[x, u], g| {
-                let a = end * u.powi(5);
-                value(x, g) * 5.0 * end * u.powi(4) / ((r - a) * (r + a)).sqrt()
+            by_fours(rule, [at(lo), at(hi)], &|u| [x(u), u], g, &|[_, u], g| {
+                let fourth = u * u * u * u;
+                let a = fourth * u * end;
+                f(a, g) * fourth * (5.0 * end) / ((a + r) * (f64x4::splat(r) - a)).sqrt()
             })
         }
         Variable::Fifth => {
-            let node = |psi: f64| [x(pow(r * sin(psi) / span.hi, 0.2)), psi];
-            by_fours(rule, [asin(lo / r), asin((hi / r).min(1.0))], &node, g, &plain)
+            let node = |psi: f64x4| {
+                let a = psi.sin() * r;
+                [x(each(a, |a| pow(a / span.hi, 0.2))), a]
+            };
+            by_fours(rule, angles, &node, g, &|[_, a], g| f(a, g))
         }
         Variable::Radius => {
-            let node = |psi: f64| [x(r * sin(psi)), psi];
-            by_fours(rule, [asin(lo / r), asin((hi / r).min(1.0))], &node, g, &plain)
+            let node = |psi: f64x4| {
+                let a = psi.sin() * r;
+                [x(a), a]
+            };
+            by_fours(rule, angles, &node, g, &|[_, a], g| f(a, g))
         }
         Variable::Root { base } => {
             let height = (r - base).sqrt();
             let angle = |a: f64| asin(((a - base).max(0.0).sqrt() / height).min(1.0));
-            let node = |psi: f64| {
-                let y = height * sin(psi);
+            let node = |psi: f64x4| {
+                let y = psi.sin() * height;
                 [x(y), y]
             };
-            by_fours(rule, [angle(lo), angle(hi)], &node, g, &|[x, y], g| {
-                value(x, g) * 2.0 * y / (r + base + y * y).sqrt()
+            by_fours(rule, [angle(lo), angle(hi)], &node, g, &|[_, y], g| {
+                let a = y * y + base;
+                f(a, g) * 2.0 * y / (a + r).sqrt()
             })
         }
     }
@@ -245,23 +262,26 @@ fn slope_outside(panels: &Panels, index: usize, r: f64, [lo, hi]: [f64; 2]) -> f
     let slope: Fours<'_> = &|x| panels.four_weighted_slopes(index, x);
     match span.variable {
         Variable::Fifth | Variable::Radius => {
-            let node = |psi: f64| [span.place(r * sin(psi)), sin(psi)];
+            let node = |psi: f64x4| {
+                let sine = psi.sin();
+                [each(sine * r, |a| span.place(a)), sine]
+            };
             by_fours(rule, [asin(lo / r), asin((hi / r).min(1.0))], &node, slope, &|[x, sine], slope| {
-                slope / panel.weight(x) * sine
+                slope / each(x, |x| panel.weight(x)) * sine
             })
         }
         Variable::Root { base } => {
             let height = (r - base).sqrt();
             let [centre, half] = span.line();
             let angle = |a: f64| asin(((a - base).max(0.0).sqrt() / height).min(1.0));
-            let node = |psi: f64| {
-                let y = height * sin(psi);
-                [((y - centre) / half).clamp(-1.0, 1.0), y]
+            let node = |psi: f64x4| {
+                let y = psi.sin() * height;
+                [((y - centre) / half).max(-f64x4::ONE).min(f64x4::ONE), y]
             };
             by_fours(rule, [angle(lo), angle(hi)], &node, slope, &|[x, y], slope| {
-                let a = base + y * y;
-                let by_variable = if panel.is_steep() { slope } else { slope * span.stretch(x) };
-                by_variable * (a / r) / (r + a).sqrt()
+                let a = y * y + base;
+                let by_variable = if panel.is_steep() { slope } else { slope * each(x, |x| span.stretch(x)) };
+                by_variable * (a / r) / (a + r).sqrt()
             })
         }
     }

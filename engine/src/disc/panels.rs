@@ -201,20 +201,20 @@ impl Panels {
     }
 
     /// g at four places of a panel.
-    pub fn four_values(&self, panel: usize, x: [f64; 4]) -> [f64; 4] {
+    pub fn four_values(&self, panel: usize, x: f64x4) -> f64x4 {
         let panel = &*self.list[panel];
         match &self.law {
-            Some(law) => x.map(|x| law.value(panel.span.radius(x))),
-            None => chebyshev::sum4(&panel.value, f64x4::new(x)).to_array(),
+            Some(law) => f64x4::new(x.to_array().map(|x| law.value(panel.span.radius(x)))),
+            None => chebyshev::sum4(&panel.value, x),
         }
     }
 
     /// [`Panels::weighted_slope`] at four places of a panel.
-    pub fn four_weighted_slopes(&self, panel: usize, x: [f64; 4]) -> [f64; 4] {
+    pub fn four_weighted_slopes(&self, panel: usize, x: f64x4) -> f64x4 {
         let panel = &*self.list[panel];
         match &self.law {
-            Some(law) => x.map(|x| law.slope(panel.span.radius(x))),
-            None => chebyshev::sum4(&panel.slope, f64x4::new(x)).to_array(),
+            Some(law) => f64x4::new(x.to_array().map(|x| law.slope(panel.span.radius(x)))),
+            None => chebyshev::sum4(&panel.slope, x),
         }
     }
 

@@ -32,6 +32,7 @@ use crate::problem::Cohesion;
 use crate::root::RootBracket;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
+use wide::f64x4;
 
 /// Newton's steps, each kept in its bracket.
 const STEPS: usize = 80;
@@ -217,9 +218,8 @@ impl Zone {
     fn energy(&self, c: f64, s: f64, approach: f64) -> f64 {
         let Cohesion { strength, .. } = self.cohesion;
         let panels = &*self.panels;
-        let pulled = outside::sum_from(panels, s, c, &|place, g| {
-            let a = panels.radius(place);
-            (c - a) * (c + a) * (approach - g)
+        let pulled = outside::sum_from(panels, s, c, &|a, g| {
+            (f64x4::splat(c) - a) * (a + c) * (f64x4::splat(approach) - g)
         });
         let width = c - s;
         // ∫_s^c (c² − a²) da.
