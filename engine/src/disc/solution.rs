@@ -52,6 +52,11 @@ pub trait Solution: Debug + Send + Sync {
     /// The equilibrium at a place.
     fn at(&self, place: Place) -> Local;
 
+    /// The radius at a place, for which it is the equilibrium, a length.
+    fn radius(&self, place: Place) -> f64 {
+        self.span(place.panel).radius(place.x)
+    }
+
     /// The equilibria at four places of one panel: areas are sums of many.
     fn at_four(&self, panel: usize, x: [f64; 4]) -> [Local; 4] {
         x.map(|x| self.at(Place { panel, x }))
@@ -62,7 +67,7 @@ pub trait Solution: Debug + Send + Sync {
 
     /// The edges at a place.
     fn edges(&self, place: Place) -> Edges {
-        Edges { contact_radius: self.at(place).contact_radius, zone: None }
+        Edges { contact_radius: self.radius(place), zone: None }
     }
 
     /// The places at which contact in a zone begins or ends.

@@ -130,7 +130,7 @@ impl FitPath {
         };
         for leg in &legs {
             let ends = |places: &[disc::Place; 2]| {
-                let along = |place| path.track.solution().map_or(f64::NAN, |of| of.at(place).contact_radius);
+                let along = |place| path.track.solution().map_or(f64::NAN, |of| of.radius(place));
                 places.map(along)
             };
             let piece = match leg {

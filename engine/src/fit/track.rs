@@ -262,8 +262,7 @@ impl Track {
                 };
                 let places = places(solution, *outer, *inner, Detail::Drawn);
                 let connected = places.into_iter().take_while(joined);
-                let states =
-                    connected.map(|place| self.state_at(solution, place, solution.at(place).contact_radius));
+                let states = connected.map(|place| self.state_at(solution, place, solution.radius(place)));
                 states.filter(|state| state.slopes.iter().all(|slope| slope.is_finite())).collect()
             }
         }

@@ -225,7 +225,7 @@ impl Curve {
         };
         let samples: Vec<Sample> = places.iter().map(sample).collect();
         let last = places.last().copied().unwrap_or(zones.start);
-        let ends = [zones.start, last].map(|place| solution.at(place).contact_radius);
+        let ends = [zones.start, last].map(|place| solution.radius(place));
         let scales = Scales::of(samples.iter().map(|s| [s.approach, s.force, s.contact_radius]));
         let equilibrium = Equilibrium { problem, basis, table, scales };
         Ok(Self { equilibrium, solution, samples, stop: CurveStop::End, ends, held: Vec::new() })

@@ -99,7 +99,7 @@ pub fn descend(solution: &dyn Solution, monotone: &Monotone, mut here: Landing, 
         let before = here.stretch.checked_sub(1).map_or(stretch.inner, |at| monotone.stretches[at].outer);
         descent.jumps.push(Jump { before, stretch: here.stretch, landing });
         let Some(landing) = landing else { return descent };
-        if solution.at(landing.place).contact_radius < to * (1.0 - AT_END) {
+        if solution.radius(landing.place) < to * (1.0 - AT_END) {
             descent.pieces.push([landing.place; 2]);
             return descent;
         }

@@ -202,7 +202,7 @@ impl HeldControl<'_> {
             // As the stretches have it, whatever the stiffness.
             Control::Stiffness(k) => self.value * (k / (1.0 + k)),
         };
-        let radius = |place| curve.solution.at(place).contact_radius;
+        let radius = |place| curve.solution.radius(place);
         monotone
             .crossings(&*curve.solution, value)
             .into_iter()

@@ -158,7 +158,7 @@ pub fn contact_radius(
             let ends = stretches.last().is_some_and(|stretch| stretch.rising && stretch.values[1] > value);
             let found = last.map(|at| {
                 let place = monotone.solve(&**solution, &stretches[at], value);
-                solution.at(place).contact_radius
+                solution.radius(place)
             });
             let known = found.is_some() && reach >= most;
             if known || ends && above && found.is_none_or(|s| s <= outer) {

@@ -285,8 +285,8 @@ impl TraceReport {
         let units = case.units();
         let zones = case.zones(progress)?;
         let solution = &*zones.solution;
-        let start = solution.at(zones.start).contact_radius;
-        let radius = |place| solution.at(place).contact_radius;
+        let start = solution.radius(zones.start);
+        let radius = |place| solution.radius(place);
         let drawn = zones.drawn(progress).map_err(|error| case.no_path(error, case.control));
         let (places, fault) = drawn?;
         let point = |(step, place): (usize, &Place)| PointReport::in_zone(case, &zones, step, *place);

@@ -72,7 +72,7 @@ impl Family {
                 return Ok(None);
             }
             let landed = descent.jumps.iter().filter(|jump| jump.landing.is_some());
-            let radius = |place| solution.at(place).contact_radius;
+            let radius = |place| solution.radius(place);
             (descent.snaps(), landed.map(|jump| radius(jump.before)).collect())
         } else {
             // The edge runs outward first: the path of the whole unloading knows how far.

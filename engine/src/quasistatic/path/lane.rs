@@ -86,7 +86,7 @@ impl Lane {
             let to = |run| jump::run(&*self.solution, &self.monotone, at, value, run).ok().flatten();
             to(pulled).or_else(|| to(run))?.place
         };
-        Some(self.solution.at(place).contact_radius)
+        Some(self.solution.radius(place))
     }
 
     /// What a jump between contacts, as [inner, outer], dissipates by area: from one disc to another, or to bodies apart; `None` of others. A dead load of
@@ -114,14 +114,14 @@ impl Lane {
         if contact(to) < s {
             return None;
         }
-        let [lo, hi] = [from, to].map(|place| self.solution.at(place).contact_radius);
+        let [lo, hi] = [from, to].map(|place| self.solution.radius(place));
         let [_, c] = root::halved(lo, hi, |c| self.solution.place(c).is_some_and(|place| contact(place) < s));
         self.solution.place(c)
     }
 
     /// The first place between two on a stable stretch at which `turn` is reached; `None` where it is not.
     pub fn turns(&self, turn: Turn, [from, to]: [Place; 2]) -> Option<Place> {
-        let [inner, outer] = [from, to].map(|place| self.solution.at(place).contact_radius);
+        let [inner, outer] = [from, to].map(|place| self.solution.radius(place));
         let measure = match turn {
             Turn::Radius(radius) if self.solution.edges(from).zone.is_some() => {
                 return self.reaches(radius, [from, to]);

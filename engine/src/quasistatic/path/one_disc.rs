@@ -94,7 +94,7 @@ impl Course<'_, '_> {
         /// The part of the gap's own length around the last place of the crest in which it is looked for.
         const NEAR: f64 = 1.0 / 14.0;
         let (solution, ground) = (&lane.solution, self.balance.ground);
-        let [lo, hi] = [from, to].map(|place| solution.at(place).contact_radius);
+        let [lo, hi] = [from, to].map(|place| solution.radius(place));
         let on = |s: f64| solution.place(s).unwrap_or(to);
         let (mut best, mut failed) = (crest, None);
         let mut gap = |s: f64| {

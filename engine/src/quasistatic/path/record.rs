@@ -85,7 +85,7 @@ impl<'a> Record<'a> {
     /// # Errors
     /// [`PathError::Stopped`].
     pub fn along(&mut self, lane: &Lane, [mut from, to]: [Place; 2]) -> Result<(), PathError> {
-        let radius = |place: Place| lane.solution.at(place).contact_radius;
+        let radius = |place: Place| lane.solution.radius(place);
         let is_inward = radius(to) < radius(from);
         let (lo, hi) = (radius(from).min(radius(to)), radius(from).max(radius(to)));
         let mut touches = lane.solution.touches().to_vec();
@@ -109,12 +109,12 @@ impl<'a> Record<'a> {
         let order = |place: Place| (place.panel, place.x);
         let is_inward = order(to) <= order(from);
         let (inner, outer) = if is_inward { (to, from) } else { (from, to) };
-        let [lo, hi] = [inner, outer].map(|place| solution.at(place).contact_radius);
+        let [lo, hi] = [inner, outer].map(|place| solution.radius(place));
         // The smallest force of a path is that of a state of it.
         let mut between: Vec<(f64, Place)> = places(solution, hi, lo.max(SMALLEST * hi), self.detail)
             .into_iter()
             .chain(lane.extremes.iter().copied())
-            .map(|place| (solution.at(place).contact_radius, place))
+            .map(|place| (solution.radius(place), place))
             .filter(|(s, _)| lo < *s && *s < hi)
             .collect();
         between.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -283,7 +283,7 @@ impl<'a> Record<'a> {
             let after = landing.map(|landing| landing.place);
             self.jumped(Event::of_disc(solution, self.control, place, after, self.losses));
             let Some(landing) = landing else { return Ok(PathStop::Apart) };
-            if solution.at(landing.place).contact_radius < to * (1.0 - AT_END) {
+            if solution.radius(landing.place) < to * (1.0 - AT_END) {
                 return Ok(PathStop::End);
             }
             landing

@@ -98,9 +98,15 @@ fn opening(state: PathState, more: f64) -> PathState {
 /// Why a disc in equilibrium is not all of the contact; `None` where it is.
 fn fault(curve: &Curve, s: f64, progress: &dyn Progress) -> Option<WhyNot> {
     let point = curve.equilibrium.explicit(s)?;
-    let found = curve.equilibrium.admissibility(&point, progress);
+    let [delta, _, s] = curve.equilibrium.quantities(point.y());
+    let judge = curve.equilibrium.judge();
+    // Where bodies overlap the nearest crest may be another than the first that was seen to.
+    if judge.verdict(s, delta, progress).holds {
+        return None;
+    }
+    let found = judge.judge(s, delta, progress);
     let overlap = found.nearest.filter(|crest| crest.gap < 0.0).map(|crest| WhyNot::Overlaps(crest.radius));
-    if found.holds { None } else { overlap.or(found.least_pressure.map(|(radius, _)| WhyNot::Pulls(radius))) }
+    overlap.or(found.least_pressure.map(|(radius, _)| WhyNot::Pulls(radius)))
 }
 
 /// The way down, at the work of adhesion `to_open`, from a disc beside which there is more contact.

@@ -279,7 +279,7 @@ impl Zones {
     /// # Errors
     /// [`PathError`] of the start where that is none, and where it cannot be known.
     pub fn drawn(&self, progress: &dyn Progress) -> Result<(Vec<Place>, Option<PathError>), PathError> {
-        let start = self.solution.at(self.start).contact_radius;
+        let start = self.solution.radius(self.start);
         let mut found = Vec::new();
         for place in places(&*self.solution, start, SMALLEST * start, Detail::Drawn) {
             match self.fault(place, progress)? {
@@ -383,7 +383,7 @@ impl Course<'_> {
     /// # Errors
     /// [`PathError::BeyondZone`] with the first state that is not.
     fn follow(&mut self, [from, to]: [Place; 2]) -> Result<(), PathError> {
-        let radius = |place| self.solution().at(place).contact_radius;
+        let radius = |place| self.solution().radius(place);
         let ends = if radius(to) >= radius(from) { Ends::Outer } else { Ends::Inner };
         let passed = self.passed([from, to]);
         let mut last = from;
@@ -432,7 +432,7 @@ impl Course<'_> {
             return Err(self.beyond(landing.place, Some(fault)));
         }
         let Lane { solution, monotone, .. } = &self.lane;
-        let radius = |place| solution.at(place).contact_radius;
+        let radius = |place| solution.radius(place);
         let (from, to) = (radius(before), radius(landing.place));
         if to < from {
             return Ok(());
@@ -585,7 +585,7 @@ impl Course<'_> {
         let solution = Arc::clone(&self.lane.solution);
         let beyond = PathError::BeyondGap { radius: solution.reach(), approach: f64::NAN, force: f64::NAN };
         let asked_at = place_of(&*solution, start).ok_or(beyond)?;
-        let edge = solution.at(asked_at).contact_radius;
+        let edge = solution.radius(asked_at);
         let here = if let Some(here) = stable_start(&*solution, &self.lane.monotone, edge) {
             here
         } else {

@@ -309,7 +309,7 @@ impl Walk<'_> {
         let (curve, leaves, landing) = self.landing(from)?;
         let event = Event::of_disc(&*curve.solution, self.control, leaves, landing, Losses::Twice);
         let point = match landing {
-            Some(place) => self.equilibrium().explicit(curve.solution.at(place).contact_radius),
+            Some(place) => self.equilibrium().explicit(curve.solution.radius(place)),
             None => Some(from.clone()),
         };
         let point = point.ok_or(WalkFailure::NoEquilibrium("at the landing"))?;
@@ -340,7 +340,7 @@ impl Walk<'_> {
             let value = monotone.value(&curve.solution.at(place));
             match jump::run(&*curve.solution, &monotone, stretch, value, run) {
                 Ok(Some(landing)) => {
-                    let to = curve.solution.at(landing.place).contact_radius;
+                    let to = curve.solution.radius(landing.place);
                     let held = curve.solution.at(place);
                     let held = self.control.value(held.approach, held.force);
                     if !landscape::falls(&curve, self.control, held, s, to) {
@@ -387,7 +387,7 @@ impl Walk<'_> {
             // The stretches hold the value scaled so.
             Control::Stiffness(k) => value * (k / (1.0 + k)),
         };
-        let radius = |place: Place| solution.at(place).contact_radius;
+        let radius = |place: Place| solution.radius(place);
         let on_curve = |s: &f64| curve.innermost() <= *s && *s <= curve.outermost();
         let mut radii: Vec<f64> =
             monotone.crossings(solution, value).into_iter().map(|(place, _)| radius(place)).collect();
