@@ -10,7 +10,9 @@ use crate::preset::invalid::Invalid;
 use crate::preset::measured;
 use crate::preset::resolve::{count_in_own_units, in_units};
 use crate::preset::rows::parameter;
-use crate::preset::schema::{CHOOSERS, Fallback, Key, Kind, Parameter, SYSTEMS, rivals};
+use crate::preset::schema::{
+    ADHESION, CHOOSERS, Fallback, Key, Kind, Parameter, RANGE_KEYS, SYSTEMS, rivals,
+};
 use crate::preset::shape;
 use crate::preset::value::Value;
 use crate::preset::values::Values;
@@ -76,7 +78,11 @@ impl Preset {
     /// Lays a value over the others, with what it drops and begins.
     fn lay(&self, values: &mut Values, row: &Parameter, value: Value) {
         if row.takes_away(&value) {
-            values.remove(row.whole());
+            // A number for the range makes the adhesion one with a range: without any it has none.
+            let had_range = values.remove(row.whole()).is_some() && RANGE_KEYS.contains(&&*row.key);
+            if had_range && self.range_of_action().is_none() {
+                values.remove(ADHESION);
+            }
             return;
         }
         if CHOOSERS.contains(&&*row.key) {

@@ -8,6 +8,7 @@ use crate::preset::examples::{any_gap, wavy};
 use crate::preset::rows::parameter;
 use crate::preset::schema::{ADHESION, Applies, FORMAT, Fallback, Kind, LIQUID_KEYS, PARAMETERS};
 use crate::preset::value::Value;
+use crate::problem::{Adhesion, StatedCohesion};
 
 /// A value for a key that it does not have in [`wavy`].
 fn another(key: &str) -> Value {
@@ -312,6 +313,25 @@ fn a_basis_drops_the_keys_of_the_other() {
     assert_eq!(few.to_string(), "basis.rings belongs to rings, and the basis is exact");
     preset.set("basis.kind", "rings".into()).unwrap();
     assert_eq!(preset, wavy());
+}
+
+#[test]
+fn adhesion_without_a_range_has_none() {
+    for key in ["material.cohesive_range", "material.cohesive_strength"] {
+        let mut exact = wavy();
+        exact.set("basis.kind", "exact".into()).unwrap();
+        let mut preset = exact.clone();
+        preset.assign("material.adhesion", "dugdale").unwrap_err();
+        preset.assign(key, "0.01").unwrap();
+        assert!(matches!(preset.material.adhesion, Adhesion::Dugdale(_)));
+        preset.assign(key, "none").unwrap();
+        assert_eq!(preset, exact);
+        // With the range of action there is one left.
+        for (key, text) in [("material.range_of_action", "0.001"), (key, "0.01"), (key, "none")] {
+            preset.assign(key, text).unwrap();
+        }
+        assert_eq!(preset.material.adhesion, Adhesion::Dugdale(StatedCohesion::Action));
+    }
 }
 
 #[test]
