@@ -1,6 +1,5 @@
 //! What can be written to a file: the kinds of export and the endings of their files.
 
-use super::model::Model;
 use super::view::View;
 use crate::print::PictureFormat;
 use crate::store::Source;
@@ -95,19 +94,15 @@ impl Picture {
     }
 }
 
-impl Model {
-    /// The name of a file for a document of this name: that of the preset is in it.
-    pub fn file_for(&self, document: &str, ending: &str) -> String {
-        let base = match &self.source {
-            Source::User { name, .. } => name.clone(),
-            Source::Shipped(shipped) => shipped.name.to_owned(),
-            Source::Piped { .. } => "preset".to_owned(),
-            Source::File(path) => {
-                path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
-            }
-        };
-        format!("{}-{document}.{ending}", sanitize(&base, 60))
-    }
+/// The name of a file for a document of this name: that of the preset is in it.
+pub fn file_for(source: &Source, document: &str, ending: &str) -> String {
+    let base = match source {
+        Source::User { name, .. } => name.clone(),
+        Source::Shipped(shipped) => shipped.name.to_owned(),
+        Source::Piped { .. } => "preset".to_owned(),
+        Source::File(path) => path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned()),
+    };
+    format!("{}-{document}.{ending}", sanitize(&base, 60))
 }
 
 /// What is seen, for a file.

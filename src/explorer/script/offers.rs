@@ -4,7 +4,7 @@ use super::keys::settable;
 use super::lexer::quoted;
 use crate::explorer::branches;
 use crate::explorer::command::Command;
-use crate::explorer::export::{ExportKind, Picture};
+use crate::explorer::export::{ExportKind, Picture, file_for};
 use crate::explorer::look::NO_ENVELOPE;
 use crate::explorer::map_axes::CURVES;
 use crate::explorer::model::Model;
@@ -185,7 +185,7 @@ pub(in crate::explorer) fn documents(typing: &Typing<'_>) -> Vec<Offer> {
         [document] => {
             let named = |endings: &[&str]| {
                 let shown = if *document == "figure" { typing.model.view.name() } else { document };
-                endings.iter().map(|ending| typing.model.file_for(shown, ending)).collect::<Vec<_>>()
+                endings.iter().map(|ending| file_for(&typing.model.source, shown, ending)).collect::<Vec<_>>()
             };
             let of = all.filter(|(name, ..)| name == document).flat_map(|(_, _, endings)| named(endings));
             of.filter_map(|file| Some(Offer::new(quoted(&file)?, ""))).collect()

@@ -1,7 +1,7 @@
 //! Names and paths asked for: saving, exporting, copying.
 
 use super::state::App;
-use crate::explorer::export::{ExportKind, Page, Picture};
+use crate::explorer::export::{ExportKind, Page, Picture, file_for};
 use crate::explorer::model::Level;
 use crate::explorer::{Command, Effect, Id};
 use crate::plot::picture::picture;
@@ -35,7 +35,7 @@ impl App {
 
     pub(super) fn ask_export(&mut self) -> Vec<Effect> {
         let items = ExportKind::ALL.map(|what| {
-            let file = self.model.file_for(what.name(), what.endings()[0]);
+            let file = file_for(&self.model.source, what.name(), what.endings()[0]);
             let title = format!("Export the {} to", what.name());
             let note = format!("a file ending in .{}", what.endings().join(" or ."));
             let prompt = Prompt::new(title, &note, file, Purpose::File(what));
@@ -47,7 +47,7 @@ impl App {
             let title = format!("Export the {} to", what.name());
             let note = format!("a file ending in .{}", endings.join(" or ."));
             let named = if let Picture::Figure(_) = what { self.model.view.name() } else { what.name() };
-            let file = self.model.file_for(named, endings[0]);
+            let file = file_for(&self.model.source, named, endings[0]);
             let prompt = Prompt::new(title, &note, file, Purpose::Page(page));
             Item::new(format!("{:<7} {}", what.name(), what.meaning()), Choice::Prompt(Box::new(prompt)))
         };
