@@ -166,7 +166,7 @@ pub fn run(
     Ok(ExitCode::SUCCESS)
 }
 
-/// Most steps are done sooner: the frame waits so long for the result.
+/// Most curves and steps are done sooner: the frame waits so long for the result.
 const GRACE: Duration = Duration::from_millis(30);
 
 /// Whether `effects` begin a walk that has no states yet.
@@ -190,8 +190,8 @@ fn converse<S: FrameSink>(
     let mut dirty = true;
     // Whether the first curve is still to come; its frame does not wait for the pace of a slow line.
     let mut awaits_curve = true;
-    // Until when the first change since the last frame may wait for the step that it began.
-    let mut grace = None;
+    // Until when the first frame may wait for the curve, and the first change since the last one for the step that it began.
+    let mut grace = Some(Instant::now() + GRACE);
     while !app.model.quit {
         // Unchanged: wait until something is late. Changed: only until the next frame is due.
         let runs = app.model.is_running();
@@ -223,7 +223,8 @@ fn converse<S: FrameSink>(
             submit(effects);
             dirty = true;
         }
-        grace = grace.filter(|_| app.model.walking.is_some_and(|walking| walking.made == 0));
+        let waits = awaits_curve && app.model.curve.is_none();
+        grace = grace.filter(|_| waits || app.model.walking.is_some_and(|walking| walking.made == 0));
         dirty |= notice.look(app);
         keep(app);
         display.take_mouse(app.mouse);

@@ -237,9 +237,8 @@ fn knob_line(
     let (ends, room) =
         if text.chars().count() > room { ("", room + ends.chars().count()) } else { (ends, room) };
     let text: String = text.chars().take(room).collect();
-    let line = format!("{label}{text}{ends}");
     let style = if turning.is_some() { theme.selection() } else { ratatui::style::Style::new() };
-    Line::styled(format!("{line:<width$}", width = usize::from(width)), style)
+    Line::styled(format!("{label}{text}{ends}"), style)
 }
 
 /// The groups, as many on a line as fit; the one with the key `chosen` is selected.
