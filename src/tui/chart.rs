@@ -291,20 +291,30 @@ impl Chart<'_> {
         let title = theme.text(&self.figure.x.title());
         let title_width = u16::try_from(title.chars().count()).unwrap_or(u16::MAX);
         let end = inner.right().saturating_sub(title_width + 1);
-        let mut free = inner.x;
-        for (value, label) in
-            ticks(self.bounds.x, self.figure.x.run, usize::from(plot.width / 12).clamp(2, 10))
-        {
-            let width = u16::try_from(label.len()).unwrap_or(u16::MAX);
-            let Some(column) = cell(value, self.bounds.x, plot.width, false) else { continue };
-            let Some(x) = (plot.x + column).checked_sub(width / 2) else { continue };
-            if x >= free && x + width <= end {
-                buffer.set_stringn(x, below, &label, usize::from(width), theme.dim());
-                free = x + width + 1;
-                let tick = &mut buffer[(plot.x + column, below - 1)];
-                if tick.symbol() == " " {
-                    tick.set_symbol(theme.glyph("╷", "|")).set_style(theme.dim());
-                }
+        let most = usize::from(plot.width / 12).clamp(2, 10);
+        let placed = |most: usize| {
+            let mut free = inner.x;
+            let ticks = ticks(self.bounds.x, self.figure.x.run, most).into_iter();
+            let place = ticks.filter_map(|(value, label)| {
+                let width = u16::try_from(label.len()).unwrap_or(u16::MAX);
+                let column = plot.x + cell(value, self.bounds.x, plot.width, false)?;
+                let x = column.checked_sub(width / 2)?;
+                let fits = x >= free && x + width <= end;
+                fits.then(|| {
+                    free = x + width + 1;
+                    (column, x, label)
+                })
+            });
+            place.collect::<Vec<_>>()
+        };
+        // The title takes the room of the last number: then more of them stand closer.
+        let labels = [placed(most), placed(2 * most)];
+        let labels = labels.into_iter().reduce(|few, more| if few.len() < 2 { more } else { few });
+        for (column, x, label) in labels.unwrap_or_default() {
+            buffer.set_stringn(x, below, &label, label.len(), theme.dim());
+            let tick = &mut buffer[(column, below - 1)];
+            if tick.symbol() == " " {
+                tick.set_symbol(theme.glyph("╷", "|")).set_style(theme.dim());
             }
         }
         let x = inner.right().saturating_sub(title_width).max(inner.x);

@@ -3,8 +3,17 @@
 use crate::figure::AxisScale;
 use pulloff_engine::report::number::{fixed, short};
 
-/// Round ticks inside `bounds`, at most `most`, with labels of one precision; of an axis of counts whole numbers alone.
-pub fn ticks([lo, hi]: [f64; 2], run: AxisScale, most: usize) -> Vec<(f64, String)> {
+/// Round ticks inside `bounds`, about `most` and at least two, with labels of one precision; of an axis of counts whole numbers
+/// alone, and no more than there are.
+pub fn ticks(bounds: [f64; 2], run: AxisScale, most: usize) -> Vec<(f64, String)> {
+    // One number alone is no scale. The next step is half as long, or nearly.
+    const FINER: usize = 4;
+    let found = (0..FINER).map(|halvings| spaced(bounds, run, most << halvings));
+    found.reduce(|coarse, fine| if coarse.len() < 2 { fine } else { coarse }).unwrap_or_default()
+}
+
+/// The same, at most `most`, of which there may be none.
+fn spaced([lo, hi]: [f64; 2], run: AxisScale, most: usize) -> Vec<(f64, String)> {
     let range = hi - lo;
     if most == 0 || !range.is_finite() || range <= 0.0 {
         return Vec::new();
@@ -45,6 +54,7 @@ mod tests {
         assert_eq!(labels([-0.061, 0.066], 4), ["-0.05", "0.00", "0.05"]);
         assert_eq!(labels([-1.5, 0.4], 5), ["-1.5", "-1.0", "-0.5", "0.0"]);
         assert_eq!(labels([0.0, 3e-9], 3), ["0", "1e-9", "2e-9", "3e-9"]);
+        assert_eq!(labels([0.3, 1.7], 1), ["0.5", "1.0", "1.5"]);
         // Far into a curve neighbouring ticks still differ.
         let deep = labels([0.123_456_78, 0.123_456_82], 4);
         assert_eq!(deep, ["0.12345678", "0.12345679", "0.1234568", "0.12345681", "0.12345682"]);

@@ -217,7 +217,7 @@ fn bar(model: &Model, theme: Theme, area: Rect) -> Option<Line<'static>> {
 }
 
 /// A column: how soon it is left out, and whether its cells begin at its left.
-const COLUMNS: [(u8, bool); 9] = [
+const COLUMNS: [(u8, bool); 10] = [
     // EventMark and number.
     (0, true),
     // What happened.
@@ -231,7 +231,9 @@ const COLUMNS: [(u8, bool); 9] = [
     // s, and after it.
     (4, false),
     (6, false),
-    // Crests and loss.
+    // Crests.
+    (0, true),
+    // Loss.
     (0, true),
 ];
 
@@ -241,7 +243,7 @@ fn table(model: &Model, theme: Theme, entries: &[LogEntry], named: usize, room: 
     let scale = Scale::of(curve, model.axes);
     let [length, force, radius] = scale.state_axes();
     let is_held = model.control().is_some_and(|control| control == Control::Force);
-    let rows: Vec<[String; 9]> =
+    let rows: Vec<[String; 10]> =
         entries.iter().map(|entry| cells(entry, scale, &model.preset.units, theme, is_held)).collect();
     // The charts say over what they are: a column has the letter alone, and where there is room its unit.
     let letter = |axis: &Axis| {
@@ -249,8 +251,11 @@ fn table(model: &Model, theme: Theme, entries: &[LogEntry], named: usize, room: 
         let has_unit = room >= UNITS && !axis.shown.is_empty();
         if has_unit { format!("{letter} ({})", axis.shown) } else { letter }
     };
-    let heads =
-        ["", "", &letter(&length), "", &letter(&force), "", &letter(&radius), "", ""].map(str::to_owned);
+    let energy =
+        model.preset.units.unit(Quantity::Energy).map_or_else(String::new, |unit| format!(" ({unit})"));
+    let lost = if room >= UNITS { format!("lost{energy}") } else { String::new() };
+    let heads = ["", "", &letter(&length), "", &letter(&force), "", &letter(&radius), "", "", &lost]
+        .map(str::to_owned);
     let width = |at: usize| rows.iter().map(|row| row[at].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..COLUMNS.len()).map(width).collect();
     let full = |at: usize| match (widths[at], heads[at].chars().count()) {
@@ -264,7 +269,7 @@ fn table(model: &Model, theme: Theme, entries: &[LogEntry], named: usize, room: 
         let Some(worst) = worst.filter(|at| COLUMNS[*at].0 > 0) else { break };
         kept.retain(|at| *at != worst);
     }
-    let text = |(i, row): (usize, &[String; 9])| {
+    let text = |(i, row): (usize, &[String; 10])| {
         let cell = |at: &usize| {
             let (text, width) = (&row[*at], widths[*at]);
             let text = if COLUMNS[*at].1 { format!("{text:<width$}") } else { format!("{text:>width$}") };
@@ -282,7 +287,13 @@ fn table(model: &Model, theme: Theme, entries: &[LogEntry], named: usize, room: 
 }
 
 /// The cells of an entry, in the units of the charts.
-fn cells(entry: &LogEntry, scale: Scale<'_>, units: &UnitSystem, theme: Theme, is_held: bool) -> [String; 9] {
+fn cells(
+    entry: &LogEntry,
+    scale: Scale<'_>,
+    units: &UnitSystem,
+    theme: Theme,
+    is_held: bool,
+) -> [String; 10] {
     let event = &entry.event;
     let number = entry.number.map_or_else(String::new, |number| number.to_string());
     let arrow = theme.glyph("▸", ">");
@@ -301,8 +312,8 @@ fn cells(entry: &LogEntry, scale: Scale<'_>, units: &UnitSystem, theme: Theme, i
     let (radius, radius_after) = ends(&|at| significant(scale.radius(at.contact_radius), 3));
     let crest = |state: &Option<StateReport>| state.as_ref().and_then(|at| at.wave);
     let crests = match (crest(&event.before), crest(&event.after)) {
-        (Some(before), Some(after)) if changes => format!("{before}{arrow}{after} "),
-        (Some(before), None) => format!("{before}{arrow}- "),
+        (Some(before), Some(after)) if changes => format!("{before}{arrow}{after}"),
+        (Some(before), None) => format!("{before}{arrow}-"),
         _ => String::new(),
     };
     let lost = match event.dissipated {
@@ -323,7 +334,8 @@ fn cells(entry: &LogEntry, scale: Scale<'_>, units: &UnitSystem, theme: Theme, i
         load_after,
         radius,
         radius_after,
-        format!("{crests}{lost}{fault}{}", if disagrees(event) { " ?" } else { "" }),
+        crests,
+        format!("{lost}{fault}{}", if disagrees(event) { " ?" } else { "" }),
     ]
 }
 
