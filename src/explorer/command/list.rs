@@ -38,13 +38,13 @@ macro_rules! each_command {
         StepLength "step-length" "" "step length" always InOrder Yes "the longest step, as a share of every quantity's range"
             { takes: takes("length", |rest| Ok(Command::StepLength(rest.length()?))).always() }
         Undo "undo" "u" "undo" undo InOrder Yes "take back the last change of a value or walk; no state is erased"
-            { words: "back take", run: |model| travel(model, Id::Undo, 1), takes: takes("number", |rest| travelled(rest, Id::Undo)) }
+            { words: "back take revert", run: |model| travel(model, Id::Undo, 1), takes: takes("number", |rest| travelled(rest, Id::Undo)) }
         Redo "redo" "Ctrl-R" "redo" redo InOrder Yes "do again what was taken back" { run: |model| travel(model, Id::Redo, 1),
             takes: takes("number", |rest| travelled(rest, Id::Redo)) }
         Branches "branches" "B" "branches" branches InOrder Needs("the reduced approach, force and contact radius of a state")
             "the branches of the walk: what each ended with, and back to it"
             { takes: takes("branch", branch).listing(branches_of) }
-        Restart "restart" "Home" "start" walker_or_no_curve Curve Yes "start again" { words: "reset", run: restart }
+        Restart "restart" "Home" "start" walker_or_no_curve Curve Yes "start again" { words: "reset beginning", run: restart }
         Control "control" "c" "control" always Curve Yes "what the device prescribes: displacement, force, or stiffness"
             { words: "device", run: change_control,
             takes: takes("control", |rest| rest.assigned("a control", "path.control")).offering(controls) }
@@ -65,14 +65,14 @@ macro_rules! each_command {
         Free "free" "*" "free" parameter InOrder Selected("data.free=KEY,...")
             "let a fit change the selected value, or no longer" { run: mark }
         Fit "fit" "F" "fit" always Nothing Yes "fit the free values to the measured curve; Esc takes the best so far"
-            { words: "regression", run: fit }
+            { words: "regression report result", run: fit }
         Edit "edit" "Enter =" "type" always Nothing Selected("KEY=VALUE")
             "type the selected value, or choose it; in the log: go to the selected event; at the cross-hair: go there; in a study its quantity, on a map its axes" {}
         Data "data" "" "data" always Nothing Needs("a file, or none")
             "a measured curve behind the chart, to compare and to fit; none takes it away"
-            { words: "measured experiment csv file", takes: takes("file, or none", |rest| rest.assigned("a file", data::FILE)).offering(curves) }
-        Assign "set" "" "set" always InOrder Yes "other values for some keys, as one change"
-            { takes: takes("KEY=VALUE ...", assigned).going_on(assignments_of).always() }
+            { words: "measured experiment csv file remove", takes: takes("file, or none", |rest| rest.assigned("a file", data::FILE)).offering(curves) }
+        Assign "set" "" "set" always InOrder Yes "other values for some keys, as one change; KEY=none takes an optional one away"
+            { words: "unset remove default", takes: takes("KEY=VALUE ...", assigned).going_on(assignments_of).always() }
     }
     "Look" {
         Up "up" "Up k" "up" always Nothing Screen "the line above; in Charts: move up"
@@ -90,7 +90,7 @@ macro_rules! each_command {
         Enlarge "enlarge" "z" "whole" always Nothing Screen "the selected panel on the whole screen, and back" {}
         Go "go" "g" "places" always Nothing Screen
             "to a place: c what happens, i inside a state, m how it depends on values, d data and the walk"
-            { takes: takes("curve, inside, map or data", place).offering(places) }
+            { words: "result", takes: takes("curve, inside, map or data", place).offering(places) }
         NextView "next-view" "t" "chart" always Nothing Screen "the next chart of the place"
             { look: |model| model.look_at(reach::next(model, true)) }
         PreviousView "previous-view" "T" "chart back" always Nothing Screen "the chart before"
@@ -105,9 +105,9 @@ macro_rules! each_command {
             { look: |model| look::zoom(model, model.view, false, model.cross.unwrap_or(look::MIDDLE)) }
         Whole "whole" "f" "whole" zoomed Nothing Screen "the whole chart again" { look: look::whole }
         CrossHair "cross-hair" "i" "cross-hair" curve Nothing Screen "a cross-hair that reads the chart; arrows move it"
-            { look: look::cross_hair }
+            { words: "cursor read", look: look::cross_hair }
         Map "map" "" "map" curve Nothing Screen
-            "where snaps happen over the selected value; again: the map of it and the adhesion" { words: "phase diagram", look: look::map,
+            "where snaps happen over the selected value; again: the map of it and the adhesion" { words: "phase diagram threshold onset", look: look::map,
             takes: takes("KEY [KEY, control, approach or force]", axes).going_on(axes_of) }
         Axes "axes" "a" "axes" always Nothing Screen "axes in P/Pc, delta, s/lambda, or raw values" { look: look::axes }
         Overlays "overlays" "y" "theory" curve Nothing Screen
@@ -118,7 +118,7 @@ macro_rules! each_command {
             "the same problem in the ring elements of the paper over the chart, or its exact solution over those; again: away"
             { words: "elements", look: look::in_rings }
         Pins "pins" "P" "pins" pins Nothing Needs("the number of a pin, or all") "the pinned curves; Enter takes one away"
-            { takes: takes("number", pin).listing(pins_of) }
+            { words: "remove unpin", takes: takes("number", pin).listing(pins_of) }
     }
     "Presets and files" {
         Open "open" "o" "open" always Nothing Needs("a preset") "open a preset; D in the list deletes one of your own"
@@ -129,7 +129,7 @@ macro_rules! each_command {
             { takes: takes("name", saved_as).going_on(names) }
         Export "export" "e" "export" always Nothing Needs("a document and a file")
             "write curve, walk or events as CSV or JSON, the session as a script, the screen as text"
-            { words: "figure plot picture svg pdf csv json image", takes: takes("WHAT FILE", exported).going_on(documents) }
+            { words: "figure plot picture svg pdf csv json image script replay", takes: takes("WHAT FILE", exported).going_on(documents) }
         Copy "copy" "Y" "copy" always Nothing Screen
             "the state, the events, the chart or the screen into the terminal's clipboard" { words: "clipboard yank" }
     }
@@ -138,7 +138,7 @@ macro_rules! each_command {
             "everything that can be done, of which what is typed keeps what has it; Tab takes a line, Enter runs it" { run: |_| vec![file(Job::Names)] }
         Mouse "mouse" "m" "mouse" always Nothing Screen
             "take the mouse (click, wheel), or leave it to the terminal to select text" {}
-        About "about" "I" "about" always Nothing Screen "what the preset says of itself, and what was changed since" {}
+        About "about" "I" "about" always Nothing Screen "what the preset says of itself, and what was changed since" { words: "original" }
         Help "help" "?" "keys" always Nothing Screen "what can be done here, by key and name; Tab: how to read the screen" { words: "manual keys" }
         Cancel "cancel" "Esc" "back" always Nothing Screen "take typed text back, close, stop a run or a curve" { run: cancel }
         Quit "quit" "q Ctrl-C" "quit" always Nothing Yes "quit; --resume comes back; asks if changes are unsaved"

@@ -187,7 +187,12 @@ impl App {
             let Some(page) = self.draw_page(picture, path, replace) else { return Vec::new() };
             command = page;
         }
+        let (view, goes) = (self.model.view, matches!(command, Command::Go(_) | Command::Show(_)));
         let effects = update(&mut self.model, command);
+        // Where one panel has the whole screen, a chart that is asked for would else be out of sight.
+        if (goes || self.model.view != view) && is_alone(self.screen, self.enlarged) {
+            self.model.panel = ScreenPanel::Charts;
+        }
         self.raise_questions();
         effects
     }
