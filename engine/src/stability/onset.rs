@@ -5,6 +5,7 @@ use super::count::{Cause, EXACTLY};
 use super::family::{Family, FamilyError};
 use crate::elementary::pow;
 use crate::preset::Preset;
+use crate::problem::Adhesion;
 use crate::progress::Progress;
 
 /// The group that is turned, and how far.
@@ -28,12 +29,14 @@ pub struct Onset {
 }
 
 impl Onset {
-    /// The onset of `preset`; `None` for a gap without one wave, without adhesion, and where nothing snaps up to A/λ = 0.5.
+    /// The onset of `preset`; `None` for a gap without one wave, without adhesion, where that has a range, and where nothing snaps up
+    /// to A/λ = 0.5.
     ///
     /// # Errors
     /// The gap cannot be tabulated, or the path has no start.
     pub fn of(preset: &Preset, progress: &dyn Progress) -> Result<Option<Self>, FamilyError> {
-        if preset.get(GROUP).is_none() || preset.material.work_of_adhesion <= 0.0 {
+        let has_range = preset.material.adhesion != Adhesion::ShortRange;
+        if preset.get(GROUP).is_none() || preset.material.work_of_adhesion <= 0.0 || has_range {
             return Ok(None);
         }
         let Ok(axis) = MapAxis::new(GROUP, RANGE, false, 1.0) else { return Ok(None) };

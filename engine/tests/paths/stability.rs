@@ -203,6 +203,10 @@ fn the_smallest_amplitude_that_snaps_is_that_known_for_every_device() {
     let mut sphere = waves(Control::Displacement, 0.41, 0.05, adhesion);
     sphere.set("gap.shape", "sphere".into()).unwrap();
     assert_eq!(Onset::of(&sphere, &Unwatched).unwrap(), None);
+    // The law of limit points is that of adhesion without a range.
+    let mut ranged = waves(Control::Displacement, 0.41, 0.05, adhesion);
+    ranged.set("material.cohesive_range", 0.01.into()).unwrap();
+    assert_eq!(Onset::of(&ranged, &Unwatched).unwrap(), None);
 }
 
 #[test]
