@@ -144,12 +144,12 @@ fn theory(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figu
     }
 }
 
-/// The divisors of a pinned curve, on the axes of the one that is not pinned.
+/// The divisors of a pinned curve: those of the one that is not pinned.
 pub fn pinned_scale<'a>(subject: &Subject<'a>, pin: &Pin) -> Scale<'a> {
     subject.scale().of_other(&pin.curve, subject.axes)
 }
 
-/// The pinned curves, each over its own divisors; their points are given back for the bounds.
+/// The pinned curves; their points are given back for the bounds.
 fn pins(subject: &Subject<'_>, view: View, figure: &mut Figure) -> Vec<(f64, f64)> {
     let mut all = Vec::new();
     for pin in subject.pins {

@@ -51,20 +51,10 @@ impl<'a> Scale<'a> {
         }
     }
 
-    /// The divisors for another curve on the same axes. An axis has one meaning: where the other problem lacks what divides, a wavelength
-    /// say, it is divided by that of this one.
+    /// The divisors for another curve on the same axes: those of this one, for an axis has one unit; the device is its own.
     #[must_use]
     pub fn of_other(self, curve: &CurveData, axes: Axes) -> Self {
-        let own = Scale::of(curve, axes);
-        let divisor = |here: Option<f64>, own: Option<f64>| here.map(|here| own.unwrap_or(here));
-        Self {
-            force: divisor(self.force, own.force),
-            wave: divisor(self.wave, own.wave),
-            curvature: divisor(self.curvature, own.curvature),
-            modulus: divisor(self.modulus, own.modulus),
-            compliance: own.compliance,
-            units: self.units,
-        }
+        Self { compliance: Scale::of(curve, axes).compliance, ..self }
     }
 
     /// No divisors.
