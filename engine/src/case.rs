@@ -185,8 +185,10 @@ impl Case {
             let grown = Reduced { work_of_adhesion, ..reduced.clone() };
             contact_radius(&grown, &*basis, wanted, progress)
         };
-        let start = start
-            .map_err(|e| CaseError::Start { error: e.in_units(&units), shown: Box::new(shown.clone()) })?;
+        let start = start.map_err(|error| match error {
+            StartError::Stopped(stopped) => CaseError::Stopped(stopped),
+            error => CaseError::Start { error: error.in_units(&units), shown: Box::new(shown.clone()) },
+        })?;
         if preset.basis == BasisSpec::Exact {
             // From here on the start decides how far it reaches, however it was given.
             basis = Arc::new(ExactBasis::new(Arc::clone(&table), start));
@@ -283,7 +285,7 @@ impl Case {
             return Curve::of_zones(self.reduced.clone(), basis, table, &zones, progress)
                 .map_err(|error| self.no_path(error, self.control));
         }
-        let curve = Curve::new(self.reduced.clone(), basis, table, ends, detail, progress);
+        let curve = Curve::new(self.reduced.clone(), basis, table, ends, detail, progress)?;
         progress.go_on()?;
         curve.ok_or_else(|| self.no_start())
     }
@@ -402,7 +404,7 @@ impl Case {
         let table = Arc::new(Table::new(Arc::clone(&problem.gap), self.start, progress).ok()?);
         let basis = Arc::new(ExactBasis::new(Arc::clone(&table), self.start));
         let ends = [self.start, self.end];
-        let curve = Curve::new(problem, basis, table, ends, Detail::Drawn, progress)?;
+        let curve = Curve::new(problem, basis, table, ends, Detail::Drawn, progress).ok()??;
         let setting = PathSetting { losses: Losses::Once, ..self.setting() };
         let coarser = unload(&curve, &PathSetting { control: path.control, ..setting }, progress).ok();
         if progress.stop() {

@@ -6,7 +6,7 @@
 
 use super::solution::Solution;
 use crate::problem::Reduced;
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -94,14 +94,17 @@ pub trait Basis: Debug + Send + Sync {
 
     /// The equilibria over all radii from `from` or further in to `to`, or as far as the gap is known.
     ///
-    /// `None` where there are none, or `progress` said stop.
+    /// `None` where there are none.
+    ///
+    /// # Errors
+    /// [`Stopped`].
     fn solution(
         &self,
         problem: &Reduced,
         from: f64,
         to: f64,
         progress: &dyn Progress,
-    ) -> Option<Arc<dyn Solution>>;
+    ) -> Result<Option<Arc<dyn Solution>>, Stopped>;
 
     /// The contact pressure as (r, p) pairs from the axis outward, compression positive, at points that make a picture:
     /// finite, and dense towards the edge.

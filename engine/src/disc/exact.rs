@@ -16,7 +16,7 @@ use super::table::Table;
 use crate::elementary::sin;
 use crate::gap::Gap;
 use crate::problem::Reduced;
-use crate::progress::{Progress, Unwatched};
+use crate::progress::{Progress, Stopped, Unwatched};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
@@ -189,17 +189,23 @@ impl Basis for ExactBasis {
         _from: f64,
         to: f64,
         progress: &dyn Progress,
-    ) -> Option<Arc<dyn Solution>> {
+    ) -> Result<Option<Arc<dyn Solution>>, Stopped> {
         let gamma = problem.work_of_adhesion;
         let to = to.max(self.reach);
-        let mut panels = self.table.up_to_while(to, 0, progress).ok()?;
+        let table = |fineness| match self.table.up_to_while(to, fineness, progress) {
+            Err(TableError::Stopped(stopped)) => Err(stopped),
+            // What has no table has no equilibria.
+            found => Ok(found.ok()),
+        };
+        let Some(mut panels) = table(0)? else { return Ok(None) };
         for fineness in 1..TIMES_FINER {
             if ExactSolution::begins_unstable(&panels, gamma) || !panels.smallest().is_normal() {
                 break;
             }
-            panels = self.table.up_to_while(to, fineness, progress).ok()?;
+            let Some(finer) = table(fineness)? else { return Ok(None) };
+            panels = finer;
         }
-        (panels.reach() > 0.0).then(|| Arc::new(ExactSolution::new(panels, gamma)) as Arc<dyn Solution>)
+        Ok((panels.reach() > 0.0).then(|| Arc::new(ExactSolution::new(panels, gamma)) as Arc<dyn Solution>))
     }
 
     fn pressure(&self, problem: &Reduced, s: f64, delta: f64) -> Vec<(f64, f64)> {
@@ -323,7 +329,7 @@ mod tests {
     fn slopes_and_tendencies_are_those_of_the_evaluation() {
         let problem = wavy(0.004);
         let basis = ExactBasis::of(&problem, 0.5).unwrap();
-        let solution = basis.solution(&problem, 0.01, 0.5, &Unwatched).unwrap();
+        let solution = basis.solution(&problem, 0.01, 0.5, &Unwatched).unwrap().unwrap();
         for i in 1..100 {
             let s = 0.005 * f64::from(i);
             let place = solution.place(s).unwrap();
@@ -402,7 +408,7 @@ mod tests {
         for gamma in [1e-9, 1e-20, 1e-60] {
             let problem = sphere(gamma);
             let basis = ExactBasis::of(&problem, 0.5).unwrap();
-            let solution = basis.solution(&problem, 0.1, 0.5, &Unwatched).unwrap();
+            let solution = basis.solution(&problem, 0.1, 0.5, &Unwatched).unwrap().unwrap();
             let limits = crate::quasistatic::Monotone::of(&*solution, Control::Force).limits;
             let exact = (1.125 * PI * gamma).cbrt();
             assert_eq!(limits.len(), 1, "{gamma}");

@@ -165,11 +165,10 @@ fn by_fours(
     let mut sum = f64x4::ZERO;
     for four in rule.chunks(4) {
         // The last ones may be fewer: the first of them again, without weight.
-        let of_rule = |k: usize| {
-            f64x4::new(std::array::from_fn(|i| four.get(i).map_or([four[0][0], 0.0][k], |at| at[k])))
-        };
-        let node = node(of_rule(0) * half + middle);
-        sum += of_rule(1) * f(node, of(node[0]));
+        let at: [f64; 4] = std::array::from_fn(|i| four.get(i).unwrap_or(&four[0])[0]);
+        let weights: [f64; 4] = std::array::from_fn(|i| four.get(i).map_or(0.0, |[_, weight]| *weight));
+        let node = node(f64x4::new(at) * half + middle);
+        sum += f64x4::new(weights) * f(node, of(node[0]));
     }
     half * sum.reduce_add()
 }
@@ -190,7 +189,7 @@ fn sum_by(
     let [centre, half] = span.line();
     let x = |v: f64x4| ((v - centre) / half).max(-f64x4::ONE).min(f64x4::ONE);
     let g: Fours<'_> = &|x| panels.four_values(index, x);
-    let angles = [asin(lo / r), asin((hi / r).min(1.0))];
+    let angles = || [asin(lo / r), asin((hi / r).min(1.0))];
     match span.variable {
         Variable::Fifth if r - hi >= hi => {
             let end = span.hi;
@@ -206,14 +205,14 @@ fn sum_by(
                 let a = psi.sin() * r;
                 [x(each(a, |a| pow(a / span.hi, 0.2))), a]
             };
-            by_fours(rule, angles, &node, g, &|[_, a], g| f(a, g))
+            by_fours(rule, angles(), &node, g, &|[_, a], g| f(a, g))
         }
         Variable::Radius => {
             let node = |psi: f64x4| {
                 let a = psi.sin() * r;
                 [x(a), a]
             };
-            by_fours(rule, angles, &node, g, &|[_, a], g| f(a, g))
+            by_fours(rule, angles(), &node, g, &|[_, a], g| f(a, g))
         }
         Variable::Root { base } => {
             let height = (r - base).sqrt();

@@ -84,13 +84,16 @@ pub struct Sampled {
 }
 
 impl Sampled {
-    /// The equilibria of `basis` from the radius `from` to `to`; `progress` is asked between radii.
+    /// The equilibria of `basis` from the radius `from` to `to`, `None` where there are none; `progress` is asked between radii.
+    ///
+    /// # Errors
+    /// [`Stopped`].
     pub fn new(
         basis: &dyn Basis,
         problem: &Reduced,
         [from, to]: [f64; 2],
         progress: &dyn Progress,
-    ) -> Option<Self> {
+    ) -> Result<Option<Self>, Stopped> {
         let wave = problem.gap.feature_length().map_or(f64::INFINITY, |wave| 0.5 * wave);
         let width = wave.max((to - from) / PANELS);
         let mut borders = vec![to];
@@ -118,9 +121,9 @@ impl Sampled {
         };
         for pair in borders.windows(2) {
             let span = Span { lo: pair[0], hi: pair[1], variable: Variable::Root { base: 0.0 } };
-            resolve(&source, span, OF_RINGS, progress, &mut panels).ok()?;
+            resolve(&source, span, OF_RINGS, progress, &mut panels)?;
         }
-        (!panels.is_empty()).then_some(Self { panels, touches: None })
+        Ok((!panels.is_empty()).then_some(Self { panels, touches: None }))
     }
 
     /// Zones in panels that ascend; contact in them begins or ends at the radii `touches`, which are borders of panels.

@@ -117,7 +117,7 @@ impl Track {
         };
         let basis: Arc<dyn Basis> = Arc::new(ExactBasis::new(Arc::clone(&table), outermost));
         let ends = [outermost, INNERMOST * outermost];
-        let mut curve = Curve::new(reduced, basis, table, ends, Detail::Drawn, &Unwatched)?;
+        let mut curve = Curve::new(reduced, basis, table, ends, Detail::Drawn, &Unwatched).ok()??;
         curve.hold(held);
         Some(Self::Edge(Box::new(curve)))
     }

@@ -8,7 +8,7 @@ use crate::disc::exact::outer_side;
 use crate::disc::{Basis, Local, Place, Solution, Table};
 use crate::gap::Gap;
 use crate::problem::{Control, Reduced, Units};
-use crate::progress::{Progress, Unwatched};
+use crate::progress::{Progress, Stopped, Unwatched};
 use crate::root;
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
@@ -160,7 +160,10 @@ pub fn places(solution: &dyn Solution, from: f64, to: f64, detail: Detail) -> Ve
 impl Curve {
     /// The curve from the contact radius `from` down to `to`.
     ///
-    /// `None` when there is no equilibrium at `from`, or `progress` said stop.
+    /// `None` when there is no equilibrium at `from`.
+    ///
+    /// # Errors
+    /// [`Stopped`].
     pub fn new(
         problem: Reduced,
         basis: Arc<dyn Basis>,
@@ -168,8 +171,19 @@ impl Curve {
         [from, to]: [f64; 2],
         detail: Detail,
         progress: &dyn Progress,
-    ) -> Option<Self> {
+    ) -> Result<Option<Self>, Stopped> {
         let solution = basis.solution(&problem, to, from, progress)?;
+        Ok(solution.and_then(|solution| Self::on(solution, problem, basis, table, [from, to], detail)))
+    }
+
+    fn on(
+        solution: Arc<dyn Solution>,
+        problem: Reduced,
+        basis: Arc<dyn Basis>,
+        table: Arc<Table>,
+        [from, to]: [f64; 2],
+        detail: Detail,
+    ) -> Option<Self> {
         let sample = |at: Local| {
             let Local { contact_radius, approach, force, .. } = at;
             Sample { contact_radius, approach, force, slopes: at.stability() }
@@ -234,11 +248,14 @@ impl Curve {
     /// The same with a table of the gap of its own.
     pub fn of(problem: Reduced, basis: Arc<dyn Basis>, from: f64, to: f64) -> Option<Self> {
         let table = Table::new(Arc::clone(&problem.gap), from, &Unwatched).ok()?;
-        Self::new(problem, basis, Arc::new(table), [from, to], Detail::Drawn, &Unwatched)
+        Self::new(problem, basis, Arc::new(table), [from, to], Detail::Drawn, &Unwatched).ok().flatten()
     }
 
     /// The same curve under another work of adhesion, with the states between panels; `None` as [`Curve::new`].
-    pub fn under(&self, work_of_adhesion: f64, progress: &dyn Progress) -> Option<Self> {
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn under(&self, work_of_adhesion: f64, progress: &dyn Progress) -> Result<Option<Self>, Stopped> {
         let Equilibrium { problem, basis, table, .. } = &self.equilibrium;
         let problem = Reduced { work_of_adhesion, ..problem.clone() };
         let (basis, table) = (Arc::clone(basis), Arc::clone(table));
@@ -270,7 +287,7 @@ impl Curve {
             return false;
         }
         let Equilibrium { problem, basis, .. } = &self.equilibrium;
-        let Some(solution) = basis.solution(problem, self.innermost(), to, &Unwatched) else {
+        let Ok(Some(solution)) = basis.solution(problem, self.innermost(), to, &Unwatched) else {
             return false;
         };
         let further = solution.reach() > self.solution.reach();

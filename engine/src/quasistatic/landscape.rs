@@ -287,7 +287,7 @@ mod tests {
             Some(rings) => Rings::shared(rings).unwrap(),
             None => Arc::new(ExactBasis::new(Arc::clone(&table), 0.5)),
         };
-        Curve::new(problem.clone(), basis, table, [0.5, 0.02], Detail::Drawn, &Unwatched).unwrap()
+        Curve::new(problem.clone(), basis, table, [0.5, 0.02], Detail::Drawn, &Unwatched).unwrap().unwrap()
     }
 
     /// The radii at which `control` takes `value` on the curve, descending, with their stability.

@@ -208,7 +208,7 @@ mod tests {
     fn curve(problem: &Reduced, to: f64) -> Curve {
         let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.5, &Unwatched).unwrap());
         let basis = Arc::new(ExactBasis::new(Arc::clone(&table), 0.5));
-        Curve::new(problem.clone(), basis, table, [0.5, to], Detail::Drawn, &Unwatched).unwrap()
+        Curve::new(problem.clone(), basis, table, [0.5, to], Detail::Drawn, &Unwatched).unwrap().unwrap()
     }
 
     fn holds(curve: &Curve, s: f64) -> bool {

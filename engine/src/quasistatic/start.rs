@@ -5,7 +5,7 @@ use crate::disc::Basis;
 use crate::elementary::cbrt;
 use crate::gap::Gap;
 use crate::problem::{Control, Reduced, Start, Units};
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
 use std::fmt;
@@ -44,6 +44,8 @@ pub enum StartError {
         /// The largest radius tried.
         largest: f64,
     },
+    /// It was no longer wanted.
+    Stopped(#[from] Stopped),
 }
 
 impl fmt::Display for StartError {
@@ -78,6 +80,7 @@ impl StartError {
                 let (value, largest) = (of(name, value), radius(largest));
                 format!("no contact up to the radius {largest} reaches the {name} {value}")
             }
+            Self::Stopped(stopped) => stopped.to_string(),
         }
     }
 
@@ -99,6 +102,7 @@ impl StartError {
             Self::NotReached { name, value, largest } => {
                 Self::NotReached { name, value: value * of(name), largest: largest * units.length }
             }
+            Self::Stopped(stopped) => Self::Stopped(stopped),
         }
     }
 }
@@ -142,7 +146,7 @@ pub fn contact_radius(
     let from = 1e-3 * unit.min(most);
     let mut reach = (2.0 * unit).min(most);
     loop {
-        let solution = basis.solution(problem, from, reach, progress);
+        let solution = basis.solution(problem, from, reach, progress)?;
         if let Some(solution) = &solution {
             let monotone = Monotone::of(&**solution, control);
             let stretches = &monotone.stretches;

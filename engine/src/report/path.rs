@@ -9,10 +9,11 @@ use crate::gap::{Gap, wave_index};
 use crate::preset::{BasisSpec, Preset};
 use crate::problem::cohesion::TABOR_OVER_MAUGIS;
 use crate::problem::{ContactKind, Control, Reduced, Turn, Units};
-use crate::progress::{Progress, ProgressPart, Stopped};
+use crate::progress::{Progress, ProgressPart};
 use crate::quasistatic::overlap::passed;
 use crate::quasistatic::path::{
-    AskedState, Direction, Event, Losses, Passed, Path, PathSetting, PathState, Totals, TurnReached, WhyNot,
+    AskedState, Direction, Event, Losses, Passed, Path, PathSetting, PathState, PathStop, Totals,
+    TurnReached, WhyNot,
 };
 use crate::quasistatic::{Curve, Detail, Overlap, State};
 use crate::units::Quantity;
@@ -398,6 +399,12 @@ impl PathReport {
         }
     }
 
+    /// Whether the path went to its end: until the bodies are apart, or to where it was to end.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        [PathStop::Apart, PathStop::End].iter().any(|end| self.stop == end.to_string())
+    }
+
     /// The same document with the inadmissible states that a path of one disc passes on `curve`, which reaches as far out.
     ///
     /// # Errors
@@ -418,10 +425,10 @@ impl PathReport {
             return Ok(self.with_overlaps(case, path, [&[], &found]));
         };
         // What has closed is on the equilibria of a closing edge, the start of an unloading too.
-        let growing = curve.under(closing, progress).ok_or(Stopped)?;
+        let growing = curve.under(closing, progress)?;
         let start = path.start().map_or(0.0, |start| start.contact_radius);
         let up = if path.turn.is_some() { path.pieces_on(&[Direction::Loading]) } else { vec![[start; 2]] };
-        let grown = on(&growing, &up)?;
+        let grown = growing.map_or_else(|| Ok(Vec::new()), |growing| on(&growing, &up))?;
         let found = on(curve, &path.pieces_on(&[Direction::Unloading]))?;
         Ok(self.with_overlaps(case, path, [&grown, &found]))
     }

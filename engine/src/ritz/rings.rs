@@ -347,12 +347,13 @@ impl Basis for Rings {
         from: f64,
         to: f64,
         progress: &dyn Progress,
-    ) -> Option<Arc<dyn Solution>> {
+    ) -> Result<Option<Arc<dyn Solution>>, Stopped> {
         // Landings lie anywhere further in; far inward adhesion alone rules, and the curve is monotone.
         // It reaches to a power of 2^(1/4), so that a radius has the same series however far the curve was asked for.
         let stage = exp2(0.25 * (4.0 * log2(to) - 1e-9).ceil()).max(to);
         let range = [INWARD_REACH * from, stage.min(problem.largest_contact().max(from))];
-        Some(Arc::new(Sampled::new(self, problem, range, progress)?))
+        let found = Sampled::new(self, problem, range, progress)?;
+        Ok(found.map(|sampled| Arc::new(sampled) as Arc<dyn Solution>))
     }
 
     fn pressure(&self, problem: &Reduced, s: f64, delta: f64) -> Vec<(f64, f64)> {

@@ -63,7 +63,7 @@ impl Family {
     fn try_passage(&self, at: AxisShares<'_>) -> Result<Option<Passage>, FamilyError> {
         let member = self.member(at)?;
         let (basis, problem, [end, start]) = member.ground(at)?;
-        let Some(solution) = basis.solution(&problem, end, start, &Unwatched) else { return Ok(None) };
+        let Ok(Some(solution)) = basis.solution(&problem, end, start, &Unwatched) else { return Ok(None) };
         let mut monotone = Monotone::of(&*solution, member.control);
         let mut from = start;
         let (snaps, jumps) = if let Some(here) = stable_start(&*solution, &monotone, start) {
@@ -79,7 +79,7 @@ impl Family {
             let table = Arc::clone(basis.table());
             let of = Arc::new(basis.clone());
             let curve = Curve::new(problem.clone(), of, table, [start, end], Detail::Borders, &Unwatched);
-            let Some(curve) = curve else { return Ok(None) };
+            let Ok(Some(curve)) = curve else { return Ok(None) };
             let (losses, detail) = (Losses::Once, Detail::Borders);
             let setting = PathSetting { losses, detail, ..PathSetting::one_disc(member.control) };
             match unload(&curve, &setting, &Unwatched) {
@@ -88,7 +88,7 @@ impl Family {
                     let jumps: Vec<f64> =
                         snaps.filter_map(|event| Some(event.before.as_ref()?.contact_radius)).collect();
                     from = path.start().map_or(from, |start| start.contact_radius);
-                    let Some(longer) = basis.solution(&problem, end, from, &Unwatched) else {
+                    let Ok(Some(longer)) = basis.solution(&problem, end, from, &Unwatched) else {
                         return Ok(None);
                     };
                     monotone = Monotone::of(&*longer, member.control);

@@ -16,7 +16,7 @@ use super::record::{Record, stop_of};
 use super::setting::{AskedState, Path, PathSetting, WhyNot};
 use crate::annuli::{Contacts, Ground, points};
 use crate::problem::{ContactKind, Control, Turn};
-use crate::progress::{Progress, Stopped};
+use crate::progress::Progress;
 use crate::quasistatic::admissible::falls;
 use crate::quasistatic::curve::Curve;
 use crate::quasistatic::descent::stable_start;
@@ -43,8 +43,7 @@ pub fn unload(curve: &Curve, setting: &PathSetting<'_>, progress: &dyn Progress)
     let growing = match setting.closing_below(gamma) {
         Some(closing) => {
             let none = PathError::UnstableStart { contact_radius: from, searched: from };
-            let none = if progress.stop() { PathError::Stopped(Stopped) } else { none };
-            Some(curve.under(closing, progress).ok_or(none)?)
+            Some(curve.under(closing, progress)?.ok_or(none)?)
         }
         None => None,
     };
