@@ -10,7 +10,7 @@ use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::schema::TURN_KEYS;
 use pulloff_engine::problem::{ContactKind, Control, Turn};
 use pulloff_engine::progress::Progress;
-use pulloff_engine::quasistatic::{Losses, PathStop};
+use pulloff_engine::quasistatic::Losses;
 use pulloff_engine::report::path::{COLUMNS, Extent, STATE_COLUMNS, STATE_ZONE_COLUMNS, ZONE_COLUMNS};
 use pulloff_engine::report::{PathReport, columns, json, path_table, table};
 use std::process::ExitCode;
@@ -149,7 +149,7 @@ impl PathArguments {
             (Format::Json, _) => json(report)?,
         };
         sink.write(text)?;
-        if [PathStop::Apart, PathStop::End].iter().any(|end| report.stop == end.to_string()) {
+        if report.is_whole() {
             return console.end();
         }
         Err(Failure::Incomplete(format!(

@@ -194,15 +194,9 @@ impl CurveData {
         let start = unloading.as_ref().ok().and_then(|path| path.start()).filter(|start| start.rings() == 0);
         let start = start.map_or(0.0, |start| start.contact_radius);
         let outward = if case.cohesion.is_none() && start > curve.outermost() * (1.0 + 1e-12) {
+            let (problem, ends) = (case.reduced.clone(), [start, curve.outermost()]);
             let (basis, table) = (Arc::clone(&case.basis), Arc::clone(&case.table));
-            Curve::new(
-                case.reduced.clone(),
-                basis,
-                table,
-                [start, curve.outermost()],
-                Detail::Drawn,
-                progress,
-            )
+            Curve::new(problem, basis, table, ends, Detail::Drawn, progress)?
         } else {
             None
         };

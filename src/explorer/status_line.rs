@@ -147,7 +147,7 @@ fn next(model: &Model) -> String {
             format!("Start, stable under {held} control. {next} runs to the first event, {help} helps")
         }
         (true, NodeKind::Solved) if model.is_at_start() => {
-            format!("What is held lies beyond the path, which starts here; {next} runs to the next event")
+            format!("The held value lies beyond the path: this is its start; {next} runs to the next event")
         }
         (_, NodeKind::Solved) if node.on_path.is_some() => {
             format!("Nearest of the new path to the {held} held; {next} runs to the next event")

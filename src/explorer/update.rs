@@ -54,7 +54,10 @@ pub fn open(loaded: Loaded) -> (Model, Vec<Effect>) {
 /// curve where it needs one, and for what waits already. So keys that come late and together over a slow line mean what
 /// they mean one by one.
 pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
-    model.message = None;
+    // What was told is read whole in the list.
+    if command.id() != Id::CommandLine {
+        model.message = None;
+    }
     if waits(&command) > Waits::Nothing && (!model.queue.is_empty() || is_blocked(model, &command)) {
         return enqueue(model, command);
     }

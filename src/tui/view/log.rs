@@ -163,10 +163,17 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
         }
     });
     let pull = pull.unwrap_or_default();
-    [format!("{pull}lost so far {of}"), format!("lost so far {of}"), format!("lost {of}")]
-        .into_iter()
-        .find(|text| text.chars().count() <= room)
-        .unwrap_or_default()
+    // What is lost after a path that cannot be followed to its end is not known.
+    let ends = if path.is_whole() { "" } else { ", ends early" };
+    [
+        format!("{pull}lost so far {of}{ends}"),
+        format!("lost so far {of}{ends}"),
+        format!("lost {of}{ends}"),
+        format!("lost {of}"),
+    ]
+    .into_iter()
+    .find(|text| text.chars().count() <= room)
+    .unwrap_or_default()
 }
 
 fn empty(model: &Model, keymap: &Keymap) -> String {
