@@ -134,9 +134,9 @@ fn cell(x: f64) -> String {
     if plain.chars().count() < width { plain } else { format!("{x:.2e}") }
 }
 
-/// By how much of the former value it has changed, in per cent.
+/// By how much of the former value it has changed, in per cent: a larger pull is more, though its force is more negative.
 fn change(now: f64, was: f64) -> String {
-    let percent = 100.0 * (now - was) / was.abs();
+    let percent = 100.0 * (now - was) / was;
     match percent.abs() {
         x if x > 0.0 && x < 0.05 => format!("{percent:+.0e}%"),
         0.0..10.0 => format!("{percent:+.1}%"),
