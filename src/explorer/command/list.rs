@@ -28,7 +28,7 @@ macro_rules! each_command {
         Faster "faster" ")" "faster" always Nothing Screen "twice as many" { run: |model| scale_pace(model, 2.0) }
         MoveTo "move-to" "L" "to A" curve Curve Yes
             "the walker to A, the largest pull of the path, where a dead load lets go; or to a contact radius, or to an event by its number, as a digit does"
-            { run: to_largest_pull,
+            { words: "largest pull peak", run: to_largest_pull,
             takes: takes("A, event N, or a contact radius", destination).offering(|_| words(["A", "event"])) }
         Reverse "reverse" "b" "back" turns InOrder Yes "turn round: steps and events are then those of the other way"
             { words: "turn direction", look: |model| model.inward = !model.inward }
@@ -142,7 +142,7 @@ macro_rules! each_command {
         Help "help" "?" "keys" always Nothing Screen "what can be done here, by key and name; Tab: how to read the screen" { words: "manual keys" }
         Cancel "cancel" "Esc" "back" always Nothing Screen "take typed text back, close, stop a run or a curve" { run: cancel }
         Quit "quit" "q Ctrl-C" "quit" always Nothing Yes "quit; --resume comes back; asks if changes are unsaved"
-            { words: "exit leave wq close bye", look: |model| model.quit = true }
+            { words: "exit leave wq close bye session resume", look: |model| model.quit = true }
     }
         }
     };
