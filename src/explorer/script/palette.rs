@@ -183,7 +183,7 @@ mod tests {
             ("figure", "export", true),
             ("export fig", "export figure", false),
             ("potential", "view energy", true),
-            ("largest", "study largest_pull", true),
+            ("largest", "move-to", true),
             ("smooth", "overlays smooth", true),
             ("lab-4", "open lab-4", true),
             ("glass", "open lab-3", true),

@@ -150,8 +150,8 @@ fn a_pin_has_a_column_in_result_and_the_change_in_per_cent() {
     let row = text.lines().find(|line| line.contains("A P ")).unwrap();
     let cells: Vec<&str> = row.split('│').nth(1).unwrap().split_whitespace().collect();
     let [now, pin, change] = [2, 3, 4].map(|at| cells[at].trim_end_matches('%').parse::<f64>().unwrap());
-    assert!((100.0 * (now - pin) / pin.abs() - change).abs() < 0.4, "{row}");
-    assert!(pin.abs() < now.abs() && change < 0.0, "a larger pull: {row}");
+    assert!((100.0 * (now - pin) / pin - change).abs() < 0.4, "{row}");
+    assert!(pin.abs() < now.abs() && change > 0.0, "a larger pull: {row}");
 }
 
 #[test]
