@@ -54,7 +54,7 @@ pub fn open(loaded: Loaded) -> (Model, Vec<Effect>) {
 /// curve where it needs one, and for what waits already. So keys that come late and together over a slow line mean what
 /// they mean one by one.
 pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
-    // What was told is read whole in the list.
+    // The list shows the whole of what was told last.
     if command.id() != Id::CommandLine {
         model.message = None;
     }

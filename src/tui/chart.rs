@@ -307,10 +307,9 @@ impl Chart<'_> {
             });
             place.collect::<Vec<_>>()
         };
-        // The title takes the room of the last number: then more of them stand closer.
-        let labels = [placed(most), placed(2 * most)];
-        let labels = labels.into_iter().reduce(|few, more| if few.len() < 2 { more } else { few });
-        for (column, x, label) in labels.unwrap_or_default() {
+        // Where the title takes the room of the second number, numbers stand closer.
+        let few = placed(most);
+        for (column, x, label) in if few.len() < 2 { placed(2 * most) } else { few } {
             buffer.set_stringn(x, below, &label, label.len(), theme.dim());
             let tick = &mut buffer[(column, below - 1)];
             if tick.symbol() == " " {

@@ -6,7 +6,7 @@ use pulloff_engine::report::number::{fixed, short};
 /// Round ticks inside `bounds`, about `most` and at least two, with labels of one precision; of an axis of counts whole numbers
 /// alone, and no more than there are.
 pub fn ticks(bounds: [f64; 2], run: AxisScale, most: usize) -> Vec<(f64, String)> {
-    // One number alone is no scale. The next step is half as long, or nearly.
+    // One number alone gives no scale: then steps are halved, or nearly.
     const FINER: usize = 4;
     let found = (0..FINER).map(|halvings| spaced(bounds, run, most << halvings));
     found.reduce(|coarse, fine| if coarse.len() < 2 { fine } else { coarse }).unwrap_or_default()

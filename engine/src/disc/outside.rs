@@ -164,7 +164,7 @@ fn by_fours(
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     let mut sum = f64x4::ZERO;
     for four in rule.chunks(4) {
-        // The last ones may be fewer: the first of them again, without weight.
+        // A short last group is filled with its first node, at no weight.
         let at: [f64; 4] = std::array::from_fn(|i| four.get(i).unwrap_or(&four[0])[0]);
         let weights: [f64; 4] = std::array::from_fn(|i| four.get(i).map_or(0.0, |[_, weight]| *weight));
         let node = node(f64x4::new(at) * half + middle);

@@ -99,9 +99,8 @@ fn on_panel(
 
 /// The energy lost in a jump as the area between the curve and the control line, from `before` to `after`.
 ///
-/// In a narrow hole the work left over is the step of the energy, and at a border at which zones go from one root to another without
-/// a hole. `None` for a pull-off under a dead load, or where the basis has no
-/// equilibrium on the way.
+/// Across a narrow hole, and across a border where zones change from one root to another, the work is the step of the energy.
+/// `None` for a pull-off under a dead load, or where the basis has no equilibrium on the way.
 pub fn area(solution: &dyn Solution, control: Control, before: Place, after: Option<Place>) -> Option<f64> {
     let line = solution.at(before);
     let compliance = match control {

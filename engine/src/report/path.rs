@@ -399,9 +399,9 @@ impl PathReport {
         }
     }
 
-    /// Whether the path went to its end: until the bodies are apart, or to where it was to end.
+    /// Whether the path went on until the bodies were apart, or to where it was to end.
     #[must_use]
-    pub fn is_whole(&self) -> bool {
+    pub fn has_reached_its_end(&self) -> bool {
         [PathStop::Apart, PathStop::End].iter().any(|end| self.stop == end.to_string())
     }
 

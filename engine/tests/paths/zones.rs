@@ -328,6 +328,12 @@ fn a_tenth_of_the_loops() {
 }
 
 #[test]
+fn zones_that_change_roots_without_a_hole_lose_the_same_by_energy_and_by_area() {
+    let (came, words) = judged(73);
+    assert_eq!(came, Came::Further, "{words}");
+}
+
+#[test]
 #[ignore = "minutes; ZONES=17..18 for others"]
 fn two_hundred_loops() {
     let asked = std::env::var("ZONES").unwrap_or_else(|_| "0..200".to_owned());

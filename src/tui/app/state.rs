@@ -189,7 +189,7 @@ impl App {
         }
         let (view, goes) = (self.model.view, matches!(command, Command::Go(_) | Command::Show(_)));
         let effects = update(&mut self.model, command);
-        // Where one panel has the whole screen, a chart that is asked for would else be out of sight.
+        // Where one panel has the whole screen, the chart asked for would otherwise be out of sight.
         if (goes || self.model.view != view) && is_alone(self.screen, self.enlarged) {
             self.model.panel = ScreenPanel::Charts;
         }

@@ -163,8 +163,8 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
         }
     });
     let pull = pull.unwrap_or_default();
-    // What is lost after a path that cannot be followed to its end is not known.
-    let ends = if path.is_whole() { "" } else { ", ends early" };
+    // What else would be lost is not known where a path stops before its end.
+    let ends = if path.has_reached_its_end() { "" } else { ", ends early" };
     [
         format!("{pull}lost so far {of}{ends}"),
         format!("lost so far {of}{ends}"),

@@ -99,7 +99,7 @@ fn fault(curve: &Curve, s: f64, progress: &dyn Progress) -> Option<WhyNot> {
     let point = curve.equilibrium.explicit(s)?;
     let [delta, _, s] = curve.equilibrium.quantities(point.y());
     let judge = curve.equilibrium.judge();
-    // Where bodies overlap the nearest crest may be another than the first that was seen to.
+    // A verdict is fast, but names any crest that overlaps, not the nearest one.
     if judge.verdict(s, delta, progress).holds {
         return None;
     }

@@ -175,3 +175,15 @@ fn values_that_would_leave_the_walker_far_beyond_the_path_set_it_to_its_start() 
     assert!(radius(&screen) > 100.01e-6 && radius(&screen) < 110e-6, "{}", radius(&screen));
     assert!(!screen.text(120, 40).contains("lies beyond the path"), "{}", screen.text(120, 40));
 }
+
+#[test]
+fn a_path_that_ends_early_says_so_and_why_is_read_whole() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":material.cohesive_range=0.01\r");
+    assert!(screen.text(80, 24).contains(", ends early"), "{}", screen.text(80, 24));
+    screen.keys("nnnnnnnnnnnn");
+    let short = screen.text(80, 24);
+    assert!(short.contains("the path ends here") && !short.contains("torn inside"), "{short}");
+    screen.keys("?\t");
+    assert!(screen.text(80, 24).contains("contact is torn inside"), "{}", screen.text(80, 24));
+}
