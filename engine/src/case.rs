@@ -8,13 +8,12 @@ use crate::disc::table::KeptTables;
 use crate::disc::{Basis, ExactBasis, Panels, Table, TableError};
 use crate::elementary::cbrt;
 use crate::gap::function::Scaled;
-use crate::gap::panels::Unresolved;
 use crate::gap::{Gap, Shape};
 use crate::preset::{BasisSpec, Material, Preset};
 use crate::problem::cohesion::TABOR_OVER_MAUGIS;
 use crate::problem::groups::LARGE_TABOR;
 use crate::problem::{
-    Adhesion, Cohesion, ContactKind, Control, Groups, Problem, Reduced, Start, Turn, Units,
+    Adhesion, Cohesion, ContactKind, Control, Groups, Printer, Problem, Reduced, Start, Turn, Units,
 };
 use crate::progress::{Progress, Stopped, Unwatched};
 use crate::quasistatic::admissible::{Judge, falls};
@@ -76,33 +75,33 @@ pub enum CaseError {
     #[error(transparent)]
     Basis(RingsError),
     /// The gap cannot be tabulated.
-    #[error("{}", words_of_table(error, shown))]
+    #[error("{}", error.words(printer))]
     Table {
-        /// Why, in the user's units.
+        /// Why.
         error: TableError,
-        /// How numbers are shown.
-        shown: Box<UnitSystem>,
+        /// Prints its numbers.
+        printer: Box<Printer>,
     },
     /// The start state does not exist.
-    #[error("{}", error.words(shown))]
+    #[error("{}", error.words(printer))]
     Start {
-        /// Why, in the user's units.
+        /// Why.
         error: StartError,
-        /// How numbers are shown.
-        shown: Box<UnitSystem>,
+        /// Prints its numbers.
+        printer: Box<Printer>,
     },
     /// The end lies outside the start.
     #[error(
         "path.end_contact_radius = {} must be smaller than the contact radius at the start, which is {}",
-        said(shown, Quantity::Length, *.end), said(shown, Quantity::Length, *.start)
+        printer.length(*.end), printer.length(*.start)
     )]
     EndOutsideStart {
-        /// The end, in the user's units.
+        /// The end, reduced.
         end: f64,
-        /// The start, in the user's units.
+        /// The start, reduced.
         start: f64,
-        /// How numbers are shown.
-        shown: Box<UnitSystem>,
+        /// Prints both.
+        printer: Box<Printer>,
     },
     /// Adhesion with a range, in what knows none.
     #[error(
@@ -114,14 +113,12 @@ pub enum CaseError {
         word: &'static str,
     },
     /// There is no path.
-    #[error("{}", words_of_path(error, *.control, shown))]
+    #[error("{}", error.words(printer))]
     Path {
-        /// Why, in the user's units.
+        /// Why.
         error: Box<PathError>,
-        /// What was controlled.
-        control: Control,
-        /// How numbers are shown.
-        shown: Box<UnitSystem>,
+        /// Prints its numbers.
+        printer: Box<Printer>,
     },
     /// It was no longer wanted.
     #[error(transparent)]
@@ -163,8 +160,10 @@ impl Case {
             Start::Force(p) => Start::Force(p / units.force),
         };
         let shown = preset.units.clone();
+        let control = preset.path.control.in_units(units.stiffness);
+        let printer = Printer::new(&units, &shown).under(control);
         let reach = reach(&reduced, wanted);
-        let table = table(&preset.gap, &reduced, reach, &shown, progress)?;
+        let table = table(&preset.gap, &reduced, reach, &printer, progress)?;
         let mut basis: Arc<dyn Basis> = match preset.basis {
             BasisSpec::Rings { rings, grading } => {
                 Rings::shared_with(rings, grading, progress).map_err(|error| match error {
@@ -179,7 +178,7 @@ impl Case {
         let closing = closing.filter(|closing| *closing < reduced.work_of_adhesion);
         let start = if let Some(law) = cohesion {
             start_in_zone(&table, law, wanted, progress)
-                .map_err(|error| refused_path(error, Control::Displacement, &units, &shown))?
+                .map_err(|error| refused_path(error, printer.clone()))?
         } else {
             let work_of_adhesion = closing.unwrap_or(reduced.work_of_adhesion);
             let grown = Reduced { work_of_adhesion, ..reduced.clone() };
@@ -187,7 +186,7 @@ impl Case {
         };
         let start = start.map_err(|error| match error {
             StartError::Stopped(stopped) => CaseError::Stopped(stopped),
-            error => CaseError::Start { error: error.in_units(&units), shown: Box::new(shown.clone()) },
+            error => CaseError::Start { error, printer: Box::new(printer.clone()) },
         })?;
         if preset.basis == BasisSpec::Exact {
             // From here on the start decides how far it reaches, however it was given.
@@ -195,10 +194,8 @@ impl Case {
         }
         let end = preset.end_contact_radius(start * units.length) / units.length;
         if end >= start {
-            let (end, start) = (end * units.length, start * units.length);
-            return Err(CaseError::EndOutsideStart { end, start, shown: Box::new(shown) });
+            return Err(CaseError::EndOutsideStart { end, start, printer: Box::new(printer) });
         }
-        let control = preset.path.control.in_units(units.stiffness);
         let tabor = Groups::of(&problem, preset.range_of_action(), preset.cohesion()).tabor;
         let turn = preset.path.turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, control));
         let (contact, has_elements) = (preset.path.contact, preset.basis != BasisSpec::Exact);
@@ -226,8 +223,21 @@ impl Case {
     /// # Errors
     /// [`CaseError::Table`], and [`CaseError::Stopped`] when `progress` said stop.
     pub fn panels(&self, progress: &dyn Progress) -> Result<Arc<Panels>, CaseError> {
-        let made = self.table.up_to_while(self.start, 0, progress);
-        made.map_err(|error| refusal(error, self.units().length, &self.shown))
+        self.panels_to(self.start, progress)
+    }
+
+    /// The table of g from the axis to the radius `r`, a reduced length.
+    ///
+    /// # Errors
+    /// As [`Case::panels`].
+    pub fn panels_to(&self, r: f64, progress: &dyn Progress) -> Result<Arc<Panels>, CaseError> {
+        let made = self.table.up_to_while(r, 0, progress);
+        made.map_err(|error| refusal(error, &self.printer()))
+    }
+
+    /// Prints reduced numbers in the user's units.
+    pub fn printer(&self) -> Printer {
+        Printer::new(self.units(), &self.shown).under(self.control)
     }
 
     /// The factors to the user's units.
@@ -388,10 +398,10 @@ impl Case {
             .map_err(|error| self.no_path(error, self.control))
     }
 
-    /// The refusal of a path, with its numbers in the user's units.
+    /// The refusal of a path under `control`, reduced.
     #[must_use]
     pub fn no_path(&self, error: PathError, control: Control) -> CaseError {
-        refused_path(error, control, self.units(), &self.shown)
+        refused_path(error, self.printer().under(control))
     }
 
     /// What is to be said where the events of an unloading of averaged rows depend on how finely they are averaged: with cells
@@ -494,8 +504,7 @@ impl Case {
     }
 
     fn no_start(&self) -> CaseError {
-        let error = StartError::NoEquilibrium(self.start).in_units(self.units());
-        CaseError::Start { error, shown: Box::new(self.shown.clone()) }
+        CaseError::Start { error: StartError::NoEquilibrium(self.start), printer: Box::new(self.printer()) }
     }
 }
 
@@ -533,43 +542,24 @@ pub(crate) fn table(
     shape: &Shape,
     reduced: &Reduced,
     reach: f64,
-    shown: &UnitSystem,
+    printer: &Printer,
     progress: &dyn Progress,
 ) -> Result<Arc<Table>, CaseError> {
     let key = (shape.clone(), reduced.units.length.to_bits());
-    Table::shared(&TABLES, &key, &reduced.gap, reach, progress)
-        .map_err(|error| refusal(error, reduced.units.length, shown))
+    Table::shared(&TABLES, &key, &reduced.gap, reach, progress).map_err(|error| refusal(error, printer))
 }
 
-fn refusal(error: TableError, length: f64, shown: &UnitSystem) -> CaseError {
+/// Why there is no table of the gap.
+fn refusal(error: TableError, printer: &Printer) -> CaseError {
     match error {
         TableError::Stopped(Stopped) => CaseError::Stopped(Stopped),
-        TableError::TooFine(refused) => {
-            let (radius, largest) = (refused.radius * length, refused.largest * length);
-            let error = TableError::TooFine(Unresolved { radius, largest, ..refused });
-            CaseError::Table { error, shown: Box::new(shown.clone()) }
-        }
+        error @ TableError::TooFine(_) => CaseError::Table { error, printer: Box::new(printer.clone()) },
     }
 }
 
-fn refused_path(error: PathError, control: Control, units: &Units, shown: &UnitSystem) -> CaseError {
+fn refused_path(error: PathError, printer: Printer) -> CaseError {
     match error {
         PathError::Stopped(Stopped) => CaseError::Stopped(Stopped),
-        error => CaseError::Path {
-            error: Box::new(error.in_units(control, units)),
-            control: control.in_units(1.0 / units.stiffness),
-            shown: Box::new(shown.clone()),
-        },
-    }
-}
-
-fn words_of_path(error: &PathError, control: Control, shown: &UnitSystem) -> String {
-    error.words(control, shown)
-}
-
-fn words_of_table(error: &TableError, shown: &UnitSystem) -> String {
-    match error {
-        TableError::TooFine(refused) => refused.words(shown),
-        TableError::Stopped(Stopped) => error.to_string(),
+        error => CaseError::Path { error: Box::new(error), printer: Box::new(printer) },
     }
 }

@@ -9,8 +9,7 @@ use pulloff::store::file::{LARGEST, read_bytes, read_text};
 use pulloff::store::{FILES, Overwrite, write_atomically};
 use pulloff_engine::case::{Case, CaseError};
 use pulloff_engine::disc::exact::FAR;
-use pulloff_engine::disc::{Basis, ExactBasis, TableError, outside};
-use pulloff_engine::gap::panels::Unresolved;
+use pulloff_engine::disc::{Basis, ExactBasis, outside};
 use pulloff_engine::gap::shapes::{MeasuredGap, ProfileGap, ProfileRows, Smoothing};
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::measured::{ColumnRole, PointsFile};
@@ -19,7 +18,7 @@ use pulloff_engine::preset::read::{HeldFiles, read_holding, read_in};
 use pulloff_engine::preset::{Preset, Value, profile, shipped, write};
 use pulloff_engine::problem::Control;
 use pulloff_engine::problem::Turn;
-use pulloff_engine::progress::{Progress, Stopped};
+use pulloff_engine::progress::Progress;
 use pulloff_engine::quasistatic::Losses;
 use pulloff_engine::report::map::Ordinate;
 use pulloff_engine::report::path::Extent;
@@ -491,15 +490,7 @@ impl Across {
         let units = case.units();
         let s = s / units.length;
         // A large contact takes long: here it can be stopped.
-        match case.table.up_to_while(s, 0, progress) {
-            Err(TableError::Stopped(Stopped)) => return Err(CaseError::Stopped(Stopped)),
-            Err(TableError::TooFine(refused)) => {
-                let (radius, largest) = (refused.radius * units.length, refused.largest * units.length);
-                let error = TableError::TooFine(Unresolved { radius, largest, ..refused });
-                return Err(CaseError::Table { error, shown: Box::new(case.shown.clone()) });
-            }
-            Ok(_) => {}
-        }
+        case.panels_to(s, progress)?;
         let exact = ExactBasis::new(Arc::clone(&case.table), s);
         let Some(at) = exact.equilibrium(&case.reduced, s) else { return Ok(None) };
         let delta = at.approach;

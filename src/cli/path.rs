@@ -149,7 +149,7 @@ impl PathArguments {
             (Format::Json, _) => json(report)?,
         };
         sink.write(text)?;
-        if report.has_reached_its_end() {
+        if report.has_reached_its_end {
             return console.end();
         }
         Err(Failure::Incomplete(format!(

@@ -172,7 +172,7 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(MadeState) -> bool) -> WalkO
         WalkEnd::Paused => WalkOutcome::Paused,
         WalkEnd::PathEnds => WalkOutcome::Ended(match &request.curve.along {
             Some(Ok(path)) => {
-                format!("the path ends here: {}", path.stop.in_units(case.units()).words(&case.shown))
+                format!("the path ends here: {}", path.stop.words(&case.printer()))
             }
             _ => "the path ends here".to_owned(),
         }),

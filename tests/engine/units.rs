@@ -7,7 +7,7 @@ use pulloff_engine::case::Case;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::changes::changes;
 use pulloff_engine::preset::{Preset, Value, write};
-use pulloff_engine::problem::Control;
+use pulloff_engine::problem::{Control, Printer, Units};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::path::PathError;
 use pulloff_engine::quasistatic::{CurveStop, PathStop};
@@ -533,12 +533,15 @@ fn the_lines_of_a_document_have_units_in_si_and_none_in_reduced_units() {
 fn what_stops_a_curve_and_what_a_gap_cannot_be_is_told_in_units() {
     let si = UnitSystem::Si(DisplayUnits::default());
     let stop = PathStop::Curve(CurveStop::NoEquilibrium(2e-5));
-    assert!(stop.words(&si).contains("below the contact radius 20 um (a finer"), "{}", stop.words(&si));
+    let units = Units { length: 2.0, stiffness: 5.0, ..Units::REDUCED };
+    let printer = Printer::new(&units, &si);
+    let words = stop.words(&printer);
+    assert!(words.contains("below the contact radius 40 um (a finer"), "{words}");
     assert!(stop.to_string().contains("below the contact radius 2e-5 (a finer"), "{stop}");
     let unstable = PathError::UnstableStart { contact_radius: 2e-5, searched: 1e-3 };
-    let words = unstable.words(Control::Stiffness(5.0), &si);
-    assert!(words.contains("(contact radius 20 um)") && words.contains("stiffness=5 N/m control"), "{words}");
-    assert!(words.ends_with("up to the contact radius 1000 um"), "{words}");
+    let words = unstable.words(&printer.under(Control::Stiffness(1.0)));
+    assert!(words.contains("(contact radius 40 um)") && words.contains("stiffness=5 N/m control"), "{words}");
+    assert!(words.ends_with("up to the contact radius 2000 um"), "{words}");
 
     let base = "units = \"SI\"\n[material]\neffective_modulus = 4e4\nwork_of_adhesion = 0.05\n[path]\n\
                 start_contact_radius = \"1 mm\"\n[gap]\n";

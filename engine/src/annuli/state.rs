@@ -10,8 +10,10 @@ use super::nodes::Nodes;
 use super::rule::MOST_POINTS;
 use crate::elementary::{atan2, cbrt, ln, log10};
 use crate::gap::Gap;
+use crate::problem::Printer;
 use crate::progress::Unwatched;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, LN_10, PI};
+use std::fmt;
 use std::sync::Arc;
 use wide::f64x4;
 
@@ -33,10 +35,8 @@ const AMONG_BREAKS: f64 = 96.0;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AnnuliError {
     /// The contacts are none.
-    #[error(transparent)]
     Contacts(#[from] ContactsError),
     /// More points than there may be.
-    #[error("the rings take {points} points, more than {most}")]
     TooManyPoints {
         /// How many it takes.
         points: usize,
@@ -44,7 +44,6 @@ pub enum AnnuliError {
         most: usize,
     },
     /// An edge beyond what is known of the gap.
-    #[error("an edge at r = {radius} lies beyond r = {known}, up to where the gap is known")]
     BeyondGap {
         /// The edge, a length.
         radius: f64,
@@ -52,26 +51,42 @@ pub enum AnnuliError {
         known: f64,
     },
     /// The equations of the rings lost their digits.
-    #[error("the equations of the rings are singular to rounding: the narrowest width is {narrowest}")]
     Singular {
         /// The narrowest ring or gap, a length.
         narrowest: f64,
     },
 }
 
+impl fmt::Display for AnnuliError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words(&Printer::reduced()))
+    }
+}
+
 impl AnnuliError {
-    /// The same with its lengths counted in others, of which one is `length`.
+    /// What is wrong, in words.
     #[must_use]
-    pub fn in_lengths(self, length: f64) -> Self {
-        match self {
-            Self::Contacts(ContactsError::NotAscending { before, after }) => {
-                Self::Contacts(ContactsError::NotAscending { before: before * length, after: after * length })
+    pub fn words(&self, printer: &Printer) -> String {
+        match *self {
+            Self::Contacts(ContactsError::NotAscending { before, .. }) => format!(
+                "at r = {} the edges of a contact are closer to each other than numbers can tell apart: the gap is too high or \
+                 too steep there",
+                printer.length(before)
+            ),
+            Self::Contacts(ref error) => error.to_string(),
+            Self::TooManyPoints { points, most } => {
+                format!("the rings take {points} points, more than {most}")
             }
             Self::BeyondGap { radius, known } => {
-                Self::BeyondGap { radius: radius * length, known: known * length }
+                let (radius, known) = (printer.length(radius), printer.length(known));
+                format!("an edge at r = {radius} lies beyond r = {known}, up to where the gap is known")
             }
-            Self::Singular { narrowest } => Self::Singular { narrowest: narrowest * length },
-            Self::Contacts(_) | Self::TooManyPoints { .. } => self,
+            Self::Singular { narrowest } => {
+                let narrowest = printer.length(narrowest);
+                format!(
+                    "the equations of the rings are singular to rounding: the narrowest width is {narrowest}"
+                )
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::elementary::{ln, pow};
 use crate::gap::Gap;
 use crate::gap::{panels::Span, panels::Unresolved, panels::Variable};
+use crate::problem::Printer;
 use crate::progress::Stopped;
 
 /// The slope of a gap grows on a panel by this factor at most, in so many parts at most.
@@ -18,6 +19,17 @@ pub enum TableError {
     /// It was no longer wanted.
     #[error(transparent)]
     Stopped(#[from] Stopped),
+}
+
+impl TableError {
+    /// Why, in words.
+    #[must_use]
+    pub fn words(&self, printer: &Printer) -> String {
+        match self {
+            Self::TooFine(refused) => refused.words(|r| printer.length(r)),
+            Self::Stopped(stopped) => stopped.to_string(),
+        }
+    }
 }
 
 /// The panels of a gap, parted where its slope grows so much on one that its inner end had no relative digits: a gap may rise

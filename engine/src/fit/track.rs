@@ -8,7 +8,7 @@ use crate::case;
 use crate::disc::{Basis, ExactBasis, Local, Place, Solution, Table};
 use crate::measured::Abscissa;
 use crate::preset::Preset;
-use crate::problem::{Adhesion, Cohesion, Control, Reduced, StatedCohesion, Units};
+use crate::problem::{Adhesion, Cohesion, Control, Printer, Reduced, StatedCohesion, Units};
 use crate::progress::Unwatched;
 use crate::quasistatic::curve::places;
 use crate::quasistatic::path::{PathError, Zones};
@@ -99,7 +99,7 @@ impl Track {
         held: Control,
     ) -> Option<Self> {
         let units = reduced.units;
-        let table = case::table(&preset.gap, &reduced, 1.0, &preset.units, &Unwatched).ok()?;
+        let table = case::table(&preset.gap, &reduced, 1.0, &Printer::reduced(), &Unwatched).ok()?;
         if let Some(law) = preset.cohesion() {
             let law = law.reduced_by(units.length, units.pressure);
             let holds_range =
@@ -316,7 +316,7 @@ pub(super) fn begins(preset: &Preset, abscissa: Abscissa, x: f64, length: f64) -
         _ => 0.0,
     };
     let eye = Eye { units: reduced.units, abscissa, compliance };
-    let table = case::table(&preset.gap, &reduced, 1.0, &preset.units, &Unwatched).ok()?;
+    let table = case::table(&preset.gap, &reduced, 1.0, &Printer::reduced(), &Unwatched).ok()?;
     let basis = ExactBasis::new(table, 1e-3);
     let reach = Reach {
         most: [x, f64::NEG_INFINITY, f64::NEG_INFINITY],

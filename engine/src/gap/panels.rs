@@ -18,8 +18,7 @@
 
 use super::function::{ComplexDisc, Gap};
 use crate::elementary::cos;
-use crate::units::number::said;
-use crate::units::{Quantity, UnitSystem};
+use crate::units::number::short;
 use std::f64::consts::PI;
 use thiserror::Error;
 
@@ -82,7 +81,7 @@ pub struct Span {
 
 /// A gap that is not resolved.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("{}", self.words(&UnitSystem::Reduced))]
+#[error("{}", self.words(|r| short(r, 6)))]
 pub struct Unresolved {
     /// The radius that was reached.
     pub radius: f64,
@@ -93,9 +92,9 @@ pub struct Unresolved {
 }
 
 impl Unresolved {
-    /// What is wrong, with the radii as `units` show them.
-    pub fn words(&self, units: &UnitSystem) -> String {
-        let [radius, largest] = [self.radius, self.largest].map(|r| said(units, Quantity::Length, r));
+    /// What is wrong, with the radii as `length` prints them.
+    pub fn words(&self, length: impl Fn(f64) -> String) -> String {
+        let [radius, largest] = [self.radius, self.largest].map(length);
         format!(
             "the gap is too rough: its slope is not resolved by {} panels, which end at r = {radius} (up to r = {largest} \
              it must be)",

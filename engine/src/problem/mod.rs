@@ -6,6 +6,7 @@
 //! | [`groups`] | the dimensionless groups people quote |
 //! | [`cohesion`] | adhesion with a range |
 //! | [`control`] | what the loading device prescribes |
+//! | [`printer`] | reduced numbers in sentences |
 //! | [`programme`] | what a test does with the control, part by part |
 //! | [`start`] | how the start of a path is given |
 //! | [`turn`] | where a path turns round, which contacts it follows |
@@ -13,6 +14,7 @@
 pub mod cohesion;
 pub mod control;
 pub mod groups;
+pub mod printer;
 pub mod programme;
 pub mod reduced;
 pub mod start;
@@ -21,6 +23,7 @@ pub mod turn;
 pub use cohesion::{Adhesion, Cohesion, StatedCohesion};
 pub use control::Control;
 pub use groups::Groups;
+pub use printer::Printer;
 pub use programme::Part;
 pub use reduced::{Problem, Reduced, Units};
 pub use start::{Begin, Start};

@@ -34,6 +34,12 @@ pub struct Units {
     pub work_of_adhesion: f64,
 }
 
+impl Units {
+    /// Those of numbers that stay reduced.
+    pub const REDUCED: Self =
+        Self { length: 1.0, force: 1.0, energy: 1.0, stiffness: 1.0, pressure: 1.0, work_of_adhesion: 1.0 };
+}
+
 /// A problem in reduced units: what the core solves.
 #[derive(Debug, Clone)]
 pub struct Reduced {

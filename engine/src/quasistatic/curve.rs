@@ -7,11 +7,9 @@ use crate::continuation::{Branch, End, Settings, Stop, Tracer};
 use crate::disc::exact::outer_side;
 use crate::disc::{Basis, Local, Place, Solution, Table};
 use crate::gap::Gap;
-use crate::problem::{Control, Reduced, Units};
+use crate::problem::{Control, Printer, Reduced};
 use crate::progress::{Progress, Stopped, Unwatched};
 use crate::root;
-use crate::units::number::said;
-use crate::units::{Quantity, UnitSystem};
 use std::fmt;
 use std::sync::Arc;
 
@@ -38,31 +36,21 @@ pub enum CurveStop {
 }
 
 impl fmt::Display for CurveStop {
-    /// Its numbers as they stand.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.words(&UnitSystem::Reduced))
+        f.write_str(&self.words(&Printer::reduced()))
     }
 }
 
 impl CurveStop {
-    /// Why, with the numbers, which are in the user's units, as `shown` has them.
-    pub fn words(&self, shown: &UnitSystem) -> String {
+    /// Why, in words.
+    pub fn words(&self, printer: &Printer) -> String {
         match self {
             Self::End => "the end contact radius was reached".to_owned(),
             Self::NoEquilibrium(s) => {
-                let s = said(shown, Quantity::Length, *s);
+                let s = printer.length(*s);
                 format!("the basis has no equilibrium below the contact radius {s} (a finer basis may help)")
             }
             Self::Tracer(stop) => stop.to_string(),
-        }
-    }
-
-    /// The same with its numbers in the user's units.
-    #[must_use]
-    pub fn in_units(self, units: &Units) -> Self {
-        match self {
-            Self::NoEquilibrium(s) => Self::NoEquilibrium(s * units.length),
-            other => other,
         }
     }
 }

@@ -4,13 +4,11 @@ use super::monotone::Monotone;
 use crate::disc::Basis;
 use crate::elementary::cbrt;
 use crate::gap::Gap;
-use crate::problem::{Control, Reduced, Start, Units};
+use crate::problem::{Control, Printer, Reduced, Start};
 use crate::progress::{Progress, Stopped};
-use crate::units::number::said;
-use crate::units::{Quantity, UnitSystem};
 use std::fmt;
 
-/// Why a start state was not found.
+/// Why a start state was not found. All numbers are reduced.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum StartError {
     /// The basis has no equilibrium at the radius.
@@ -49,20 +47,16 @@ pub enum StartError {
 }
 
 impl fmt::Display for StartError {
-    /// Its numbers as they stand.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.words(&UnitSystem::Reduced))
+        f.write_str(&self.words(&Printer::reduced()))
     }
 }
 
 impl StartError {
-    /// What is wrong, with the numbers, which are in the user's units, as `shown` has them.
-    pub fn words(&self, shown: &UnitSystem) -> String {
-        let radius = |s| said(shown, Quantity::Length, s);
-        let of = |name, x| {
-            let quantity = if name == "force" { Quantity::Force } else { Quantity::Length };
-            said(shown, quantity, x)
-        };
+    /// What is wrong, in words.
+    pub fn words(&self, printer: &Printer) -> String {
+        let radius = |s| printer.length(s);
+        let of = |name, x| if name == "force" { printer.force(x) } else { printer.length(x) };
         match *self {
             Self::NoEquilibrium(s) => format!("there is no equilibrium at the contact radius {}", radius(s)),
             Self::OutOfReach { name, value, smallest } => {
@@ -81,28 +75,6 @@ impl StartError {
                 format!("no contact up to the radius {largest} reaches the {name} {value}")
             }
             Self::Stopped(stopped) => stopped.to_string(),
-        }
-    }
-
-    /// The same error with its numbers in the user's units.
-    #[must_use]
-    pub fn in_units(self, units: &Units) -> Self {
-        let of = |name: &str| if name == "force" { units.force } else { units.length };
-        match self {
-            Self::NoEquilibrium(s) => Self::NoEquilibrium(s * units.length),
-            Self::OutOfReach { name, value, smallest } => {
-                Self::OutOfReach { name, value: value * of(name), smallest: smallest * of(name) }
-            }
-            Self::NotKnown { name, value, searched, known } => Self::NotKnown {
-                name,
-                value: value * of(name),
-                searched: searched * units.length,
-                known: known * units.length,
-            },
-            Self::NotReached { name, value, largest } => {
-                Self::NotReached { name, value: value * of(name), largest: largest * units.length }
-            }
-            Self::Stopped(stopped) => Self::Stopped(stopped),
         }
     }
 }

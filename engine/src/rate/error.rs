@@ -1,12 +1,11 @@
 //! Why there is no pull.
 
-use crate::problem::Units;
+use crate::problem::Printer;
 use crate::progress::Stopped;
-use crate::units::number::said;
-use crate::units::{Quantity, UnitSystem};
+use std::fmt;
 
-/// Why there is no pull; lengths reduced until [`RateError::in_units`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Why there is no pull. All numbers are reduced.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum RateError {
     /// The integrator found no next step at this radius.
     Lost {
@@ -36,47 +35,36 @@ pub enum RateError {
     Stopped(Stopped),
 }
 
+impl fmt::Display for RateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words(&Printer::reduced()))
+    }
+}
+
 impl RateError {
-    /// The same in the user's units.
+    /// In words.
     #[must_use]
-    pub fn in_units(self, units: &Units) -> Self {
-        match self {
-            Self::Lost { contact_radius } => Self::Lost { contact_radius: contact_radius * units.length },
+    pub fn words(&self, printer: &Printer) -> String {
+        let length = |x| printer.length(x);
+        match *self {
+            Self::Lost { contact_radius } => {
+                let radius = length(contact_radius);
+                format!("the moving edge could not be followed beyond the contact radius {radius}")
+            }
             Self::Pressed { contact_radius } => {
-                Self::Pressed { contact_radius: contact_radius * units.length }
+                let radius = length(contact_radius);
+                format!(
+                    "the closing edge is pressed at the contact radius {radius}: the bodies touch ahead of it, and a pull \
+                     follows one disc"
+                )
             }
             Self::TooManySteps { steps, contact_radius } => {
-                Self::TooManySteps { steps, contact_radius: contact_radius * units.length }
+                let radius = length(contact_radius);
+                format!("the moving edge was given up after {steps} steps, at the contact radius {radius}")
             }
-            Self::Beyond { radius } => Self::Beyond { radius: radius * units.length },
-            other => other,
-        }
-    }
-
-    /// In words, with lengths as `shown` has them.
-    #[must_use]
-    pub fn words(&self, shown: &UnitSystem) -> String {
-        let length = |x| said(shown, Quantity::Length, x);
-        match self {
-            Self::Lost { contact_radius } => {
-                format!(
-                    "the moving edge could not be followed beyond the contact radius {}",
-                    length(*contact_radius)
-                )
-            }
-            Self::Pressed { contact_radius } => format!(
-                "the closing edge is pressed at the contact radius {}: the bodies touch ahead of it, and a pull follows one disc",
-                length(*contact_radius)
-            ),
-            Self::TooManySteps { steps, contact_radius } => format!(
-                "the moving edge was given up after {steps} steps, at the contact radius {}",
-                length(*contact_radius)
-            ),
             Self::Beyond { radius } => {
-                format!(
-                    "the contact would grow beyond the radius {}, up to which the gap is known",
-                    length(*radius)
-                )
+                let radius = length(radius);
+                format!("the contact would grow beyond the radius {radius}, up to which the gap is known")
             }
             Self::NoAdhesion => {
                 "without adhesion an edge has no speed of its own: material.work_of_adhesion must be above 0"

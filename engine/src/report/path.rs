@@ -40,6 +40,9 @@ pub struct PathReport {
     pub turn: Option<TurnReport>,
     /// Why the path ended, in words.
     pub stop: String,
+    /// Whether it went on until the bodies were apart, or to where it was to end.
+    #[serde(skip)]
+    pub has_reached_its_end: bool,
     /// What happened, in order.
     pub events: Vec<EventReport>,
     /// The sums.
@@ -360,13 +363,14 @@ impl PathReport {
     /// The document of a path of `case`; whether one of one disc is admissible is not known yet.
     #[must_use]
     pub fn new(preset: &Preset, case: &Case, path: &Path) -> Self {
-        let (units, shown, problem) = (case.units(), &case.shown, &case.reduced);
+        let (units, problem) = (case.units(), &case.reduced);
+        let printer = case.printer().under(path.control);
         let is_loop = path.turn.is_some();
         let begins = path.start().map_or(0.0, |start| start.contact_radius).max(case.start);
         let in_zone = case.cohesion.is_some();
         let mut warnings =
             if is_loop || in_zone { case.warnings_of_problem() } else { case.warnings(begins) };
-        warnings.extend(path.warnings.iter().map(|w| w.words(path.control, units, shown)));
+        warnings.extend(path.warnings.iter().map(|w| w.words(&printer)));
         let mut notes = if is_loop || in_zone { problem_notes(case) } else { case.notes(begins) };
         notes.extend(note_of_range(preset, case));
         if is_loop && matches!(preset.basis, BasisSpec::Rings { .. }) {
@@ -388,7 +392,8 @@ impl PathReport {
             contact: path.contact.name(),
             start_note: path.asked.map(|asked| start_note(case, path, &asked)),
             turn: path.turn.map(|turn| TurnReport::new(turn, path.control, units)),
-            stop: path.stop.in_units(units).words(shown),
+            stop: path.stop.words(&printer),
+            has_reached_its_end: matches!(path.stop, PathStop::Apart | PathStop::End),
             events: (1..)
                 .zip(&path.events)
                 .map(|(number, event)| EventReport::new(problem, path.control, number, event))
@@ -397,12 +402,6 @@ impl PathReport {
             inadmissible: None,
             states: states.collect(),
         }
-    }
-
-    /// Whether the path went on until the bodies were apart, or to where it was to end.
-    #[must_use]
-    pub fn has_reached_its_end(&self) -> bool {
-        [PathStop::Apart, PathStop::End].iter().any(|end| self.stop == end.to_string())
     }
 
     /// The same document with the inadmissible states that a path of one disc passes on `curve`, which reaches as far out.

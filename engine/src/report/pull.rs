@@ -7,7 +7,7 @@ use super::rows::{ReportTable, RowsError};
 use super::table::{aligned, ascii_unit, control, head};
 use crate::case::{Case, CaseError};
 use crate::preset::{BasisSpec, Preset, edge};
-use crate::problem::{Control, Part};
+use crate::problem::{Control, Part, Printer};
 use crate::progress::{self, Progress, Stopped};
 use crate::quasistatic::admissible::Judge;
 use crate::rate::failure::time_to_failure;
@@ -40,12 +40,12 @@ pub enum PullError {
     #[error("no rate is given: set path.rate or path.steps, or give rates")]
     NoRate,
     /// The edge could not be followed.
-    #[error("{}", error.words(shown))]
+    #[error("{}", error.words(printer))]
     Rate {
-        /// Why, in the user's units.
+        /// Why.
         error: RateError,
-        /// How numbers are shown.
-        shown: Box<UnitSystem>,
+        /// Prints its numbers.
+        printer: Box<Printer>,
     },
 }
 
@@ -325,7 +325,7 @@ impl PullReport {
         };
         let refused = |error: RateError| match error {
             RateError::Stopped(Stopped) => PullError::Case(CaseError::Stopped(Stopped)),
-            error => PullError::Rate { error: error.in_units(&units), shown: Box::new(case.shown.clone()) },
+            error => PullError::Rate { error, printer: Box::new(case.printer()) },
         };
         let programmes = programmes(preset, asked)?;
         let mut warnings = case.warnings_of_problem();

@@ -316,10 +316,7 @@ impl TraceReport {
             let limits = limit_points.iter().map(|p| (p.approach, p.force));
             points.chain(limits).map(of).min_by(f64::total_cmp)
         };
-        let stop = fault.map_or_else(
-            || OUT_OF_RANGE.to_owned(),
-            |error| error.in_units(case.control, units).words(case.control, &preset.units),
-        );
+        let stop = fault.map_or_else(|| OUT_OF_RANGE.to_owned(), |error| error.words(&case.printer()));
         Ok(Self {
             head: Head::new("trace", preset, case),
             warnings: case.warnings_of_problem(),
@@ -413,7 +410,7 @@ impl TraceReport {
                 .collect(),
             notes: case.notes(curve.outermost()),
             start_note: points.first().and_then(|start| start_note(preset, case, start)),
-            stop: stop.in_units(units).words(&preset.units),
+            stop: stop.words(&case.printer()),
             curve_min_force: smallest(|(_, force)| force),
             curve_min_approach: smallest(|(approach, _)| approach),
             limit_points,

@@ -108,7 +108,7 @@ impl Workings<'_> {
             return Ok(found);
         }
         let case = &self.start()?.case;
-        Err(Fault::incomplete(&stop.in_units(case.units()).words(&case.shown)))
+        Err(Fault::incomplete(&stop.words(&case.printer())))
     }
 
     fn reduced(&mut self, control: Control) -> Result<Control, Fault> {

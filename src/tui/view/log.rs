@@ -164,7 +164,7 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
     });
     let pull = pull.unwrap_or_default();
     // What else would be lost is not known where a path stops before its end.
-    let ends = if path.has_reached_its_end() { "" } else { ", ends early" };
+    let ends = if path.has_reached_its_end { "" } else { ", ends early" };
     [
         format!("{pull}lost so far {of}{ends}"),
         format!("lost so far {of}{ends}"),

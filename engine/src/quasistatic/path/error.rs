@@ -1,16 +1,16 @@
-//! Why there is no path.
+//! Why there is no path, and what is to be known about one; both in words.
 
 use crate::annuli::AnnuliError;
 use crate::disc::TableError;
-use crate::problem::Control;
+use crate::problem::Printer;
 use crate::progress::Stopped;
 use crate::zone::FaultKind;
+use std::fmt;
 
-/// Why there is no path. All numbers are in reduced units.
+/// Why there is no path. All numbers are reduced.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PathError {
     /// The control turns before the bodies touch.
-    #[error("the control turns at {turn}, before the bodies touch at {touch}: turn above that")]
     TurnBeforeTouch {
         /// Where it was to turn: a control value, or an approach.
         turn: f64,
@@ -18,15 +18,11 @@ pub enum PathError {
         touch: f64,
     },
     /// A dead load below zero without adhesion.
-    #[error("without adhesion a dead load of {load} carries no contact: a load above 0 does")]
     NoTension {
         /// The load.
         load: f64,
     },
     /// The start is unstable and nothing outward is stable.
-    #[error(
-        "the start state (contact radius {contact_radius}) is unstable and no stable state lies outward up to {searched}"
-    )]
     UnstableStart {
         /// s of the start, a length.
         contact_radius: f64,
@@ -34,9 +30,6 @@ pub enum PathError {
         searched: f64,
     },
     /// The turn lies beyond what is known of the gap.
-    #[error(
-        "the contact reached r = {radius} at the approach {approach} and the force {force}, up to where the gap is known: turn before"
-    )]
     BeyondGap {
         /// How far the gap is known, a length.
         radius: f64,
@@ -46,7 +39,6 @@ pub enum PathError {
         force: f64,
     },
     /// The turning radius lies beyond what is known of the gap.
-    #[error("the gap is known up to r = {known}: a turn at the radius {radius} lies beyond")]
     RadiusBeyondGap {
         /// The radius asked for.
         radius: f64,
@@ -54,7 +46,6 @@ pub enum PathError {
         known: f64,
     },
     /// More contacts, or points on them, than a state may have.
-    #[error("{error}, at the approach {approach}: turn before")]
     TooMany {
         /// Of what.
         error: AnnuliError,
@@ -62,16 +53,13 @@ pub enum PathError {
         approach: f64,
     },
     /// The gap is nowhere least.
-    #[error("the gap has no least value up to r = {searched}: the bodies never touch")]
     NeverTouches {
         /// How far it was searched, a length.
         searched: f64,
     },
     /// The turn is no number, or is none of this kind.
-    #[error("a turn at {0} is none")]
     BadTurn(f64),
     /// A state of adhesion with a range is not one disc in one zone.
-    #[error("at the approach {approach} and the force {force} {}", beyond_zone(*kind, &radius.to_string()))]
     BeyondZone {
         /// What else there is; `None` where one disc in one zone has no equilibrium.
         kind: Option<FaultKind>,
@@ -83,16 +71,13 @@ pub enum PathError {
         force: f64,
     },
     /// The table ends before what may come within range.
-    #[error("what lies up to r = {radius} is not known")]
     Unseen {
         /// How far it must be known, a length.
         radius: f64,
     },
     /// A state could not be computed.
-    #[error(transparent)]
     State(#[from] AnnuliError),
     /// Edges ran without landing.
-    #[error("at the control value {control_value} the edges did not land after {steps} steps")]
     NoLanding {
         /// c.
         control_value: f64,
@@ -100,13 +85,11 @@ pub enum PathError {
         steps: usize,
     },
     /// The curve was lost.
-    #[error("the equilibria could not be followed beyond the control value {control_value}")]
     Lost {
         /// c.
         control_value: f64,
     },
     /// More steps than there may be.
-    #[error("the loop takes more than {steps} steps: it reached the control value {control_value}")]
     TooLong {
         /// How many there may be.
         steps: usize,
@@ -114,22 +97,117 @@ pub enum PathError {
         control_value: f64,
     },
     /// The table of the gap could not be made.
-    #[error(transparent)]
     Table(TableError),
     /// It was no longer wanted.
-    #[error(transparent)]
     Stopped(#[from] Stopped),
 }
 
-/// What ends a path of one disc in one zone.
-pub(super) fn beyond_zone(kind: Option<FaultKind>, radius: &str) -> String {
+impl fmt::Display for PathError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words(&Printer::reduced()))
+    }
+}
+
+impl PathError {
+    /// Whether another value would do, of the turn, the load or the gap; else the computation itself failed.
+    #[must_use]
+    pub fn is_of_values(&self) -> bool {
+        !matches!(
+            self,
+            Self::State(_)
+                | Self::NoLanding { .. }
+                | Self::Lost { .. }
+                | Self::TooLong { .. }
+                | Self::Stopped(_)
+        )
+    }
+
+    /// What is wrong, in words.
+    #[must_use]
+    pub fn words(&self, printer: &Printer) -> String {
+        let at = |x| printer.control_value(x);
+        let length = |x| printer.length(x);
+        let force = |x| printer.force(x);
+        match *self {
+            Self::TurnBeforeTouch { turn, touch } => {
+                let (turn, touch) = (at(turn), at(touch));
+                format!("the loop would turn at {turn}, before the bodies touch: turn above {touch}")
+            }
+            Self::NoTension { load } => {
+                let (load, none) = (force(load), force(0.0));
+                format!(
+                    "without adhesion a dead load of {load} carries no contact: turn at a force above {none}"
+                )
+            }
+            Self::UnstableStart { contact_radius, searched } => {
+                let (start, searched) = (length(contact_radius), length(searched));
+                let under = printer.under_control();
+                format!(
+                    "the start state (contact radius {start}) is unstable{under} and no stable state lies outward up to the \
+                     contact radius {searched}"
+                )
+            }
+            Self::BeyondGap { radius, approach, force: load } => {
+                let (radius, approach, load) = (length(radius), length(approach), force(load));
+                format!(
+                    "the contact grew to r = {radius}, up to where the gap is known, at the approach {approach} and the force \
+                     {load}: turn before"
+                )
+            }
+            Self::RadiusBeyondGap { radius, known } => {
+                let (radius, known) = (length(radius), length(known));
+                format!(
+                    "a turn at the radius {radius} lies beyond the gap, which is known up to r = {known}: turn below that"
+                )
+            }
+            Self::TooMany { ref error, approach } => {
+                format!("{error}, at the approach {}: turn before", length(approach))
+            }
+            Self::BeyondZone { kind, radius, approach, force } => {
+                beyond_zone(kind, radius, [approach, force], printer)
+            }
+            Self::Unseen { radius } => format!("what lies up to r = {} is not known", length(radius)),
+            Self::NeverTouches { searched } => {
+                let searched = length(searched);
+                format!("the gap has no least value up to r = {searched}: the bodies never touch")
+            }
+            Self::BadTurn(turn) => format!("a turn at {turn} is none"),
+            Self::State(ref error) => error.words(printer),
+            Self::NoLanding { control_value, steps } => {
+                let value = at(control_value);
+                format!("at the control value {value} the edges did not land after {steps} steps")
+            }
+            Self::Lost { control_value } => {
+                let value = at(control_value);
+                format!("the equilibria could not be followed beyond the control value {value}")
+            }
+            Self::TooLong { steps, control_value } => {
+                let value = at(control_value);
+                format!(
+                    "the loop takes more than {steps} steps: it reached the control value {value}; turn earlier"
+                )
+            }
+            Self::Table(ref error) => error.words(printer),
+            Self::Stopped(stopped) => stopped.to_string(),
+        }
+    }
+}
+
+/// What ends a path of one disc in one zone at a state δ, P.
+pub(super) fn beyond_zone(
+    kind: Option<FaultKind>,
+    radius: f64,
+    [approach, force]: [f64; 2],
+    printer: &Printer,
+) -> String {
+    let (radius, approach, force) = (printer.length(radius), printer.length(approach), printer.force(force));
     let what = kind.map_or_else(
         || format!("no zone that ends at r = {radius} or a little beyond holds one disc of contact"),
-        |kind| kind.words(radius),
+        |kind| kind.words(&radius),
     );
     format!(
-        "{what}: adhesion with a range is computed for one disc of contact in one zone alone; a larger \
-         material.cohesive_strength, or less of a gap, keeps it so"
+        "at the approach {approach} and the force {force} {what}: adhesion with a range is computed for one disc of contact in \
+         one zone alone; a larger material.cohesive_strength, or less of a gap, keeps it so"
     )
 }
 
@@ -166,33 +244,27 @@ pub enum Warning {
     },
 }
 
-impl std::fmt::Display for Warning {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Digits { digits, control_value } => {
-                write!(f, "at the control value {control_value} edges are known to {digits:.1} digits only")
-            }
-            Self::Balance { share } => {
-                write!(
-                    f,
-                    "energies and areas differ by {share:.1e} of the losses or the work of loading, whichever is more"
-                )
-            }
-            Self::Area { event, share } => {
-                write!(
-                    f,
-                    "the loss of event {event} by area differs by {share:.1e} of it from that by energy"
-                )
-            }
-        }
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words(&Printer::reduced()))
     }
 }
 
-/// The control value from which a device must be counted, for messages.
-pub fn quantity(control: Control) -> &'static str {
-    match control {
-        Control::Displacement => "approach",
-        Control::Force => "force",
-        Control::Stiffness(_) => "displacement of the device",
+impl Warning {
+    /// The warning in words.
+    #[must_use]
+    pub fn words(&self, printer: &Printer) -> String {
+        match *self {
+            Self::Digits { digits, control_value } => {
+                let value = printer.control_value(control_value);
+                format!("at the control value {value} edges are known to {digits:.1} digits only")
+            }
+            Self::Balance { share } => format!(
+                "energies and areas differ by {share:.1e} of the losses or the work of loading, whichever is more"
+            ),
+            Self::Area { event, share } => {
+                format!("the loss of event {event} by area differs by {share:.1e} of it from that by energy")
+            }
+        }
     }
 }

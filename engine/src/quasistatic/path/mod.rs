@@ -18,10 +18,9 @@
 //! | [`stepped`] | steps along the equilibria, past corners, to what ends them |
 //! | [`jump`] | where edges land that run at held control |
 //! | [`event`] | events and states |
-//! | [`error`] | why there is none, and what is to be known about one |
+//! | [`error`] | why there is none, and what is to be known about one, in words |
 //! | [`setting`] | what a path is asked for, and what it answers |
 //! | `record` | what has happened so far |
-//! | `describe` | both in the user's units, in words |
 //! | [`lane`] | the equilibria of one disc, exactly |
 //! | `one_disc` | a path on them |
 //! | [`course`] | the loop |
@@ -34,7 +33,6 @@
 mod area;
 pub mod balance;
 pub mod course;
-mod describe;
 pub mod error;
 pub mod event;
 mod follow;

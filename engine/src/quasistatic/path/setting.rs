@@ -1,15 +1,13 @@
 //! What a path is asked for, and what it answers.
 
 use super::balance::HeldEdges;
-use super::describe::beyond_zone_at;
-use super::error::Warning;
+use super::error::{Warning, beyond_zone};
 use super::event::{Direction, Event, EventKind, PathState};
 use super::jump::{EVEN, Mobility};
-use crate::problem::{ContactKind, Control, Turn, Units};
+use crate::problem::{ContactKind, Control, Printer, Turn};
 use crate::quasistatic::State;
 use crate::quasistatic::curve::{CurveStop, Detail};
 use crate::quasistatic::energy::Losses;
-use crate::units::UnitSystem;
 use crate::zone::FaultKind;
 use std::fmt;
 
@@ -119,37 +117,21 @@ pub enum PathStop {
 }
 
 impl fmt::Display for PathStop {
-    /// Its numbers as they stand.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.words(&UnitSystem::Reduced))
+        f.write_str(&self.words(&Printer::reduced()))
     }
 }
 
 impl PathStop {
-    /// Why, with the numbers, which are in the user's units, as `shown` has them.
-    pub fn words(&self, shown: &UnitSystem) -> String {
+    /// Why, in words.
+    pub fn words(&self, printer: &Printer) -> String {
         match self {
             Self::Apart => "the bodies are apart".to_owned(),
             Self::End => "the end contact radius was reached in a stable state".to_owned(),
-            Self::Curve(stop) => format!("the curve ends: {}", stop.words(shown)),
+            Self::Curve(stop) => format!("the curve ends: {}", stop.words(printer)),
             Self::BeyondZone { kind, radius, approach, force } => {
-                beyond_zone_at(*kind, *radius, [*approach, *force], shown)
+                beyond_zone(*kind, *radius, [*approach, *force], printer)
             }
-        }
-    }
-
-    /// The same with its numbers in the user's units.
-    #[must_use]
-    pub fn in_units(self, units: &Units) -> Self {
-        match self {
-            Self::Curve(stop) => Self::Curve(stop.in_units(units)),
-            Self::BeyondZone { kind, radius, approach, force } => Self::BeyondZone {
-                kind,
-                radius: radius * units.length,
-                approach: approach * units.length,
-                force: force * units.force,
-            },
-            other => other,
         }
     }
 }
