@@ -2,7 +2,7 @@
 
 use super::error::CurveReadError;
 use super::header::{Header, is_way};
-use super::names::named;
+use super::names::{named, squashed};
 use super::role::{ColumnPlace, ColumnRole, ColumnSpec, ColumnSpecError, Said, Segment, unit_of};
 use crate::cells::ColumnHead;
 use crate::text::{quote, sanitize};
@@ -118,6 +118,9 @@ pub(super) fn wanted(
         None => Vec::new(),
     };
     let has = |is: &dyn Fn(ColumnRole) -> bool| wanted.iter().any(|column: &WantedColumn| is(column.role));
+    if spec.0.is_empty() && cells == 2 && !has(&is_force) && header.is_some_and(is_profile) {
+        return Err(CurveReadError::Profile { line, names: known() });
+    }
     for (is, missing) in [
         (&is_force as &dyn Fn(ColumnRole) -> bool, "force, or of the deflection"),
         (&is_way, "approach, of the position or of the contact radius"),
@@ -134,6 +137,17 @@ pub(super) fn wanted(
         return Err(CurveReadError::Unknown { line, cells, names: known() });
     }
     Ok(wanted)
+}
+
+/// Whether two columns are a profile of the gap: a radius, or any length, and a length.
+fn is_profile(header: &Header) -> bool {
+    let is_length =
+        |head: &ColumnHead| head.1.as_ref().is_some_and(|unit| unit_of(ColumnRole::Approach, unit).is_ok());
+    let is_radius = |head: &ColumnHead| ["r", "radius"].contains(&&*squashed(&head.0));
+    match &header.heads[..] {
+        [first, second] => is_length(first) && is_length(second) || is_radius(first) && second.1.is_none(),
+        _ => false,
+    }
 }
 
 /// The columns that a person names.

@@ -149,6 +149,17 @@ pub enum CurveReadError {
         /// The names of the header, safe to show.
         names: String,
     },
+    /// Two columns of lengths.
+    #[error(
+        "line {line}: the columns {names} are lengths, as of a profile: a profile belongs in gap.file; of a measured curve say \
+         what they are, as in --columns x=1,force=2"
+    )]
+    Profile {
+        /// The header.
+        line: usize,
+        /// The names of the header, safe to show.
+        names: String,
+    },
     /// A column that is needed is not there.
     #[error("line {line}: there is no column of the {missing}{}", if known.is_empty() { String::new() } else { format!("; there is {known}: say what they are, as in --columns x=1,force=2") })]
     Lacks {

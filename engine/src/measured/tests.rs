@@ -308,6 +308,22 @@ fn branches_beside_each_other_are_two_segments() {
 }
 
 #[test]
+fn a_profile_that_is_offered_as_a_curve_is_told_where_it_belongs() {
+    for header in ["r [um], h [nm]", "r, h", "radius, height", "x [um], z [nm]"] {
+        let text = format!("{header}\n") + &"1, 2\n".repeat(10);
+        let refused = parse(text.as_bytes(), &ColumnSpec::default()).unwrap_err().to_string();
+        assert!(refused.contains("line 1") && refused.contains("a profile belongs in gap.file"), "{refused}");
+        let said = ColumnSpec::parse("x=1 [um],force=2 [nN]").unwrap();
+        let is_read = parse((format!("{header}\n") + &"1, 2\n".repeat(10)).as_bytes(), &said).is_ok();
+        assert!(is_read, "{header}");
+    }
+    // A contact radius and no force lacks the force.
+    let text = "time [s], contact radius [um]\n".to_owned() + &"1, 2\n".repeat(10);
+    let refused = parse(text.as_bytes(), &ColumnSpec::default()).unwrap_err().to_string();
+    assert!(refused.contains("no column of the force"), "{refused}");
+}
+
+#[test]
 fn decimals_with_a_comma_and_units_below_the_header_are_read() {
     let rows = jkr(2e-5);
     let text = rows.iter().fold("delta;force;segment\n(um);(nN);\n".to_owned(), |text, (x, p, back)| {
