@@ -113,7 +113,7 @@ fn across(preset: &Preset) -> Vec<Invalid> {
     let Material { adhesion, work_of_adhesion, .. } = preset.material;
     if adhesion != Adhesion::ShortRange && preset.cohesion().is_none() {
         let needs = if work_of_adhesion > 0.0 {
-            "material.cohesive_strength, material.cohesive_range or material.range_of_action"
+            "material.cohesive_strength or material.cohesive_range, either of which chooses it too, or material.range_of_action"
         } else {
             "a material.work_of_adhesion above 0"
         };
