@@ -117,7 +117,7 @@ macro_rules! each_command {
         Rings "rings" "#" "rings" curve Nothing Screen
             "the same problem in the ring elements of the paper over the chart, or its exact solution over those; again: away"
             { words: "elements", look: look::in_rings }
-        Pins "pins" "P" "pins" pins Nothing Needs("the number of a pin, or all") "the pinned curves; Enter removes one"
+        Pins "pins" "P" "pins" pins Nothing Needs("the number of a pin, or all") "remove a pinned curve: the list says what each is of"
             { words: "remove unpin", takes: takes("number", pin).listing(pins_of) }
     }
     "Presets and files" {

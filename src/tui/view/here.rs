@@ -17,6 +17,9 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Paragraph;
 
+/// The largest difference from the exact state that is rounding alone.
+const ROUNDING: f64 = 1e-10;
+
 /// Draws the state of the walker.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
@@ -172,7 +175,7 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
         theme.glyph("→ outward", "> outward")
     };
     let mut lines = vec![
-        Line::from(pair(theme, " δ ", &shown(theme, node, Quantity::Length, state.approach, 5)).to_vec()),
+        Line::from(pair(theme, " δ ", &shown(theme, node, Quantity::Length, state.approach, 4)).to_vec()),
         Line::from(force),
         Line::from(radius),
         Line::from(flags),
@@ -193,10 +196,10 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
     if let Some(crest) = wave_index(s, wave) {
         last.extend(pair(theme, " crest ", &crest.to_string()));
     }
-    last.extend(pair(theme, " digits ", &fixed(node.digits, 1)));
+    last.extend(pair(theme, " digits ", &fixed(node.digits.floor(), 0)));
     lines.push(Line::from(last));
-    // Where there is room: what the basis' own estimate is worth.
-    if node.from_exact.is_finite() {
+    // What the basis' own estimate is worth; where there is nothing but rounding, the digits have said it.
+    if node.from_exact.is_finite() && node.from_exact.abs() > ROUNDING {
         lines.push(Line::from(pair(theme, " off exact ", &difference(node.from_exact)).to_vec()));
     }
     lines.extend(stiffness(theme, node));

@@ -48,9 +48,9 @@ fn arrange(app: &App, area: Rect, all: &[(Row, Option<Value>)]) -> Arranged {
     let onset = onset(app.theme, model).filter(|_| parameters.min(ABOVE) + groups.len() < height);
     groups.extend(onset);
     let rows = height - groups.len();
-    // By half a window at a time: a line at a time would send the whole list for every key.
-    let half = (rows / 2).max(1);
-    let first = (model.parameter + 1).saturating_sub(rows).div_ceil(half) * half;
+    // By a window less a line at a time: a line at a time would send the whole list for every key.
+    let page = rows.saturating_sub(1).max(1);
+    let first = (model.parameter + 1).saturating_sub(rows).div_ceil(page) * page;
     let first = first.min(parameters.saturating_sub(rows));
     Arranged { inner, parameters, first, rows, groups }
 }
@@ -62,7 +62,8 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let all = model.knobs();
     let Arranged { inner, parameters, first, rows, groups } = arrange(app, area, &all);
     let title = if rows < parameters {
-        format!("Problem {}/{}", model.parameter + 1, all.len())
+        // What is seen, not what is selected: a title that changed with every key would be sent with every key.
+        format!("Problem {}-{} of {}", first + 1, first + rows, all.len())
     } else {
         "Problem".to_owned()
     };

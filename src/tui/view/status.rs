@@ -56,10 +56,32 @@ pub fn offered(app: &App) -> Vec<(Id, &'static str)> {
         Id::Run,
         Id::About,
     ];
+    // In charts of values the walker is not seen: reading them comes before turning it round.
+    let reads = matches!(model.view, View::Study | View::Map) && model.panel != ScreenPanel::Charts;
+    let walk = walk
+        .into_iter()
+        .map(|(id, text)| if reads && id == Id::Reverse { word(Id::CrossHair) } else { (id, text) });
     // Whoever does not know a key looks for this one, so it stands where a narrow screen has room for it.
     let (first, more) = own.split_at(own.len().min(2));
     let own = first.iter().copied().chain([word(Id::Help)]).chain(more.iter().copied());
-    walk.into_iter().chain(own).chain(rest.map(word)).collect()
+    walk.chain(own).chain(rest.map(word)).collect()
+}
+
+/// The narrowest footer with two blanks between its words, and with the words of [`offered`].
+const WIDE: u16 = 60;
+
+/// What a narrow footer offers first: the walk, the way to all places and panels, the help.
+const NARROW: [(Id, &str); 5] = [
+    (Id::Step, "step"),
+    (Id::NextEvent, "event"),
+    (Id::Go, "go"),
+    (Id::NextPanel, "next"),
+    (Id::Help, "keys"),
+];
+
+/// The blanks between the words of a footer.
+fn between(width: u16) -> usize {
+    if width < WIDE { 1 } else { 2 }
 }
 
 /// Draws the status line and the footer.
@@ -83,7 +105,7 @@ pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
     let mut spans = vec![Span::raw(" ")];
     for word in words(app, footer.width) {
         spans.push(Span::styled(word.key, theme.key()));
-        spans.push(Span::raw(format!(" {}  ", word.text)));
+        spans.push(Span::raw(format!(" {}{}", word.text, " ".repeat(between(footer.width)))));
     }
     frame.render_widget(Line::from(spans), footer);
 }
@@ -106,9 +128,9 @@ pub struct FooterWord {
 }
 
 impl FooterWord {
-    /// Its columns, with a blank between and two behind.
+    /// Its columns, with a blank between.
     fn width(&self) -> usize {
-        self.key.chars().count() + self.text.chars().count() + 3
+        self.key.chars().count() + self.text.chars().count() + 1
     }
 }
 
@@ -132,7 +154,11 @@ fn words(app: &App, width: u16) -> Vec<FooterWord> {
             Home::ALL.into_iter().map(place).chain([in_list(back)]).collect()
         }
         None => {
-            offered(app).into_iter().filter(|(id, _)| is_available(&app.model, *id)).map(command).collect()
+            let first: &[(Id, &str)] = if width < WIDE { &NARROW } else { &[] };
+            let others =
+                offered(app).into_iter().filter(|(id, _)| first.iter().all(|(other, _)| other != id));
+            let all = first.iter().copied().chain(others);
+            all.filter(|(id, _)| is_available(&app.model, *id)).map(command).collect()
         }
         Some(Dialog::Prompt(Prompt { purpose: Purpose::Line { .. }, .. })) => {
             let take = FooterWord { key: "Tab".to_owned(), text: "take", does: Does::Key(KeyCode::Tab) };
@@ -152,10 +178,11 @@ fn words(app: &App, width: u16) -> Vec<FooterWord> {
             vec![yes, in_list(back)]
         }
     };
+    let between = between(width);
     let mut used = 1;
     let fits = |word: &FooterWord| {
-        used += word.width();
-        used <= usize::from(width) + 2
+        used += word.width() + between;
+        used <= usize::from(width) + between
     };
     all.into_iter().take_while(fits).collect()
 }
@@ -164,8 +191,8 @@ fn words(app: &App, width: u16) -> Vec<FooterWord> {
 pub fn word_at(app: &App, width: u16, column: u16) -> Option<Does> {
     let mut left = 1;
     words(app, width).into_iter().find_map(|word| {
-        let is_it = (left..left + word.width() - 2).contains(&usize::from(column));
-        left += word.width();
+        let is_it = (left..left + word.width()).contains(&usize::from(column));
+        left += word.width() + between(width);
         is_it.then_some(word.does)
     })
 }
