@@ -1,16 +1,16 @@
-//! Where a gap is not smooth, and Gauss's rule broken there.
+//! Where a gap is not smooth, and Gauss's rule split at those radii.
 //!
 //! Every sum over a disc of radius s is an integral in θ, r = s sin θ, 0 ≤ θ ≤ π/2. Between the knots of a gap its
-//! integrand is smooth, so a rule for each piece reaches rounding where one rule for all of them would gain digits only as
-//! a power of its nodes. A piece of width w, whose integrand has frequencies up to f in θ, has the half phase z = fw/2 and
-//! takes
+//! integrand is smooth, so a separate rule for each piece reaches rounding. One rule across all of them would converge
+//! only as a power of the number of nodes. A piece of width w, whose integrand has frequencies up to f in θ, has the
+//! half phase z = fw/2 and takes
 //!
 //! ```text
 //! n = z/2 + 5 z^{1/3} + 2      from  π (z/2)²ⁿ/(2n)! ≲ 1e-15,  the error of Gauss's rule for cos(zx) on (−1, 1)
 //! ```
 //!
-//! nodes. Where h runs like a broken power of r towards the axis, the first piece is taken in u, θ ∝ u⁵, which makes the
-//! integrand smooth enough, and the following ones are each as wide as the way to the axis.
+//! nodes. Where h behaves like a broken power of r near the axis, the first piece is taken in u, θ ∝ u⁵, which makes
+//! the integrand smooth enough. Each later piece is as wide as its distance from the axis.
 
 use crate::elementary::{asin, cbrt, pow, sin, sin_cos};
 use gauss_quad::GaussLegendre;
@@ -48,7 +48,7 @@ pub struct SmoothStretch {
     pub from: f64,
     /// The larger end.
     pub to: f64,
-    /// The knot at or below `from`, 0 where there is none: transforms of the gap are smooth in √(a − base) there.
+    /// The knot at or below `from`, or 0 if there is none: transforms of the gap are smooth in √(a − base) there.
     pub base: f64,
 }
 
@@ -62,8 +62,8 @@ impl<'a> Breaks<'a> {
 
     /// The stretches between the radii `from` and `to > from`, ascending.
     ///
-    /// What a disc of radius a feels of a knot at c < a is singular there, as a power of √(a − c); a disc that does not reach
-    /// it feels nothing.
+    /// What a disc of radius a feels of a knot at c < a is singular there, as a power of √(a − c). A disc that does not
+    /// reach the knot feels nothing of it.
     pub fn stretches(&self, from: f64, to: f64) -> impl DoubleEndedIterator<Item = SmoothStretch> + use<'a> {
         let inside = self.between(from, to);
         let below = self.knots.partition_point(|knot| *knot <= from);
@@ -76,20 +76,20 @@ impl<'a> Breaks<'a> {
     }
 }
 
-/// The highest frequency in θ of the sums over a cubic gap: h' cos²θ is of the fourth degree.
+/// The highest frequency in θ of the sums over a cubic gap: h' cos²θ is of fourth degree.
 pub const CUBIC_FREQUENCY: f64 = 4.0;
 
-/// The power of u in θ where the gap is a broken power of r.
+/// The power of u in θ where the gap is a broken power of r at the axis.
 const GRADING: f64 = 5.0;
 
-/// The phase of the piece that is taken in u, and its nodes.
+/// The phase of the piece that is taken in u, and its number of nodes.
 const GRADED_PHASE: f64 = 4.0;
 const GRADED_NODES: usize = 28;
 
-/// More nodes on a piece that begins as far from the axis as it is wide: there the broken power has a ρ of 5.8.
+/// Extra nodes on a piece that begins as far from the axis as it is wide: there the broken power has a ρ of 5.8.
 const NEAR_NODES: usize = 8;
 
-/// Rules up to this size are kept.
+/// Rules up to this number of nodes are kept.
 const KEPT: usize = 48;
 
 static RULES: LazyLock<Vec<Vec<(f64, f64)>>> = LazyLock::new(|| (1..=KEPT).map(rule).collect());
@@ -99,15 +99,15 @@ fn rule(nodes: usize) -> Vec<(f64, f64)> {
     GaussLegendre::new(NonZeroUsize::new(nodes).unwrap_or(NonZeroUsize::MIN)).as_node_weight_pairs().to_vec()
 }
 
-/// The nodes a piece of this half phase takes.
+/// The number of nodes that a piece of this half phase takes.
 fn nodes(z: f64) -> usize {
-    // Positive and some thousand at most.
+    // Positive, and a few thousand at most.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let nodes = (0.5 * z + 5.0 * cbrt(z) + 2.0).ceil() as usize;
     nodes
 }
 
-/// Gauss's nodes in θ on (0, π/2), broken at the knots of a gap.
+/// Gauss's nodes in θ on (0, π/2), split at the knots of a gap.
 #[derive(Debug, Clone, Default)]
 pub struct Angles {
     /// sin θ, ascending.
@@ -136,7 +136,7 @@ impl Angles {
         angles
     }
 
-    /// The rule from `from` to `to`, with `more` nodes than its phase takes.
+    /// Adds the rule from `from` to `to`, with `more` nodes beyond what its phase takes.
     fn piece(&mut self, from: f64, to: f64, frequency: f64, more: usize) {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         if half > 0.0 {
@@ -144,7 +144,7 @@ impl Angles {
         }
     }
 
-    /// The rules from the axis to `to`, or as near to it as broken powers matter; returns how far.
+    /// Adds the rules from the axis as far as broken powers matter, at most to `to`; returns how far that is.
     fn graded(&mut self, to: f64, frequency: f64) -> f64 {
         let inner = to.min(GRADED_PHASE / frequency);
         self.add(GRADED_NODES, |x| {
@@ -160,7 +160,7 @@ impl Angles {
         to
     }
 
-    /// Nodes at the θ that `at` makes of those on (−1, 1), with dθ/dx.
+    /// Adds nodes at the θ that `at` maps those on (−1, 1) to, with dθ/dx.
     fn add(&mut self, nodes: usize, at: impl Fn(f64) -> (f64, f64)) {
         let fresh;
         let rule = if let Some(rule) = RULES.get(nodes - 1) {
@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn pieces_of_any_width_reach_rounding() {
-        // ∫ cos fθ dθ over many pieces, narrow ones among them.
+        // ∫ cos fθ dθ over many pieces, some of them narrow.
         let knots: Vec<f64> = (1..200).map(|i| 0.9 * (f64::from(i) / 200.0).powi(3)).collect();
         for (frequency, s) in [(4.0, 1.0), (4.0, 0.3), (60.0, 0.7), (900.0, 1.0)] {
             let angles = Angles::new(Breaks { knots: &knots, ..Breaks::default() }, s, frequency);

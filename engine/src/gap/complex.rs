@@ -94,7 +94,7 @@ impl Mul<f64> for Complex {
     }
 }
 
-/// The largest |f| at many places of the disc, most of them on its rim, where an analytic function is largest.
+/// The largest |f| at many points of the disc, most of them on its rim, where an analytic function is largest.
 pub fn largest_on(centre: f64, radius: f64, f: impl Fn(Complex) -> Complex) -> f64 {
     (0..240)
         .map(|k| {

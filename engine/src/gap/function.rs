@@ -1,4 +1,4 @@
-//! What the numerics ask of a gap.
+//! What the numerics need from a gap.
 
 use super::breaks::Breaks;
 use crate::elementary::pow;
@@ -20,7 +20,7 @@ pub struct Jet {
 }
 
 impl Jet {
-    /// What a gap answers where it is not known.
+    /// The jet a gap returns where it is not known.
     pub const UNKNOWN: Self = Self { value: f64::NAN, first: f64::NAN, second: f64::NAN, third: f64::NAN };
 }
 
@@ -46,7 +46,8 @@ pub struct Piece {
     pub slope: [f64; 3],
 }
 
-/// What is known of a gap as a function, beyond its values: transforms of some are found faster, or in closed form.
+/// What is known about a gap as a function, beyond its values. Transforms of some forms are found faster, or in closed
+/// form.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Form {
     /// Nothing.
@@ -58,7 +59,7 @@ pub enum Form {
         /// n.
         exponent: f64,
     },
-    /// A paraboloid h'' = `curvature` with waves.
+    /// A paraboloid, h'' = `curvature`, with waves.
     Waves {
         /// 1/R.
         curvature: f64,
@@ -76,11 +77,12 @@ pub struct ComplexDisc {
     pub centre: f64,
     /// Its radius R.
     pub radius: f64,
-    /// A real radius r: of abs, min, max, sign, step the branch that holds there is meant, continued over the disc.
+    /// A real radius r. It selects the branch of abs, min, max, sign and step: the one that holds at r, continued over
+    /// the disc.
     pub branch: f64,
 }
 
-/// The most breaks of one gap.
+/// The largest number of breaks of one gap.
 pub const MOST_BREAKS: usize = 100_000;
 
 /// An axisymmetric initial gap h(r) between the undeformed bodies, with h(0) = 0.
@@ -88,16 +90,16 @@ pub trait Gap: Debug + Send + Sync {
     /// The gap and its derivatives at the radius `r ≥ 0`.
     fn jet(&self, r: f64) -> Jet;
 
-    /// h at the radii s·x for every x of `nodes`, into a slice as long as they are.
+    /// h at the radii s·x for every x of `nodes`, into a slice of the same length.
     ///
-    /// Sums over the gap ask for many radii at once: a gap that answers them together says so here.
+    /// Sums over the gap need many radii at once. A gap that can compute them together overrides this.
     fn values(&self, s: f64, nodes: &[f64], values: &mut [f64]) {
         for (value, x) in values.iter_mut().zip(nodes) {
             *value = self.jet(s * x).value;
         }
     }
 
-    /// h', h'' and h''' at the radii s·x for every x of `nodes`, each into a slice as long as they are.
+    /// h', h'' and h''' at the radii s·x for every x of `nodes`, each into a slice of the same length.
     fn derivatives(&self, s: f64, nodes: &[f64], [first, second, third]: [&mut [f64]; 3]) {
         for (((first, second), third), x) in first.iter_mut().zip(second).zip(third).zip(nodes) {
             let jet = self.jet(s * x);
@@ -107,18 +109,18 @@ pub trait Gap: Debug + Send + Sync {
 
     /// The shortest wave of the gap, or `None` when it has none.
     ///
-    /// Step lengths and mesh warnings are measured by it.
+    /// Step lengths and mesh warnings are based on it.
     fn feature_length(&self) -> Option<f64>;
 
-    /// λ of a gap with one wave alone, whose crests are at r = mλ; `None` for every other, where s over the shortest
-    /// wave counts no crests.
+    /// λ of a gap with a single wave, whose crests are at r = mλ. `None` for every other gap, where s divided by the
+    /// shortest wave counts no crests.
     fn wavelength(&self) -> Option<f64> {
         None
     }
 
     /// Where the gap is not smooth.
     ///
-    /// Sums over it, in a disc or along the curve, are broken there.
+    /// Sums over it, in a disc or along the curve, are split there.
     fn breaks(&self) -> Breaks<'_> {
         Breaks::default()
     }
@@ -126,7 +128,8 @@ pub trait Gap: Debug + Send + Sync {
     /// An upper bound of |h'| on `disc` for the analytic continuation of the smooth piece that holds at its `branch`;
     /// infinite where there is no bound: a pole or a branch point.
     ///
-    /// `None`: the gap promises nothing about complex radii. How finely it must be divided is then judged by samples.
+    /// `None` means that the gap promises nothing about complex radii. How finely it must be divided is then judged
+    /// from samples.
     fn slope_bound(&self, disc: ComplexDisc) -> Option<f64> {
         let _ = disc;
         None
@@ -134,17 +137,18 @@ pub trait Gap: Debug + Send + Sync {
 
     /// All radii above 0 and below `to` where h or a derivative may jump, ascending, to the last bit.
     ///
-    /// Some may be superfluous, none is missing, except where a gap has more than [`MOST_BREAKS`].
+    /// Some may be superfluous, but none is missing unless the gap has more than [`MOST_BREAKS`].
     fn breaks_up_to(&self, to: f64) -> Vec<f64> {
         self.breaks().between(0.0, to).to_vec()
     }
 
-    /// What is known of it as a function.
+    /// What is known about it as a function.
     fn form(&self) -> Form {
         Form::Any
     }
 
-    /// The name of the first function in the gap whose slope over complex discs has no rule: the gap is then not certified.
+    /// The name of the first function in the gap that has no rule for its slope over complex discs. The gap is then not
+    /// certified.
     fn uncertified(&self) -> Option<&'static str> {
         None
     }
@@ -154,7 +158,7 @@ pub trait Gap: Debug + Send + Sync {
 
     /// The radius beyond which the gap is not known, or `None` when it is known everywhere.
     ///
-    /// Jets beyond it are NaN throughout, so that nothing computed from them can pass for a result.
+    /// Jets beyond it are NaN throughout, so nothing computed from them can be mistaken for a result.
     fn largest_radius(&self) -> Option<f64> {
         None
     }
@@ -169,7 +173,7 @@ pub struct Scaled<G> {
 }
 
 impl<G: Gap> Scaled<G> {
-    /// The gap `gap`, lengths divided by `length`.
+    /// The gap `gap` with lengths divided by `length`.
     pub fn new(gap: G, length: f64) -> Self {
         let knots = gap.breaks().knots.iter().map(|knot| knot / length).collect();
         Self { gap, length, knots }
@@ -263,7 +267,7 @@ impl<G: Gap> Gap for Scaled<G> {
     }
 }
 
-/// The smallest r̃ with L r̃ ≥ r, as rounded: a break stays on the same side of what lies beside it.
+/// The smallest r̃ whose rounded L r̃ is ≥ r: a break stays on the same side of what lies beside it.
 fn first_beyond(r: f64, length: f64) -> f64 {
     let mut scaled = r / length;
     while length * scaled < r {
@@ -325,7 +329,7 @@ impl<G: Gap + ?Sized> Gap for std::sync::Arc<G> {
     }
 }
 
-/// The crest at which an edge of radius `s` sits: floor(s/λ + ½); crests are at r = mλ.
+/// The index of the crest at which an edge of radius `s` sits: floor(s/λ + ½). Crests are at r = mλ.
 pub fn wave_index(s: f64, wavelength: Option<f64>) -> Option<u64> {
     // s/λ is positive and far below 2^53.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]

@@ -2,7 +2,7 @@
 
 use wide::f64x4;
 
-/// Calls `function` on `nodes`, four at a time, and puts its K results into the K slices, as long as `nodes`.
+/// Calls `function` on `nodes`, four at a time, and writes its K results into the K slices, each as long as `nodes`.
 pub fn map_lanes<const K: usize>(
     nodes: &[f64],
     mut into: [&mut [f64]; K],

@@ -1,14 +1,14 @@
-//! The gap between the undeformed bodies: r → h(r), its derivatives, and what is known of it as a function.
+//! The gap between the undeformed bodies: r → h(r), its derivatives, and what is known about it as a function.
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`function`] | what the numerics ask of a gap: r → (h, h', h'', h''') |
-//! | [`breaks`] | where a gap is not smooth, and Gauss's rule broken there |
+//! | [`function`] | what the numerics need from a gap: r → (h, h', h'', h''') |
+//! | [`breaks`] | where a gap is not smooth, and Gauss's rule split at those radii |
 //! | `lanes` | functions of many radii, four at a time |
-//! | [`shape`] | the gap shapes a person can choose |
+//! | [`shape`] | the gap shapes a user can choose |
 //! | [`shapes`] | one file per gap: its formula, its derivatives, its lengths |
 //! | [`formula`] | gaps typed as formulas in r |
-//! | [`panels`] | panels on which the slope of a gap is proved to be resolved |
+//! | [`panels`] | panels on which the slope of a gap is provably resolved |
 
 pub mod breaks;
 #[cfg(test)]

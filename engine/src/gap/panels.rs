@@ -1,20 +1,22 @@
-//! Panels in the radius on which a gap's slope is proved to be resolved.
+//! Panels in the radius on which a gap's slope is provably resolved.
 //!
-//! Transforms of a gap are tabulated as Chebyshev series of [`NODES`] nodes on panels. A function that is bounded by M on
-//! the ellipse ρ = 4 about a panel leaves (4/3) M 4⁻ⁿ, and a disc of radius 2.125 d about the middle of a panel of half
-//! width d holds that ellipse. A panel is accepted where
+//! Transforms of a gap are tabulated on panels as Chebyshev series of [`NODES`] nodes. A function that is bounded by M
+//! on the ellipse ρ = 4 about a panel leaves an error of (4/3) M 4⁻ⁿ. For a panel of half width d, that ellipse lies in
+//! the disc of radius 2.125 d about its middle. A panel is accepted where
 //!
 //! ```text
 //! M = max |h'| on that disc  ≤  20 max |h'| on [0, hi],
 //! ```
 //!
-//! by the gap's own bound of M ([`Gap::slope_bound`]): nothing between nodes is missed. What is sampled is the right side
-//! alone, where too little asks for narrower panels. A gap without such bounds is judged by its last coefficients.
+//! with M from the gap's own bound ([`Gap::slope_bound`]), so nothing between the nodes is missed. Only the right side
+//! is sampled; an underestimate there only makes the panels narrower. A gap without such bounds is judged by its last
+//! coefficients.
 //!
-//! Right of a break at b, up to the next, the variable is y = √(a − b): the transform is A(y²) + y B(y²) there, whatever
-//! jumps at b. A disc of radius ρ about y is one of radius 2yρ + ρ² about b + y². Where it reaches beyond y = 0, the
-//! slope of the left side is continued around b, so that it is bounded there too, and the break before must stay out.
-//! Left of a break nothing is needed. The innermost panel is taken in u, r = hi u⁵, which costs a broken power nothing.
+//! Between a break at b and the next one, the variable is y = √(a − b): the transform is A(y²) + y B(y²) there,
+//! whatever jumps at b. A disc of radius ρ about y becomes one of radius 2yρ + ρ² about b + y². Where the disc reaches
+//! beyond y = 0, the slope of the left side is continued around b. It must then be bounded there too, and the disc must
+//! not reach the previous break. Left of a break nothing is needed. The innermost panel is taken in u, r = hi u⁵, so
+//! that a broken power costs nothing.
 
 use super::function::{ComplexDisc, Gap};
 use crate::elementary::cos;
@@ -25,36 +27,36 @@ use thiserror::Error;
 /// Nodes of the series on a panel.
 pub const NODES: usize = 24;
 
-/// The most panels.
+/// The largest number of panels.
 const MOST: usize = 20_000;
 
 /// The long half axis of the ellipse ρ = 4 about (−1, 1).
 const REACH: f64 = 2.125;
 
-/// How much larger the slope may be on the disc than on the way to it.
+/// How many times larger the slope may be on the disc than on [0, hi].
 const GROWTH: f64 = 20.0;
 
-/// The share of the largest slope below which slopes are as good as that.
+/// Slopes below this share of the largest slope count as this share of it.
 const FLOOR: f64 = 1e-10;
 
-/// How near the break before may come, as a share of its distance.
+/// How far a disc may reach beyond a break, as a share of the distance to the previous break.
 const CLEAR: f64 = 0.9;
 
 /// The narrowest panel, as a share of the largest radius.
 const NARROWEST: f64 = 1e-15;
 
-/// The first panels end at the largest radius over the powers of this.
+/// The first panels end at the largest radius divided by powers of this number.
 const FIRST: f64 = 4.0;
 
-/// Radii at which the largest slope is looked for, and those in one panel.
+/// The number of radii searched for the largest slope: over the whole range, and in one panel.
 const COARSE: usize = 256;
 const FINE: usize = 8;
 
-/// What the last coefficients of a gap without bounds may be, and how many they are.
+/// How large the last coefficients of a gap without bounds may be, and how many of them are looked at.
 const TAIL: f64 = 1e-13;
 const LAST: usize = 4;
 
-/// How radius is measured on a panel.
+/// How the radius is measured on a panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Variable {
     /// r = hi·u⁵, u in 0..1: the innermost panel.
@@ -75,7 +77,7 @@ pub struct Span {
     pub lo: f64,
     /// Its larger radius.
     pub hi: f64,
-    /// How radius is measured on it.
+    /// How the radius is measured on it.
     pub variable: Variable,
 }
 
@@ -87,7 +89,7 @@ pub struct Unresolved {
     pub radius: f64,
     /// The largest radius asked for.
     pub largest: f64,
-    /// The most panels there may be.
+    /// The largest number of panels allowed.
     pub panels: f64,
 }
 
@@ -106,10 +108,10 @@ impl Unresolved {
 /// Panels from `from`, 0 or the end of a panel, to `to`, on which the slope of `gap` is resolved by [`NODES`] nodes.
 ///
 /// `smallest` is the smallest radius that matters: the innermost panel ends there, or at the first break. `breaks` are
-/// those of the gap up to `to`, ascending.
+/// the breaks of the gap up to `to`, ascending.
 ///
 /// # Errors
-/// More than 20 000 panels, and at which radius.
+/// More than 20 000 panels; the error names the radius reached.
 pub fn divide(
     gap: &dyn Gap,
     [from, to]: [f64; 2],
@@ -162,15 +164,15 @@ fn borders([from, first]: [f64; 2], to: f64, smallest: f64) -> Vec<(f64, f64)> {
 struct Divider<'a> {
     gap: &'a dyn Gap,
     to: f64,
-    /// The largest slope on the way so far.
+    /// The largest slope so far.
     steepest: f64,
-    /// Smaller slopes are as good as this one.
+    /// Smaller slopes count as this one.
     floor: f64,
     spans: Vec<Span>,
 }
 
 impl Divider<'_> {
-    /// The panels from `lo` to `hi`, between breaks; `before` is the break before the base of the variable.
+    /// Adds the panels from `lo` to `hi`, between breaks; `before` is the break before the base of the variable.
     fn stretch(&mut self, lo: f64, hi: f64, variable: Variable, before: f64) -> Result<(), Unresolved> {
         let mut open = vec![(lo, hi)];
         while let Some((lo, hi)) = open.pop() {
@@ -196,7 +198,7 @@ impl Divider<'_> {
         Ok(())
     }
 
-    /// Whether the nodes resolve the slope on this panel, where slopes up to `steepest` come before it or in it.
+    /// Whether the nodes resolve the slope on this panel; `steepest` is the largest slope before the panel or in it.
     fn is_resolved(&self, span: Span, before: f64, steepest: f64) -> bool {
         let Span { lo, hi, variable } = span;
         let allowed = GROWTH * steepest;
@@ -206,7 +208,7 @@ impl Divider<'_> {
         let resolved = if let Variable::Root { base } = variable {
             let [from, to] = [lo, hi].map(|r| (r - base).sqrt());
             let (middle, reach) = (0.5 * (from + to), REACH * 0.5 * (to - from));
-            // The largest |y|² beyond y = 0.
+            // The largest |y|² on the far side of y = 0.
             let around = reach * reach - middle * middle;
             if around >= CLEAR * (base - before) {
                 return false;
@@ -226,7 +228,7 @@ impl Divider<'_> {
         resolved.unwrap_or_else(|| self.has_no_tail(span, steepest))
     }
 
-    /// Whether the last coefficients of the slope on this panel are rounding.
+    /// Whether the last coefficients of the slope on this panel are no more than rounding.
     fn has_no_tail(&self, Span { lo, hi, variable }: Span, steepest: f64) -> bool {
         let angle = |k: usize| PI * (k as f64 + 0.5) / NODES as f64;
         let radius = |k: usize| {
@@ -281,7 +283,7 @@ mod tests {
         Formula::parse(text).unwrap().bind(&[]).unwrap().over(to).unwrap()
     }
 
-    /// A gap that counts how often a bound of it is asked for, or has none.
+    /// A gap that counts how often it is asked for a bound, or one that has no bounds.
     #[derive(Debug)]
     struct Counted {
         gap: FormulaGap,
@@ -324,7 +326,7 @@ mod tests {
         (spans, gap.asked.into_inner())
     }
 
-    /// Each panel begins where the one before ends.
+    /// Each panel begins where the previous one ends.
     fn check_neighbours(spans: &[Span]) {
         let ends: Vec<f64> = spans[..spans.len() - 1].iter().map(|span| span.hi).collect();
         let starts: Vec<f64> = spans[1..].iter().map(|span| span.lo).collect();
@@ -345,7 +347,8 @@ mod tests {
         r.clamp(lo.next_up(), hi.next_down())
     }
 
-    /// The largest difference of h' and its interpolant, over the largest |h'| up to there and over `least`.
+    /// The largest difference between h' and its interpolant, relative to the largest |h'| up to there, or to `least`
+    /// if larger.
     fn error(gap: &dyn Gap, spans: &[Span], least: f64) -> f64 {
         let node = |k: usize| (PI * (k as f64 + 0.5) / NODES as f64).cos();
         let slope = |span: Span, x: f64| gap.jet(radius(span, x)).first;
@@ -408,11 +411,11 @@ mod tests {
         ] {
             let (spans, _) = divided(text, 0.5, true);
             assert!(spans.len() <= most, "{text}: {} panels", spans.len());
-            // A broken power in the innermost panel is smooth in u only to some order.
+            // In the innermost panel a broken power is smooth in u only to some order.
             let spans: Vec<Span> =
                 spans.into_iter().filter(|span| span.variable != Variable::Fifth).collect();
-            // Beside a branch point the last panels are a few units in the last place of r wide, and y, which is the
-            // slope there, is known to a root of that.
+            // Beside a branch point the last panels are a few units in the last place of r wide. The slope there is y,
+            // which is known only to the square root of that.
             let (allowed, least) = if text.contains("^1.5") { (3e-8, 0.1) } else { (2e-12, 1e-300) };
             let worst = error(&gap(text, 0.5), &spans, least);
             assert!(worst <= allowed, "{text}: {worst:e}");

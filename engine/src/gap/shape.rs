@@ -1,4 +1,4 @@
-//! The gap shapes a person can choose.
+//! The gap shapes a user can choose.
 
 use super::breaks::Breaks;
 use super::formula::TypedGap;
@@ -32,7 +32,7 @@ pub enum Shape {
         /// Wavelength λ, a length.
         wavelength: f64,
     },
-    /// The sphere itself, h = R − √(R² − r²).
+    /// The exact sphere, h = R − √(R² − r²).
     ExactSphere(ExactSphere),
     /// The cone h = c r, by its slope c.
     Cone {
@@ -45,7 +45,7 @@ pub enum Shape {
     Harmonics(Arc<Harmonics>),
     /// A paraboloid with waves drawn from a power law.
     RandomWaves {
-        /// What they are drawn from.
+        /// The parameters from which they are drawn.
         spectrum: RandomWaves,
         /// The waves drawn.
         drawn: Arc<Harmonics>,
@@ -60,7 +60,7 @@ impl Shape {
     /// The waves of `spectrum`.
     ///
     /// # Errors
-    /// [`RandomWavesError`] with the number that is out of range.
+    /// [`RandomWavesError`], naming the number that is out of range.
     pub fn random_waves(spectrum: RandomWaves) -> Result<Self, RandomWavesError> {
         Ok(Self::RandomWaves { spectrum, drawn: Arc::new(spectrum.harmonics()?) })
     }
@@ -80,8 +80,8 @@ impl Shape {
         }
     }
 
-    /// R, where the shape has one: of the sphere, of the paraboloid it is built on, the parameter `R` of a formula, of
-    /// the paraboloid nearest to a profile.
+    /// R, where the shape has one: of the sphere, of the paraboloid the shape is built on, the parameter `R` of a
+    /// formula, or of the paraboloid nearest to a profile.
     pub fn radius_of_curvature(&self) -> Option<f64> {
         match self {
             Self::Sphere { radius_of_curvature } | Self::WavySphere { radius_of_curvature, .. } => {
@@ -96,8 +96,8 @@ impl Shape {
         }
     }
 
-    /// The length by which the problem is reduced: R, else the radius where h = r/2, as for a paraboloid h(R) = R/2, else
-    /// the extent of a profile. A cone has none.
+    /// The length by which the problem is reduced: R; otherwise the radius where h = r/2, as for a
+    /// paraboloid, h(R) = R/2; otherwise the extent of a profile. A cone has none.
     pub fn length(&self) -> Option<f64> {
         self.radius_of_curvature().or_else(|| match self {
             Self::PowerLaw(law) if law.exponent >= NEARLY_A_CONE => Some(law.reference_length()),
@@ -107,7 +107,7 @@ impl Shape {
         })
     }
 
-    /// Amplitude A and wavelength λ, where the shape has one wave: the paper's.
+    /// Amplitude A and wavelength λ, where the shape has a single wave: the paper's wavy sphere.
     pub fn wave(&self) -> Option<(f64, f64)> {
         match *self {
             Self::WavySphere { amplitude, wavelength, .. } => Some((amplitude, wavelength)),
@@ -115,7 +115,7 @@ impl Shape {
         }
     }
 
-    /// Amplitude and wavelength of each of its waves, where it is a paraboloid with waves.
+    /// Amplitude and wavelength of each wave, where the shape is a paraboloid with waves.
     pub fn waves(&self) -> Vec<(f64, f64)> {
         match self {
             Self::WavySphere { amplitude, wavelength, .. } => vec![(*amplitude, *wavelength)],
@@ -126,7 +126,7 @@ impl Shape {
         }
     }
 
-    /// What was changed in the gap without being asked for, in words with numbers as `units` show them.
+    /// What was changed in the gap without the user asking for it, in words, with numbers as `units` show them.
     pub fn notes(&self, units: &UnitSystem) -> Vec<String> {
         match self {
             Self::Formula(typed) => typed
@@ -142,7 +142,7 @@ impl Shape {
             Self::Profile(measured) => {
                 let rows = measured.rows();
                 let mut notes = rows.notes.clone();
-                // Data that come with the program are of presets that say it.
+                // The presets that use data shipped with the program already say so.
                 let unit = rows.unit.as_ref().filter(|_| *units == UnitSystem::Reduced && !rows.is_shipped());
                 notes.extend(unit.map(|unit| {
                     format!(
@@ -158,7 +158,7 @@ impl Shape {
         }
     }
 
-    /// What else is worth knowing of the gap, likewise.
+    /// What else is worth knowing about the gap, in the same form.
     pub fn remarks(&self, units: &UnitSystem) -> Vec<String> {
         match self {
             Self::Profile(measured) => measured.profile().remarks(units),
@@ -166,7 +166,7 @@ impl Shape {
         }
     }
 
-    /// The gap where it is not one of the paper's two, which are computed here.
+    /// The gap, unless it is one of the paper's two, which are computed here.
     fn other(&self) -> Option<ShapeGap<'_>> {
         Some(match self {
             Self::Sphere { .. } | Self::WavySphere { .. } => return None,
@@ -185,7 +185,7 @@ impl Shape {
     }
 }
 
-/// A gap computed in a file of its own.
+/// A gap that is computed in its own file.
 enum ShapeGap<'a> {
     Ref(&'a dyn Gap),
     Cone(PowerLaw),
@@ -211,7 +211,7 @@ impl Gap for Shape {
         if let Some((amplitude, wavelength)) = self.wave() {
             let q = TAU / wavelength;
             let (sin, cos) = sin_cos(q * r);
-            // 1 − cos x = 2 sin²(x/2): keeps its digits near the axis, where h matters as a difference.
+            // 1 − cos x = 2 sin²(x/2) keeps its digits near the axis, where h matters as a difference.
             let half = elementary::sin(0.5 * q * r);
             jet.value += 2.0 * amplitude * half * half;
             jet.first += amplitude * q * sin;
@@ -262,7 +262,7 @@ impl Gap for Shape {
     }
 
     fn wavelength(&self) -> Option<f64> {
-        // A wave without amplitude is no feature: the mesh and the steps need not resolve it.
+        // A wave without amplitude is no feature: mesh and steps need not resolve it.
         self.wave().filter(|(amplitude, _)| *amplitude > 0.0).map(|(_, wavelength)| wavelength)
     }
 
@@ -364,7 +364,7 @@ mod tests {
         let nodes: Vec<f64> = (0..23).map(|i| f64::from(i) / 22.0).collect();
         let wave = Shape::WavySphere { radius_of_curvature: 0.8, amplitude: 0.003, wavelength: 0.07 };
         for shape in [Shape::Sphere { radius_of_curvature: 1.7 }, wave] {
-            // In another unit of length as well.
+            // The same in another unit of length.
             let gap = Scaled::new(shape.clone(), 0.3);
             let s = 4.1;
             let mut found = [(); 4].map(|()| vec![f64::NAN; nodes.len()]);
@@ -377,7 +377,7 @@ mod tests {
                 let size = jets.iter().map(|jet| column(jet).abs()).fold(0.0, f64::max);
                 for ((jet, found), x) in jets.iter().zip(found).zip(&nodes) {
                     let off = (column(jet) - found).abs();
-                    // A wave of phase 110 has lost two digits of its argument either way.
+                    // At a phase of 110 a wave has lost two digits of its argument either way.
                     assert!(off <= 1e-13 * size, "{gap:?} x={x} derivative {k}: off by {off:e}");
                 }
             }
@@ -394,7 +394,7 @@ mod tests {
         assert_eq!(flat.jet(0.3), Shape::Sphere { radius_of_curvature: 1.0 }.jet(0.3));
     }
 
-    /// h' at a complex radius, of the piece that holds at a real one.
+    /// h' at a complex radius, for the piece that holds at a real one.
     type Slope<'a> = Box<dyn Fn(Complex, f64) -> Complex + 'a>;
 
     #[test]
@@ -445,7 +445,7 @@ mod tests {
                     largest <= most * (1.0 + 1e-12) || most.is_infinite(),
                     "{gap:?} {centre} {radius}: {largest} {most}"
                 );
-                // A small disc is hardly more than its centre.
+                // A small disc is little more than its centre.
                 if radius < 1e-3 && most.is_finite() {
                     assert!(most <= 1.01 * largest + 0.01, "{gap:?} {centre} {radius}: {largest} {most}");
                 }
@@ -473,7 +473,7 @@ mod tests {
             assert!((ours.unwrap() / exact.unwrap() - 1.0).abs() < 1e-14);
             assert_eq!(scaled.uncertified(), None);
         }
-        // Beyond what was searched at first.
+        // Beyond the range searched at first.
         assert_eq!(shape.breaks_up_to(100.0), [0.3, 0.7]);
     }
 }

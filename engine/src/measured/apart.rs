@@ -1,41 +1,43 @@
-//! The jump behind which the bodies are apart, looked for in as many rows as the noise asks for.
+//! The jump behind which the bodies are apart, searched for over as many rows as the noise requires.
 //!
 //! ```text
 //! D_w(j) = mean of w rows from j on − mean of the w rows before,     z = D_w/(σ √(2/w)),     w = 1, 2, 4, …
 //! ```
 //!
-//! The rows run from the contact to the free end. σ is what neighbours show. The force behind a jump is a line that hardly rises: a
-//! record that ends at its last contact has no such rows, for there the force rises ever faster.
+//! The rows run from the contact to the free end. σ is estimated from neighbouring rows. Behind a jump the force is a
+//! line that hardly rises. A record that ends at its last contact has no such rows, because the force there rises ever
+//! faster.
 
 use super::noise::{FLOOR, median, range, scatter_over};
 
-/// A jump is so many deviations of its own noise.
+/// A jump is at least this many deviations of its own noise.
 const SURE: f64 = 6.0;
-/// Rows on either side, at least; behind the jump of few rows in all, at least.
+/// The fewest rows on either side, and the fewest behind the jump when there are few rows in all.
 const FEWEST: usize = 3;
 const BEHIND: usize = 2;
 const FEW: usize = 40;
-/// It is so many times the scatter behind it, and what the force goes on there is at most this share of it.
+/// A jump is at least this many times the scatter behind it, and the force behind it changes by at most this share of
+/// the jump.
 const CLEAR: f64 = 3.0;
 const GOES_ON: f64 = 0.5;
-/// Rows that are off by so many σ from the median of five, and by so many times the range of the other four, are set to it: a force that
-/// falls and jumps within a few rows has no outliers.
+/// Rows that are off by this many σ from the median of five, and by this many times the range of the other four, are
+/// set to that median. A force that falls and jumps within a few rows has no outliers.
 const OFF: f64 = 5.0;
 const ALONE: f64 = 2.0;
-/// Of rises that are larger than those beside them so many are looked at, the largest first.
+/// Of the rises that are larger than their neighbours, this many are examined, the largest first.
 const TRIED: usize = 8;
-/// Of fewer rows than this neighbours do not tell noise from what the force goes on: a jump is then a rise by so many times the range of the
-/// rows behind it, and by this share of the whole range.
+/// With fewer rows than this, neighbours do not distinguish noise from a changing force. A jump is then a rise by this
+/// many times the range of the rows behind it, and by this share of the whole range.
 pub(crate) const SPARSE: usize = 20;
 const OF_FEW: f64 = 4.0;
 const OF_RANGE: f64 = 0.05;
-/// Rows behind the jump by which a slope is told from their scatter.
+/// The number of rows behind the jump from which a slope can be told from their scatter.
 const MANY: usize = 20;
 
 /// A jump.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RowJump {
-    /// The first row behind it.
+    /// The first row behind the jump.
     pub(super) at: usize,
     /// Its height in deviations of its noise.
     pub(super) deviations: f64,
@@ -50,7 +52,7 @@ pub(super) fn jump(x: &[f64], force: &[f64]) -> Option<RowJump> {
     of_many(x, force).or_else(|| if n < SPARSE { of_few(force) } else { None })
 }
 
-/// The jump of so few rows that one alone is as high as their noise seems to be.
+/// The jump among so few rows that a single one is as high as their noise seems to be.
 fn of_few(force: &[f64]) -> Option<RowJump> {
     let n = force.len();
     let whole = range(force.iter().copied());
@@ -64,7 +66,7 @@ fn of_few(force: &[f64]) -> Option<RowJump> {
     found.max_by(|a, b| (force[a.at] - force[a.at - 1]).total_cmp(&(force[b.at] - force[b.at - 1])))
 }
 
-/// The jump of enough rows.
+/// The jump among enough rows.
 fn of_many(x: &[f64], force: &[f64]) -> Option<RowJump> {
     let n = force.len();
     let sigma = scatter_over(x, force).unwrap_or(0.0).max(FLOOR * range(force.iter().copied()));
@@ -98,14 +100,14 @@ fn of_many(x: &[f64], force: &[f64]) -> Option<RowJump> {
     best.map(|found| RowJump { at: sharpened(&force, found.at, sigma, behind), ..found })
 }
 
-/// Whether the force behind `at` stands still beside a jump of this height, which was seen in `w` rows.
+/// Whether the force behind `at` stays constant compared with a jump of this height, seen in `w` rows.
 fn is_flat(x: &[f64], force: &[f64], at: usize, height: f64, w: usize) -> bool {
     let (before, (x, rest)) = (&force[..at], (&x[at..], &force[at..]));
     if rest.len() < 2 * FEWEST {
         let over_rows = w as f64 / rest.len().saturating_sub(1).max(1) as f64;
         return range(rest.iter().copied()) * over_rows.max(1.0) <= GOES_ON * height;
     }
-    // A slope of the baseline is the instrument's.
+    // A slope of the baseline is due to the instrument.
     let half = rest.len() / 2;
     let of = |part: &[f64]| median(part.to_vec()).unwrap_or(0.0);
     let (x0, x1, p0, p1) = (of(&x[..half]), of(&x[half..]), of(&rest[..half]), of(&rest[half..]));
@@ -113,20 +115,21 @@ fn is_flat(x: &[f64], force: &[f64], at: usize, height: f64, w: usize) -> bool {
     let off: Vec<f64> = x.iter().zip(rest).map(|(x, p)| p - slope * (x - x0)).collect();
     let middle = of(&off);
     let scatter = 1.4826 * of(&off.iter().map(|p| (p - middle).abs()).collect::<Vec<_>>());
-    // A force that only goes on rises as much behind as before: that of w rows is then the height.
+    // A force that merely goes on rises as much behind as before; its rise over `w` rows is then the height.
     let over_rows = (p1 - p0).abs() * w as f64 / half as f64;
-    // It goes on less than in contact, which begins with the larger x: else the rows apart are those before.
+    // The force must change less than in contact, which begins at the larger x; otherwise the rows apart are the ones
+    // before.
     let (near, far) = before.split_at(before.len() / 2);
     let goes_less = (p1 - p0).abs() <= (of(near) - of(far)).abs();
     goes_less && (p1 - p0).abs().max(over_rows) <= GOES_ON * height && CLEAR * scatter <= height
 }
 
-/// The values, but for rows that are off from those around them by more than `limit`.
+/// The values, with rows that differ from their neighbours by more than `limit` replaced.
 fn without_outliers(values: &[f64], limit: f64) -> Vec<f64> {
     let around = |i: usize| &values[i.saturating_sub(2)..(i + 3).min(values.len())];
     let cleaned = |(i, value): (usize, &f64)| {
         let middle = median(around(i).to_vec()).unwrap_or(*value);
-        // At the ends and beside a jump the median of few is no better.
+        // At the ends and beside a jump, the median of so few rows is no better.
         let is_inside = i >= 2 && i + 2 < values.len();
         let off = (value - middle).abs();
         let is_alone = || {
@@ -138,7 +141,7 @@ fn without_outliers(values: &[f64], limit: f64) -> Vec<f64> {
     values.iter().enumerate().map(cleaned).collect()
 }
 
-/// The place near `at` where the force rises most from row to row, where one rise stands out.
+/// The place near `at` where the force rises most from row to row, if one rise stands out.
 fn sharpened(force: &[f64], at: usize, sigma: f64, behind: usize) -> usize {
     const NEAR: usize = 4;
     const STANDS_OUT: f64 = 4.0;
@@ -155,7 +158,7 @@ mod tests {
 
     #[test]
     fn a_jump_is_found_in_much_noise_and_none_at_a_last_contact() {
-        // A force that falls to -1, rises ever faster to -0.5 and ends there, or jumps to 0.
+        // A force that falls to -1, rises ever faster to -0.5, and either ends there or jumps to 0.
         let contact: Vec<f64> = (0..100_u32)
             .map(|i| {
                 let share = f64::from(i) / 99.0;
@@ -170,12 +173,12 @@ mod tests {
         let x: Vec<f64> = (0..140_u32).map(|i| -f64::from(i)).collect();
         for seed in 0..50 {
             let mut random = SplitMix64::new(seed);
-            // Sums of twelve are nearly normal.
+            // Sums of twelve uniform numbers are nearly normal.
             let mut noise = || 0.08 * ((0..12).map(|_| random.unit()).sum::<f64>() - 6.0);
             let noisy: Vec<f64> = whole.iter().map(|p| p + noise()).collect();
             let found = jump(&x, &noisy).unwrap();
             assert!(found.at.abs_diff(100) <= 1, "seed {seed}: {found:?}");
-            // Every fifth row: the force falls and jumps within a few.
+            // Every fifth row: the force falls and jumps within a few rows.
             let few = |of: &[f64]| of.iter().skip(4).step_by(5).copied().collect::<Vec<f64>>();
             let quiet: Vec<f64> = whole.iter().map(|p| p + 0.1 * noise()).collect();
             assert_eq!(jump(&few(&x), &few(&quiet)).map(|jump| jump.at), Some(20), "seed {seed}");

@@ -1,4 +1,4 @@
-//! What a person says of the rows: which are used, which are apart, and which way the columns run.
+//! What the user specifies about the rows: which are used, which are apart, and the direction of the columns.
 
 use super::points::Turned;
 use super::role::Segment;
@@ -17,49 +17,49 @@ pub struct ValueRange {
 /// Which rows are apart.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum FreePart {
-    /// Those that are found.
+    /// The rows that are found to be apart.
     #[default]
     Found,
     /// None: all rows are in contact.
     None,
-    /// Those with x here, in base units and with the sign of the file.
+    /// The rows with x in this range, in base units and with the sign of the file.
     Within(ValueRange),
 }
 
-/// What is asked of a file's points.
+/// What is requested of a file's points.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Asked {
-    /// So many rows at the beginning of the file are left out.
+    /// How many rows at the beginning of the file are left out.
     pub skip: usize,
-    /// The branch that is used alone.
+    /// The branch to which the points are restricted.
     pub segment: Option<Segment>,
     /// The range of x, in base units and with the signs of the file.
     pub x: Option<ValueRange>,
-    /// The range of P, likewise.
+    /// The range of P, in the same form.
     pub force: Option<ValueRange>,
     /// Which rows are apart.
     pub free: FreePart,
     /// σ of x, P and s, where they are known.
     pub sigma: [Option<f64>; 3],
-    /// Whether the signs of x and P are turned, where a person says it.
+    /// Whether the signs of x and P are reversed, if the user specifies it.
     pub turned: Option<Turned>,
 }
 
-/// Why what a person says of rows is not understood.
+/// Why the user's text about the rows is not understood.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum AskedError {
-    /// Not of the form that is expected.
+    /// The text does not have the expected form.
     #[error("\"{text}\": expected {expected}")]
     Form {
-        /// What was said, safe to show.
+        /// The text given, safe to show.
         text: String,
-        /// What can be said.
+        /// What is allowed.
         expected: &'static str,
     },
-    /// A range without anything in it.
+    /// The range is empty.
     #[error("\"{0}\": the range is empty: it goes from the smaller value to the larger one")]
     Empty(String),
-    /// An end of a range that is no number of this problem, in words.
+    /// An end of a range is not a number of this problem; explained in words.
     #[error("{0}")]
     Number(String),
 }
@@ -74,7 +74,7 @@ impl ValueRange {
         self.lo <= value && value <= self.hi
     }
 
-    /// The range that a text such as `LO..HI` says; either end may be left out.
+    /// The range given by a text such as `LO..HI`; either end may be left out.
     ///
     /// # Errors
     /// [`AskedError`]; `expected` says what `text` should have been.
@@ -95,7 +95,7 @@ impl ValueRange {
 }
 
 impl FreePart {
-    /// The rows that `x=LO..HI` or `none` says; nothing leaves them to be found.
+    /// The rows that `x=LO..HI` or `none` specifies; an empty text leaves them to be found.
     ///
     /// # Errors
     /// [`AskedError`].
@@ -114,10 +114,10 @@ impl FreePart {
     }
 }
 
-/// Whether x and P are turned, as `x=-,force=+` says.
+/// Whether x and P are reversed, as `x=-,force=+` specifies.
 ///
 /// # Errors
-/// [`AskedError::Form`] where not both are said once.
+/// [`AskedError::Form`] unless each sign is given exactly once.
 pub fn signs(text: &str) -> Result<Turned, AskedError> {
     const EXPECTED: &str = "the signs of both columns, as x=-,force=+: minus turns one, so that x grows as the bodies approach and \
          the force is positive where they are pressed together";

@@ -1,12 +1,14 @@
 //! Points → branches: approach and retraction, the free part, the jump between them; signs and noise.
 //!
-//! The free end of a curve is where the force stands still while x goes on. At the other end, in contact, the force rises with
-//! x: both together give the signs, δ growing as the bodies are pressed together and P being positive in compression.
+//! The free end of a curve is where the force stays constant while x changes. At the other end, in contact, the force
+//! rises with x. Together they fix the signs: δ grows as the bodies are pressed together, and P is positive in
+//! compression.
 //!
-//! On a branch, from the contact to the free end, the pull-off is the largest rise from one sample to the next behind the
-//! minimum; before it the bodies are attached, behind it free, and samples within the jump are dropped and counted.
+//! On a branch, from the contact to the free end, the pull-off is the largest rise from one sample to the next behind
+//! the minimum. Before it the bodies are attached, behind it they are free; samples within the jump are dropped and
+//! counted.
 //!
-//! How well the columns are known is found in `sigma`.
+//! `sigma` finds how well the columns are known.
 
 use super::asked::{Asked, FreePart, ValueRange};
 use super::converter::{Clipped, clipped, quantum, without_repeats};
@@ -23,12 +25,12 @@ use super::signs::{Orientation, UnsignedPoints};
 use super::turns::{by_time, one_way, rises, runs};
 use thiserror::Error;
 
-/// Steps of x from row to row beyond this share of its range, in the median, are no order.
+/// If the median step of x from row to row exceeds this share of its range, the rows are in no order.
 const UNORDERED: f64 = 0.1;
-/// Branches with fewer rows are none.
+/// Branches with fewer rows are ignored.
 const FEWEST: usize = 5;
 
-/// What a file has.
+/// The branches of a file and what is known about them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Branches {
     /// What x is.
@@ -39,9 +41,9 @@ pub struct Branches {
     pub noise: Noise,
     /// The median of the free force; `None` without a free part.
     pub baseline: Option<f64>,
-    /// Whether the signs of x and P were turned.
+    /// Whether the signs of x and P were reversed.
     pub turned: Turned,
-    /// Other signs for which as much speaks.
+    /// Other signs with comparable evidence.
     pub or: Option<Turned>,
     /// The ranges of x, P and s over the points that are used.
     pub ranges: [f64; 3],
@@ -49,21 +51,21 @@ pub struct Branches {
     pub notes: Vec<String>,
     /// How many rows of the approach and of the retraction the file has, used or not.
     pub rows: [usize; 2],
-    /// How many rows are of pauses.
+    /// How many rows belong to pauses.
     pub pauses: usize,
-    /// The end of the range of a converter at which rows in contact stand.
+    /// The end of a converter's range at which rows in contact lie.
     pub clipped: Option<Clipped>,
 }
 
-/// Why points give no branches.
+/// Why points yield no branches.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum BranchError {
-    /// Nothing is left.
+    /// Too few rows are left.
     #[error(
         "only {0} rows are left after the range, the segment and the rows to skip; {END_ROWS} are the fewest"
     )]
     Few(usize),
-    /// Rows without an order.
+    /// The rows have no order.
     #[error(
         "the rows are in no order: x goes to and fro by {share:.0} % of its range from row to row. Sort them, or name a \
          segment column, the range and the sigmas"
@@ -72,13 +74,13 @@ pub enum BranchError {
         /// The median step of x, in per cent of its range.
         share: f64,
     },
-    /// x and P the other way round.
+    /// x and P are swapped.
     #[error(
         "the column of the force goes on where x stands still at one end, as the way does where bodies are apart: the columns \
          of x and force look swapped"
     )]
     Swapped,
-    /// A negative contact radius among the rows that are used.
+    /// A contact radius among the rows used is negative.
     #[error("row {row}: the contact radius {radius:?} is negative: are the columns swapped?")]
     NegativeRadius {
         /// The row, from 1.
@@ -86,18 +88,18 @@ pub enum BranchError {
         /// The radius.
         radius: f64,
     },
-    /// A contact radius of the other sign.
+    /// A contact radius cannot change sign.
     #[error("a contact radius has no other sign: leave x as it is, x=+")]
     TurnedRadius,
-    /// A part of contact radii.
+    /// A free part of contact radii cannot be chosen.
     #[error(
         "rows are apart where the contact radius is 0, and no other part of it can be named: none leaves these rows out"
     )]
     FreeRadius,
-    /// No row where the free part is to be.
+    /// No row lies in the free part requested.
     #[error("no row lies in the free part that is asked for: x is that of the file, with its sign")]
     NothingFree,
-    /// The branch that is asked for is not there.
+    /// The branch requested is not there.
     #[error("there is no {0} in the file")]
     NoSegment(&'static str),
 }
@@ -126,12 +128,12 @@ impl Points {
         let of_radius = self.abscissa == Abscissa::Radius;
         let Orientation { turned, or } = self.directed(&mut points, asked, &mut notes)?;
         let free = self.free_part(&points, asked.free, turned)?;
-        // Of radii, which are zero while apart, none are turned.
+        // Contact radii, which are zero while apart, are never turned.
         let ordered = asked.sigma[0].is_some() || of_radius;
         let mut parts = self.parts(&points, ordered, &mut notes)?;
         for (_, part) in &mut parts {
             let goes_back = |pair: &[MeasuredPoint]| pair[1].time < pair[0].time;
-            // A time that begins again within a branch is none.
+            // A time that starts again within a branch is not used.
             if part.windows(2).any(goes_back) {
                 for point in part {
                     point.time = f64::NAN;
@@ -178,7 +180,7 @@ impl Points {
         Ok(Branches { abscissa, list, noise, baseline, turned, or, ranges, notes, rows, pauses, clipped })
     }
 
-    /// The points that are asked for, in the order in which they were measured, with the signs of the file.
+    /// The points requested, in the order in which they were measured, with the signs of the file.
     fn used(&self, asked: &Asked, notes: &mut Vec<String>) -> Vec<MeasuredPoint> {
         let point = |(at, i): (usize, usize)| MeasuredPoint {
             x: self.x[i],
@@ -205,7 +207,7 @@ impl Points {
             .collect()
     }
 
-    /// Turns the signs as a person says, or as the points show.
+    /// Sets the signs as the user specifies, or as the points show.
     fn directed(
         &self,
         points: &mut [MeasuredPoint],
@@ -228,7 +230,7 @@ impl Points {
         }
     }
 
-    /// Which rows are apart, as a person says it of the file, with the signs of `points`.
+    /// Which rows are apart, if the user specifies it: converted from the signs of the file to those of `points`.
     fn free_part(
         &self,
         points: &[MeasuredPoint],
@@ -247,8 +249,8 @@ impl Points {
         Ok(FreePart::Within(span))
     }
 
-    /// How many rows of the approach and of the retraction there are, and of pauses. Rows that are not used are of the branch of the last
-    /// row before them that is.
+    /// How many rows there are of the approach, of the retraction, and of pauses. A row that is not used counts to the
+    /// branch of the last used row before it.
     fn counted(&self, parts: &[(Segment, Vec<MeasuredPoint>)]) -> ([usize; 2], usize) {
         let mut of: Vec<Option<Segment>> = match &self.segments {
             Some(segments) => segments.iter().copied().map(Some).collect(),
@@ -273,7 +275,7 @@ impl Points {
         (rows, pauses)
     }
 
-    /// The branches by the file's word, or by the largest x.
+    /// The branches as the file names them, or split where x reverses.
     fn parts(
         &self,
         points: &[MeasuredPoint],
@@ -299,7 +301,7 @@ impl Points {
         Ok(parts)
     }
 
-    /// What the branches are taken from, in words.
+    /// How the branches were determined, in words.
     fn order(&self, parts: &[(Segment, Vec<MeasuredPoint>)]) -> Option<String> {
         let count = |segment| parts.iter().filter(|(of, _)| *of == segment).count();
         let counts = [count(Segment::Approach), count(Segment::Retraction)];
@@ -327,7 +329,7 @@ impl Points {
     }
 }
 
-/// The end of the range of a converter at which rows in contact stand.
+/// The end of a converter's range at which rows in contact lie.
 fn at_an_end(list: &[(MeasuredBranch, Vec<MeasuredPoint>)], step: Option<f64>) -> Option<Clipped> {
     let mut rows: Vec<MeasuredPoint> =
         list.iter().flat_map(|(_, in_order)| in_order.iter().copied()).collect();
@@ -338,7 +340,7 @@ fn at_an_end(list: &[(MeasuredBranch, Vec<MeasuredPoint>)], step: Option<f64>) -
     clipped(&rows, &|point| attached.binary_search(&point.row).is_ok(), step)
 }
 
-/// The median step of x from row to row of a branch, as a share of its range; 0 of few rows.
+/// The median step of x from row to row of a branch, as a share of its range; 0 if there are few rows.
 fn disorder(points: &[MeasuredPoint], segments: Option<&[Segment]>) -> f64 {
     let whole = range(points.iter().map(|point| point.x));
     let branch = |point: &MeasuredPoint| segments.map(|of| of[point.row - 1]);
@@ -355,7 +357,7 @@ fn disorder(points: &[MeasuredPoint], segments: Option<&[Segment]>) -> f64 {
     if steps.len() < 20 { 0.0 } else { median(steps).unwrap_or(0.0) }
 }
 
-/// Refuses points whose x has no order, unless nothing depends on it.
+/// Rejects points whose x has no order, unless nothing depends on it.
 fn in_order(points: &[MeasuredPoint], indifferent: bool) -> Result<(), BranchError> {
     let share = disorder(points, None);
     if share > UNORDERED && !indifferent {

@@ -1,4 +1,4 @@
-//! Which columns of a table are used, as its header or a person says.
+//! Which columns of a table are used, as its header or the user specifies.
 
 use super::error::CurveReadError;
 use super::header::{Header, is_way};
@@ -14,7 +14,7 @@ pub(super) struct WantedColumn {
     pub role: ColumnRole,
     pub at: usize,
     pub unit: Option<Unit>,
-    /// Whether a person names it: then it must be there in each row.
+    /// Whether the user names it: it must then be present in each row.
     pub is_said: bool,
 }
 
@@ -27,13 +27,13 @@ struct NamedColumn {
     unit: Result<Option<Unit>, ColumnSpecError>,
 }
 
-/// The columns whose names are known, the units of each judged.
+/// The columns whose names are known, with the unit of each checked.
 fn candidates(header: &Header) -> Vec<NamedColumn> {
     let of = |(at, (name, unit)): (usize, &ColumnHead)| {
         let named = named(name)?;
         let text = unit.as_deref().or(named.unit.as_deref());
         let read = |role| text.map(|text| unit_of(role, text)).transpose();
-        // A deflection in units of force is the force, and what is called an area may be given by its diameter.
+        // A deflection in units of force is the force, and a column called an area may give the diameter.
         let (role, unit) = match (named.role, read(named.role)) {
             (ColumnRole::Deflection, Err(_)) if read(ColumnRole::Force).is_ok() => {
                 (ColumnRole::Force, read(ColumnRole::Force))
@@ -45,8 +45,8 @@ fn candidates(header: &Header) -> Vec<NamedColumn> {
     header.heads.iter().enumerate().filter_map(of).collect()
 }
 
-/// The columns of approach and retraction, where they stand beside each other: each with a way and a force, in the same units. A
-/// column of neither belongs to both.
+/// The columns of approach and retraction, where they stand side by side: each with an x and a force, in the same
+/// units. A column that belongs to neither is used for both.
 pub(super) fn sides(header: &Header) -> Option<[Vec<WantedColumn>; 2]> {
     let known = candidates(header);
     let [mut approach, mut retraction] = [Segment::Approach, Segment::Retraction].map(|segment| {
@@ -68,7 +68,7 @@ pub(super) fn sides(header: &Header) -> Option<[Vec<WantedColumn>; 2]> {
     let has = |wanted: &[WantedColumn], is: &dyn Fn(ColumnRole) -> bool| {
         wanted.iter().any(|column| is(column.role))
     };
-    // A time of one branch alone says nothing of the other.
+    // A time of one branch alone says nothing about the other.
     if has(&approach, &is_time) != has(&retraction, &is_time) {
         for side in [&mut approach, &mut retraction] {
             side.retain(|column| !is_time(column.role));
@@ -125,7 +125,7 @@ pub(super) fn wanted(
         (&is_force as &dyn Fn(ColumnRole) -> bool, "force, or of the deflection"),
         (&is_way, "approach, of the position or of the contact radius"),
     ] {
-        // A column of that name with a unit of something else is the reason.
+        // If a column of that name has a unit of another quantity, that is the reason.
         if let (false, Some((_, error))) = (has(is), refused.iter().find(|(role, _)| is(*role))) {
             return Err(error.clone());
         }
@@ -209,7 +209,7 @@ fn refusal(
     }
 }
 
-/// The columns whose names in the header are known; those with a unit of something else are `refused`.
+/// The columns whose names in the header are known; those with a unit of another quantity are put in `refused`.
 fn of_header(
     header: &Header,
     notes: &mut Vec<String>,
@@ -217,7 +217,7 @@ fn of_header(
 ) -> Vec<WantedColumn> {
     let mut wanted: Vec<(u8, WantedColumn)> = Vec::new();
     let all = candidates(header);
-    // Names of one branch alone are those of all rows, and of two branches nobody knows which is meant.
+    // If the names mention one branch only, they apply to all rows; with two branches it is unclear which is meant.
     let side = |of| all.iter().any(|column| column.side == Some(of));
     let is_mixed = side(Segment::Approach) && side(Segment::Retraction);
     for column in all.into_iter().filter(|column| column.side.is_none() || !is_mixed) {
@@ -250,7 +250,7 @@ fn of_header(
         }
     }
     let mut wanted: Vec<WantedColumn> = wanted.into_iter().map(|(_, wanted)| wanted).collect();
-    // A contact is given once.
+    // The contact needs only one column.
     let has = |wanted: &[WantedColumn], role| wanted.iter().any(|column| column.role == role);
     for (better, other) in [
         (ColumnRole::Radius, ColumnRole::Diameter),
@@ -264,7 +264,7 @@ fn of_header(
     wanted
 }
 
-/// Gives columns without a unit that of SI.
+/// Gives the SI unit to columns without a unit.
 pub(super) fn in_si(wanted: &mut [WantedColumn]) {
     for column in wanted.iter_mut().filter(|column| column.unit.is_none()) {
         column.unit = column.role.si().and_then(|si| Unit::parse(si, 0).ok());

@@ -1,24 +1,24 @@
-//! What a converter does to the force: steps, an end of its range; and rows that stand there more than once.
+//! What a converter does to the force: steps and an end of its range; and rows that are recorded more than once.
 
 use super::points::MeasuredPoint;
 
-/// Rows that are the row before again are dropped where they are this share of all.
+/// Rows that repeat the row before are dropped if they make up this share of all rows.
 const REPEATED: f64 = 0.3;
-/// The same extreme force so many times in a row, or at this share of the rows, is an end of the range.
+/// The same extreme force this many times in a row, or in this share of the rows, is an end of the range.
 const IN_A_ROW: usize = 3;
 const AT_AN_END: f64 = 0.02;
-/// Of a force in steps the extreme step has some rows by itself, but not so many times those of the next one.
+/// If the force has steps, the extreme step has some rows anyway, but not this many times the rows of the next step.
 const CROWDED: usize = 4;
 
-/// The step of which all differences of the force are multiples; `None` where there is none.
+/// The step of which all differences of the force are multiples, or `None`.
 pub(super) fn quantum(force: &[f64]) -> Option<f64> {
     /// Fewer values show no step.
     const VALUES: usize = 8;
-    /// A range of more steps is none that a converter has.
+    /// No converter has a range of more steps than this.
     const STEPS: f64 = 1e6;
-    /// Differences are multiples to this share of a step.
+    /// Differences are multiples of the step to within this share of a step.
     const NEAR: f64 = 0.03;
-    /// The smallest difference may be so many steps.
+    /// The smallest difference may be up to this many steps.
     const MOST: u32 = 4;
     let mut values = force.to_vec();
     values.sort_by(f64::total_cmp);
@@ -38,18 +38,19 @@ pub(super) fn quantum(force: &[f64]) -> Option<f64> {
     })
 }
 
-/// An end of the range of a converter that rows stand at.
+/// An end of a converter's range at which rows lie.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clipped {
     /// How many rows.
     pub rows: usize,
     /// The force.
     pub force: f64,
-    /// Whether it is the smallest, as the signs are put right.
+    /// Whether it is the smallest force, once the signs are corrected.
     pub is_low: bool,
 }
 
-/// The end of the range at which rows in contact stand; `points` in the order of the file, all of them of branches.
+/// The end of the range at which rows in contact lie; `points` are in the order of the file, and all belong to
+/// branches.
 pub(super) fn clipped(
     points: &[MeasuredPoint],
     is_attached: &dyn Fn(&MeasuredPoint) -> bool,
@@ -76,7 +77,7 @@ pub(super) fn clipped(
     look(lo, true).or_else(|| look(hi, false))
 }
 
-/// The points without those that are the one before again, where those are many; how many they were.
+/// Removes the points that repeat the one before, if there are many of them; returns how many there were.
 pub(super) fn without_repeats(points: &mut Vec<MeasuredPoint>) -> usize {
     let same = |a: &MeasuredPoint, b: &MeasuredPoint| {
         let bits = |p: &MeasuredPoint| [p.x.to_bits(), p.force.to_bits(), p.radius.to_bits()];
@@ -115,7 +116,7 @@ mod tests {
         assert_eq!(clipped(&rows(-1.0), &|_| true, None), None);
         let found = clipped(&rows(20.0), &|_| true, None).unwrap();
         assert_eq!((found.rows, found.is_low), (9, true));
-        // Rows apart all have one force, and that is no end.
+        // All rows apart have one force, but that is no end of the range.
         assert_eq!(clipped(&rows(20.0), &|point| point.force > 20.0, None), None);
         let mut twice: Vec<MeasuredPoint> = rows(-1.0).into_iter().flat_map(|point| [point, point]).collect();
         assert_eq!((without_repeats(&mut twice), twice.len()), (60, 60));

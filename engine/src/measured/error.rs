@@ -8,15 +8,15 @@ use thiserror::Error;
 
 /// The allowed numbers of rows.
 pub const ROW_RANGE: RangeInclusive<usize> = 8..=1_000_000;
-/// The most columns of a file.
+/// The largest number of columns in a file.
 pub const MOST_COLUMNS: usize = 64;
 /// What is wrong with one line.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CurveFault {
-    /// Of the line as a whole.
+    /// A fault of the line as a whole.
     #[error(transparent)]
     Line(#[from] LineFault),
-    /// Another number of cells than the first row.
+    /// The number of cells differs from that of the first row.
     #[error("has {found} cells, and the first row has {expected}")]
     Cells {
         /// How many it has.
@@ -24,7 +24,7 @@ pub enum CurveFault {
         /// How many are expected.
         expected: usize,
     },
-    /// Of one cell.
+    /// A fault of one cell.
     #[error("column {number}: {fault}")]
     Cell {
         /// The column, from 1.
@@ -42,7 +42,7 @@ pub enum CurveFault {
         /// Its text, safe to show.
         text: String,
     },
-    /// A decimal point in a file of decimal commas, or the other way round.
+    /// A decimal point in a file with decimal commas, or the reverse.
     #[error(
         "column {number}: \"{text}\" has {}: one of them parts thousands; write all decimals alike",
         if text.contains(',') {
@@ -56,10 +56,10 @@ pub enum CurveFault {
         number: usize,
         /// Its text, safe to show.
         text: String,
-        /// The line of the other.
+        /// The line with the other mark.
         line: usize,
     },
-    /// A branch that is not known.
+    /// An unknown branch.
     #[error(
         "column {number}: the segment \"{text}\" is not known: expected approach or retraction, or False or True"
     )]
@@ -71,16 +71,16 @@ pub enum CurveFault {
     },
 }
 
-/// Why a text gives no curve.
+/// Why a text yields no curve.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CurveReadError {
-    /// Bytes that are no text.
+    /// Bytes that are not text.
     #[error(
         "{0}; a force curve of an instrument's own format is read in Python with pulloff.read_afm(path), or exported as \
          text by its program"
     )]
     NotText(NotText),
-    /// Lines with faults.
+    /// Lines that contain faults.
     #[error("{0}")]
     Faults(Faults<CurveFault>),
     /// Too few or too many rows.
@@ -93,21 +93,21 @@ pub enum CurveReadError {
     Rows {
         /// How many.
         rows: usize,
-        /// How many more have no number.
+        /// How many further rows have no number.
         skipped: usize,
     },
-    /// Commas that part cells, or decimals, or both.
+    /// Commas that may separate cells, mark decimals, or both.
     #[error(
         "line {0}: some commas are followed by a space and some by a digit, and no header tells which part the columns: part \
          them by semicolons or tabs"
     )]
     Commas(usize),
-    /// Waves of an Igor text file that are no columns of one table.
+    /// Waves of an Igor text file that are not columns of one table.
     #[error("its waves have {least} to {most} rows: export those of one curve alone")]
     Waves {
-        /// The rows of the shortest.
+        /// The number of rows of the shortest wave.
         least: usize,
-        /// The rows of the longest.
+        /// The number of rows of the longest wave.
         most: usize,
     },
     /// A column in volts or amperes.
@@ -125,10 +125,10 @@ pub enum CurveReadError {
         name: String,
         /// Its unit, safe to show.
         unit: String,
-        /// What its name says that it is.
+        /// The role that its name indicates.
         role: ColumnRole,
     },
-    /// More columns than anybody measures.
+    /// More columns than any measurement has.
     #[error("line {line}: has {found} columns; at most {MOST_COLUMNS} are read")]
     ManyColumns {
         /// The first row.
@@ -136,7 +136,7 @@ pub enum CurveReadError {
         /// How many it has.
         found: usize,
     },
-    /// The header does not say what the columns are, nor does a person.
+    /// Neither the header nor the user says what the columns are.
     #[error(
         "line {line}: {} say what they are, as in --columns x=1,force=2",
         if names.is_empty() { format!("{cells} columns without a header;") } else { format!("the columns {names} are not known;") }
@@ -170,7 +170,7 @@ pub enum CurveReadError {
         /// What there is, safe to show.
         known: String,
     },
-    /// A column that a person names is not there.
+    /// A column that the user names is missing.
     #[error("line {line}: there is no column {place}{}", if known.is_empty() { String::new() } else { format!("; there is {known}") })]
     NoColumn {
         /// The header, or the first row.
@@ -180,7 +180,7 @@ pub enum CurveReadError {
         /// What there is, safe to show.
         known: String,
     },
-    /// A unit in the header that is none of its quantity.
+    /// A unit in the header does not fit its quantity.
     #[error("line {line}: {cause}")]
     Unit {
         /// The header.

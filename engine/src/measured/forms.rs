@@ -1,5 +1,5 @@
-//! Forms in which instruments, their programs and spreadsheets export curves. Each is read at once, or after the one option
-//! that the refusal names, and its numbers are those that were written.
+//! Forms in which instruments, their programs and spreadsheets export curves. Each can be read at once, or with the one
+//! option that its error message names, and yields the numbers that were written.
 
 mod makers;
 mod programs;
@@ -10,7 +10,7 @@ use crate::gap::shapes::split_mix::SplitMix64;
 use crate::units::{DisplayUnits, UnitSystem};
 use std::fmt::Write;
 
-/// x in nm and P in nN, down to the contact and back.
+/// x in nm and P in nN, down to contact and back.
 fn rows() -> Vec<[f64; 2]> {
     let down = (0..10).map(|i| [f64::from(i) * 12.5 - 50.0, f64::from(i * i) * 0.25]);
     let up = (0..10).rev().map(|i| [f64::from(i) * 12.5 - 62.5, f64::from(i * i) * 0.25 - 3.5]);
@@ -23,7 +23,7 @@ fn half(retraction: bool) -> Vec<[f64; 2]> {
     if retraction { rows[10..].to_vec() } else { rows[..10].to_vec() }
 }
 
-/// Lines of rows: `write` makes the cells of x and P.
+/// Rows as lines; `write` makes the cells of x and P.
 fn lines(rows: &[[f64; 2]], write: impl Fn(usize, f64, f64) -> String) -> String {
     rows.iter().enumerate().fold(String::new(), |mut text, (i, [x, p])| {
         writeln!(text, "{}", write(i, *x, *p)).unwrap();
@@ -31,29 +31,29 @@ fn lines(rows: &[[f64; 2]], write: impl Fn(usize, f64, f64) -> String) -> String
     })
 }
 
-/// x and P with this separator, scaled.
+/// x and P with this separator, each scaled.
 fn two(separator: &str, x: f64, p: f64) -> String {
     lines(&rows(), |_, a, b| format!("{:e}{separator}{:e}", a * x, b * p))
 }
 
-/// As a German spreadsheet writes numbers.
+/// A number as a German spreadsheet writes it.
 fn comma(number: f64) -> String {
     format!("{number}").replace('.', ",")
 }
 
-/// A form: its name, its bytes, the option, and what must come of it.
+/// A form: its name, its bytes, the option, and the expected result.
 struct FileForm {
     name: &'static str,
     bytes: Vec<u8>,
-    /// The option that its refusal names, as a person fills it in.
+    /// The option that its error message names, as a user would fill it in.
     option: &'static str,
     abscissa: Abscissa,
     stiffness: Option<f64>,
     radius: Option<f64>,
-    /// How many rows carry each branch, if any do.
+    /// How many rows belong to each branch, if any do.
     segments: Option<[usize; 2]>,
     skipped: usize,
-    /// What must be said.
+    /// What the notes must contain.
     says: &'static str,
 }
 
@@ -280,7 +280,7 @@ fn what_cannot_be_read_is_refused_in_a_sentence() {
             "{what}: {message}"
         );
     }
-    // A number that is cut is none or another: the rows before it stay.
+    // A truncated number is unreadable or a different number; the rows before it remain.
     assert!(
         parse(cut.as_bytes(), &ColumnSpec::default()).is_ok()
             || refused(cut.as_bytes()).starts_with("line 21")
@@ -300,7 +300,7 @@ fn columns_are_listed_with_their_first_values() {
     assert!(columns(b"words\n").is_err());
 }
 
-/// The stiffness that a file states, unless it is 1, which nobody has calibrated.
+/// The stiffness that a file states, unless it is 1, which means that it was not calibrated.
 fn stated(line: &str) -> Measured {
     let text = format!("{line}\nindentation (nm),force (nN)\n{}", two(",", 1.0, 1.0));
     parse(text.as_bytes(), &ColumnSpec::default()).unwrap_or_else(|error| panic!("{line}: {error}"))
@@ -339,7 +339,7 @@ fn settings_are_found_in_every_usual_form() {
     );
     let two = stated("k (N/m)\t0.25\nk (N/m)\t0.5");
     assert!(two.stiffness.is_some() && two.notes[0].contains("two springs"), "{:?}", two.notes);
-    // What is rounded does not contradict.
+    // A rounded value does not contradict.
     let rounded = stated("k (N/m)\t0.25").stiffness.unwrap();
     assert!(rounded.is(0.2541) && !rounded.is(0.26));
 }

@@ -1,4 +1,4 @@
-//! A branch cut into its parts: the rows in contact, those within the jump, those apart.
+//! A branch divided into its parts: the rows in contact, those within the jump, and those apart.
 
 use super::apart::{SPARSE, jump};
 use super::asked::{FreePart, ValueRange};
@@ -10,20 +10,20 @@ use super::signs::free_end;
 /// One branch, from the contact to the free end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredBranch {
-    /// Which.
+    /// Which branch it is.
     pub segment: Segment,
     /// The points in contact.
     pub attached: Vec<MeasuredPoint>,
     /// The points apart.
     pub free: Vec<MeasuredPoint>,
-    /// How many rows are within the jump: they are of neither.
+    /// How many rows lie within the jump and belong to neither part.
     pub jump: usize,
 }
 
 impl MeasuredBranch {
-    /// Drops the rows around the jump that the noise of x has put on its other side.
+    /// Drops the rows around the jump that noise in x may have put on the wrong side.
     pub(super) fn clears_jump(&mut self, noise: &Noise) {
-        /// Rows within so many σ of x from the jump may be on either side.
+        /// Rows within this many σ of x from the jump may lie on either side.
         const NEAR: f64 = 5.0;
         let [Some(last), Some(first)] = [self.attached.last(), self.free.first()] else { return };
         let ends = [first.x - NEAR * noise.sigma[0], last.x + NEAR * noise.sigma[0]];
@@ -31,7 +31,7 @@ impl MeasuredBranch {
         let limit = BEYOND * noise.sigma[1];
         let pulled = |point: &MeasuredPoint| point.force < line.at(point.x) - limit;
         let near = |point: &MeasuredPoint| (ends[0]..=ends[1]).contains(&point.x);
-        // Without a jump there is nothing that was mixed.
+        // Without a jump, nothing can have been mixed.
         let attached: Vec<&MeasuredPoint> = self.attached.iter().filter(|point| near(point)).collect();
         if attached.iter().filter(|point| pulled(point)).count() * 2 < attached.len() {
             return;
@@ -43,7 +43,7 @@ impl MeasuredBranch {
     }
 }
 
-/// A branch cut into its parts; `asked` has the signs of the points.
+/// A branch divided into its parts; `asked` has the signs of the points.
 pub(super) fn branch(
     segment: Segment,
     in_order: &[MeasuredPoint],
@@ -51,7 +51,7 @@ pub(super) fn branch(
     asked: FreePart,
 ) -> MeasuredBranch {
     let mut points = in_order.to_vec();
-    // Whatever the order of the file.
+    // This does not depend on the order of the file.
     points.sort_by(|a, b| b.x.total_cmp(&a.x).then(b.force.total_cmp(&a.force)));
     if of_radius {
         let (mut free, attached): (Vec<MeasuredPoint>, _) =
@@ -79,9 +79,9 @@ pub(super) fn branch(
     let end = &force[force.len() - count..];
     let whole = range(force.iter().copied());
     let limit = BEYOND * noise_of(&force).max(FLOOR * whole);
-    // Without single rows that are off: a median keeps the place of a step.
+    // Outliers of single rows are removed: a median keeps the place of a step.
     let force = filtered(&force);
-    // Without a jump the free part ends where three rows in a row are off.
+    // Without a jump, the free part ends where three successive rows are off.
     let base = median(end.to_vec()).unwrap_or(0.0);
     let mut off = 0;
     let mut at = force.len();
@@ -93,14 +93,14 @@ pub(super) fn branch(
     MeasuredBranch { segment, attached: points, free, jump: 0 }
 }
 
-/// How many rows at the beginning of `rest`, which is behind a jump, have not come to the force of the rows `free`.
+/// How many rows at the beginning of `rest`, which follows a jump, have not yet reached the force of the rows `free`.
 fn within_jump(rest: &[MeasuredPoint], free: &[MeasuredPoint], force: &[f64]) -> usize {
     let line = FreeLine::of(free);
     let limit = BEYOND * noise_of(force).max(FLOOR * range(force.iter().copied()));
     rest.iter().position(|point| point.force >= line.at(point.x) - limit).unwrap_or(0)
 }
 
-/// A branch whose rows with x in `span` are apart, as a person says: rows beyond them are left out.
+/// A branch whose rows with x in `span` are apart, as the user specifies; rows beyond the span are left out.
 fn apart_within(segment: Segment, mut points: Vec<MeasuredPoint>, span: ValueRange) -> MeasuredBranch {
     let holds = |point: &MeasuredPoint| span.holds(point.x);
     let Some(first) = points.iter().position(holds) else {
@@ -111,7 +111,7 @@ fn apart_within(segment: Segment, mut points: Vec<MeasuredPoint>, span: ValueRan
     let free = points.split_off(first);
     let mut within = 0;
     if let Some(jump) = jump(&x, &force).filter(|jump| jump.at < first) {
-        // Rows behind the jump are not in contact, whether they have come to the force of the others or not.
+        // Rows behind the jump are not in contact, whether or not they have reached the force of the others.
         let rest = points.split_off(jump.at);
         let behind = [&rest[..], &free[..]].concat();
         within = within_jump(&behind, &behind, &force).min(rest.len());
@@ -119,14 +119,15 @@ fn apart_within(segment: Segment, mut points: Vec<MeasuredPoint>, span: ValueRan
     MeasuredBranch { segment, attached: points, free, jump: within }
 }
 
-/// The running median of five, of fewer at the ends.
+/// The running median of five rows, of fewer at the ends.
 fn filtered(values: &[f64]) -> Vec<f64> {
     let around = |i: usize| &values[i.saturating_sub(2)..(i + 3).min(values.len())];
     (0..values.len()).map(|i| median(around(i).to_vec()).unwrap_or(values[i])).collect()
 }
 
-/// Whether the force stands still at the end without a jump before it, as it does where bodies come apart that do not adhere: over the
-/// last eighth of the rows it neither goes on nor is it the least of all, as where a record ends at its smallest force.
+/// Whether the force stays constant at the end without a jump before it, as it does where bodies without adhesion come
+/// apart. Over the last eighth of the rows it must not change, nor be the smallest of all, as in a record that ends at
+/// its smallest force.
 fn stands_still(force: &[f64]) -> bool {
     const SHARE: usize = 8;
     const FEWEST: usize = 10;
@@ -139,18 +140,19 @@ fn stands_still(force: &[f64]) -> bool {
         end.chunks((count / 3).max(1)).take(3).filter_map(|part| median(part.to_vec())).collect();
     let noise = noise_of(force);
     let floor = FLOOR * range(force.iter().copied());
-    // The median of m rows is known to 1.25 σ/√m; of three the range is below 4.4 of these 95 of 100 times.
+    // The median of m rows is known to 1.25 σ/√m; the range of three such medians is below 4.4 of these errors in 95 of
+    // 100 cases.
     let error = 1.25 * noise / (count as f64 / 3.0).sqrt();
     let goes_on = range(thirds.iter().copied()) > 5.0 * error + floor;
     let level = median(end.to_vec()).unwrap_or(0.0);
     let next = median(before[before.len() - count..].to_vec()).unwrap_or(0.0);
-    // The same again before it: a smallest force is rounder than that.
+    // The same level again before it: a smallest force is rounder than that.
     !goes_on
         && ((next - level).abs() <= 2.0 * error + floor
             || filtered(before).iter().any(|p| *p < level - BEYOND * noise - floor))
 }
 
-/// The line through a free part, by the medians of its halves.
+/// The line through a free part, from the medians of its halves.
 struct FreeLine {
     base: f64,
     slope: f64,
@@ -178,14 +180,14 @@ impl FreeLine {
     }
 }
 
-/// Takes rows for rows in contact whose force stands still, but not where it does on the branch that has most rows apart: a record that
-/// ends near its smallest force looks like that.
+/// Returns rows to the contact if they are constant at a force other than that of the branch with most rows apart: a
+/// record that ends near its smallest force looks like that.
 pub(super) fn same_free_force(
     list: &mut [(MeasuredBranch, Vec<MeasuredPoint>)],
     noise: &Noise,
     notes: &mut Vec<String>,
 ) {
-    /// Levels are one within so many of their errors, and this share of the range of the branch.
+    /// Levels are equal within this many of their errors, or within this share of the range of the branch.
     const SAME: f64 = 6.0;
     const SHARE: f64 = 0.1;
     let level = |branch: &MeasuredBranch| median(branch.free.iter().map(|point| point.force).collect());
@@ -208,10 +210,11 @@ pub(super) fn same_free_force(
     }
 }
 
-/// Takes the last rows of a short branch for rows apart where another branch has some and these have their force: the force of few rows may
-/// go over from contact to none without a jump that is seen.
+/// Takes the last rows of a short branch as apart if another branch has rows apart and these have the same force: with
+/// few rows the force may go from contact to zero without a visible jump.
 pub(super) fn as_elsewhere(list: &mut [(MeasuredBranch, Vec<MeasuredPoint>)]) {
-    /// Forces are one within so many times the range of those apart, and this share of that of the branch; and rows of one, at least.
+    /// Forces are equal within this many times the range of those apart, or within this share of the range of the
+    /// branch; and the fewest such rows.
     const SAME: f64 = 3.0;
     const SHARE: f64 = 0.02;
     const FEWEST: usize = 2;
@@ -232,7 +235,7 @@ pub(super) fn as_elsewhere(list: &mut [(MeasuredBranch, Vec<MeasuredPoint>)]) {
     }
 }
 
-/// Says where one branch has rows apart and another has none.
+/// Notes where one branch has rows apart and another has none.
 pub(super) fn one_sided(list: &[MeasuredBranch], notes: &mut Vec<String>) {
     let without: Vec<&str> =
         list.iter().filter(|branch| branch.free.is_empty()).map(|branch| branch.segment.name()).collect();

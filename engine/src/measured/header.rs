@@ -1,4 +1,4 @@
-//! What the words above a table say of its columns: their names, their units, the branch of its rows.
+//! What the words above a table say about its columns: their names, their units, the branch of its rows.
 
 use super::lines::TextTable;
 use super::names::{named, squashed};
@@ -14,7 +14,7 @@ pub(super) struct Header {
     pub heads: Vec<ColumnHead>,
 }
 
-/// The names in the line by which an Igor text file begins waves: `WAVES/D/N=(512) ZSnsr, Defl`.
+/// The names in the line with which an Igor text file begins its waves: `WAVES/D/N=(512) ZSnsr, Defl`.
 fn waves(text: &str) -> Option<Vec<ColumnHead>> {
     let mut rest = text.strip_prefix("WAVES")?;
     while let Some(flag) = rest.trim_start().strip_prefix('/') {
@@ -24,7 +24,7 @@ fn waves(text: &str) -> Option<Vec<ColumnHead>> {
     Some(names.map(|name| (name.trim_matches('\'').to_owned(), None)).collect())
 }
 
-/// The units that Igor gives waves, by their names: `X SetScale y 0,0,"m", ZSnsr`.
+/// The units that Igor assigns to waves by name: `X SetScale y 0,0,"m", ZSnsr`.
 fn scales<'a>(words: &[Words<'a>]) -> HashMap<&'a str, &'a str> {
     let mut units = HashMap::new();
     for text in words.iter().filter(|words| words.text.starts_with("X ")).map(|words| words.text) {
@@ -40,7 +40,7 @@ fn scales<'a>(words: &[Words<'a>]) -> HashMap<&'a str, &'a str> {
     units
 }
 
-/// The cells of words in each way in which they may be parted; the first is that of the rows.
+/// The cells of words for each way of separating them; the first way is that of the rows.
 fn parted(text: &str, separator: Separator) -> impl Iterator<Item = Vec<ColumnHead>> {
     let dimensions = super::role::dimensions();
     let ways = [separator, Separator::of(text), Separator::Wide, Separator::Spaces];
@@ -53,8 +53,8 @@ fn parted(text: &str, separator: Separator) -> impl Iterator<Item = Vec<ColumnHe
     })
 }
 
-/// `heads` as those of the columns of `table`, if they can be: names behind the last column must mean nothing, and columns
-/// without a name must be empty.
+/// `heads` as the names of the columns of `table`, if they fit: names behind the last column must mean nothing, and
+/// columns without a name must be empty.
 fn fitted(mut heads: Vec<ColumnHead>, table: &TextTable) -> Option<Vec<ColumnHead>> {
     let is_empty = |head: &ColumnHead| head.0.is_empty() && head.1.is_none();
     while heads.len() > table.cells
@@ -72,10 +72,10 @@ fn fitted(mut heads: Vec<ColumnHead>, table: &TextTable) -> Option<Vec<ColumnHea
     Some(heads.into_iter().map(whole).collect())
 }
 
-/// The header of a table, from the words above it; `all` are those of the file.
+/// The header of a table, from the words above it; `all` are the words of the whole file.
 pub(super) fn headed(table: &TextTable, all: &[Words]) -> Option<Header> {
     let last = |key: &str| table.above.iter().rev().find_map(|words| Some((words.line, keyed(words, key)?)));
-    // JPK names its columns in a remark, and says more of them in others.
+    // JPK names its columns in one remark and describes them further in others.
     if let Some((line, names)) = last("columns").or_else(|| last("fancyNames")) {
         let heads = Separator::Spaces.cells(names).into_iter().map(|name| (name.to_owned(), None)).collect();
         let units = last("units").map(|(_, units)| Separator::Spaces.cells(units)).unwrap_or_default();
@@ -106,7 +106,8 @@ pub(super) fn headed(table: &TextTable, all: &[Words]) -> Option<Header> {
         let mut found =
             parted(words.text, table.separator).map(|heads| (count_known(&heads), fitted(heads, table)));
         let fits = |(known, heads): (usize, Option<Vec<ColumnHead>>)| heads.map(|heads| (known, heads));
-        // A remark of the right number of words need not be a header, nor need words that are parted otherwise than the rows.
+        // A remark with the right number of words need not be a header, nor need words that are separated differently
+        // from the rows.
         let first = found.next().and_then(fits).filter(|(known, _)| !words.is_remark || *known >= 2);
         let heads = first.or_else(|| found.filter_map(fits).find(|(known, _)| *known >= 2));
         if let Some((_, heads)) = heads.filter(|(_, heads)| heads.len() > 1) {
@@ -119,7 +120,7 @@ pub(super) fn headed(table: &TextTable, all: &[Words]) -> Option<Header> {
     None
 }
 
-/// Gives the columns without a unit those of `units`.
+/// Gives columns without a unit the corresponding one of `units`.
 fn with_units(mut heads: Vec<ColumnHead>, units: &[&str]) -> Vec<ColumnHead> {
     for (head, unit) in heads.iter_mut().zip(units) {
         head.1 =
@@ -128,7 +129,7 @@ fn with_units(mut heads: Vec<ColumnHead>, units: &[&str]) -> Vec<ColumnHead> {
     heads
 }
 
-/// The branch of all rows of a table: `# segment: retract`, or a line that names it alone.
+/// The branch of all rows of a table: `# segment: retract`, or a line that consists of its name.
 pub(super) fn segment(table: &TextTable) -> Option<Segment> {
     let of = |text: &str| {
         let text = text.trim_matches(|c: char| !c.is_alphanumeric());
@@ -140,7 +141,7 @@ pub(super) fn segment(table: &TextTable) -> Option<Segment> {
     })
 }
 
-/// What stands in parentheses and is no unit belongs to the name: `height (measured)`.
+/// Text in parentheses that is not a unit belongs to the name: `height (measured)`.
 fn whole((name, unit): ColumnHead) -> ColumnHead {
     match unit {
         Some(text) if unit_named(&text, true).is_none() && text != "V" => {
@@ -156,7 +157,7 @@ fn whole((name, unit): ColumnHead) -> ColumnHead {
 }
 
 impl Header {
-    /// Whether it is that of a curve or a walk that this program wrote.
+    /// Whether it is the header of a curve or a walk that this program wrote.
     pub(super) fn is_computed(&self) -> bool {
         /// Columns that both have.
         const OWN: [&str; 5] = ["contact_radius", "approach", "force", "newton_iterations", "stable_chosen"];
@@ -169,12 +170,12 @@ pub(super) fn same(one: Option<&Header>, other: Option<&Header>) -> bool {
     let names = |header: &Header| header.heads.iter().map(|(name, _)| squashed(name)).collect::<Vec<_>>();
     match (one, other) {
         (Some(one), Some(other)) => names(one) == names(other),
-        // What has no header has that of the table before it.
+        // A table without a header has that of the table before it.
         _ => true,
     }
 }
 
-/// Whether a column's role may be that of x.
+/// Whether a column of this role may be x.
 pub(super) fn is_way(role: ColumnRole) -> bool {
     [ColumnRole::Approach, ColumnRole::Position, ColumnRole::Radius, ColumnRole::Diameter, ColumnRole::Area]
         .contains(&role)

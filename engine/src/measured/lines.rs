@@ -1,33 +1,34 @@
 //! The lines of a file → its tables of rows, with the words above each.
 //!
-//! A row is a line of which a first cell is a number, a missing value or the name of a branch, and which is parted into as
-//! many cells as the rows above it. In a file without such rows it may begin with texts, such as the name of a sample. Words part tables: settings and headers above them, a footer below them. A line among
-//! the rows that begins like a number stays a row, so that its fault is told.
+//! A row is a line whose first cell is a number, a missing value or the name of a branch, and which has as many cells
+//! as the rows above it. In a file without such rows, a row may begin with text, such as the name of a sample. Words
+//! separate tables: settings and headers stand above them, a footer below. A line among the rows that begins like a
+//! number remains a row, so that its fault is reported.
 
 use super::error::{CurveReadError, MOST_COLUMNS, ROW_RANGE};
 use super::words::{Words, is_branch, is_gap, is_number, is_stamp, parts_tables, row_under};
 use crate::cells::{LONGEST_LINE, LineFault, Separator, is_unprintable, remark};
 
-/// At most so many lines of words above a table are looked at for its header.
+/// At most this many lines of words above a table are searched for its header.
 const LINES_ABOVE: usize = 256;
 
-/// A table: rows of as many cells each.
+/// A table: rows with the same number of cells.
 #[derive(Debug)]
 pub(super) struct TextTable<'a> {
-    /// The words above it, below the table before it.
+    /// The words above it and below the previous table.
     pub above: Vec<Words<'a>>,
-    /// What parts the cells.
+    /// What separates the cells.
     pub separator: Separator,
-    /// How many there are, in the first row.
+    /// The number of cells in the first row.
     pub cells: usize,
-    /// The cell by which a row is known, the first that is no text.
+    /// The cell by which a row is recognized, the first that is not text.
     pub lead: usize,
-    /// The rows with their lines.
+    /// The rows with their line numbers.
     pub rows: Vec<(usize, &'a str)>,
 }
 
 impl TextTable<'_> {
-    /// How many cells of the first row are not behind its last value.
+    /// How many cells the first row has up to its last value.
     pub(super) fn filled(&self) -> usize {
         let cells = self.rows.first().map(|(_, text)| self.separator.cells(text)).unwrap_or_default();
         cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1)
@@ -39,19 +40,19 @@ impl TextTable<'_> {
 pub(super) struct Outline<'a> {
     /// The tables.
     pub tables: Vec<TextTable<'a>>,
-    /// All words, below the last table too.
+    /// All words, including those below the last table.
     pub words: Vec<Words<'a>>,
-    /// The lines that are wrong as a whole.
+    /// The lines that are faulty as a whole.
     pub faults: Vec<(usize, LineFault)>,
-    /// Whether rows may begin with texts.
+    /// Whether rows may begin with text.
     is_led: bool,
-    /// Whether it is a text file of Igor.
+    /// Whether it is an Igor text file.
     pub is_igor: bool,
-    /// The words below the last table that are no remarks, first and last line.
+    /// The first and last line of the words below the last table that are not remarks.
     pub footer: Option<(usize, usize)>,
 }
 
-/// Whether a line begins as numbers do, and goes on with something that is no rule.
+/// Whether a line begins as numbers do and does not continue as a rule.
 fn begins_as_number(text: &str) -> bool {
     let text = text.trim_start_matches(['"', '\t']);
     let rest = text.trim_start_matches(['+', '-', '\u{2212}']);
@@ -64,7 +65,8 @@ fn is_value(cell: &str) -> bool {
     is_number(cell) || is_gap(cell) || is_branch(cell) || is_stamp(cell)
 }
 
-/// How the cells of a line are parted that begins with texts, if it is a row: two numbers at least; and where the first number is.
+/// How the cells of a line that begins with text are separated, if it is a row, that is, has at least two numbers; and
+/// where the first number is.
 fn led_row(text: &str) -> Option<(Separator, usize, usize)> {
     let of = |separator: Separator| {
         let cells = separator.cells(text);
@@ -76,17 +78,18 @@ fn led_row(text: &str) -> Option<(Separator, usize, usize)> {
     separators(text).find_map(of)
 }
 
-/// What may part the cells of a line.
+/// What may separate the cells of a line.
 fn separators(text: &str) -> impl Iterator<Item = Separator> {
     let parting = [';', '\t', '|', ','].into_iter().filter(|c| text.contains(*c)).map(Separator::Character);
     parting.chain([Separator::Spaces])
 }
 
-/// How the cells of a line are parted, if it is a row on its own: at least two values, a number among them, or one number.
+/// How the cells of a line are separated, if it is a row by itself: at least two values with a number among them, or
+/// one number.
 fn row(text: &str) -> Option<(Separator, usize)> {
     let of = |separator: Separator| {
         let cells = separator.cells(text);
-        // Where commas part cells they stand in no number, but between quotation marks.
+        // Where commas separate cells, they do not occur in numbers, except between quotation marks.
         let is_parting = separator == Separator::Character(',') && !text.contains('"');
         let number = |cell: &str| is_number(cell) && !(is_parting && cell.contains(','));
         let value = |cell: &str| number(cell) || is_gap(cell) || is_branch(cell) || is_stamp(cell);
@@ -102,10 +105,10 @@ fn row(text: &str) -> Option<(Separator, usize)> {
 }
 
 impl<'a> Outline<'a> {
-    /// The pieces of a text. Rows begin with a value, or where there are too few of these, with texts.
+    /// The pieces of a text. Rows begin with a value or, if there are too few of those, with text.
     ///
     /// # Errors
-    /// [`CurveReadError`] where there is no use in reading on.
+    /// [`CurveReadError`] if reading on would be of no use.
     pub(super) fn of(text: &'a str) -> Result<Self, CurveReadError> {
         let outline = Self::led(text, false)?;
         let most = |of: &Self| of.tables.iter().map(|table| table.rows.len()).max().unwrap_or(0);
@@ -116,7 +119,7 @@ impl<'a> Outline<'a> {
         Ok(if most(&led) > most(&outline) { led } else { outline })
     }
 
-    /// The pieces of a text, whose rows may begin with texts if `is_led`.
+    /// The pieces of a text whose rows may begin with text if `is_led`.
     fn led(text: &'a str, is_led: bool) -> Result<Self, CurveReadError> {
         let mut outline = Self {
             is_led,
@@ -127,7 +130,7 @@ impl<'a> Outline<'a> {
         let mut is_open = false;
         let mut rows = 0;
         for (line, text) in text.lines().enumerate().map(|(i, text)| (i + 1, trimmed(text))) {
-            // Igor indents its rows by a tab.
+            // Igor indents its rows with a tab.
             let text = if outline.is_igor { text.trim() } else { text };
             if text.chars().all(|c| c.is_whitespace() || ";,|\"".contains(c)) {
                 continue;
@@ -165,10 +168,10 @@ impl<'a> Outline<'a> {
         Ok(outline)
     }
 
-    /// Takes a line into the open table, if it is one of its rows.
+    /// Adds a line to the open table, if it is one of its rows.
     fn goes_on(&mut self, line: usize, text: &'a str) -> bool {
         let Some(table) = self.tables.last_mut() else { return false };
-        // A number alone above rows is how many there are.
+        // A single number above rows gives their count.
         if table.cells == 1 && row(text).is_some_and(|(_, cells)| cells > 1) {
             return false;
         }
@@ -183,7 +186,7 @@ impl<'a> Outline<'a> {
         is_row
     }
 
-    /// Begins a table with a line that is a row, the words above it in `above`.
+    /// Begins a table with a line that is a row; the words above it go to `above`.
     fn begins(
         &mut self,
         line: usize,
@@ -199,7 +202,7 @@ impl<'a> Outline<'a> {
         if cells > MOST_COLUMNS {
             return Err(CurveReadError::ManyColumns { line, found: cells });
         }
-        // Words among rows that are parted as they are: a row with a fault, and no header.
+        // Words among rows that are separated like them are a row with a fault, not a header.
         if let Some(table) = self.tables.last_mut()
             && (table.separator, table.cells) == (separator, cells)
             && above.iter().any(|words| !words.is_remark)
@@ -224,14 +227,14 @@ impl<'a> Outline<'a> {
     }
 }
 
-/// Whether words have the cells of a row, and a number among them.
+/// Whether words have the same cells as a row, with a number among them.
 fn broken(table: &TextTable, text: &str) -> bool {
     let cells = table.separator.cells(text);
     cells.len() > 1 && cells.len() == table.cells && cells.iter().any(|cell| is_number(cell))
 }
 
-/// What parts a row in which some commas are followed by a space and some by a digit; `None` if the words above it do not tell
-/// by their number.
+/// What separates the cells of a row in which some commas are followed by a space and some by a digit; `None` if the
+/// number of words above does not tell.
 fn commas(separator: Separator, above: &[Words], text: &str) -> Option<Separator> {
     let wide = Separator::CommaSpace.cells(text);
     let plain = separator.cells(text).len();
@@ -245,7 +248,7 @@ fn commas(separator: Separator, above: &[Words], text: &str) -> Option<Separator
     if names == wide.len() { Some(Separator::CommaSpace) } else { (names == plain).then_some(separator) }
 }
 
-/// A line without the space around it; tabs part cells, which may be empty.
+/// A line without surrounding spaces; tabs stay, because they separate cells that may be empty.
 fn trimmed(text: &str) -> &str {
     text.trim_end_matches([' ', '\u{1a}']).trim_start_matches(' ')
 }

@@ -1,31 +1,31 @@
-//! Measured curves: force over approach, position or contact radius, as an instrument hands them over.
+//! Measured curves: force over approach, position or contact radius, as an instrument exports them.
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`role`] | what a column is: its unit, what a person says of columns |
-//! | `names` | the names by which headers say it |
-//! | [`read`](mod@read) | the text of a file → columns, every fault with its line and column |
-//! | `words` | what a line says beside its numbers, and what a cell is |
+//! | [`role`] | what a column is: its unit, what the user says about columns |
+//! | `names` | the names that headers use for it |
+//! | [`read`](mod@read) | the text of a file → columns; every fault with its line and column |
+//! | `words` | what a line says besides its numbers, and what a cell is |
 //! | `lines` | the lines of a file → tables of rows, and the words above them |
-//! | `header` | the names, units and branches that words above a table say |
-//! | `choice` | which columns are used, as a header or a person says |
+//! | `header` | the names, units and branches given by the words above a table |
+//! | `choice` | which columns are used, as a header or the user specifies |
 //! | `rows` | rows of cells → columns of numbers |
 //! | [`stated`] | the stiffness and the tip radius that a file states |
 //! | [`error`] | what is wrong with a text |
 //! | [`points`] | columns → points (x, P, s) in SI or reduced units |
-//! | [`source`] | a file held by a preset, taken apart once |
-//! | [`asked`] | what a person says of the rows |
+//! | [`source`] | a file held by a preset, parsed once |
+//! | [`asked`] | what the user specifies about the rows |
 //! | [`branches`] | points → approach and retraction, with their parts and their noise |
 //! | `free` | a branch → the rows in contact, within the jump, and apart |
 //! | `sigma` | how well the columns are known |
 //! | `signs` | where the bodies are apart, and the signs of x and P |
 //! | `apart` | the jump behind which the bodies are apart |
-//! | `turns` | where the way turns round |
-//! | [`converter`] | steps and ends of the range of a converter, rows that stand there twice |
+//! | `turns` | where x reverses |
+//! | [`converter`] | steps and ends of the range of a converter, rows that are recorded twice |
 //! | `noise` | medians, ranges, scatter |
-//! | [`speed`] | how fast the contact radius goes, row by row |
+//! | [`speed`] | how fast the contact radius changes, row by row |
 //!
-//! Nothing here reads a disk: bytes come from the caller.
+//! Nothing here reads from disk: the caller supplies the bytes.
 
 mod apart;
 pub mod asked;

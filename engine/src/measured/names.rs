@@ -1,10 +1,10 @@
-//! The names of columns by which headers say what they hold.
+//! The names by which headers say what their columns hold.
 
 use super::role::{ColumnRole, Segment, dimensions};
 use crate::units::Unit;
 
 impl ColumnRole {
-    /// What a header's name says, if no unit stands in it.
+    /// What a header's name says, if it contains no unit.
     pub fn of_bare(name: &str) -> Option<Self> {
         named(name).filter(|named| named.unit.is_none()).map(|named| named.role)
     }
@@ -20,16 +20,16 @@ impl ColumnRole {
 pub(super) struct ColumnName {
     /// What it holds.
     pub role: ColumnRole,
-    /// Of several columns of one role that of the lowest rank is read.
+    /// Of several columns with the same role, the one with the lowest rank is read.
     pub rank: u8,
-    /// The branch that it holds alone.
+    /// The branch to which it is restricted.
     pub side: Option<Segment>,
-    /// The unit that stands in its name: `Defl_pN_Ex`.
+    /// The unit in its name: `Defl_pN_Ex`.
     pub unit: Option<String>,
 }
 
-/// The roles with the names by which a header says them, letters and digits alone, in lower case. Names of rank 1 may mean
-/// something else beside others, those of rank 2 are not what was reached but what was asked for.
+/// The roles with the names that headers use for them, letters and digits only, in lower case. Names of rank 1 may mean
+/// something else when others are present; names of rank 2 are what was asked for, not what was reached.
 const NAMES: [(ColumnRole, u8, &[&str]); 17] = [
     (
         ColumnRole::Approach,
@@ -133,7 +133,7 @@ const NAMES: [(ColumnRole, u8, &[&str]); 17] = [
             "deflectionv",
             "cantilever",
             "deflectionerror",
-            // Of AFM Workshop: the top of the detector less its bottom.
+            // From AFM Workshop: the top of the detector minus its bottom.
             "tb",
         ],
     ),
@@ -175,7 +175,7 @@ const NAMES: [(ColumnRole, u8, &[&str]); 17] = [
     (ColumnRole::Segment, 0, &["segment", "branch", "direction", "phase", "segmentname", "segmenttype"]),
 ];
 
-/// Words of a name that say nothing of what the column holds.
+/// Words in a name that say nothing about what the column holds.
 const EMPTY_WORDS: [&str; 15] = [
     "smoothed",
     "corrected",
@@ -194,24 +194,24 @@ const EMPTY_WORDS: [&str; 15] = [
     "measured",
 ];
 
-/// Words of a branch that may be grown together with a name.
+/// Words for a branch that may be joined to a name.
 const GROWN: [&str; 8] =
     ["extend", "extension", "retract", "retraction", "approach", "withdraw", "unloading", "loading"];
 
-/// A name in letters and digits alone, in lower case.
+/// A name reduced to letters and digits, in lower case.
 pub(super) fn squashed(name: &str) -> String {
     name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
-/// The role and the rank of a name without anything around it.
+/// The role and the rank of a name with nothing around it.
 fn known(squashed: &str) -> Option<(ColumnRole, u8)> {
     let found = NAMES.iter().find(|(.., names)| names.contains(&squashed));
     found.map(|(role, rank, _)| (*role, *rank))
 }
 
-/// What a column's name says, with the branch, the unit and the words around it that say nothing.
+/// What a column's name says, including the branch, the unit and the surrounding words that carry no meaning.
 pub(super) fn named(name: &str) -> Option<ColumnName> {
-    /// The most words of a name.
+    /// The largest number of words in a name.
     const WORDS: usize = 12;
     let mut words: Vec<&str> =
         name.split(|c: char| !c.is_alphanumeric() && c != '°').filter(|word| !word.is_empty()).collect();
@@ -259,7 +259,7 @@ pub(super) fn named(name: &str) -> Option<ColumnName> {
     }
 }
 
-/// A name behind a number, as `image0001zsnsr`, or grown together with a branch, as `extendforce`.
+/// A name after a number, as in `image0001zsnsr`, or joined to a branch, as in `extendforce`.
 fn grown(squashed: &str) -> Option<(ColumnRole, u8, Option<Segment>)> {
     let behind = squashed.rfind(|c: char| c.is_ascii_digit()).map(|at| &squashed[at + 1..]);
     if let Some((role, rank)) =

@@ -4,12 +4,13 @@ use serde::Serialize;
 
 /// The least noise, as a share of the range: a distance to a curve needs both axes.
 pub const FLOOR: f64 = 1e-4;
-/// Values beyond so many standard deviations count as so many, and the variance of normal values that is left so.
+/// Values beyond this many standard deviations are clipped to it, and the share of the variance of normal values that
+/// remains.
 pub(crate) const CLIPPED: f64 = 2.5;
 pub(crate) const LEFT: f64 = 0.977_56;
-/// Deviations of the free part beyond so many σ belong to the contact.
+/// Deviations of the free part beyond this many σ belong to the contact.
 pub(super) const BEYOND: f64 = 6.0;
-/// The share of the rows, and the fewest, by which the ends are judged.
+/// The share of the rows by which the ends are judged, one in this many, and the fewest rows.
 pub(super) const END_SHARE: usize = 40;
 pub(super) const END_ROWS: usize = 5;
 
@@ -34,13 +35,13 @@ pub enum Origin {
 pub struct Noise {
     /// Of x, P and s.
     pub sigma: [f64; 3],
-    /// Where each is from.
+    /// How each was obtained.
     pub from: [Origin; 3],
-    /// The step of the converter of the force; 0 where none is seen.
+    /// The step of the converter of the force; 0 if none is seen.
     pub step: f64,
 }
 
-/// The median; `None` of nothing.
+/// The median; `None` of an empty list.
 pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     let count = values.len();
     if count == 0 {
@@ -53,13 +54,13 @@ pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     Some(0.5 * (other + at))
 }
 
-/// The variance around 0 of normal values, some of which may be off.
+/// The variance around 0 of normal values, some of which may be outliers.
 pub(crate) fn variance(values: &[f64]) -> Option<f64> {
     const TIMES: usize = 20;
     const SAME: f64 = 1e-6;
     let mut found = (median(values.iter().map(|x| x.abs()).collect())? / 0.6745).powi(2);
     if found == 0.0 {
-        // Half of them are none: of a force in steps.
+        // Half of them are zero: differences of a force in steps.
         found = values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64;
     }
     for _ in 0..TIMES {
@@ -74,7 +75,7 @@ pub(crate) fn variance(values: &[f64]) -> Option<f64> {
     Some(found)
 }
 
-/// The range of what is a number.
+/// The range of the values that are numbers.
 pub(super) fn range(values: impl Iterator<Item = f64>) -> f64 {
     let [lo, hi] = values
         .filter(|x| x.is_finite())
@@ -87,18 +88,19 @@ pub(super) fn tenth(force: &[f64]) -> &[f64] {
     &force[force.len() - (force.len() / 10).max(6).min(force.len())..]
 }
 
-/// σ of normal noise at the free end of a branch. Of few rows there it is known badly, of all rows never too low.
+/// σ of normal noise at the free end of a branch. From few rows there it is poorly known; from all rows it is never too
+/// low.
 pub(super) fn noise_of(force: &[f64]) -> f64 {
     scatter(tenth(force)).min(scatter(force))
 }
 
-/// σ of normal noise on what varies slowly from row to row.
+/// σ of normal noise on values that vary slowly from row to row.
 pub(super) fn scatter(values: &[f64]) -> f64 {
     median(values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect()).unwrap_or(0.0) / 0.954
 }
 
-/// σ of normal noise on y that varies slowly with x from row to row, however uneven the steps of x are: each row beside the line through
-/// its neighbours.
+/// σ of normal noise on a y that varies slowly with x from row to row, however uneven the steps of x are: each row is
+/// compared with the line through its neighbours.
 pub(super) fn scatter_over(x: &[f64], y: &[f64]) -> Option<f64> {
     let off = |i: usize| {
         let share = (x[i] - x[i - 1]) / (x[i + 1] - x[i - 1]);

@@ -12,7 +12,7 @@ use thiserror::Error;
 pub enum Abscissa {
     /// The approach δ.
     Approach,
-    /// The way Δ = δ + P/k of the far end of a spring.
+    /// The position Δ = δ + P/k of the far end of a spring.
     Position,
     /// The contact radius s.
     Radius,
@@ -29,27 +29,27 @@ impl Abscissa {
     }
 }
 
-/// One point, its signs put right.
+/// One point, with its signs corrected.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredPoint {
     /// x.
     pub x: f64,
     /// P.
     pub force: f64,
-    /// s, where it is measured beside x; not a number elsewhere.
+    /// s, where it is measured besides x; NaN otherwise.
     pub radius: f64,
-    /// When it was measured; not a number where nothing says it.
+    /// When it was measured; NaN if unknown.
     pub time: f64,
     /// The row of the file, from 1, header not counted.
     pub row: usize,
-    /// Its place in the order in which the rows were measured, from 1: that of the file, unless their times tell another.
+    /// Its place in the order of measurement, from 1: the order of the file, unless the times show another.
     pub at: usize,
 }
 
-/// Whether the signs of x and of P are turned.
+/// Whether the signs of x and of P are reversed.
 pub type Turned = [bool; 2];
 
-/// Turns the signs of x and P.
+/// Reverses the signs of x and P.
 pub(super) fn turn(points: &mut [MeasuredPoint], [x, force]: Turned) {
     for point in points {
         point.x = if x { -point.x } else { point.x };
@@ -66,20 +66,20 @@ pub struct Points {
     pub x: Vec<f64>,
     /// P.
     pub force: Vec<f64>,
-    /// s, where it is measured beside δ or Δ.
+    /// s, where it is measured besides δ or Δ.
     pub radius: Option<Vec<f64>>,
     /// The place of the last digit of x, of P and of s.
     pub steps: [f64; 3],
     /// The branch of each, where the file says it.
     pub segments: Option<Vec<Segment>>,
-    /// When each was measured, in seconds, or in reduced units; `None` where the file does not say it.
+    /// When each was measured, in seconds or in reduced units; `None` if the file does not say.
     pub time: Option<Vec<f64>>,
 }
 
-/// Why columns give no points.
+/// Why columns yield no points.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PointsError {
-    /// Units on a problem without.
+    /// Units in a problem without units.
     #[error(
         "{}the {role} has a unit, {unit}, and the problem is in reduced units, where columns are pure numbers: write them \
          without, or set units = \"SI\"",
@@ -93,7 +93,7 @@ pub enum PointsError {
         /// Its unit.
         unit: String,
     },
-    /// A file that states its instrument in SI, on a problem without units.
+    /// A file that states its instrument in SI, in a problem without units.
     #[error(
         "the file states {what}, and the problem is in reduced units: set units = \"SI\", or data.settings = \"preset\" to \
          leave the file's out"
@@ -102,7 +102,7 @@ pub enum PointsError {
         /// What it states, safe to show.
         what: String,
     },
-    /// Two stiffnesses, or two tip radii.
+    /// Two stiffnesses, or two tip radii, that differ.
     #[error(
         "the file states {what} of {file}, and {key} is {preset}: set {key} to that of the file, or data.settings = \"preset\" \
          if the file's is wrong"
@@ -125,7 +125,7 @@ pub enum PointsError {
     Constant(&'static str),
 }
 
-/// What a file may state of its instrument: in words, the key that says the same, and what it measures.
+/// Something a file may state about its instrument: in words, the preset key for the same thing, and its quantity.
 pub type Statement = (&'static str, &'static str, Quantity);
 
 /// The stiffness of the spring.
@@ -133,7 +133,7 @@ pub const SPRING: Statement = ("a spring", "path.control.stiffness", Quantity::F
 /// The radius of the tip.
 pub const TIP: Statement = ("a tip radius", "gap.radius_of_curvature", Quantity::Length);
 
-/// What a file states and a preset does not say, or says otherwise, in words; `None` where they agree.
+/// What a file states and a preset omits or contradicts, in words; `None` where they agree.
 #[must_use]
 pub fn overridden(
     stated: Option<StatedValue>,
@@ -155,7 +155,7 @@ pub fn overridden(
     }
 }
 
-/// Compares what a file states with what a preset says, in base units, where both say something.
+/// Compares what a file states with what a preset says, in base units, where both give a value.
 fn compare(
     stated: Option<StatedValue>,
     preset: Option<f64>,
@@ -176,10 +176,10 @@ fn compare(
     }
 }
 
-/// The stiffness of the device, where the preset or the file states one, in the preset's base units.
+/// The stiffness of the device, if the preset or the file states one, in the preset's base units.
 ///
 /// # Errors
-/// [`PointsError`] where both do and differ, or the problem has no units.
+/// [`PointsError`] if both state one and they differ, or if the problem has no units.
 pub fn stiffness(
     file: Option<StatedValue>,
     control: Control,
@@ -190,10 +190,10 @@ pub fn stiffness(
     Ok(preset.or(file.map(|stated| stated.value)))
 }
 
-/// Compares the radius of the tip that a file states with that of the gap.
+/// Compares the tip radius that a file states with that of the gap.
 ///
 /// # Errors
-/// [`PointsError`] where both are there and differ, or the problem has no units.
+/// [`PointsError`] if both are given and differ, or if the problem has no units.
 pub fn tip_radius(
     file: Option<StatedValue>,
     gap: Option<f64>,
@@ -203,12 +203,12 @@ pub fn tip_radius(
 }
 
 impl Measured {
-    /// Whether a problem in `units` takes the columns as they are.
+    /// Whether a problem in `units` can take the columns as they are.
     ///
     /// # Errors
     /// [`PointsError::Reduced`].
     pub fn check_units(&self, units: &UnitSystem) -> Result<(), PointsError> {
-        // A time is left out where it has a unit and the problem has none.
+        // A time is left out if it has a unit and the problem has none.
         let columns = self.columns.iter().filter(|column| column.role != ColumnRole::Time);
         let named = columns.into_iter().find_map(|column| Some((column, column.unit.as_ref()?)));
         match named {
@@ -221,9 +221,9 @@ impl Measured {
         }
     }
 
-    /// The points of a problem in `units` whose device has the stiffness `spring`, in its base units.
+    /// The points of a problem in `units` whose device has the stiffness `spring`, in base units.
     ///
-    /// Of an approach and a position the approach is taken, of a force and a deflection the force.
+    /// If there are an approach and a position, the approach is used; if there are a force and a deflection, the force.
     ///
     /// # Errors
     /// [`PointsError`].

@@ -7,9 +7,9 @@
 //! 0.10, -3.2, approach               cells parted by semicolons, tabs, bars, commas or spaces: what the first row shows
 //! ```
 //!
-//! Which lines are rows is found in `lines`, what their columns are in `header` and `choice`, what the file states of its
-//! instrument in [`stated`](super::stated). Rows without a number in a column that is used are left out and counted. Every fault
-//! is told with its line and its column, the first of them; a file with faults gives no curve.
+//! `lines` finds which lines are rows, `header` and `choice` what their columns are, and [`stated`](super::stated) what
+//! the file states about its instrument. Rows without a number in a column that is used are left out and counted. The
+//! first faults are reported with line and column; a file with faults yields no curve.
 
 use super::choice::{WantedColumn, in_si, sides, wanted};
 use super::error::{CurveFault, CurveReadError, ROW_RANGE};
@@ -24,17 +24,17 @@ use crate::cells;
 use crate::text::{decode, quote, sanitize};
 use std::borrow::Cow;
 
-/// So many values of a column are shown to choose it by.
+/// This many values of a column are shown when choosing it.
 const SEEN: usize = 3;
-/// The longest name of a column that is shown.
+/// The longest column name that is shown.
 const LONGEST_NAME: usize = 60;
 
-/// A column as a person sees it before its role is chosen.
+/// A column as the user sees it before choosing its role.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SeenColumn {
     /// Its number, from 1.
     pub number: usize,
-    /// Its name in the header, safe to show; empty without.
+    /// Its name in the header, safe to show; empty if there is none.
     pub name: String,
     /// Its unit in the header, as written.
     pub unit: Option<String>,
@@ -44,26 +44,26 @@ pub struct SeenColumn {
     pub role: Option<ColumnRole>,
 }
 
-/// A file in pieces, the tables that are read chosen.
+/// A file in pieces, with the tables to read already chosen.
 struct Pieces<'a> {
     outline: Outline<'a>,
-    /// The tables that are read, in the order of the file.
+    /// The tables to read, in the order of the file.
     tables: Vec<usize>,
-    /// Whether their columns stand beside each other, one wave in each.
+    /// Whether their columns stand side by side, one wave in each.
     are_beside: bool,
     header: Option<Header>,
     notes: Vec<String>,
 }
 
-/// Text whose lines end as they do here; old ones end with a carriage return alone.
+/// Text with line feeds as line ends; old files end lines with a carriage return alone.
 fn lines_of(text: Cow<'_, str>) -> Cow<'_, str> {
     if text.contains('\r') { Cow::Owned(text.replace("\r\n", "\n").replace('\r', "\n")) } else { text }
 }
 
-/// Reads the curve in `bytes`, the content of a file, with what a person says of its columns.
+/// Reads the curve in `bytes`, the content of a file, with what the user says about its columns.
 ///
 /// # Errors
-/// [`CurveReadError`] with the lines that are wrong.
+/// [`CurveReadError`] with the faulty lines.
 pub fn parse(bytes: &[u8], spec: &ColumnSpec) -> Result<Measured, CurveReadError> {
     let (text, note) = decode(bytes).map_err(CurveReadError::NotText)?;
     let text = lines_of(text);
@@ -103,10 +103,10 @@ pub fn parse(bytes: &[u8], spec: &ColumnSpec) -> Result<Measured, CurveReadError
     Ok(measured)
 }
 
-/// The columns of a file to choose from, with the roles that its header gives them.
+/// The columns of a file to choose from, with the roles given by its header.
 ///
 /// # Errors
-/// [`CurveReadError`] where there is no table.
+/// [`CurveReadError`] if there is no table.
 pub fn columns(bytes: &[u8]) -> Result<Vec<SeenColumn>, CurveReadError> {
     let (text, _) = decode(bytes).map_err(CurveReadError::NotText)?;
     let text = lines_of(text);
@@ -128,7 +128,7 @@ pub fn columns(bytes: &[u8]) -> Result<Vec<SeenColumn>, CurveReadError> {
 }
 
 impl<'a> Pieces<'a> {
-    /// The pieces of a text, with the table that is read: that with the most rows, and those that go on with it.
+    /// The pieces of a text, with the table to read: the one with the most rows, and those that continue it.
     fn of(text: &'a str) -> Result<Self, CurveReadError> {
         let outline = Outline::of(text)?;
         let headers: Vec<Option<Header>> =
@@ -155,7 +155,7 @@ impl<'a> Pieces<'a> {
             pieces.tables = (0..waves).collect();
             pieces.joined(&headers)?;
         } else {
-            // Of two that are as long the first.
+            // Of two equally long ones, the first.
             let longest = groups
                 .iter()
                 .rev()
@@ -167,7 +167,7 @@ impl<'a> Pieces<'a> {
         Ok(pieces)
     }
 
-    /// Puts the headers of waves together, one of which stands in each table.
+    /// Combines the headers of waves, one of which stands in each table.
     fn joined(&mut self, headers: &[Option<Header>]) -> Result<(), CurveReadError> {
         let rows = self.outline.tables.iter().map(|table| table.rows.len());
         if let (Some(least), Some(most)) = (rows.clone().min(), rows.max())
@@ -182,12 +182,12 @@ impl<'a> Pieces<'a> {
         Ok(())
     }
 
-    /// Says which lines are left out.
+    /// Notes which lines are left out.
     fn tell(&mut self) {
         let lines = |table: &TextTable| Some((table.rows.first()?.0, table.rows.last()?.0));
         for (at, table) in self.outline.tables.iter().enumerate() {
             if let (false, Some((first, last))) = (self.tables.contains(&at), lines(table)) {
-                // A number or two above the rows is a setting.
+                // One or two numbers above the rows are a setting.
                 if first != last {
                     self.notes.push(format!("lines {first} to {last} are another table, which is left out"));
                 }
@@ -216,7 +216,7 @@ impl<'a> Pieces<'a> {
         if self.are_beside { self.tables.len() } else { table.cells }
     }
 
-    /// The cells of a row of `table`, or of those beside it.
+    /// The cells of a row of `table`, or of the tables side by side.
     fn cells(&self, all: &[&TextTable<'a>], table: &TextTable<'a>, row: usize) -> Option<Vec<&'a str>> {
         if self.are_beside {
             return all.iter().map(|wave| wave.rows.get(row).map(|(_, text)| cells::bare(text))).collect();
@@ -280,7 +280,7 @@ impl<'a> Pieces<'a> {
                 }
                 let sides = [(&wanted, &mut *measured), (&retraction, &mut other)];
                 for ((wanted, into), own) in sides.into_iter().zip(&own) {
-                    // Of two branches beside each other one may be shorter.
+                    // Of two branches side by side, one may be shorter.
                     let is_over = own.iter().all(|at| cells.get(*at).is_none_or(|cell| cell.is_empty()));
                     if retraction.is_empty() || !is_over {
                         state.takes(*line, &cells, wanted, branch.filter(|_| is_said), into);

@@ -1,4 +1,4 @@
-//! What a column is, by its name or because a person says so.
+//! What a column is, from its name or as the user says.
 
 use crate::text::{closest, quote};
 use crate::units::{Dimension, Quantity, Unit};
@@ -9,9 +9,9 @@ use thiserror::Error;
 pub enum ColumnRole {
     /// δ, a length.
     Approach,
-    /// The way of the device's far end, a length: Δ but for its sign and its zero.
+    /// The position of the device's far end, a length: Δ apart from its sign and its zero.
     Position,
-    /// How far the spring of the device is bent, a length.
+    /// The deflection of the device's spring, a length.
     Deflection,
     /// P, a force.
     Force,
@@ -23,7 +23,7 @@ pub enum ColumnRole {
     Area,
     /// Which branch a row belongs to.
     Segment,
-    /// When a row was taken, a time; its zero may be anywhere.
+    /// When a row was measured, a time; its zero is arbitrary.
     Time,
 }
 
@@ -32,7 +32,7 @@ pub enum ColumnRole {
 pub enum Segment {
     /// The bodies come together.
     Approach,
-    /// They go apart.
+    /// They move apart.
     Retraction,
     /// Neither: a pause.
     Other,
@@ -48,7 +48,7 @@ impl Segment {
         }
     }
 
-    /// What a cell says; `None` for a word that is not known.
+    /// What a cell says; `None` for an unknown word.
     pub fn of(text: &str) -> Option<Self> {
         let word = text.to_lowercase();
         let is = |words: &[&str]| words.contains(&word.as_str());
@@ -99,7 +99,7 @@ impl Segment {
 }
 
 impl ColumnRole {
-    /// All, in the order in which messages name them.
+    /// All roles, in the order in which messages name them.
     pub const ALL: [Self; 9] = [
         Self::Approach,
         Self::Position,
@@ -112,7 +112,7 @@ impl ColumnRole {
         Self::Time,
     ];
 
-    /// The word by which `--columns` says it; `x` says [`ColumnRole::Approach`] too.
+    /// The word for it in `--columns`; `x` also stands for [`ColumnRole::Approach`].
     pub fn word(self) -> &'static str {
         match self {
             Self::Approach => "approach",
@@ -153,12 +153,12 @@ impl ColumnRole {
 /// The dimension of a time.
 const TIME: Dimension = Dimension::new(0, 0, 1);
 
-/// The dimensions that units in a header have.
+/// The dimensions that the units in a header can have.
 pub(super) fn dimensions() -> [Dimension; 4] {
     [Quantity::Length.dimension(), Quantity::Force.dimension(), Quantity::Length.dimension() * 2, TIME]
 }
 
-/// Where a column stands.
+/// Where a column is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ColumnPlace {
     /// Its number, from 1.
@@ -167,25 +167,25 @@ pub enum ColumnPlace {
     Name(String),
 }
 
-/// One column as a person says it.
+/// One column as the user specifies it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Said {
     /// What it is.
     pub role: ColumnRole,
-    /// Where it stands.
+    /// Where it is.
     pub place: ColumnPlace,
-    /// Its unit, where that is said.
+    /// Its unit, if given.
     pub unit: Option<Unit>,
 }
 
-/// What a person says of the columns of a file; empty leaves it to the header.
+/// What the user says about the columns of a file; empty leaves it to the header.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ColumnSpec(pub Vec<Said>);
 
-/// Why a text says nothing of columns.
+/// Why a text does not specify columns.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ColumnSpecError {
-    /// No `ROLE=COLUMN`.
+    /// It is not of the form `ROLE=COLUMN`.
     #[error("\"{0}\" is not of the form ROLE=COLUMN, as in x=1,force=2 or position=Z [nm],force=F [nN]")]
     Form(String),
     /// An unknown role.
@@ -195,23 +195,23 @@ pub enum ColumnSpecError {
         meant.map_or_else(String::new, |word| format!("; did you mean {word}?"))
     )]
     Role {
-        /// What was given, safe to show.
+        /// The text given, safe to show.
         text: String,
-        /// What it resembles.
+        /// The word it resembles.
         meant: Option<&'static str>,
     },
-    /// A column number that is none.
+    /// A column number of zero.
     #[error("column 0: columns are counted from 1")]
     Zero,
-    /// A role said twice.
+    /// A role given twice.
     #[error("{0} is said twice")]
     Twice(&'static str),
-    /// A unit that is none of its quantity.
+    /// A unit that does not fit its quantity.
     #[error("the unit \"{unit}\" of {role} is not {expected}")]
     Unit {
         /// The role.
         role: &'static str,
-        /// What was given, safe to show.
+        /// The text given, safe to show.
         unit: String,
         /// What is expected, in words.
         expected: &'static str,
@@ -219,7 +219,7 @@ pub enum ColumnSpecError {
 }
 
 impl ColumnSpec {
-    /// What a text such as `x=1,force=Load [mN]` says.
+    /// The columns that a text such as `x=1,force=Load [mN]` specifies.
     ///
     /// # Errors
     /// [`ColumnSpecError`].
@@ -273,7 +273,7 @@ pub(super) fn unit_of(role: ColumnRole, text: &str) -> Result<Unit, ColumnSpecEr
     })
 }
 
-/// The unit that `text` names, spelt out perhaps; the grams of a balance are forces where `is_force`.
+/// The unit that `text` names, possibly spelt out; the grams of a balance are forces if `is_force`.
 pub(super) fn unit_named(text: &str, is_force: bool) -> Option<Unit> {
     const SPELT: [(&str, &str); 8] = [
         ("newton", "N"),

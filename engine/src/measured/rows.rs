@@ -17,11 +17,11 @@ pub struct Column {
     pub role: ColumnRole,
     /// Its number in the file, from 1.
     pub number: usize,
-    /// Its unit, where the file or a person names one.
+    /// Its unit, if the file or the user names one.
     pub unit: Option<Unit>,
     /// Its values, in that unit.
     pub values: Vec<f64>,
-    /// The place of the last digit of its numbers, in that unit: they are known no better.
+    /// The place of the last digit of its numbers, in that unit: they are known no better than this.
     pub step: f64,
 }
 
@@ -38,7 +38,8 @@ pub struct Measured {
     pub radius: Option<StatedValue>,
     /// The line of the header, from 1.
     pub header: Option<usize>,
-    /// Whether the header is that of a walk or a curve of this program: its signs are known, and no free part is to be found.
+    /// Whether the header is that of a walk or a curve of this program: its signs are then known, and there is no free
+    /// part to find.
     pub is_computed: bool,
     /// The line of each row, from 1.
     pub lines: Vec<usize>,
@@ -48,10 +49,10 @@ pub struct Measured {
     pub notes: Vec<String>,
 }
 
-/// What the cells of all rows have shown.
+/// What the cells of all rows have revealed.
 #[derive(Default)]
 pub(super) struct CellFindings {
-    /// The line of the first number with a decimal point, and with a decimal comma.
+    /// The line of the first number with a decimal point, and of the first with a decimal comma.
     marks: [Option<usize>; 2],
     /// The line of the first row that was left out.
     pub skipped: Option<usize>,
@@ -60,8 +61,8 @@ pub(super) struct CellFindings {
 }
 
 impl CellFindings {
-    /// Takes the row in `line` into `measured`, if it has a number in each column that is `wanted`; `branch` is that of its
-    /// table.
+    /// Adds the row in `line` to `measured`, if it has a number in each column that is `wanted`; `branch` is that of
+    /// its table.
     pub(super) fn takes(
         &mut self,
         line: usize,
@@ -109,7 +110,7 @@ impl CellFindings {
         }
     }
 
-    /// The number in a cell and the place of its last digit; `None` where it is out of the range of any instrument.
+    /// The number in a cell and the place of its last digit; `None` if it is beyond the range of any instrument.
     fn number(
         &mut self,
         line: usize,
@@ -144,13 +145,13 @@ impl CellFindings {
         }
     }
 
-    /// Whether decimals have a comma.
+    /// Whether decimals are written with a comma.
     pub(super) fn has_commas(&self) -> bool {
         self.marks[1].is_some()
     }
 }
 
-/// The time in a cell; NaN where it is none, as the time of day is.
+/// The time in a cell; NaN if it has none. A time of day counts as none.
 fn time(text: &str) -> f64 {
     text.replace(',', ".")
         .parse()
@@ -160,7 +161,7 @@ fn time(text: &str) -> f64 {
 }
 
 impl Measured {
-    /// Makes the columns; `all` is the branch of all rows, where no column says it.
+    /// Creates the columns; `all` is the branch of all rows, if no column gives it.
     pub(super) fn begins(&mut self, wanted: &[WantedColumn], all: Option<Segment>) {
         for column in wanted.iter().filter(|column| column.role != ColumnRole::Segment) {
             let (role, unit) = (column.role, column.unit.clone());
@@ -172,7 +173,7 @@ impl Measured {
         }
     }
 
-    /// Appends the rows of the retraction, whose columns are the same.
+    /// Appends the rows of the retraction, which has the same columns.
     pub(super) fn appends(&mut self, retraction: &Self) {
         let rows = |of: &Self| of.columns.first().map_or(0, |column| column.values.len());
         let mut segments = vec![Segment::Approach; rows(self)];
@@ -188,7 +189,7 @@ impl Measured {
         }
     }
 
-    /// Leaves a time out that is not a number in each row: nothing else needs it.
+    /// Drops a time column that lacks a number in some row: nothing else needs it.
     pub(super) fn without_gaps_of_time(&mut self) {
         let is_left = |column: &Column| {
             column.role == ColumnRole::Time && column.values.iter().any(|time| time.is_nan())
@@ -199,13 +200,14 @@ impl Measured {
         }
     }
 
-    /// Makes contact radii of diameters, s = d/2, and of areas, s = √(A/π).
+    /// Converts diameters, s = d/2, and areas, s = √(A/π), into contact radii.
     pub(super) fn in_radii(&mut self) {
         for column in &mut self.columns {
             let (word, number) = (column.role.word(), column.number);
             let into: fn(f64) -> f64 = match column.role {
                 ColumnRole::Diameter => |d| 0.5 * d,
-                // An area below 0 is noise around no contact; its sign is kept, so that it is refused as a radius is.
+                // An area below 0 is noise around no contact; its sign is kept, so that it is refused like a negative
+                // radius.
                 ColumnRole::Area => |area| (area.abs() / PI).sqrt().copysign(area),
                 _ => continue,
             };

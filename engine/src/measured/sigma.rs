@@ -12,7 +12,7 @@ use super::noise::{FLOOR, Noise, Origin, median, scatter_over, variance};
 use super::points::MeasuredPoint;
 use crate::elementary::hypot;
 
-/// Steps between rows apart from which their noise is told.
+/// The fewest steps between rows apart that determine their noise.
 const FEWEST_APART: usize = 5;
 
 /// σ of x, P and s, the rows in the order of the file.
@@ -25,12 +25,13 @@ pub(super) fn noise(
 ) -> Noise {
     let (mut forces, mut ways, mut radii) = (Vec::new(), Vec::new(), Vec::new());
     let mut in_contact = Vec::new();
-    // Of radii; a clock has no noise: over time radius and force tell each their own.
+    // For radii: a clock has no noise, so over time the radius and the force each show their own.
     let touches = |point: &&MeasuredPoint| point.x > 0.0;
     let mut in_touch = list.iter().flat_map(|(_, in_order)| in_order).filter(touches).peekable();
     let has_clock = of_radius && in_touch.peek().is_some() && in_touch.all(|point| point.time.is_finite());
     for (branch, in_order) in list {
-        // Nothing is known of radii where the bodies are apart: in contact they vary slowly with what they are measured with.
+        // Nothing is known about radii where the bodies are apart. In contact they vary slowly with the quantity they
+        // are measured against.
         let touching =
             || in_order.iter().filter(|point| if of_radius { point.x > 0.0 } else { point.radius > 0.0 });
         let over = |x: fn(&MeasuredPoint) -> f64, y: fn(&MeasuredPoint) -> f64| {
@@ -54,7 +55,7 @@ pub(super) fn noise(
     }
     let radius = radii.into_iter().reduce(f64::min);
     let neighbours = in_contact.into_iter().reduce(f64::min);
-    // Of few rows apart nothing is known: those in contact say more.
+    // Few rows apart show nothing: those in contact say more.
     let is_known = forces.len() >= FEWEST_APART || neighbours.is_none();
     let step = converter.unwrap_or(0.0);
     let of_forces = if step > 0.0 {
@@ -63,7 +64,7 @@ pub(super) fn noise(
         median(forces).map(|off| off / 0.954)
     };
     let apart = of_forces.filter(|_| is_known);
-    // Of radii over forces the scatter has that of the force in it: both cannot be told where neither is known.
+    // The scatter of radii over forces includes that of the force: the two cannot be separated if neither is known.
     let known = apart.is_some() || given[1].is_some() || has_clock;
     let of_ways = || median(ways).map(|way| way / 1.652);
     let ways = if of_radius { radius.filter(|_| known) } else { of_ways() };
@@ -82,8 +83,8 @@ pub(super) fn noise(
         }
         let digits = Some(steps[axis]).filter(|step| step.is_finite()).unwrap_or(0.0);
         let (mut of_data, origin) = found[axis].unwrap_or((0.0, Origin::Assumed));
-        // Noise below a step of the converter is not seen in differences: the force is rounded then. Squares of differences of rows apart have
-        // what rounding adds in them, but where all stand at one step.
+        // Noise below a step of the converter does not show in differences, because the force is rounded. For rows
+        // apart, the squared differences include what rounding adds, unless all rows stand at one step.
         let rounded = step / 12.0_f64.sqrt();
         if axis == 1 && origin == Origin::Apart {
             of_data = of_data.max(rounded);

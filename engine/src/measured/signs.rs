@@ -7,39 +7,40 @@ use super::points::{Abscissa, MeasuredPoint, Turned, turn};
 use super::role::Segment;
 use super::turns::{one_way, runs};
 
-/// A free end varies by less than this share of the range, and of the other end.
+/// A free end varies by less than these shares of the whole range, and of the range at the other end.
 const FLAT: [f64; 2] = [0.1, 0.3];
-/// Rows at an end stay at one x that go over less than this share of what as many go over elsewhere.
+/// Rows at an end are at rest in x if they cover less than this share of what the same number of rows covers on
+/// average.
 const PAUSE: f64 = 0.1;
-/// The shares of the range of x over which the force is looked at, where much noise is on it.
+/// The shares of the range of x over which the force is examined if it is very noisy.
 const SHARES: [f64; 2] = [0.08, 0.16];
 
-/// Jumps of this share of the surest are as likely.
+/// Jumps of this share of the clearest one are as likely.
 const LIKELY: f64 = 0.5;
-/// What is said where the sign of the force is turned.
+/// The notes for a reversed sign of the force.
 const PULLED: &str =
     "the force is positive before the jump to the free part, where bodies pull: its sign is turned";
 const FALLS: &str = "the force falls as the bodies are pressed together: its sign is turned";
 
-/// Whether the curve is free at its low end, at its high end: where y stands still while x goes on.
+/// Whether the curve is free at its low end and at its high end: where y stays constant while x changes.
 pub(super) fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
     let mut order: Vec<usize> = (0..x.len()).collect();
     order.sort_by(|&a, &b| x[a].total_cmp(&x[b]).then(y[a].total_cmp(&y[b])));
     let spread = |ends: &[usize]| {
         let mut y: Vec<f64> = ends.iter().map(|&i| y[i]).collect();
         y.sort_by(f64::total_cmp);
-        // Some rows that are off among few hide nothing.
+        // A few outliers among few rows must hide nothing.
         let fifth = y.len() / 5;
         y[y.len() - 1 - fifth] - y[fifth]
     };
-    // Rows of a pause say nothing.
+    // Rows of a pause show nothing.
     let way = range(x.iter().copied());
     let stays = |end: &[usize], count: usize| {
         range(end.iter().map(|&i| x[i])) < PAUSE * way * count as f64 / x.len() as f64
     };
     let whole = range(y.iter().copied());
     let flat = |here: f64, there: f64| here <= FLAT[0] * whole && here <= FLAT[1] * there;
-    // Over many rows noise is told from a slope, over few a short free part from the contact.
+    // Many rows tell noise from a slope; few rows tell a short free part from the contact.
     for share in [END_SHARE / 4, END_SHARE] {
         let count = (x.len() / share).max(END_ROWS).min(x.len());
         let ends = [&order[..count], &order[order.len() - count..]];
@@ -52,7 +53,7 @@ pub(super) fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
             return found;
         }
     }
-    // Of much noise, or of rows that stay at one x: the medians of parts of either end.
+    // With much noise, or with rows at rest in x, the medians of parts of either end are used.
     for share in SHARES {
         let found = trends(x, y, &order, share).map(|[low, high]| [flat(low, high), flat(high, low)]);
         if let Some(found) = found.filter(|found| *found != [false; 2]) {
@@ -62,7 +63,8 @@ pub(super) fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
     [false; 2]
 }
 
-/// By how much the force goes on over the outer parts of the range of x, of this share of it, low and high, by the medians of bins; `None` of few rows.
+/// By how much the force changes over the outer parts of the range of x, of this share of it, low and high, from the
+/// medians of bins; `None` if there are few rows.
 fn trends(x: &[f64], y: &[f64], order: &[usize], share: f64) -> Option<[f64; 2]> {
     /// The bins, and the rows in each.
     const BINS: usize = 4;
@@ -81,26 +83,26 @@ fn trends(x: &[f64], y: &[f64], order: &[usize], share: f64) -> Option<[f64; 2]>
     Some([trend(first)?, trend(last - BINS as f64 * bin)?])
 }
 
-/// Whether the signs of x and P are turned, and for which other signs as much speaks.
+/// Whether the signs of x and P are reversed, and which other signs have comparable evidence.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Orientation {
     pub(super) turned: Turned,
     pub(super) or: Option<Turned>,
 }
 
-/// What is known of points whose signs are not.
+/// What is known about points whose signs are not yet known.
 pub(super) struct UnsignedPoints<'a> {
     pub(super) abscissa: Abscissa,
     pub(super) segments: Option<&'a [Segment]>,
     /// Whether the rows are in order.
     pub(super) is_in_order: bool,
-    /// Which rows are apart, as a person says.
+    /// Which rows are apart, as the user specifies.
     pub(super) free: FreePart,
 }
 
 impl UnsignedPoints<'_> {
-    /// Turns the signs where the free end and the rise in contact say so. `None` where x stands still while P goes on, as in columns that
-    /// are swapped; only rows in order show it.
+    /// Sets the signs that the free end and the rise in contact indicate. `None` where x stands still while P changes,
+    /// as in columns that are swapped; this shows only if the rows are in order.
     pub(super) fn signs(&self, points: &mut [MeasuredPoint], notes: &mut Vec<String>) -> Option<Orientation> {
         if self.abscissa == Abscissa::Radius {
             return Some(self.of_force(points, [false; 2], notes));
@@ -129,7 +131,8 @@ impl UnsignedPoints<'_> {
             [true, _] => {}
             [_, true] => turned[0] = true,
             _ => {
-                // Without a free end the sense of a way is a matter of the instrument, that of a force is not.
+                // Without a free end, the direction of a position depends on the instrument, but the sign of a force
+                // does not.
                 turned[0] = self.abscissa == Abscissa::Position && rises(&x, &force) == Some(false);
                 notes.push("there is no free part: the signs are taken as they are in the file".to_owned());
             }
@@ -145,8 +148,8 @@ impl UnsignedPoints<'_> {
         format!("the {} grows as the bodies go apart: its sign is turned", self.abscissa.name())
     }
 
-    /// Turns the sign of the force, that of x being right. It rises where the bodies are pressed together; what it is before the jump to the
-    /// free part may speak against that.
+    /// Sets the sign of the force once that of x is right. The force rises where the bodies are pressed together; its
+    /// sign before the jump to the free part may contradict that.
     fn of_force(&self, points: &mut [MeasuredPoint], [x, _]: Turned, notes: &mut Vec<String>) -> Orientation {
         let pulls = if self.free == FreePart::None { None } else { pulls(points, self.segments) };
         let (ways, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
@@ -161,7 +164,7 @@ impl UnsignedPoints<'_> {
     }
 }
 
-/// The end of x at which `span` is, low and high.
+/// The end of x at which `span` lies, as (low, high).
 fn end_of(x: &[f64], span: ValueRange) -> [bool; 2] {
     let middle = |of: Vec<f64>| median(of).unwrap_or(f64::NAN);
     let (within, rest): (Vec<f64>, Vec<f64>) = x.iter().partition(|x| span.holds(**x));
@@ -169,7 +172,8 @@ fn end_of(x: &[f64], span: ValueRange) -> [bool; 2] {
     [within < rest, within > rest]
 }
 
-/// The signs at which the force jumps up from the contact to rows apart, and rises with x where the bodies are pressed together most.
+/// The signs for which the force jumps up from the contact to rows apart, and rises with x where the bodies are pressed
+/// together most.
 fn by_jumps(points: &[MeasuredPoint], segments: Option<&[Segment]>) -> Option<Orientation> {
     let pieces = match segments {
         None => one_way(points),
@@ -192,19 +196,19 @@ fn by_jumps(points: &[MeasuredPoint], segments: Option<&[Segment]>) -> Option<Or
     };
     let all = [[false, false], [true, false], [false, true], [true, true]];
     let mut found: Vec<(f64, Turned)> = all.map(|turned| (sum(turned), turned)).to_vec();
-    // Of equals the first: signs as they are in the file.
+    // Of equals, the first: signs as in the file.
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     let (best, turned) = *found.first().filter(|(sum, _)| *sum > 0.0)?;
     let or = found.get(1).filter(|(sum, _)| *sum > LIKELY * best).map(|(_, turned)| *turned);
     Some(Orientation { turned, or })
 }
 
-/// Whether the force before the jump to the free part is below that of the free part, as it is where bodies pull; `None` without
-/// a free part, or where the jump is so small that the rise in contact says more.
+/// Whether the force before the jump to the free part is below that of the free part, as it is where bodies attract;
+/// `None` without a free part, or where the jump is so small that the rise in contact says more.
 fn pulls(points: &[MeasuredPoint], segments: Option<&[Segment]>) -> Option<bool> {
-    /// A jump is trusted from this share of the largest force.
+    /// A jump is trusted from this share of the largest force on.
     const LARGE: f64 = 0.3;
-    /// At most so many rows before the jump, and at most this share of all, whose median is taken.
+    /// The median is taken over at most this many rows before the jump, and at most one in this many of all rows.
     const ROWS: usize = 3;
     const SHARE: usize = 20;
     let groups: Vec<Vec<MeasuredPoint>> = match segments {
@@ -225,7 +229,7 @@ fn pulls(points: &[MeasuredPoint], segments: Option<&[Segment]>) -> Option<bool>
         let base = median(end.to_vec())?;
         let most = force.iter().map(|p| (p - base).abs()).fold(0.0, f64::max);
         let rows = (force.len() / SHARE).clamp(1, ROWS);
-        // Among few rows a pull may be less than what is taken for noise.
+        // Among few rows, adhesion may be smaller than what is taken for noise.
         if limit > LARGE * most {
             continue;
         }
@@ -239,10 +243,10 @@ fn pulls(points: &[MeasuredPoint], segments: Option<&[Segment]>) -> Option<bool>
     found.map(|behind| behind < 0.0)
 }
 
-/// Whether x stands still at the beginning or the end of the file while P goes on: a way never does, the force of bodies apart
-/// does, but for its noise.
+/// Whether x stands still at the beginning or the end of the file while P changes. A position never does this, but the
+/// force of bodies apart does, apart from its noise.
 fn stands_still(x: &[f64], force: &[f64]) -> bool {
-    /// The share of the rows at either end, and the shares of both ranges there.
+    /// The rows at either end, one in this many of all, and the shares of both ranges there.
     const ROWS: usize = 20;
     const STILL: f64 = 0.015;
     const GOES_ON: f64 = 0.02;
@@ -257,7 +261,7 @@ fn stands_still(x: &[f64], force: &[f64]) -> bool {
         .any(|rows| share(x, rows.clone()) < STILL && share(force, rows) > GOES_ON)
 }
 
-/// Whether P rises with x in the outer fifth of x; `None` where it does neither.
+/// Whether P rises with x in the outer fifth of x; `None` if it neither rises nor falls.
 fn rises(x: &[f64], force: &[f64]) -> Option<bool> {
     let most = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let whole = range(x.iter().copied());

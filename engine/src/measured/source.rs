@@ -1,4 +1,4 @@
-//! The file of a measured curve as a preset holds it: its bytes, taken apart once for each way of reading them.
+//! The file of a measured curve as a preset holds it: its bytes, parsed once for each way of reading them.
 
 use super::asked::{Asked, FreePart};
 use super::branches::Branches;
@@ -10,26 +10,26 @@ use std::fmt;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// How the points of a file are made.
+/// How the points of a file are obtained.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// What a person says of the columns; empty leaves it to the header.
+    /// What the user says about the columns; empty leaves it to the header.
     pub columns: String,
     /// The units of the problem.
     pub units: UnitSystem,
-    /// The stiffness of its device, where that is a spring, in base units.
+    /// The stiffness of its device, if that is a spring, in base units.
     pub spring: Option<f64>,
-    /// What is used of the points.
+    /// Which points are used.
     pub asked: Asked,
 }
 
-/// A file of measured points. Equal where the name and the bytes are.
+/// A file of measured points. Two are equal when the names and the bytes are.
 pub struct PointsFile {
-    /// The file as a person wrote it.
+    /// The file name as the user wrote it.
     pub name: String,
-    /// The folder that a relative `name` is relative to.
+    /// The folder that a relative `name` starts from.
     pub folder: Option<PathBuf>,
-    /// All of it.
+    /// The whole content.
     pub bytes: Arc<[u8]>,
     columns: Mutex<Option<(String, Arc<Measured>)>>,
     branches: Mutex<Option<(Reading, Arc<Branches>)>>,
@@ -42,19 +42,19 @@ impl PointsFile {
         Self { name, folder, bytes, columns: Mutex::default(), branches: Mutex::default() }
     }
 
-    /// The same points from a file of this name.
+    /// The same points from a file named `name`.
     #[must_use]
     pub fn named(&self, name: String, folder: Option<PathBuf>) -> Self {
         Self::new(name, folder, Arc::clone(&self.bytes))
     }
 
-    /// Where the file lies.
+    /// Where the file is.
     #[must_use]
     pub fn path(&self) -> PathBuf {
         self.folder.as_ref().map_or_else(|| PathBuf::from(&self.name), |folder| folder.join(&self.name))
     }
 
-    /// Its columns, as `columns` says or as its header does.
+    /// Its columns, as `columns` specifies or as its header says.
     ///
     /// # Errors
     /// What is wrong with `columns` or with the file, in words.
@@ -78,7 +78,7 @@ impl PointsFile {
         measured.points(&reading.units, reading.spring).map_err(|error| error.to_string())
     }
 
-    /// What is asked of them, and of a curve that this program computed what is known of it besides: its signs, and that no
+    /// What is requested of the points. For a curve that this program computed, more is known: its signs, and that no
     /// row is apart whose force would be the zero of all others.
     ///
     /// # Errors
@@ -92,7 +92,7 @@ impl PointsFile {
         Ok(Asked { free, turned: said.turned.or(Some([false; 2])), ..said })
     }
 
-    /// Their branches.
+    /// The branches of its points.
     ///
     /// # Errors
     /// As [`points`](Self::points) and [`Points::branches`].
@@ -110,7 +110,7 @@ impl PointsFile {
 }
 
 impl PointsFile {
-    /// Whether it has the same text, whatever its name.
+    /// Whether it has the same content, whatever its name.
     #[must_use]
     pub fn has_bytes_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.bytes, &other.bytes) || self.bytes == other.bytes

@@ -1,7 +1,8 @@
-//! What a file states of the instrument beside its columns: the stiffness of the spring and the radius of the tip.
+//! What a file states about the instrument besides its columns: the stiffness of the spring and the radius of the tip.
 //!
-//! Settings are lines such as `Force Constant, nN/nm: 0.2`, `k (N/m)<tab>0.018`, `# springConstant: 0.04` or, of afmformats,
-//! a block of JSON in the remarks (A. Müller et al., afmformats, github.com/AFM-analysis/afmformats, `formats/fmt_tab.py`).
+//! Settings are lines such as `Force Constant, nN/nm: 0.2`, `k (N/m)<tab>0.018` or `# springConstant: 0.04`; afmformats
+//! writes a block of JSON in the remarks (A. Müller et al., afmformats, github.com/AFM-analysis/afmformats,
+//! `formats/fmt_tab.py`).
 
 use super::names::squashed;
 use super::words::{Words, last_digit};
@@ -11,9 +12,9 @@ use crate::units::{Dimension, Quantity, Unit};
 
 /// The longest block of metadata that is read, in bytes.
 const LONGEST_METADATA: usize = 1 << 20;
-/// The longest line that is looked at for a setting, in bytes.
+/// The longest line that is searched for a setting, in bytes.
 const LONGEST_SETTING: usize = 1 << 14;
-/// What a file states and what a preset says are one up to this share: files round.
+/// What a file states and what a preset says are equal up to this share: files round.
 const SAME: f64 = 1e-3;
 
 /// A value that a file states.
@@ -26,14 +27,14 @@ pub struct StatedValue {
 }
 
 impl StatedValue {
-    /// Whether `value`, in SI, may be what the file states.
+    /// Whether `value`, in SI, may be the value that the file states.
     #[must_use]
     pub fn is(&self, value: f64) -> bool {
         (self.value - value).abs() <= self.rounding.max(SAME * value.abs())
     }
 }
 
-/// What a file states of its instrument.
+/// What a file states about its instrument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum InstrumentValue {
     Stiffness,
@@ -48,9 +49,9 @@ pub(super) struct FileSettings {
     pub stiffness: Option<StatedValue>,
     /// The radius of the tip, m.
     pub radius: Option<StatedValue>,
-    /// Whether there is a block of afmformats: its columns are in SI.
+    /// Whether there is a block written by afmformats: its columns are in SI.
     pub is_si: bool,
-    /// What was found and not used, in words.
+    /// What was found but not used, in words.
     pub notes: Vec<String>,
 }
 
@@ -91,9 +92,9 @@ impl FileSettings {
         }
     }
 
-    /// Takes the settings of a line.
+    /// Reads the settings in a line.
     fn takes_line(&mut self, words: &Words) {
-        // Igor keeps many in one note.
+        // Igor keeps many settings in one note.
         for part in words.text.split("\\r").flat_map(|part| part.split("\\n")) {
             let part = match part.split_once('"') {
                 Some((note, rest)) if note.trim_start().starts_with("X Note") => rest,
@@ -116,7 +117,7 @@ impl FileSettings {
         }
     }
 
-    /// Takes a setting, if `key` names one.
+    /// Reads a setting, if `key` names one.
     fn takes(&mut self, key: &str, value: &str) {
         let clean =
             |text: &str| text.trim_matches(|c: char| c.is_whitespace() || "\":=,".contains(c)).to_owned();
@@ -124,7 +125,7 @@ impl FileSettings {
         let dimensions = [Quantity::ForcePerLength.dimension(), Quantity::Length.dimension()];
         let is_unit =
             |unit: &str| Unit::parse(unit, 0).is_ok_and(|unit| dimensions.contains(&unit.dimension()));
-        // In brackets, or as the last word: a slash may belong to the unit.
+        // The unit is in brackets, or is the last word: a slash may belong to the unit.
         let bracketed = heads(&key, Separator::Character('\0'), &[]).pop();
         let (name, unit) = match (bracketed, key.rsplit_once([' ', ','])) {
             (Some((_, None)), Some((name, unit))) if is_unit(unit) => {
@@ -135,7 +136,7 @@ impl FileSettings {
         };
         let Some((setting, dimension, needs_unit)) = setting(&name) else { return };
         let (number, behind) = value.split_once(char::is_whitespace).unwrap_or((&value, ""));
-        // A sentence goes on with other settings.
+        // A sentence continues with other settings.
         let behind = behind.split([',', ';']).next().unwrap_or_default();
         let pointed = number.replace(',', ".");
         let Ok(number) = pointed.parse::<f64>() else { return };
@@ -157,7 +158,7 @@ impl FileSettings {
         self.add(setting, number, 0.5 * last_digit(&pointed), unit.as_ref());
     }
 
-    /// Adds what is stated in `unit`, in SI without one.
+    /// Adds a value stated in `unit`, or in SI if there is none.
     fn add(&mut self, setting: InstrumentValue, number: f64, rounding: f64, unit: Option<&Unit>) {
         let si = |number: f64| {
             let value = unit.map_or(number, |unit| unit.to_si(number));
@@ -193,7 +194,7 @@ impl FileSettings {
     }
 }
 
-/// The setting that `name` names, its dimension, and whether its unit must be there.
+/// The setting that `name` names, its dimension, and whether a unit is required.
 fn setting(name: &str) -> Option<(InstrumentValue, Dimension, bool)> {
     const BODIES: [&str; 9] =
         ["tip", "probe", "indenter", "sphere", "bead", "ball", "lens", "colloid", "particle"];

@@ -143,7 +143,7 @@ fn flipped_signs_are_turned_and_said_and_swapped_columns_refused() {
     }
     let swapped: Vec<_> = rows.iter().map(|(x, p, back)| (*p, *x, *back)).collect();
     assert!(branches(&csv(&swapped)) == Err(BranchError::Swapped));
-    // Under noise the force of bodies apart stands still no less.
+    // With noise, too, the force of bodies apart stays constant.
     let noisy: Vec<_> = jkr(5e-4).iter().map(|(x, p, back)| (*p, *x, *back)).collect();
     assert!(branches(&csv(&noisy)) == Err(BranchError::Swapped));
 }
@@ -176,7 +176,7 @@ fn an_unordered_file_is_refused_and_one_with_segments_read_backwards_is_the_same
 fn what_a_person_says_of_columns_is_read_or_refused() {
     let text = "a b c\n".to_owned() + &"1 2 3\n2 3 5\n".repeat(6);
     let unknown = parse(text.as_bytes(), &ColumnSpec::default()).unwrap_err().to_string();
-    // b and c are nothing, a alone is a radius.
+    // b and c mean nothing; a alone is a radius.
     assert!(unknown.starts_with("line 1: there is no column of the force"), "{unknown}");
     let spec = ColumnSpec::parse("x=c, force=2 [nN]").unwrap();
     let measured = parse(text.as_bytes(), &spec).unwrap();
@@ -265,7 +265,7 @@ fn two_hundred_broken_files_are_a_sentence_each() {
     }
 }
 
-/// The rows of approach and retraction beside each other, as some microscopes write them.
+/// The rows of approach and retraction side by side, as some microscopes write them.
 fn side_by_side(rows: &[(f64, f64, bool)], head: &str) -> String {
     let [up, down] = [false, true].map(|back| rows.iter().filter(move |row| row.2 == back));
     up.zip(down).fold(head.to_owned(), |mut text, (a, b)| {
@@ -288,7 +288,7 @@ fn branches_beside_each_other_are_two_segments() {
         assert_eq!(strip(&found.list), strip(&whole.list), "{head}");
         assert!(found.notes.is_empty(), "{:?}", found.notes);
     }
-    // The shorter one has empty cells; its stiffness stands above.
+    // The shorter side has empty cells; the stiffness stands above it.
     let mut text = side_by_side(
         &rows,
         "Force Constant, nN/nm: 0.25\nExtend Z (nm),Extend Force (nN),Retract Z (nm),Retract Force (nN)\n",
@@ -299,7 +299,7 @@ fn branches_beside_each_other_are_two_segments() {
     assert_eq!(measured.columns[0].values.len(), rows.len() + 1);
     assert_eq!(measured.segments.unwrap().iter().filter(|of| **of == Segment::Approach).count(), 302);
     assert!(measured.notes[0].starts_with("columns 1 and 2 are the approach, 3 and 4 the retraction"));
-    // Half of one side is a row without a force. Units that differ are refused: nobody knows what is meant.
+    // Half of one side is a row without a force. Units that differ are refused, because it is unclear what is meant.
     text.push_str("0.06,0.1,0.3,\n");
     let half = parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
     assert_eq!((half.skipped, half.columns[0].values.len()), (1, rows.len() + 2));
@@ -368,14 +368,14 @@ fn much_noise_and_a_pause_hide_no_free_part_and_rows_around_the_jump_are_dropped
     rows.splice(300..300, (0..150).map(|_| (top.0 - 1e-4 * random.unit(), top.1, false)));
     let paused = branches(&csv(&rows)).unwrap();
     assert!(paused.baseline.is_some() && paused.list.iter().all(|branch| branch.free.len() > 40));
-    // Some rows of the free end are far off.
+    // Some rows of the free end are outliers.
     let mut rows = jkr(2e-5);
     for row in rows.iter_mut().take(30).step_by(6) {
         row.1 += 0.02;
     }
     let found = branches(&csv(&rows)).unwrap();
     assert!(found.list.iter().all(|branch| branch.free.len() > 40));
-    // x with noise of some rows: those that lie on the wrong side of the jump are no outliers.
+    // Some rows have noise in x: those that lie on the wrong side of the jump are no outliers.
     let mut rows = jkr(2e-5);
     for row in &mut rows {
         row.0 += 2e-3 * (random.unit() + random.unit() - 1.0);
@@ -389,7 +389,7 @@ fn much_noise_and_a_pause_hide_no_free_part_and_rows_around_the_jump_are_dropped
     }
 }
 
-/// The branches of rows, with what is asked of them.
+/// The branches of rows, for this request.
 fn taken(rows: &[(f64, f64, bool)], asked: &Asked) -> Result<Branches, BranchError> {
     let measured = parse(csv(rows).as_bytes(), &ColumnSpec::default()).unwrap();
     measured.points(&UnitSystem::Reduced, Some(1.0)).unwrap().branches(asked)
@@ -408,16 +408,17 @@ fn a_person_says_which_rows_are_apart_and_which_count() {
     assert_eq!((found.rows, found.pauses), ([301, 301], 0));
     let [approach, retraction] = parts(&found)[..] else { panic!("{found:?}") };
     assert_eq!(approach[0] + approach[2], 301);
-    // Of all rows below -0.08 the same is apart on both branches; those of the approach from there to its jump are neither.
+    // With all rows below -0.08 apart, the free part is the same on both branches; the rows of the approach from there
+    // to its jump belong to neither.
     let free = FreePart::Within(ValueRange { lo: f64::NEG_INFINITY, hi: -0.08 });
     let named = taken(&rows, &Asked { free, ..usual }).unwrap();
     assert_eq!(parts(&named), [[approach[0], 0, 41], [retraction[0], 0, 41]]);
     assert_eq!(named.rows, [301, 301]);
-    // A part within it leaves out what is beyond.
+    // A narrower range leaves out what is beyond it.
     let free = FreePart::Within(ValueRange { lo: -0.0901, hi: -0.0799 });
     let within = taken(&rows, &Asked { free, ..usual }).unwrap();
     assert_eq!(parts(&within), [[approach[0], 0, 21], [retraction[0], 0, 21]]);
-    // As the file has x, whichever way it runs; the part says the way of x then.
+    // The range has the sign of x in the file; it then also fixes the direction of x.
     let turned: Vec<_> = rows.iter().map(|(x, p, back)| (-x, *p, *back)).collect();
     let free = FreePart::Within(ValueRange { lo: 0.08, hi: f64::INFINITY });
     let other = taken(&turned, &Asked { free, ..usual }).unwrap();
@@ -449,7 +450,7 @@ fn contact_radii_are_apart_where_they_are_zero_alone() {
     assert_eq!(parts(&points.branches(&usual).unwrap()), [[30, 0, 10]]);
     let none = points.branches(&Asked { free: FreePart::None, ..usual }).unwrap();
     assert_eq!((parts(&none), none.rows), (vec![[30, 0, 0]], [0, 40]));
-    // A negative radius is refused where its row is used, and nothing to a file whose first rows are left out.
+    // A negative radius is refused if its row is used, and does not matter if the first rows of the file are left out.
     let mut noisy = points.clone();
     noisy.x[1] = -0.001;
     let refused = BranchError::NegativeRadius { row: 2, radius: -0.001 };
@@ -466,20 +467,20 @@ fn contact_radii_are_apart_where_they_are_zero_alone() {
 #[test]
 fn a_free_part_on_one_branch_alone_is_said_and_none_is_made_up() {
     let rows = jkr(1e-4);
-    // A retraction that ends at its last contact, where the force stands still.
+    // A retraction that ends at its last contact, where the force stays constant.
     let cut: Vec<_> = rows.iter().filter(|(x, _, back)| !back || *x >= -0.0735).copied().collect();
     let found = taken(&cut, &Asked::default()).unwrap();
     let [approach, retraction] = parts(&found)[..] else { panic!("{found:?}") };
     assert!(approach[2] == 200 && retraction[2] == 0, "{approach:?} {retraction:?}");
     let said = found.notes.join("; ");
     assert!(said.contains("the retraction has no rows apart: it ends in contact"), "{said}");
-    // Both without: no baseline is made up.
+    // Neither branch has one: no baseline is made up.
     let attached: Vec<_> = cut.iter().filter(|(x, _, back)| *back || *x >= 0.0).copied().collect();
     let found = taken(&attached, &Asked::default()).unwrap();
     assert!(found.baseline.is_none() && parts(&found).iter().all(|part| part[2] == 0), "{:?}", parts(&found));
 }
 
-/// The rows of [`jkr`] with their times, one millisecond from each to the next, in this order.
+/// The rows of [`jkr`] with their times, one millisecond apart, in this order.
 fn timed(order: impl Iterator<Item = usize>, clock: impl Fn(usize) -> String) -> String {
     let rows = jkr(1e-4);
     order.fold("delta,force,time (ms)\n".to_owned(), |mut text, i| {
@@ -505,7 +506,7 @@ fn times_are_read_in_seconds_and_tell_the_order() {
             .flat_map(|b| &b.attached)
             .all(|p| (p.time - 1e-3 * (3 * p.row + 97) as f64).abs() < 1e-12)
     );
-    // The retraction before the approach, and rows in no order at all, are those in order.
+    // With the retraction before the approach, or with rows in no order at all, sorting by time gives the right order.
     for order in [(301..602).chain(0..301).collect::<Vec<_>>(), (0..602).map(|i| i * 101 % 602).collect()] {
         let points = read(&timed(order.iter().copied(), ms));
         let found = points.branches(&Asked::default()).unwrap();
@@ -526,7 +527,7 @@ fn times_are_read_in_seconds_and_tell_the_order() {
 #[test]
 fn times_that_tell_nothing_are_left_out() {
     let read = |text: &str| parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
-    // The time of day, and one that is not there everywhere.
+    // A time of day, and one that is missing in some rows.
     for clock in [
         |i: usize| format!("14:23:{:02}", i % 60),
         |i: usize| if i == 7 { String::new() } else { i.to_string() },
@@ -538,19 +539,19 @@ fn times_that_tell_nothing_are_left_out() {
         assert_eq!(measured.lines.len(), 602, "no row is lost");
         assert_eq!(measured.points(&si(), None).unwrap().time, None);
     }
-    // One that begins again with the retraction leaves the order as it is, and holds within each branch.
+    // A time that starts again with the retraction leaves the order as it is, and applies within each branch.
     let points = read(&timed(0..602, |i| (i % 301).to_string())).points(&si(), None).unwrap();
     let found = points.branches(&Asked::default()).unwrap();
     assert!(!found.notes.iter().any(|note| note.contains("times")), "{:?}", found.notes);
     assert!(found.list.iter().flat_map(|b| &b.attached).all(|p| p.at == p.row && p.time.is_finite()));
-    // One that a person names must be there.
+    // A time that the user names must be present.
     let spec = ColumnSpec::parse("x=1,force=2,time=3 [ms]").unwrap();
     let gap = timed(0..602, |i| if i == 7 { "x".to_owned() } else { i.to_string() });
     let refused = parse(gap.as_bytes(), &spec).unwrap_err().to_string();
     assert!(refused.contains("line 9: column 3: the time \"x\" is no number"), "{refused}");
     let wrong = ColumnSpec::parse("x=1,force=2,time=3 [nm]").unwrap_err().to_string();
     assert!(wrong.contains("is not a unit of time"), "{wrong}");
-    // In reduced units a time with a unit is none, and one without is taken.
+    // In reduced units a time with a unit is dropped, and one without is used.
     let text = timed(0..602, |i| i.to_string());
     assert_eq!(read(&text).points(&UnitSystem::Reduced, None).unwrap().time, None);
     let text = text.replace(" (ms)", "");

@@ -1,20 +1,21 @@
-//! Where the way turns round: the branches of a file that names none, in any order and of any number of loops.
+//! Where x reverses: the branches of a file that names none, in any order and with any number of loops.
 
 use super::noise::range;
 use super::points::MeasuredPoint;
 use super::role::Segment;
 
-/// x turns where it comes back by more than this share of its range.
+/// x reverses where it comes back by more than this share of its range.
 const TURN: f64 = 0.2;
-/// Runs of a named branch with fewer rows are none, and shares of the rows in longer ones below which the rows are in no order.
+/// Runs of a named branch with fewer rows are ignored; if longer runs hold less than this share of the rows, the rows
+/// are in no order.
 const FEWEST: usize = 5;
 const IN_RUNS: f64 = 0.9;
 
-/// The parts of `points` over which x goes one way.
+/// The parts of `points` over which x moves in one direction.
 pub(super) fn one_way(points: &[MeasuredPoint]) -> Vec<Vec<MeasuredPoint>> {
     let limit = TURN * range(points.iter().map(|point| point.x));
     let mut cuts = vec![0];
-    // The farthest row so far, and the way that is gone, once that is known.
+    // The farthest rows so far, and the direction of x once that is known.
     let (mut lowest, mut highest, mut rises) = (0, 0, None);
     for (i, point) in points.iter().enumerate() {
         if point.x < points[lowest].x {
@@ -27,7 +28,7 @@ pub(super) fn one_way(points: &[MeasuredPoint]) -> Vec<Vec<MeasuredPoint>> {
         let rises_now = point.x - points[lowest].x > limit && rises != Some(true);
         if falls_now || rises_now {
             let turn = if falls_now { highest } else { lowest };
-            // The first way has no turn before it.
+            // The first part has no turn before it.
             if rises.is_some() || turn >= FEWEST {
                 cuts.push(turn);
             }
@@ -40,7 +41,7 @@ pub(super) fn one_way(points: &[MeasuredPoint]) -> Vec<Vec<MeasuredPoint>> {
     cuts.windows(2).map(|pair| points[pair[0]..pair[1]].to_vec()).filter(|part| !part.is_empty()).collect()
 }
 
-/// The runs of rows of one named branch; all of them together where the rows are in no order.
+/// The runs of rows of one named branch; all of them together if the rows are in no order.
 pub(super) fn runs(
     points: &[MeasuredPoint],
     segments: &[Segment],
@@ -66,10 +67,10 @@ pub(super) fn runs(
     runs
 }
 
-/// The order of the rows by their times, where those of the file have another; `None` where they do not, or where the times begin again for
-/// each branch or table: x would go to and fro in their order.
+/// The order of the rows by their times, if it differs from that of the file. `None` if it does not, or if the times
+/// begin again for each branch or table: x would go to and fro in the order of the times.
 pub(super) fn by_time(times: &[f64], x: &[f64]) -> Option<Vec<usize>> {
-    /// The way of x must be this much shorter in the order of times that overlap.
+    /// If times overlap, the path of x must be shorter by this factor in the order of the times.
     const SHORTER: f64 = 0.5;
     let mut pieces: Vec<[f64; 2]> = Vec::new();
     for (i, time) in times.iter().enumerate() {
@@ -90,7 +91,7 @@ pub(super) fn by_time(times: &[f64], x: &[f64]) -> Option<Vec<usize>> {
     (are_apart || by_time < SHORTER * way).then_some(order)
 }
 
-/// Whether x grows from the beginning of `points` to their end.
+/// Whether x grows from the beginning of `points` to the end.
 pub(super) fn rises(points: &[MeasuredPoint]) -> bool {
     let third = (points.len() / 3).max(1);
     let mean = |of: &[MeasuredPoint]| of.iter().map(|point| point.x).sum::<f64>() / of.len().max(1) as f64;
@@ -103,7 +104,7 @@ mod tests {
 
     #[test]
     fn loops_are_cut_where_x_turns_round() {
-        // Three ways in and three back, with rows that go back a little.
+        // Three sweeps in and three back, with rows that go back a little.
         let way =
             |i: u32| f64::from(if i % 100 < 50 { i % 100 } else { 100 - i % 100 }) + 3.0 * f64::from(i % 2);
         let point = |i: u32| {
@@ -122,7 +123,7 @@ mod tests {
             "{:?}",
             parts.iter().map(Vec::len).collect::<Vec<_>>()
         );
-        // One way alone has no turn.
+        // A single sweep has no turn.
         assert_eq!(one_way(&points[..50]).len(), 1);
     }
 }

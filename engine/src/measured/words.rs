@@ -1,4 +1,4 @@
-//! Words and cells: what a line says beside its numbers, and what a cell is.
+//! Words and cells: what a line says besides its numbers, and what a cell is.
 
 use super::names::named;
 use super::role::{Segment, unit_named};
@@ -10,7 +10,7 @@ use crate::units::Unit;
 pub(super) struct Words<'a> {
     /// Its number, from 1.
     pub line: usize,
-    /// It, without what marks a remark.
+    /// Its text, without the mark of a remark.
     pub text: &'a str,
     /// Whether it is a remark.
     pub is_remark: bool,
@@ -28,7 +28,7 @@ pub(super) fn parts_tables(remark: &str) -> bool {
     ["segment", "segmentIndex", "columns"].iter().any(|key| keyed(&words, key).is_some())
 }
 
-/// Whether a cell says that nothing was measured: empty, not a number, out of the range of the instrument.
+/// Whether a cell means that nothing was measured: empty, not a number, or beyond the range of the instrument.
 pub(super) fn is_gap(cell: &str) -> bool {
     const WORDS: [&str; 22] = [
         "nan",
@@ -59,7 +59,7 @@ pub(super) fn is_gap(cell: &str) -> bool {
         || ["num", "div/0", "value", "ref"].iter().chain(&WORDS).any(|word| cell.eq_ignore_ascii_case(word))
 }
 
-/// Whether a cell is a number, its decimals behind a point or a comma.
+/// Whether a cell is a number, with a decimal point or comma.
 pub(super) fn is_number(cell: &str) -> bool {
     let mut digits = cell.strip_prefix(['-', '+', '\u{2212}']).unwrap_or(cell);
     if !digits.starts_with(|c: char| c.is_ascii_digit() || c == '.' || c == ',') {
@@ -77,19 +77,19 @@ pub(super) fn is_number(cell: &str) -> bool {
         && digits.bytes().any(|byte| byte.is_ascii_digit())
 }
 
-/// The word of a branch, by letters.
+/// Whether a cell is the name of a branch, spelt in letters.
 pub(super) fn is_branch(cell: &str) -> bool {
     cell.starts_with(char::is_alphabetic) && Segment::of(cell).is_some()
 }
 
-/// A time or a date.
+/// Whether a cell is a time or a date.
 pub(super) fn is_stamp(cell: &str) -> bool {
     cell.starts_with(|c: char| c.is_ascii_digit())
         && cell.contains([':', '/', '-'])
         && cell.chars().all(|c| c.is_ascii_digit() || ":/-.,TZ".contains(c))
 }
 
-/// The place of the last digit of a number: 0.01 of 1.23, 1e-9 of 12e-9.
+/// The place of the last digit of a number: 0.01 for 1.23, 1e-9 for 12e-9.
 pub(super) fn last_digit(text: &str) -> f64 {
     let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
     let decimals = mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len());
@@ -102,7 +102,7 @@ pub(super) fn count_known(heads: &[ColumnHead]) -> usize {
     heads.iter().filter(|(name, _)| named(name).is_some()).count()
 }
 
-/// How a row is parted that has a fault in its first cell, below a header with at least a force and a way.
+/// How a row with a fault in its first cell is separated, below a header with at least a force and an x.
 pub(super) fn row_under(above: &[Words], text: &str) -> Option<(Separator, usize)> {
     let names =
         above.iter().rev().find(|words| !words.is_remark && !is_units(words.text, Separator::of(text)))?;
@@ -115,16 +115,16 @@ pub(super) fn row_under(above: &[Words], text: &str) -> Option<(Separator, usize
         .then_some((separator, cells.len()))
 }
 
-/// The cells of a line of units, without brackets.
+/// The cells of a line of units, with brackets removed.
 pub(super) fn unit_cells(line: &str, separator: Separator) -> Vec<&str> {
     let cells = separator.cells(line);
     let cells = if cells.len() > 1 { cells } else { Separator::of(line).cells(line) };
     cells.into_iter().map(|cell| cell.trim_matches(['(', ')', '[', ']'])).collect()
 }
 
-/// Whether a line has units and nothing else: a length, a force or an area at least, and no name of a column.
+/// Whether a line has units and nothing else: at least a length, a force or an area, and no name of a column.
 pub(super) fn is_units(line: &str, separator: Separator) -> bool {
-    /// The longest unit, in bytes: the others may be of quantities that nobody knows here.
+    /// The longest unit, in bytes: the other units may be of unknown quantities.
     const LONGEST: usize = 10;
     let cells = unit_cells(line, separator);
     let is_ours = |cell: &&str| {

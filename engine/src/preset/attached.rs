@@ -1,4 +1,4 @@
-//! The table `[data]` of a preset, read; and its points.
+//! The table `[data]` of a preset as it is read, and its points.
 
 use super::data::{
     BASELINE, COLUMNS, DataSpec, FILE, FREE, FREE_PART, OFFSET, SEGMENT, SEGMENTS, SETTINGS, SETTINGS_OF,
@@ -17,8 +17,8 @@ use crate::units::{Quantity, UnitSystem, parse_quantity};
 use std::sync::Arc;
 
 impl GivenValues<'_> {
-    /// The measured curve; a control that nothing says becomes the spring that the file states. The gap has the curvature
-    /// `radius`.
+    /// The measured curve. If the control is not given, it becomes the spring that the file states. The gap has the
+    /// curvature radius `radius`.
     pub(super) fn data(&mut self, control: &mut Control, radius: Option<f64>) -> DataSpec {
         let optional = |given: &mut Self, key| given.values.contains_key(key).then(|| given.number(key));
         let segment = self.values.contains_key(SEGMENT).then(|| self.text(SEGMENT));
@@ -74,7 +74,7 @@ impl GivenValues<'_> {
 }
 
 impl GivenValues<'_> {
-    /// Which rows are apart, as it is said and in base units.
+    /// Which rows are apart, as given and in base units.
     fn free_part(&mut self) -> (String, FreePart) {
         let text = self.text(FREE_PART);
         let units = self.units.clone();
@@ -91,14 +91,14 @@ impl GivenValues<'_> {
         (text, apart)
     }
 
-    /// Whether the signs of x and P are turned, where it is said.
+    /// Whether the signs of x and P are reversed, if given.
     fn turned(&mut self) -> Option<Turned> {
         let text = self.text(SIGNS);
         let found = (!text.trim().is_empty()).then(|| signs(&text)).transpose();
         self.asked(SIGNS, found)
     }
 
-    /// What is said of rows; a fault where it is not understood.
+    /// What is specified about the rows; a fault if it is not understood.
     fn asked<T: Default>(&mut self, key: &'static str, found: Result<T, AskedError>) -> T {
         found.unwrap_or_else(|error| {
             self.faults.push(Invalid::Made { key: key.into(), cause: error.to_string() });
@@ -108,7 +108,7 @@ impl GivenValues<'_> {
 }
 
 impl Preset {
-    /// How the points of a measured curve are made for this preset.
+    /// How the points of a measured curve are obtained for this preset.
     #[must_use]
     pub fn reading(&self) -> Reading {
         let spring = match self.path.control {
@@ -120,8 +120,8 @@ impl Preset {
         Reading { columns: self.data.columns.clone(), units: self.units.clone(), spring, asked }
     }
 
-    /// What was assumed as its measured curve was read, and what of the file is left out for the preset's word, in sentences; none
-    /// without a curve.
+    /// What was assumed in reading its measured curve, and what the file states but the preset overrides, in sentences;
+    /// none without a curve.
     ///
     /// # Errors
     /// Why it cannot be read, in words.
@@ -147,7 +147,7 @@ impl Preset {
     /// The branches of its measured curve; `None` without one.
     ///
     /// # Errors
-    /// Why its points have none, in words.
+    /// Why its points yield none, in words.
     #[must_use]
     pub fn branches(&self) -> Option<Result<Arc<Branches>, String>> {
         self.data.source.as_ref().map(|source| source.branches(&self.reading()))
@@ -195,7 +195,7 @@ mod tests {
         assert_eq!(preset.data.segment, Some(Segment::Retraction));
         let back = read_in(FILES, Some(folder.path()), "p.toml", &write(&preset), &[] as &[&str]).unwrap();
         assert_eq!(back, preset);
-        // The same branches are not found twice.
+        // The same branches are not searched for twice.
         assert!(Arc::ptr_eq(&branches, &preset.clone().branches().unwrap().unwrap()));
         let mut changed = preset.clone();
         changed.set(FILE, "none".into()).unwrap();
@@ -218,7 +218,7 @@ mod tests {
             "{error}"
         );
         read(folder.path(), "units='SI'\n", "[data]\nfile='units.txt'\n").unwrap();
-        // A file that states its spring gives it to a preset that says nothing of its device.
+        // A file that states its spring gives it to a preset that does not specify its device.
         let data = "[data]\nfile='curve.tab'\n";
         let preset = read(folder.path(), "units='SI'\n", data).unwrap();
         assert_eq!(preset.path.control, Control::Stiffness(0.25));
@@ -232,7 +232,7 @@ mod tests {
             "{error}"
         );
         assert!(read(folder.path(), "", data).unwrap_err().contains("reduced units"));
-        // Chosen later it takes the place of a device without a stiffness, and not of another spring.
+        // If the file is chosen later, its spring replaces a device without a stiffness, but not another spring.
         let mut preset = read(folder.path(), "units='SI'\n", "").unwrap();
         let file = folder.path().join("curve.tab");
         preset.set(FILE, file.to_str().unwrap().into()).unwrap();
@@ -242,7 +242,7 @@ mod tests {
         let error = preset.set(FILE, file.to_str().unwrap().into()).unwrap_err().to_string();
         assert!(error.contains("or data.settings = \"preset\" if the file's is wrong"), "{error}");
         assert_eq!(preset.data.source, None);
-        // Unless the preset's word counts alone.
+        // Unless only the preset counts.
         preset.set(SETTINGS, "preset".into()).unwrap();
         preset.set(FILE, file.to_str().unwrap().into()).unwrap();
         assert_eq!(preset.path.control, Control::Stiffness(7.0));
@@ -282,7 +282,7 @@ mod tests {
             ),
             "{notes}"
         );
-        // What agrees needs no word.
+        // What agrees needs no note.
         let same = with("27.5 um", "settings='preset'\n").unwrap();
         assert!(!same.notes_of_reading().unwrap().join("; ").contains("left out"));
     }

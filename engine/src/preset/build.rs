@@ -1,6 +1,6 @@
 //! Values → preset: defaults, required keys, and the checks that span several keys.
 //!
-//! Every preset is made here, whether from a file, from `--set` or from a key on the screen.
+//! Every preset is made here, whether it comes from a file, from `--set` or from a key press on the screen.
 
 use super::given::GivenValues;
 use super::invalid::Invalid;
@@ -15,10 +15,10 @@ use crate::problem::Turn;
 use crate::problem::{Adhesion, Begin, ContactKind, Start};
 use crate::units::Quantity;
 
-/// The preset these values make.
+/// The preset that these values make.
 ///
 /// # Errors
-/// All that is wrong, at least one.
+/// Everything that is wrong, at least one fault.
 pub fn build(values: &Values, files: Files) -> Result<Preset, Vec<Invalid>> {
     let mut faults = Vec::new();
     let units = system(values, &mut faults);
@@ -96,7 +96,7 @@ impl Preset {
     /// Checks every value and every pair of values; for a preset made in code.
     ///
     /// # Errors
-    /// All that is wrong with it.
+    /// Everything that is wrong with it.
     pub fn check(&self) -> Result<(), Vec<Invalid>> {
         build(&self.keyed(), self.files).map(|_| ())
     }

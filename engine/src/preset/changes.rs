@@ -1,4 +1,4 @@
-//! What turns one preset into another: assignments as a person would type them.
+//! What turns one preset into another: assignments as a user would type them.
 
 use super::groups;
 use super::model::Preset;
@@ -6,11 +6,11 @@ use super::schema::{CHOOSERS, Fallback, Key, Kind, Parameter, SYSTEMS};
 use super::value::Value;
 use crate::units::UnitSystem;
 
-/// Keys that come first, since they decide which others there are.
+/// Keys that come first, because they decide which other keys there are.
 const FIRST: [&str; 6] = [CHOOSERS[2], CHOOSERS[0], CHOOSERS[1], CHOOSERS[3], "gap.formula", "gap.file"];
 
-/// The assignments that make `to` of `from`, in an order in which each is valid; `None` where there are none, as for an
-/// optional key that would have to be forgotten. Numbers keep every digit.
+/// The assignments that turn `from` into `to`, in an order in which each is valid; `None` if there are none, for
+/// example because an optional key would have to be removed. Numbers keep every digit.
 #[must_use]
 pub fn changes(from: &Preset, to: &Preset) -> Option<Vec<(Key, String)>> {
     let (mut now, mut made) = (from.clone(), Vec::new());
@@ -33,8 +33,8 @@ pub fn changes(from: &Preset, to: &Preset) -> Option<Vec<(Key, String)>> {
     Some(made)
 }
 
-/// Every value of `to` that `from` has otherwise, to be laid over it as a whole as `--set` does; whether that makes `to`
-/// of it is for the caller to see.
+/// Every value in which `to` differs from `from`, to be applied all together as `--set` does. The caller must check
+/// whether the result is `to`.
 #[must_use]
 pub fn differences(from: &Preset, to: &Preset) -> Vec<(Key, String)> {
     let rows = to.rows().filter(|row| !row.is_part() && groups::row(&row.key).is_none());
@@ -45,7 +45,7 @@ pub fn differences(from: &Preset, to: &Preset) -> Vec<(Key, String)> {
     .collect()
 }
 
-/// The value that `to` has; of a measured curve also the word by which what `now` has is taken away.
+/// The value that `to` has; for a measured curve, otherwise the word that removes the value that `now` has.
 fn wanted(now: &Preset, to: &Preset, row: &Parameter) -> Option<Value> {
     let taken_away = || match row.fallback {
         Fallback::Text(word) if row.table() == Some("data") && now.get(&row.key).is_some() => {
@@ -56,7 +56,7 @@ fn wanted(now: &Preset, to: &Preset, row: &Parameter) -> Option<Value> {
     to.get(&row.key).or_else(taken_away)
 }
 
-/// Gives `now` the value that `to` has; false where it has it already or cannot have it yet.
+/// Gives `now` the value that `to` has; false if it has it already or cannot have it yet.
 fn change(now: &mut Preset, to: &Preset, row: &Parameter, made: &mut Vec<(Key, String)>) -> bool {
     let Some(value) = wanted(now, to, row) else { return false };
     if now.get(&row.key).as_ref() == Some(&value) {
@@ -64,12 +64,12 @@ fn change(now: &mut Preset, to: &Preset, row: &Parameter, made: &mut Vec<(Key, S
     }
     let text = typed(row, &to.units, &value);
     let mut changed = now.clone();
-    // The rows of a file are at hand, and need not be read for this.
+    // The rows of a file are already in memory and need not be read for this.
     let done = match row.kind {
         Kind::File | Kind::Points => changed.set(&row.key, value),
         _ => changed.assign(&row.key, &text),
     };
-    // A bare number may count in a unit that `now` still has and `to` has not.
+    // A bare number may be in a unit that `now` still has and `to` does not.
     let done = done.is_ok() && changed.get(&row.key) == to.get(&row.key);
     if done {
         *now = changed;
@@ -78,7 +78,7 @@ fn change(now: &mut Preset, to: &Preset, row: &Parameter, made: &mut Vec<(Key, S
     done
 }
 
-/// A value as a person types it, quoted where it would be read as something else.
+/// A value as a user types it, quoted where it would otherwise be read as something else.
 fn typed(row: &Parameter, units: &UnitSystem, value: &Value) -> String {
     if let Value::Number(x) = value
         && let Some(exact) = row.exact_in_si(units, *x)
@@ -116,7 +116,7 @@ mod tests {
         from.reset("path.end_contact_radius").unwrap();
         to.assign("path.end_contact_radius", "0.01").unwrap();
         assert!(changes(&from, &to).is_some() && changes(&to, &from).is_none());
-        // A measured curve can be taken away.
+        // A measured curve can be removed.
         let (with, mut without) = (preset("lens"), preset("lens"));
         without.set("data.file", "none".into()).unwrap();
         without.set("data.free", "".into()).unwrap();
@@ -140,7 +140,7 @@ mod tests {
                 }
                 prop_assert_eq!(&now, &to);
             }
-            // To itself there is always a way, and it is short.
+            // From a preset to itself there is always a way, and it is empty.
             prop_assert_eq!(changes(&to, &to), Some(Vec::new()));
         }
     }

@@ -1,8 +1,8 @@
 //! The table `[data]`: a measured curve that belongs to a preset, and what lies between the instrument and the model.
 //!
-//! The stiffness of the instrument is `path.control.stiffness` alone. A file that states one gives it to a preset whose
-//! `path.control` says nothing; where both say one they must agree, as must the radii of the tip, unless the preset alone
-//! counts.
+//! The stiffness of the instrument is given by `path.control.stiffness` alone. A file that states one supplies it to a
+//! preset whose `path.control` is not given. If both give one, they must agree, and so must the tip radii, unless only
+//! the preset counts.
 
 use crate::measured::points::Turned;
 use crate::measured::{FreePart, PointsFile, Segment};
@@ -12,17 +12,17 @@ use std::sync::Arc;
 pub const FILE: &str = "data.file";
 /// The key of δ₀, the x at which the approach is zero.
 pub const OFFSET: &str = "data.offset";
-/// The key of P₀, the force that is none.
+/// The key of P₀, the force reading that means zero force.
 pub const BASELINE: &str = "data.baseline";
 /// The key of the slope of P₀.
 pub const TILT: &str = "data.tilt";
 /// The key of what the columns are.
 pub const COLUMNS: &str = "data.columns";
-/// The key of the branch that is used alone.
+/// The key of the branch to which the points are restricted.
 pub const SEGMENT: &str = "data.segment";
 /// The key of which rows are apart.
 pub const FREE_PART: &str = "data.free_part";
-/// The key of which way the columns run.
+/// The key of the direction of the columns.
 pub const SIGNS: &str = "data.signs";
 /// The key of how many rows at the beginning are left out.
 pub const SKIP: &str = "data.skip";
@@ -30,21 +30,21 @@ pub const SKIP: &str = "data.skip";
 pub const FREE: &str = "data.free";
 /// The key of the values that are given with an error.
 pub const UNCERTAIN: &str = "data.uncertain";
-/// The key of whose word counts of the instrument.
+/// The key that says whether the file or the preset counts for the instrument.
 pub const SETTINGS: &str = "data.settings";
 /// The words of [`SETTINGS`].
 pub const SETTINGS_OF: [&str; 2] = ["file", "preset"];
 /// The words of [`SEGMENT`].
 pub const SEGMENTS: [&str; 2] = ["approach", "retraction"];
 
-/// A measured curve and how it is laid over the model's.
+/// A measured curve and how it is laid over the model's curve.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DataSpec {
-    /// The file, where there is one.
+    /// The file, if there is one.
     pub source: Option<Arc<PointsFile>>,
-    /// What its columns are, as a person says it; empty leaves it to its header.
+    /// What its columns are, as the user specifies; empty leaves it to its header.
     pub columns: String,
-    /// Whether the stiffness and the tip radius that the file states are left out.
+    /// Whether the stiffness and the tip radius that the file states are ignored.
     pub is_alone: bool,
     /// δ₀; `None` is 0.
     pub offset: Option<f64>,
@@ -52,19 +52,19 @@ pub struct DataSpec {
     pub baseline: Option<f64>,
     /// The slope of P₀ over x; `None` is 0.
     pub tilt: Option<f64>,
-    /// The branch that is used alone.
+    /// The branch to which the points are restricted.
     pub segment: Option<Segment>,
-    /// Which rows are apart, as a person says it; empty leaves them to be found.
+    /// Which rows are apart, as the user specifies; empty leaves them to be found.
     pub free_part: String,
     /// The same in base units.
     pub apart: FreePart,
-    /// Whether the signs of x and P are turned; `None` leaves it to the points.
+    /// Whether the signs of x and P are reversed; `None` leaves it to the points.
     pub turned: Option<Turned>,
     /// How many rows at the beginning are left out.
     pub skip: usize,
-    /// The keys that a fit may change, dotted or by their letters, with commas between.
+    /// The keys that a fit may change, dotted or by their letters, separated by commas.
     pub free: String,
-    /// The values that are given with an error: `path.control.stiffness=10%`, with commas between.
+    /// The values that are given with an error: `path.control.stiffness=10%`, separated by commas.
     pub uncertain: String,
 }
 

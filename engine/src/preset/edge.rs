@@ -41,15 +41,15 @@ pub const KEYS: [&str; 9] = [
 /// How an edge moves, and at which rate it is pulled; numbers in SI or reduced units.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct EdgeSpec {
-    /// `γ_a`, the work of adhesion that a closing edge gains; none where it is γ.
+    /// `γ_a`, the work of adhesion that a closing edge gains; none if it is γ.
     pub closing_work_of_adhesion: Option<f64>,
     /// v₀, a speed.
     pub reference_speed: Option<f64>,
     /// n.
     pub exponent: Option<f64>,
-    /// `v_a`, a speed; none where it is v₀.
+    /// `v_a`, a speed; none if it is v₀.
     pub closing_speed: Option<f64>,
-    /// m; none where it is n.
+    /// m; none if it is n.
     pub closing_exponent: Option<f64>,
     /// The largest G/γ that the bodies can have.
     pub highest_ratio: Option<f64>,
@@ -57,16 +57,16 @@ pub struct EdgeSpec {
     pub relaxation_time: Option<f64>,
     /// V, a speed or a force in a time.
     pub rate: Option<f64>,
-    /// What a pull does instead, as typed.
+    /// The steps of a pull, instead of a single rate, as typed.
     pub steps: String,
 }
 
-/// What a rate of this control is.
+/// The quantity of a rate under this control.
 pub(super) fn rate_quantity(is_force: bool) -> Quantity {
     if is_force { Quantity::ForceRate } else { Quantity::Speed }
 }
 
-/// The row of a preset with this control: the rate of a force is no speed.
+/// The row in a preset with this control: the rate of a force is not a speed.
 pub(super) fn own(control: Control, row: &'static Parameter) -> Row {
     if row.key == RATE && control == Control::Force {
         let (dimension, quantity) = (Cow::Borrowed("force / time"), rate_quantity(true));

@@ -1,12 +1,12 @@
-//! A preset laid over the text it was read from: what a person wrote around the values stays as it is.
+//! A preset laid over the text it was read from: what a user wrote around the values stays as it is.
 //!
-//! The text is not written anew. Each value that changed is replaced where it stands, a key that the preset no longer has
-//! is taken out with its line, one that the text does not have is added at the end of its table; not a byte else moves. So
-//! comments, order, blank lines, dotted keys and inline tables stay. A comment behind a key that is taken out stays on a
-//! line of its own, unless it is the one that the program itself puts there.
+//! The text is not written anew. Each changed value is replaced in place, a key that the preset no longer has is
+//! removed with its line, and a key that the text does not have is added at the end of its table. Not a byte else
+//! changes, so comments, order, blank lines, dotted keys and inline tables stay. A comment after a removed key stays on
+//! a line of its own, unless it is the one that the program itself writes there.
 //!
-//! What a text says can follow from what it does not say: a start that is left out follows the radius of curvature. So the
-//! result is read back, and a key that came back otherwise is written out.
+//! What a text means can depend on what it leaves out: a start that is left out follows the radius of curvature. The
+//! result is therefore read back, and any key that came back different is written out.
 
 use super::data;
 use super::family::{self, PARAMETER_KEYS, is_parameter};
@@ -23,12 +23,12 @@ use std::ops::Range;
 use std::path::Path;
 use toml_edit::{Array, Document, InlineTable, Item, Table, Value};
 
-/// `preset` as `text` with other values; `None` where `text` is no preset's, or cannot be made to say it. A file in it is
-/// relative to `folder`.
+/// `text` edited so that it is `preset`; `None` if `text` is not a preset, or cannot be edited to that effect. A file
+/// in it is relative to `folder`.
 #[must_use]
 pub fn onto(folder: Option<&Path>, text: &str, preset: &Preset) -> Option<String> {
     let held = |text: &str| read_holding(preset.files, "", text, HeldFiles::by(preset)).ok();
-    // A text of another profile is read with its own rows.
+    // A text with another profile is read with its own rows.
     let before = held(text).or_else(|| read_in(preset.files, folder, "", text, &[] as &[&str]).ok());
     let layout = TextLayout::of(text)?;
     let mut forced = Forced::Keys(BTreeSet::new());
@@ -51,7 +51,7 @@ pub fn onto(folder: Option<&Path>, text: &str, preset: &Preset) -> Option<String
     }
 }
 
-/// Which keys are written out even where the text seems to say their value.
+/// Which keys are written out even if the text seems to give their value.
 enum Forced {
     Keys(BTreeSet<Key>),
     All,
@@ -76,14 +76,14 @@ fn route(key: &str) -> Route {
 /// A value of the text.
 struct Leaf {
     route: Route,
-    /// Where its line begins, and where the value of the line stands.
+    /// Where its line begins, and where the value on the line is.
     start: usize,
     value: Range<usize>,
-    /// Its place within that value; empty where it is the value.
+    /// Its place within that value; empty if it is the whole value.
     inner: Route,
-    /// Its text, where it is one.
+    /// Its text, if it is a string.
     string: Option<String>,
-    /// The table it stands in.
+    /// The table that contains it.
     section: usize,
 }
 
@@ -92,7 +92,7 @@ struct TextSection {
     route: Route,
     /// Its header; the top has none.
     header: Option<Range<usize>>,
-    /// Where its last value ends, or its header.
+    /// Where its last value ends, or its header if it has none.
     end: usize,
 }
 
@@ -100,7 +100,7 @@ struct TextSection {
 enum Holder {
     /// Below a header, or at the top.
     Section(usize),
-    /// In lines of a section that begin with this.
+    /// In lines of a section that begin with this prefix.
     Dotted(usize, String),
     /// In a value, at this place within it.
     Inline(Range<usize>, Route),
@@ -108,7 +108,7 @@ enum Holder {
     Implied,
 }
 
-/// What stands where.
+/// What is where in the text.
 struct TextLayout<'a> {
     text: &'a str,
     leaves: Vec<Leaf>,
@@ -119,10 +119,10 @@ struct TextLayout<'a> {
 /// A value that the text is to have.
 struct WantedValue {
     route: Route,
-    /// The key whose value it is, by which it is told whether it changed.
+    /// The key whose value it is, which shows whether it changed.
     key: Key,
     value: String,
-    /// What stands behind it where it is added.
+    /// The comment that follows it where it is added.
     comment: String,
 }
 
@@ -136,7 +136,7 @@ impl<'a> TextLayout<'a> {
         Some(layout)
     }
 
-    /// Takes down the keys of a table, those of a dotted one with what their lines begin with.
+    /// Records the keys of a table; for a dotted one, with the prefix of its lines.
     fn table(&mut self, above: &Route, table: &Table, section: usize, dotted: &str) {
         for (name, item) in table {
             let Some(key) = table.key(name) else { continue };
@@ -178,7 +178,7 @@ impl<'a> TextLayout<'a> {
         self.table(route, table, section, "");
     }
 
-    /// Takes down what is in the value of a line.
+    /// Records what is in the value of a line.
     fn value(
         &mut self,
         route: &Route,
@@ -214,7 +214,7 @@ impl<'a> TextLayout<'a> {
         }
     }
 
-    /// The values that the text is to have for `preset`, in the forms it has.
+    /// The values that the text is to have for `preset`, in the forms that it uses.
     fn wanted(&self, preset: &Preset) -> Vec<WantedValue> {
         let mut all = Vec::new();
         for row in preset.rows().filter(|row| !row.is_part() && !is_range(&row.key)) {
@@ -246,23 +246,23 @@ impl<'a> TextLayout<'a> {
         all
     }
 
-    /// The text for `preset`, where it was for `before`.
+    /// The text for `preset`, given that it was the text for `before`.
     fn edited(&self, before: Option<&Preset>, preset: &Preset, forced: &Forced) -> Option<String> {
         let wanted = self.wanted(preset);
         let same = |key: &str| before.is_some_and(|before| before.get(key) == preset.get(key));
         let mut edits = Edits::default();
         let (mut kept, mut gone) = (BTreeSet::new(), BTreeSet::new());
-        // Those that stand in a text that is no table of theirs, as a whole.
+        // Values that the text holds as an inline table; they are replaced as a whole.
         let mut replaced: Vec<&Route> = Vec::new();
         for want in &wanted {
             let there = self.leaves.iter().find(|leaf| leaf.route == want.route);
-            // A parameter that gets a range or loses it stands as a whole.
+            // A parameter that gains or loses a range is replaced as a whole.
             let parts = PARAMETER_KEYS.map(|part| format!("{}.{part}", want.key));
             let is_same = same(&want.key) && parts.iter().all(|part| same(part)) && !forced.has(&want.key);
             match (there, self.holders.get(&want.route)) {
                 (Some(leaf), _) => {
                     kept.insert(leaf.section);
-                    // The rows of a file may be at hand, whatever it is called.
+                    // The rows of a file may be in memory, whatever its name.
                     let is_file = want.key == "gap.file" || want.key == data::FILE;
                     if !(if is_file { leaf.string == name(preset, &want.key) } else { is_same }) {
                         edits.set(self.text, &leaf.value, &leaf.inner, Some(&want.value))?;
@@ -280,7 +280,7 @@ impl<'a> TextLayout<'a> {
         }
         let is_kept = |leaf: &&Leaf| {
             let key = key_of(leaf);
-            // Some say nothing in so many words, such as reduced units.
+            // Some keys only spell out a default, such as reduced units.
             let is_idle = same(&key) && preset.get(&key).is_none() && !matches!(forced, Forced::All);
             is_idle
                 || wanted.iter().any(|want| want.route == leaf.route)
@@ -288,7 +288,7 @@ impl<'a> TextLayout<'a> {
         };
         let (stays, goes): (Vec<&Leaf>, Vec<&Leaf>) = self.leaves.iter().partition(is_kept);
         kept.extend(stays.iter().map(|leaf| leaf.section));
-        // From the last on: a wave that is taken out leaves the numbers of those before it.
+        // From the last to the first: removing a wave does not change the numbers of those before it.
         for leaf in goes.iter().rev() {
             gone.insert(leaf.section);
             if stays.iter().any(|other| other.value == leaf.value) {
@@ -297,7 +297,7 @@ impl<'a> TextLayout<'a> {
                 edits.take_line(self.text, leaf.start, leaf.value.end, &key_of(leaf));
             }
         }
-        // A table that has lost all it had, those below it too.
+        // A table is removed when it, and the tables below it, have lost all their keys.
         for section in &self.sections {
             let below = |set: &BTreeSet<usize>| {
                 set.iter().any(|other| self.sections[*other].route.starts_with(&section.route))
@@ -307,14 +307,14 @@ impl<'a> TextLayout<'a> {
             }
         }
         let edited = edits.made(self.text);
-        // The first line, where it is ours, says the units.
+        // The first line, if the program wrote it, states the units.
         Some(match before.and_then(|before| edited.strip_prefix(head(&before.units))) {
             Some(rest) => format!("{}{rest}", head(&preset.units)),
             None => edited,
         })
     }
 
-    /// Adds a value at the end of its table; the section it stands in is `kept`.
+    /// Adds a value at the end of its table, and marks the section that contains it as `kept`.
     fn add(&self, want: &WantedValue, edits: &mut Edits, kept: &mut BTreeSet<usize>) -> Option<()> {
         let (name, above) = want.route.split_last()?;
         // In the innermost value that holds what is above it.
@@ -335,7 +335,7 @@ impl<'a> TextLayout<'a> {
                 return Some(());
             }
         };
-        // Behind those of the same table, which in dotted lines need not be the last ones.
+        // After the other keys of the same table, which with dotted keys need not be the last lines.
         let near = self.leaves.iter().filter(|leaf| leaf.section == section && leaf.route.starts_with(above));
         let end = near.map(|leaf| leaf.value.end).max().unwrap_or(self.sections[section].end);
         let at = if end > 0 { end_of_line(self.text, end) } else { self.top() };
@@ -350,7 +350,7 @@ impl<'a> TextLayout<'a> {
         Some(())
     }
 
-    /// Where a key goes before all tables: above the first of them, and above the comments that stand directly over it.
+    /// Where a key goes before all tables: above the first of them and above the comments directly before it.
     fn top(&self) -> usize {
         let first =
             self.sections.iter().filter_map(|section| section.header.as_ref()).map(|header| header.start);
@@ -375,7 +375,7 @@ fn key_of(leaf: &Leaf) -> String {
     }
 }
 
-/// The name of the preset's file of this key.
+/// The file name that the preset has for this key.
 fn name(preset: &Preset, key: &str) -> Option<String> {
     preset.get(key).map(|value| value.to_string())
 }
@@ -384,29 +384,29 @@ fn start_of_line(text: &str, at: usize) -> usize {
     text[..at].rfind('\n').map_or(0, |end| end + 1)
 }
 
-/// Behind the line end that follows `at`, or the end of the text.
+/// The position after the line end that follows `at`, or the end of the text.
 fn end_of_line(text: &str, at: usize) -> usize {
     text[at..].find('\n').map_or(text.len(), |end| at + end + 1)
 }
 
-/// A value without the spaces around it.
+/// A value without surrounding spaces.
 fn printed(value: &Value) -> String {
     value.to_string().trim().to_owned()
 }
 
-/// Changes of a text, made all at once.
+/// Changes to a text, made all at once.
 #[derive(Default)]
 struct Edits {
-    /// What takes the place of what; an empty place is where something is added.
+    /// What replaces what; an empty range is where something is inserted.
     places: Vec<(Range<usize>, String)>,
-    /// The values of lines that change, by where they stand.
+    /// The changed values of lines, by position.
     values: BTreeMap<usize, (Range<usize>, Value)>,
-    /// Tables behind all others, with their lines.
+    /// New tables after all others, with their lines.
     tables: Vec<(Route, String)>,
 }
 
 impl Edits {
-    /// Gives the place `inner` within the value of a line another value, or takes it out.
+    /// Sets another value at the place `inner` within the value of a line, or removes it.
     fn set(&mut self, text: &str, line: &Range<usize>, inner: &[String], value: Option<&str>) -> Option<()> {
         let value = value.map(str::parse::<Value>).transpose().ok()?;
         let (_, whole) = match self.values.entry(line.start) {
@@ -419,7 +419,7 @@ impl Edits {
     }
 
     fn add_line(&mut self, text: &str, at: usize, line: &str) {
-        // The last line may have no end.
+        // The last line may lack a line end.
         let begin = if at > 0 && !text[..at].ends_with('\n') { "\n" } else { "" };
         let line = format!("{begin}{line}\n");
         match self.places.iter_mut().find(|(place, _)| *place == (at..at)) {
@@ -435,8 +435,8 @@ impl Edits {
         }
     }
 
-    /// Takes out what stands from `start` to `end` with the rest of its line; a comment behind it stays, unless it is the
-    /// one that comes with `key`.
+    /// Removes what is from `start` to `end` with the rest of its line. A comment after it stays, unless it is the one
+    /// that the program writes for `key`.
     fn take_line(&mut self, text: &str, start: usize, end: usize, key: &str) {
         let (begin, line_end) = (start_of_line(text, start), end_of_line(text, end));
         let rest = &text[end..line_end];
@@ -444,7 +444,7 @@ impl Edits {
         let is_kept = rest.contains('#') && start < end && ours.is_none_or(|ours| ours.trim() != rest.trim());
         let until = if is_kept { end + rest.find('#').unwrap_or(0) } else { line_end };
         let place = begin..until;
-        // All values of a line go with it.
+        // All values on a line are removed together with it.
         if self.places.iter().all(|(known, _)| *known != place) {
             self.places.push((place, String::new()));
         }
@@ -453,11 +453,11 @@ impl Edits {
     fn made(mut self, text: &str) -> String {
         let values = self.values.into_values().map(|(place, value)| in_line(text, place, &printed(&value)));
         self.places.extend(values);
-        // What is added where something begins or ends stands before or behind it.
+        // What is inserted at the beginning or the end of something goes before or after it.
         self.places.sort_by_key(|(place, _)| (place.start, place.end));
         let (mut made, mut at) = (String::new(), 0);
         for (place, new) in self.places {
-            // A line that is taken out as a whole needs no other value.
+            // A line that is removed as a whole needs no new value.
             if place.start < at {
                 continue;
             }
@@ -476,7 +476,7 @@ impl Edits {
             };
             made = format!("{made}\n{name}\n{lines}");
         }
-        // In a text with the line ends of another system all are of that kind.
+        // If all line ends of the text are CR LF, the new ones are too.
         if text.contains('\n') && text.matches("\r\n").count() == text.matches('\n').count() {
             made.replace("\r\n", "\n").replace('\n', "\r\n")
         } else {
@@ -485,7 +485,7 @@ impl Edits {
     }
 }
 
-/// The value `new` in its place, with the spaces behind it: a comment on its line stays in its column where it can.
+/// The value `new` in its place, with the spaces after it: a comment on its line keeps its column where possible.
 fn in_line(text: &str, place: Range<usize>, new: &str) -> (Range<usize>, String) {
     let behind = &text[place.end..];
     let spaces = behind.len() - behind.trim_start_matches(' ').len();
@@ -497,7 +497,7 @@ fn in_line(text: &str, place: Range<usize>, new: &str) -> (Range<usize>, String)
     let before = text[start..place.end].chars().count();
     let after = text[start..place.start].chars().count() + new.chars().count();
     let column = match spaces {
-        // One that was pushed out of the column of comments goes back to it.
+        // A comment that was pushed beyond the usual column goes back to it.
         1 if before >= COMMENTS => COMMENTS + 1,
         1 => after,
         more => before + more,
@@ -506,8 +506,8 @@ fn in_line(text: &str, place: Range<usize>, new: &str) -> (Range<usize>, String)
     (place.start..place.end + spaces, format!("{new}{}", " ".repeat(spaces_after)))
 }
 
-/// Gives the place `route` within `value` another value, with the spaces and comments around the one before, or takes it
-/// out; what holds it is made where it is missing, and taken out where nothing is left in it.
+/// Sets another value at the place `route` within `value`, keeping the spaces and comments around the old one, or
+/// removes it. Tables that should hold it are created if missing, and removed if nothing is left in them.
 fn set_in(value: &mut Value, route: &[String], new: Option<Value>) -> Option<()> {
     let Some((name, rest)) = route.split_first() else {
         let decor = value.decor().clone();
@@ -519,7 +519,7 @@ fn set_in(value: &mut Value, route: &[String], new: Option<Value>) -> Option<()>
         Value::InlineTable(table) => {
             if !table.contains_key(name) {
                 let new = new?;
-                // The space before the brace goes behind the new last value.
+                // The space before the brace moves behind the new last value.
                 let last = table.iter().last().map(|(key, _)| key.to_owned());
                 let last = last.and_then(|key| table.get_mut(&key));
                 if let Some(last) = last {
@@ -558,7 +558,7 @@ fn set_in(value: &mut Value, route: &[String], new: Option<Value>) -> Option<()>
     }
 }
 
-/// A value in the tables that a route names; a number is that of a wave, the first of an array.
+/// A value in the tables that a route names; a number is the number of a wave, the first of an array.
 fn nested(route: &[String], value: Value) -> Value {
     route.iter().rev().fold(value, |value, name| {
         if name.parse::<usize>().is_ok() {

@@ -1,4 +1,4 @@
-//! Presets for the tests of this floor: one that stands for many, and any at all.
+//! Presets for the tests of this layer: a typical one, and arbitrary ones.
 
 use super::model::{BasisSpec, Material, PathSpec, Preset};
 use super::schema::START_OVER_CURVATURE;
@@ -68,7 +68,7 @@ pub fn any_preset() -> impl Strategy<Value = Preset> {
         (control, 0..3u8, 0.001..10.0f64, finite(), proptest::option::of(0.0001..0.99f64)),
     )
         .prop_map(|((title, e, gamma, gap, basis), (control, which, over, x, end))| {
-            // Within what is known of the gap.
+            // Within the known range of the gap.
             let known = gap.largest_radius().map_or(f64::INFINITY, |known| 0.99 * known);
             let radius = gap.radius_of_curvature().unwrap_or(1.0).min(known / over);
             let start = match which {
@@ -102,7 +102,7 @@ pub fn any_preset() -> impl Strategy<Value = Preset> {
         })
 }
 
-/// A gap of the shape with the number `which`, in the order of the table.
+/// A gap with the shape number `which`, in the order of the table.
 pub fn any_gap(which: u8, radius: f64, amplitude: f64, wavelength: f64, x: f64) -> Shape {
     let harmonic = |phase| Harmonic { amplitude, wavelength, phase };
     let parameter = |name: &str, value, min, max| FormulaParameter {

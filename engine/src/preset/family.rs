@@ -1,4 +1,5 @@
-//! Rows that no table can list: the parameters of a formula and the waves of a sum, by the form of their keys.
+//! Rows that no table can list, recognized by the form of their keys: the parameters of a formula and the waves of a
+//! sum.
 //!
 //! | key | row |
 //! |---|---|
@@ -7,7 +8,7 @@
 //! | `gap.waves.N.amplitude`, `.wavelength`, `.phase` | the Nth wave, counted from 1 |
 //!
 //! In a file a parameter is `NAME = value` or `NAME = { value = …, min = …, max = …, unit = … }` below
-//! `[gap.parameters]`, and every wave a table `[[gap.waves]]`.
+//! `[gap.parameters]`, and every wave is a table `[[gap.waves]]`.
 
 use super::schema::{Applies, CHOOSERS, Fallback, Kind, Parameter};
 use crate::expression::error::NAME;
@@ -21,7 +22,7 @@ use std::fmt::Display;
 pub const PARAMETER_TABLE: &str = "gap.parameters";
 /// The tables of waves.
 pub const WAVE_TABLE: &str = "gap.waves";
-/// How many waves have knobs: a list of thousands is none.
+/// How many waves have knobs: a list of thousands would be of no use.
 pub const WAVE_KNOBS: usize = 20;
 /// The keys of a wave.
 pub const WAVE_KEYS: [&str; 3] = ["amplitude", "wavelength", "phase"];
@@ -42,7 +43,7 @@ pub fn row(key: &str) -> Option<Parameter> {
     wave(wave_number(number)?, name)
 }
 
-/// The rows as the manual shows them: `NAME` and `N` stand for what a preset has there.
+/// The rows as the manual shows them: `NAME` and `N` stand for what a preset has in that place.
 pub fn examples() -> impl Iterator<Item = Parameter> {
     let limits = PARAMETER_KEYS.iter().filter_map(|part| limit("NAME", part));
     std::iter::once(parameter("NAME"))
@@ -97,7 +98,7 @@ pub fn below<'a>(key: &'a str, table: &str) -> Option<&'a str> {
     key.strip_prefix(table)?.strip_prefix('.')
 }
 
-/// Whether a formula can name a parameter so: `r`, `pi`, `e` and the functions are taken.
+/// Whether a formula can have a parameter of this name: `r`, `pi`, `e` and the functions are taken.
 fn is_name(name: &str) -> bool {
     let mut bytes = name.bytes();
     bytes.next().is_some_and(|b| b.is_ascii_alphabetic())
@@ -107,7 +108,7 @@ fn is_name(name: &str) -> bool {
         && Function::named(name).is_none()
 }
 
-/// A wave's number in its one spelling: 1 to [`MOST_WAVES`] without leading zeros.
+/// A wave's number in its only valid spelling: 1 to [`MOST_WAVES`] without leading zeros.
 fn wave_number(text: &str) -> Option<usize> {
     text.parse().ok().filter(|n| (1..=MOST_WAVES).contains(n) && n.to_string() == text)
 }

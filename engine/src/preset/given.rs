@@ -1,4 +1,4 @@
-//! Values read one by one: each with its default where it is missing, and all that is wrong with them.
+//! Values read one by one, each with its default if it is missing, and everything that is wrong with them.
 
 use super::invalid::Invalid;
 use super::measured::Files;
@@ -15,8 +15,8 @@ use crate::problem::{Adhesion, Cohesion, Control, StatedCohesion};
 use crate::ritz::Grading;
 use crate::units::UnitSystem;
 
-/// The values with what was found wrong so far. A value that is missing or wrong reads as one that keeps
-/// the rest going; no preset comes of it.
+/// The values, with what was found wrong so far. A missing or wrong value is read as one that lets reading continue; no
+/// preset results from it.
 pub(super) struct GivenValues<'a> {
     pub(super) values: &'a Values,
     pub(super) units: UnitSystem,
@@ -61,7 +61,7 @@ impl GivenValues<'_> {
         let count = |n: i64| usize::try_from(n).unwrap_or_default();
         match chosen(self.values, CHOOSERS[1]).as_deref() {
             Some(EXACT) => BasisSpec::Exact,
-            // An unknown word is among the faults already.
+            // An unknown word has already been reported as a fault.
             _ => BasisSpec::Rings {
                 rings: count(self.integer("basis.rings")),
                 grading: if self.text("basis.grading") == Grading::Edge.name() {
@@ -98,7 +98,7 @@ impl GivenValues<'_> {
         (Adhesion::Dugdale(stated), gamma)
     }
 
-    /// The checked value of a key, or its default; else it is missing.
+    /// The checked value of a key, or its default; otherwise it is missing.
     pub(super) fn value(&mut self, key: &str) -> Option<Value> {
         let row = parameter(key)?;
         if let Some(value) = self.values.get(key) {
@@ -120,7 +120,7 @@ impl GivenValues<'_> {
         if let Some(Value::Number(x)) = self.value(key) { x } else { f64::NAN }
     }
 
-    /// The number of a key that has a default elsewhere, but not here.
+    /// The number of a key that has a default in other presets, but not in this one.
     pub(super) fn required(&mut self, key: &str) -> f64 {
         self.faults.extend(
             parameter(key).map(|row| Invalid::Missing { key: row.key.clone(), allowed: row.allowed() }),
@@ -140,7 +140,7 @@ impl GivenValues<'_> {
         if let Some(Value::Control(control)) = self.value(key) { control } else { Control::Displacement }
     }
 
-    /// The faults; the missing keys of a table that is missing as a whole become one.
+    /// The faults; the missing keys of a table that is missing altogether become one fault.
     pub(super) fn collapsed(self) -> Vec<Invalid> {
         let present = |table: &str| self.values.keys().any(|key| table_of(key) == Some(table));
         let mut faults: Vec<Invalid> = Vec::new();

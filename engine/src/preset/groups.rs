@@ -1,4 +1,4 @@
-//! The dimensionless groups as values to set: each changes what it follows from, and none is stored.
+//! The dimensionless groups as values that can be set: each changes the values it follows from, and none is stored.
 //!
 //! | key | group | set, it changes | and holds |
 //! |---|---|---|---|
@@ -45,7 +45,7 @@ pub fn row(key: &str) -> Option<&'static Parameter> {
     GROUPS.iter().find(|row| row.key == key)
 }
 
-/// The value of a group where the gap has what it takes.
+/// The value of a group, if the gap has the quantities for it.
 #[must_use]
 pub fn get(preset: &Preset, key: &str) -> Option<Value> {
     let groups = Groups::of(&preset.problem(), preset.range_of_action(), preset.cohesion());
@@ -59,7 +59,7 @@ pub fn get(preset: &Preset, key: &str) -> Option<Value> {
     .map(Value::from)
 }
 
-/// What a group changes when it is set and what it holds, as the labels of rows; `None` for another key.
+/// What a group changes when it is set, and what it holds fixed, as the labels of rows; `None` for another key.
 #[must_use]
 pub fn effect(key: &str) -> Option<[&'static str; 2]> {
     Some(match key {
@@ -81,7 +81,7 @@ pub fn changed(key: &str) -> &'static [&'static str] {
     }
 }
 
-/// What a group changes when it becomes `x`, in this order.
+/// What a group changes when it is set to `x`, in this order.
 ///
 /// # Errors
 /// The gap has no such group.
@@ -145,7 +145,7 @@ mod tests {
             for row in preset.rows().filter(|row| preset.get(&row.key) != old.get(&row.key)) {
                 assert!(changed(key).contains(&&*row.key), "{key}: {}", row.key);
             }
-            // The words name the rows that changed.
+            // The words must name the rows that changed.
             let [labels, _] = effect(key).unwrap();
             let moved = preset.rows().filter(|row| preset.get(&row.key) != old.get(&row.key));
             assert_eq!(moved.filter(|row| !labels.contains(&*row.label)).count(), 0, "{key}");

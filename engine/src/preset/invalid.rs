@@ -5,7 +5,7 @@ use crate::ritz::Grading;
 use crate::units::ValueError;
 use thiserror::Error;
 
-/// A key or a value that a preset cannot have. Foreign text in it is already safe to show.
+/// A key or a value that a preset cannot have. Foreign text in it has already been made safe to show.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Invalid {
     /// No row of the table has this key.
@@ -13,7 +13,7 @@ pub enum Invalid {
     UnknownKey {
         /// The key as written.
         key: String,
-        /// The known key most alike.
+        /// The most similar known key.
         meant: Option<Key>,
     },
     /// A group that cannot be set.
@@ -21,10 +21,10 @@ pub enum Invalid {
     UnknownGroup {
         /// The key as written.
         key: String,
-        /// The groups that can.
+        /// The groups that can be set.
         known: String,
     },
-    /// The text is no TOML.
+    /// The text is not valid TOML.
     #[error("{what}")]
     Syntax {
         /// The parser's words.
@@ -33,7 +33,7 @@ pub enum Invalid {
     /// A `--set` argument without `=`.
     #[error("an assignment is KEY=VALUE, as in gap.amplitude=0.002")]
     Assignment,
-    /// A table's name used for a value.
+    /// The name of a table used for a value.
     #[error("{table} is a table, not {found}; set one of its keys, as {example}")]
     NotTable {
         /// The table.
@@ -63,7 +63,7 @@ pub enum Invalid {
         /// The values it takes.
         allowed: String,
     },
-    /// A word that is none of the choices.
+    /// A word that is not one of the choices.
     #[error("{key} = \"{value}\" is not known: it must be {allowed}{}", hint(.meant.as_ref()))]
     Choice {
         /// The key.
@@ -72,7 +72,7 @@ pub enum Invalid {
         value: String,
         /// The choices.
         allowed: String,
-        /// The choice most alike.
+        /// The most similar choice.
         meant: Option<Key>,
     },
     /// Text with characters that a screen must not show.
@@ -86,10 +86,10 @@ pub enum Invalid {
     /// A file of another format.
     #[error("format = {found} is not known: this version reads format {FORMAT}")]
     Format {
-        /// The format the file says.
+        /// The format that the file states.
         found: i64,
     },
-    /// A required key that is not there.
+    /// A required key is missing.
     #[error("{key} is missing: it must be {allowed}")]
     Missing {
         /// The key.
@@ -97,15 +97,15 @@ pub enum Invalid {
         /// The values it takes.
         allowed: String,
     },
-    /// A parameter of a formula just chosen that nothing gives a value.
+    /// A parameter of a newly chosen formula that has not been given a value.
     #[error("the formula needs a value for {key}, as {key}=1{}", hint(.meant.as_ref()))]
     Unset {
         /// The key.
         key: Key,
-        /// The parameter of the formula before most alike.
+        /// The most similar parameter of the previous formula.
         meant: Option<Key>,
     },
-    /// A required table that is not there.
+    /// A required table is missing.
     #[error("the table [{table}] is missing: it needs {keys}")]
     MissingTable {
         /// The table.
@@ -113,16 +113,16 @@ pub enum Invalid {
         /// Its required keys.
         keys: String,
     },
-    /// A key that another choice does not know.
+    /// A key that does not belong to the word chosen.
     #[error("{key} belongs to {belongs}, and the {what} is {chosen}")]
     OtherChoice {
         /// The key.
         key: Key,
         /// The words of the choice it belongs to.
         belongs: String,
-        /// What was chosen in one word, as `gap`.
+        /// What was chosen, in one word, such as `gap`.
         what: &'static str,
-        /// The word chosen in this preset, with its article where it has one.
+        /// The word chosen in this preset, with an article if it has one.
         chosen: String,
     },
     /// A unit to show numbers in, in a preset without units.
@@ -140,10 +140,10 @@ pub enum Invalid {
         first: Key,
         /// Another.
         second: Key,
-        /// What they say, as `where the path starts`.
+        /// What they say, such as `where the path starts`.
         does: &'static str,
     },
-    /// A range of nothing, or of no known length.
+    /// A range without adhesion, or without a known length.
     #[error("material.adhesion = \"{word}\" needs {needs}")]
     Rangeless {
         /// Its word.
@@ -161,7 +161,7 @@ pub enum Invalid {
         /// The contact radius at the start, as it is shown.
         start: String,
     },
-    /// A number of rings that their grading does not take.
+    /// A number of rings that their grading does not allow.
     #[error(
         "{key} = {rings} is out of range: with basis.grading = \"{word}\" it must be from {lo} to {hi}",
         word = grading.name(), lo = grading.ring_range().start(), hi = grading.ring_range().end()
@@ -174,7 +174,7 @@ pub enum Invalid {
         /// The grading.
         grading: Grading,
     },
-    /// A value in units that it cannot have.
+    /// A value whose units it cannot have.
     #[error("{key}: {cause}")]
     Units {
         /// The key.
@@ -182,7 +182,7 @@ pub enum Invalid {
         /// Why.
         cause: ValueError,
     },
-    /// A gap that cannot be made, or a measured curve that cannot be had.
+    /// A gap that cannot be made, or a measured curve that cannot be read.
     #[error("{key}: {cause}")]
     Made {
         /// The key.
@@ -195,7 +195,7 @@ pub enum Invalid {
     Unused {
         /// The key.
         key: Key,
-        /// The parameter without a value most alike.
+        /// The most similar parameter without a value.
         meant: Option<Key>,
     },
     /// A contact radius where the gap is not known.
@@ -203,9 +203,9 @@ pub enum Invalid {
     Beyond {
         /// The key.
         key: Key,
-        /// The contact radius, as it is shown.
+        /// The contact radius, as shown.
         value: String,
-        /// The largest known radius, as it is shown.
+        /// The largest known radius, as shown.
         largest: String,
     },
     /// A contact radius far beyond the radius of curvature.
@@ -216,9 +216,9 @@ pub enum Invalid {
     Wide {
         /// The key.
         key: Key,
-        /// The contact radius, as it is shown.
+        /// The contact radius, as shown.
         value: String,
-        /// The radius of curvature, as it is shown.
+        /// The radius of curvature, as shown.
         radius: String,
     },
 }

@@ -1,9 +1,10 @@
 //! The file of a measured profile → rows of a gap.
 //!
-//! A name that begins with [`SHIPPED_DATA`] means data that comes with the program; any other is a path, relative to the
-//! folder of the preset. A header names a unit of length for both columns or for none; gaps are converted to that of the
-//! radii, so a gap in nm over µm is what it says. In an SI preset rows with a unit become metres. In reduced units they are the numbers
-//! of the file, in the unit of its radii, which is then that of all lengths: a warning says so.
+//! A name that begins with [`SHIPPED_DATA`] means data that comes with the program; any other is a path, relative to
+//! the folder of the preset. A header names a unit of length for both columns or for neither. Gaps are converted to the
+//! unit of the radii, so a gap in nm over a radius in µm is read correctly. In an SI preset, rows with a unit are
+//! converted to metres. In reduced units they keep the numbers of the file, in the unit of its radii, which is then the
+//! unit of all lengths; a warning says so.
 
 use super::invalid::Invalid;
 use super::profile::ProfileColumns;
@@ -19,13 +20,13 @@ pub use crate::gap::shapes::measured::SHIPPED_DATA;
 /// The longest message of what is wrong with a file.
 const LONGEST_CAUSE: usize = 1000;
 
-/// Where the files that presets name come from: the engine reads no disk.
+/// Where the files named in presets come from: the engine itself reads no disk.
 ///
-/// Each function is given the folder of the preset, where it has one, and the name of the file, and answers with why there is
-/// nothing in words that are safe to show.
+/// Each function is given the folder of the preset, if it has one, and the name of the file. If it finds nothing, it
+/// returns the reason in words that are safe to show.
 #[derive(Debug, Clone, Copy)]
 pub struct Files {
-    /// The rows of a profile; [`rows`] makes them of the columns of a text.
+    /// The rows of a profile; [`rows`] makes them from the columns of a text.
     pub rows: fn(folder: Option<&Path>, name: &str) -> Result<ProfileRows, String>,
     /// The bytes of a measured curve.
     pub points: fn(folder: Option<&Path>, name: &str) -> Result<Vec<u8>, String>,
@@ -58,10 +59,10 @@ pub fn words(error: &impl ToString) -> String {
     sanitize(&error.to_string().replace('\n', "; "), LONGEST_CAUSE)
 }
 
-/// The rows that `columns` are, of the file `name` relative to `folder`.
+/// The rows of `columns`, from the file `name` relative to `folder`.
 ///
 /// # Errors
-/// A unit that is none, or one alone, in words.
+/// An unknown unit, or a unit for one column only, in words.
 pub fn rows(folder: Option<&Path>, name: &str, columns: ProfileColumns) -> Result<ProfileRows, String> {
     let named = ProfileRows {
         name: name.to_owned(),
@@ -74,17 +75,17 @@ pub fn rows(folder: Option<&Path>, name: &str, columns: ProfileColumns) -> Resul
     Ok(ProfileRows { radii: columns.radii, gaps: columns.gaps, unit, notes, ..named })
 }
 
-/// The file of `rows` as messages name it.
+/// The file of `rows`, as messages name it.
 pub(super) fn shown(rows: &ProfileRows) -> String {
     if rows.is_shipped() { quote(&rows.name) } else { show_path(&rows.path()) }
 }
 
-/// The file of a measured curve as messages name it.
+/// The file of a measured curve, as messages name it.
 pub(super) fn shown_file(source: &PointsFile) -> String {
     if source.name.starts_with(SHIPPED_DATA) { quote(&source.name) } else { show_path(&source.path()) }
 }
 
-/// A value as it is kept: the name of a file stands for what it holds, which `files` has.
+/// A value as it is kept: the name of a file is replaced by its content, which `files` supplies.
 pub(super) fn located(
     files: Files,
     row: &Parameter,

@@ -1,4 +1,4 @@
-//! Presets: one problem, its basis and its path, as a TOML file a person can read and edit.
+//! Presets: one problem, its basis and its path, as a TOML file that a user can read and edit.
 //!
 //! Everything that knows the keys (reader, writer, `--set`, the screen's knobs, the manual's key table) reads
 //! the one table in [`schema`].
@@ -10,15 +10,15 @@
 //! | [`invalid`] | what can be wrong with a value or a key |
 //! | [`model`] | the preset itself, read and changed by dotted key |
 //! | `values` | values by dotted key, and the words of choices among them |
-//! | `given` | values read one by one, with what is wrong with them |
+//! | `given` | values read one by one, with what is wrong with each |
 //! | [`build`](mod@build) | values → preset: defaults, required keys, checks across keys |
-//! | `resolve` | the units of a preset, and its texts with units as numbers in them |
+//! | `resolve` | the units of a preset, and its texts with units converted to numbers in them |
 //! | [`shipped`] | the presets that come with the program, and their data |
 //! | `shape` | the values of `[gap]` → the gap's shape, and back |
-//! | [`read`](mod@read) | TOML text and `--set` assignments → preset, each mistake with its line |
+//! | [`read`](mod@read) | TOML text and `--set` assignments → preset; each mistake with its line |
 //! | [`write`](mod@write) | preset → TOML text |
 //! | [`edge`] | how an edge moves: the keys of `[edge]` and of rates |
-//! | `steps` | the same as it is read, and the parts of a test |
+//! | `steps` | the table `[edge]` as it is read, and the parts of a test |
 //! | [`edit`] | a preset laid over the text it was read from, comments and order kept |
 //! | [`changes`] | what turns one preset into another, as assignments |
 //! | [`manual`] | the key table as text for the manual |

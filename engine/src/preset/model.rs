@@ -42,7 +42,7 @@ pub struct Preset {
     pub path: PathSpec,
     /// How an edge moves, and at which rate it is pulled.
     pub edge: EdgeSpec,
-    /// A measured curve beside it.
+    /// A measured curve that belongs to it.
     pub data: DataSpec,
     /// Where the rows of another profile would come from.
     pub files: Files,
@@ -61,7 +61,7 @@ pub struct Material {
     pub adhesion: Adhesion,
 }
 
-/// z₀ in metres where an SI preset does not give it: a few atoms.
+/// z₀ in metres if an SI preset does not give it: a few atoms.
 const RANGE_OF_ACTION: f64 = 0.3e-9;
 
 /// The basis of the contact pressure.
@@ -96,7 +96,7 @@ pub struct PathSpec {
     pub turn: Option<Turn>,
 }
 
-/// The key that says a start.
+/// The key that gives a start.
 #[must_use]
 pub fn start_key(start: Start) -> &'static str {
     match start {
@@ -106,7 +106,7 @@ pub fn start_key(start: Start) -> &'static str {
     }
 }
 
-/// The key that says a turn; none says a control value.
+/// The key that gives a turn; a control value has none.
 #[must_use]
 pub fn turn_key(turn: Turn) -> Option<&'static str> {
     match turn {
@@ -118,8 +118,8 @@ pub fn turn_key(turn: Turn) -> Option<&'static str> {
 }
 
 impl Preset {
-    /// A problem made in code, in any consistent units: the exact basis, displacement control, everything else as where
-    /// a file says nothing. [`Preset::check`] says what is wrong with its values.
+    /// A problem made in code, in any consistent units: the exact basis, displacement control, and for everything else
+    /// what a file without the key would mean. [`Preset::check`] says what is wrong with its values.
     #[must_use]
     pub fn new(material: Material, gap: Shape, start: Start) -> Self {
         Self {
@@ -152,7 +152,7 @@ impl Preset {
         }
     }
 
-    /// The same in reduced units. A gap without a length of its own is reduced by the contact radius at the start, where
+    /// The same in reduced units. A gap without a length of its own is reduced by the contact radius at the start, if
     /// that is given.
     #[must_use]
     pub fn reduced(&self) -> Reduced {
@@ -163,28 +163,29 @@ impl Preset {
         }
     }
 
-    /// z₀, the range of action of the adhesion: the one the preset says, 0.3 nm in SI, none in reduced units.
+    /// z₀, the range of action of the adhesion: the value in the preset, otherwise 0.3 nm in SI and none in reduced
+    /// units.
     #[must_use]
     pub fn range_of_action(&self) -> Option<f64> {
         let usual = matches!(self.units, UnitSystem::Si(_)).then_some(RANGE_OF_ACTION);
         self.material.range_of_action.or(usual)
     }
 
-    /// The tension and the range of the adhesion, where it has a range.
+    /// The tension and the range of the adhesion, if it has a range.
     #[must_use]
     pub fn cohesion(&self) -> Option<Cohesion> {
         self.material.adhesion.cohesion(self.material.work_of_adhesion, self.range_of_action())
     }
 
-    /// The contact radius at which the path ends, given that it starts at `start_contact_radius`:
-    /// the one the preset says, or a fixed fraction of the start.
+    /// The contact radius at which the path ends, given that it starts at `start_contact_radius`: the one in the
+    /// preset, or a fixed fraction of the start.
     #[must_use]
     pub fn end_contact_radius(&self, start_contact_radius: f64) -> f64 {
         self.path.end_contact_radius.unwrap_or(END_OVER_START * start_contact_radius)
     }
 
-    /// The same preset for a file in `folder`: the names of the files of its profile and of its measured curve become relative
-    /// to it where they lie in it or below, else absolute.
+    /// The same preset for a file in `folder`: the file names of its profile and of its measured curve become relative
+    /// to it if they lie in it or below it, otherwise absolute.
     #[must_use]
     pub fn placed_in(&self, folder: &Path) -> Self {
         let mut preset = self.clone();
@@ -203,7 +204,7 @@ impl Preset {
     }
 }
 
-/// The name for a preset in `folder` of the file `name`, relative to `own`; `None` where that stays.
+/// The new name, for a preset in `folder`, of the file `name` relative to `own`; `None` if it stays.
 fn moved(own: Option<&Path>, name: &str, folder: &Path) -> Option<String> {
     let own = own.unwrap_or(Path::new("."));
     let is_same = std::path::absolute(own).ok() == std::path::absolute(folder).ok();

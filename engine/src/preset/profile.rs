@@ -1,4 +1,4 @@
-//! Reading a measured profile: two columns of text, radius and gap, from a file nobody has looked at.
+//! Reads a measured profile: two columns of text, radius and gap, from a file that nobody has checked.
 //!
 //! ```text
 //! # any remark                     lines beginning with #, % or // are remarks, empty lines nothing
@@ -8,11 +8,12 @@
 //! 0.5, 0.13                        in this order; numbers with a decimal point
 //! ```
 //!
-//! A header with a unit for one column and none for the other is refused. Where there is no header, the last remark above
-//! the first row serves as one if it has two cells and both name a unit. Rows may come in any order; a row that is there twice counts once. Every
-//! other fault is reported with its line, the first [`FAULTS_SHOWN`] of them; a file with faults gives no profile.
+//! A header with a unit for one column and none for the other is refused. If there is no header, the last remark above
+//! the first row serves as one, provided it has two cells and both name a unit. Rows may come in any order; a repeated
+//! row counts once. Every other fault is reported with its line, the first [`FAULTS_SHOWN`] of them. A file with faults
+//! yields no profile.
 //!
-//! The cells are taken apart as those of any table of an instrument: [`cells`].
+//! The cells are separated as in any table from an instrument: [`cells`].
 
 use crate::cells::{
     self, CellFault, ColumnHead, LineFault, Separator, heads, is_header, is_unprintable, number, remark,
@@ -24,9 +25,9 @@ use thiserror::Error;
 
 pub use crate::cells::{FAULTS_SHOWN, LARGEST, LARGEST_NUMBER, LONGEST_LINE};
 
-/// The allowed numbers of rows: fewer are no profile, more belong in a mean before.
+/// The allowed numbers of rows: fewer are no profile, and more should be averaged first.
 pub const ROW_RANGE: RangeInclusive<usize> = 8..=1_000_000;
-/// A distance from the axis counts as one spacing up to this share: decimals round.
+/// A distance from the axis counts as one spacing up to this share: decimals are rounded.
 const ROUNDED: f64 = 1e-6;
 
 /// A profile as read: radii ascending from the axis, each once, and their gaps, in the units of the file.
@@ -40,20 +41,20 @@ pub struct ProfileColumns {
     pub units: [Option<String>; 2],
     /// The line of a header with units, from 1.
     pub header: Option<usize>,
-    /// What was put right, in words.
+    /// What was corrected, in words.
     pub notes: Vec<String>,
 }
 
 /// What is wrong with one line.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ProfileFault {
-    /// Of the line as a whole.
+    /// A fault of the line as a whole.
     #[error(transparent)]
     Line(#[from] LineFault),
-    /// Of one cell.
+    /// A fault of one cell.
     #[error(transparent)]
     Cell(#[from] CellFault),
-    /// Not two cells.
+    /// The number of cells is not two.
     #[error("has {0} cells, and a row has two: radius and gap")]
     Cells(usize),
     /// A negative radius.
@@ -72,7 +73,7 @@ pub enum ProfileFault {
         /// The largest distance of the first rows.
         spacing: f64,
     },
-    /// A radius that an earlier line gives another gap.
+    /// A radius for which an earlier line gives another gap.
     #[error("the radius {radius:?} has another gap in line {line}")]
     Twice {
         /// The radius.
@@ -85,16 +86,16 @@ pub enum ProfileFault {
 /// The faults of a file, in the order of their lines.
 pub type ProfileFaults = cells::Faults<ProfileFault>;
 
-/// Why a text gives no profile.
+/// Why a text yields no profile.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TextError {
-    /// Bytes that are no text.
+    /// Bytes that are not text.
     #[error("{0}")]
     NotText(NotText),
     /// Lines with faults.
     #[error("{0}")]
     Faults(ProfileFaults),
-    /// The columns the other way round.
+    /// The columns are swapped.
     #[error(
         "line {line}: the header names the gap \"{first}\" first and the radius \"{second}\" behind it: a profile has \
          the radius first"
@@ -110,7 +111,7 @@ pub enum TextError {
     /// Too few or too many rows.
     #[error("has {0} rows, and a profile has {lo} to {hi}", lo = ROW_RANGE.start(), hi = ROW_RANGE.end())]
     Rows(usize),
-    /// A unit that is none of length.
+    /// A unit that is not a length.
     #[error("line {line}: the unit \"{unit}\" of the {what} {}", .measures.as_ref().map_or_else(|| "is not known".to_owned(), |measures| format!("is {measures}, not a length")))]
     Unit {
         /// The line of the header.
@@ -119,10 +120,10 @@ pub enum TextError {
         what: &'static str,
         /// The unit, safe to show.
         unit: String,
-        /// What is measured in it, if it is known.
+        /// The quantity measured in it, if known.
         measures: Option<String>,
     },
-    /// A unit for one column alone.
+    /// A unit for one column only.
     #[error(
         "line {line}: the header gives the {named} in {unit} and names no unit of the {other}: write both, as in \
          r [um], h [nm]"
@@ -142,16 +143,16 @@ pub enum TextError {
 /// The two columns, as messages call them.
 const COLUMNS: [&str; 2] = ["radius", "gap"];
 
-/// Names by which a header tells the columns apart.
+/// Names in a header that identify the radius.
 const RADIUS_NAMES: &[&str] = &["r", "radius", "rho", "x", "distance", "position"];
-/// The same of the gap.
+/// Names that identify the gap.
 const GAP_NAMES: &[&str] = &["h", "gap", "height", "z", "depth"];
 
 impl ProfileColumns {
-    /// The same with the gaps in the unit of the radii, and that unit, where the header names them.
+    /// The same with the gaps in the unit of the radii, and that unit, if the header names both.
     ///
     /// # Errors
-    /// [`TextError::Unit`] for a unit that is none of length, [`TextError::OneUnit`] where one column has none.
+    /// [`TextError::Unit`] for a unit that is not a length, [`TextError::OneUnit`] if only one column has one.
     pub fn in_one_unit(mut self) -> Result<(Self, Option<Unit>), TextError> {
         let line = self.header.unwrap_or(1);
         let mut units = [None, None];
@@ -200,13 +201,13 @@ struct ProfileRow {
 /// Reads the profile in `bytes`, the content of a file.
 ///
 /// # Errors
-/// [`TextError`] with the lines that are wrong.
+/// [`TextError`] with the faulty lines.
 pub fn parse(bytes: &[u8]) -> Result<ProfileColumns, TextError> {
     let (text, note) = decode(bytes).map_err(TextError::NotText)?;
     let mut faults = ProfileFaults::default();
     let mut rows: Vec<ProfileRow> = Vec::new();
     let mut separator = None;
-    // The header, or a remark that may be one.
+    // The header, or a remark that may serve as one.
     let (mut header, mut candidate) = (None, None);
     for (line, text) in text.lines().enumerate().map(|(i, text)| (i + 1, text.trim())) {
         if is_unprintable(text) {
@@ -251,7 +252,7 @@ pub fn parse(bytes: &[u8]) -> Result<ProfileColumns, TextError> {
     Ok(columns)
 }
 
-/// The units of the header and its line, where it has any; of a remark only if it names both.
+/// The units of the header and its line, if it has any; a remark counts only if it names both.
 ///
 /// # Errors
 /// [`TextError::Swapped`].
@@ -260,7 +261,7 @@ fn units(
     remark: Option<(usize, &str)>,
     separator: Separator,
 ) -> Result<(Option<usize>, [Option<String>; 2]), TextError> {
-    // A header may be parted otherwise than the rows below it.
+    // A header may be separated differently from the rows below it.
     let read = |(line, text): (usize, &str)| {
         let two = |separator| {
             <[ColumnHead; 2]>::try_from(heads(text, separator, &[Quantity::Length.dimension()])).ok()
@@ -296,11 +297,11 @@ fn row(text: &str, separator: Separator) -> Result<(f64, f64), ProfileFault> {
     if radius < 0.0 { Err(ProfileFault::Negative(radius)) } else { Ok((radius, gap)) }
 }
 
-/// Sorts the rows, takes each radius once, and looks whether they begin at the axis.
+/// Sorts the rows, keeps each radius once, and checks whether they begin at the axis.
 fn gather(mut rows: Vec<ProfileRow>, columns: &mut ProfileColumns, faults: &mut ProfileFaults) {
     if !rows.is_sorted_by(|a, b| a.radius <= b.radius) {
         columns.notes.push("the rows were not in the order of their radii and have been sorted".to_owned());
-        // Stable: of equal radii the earlier line stays first.
+        // The sort is stable: of equal radii, the earlier line stays first.
         rows.sort_by(|a, b| a.radius.total_cmp(&b.radius));
     }
     let innermost = rows.first().map(|row| row.line);
@@ -326,7 +327,7 @@ fn gather(mut rows: Vec<ProfileRow>, columns: &mut ProfileColumns, faults: &mut 
         let rows = if repeated == 1 { "1 row was" } else { &format!("{repeated} rows were") };
         columns.notes.push(format!("{rows} there twice and counted once"));
     }
-    // Of uneven radii one distance says little: the widest of the first ones.
+    // If the radii are uneven, one distance says little: the widest of the first ones is used.
     let inner = columns.radii.windows(2).take(*ROW_RANGE.start() - 1).map(|pair| pair[1] - pair[0]);
     let spacing = inner.fold(0.0, f64::max);
     if let (Some(line), Some(&first)) = (innermost, columns.radii.first())

@@ -1,13 +1,13 @@
 //! TOML text and `--set` assignments → preset.
 //!
-//! The file is laid down first, then the assignments in order; the whole is checked once, and the assignments of groups
-//! are made last. Every value remembers where it came from, so a message can name the line or the assignment.
+//! The file is laid down first, then the assignments in order. The whole is checked once, and the assignments of groups
+//! are made last. Every value remembers where it came from, so that a message can name the line or the assignment.
 //!
 //! | file | what lives there |
 //! |---|---|
 //! | `document` | documents and assignments laid down |
-//! | `sheet` | what is known of each key, and where it came from |
-//! | `whole` | the layers as one preset, or all that is wrong |
+//! | `sheet` | what is known about each key, and where it came from |
+//! | `whole` | the layers combined into one preset, or everything that is wrong |
 //! | `mistake` | a mistake and its place |
 
 mod document;
@@ -36,7 +36,7 @@ pub fn read(name: &str, text: &str) -> Result<Preset, ReadError> {
     read_with(name, text, &[] as &[&str])
 }
 
-/// The preset of this name that comes with the program, with its data.
+/// The preset of this name among those that come with the program, with its data.
 pub fn read_shipped(name: &str) -> Option<Preset> {
     let found = super::shipped::find(name)?;
     read_in(Files::SHIPPED, None, name, found.text, &[] as &[&str]).ok()
@@ -50,8 +50,8 @@ pub fn read_with<S: AsRef<str>>(name: &str, text: &str, assignments: &[S]) -> Re
     read_in(Files::NONE, None, name, text, assignments)
 }
 
-/// Reads a preset whose `files` are relative to `folder`, or to the current one; those of assignments always are relative
-/// to the current one.
+/// Reads a preset whose `files` are relative to `folder`, or to the current folder; those in assignments are always
+/// relative to the current folder.
 ///
 /// # Errors
 /// Every mistake found, with its line or assignment.
@@ -74,7 +74,8 @@ pub fn read_in<S: AsRef<str>>(
     sheet.finish()
 }
 
-/// Reads a preset as a session holds it: its files hold what `held` says, whatever they hold by now; none is read.
+/// Reads a preset as a session holds it: its files have the content in `held`, whatever is on disk by now; none is
+/// read.
 ///
 /// # Errors
 /// Every mistake found, with its line.

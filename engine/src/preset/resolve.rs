@@ -1,4 +1,4 @@
-//! The units of a preset, and its texts with units as numbers in them.
+//! The units of a preset, and its texts with units converted to numbers in them.
 
 use super::edge;
 use super::family::is_parameter;
@@ -28,8 +28,8 @@ pub(super) fn system(values: &Values, faults: &mut Vec<Invalid>) -> UnitSystem {
     UnitSystem::Si(units)
 }
 
-/// The values with every text that stands for a number read in the units of the preset; a text that has no value
-/// there stays one.
+/// The values, with every text that stands for a number converted in the units of the preset; a text without a value in
+/// them stays a text.
 pub(super) fn resolved(values: &Values, units: &UnitSystem, faults: &mut Vec<Invalid>) -> Values {
     let mut all = values.clone();
     for (key, value) in &mut all {
@@ -64,7 +64,7 @@ pub(super) fn in_units(values: &Values, units: &UnitSystem, key: &Key, text: &st
             );
             Err(Invalid::Made { key: key.clone(), cause })
         }
-        // Without an exponent there is no gap, which is said elsewhere.
+        // Without an exponent there is no gap, which is reported elsewhere.
         (None, None) => typed.in_own_si().map_err(fault),
     }
 }
@@ -86,13 +86,13 @@ fn exponent(values: &Values) -> Option<f64> {
     if let Some(Value::Number(n)) = values.get("gap.exponent") { Some(*n) } else { None }
 }
 
-/// The parameter of a formula that a key is, or whose range it is of.
+/// The parameter of a formula that a key names, or whose range it belongs to.
 fn parameter_of(key: &str) -> Option<&str> {
     [Some(key), table_of(key)].into_iter().flatten().find(|key| is_parameter(key))
 }
 
-/// The number of a parameter of a formula, or of one end of its range, in SI: of the dimension that the parameter's own
-/// unit names, or of any where that is no unit of ours.
+/// The number of a parameter of a formula, or of one end of its range, in SI. Its dimension must be that of the
+/// parameter's own unit; it may be any if the program does not know that unit.
 fn of_parameter(values: &Values, parameter: &str, typed: &TypedValue) -> Result<f64, String> {
     match (stated_unit(values, parameter), &typed.unit) {
         (Some(stated), Some(own)) if stated.dimension() != own.dimension() => Err(format!(
@@ -105,7 +105,7 @@ fn of_parameter(values: &Values, parameter: &str, typed: &TypedValue) -> Result<
     }
 }
 
-/// The unit that stands beside a parameter of a formula, where it is one of ours.
+/// The unit given beside a parameter of a formula, if the program knows it.
 fn stated_unit(values: &Values, parameter: &str) -> Option<Unit> {
     match values.get(&*format!("{parameter}.unit")) {
         Some(Value::Text(unit)) => Unit::parse(unit, 0).ok(),
@@ -113,8 +113,8 @@ fn stated_unit(values: &Values, parameter: &str) -> Option<Unit> {
     }
 }
 
-/// Gives the bare numbers of a formula's parameters, as a person writes them, the unit beside them where the preset is in
-/// SI. Not for values that are in SI already.
+/// Converts the bare numbers of a formula's parameters, as a user writes them, from the unit beside them if the preset
+/// is in SI. Not for values that are in SI already.
 pub(super) fn count_in_own_units(values: &mut Values) {
     if chosen(values, CHOOSERS[2]).as_deref() != Some(SYSTEMS[1]) {
         return;
@@ -129,12 +129,12 @@ pub(super) fn count_in_own_units(values: &mut Values) {
     }
 }
 
-/// A value as a message quotes it: with every digit, as a person typed it, and its unit in ASCII.
+/// A value as a message quotes it: with every digit, as a user would type it, and its unit in ASCII.
 pub(super) fn shown(units: &UnitSystem, quantity: Quantity, x: f64) -> String {
     number::with_unit(units, quantity, x, true, |x| format!("{x:?}"))
 }
 
-/// A fault of a number in SI, told in the unit in which the quantity is shown; its range stays in SI.
+/// A fault of a number in SI, reported in the unit in which the quantity is shown; its range stays in SI.
 pub(super) fn told(units: &UnitSystem, quantity: Option<Quantity>, value: &Value, fault: Invalid) -> Invalid {
     let si = quantity.and_then(|quantity| units.unit(quantity).and(quantity.si()).zip(Some(quantity)));
     match (fault, value, si) {

@@ -1,7 +1,8 @@
-//! The table of parameters: what a row says, and which rows there are.
+//! The table of parameters: what a row contains, and which rows there are.
 //!
-//! The rows themselves are in `schema/table.rs`. A new parameter is a new row there, a field of [`Preset`](super::Preset) and its two lines in
-//! `model` (get) and `build`; a test demands that none of the three is forgotten.
+//! The rows themselves are in `schema/table.rs`. A new parameter needs a new row there, a field of
+//! [`Preset`](super::Preset), and its two lines in `model` (get) and `build`; a test makes sure that none of the three
+//! is forgotten.
 
 mod table;
 
@@ -17,15 +18,15 @@ pub const FORMAT: i64 = 1;
 pub const SMALLEST: f64 = 1e-30;
 /// The largest magnitude accepted: its powers in reduced units still fit a double.
 pub const LARGEST: f64 = 1e30;
-/// The contact radius at which a path starts when nothing is said, over the radius of curvature.
+/// The contact radius at which a path starts if none is given, over the radius of curvature.
 pub const START_OVER_CURVATURE: f64 = 0.5;
-/// The contact radius at which a path ends when nothing is said, over the one where it starts.
+/// The contact radius at which a path ends if none is given, over the one where it starts.
 pub const END_OVER_START: f64 = 0.004;
-/// The largest contact radius accepted, over the radius of curvature: the paraboloid means nothing so far out.
+/// The largest contact radius accepted, over the radius of curvature: further out the paraboloid has no meaning.
 pub const RADIUS_OVER_CURVATURE: f64 = 10.0;
-/// The three ways to say where a path starts; a preset has exactly one.
+/// The three ways to give the start of a path; a preset has exactly one.
 pub const START_KEYS: [&str; 3] = ["path.start_contact_radius", "path.start_approach", "path.start_force"];
-/// The three ways to say where a loop turns round; a preset has at most one.
+/// The three ways to give the turn of a loop; a preset has at most one.
 pub const TURN_KEYS: [&str; 3] = ["path.turn_approach", "path.turn_force", "path.turn_contact_radius"];
 
 /// The word that leaves a value to the program.
@@ -86,13 +87,13 @@ pub enum Fallback {
     Integer(i64),
     /// This text, choice or control.
     Text(&'static str),
-    /// It follows from other values, in these words, or is none.
+    /// It follows from other values, as these words describe, or is none.
     Described(&'static str),
-    /// It always follows from other values, which are changed in its place.
+    /// It always follows from other values; setting it changes those instead.
     Computed,
 }
 
-/// Where a parameter means something.
+/// Where a parameter applies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Applies {
     /// In every preset.
@@ -108,10 +109,10 @@ pub enum Applies {
     Spring,
 }
 
-/// A dotted key: of the table, or made from what a preset says.
+/// A dotted key: from the table, or made from what a preset contains.
 pub type Key = Cow<'static, str>;
 
-/// A row of the table, or one of its own for a key that only some presets have.
+/// A row of the table, or a separate one for a key that only some presets have.
 pub type Row = Cow<'static, Parameter>;
 
 /// One row of the table.
@@ -125,15 +126,15 @@ pub struct Parameter {
     pub meaning: Cow<'static, str>,
     /// Its dimension in words; empty for text, choices and pure numbers.
     pub dimension: Cow<'static, str>,
-    /// What is measured, for values with units; a pure number where there is no such quantity.
+    /// The quantity of values with units; a pure number if there is no such quantity.
     pub quantity: Quantity,
-    /// A unit of its own, in which an SI preset has it typed, shown and written, in place of that of the quantity.
+    /// A unit of its own, in which an SI preset has it typed, shown and written, instead of the unit of the quantity.
     pub unit: Option<Unit>,
     /// What values it takes.
     pub kind: Kind,
     /// What it is when not given.
     pub fallback: Fallback,
-    /// Where it means something.
+    /// Where it applies.
     pub applies: Applies,
 }
 
@@ -143,7 +144,7 @@ pub const COEFFICIENT: &str = "gap.coefficient";
 pub const ADHESION: &str = "material.adhesion";
 /// The key of the work of adhesion.
 pub const WORK_OF_ADHESION: &str = "material.work_of_adhesion";
-/// The two ways to say how far a constant tension reaches; a preset has at most one.
+/// The two ways to give the range of a constant tension; a preset has at most one.
 pub const RANGE_KEYS: [&str; 2] = ["material.cohesive_strength", "material.cohesive_range"];
 /// The keys of a liquid bridge.
 pub const LIQUID_KEYS: [&str; 3] =
@@ -162,7 +163,7 @@ pub const DISPLAY: [(&str, Quantity); 6] = [
     ("display.stiffness", Quantity::ForcePerLength),
 ];
 
-/// The keys that say the same thing as this one in other ways, itself among them: of them a preset keeps the last one given.
+/// The keys that give the same thing as this one in other ways, including itself: a preset keeps the last one given.
 #[must_use]
 pub fn rivals(key: &str) -> &'static [&'static str] {
     [&START_KEYS[..], &TURN_KEYS, &RANGE_KEYS]
@@ -171,7 +172,7 @@ pub fn rivals(key: &str) -> &'static [&'static str] {
         .unwrap_or_default()
 }
 
-/// The table that a dotted key stands in, if any.
+/// The table that a dotted key is in, if any.
 #[must_use]
 pub fn table_of(key: &str) -> Option<&str> {
     key.rsplit_once('.').map(|(table, _)| table)
@@ -196,7 +197,7 @@ impl Kind {
 }
 
 impl Parameter {
-    /// The table the key stands in, if any.
+    /// The table that the key is in, if any.
     #[must_use]
     pub fn table(&self) -> Option<&str> {
         table_of(&self.key)
@@ -208,33 +209,33 @@ impl Parameter {
         self.key.rsplit_once('.').map_or(&*self.key, |(_, name)| name)
     }
 
-    /// Whether the key is a part of another parameter's value, as `path.control.stiffness` is.
+    /// Whether the key is part of another parameter's value, as `path.control.stiffness` is.
     #[must_use]
     pub fn is_part(&self) -> bool {
         let is_whole = |row: &Parameter| row.kind == Kind::Control && Some(&*row.key) == self.table();
         PARAMETERS.iter().any(is_whole)
     }
 
-    /// Whether the word [`NONE`] takes its value away: a number that follows from others, or is none, where it is not given.
+    /// Whether the word [`NONE`] removes its value: it is a number that, if not given, follows from others or is none.
     #[must_use]
     pub fn is_optional(&self) -> bool {
         let is_described = matches!(self.fallback, Fallback::Described(_));
         is_described && self.kind.is_number()
     }
 
-    /// The key whose value holds its own.
+    /// The key whose value contains its own value.
     pub(super) fn whole(&self) -> &str {
         self.table().filter(|_| self.is_part()).unwrap_or(&self.key)
     }
 
-    /// The unit in which a preset of these units has it typed and shown, if there is one.
+    /// The unit in which a preset with these units has it typed and shown, if there is one.
     #[must_use]
     pub fn unit_in<'a>(&'a self, units: &'a UnitSystem) -> Option<&'a Unit> {
         let quantity = if self.kind == Kind::Control { Quantity::ForcePerLength } else { self.quantity };
         self.own_unit_in(units).or_else(|| units.unit(quantity))
     }
 
-    /// The unit of its own, where it counts: bare numbers are of it.
+    /// The unit of its own, where it applies: bare numbers are in it.
     pub(super) fn own_unit_in(&self, units: &UnitSystem) -> Option<&Unit> {
         self.unit.as_ref().filter(|_| *units != UnitSystem::Reduced)
     }
@@ -246,20 +247,20 @@ impl Parameter {
         Shown { number: unit.map_or(x, |unit| unit.from_si(x)), unit }
     }
 
-    /// A number in SI with its SI unit, to be read back as the very same number, where a bare one would count in a unit
-    /// of its own.
+    /// A number in SI with its SI unit, so that exactly the same number is read back, where a bare number would be in a
+    /// unit of its own.
     pub(super) fn exact_in_si(&self, units: &UnitSystem, x: f64) -> Option<String> {
         let base = self.own_unit_in(units)?.dimension().si();
         Some(format!("{x:?} {}", if base.is_empty() { "rad" } else { &base }))
     }
 
-    /// Whether a person changes it by factors rather than by differences.
+    /// Whether it is changed by factors rather than by differences.
     #[must_use]
     pub fn is_logarithmic(&self) -> bool {
         matches!(self.kind, Kind::Positive)
     }
 
-    /// Whether it means something where the choice `chooser` is `word`.
+    /// Whether it applies where the choice `chooser` is `word`.
     #[must_use]
     pub fn fits(&self, chooser: &str, word: &str) -> bool {
         match self.applies {

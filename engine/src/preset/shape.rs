@@ -1,4 +1,4 @@
-//! The values of `[gap]` → the gap's shape, and back: rows, values and what a new shape begins with.
+//! The values of `[gap]` → the gap's shape, and back: rows, values and the initial values of a new shape.
 
 use super::family::{self, PARAMETER_KEYS, WAVE_KEYS, is_parameter, parameter_key, wave_key};
 use super::given::GivenValues;
@@ -27,8 +27,8 @@ use crate::units::{Quantity, Unit, UnitSystem};
 use std::sync::Arc;
 
 impl GivenValues<'_> {
-    /// The shape of the gap, for a path whose start is said by the key `start`. A shape that cannot be made is among the
-    /// faults, and a sphere stands in for it.
+    /// The shape of the gap, for a path whose start is given by the key `start`. If a shape cannot be made, the reason
+    /// is among the faults and a sphere stands in for it.
     pub(super) fn shape(&mut self, start: Option<&str>) -> Shape {
         let faults = self.faults.len();
         let shape = match self.text("gap.shape").as_str() {
@@ -47,7 +47,7 @@ impl GivenValues<'_> {
             "random-waves" => self.random_waves(faults),
             "formula" => self.formula(start),
             "profile" => self.profile(),
-            // An unknown word is among the faults already.
+            // An unknown word has already been reported as a fault.
             _ => Shape::Sphere { radius_of_curvature: self.radius() },
         };
         self.strays(&shape);
@@ -74,7 +74,7 @@ impl GivenValues<'_> {
             let number = waves.len() + 1;
             let [amplitude, wavelength, phase] = WAVE_KEYS.map(|name| self.number(&wave_key(number, name)));
             waves.push(Harmonic { amplitude, wavelength, phase });
-            // One gap in the numbers is enough to say.
+            // It is enough to report one gap in the numbering.
             if amplitude.is_nan() && wavelength.is_nan() {
                 break;
             }
@@ -85,7 +85,7 @@ impl GivenValues<'_> {
         }
     }
 
-    /// The largest number of a wave.
+    /// The highest number of a wave.
     fn waves_given(&self) -> usize {
         let number = |key: &Key| -> Option<usize> {
             family::below(key, family::WAVE_TABLE)?.split_once('.')?.0.parse().ok()
@@ -105,7 +105,7 @@ impl GivenValues<'_> {
         };
         match Shape::random_waves(spectrum) {
             Ok(shape) => shape,
-            // What is missing or out of range has been said.
+            // What is missing or out of range has already been reported.
             Err(_) if self.faults.len() > faults || !self.all_fine() => {
                 Shape::Sphere { radius_of_curvature: f64::NAN }
             }
@@ -171,7 +171,7 @@ impl GivenValues<'_> {
         {
             self.faults.push(told_in_own(&row, &self.units, value, fault));
         }
-        // In SI a bare number counts in the unit, which therefore must be one.
+        // In SI a bare number is in this unit, which must therefore be a known one.
         if let (Some(unit), UnitSystem::Si(_)) = (&parameter.unit, &self.units)
             && let Err(cause) = Unit::parse(unit, 0)
         {
@@ -220,16 +220,16 @@ impl GivenValues<'_> {
     }
 }
 
-/// How far beyond the start, or the length of the gap, a gap without an end is followed where it falls.
+/// How far beyond the start, or beyond the length of the gap, a falling gap without an end is followed.
 const FAR: f64 = 1e12;
-/// Radii looked at where a gap falls: so many in even steps, and so many a decade.
+/// The radii at which a gap is checked for falling: this many in even steps, and this many per decade.
 const FALL_STEPS: u32 = 4096;
 const FALLS_A_DECADE: i32 = 20;
-/// The decades below the start, or the length of the gap.
+/// The decades below the start, or below the length of the gap.
 const FALL_DECADES: i32 = 6;
 
-/// Says of a gap that falls from the axis outward at every radius where it is known that no disc of contact lies around
-/// the axis: an upside-down formula, or a profile of a hollow.
+/// Reports that no disc of contact lies around the axis, for a gap that falls outward from the axis at every radius
+/// where it is known: an upside-down formula, or the profile of a hollow.
 pub(super) fn falls_throughout(preset: &Preset) -> Option<Invalid> {
     let gap = &preset.gap;
     let (key, larger) = match gap {
@@ -248,7 +248,7 @@ pub(super) fn falls_throughout(preset: &Preset) -> Option<Invalid> {
     let decades = (-FALL_DECADES * FALLS_A_DECADE..)
         .map(|i| near * pow(10f64, f64::from(i) / f64::from(FALLS_A_DECADE)))
         .take_while(|r| *r < end);
-    // A formula may stop being finite far out without its end being known.
+    // A formula may stop being finite far out, and where it ends may not be known.
     let throughout = even
         .chain(decades)
         .map(|r| gap.jet(r).first)
@@ -280,14 +280,14 @@ fn bounded(given: &FormulaParameter) -> Parameter {
     row
 }
 
-/// The row of one end of a parameter's range, or of its unit: a range has the unit of the parameter.
+/// The row of one end of a parameter's range, or of its unit; a range has the unit of the parameter.
 fn limit(given: &FormulaParameter, part: &str) -> Option<Parameter> {
     let Parameter { unit, quantity, .. } = bounded(given);
     let row = family::limit(&given.name, part)?;
     Some(if row.kind == Kind::Finite { Parameter { quantity, unit, ..row } } else { row })
 }
 
-/// A value beyond the range of its parameter, told in the parameter's own unit.
+/// A value beyond the range of its parameter, reported in the parameter's own unit.
 fn told_in_own(row: &Parameter, units: &UnitSystem, x: f64, fault: Invalid) -> Invalid {
     let (Invalid::Range { key, .. }, Some(unit), Kind::Between { min, max }) =
         (&fault, row.own_unit_in(units), row.kind)
@@ -300,7 +300,7 @@ fn told_in_own(row: &Parameter, units: &UnitSystem, x: f64, fault: Invalid) -> I
     Invalid::Range { key: key.clone(), value, allowed }
 }
 
-/// A row of the table as this shape has it.
+/// A row of the table in the form that this shape gives it.
 pub(super) fn own(shape: &Shape, row: &'static Parameter) -> Row {
     match shape {
         Shape::PowerLaw(law) if row.key == COEFFICIENT => Row::Owned(Parameter {
@@ -311,13 +311,13 @@ pub(super) fn own(shape: &Shape, row: &'static Parameter) -> Row {
     }
 }
 
-/// The quantity that is measured in a unit, if it is one of ours.
+/// The quantity that is measured in a unit, if the program knows it.
 fn measured_in(unit: &Unit) -> Option<Quantity> {
     let dimension = unit.dimension();
     Quantity::ALL.into_iter().find(|quantity| quantity.dimension() == dimension)
 }
 
-/// The rows that a shape makes itself.
+/// The rows that a shape adds itself.
 pub(super) fn rows(shape: &Shape) -> Vec<Parameter> {
     match shape {
         Shape::Formula(typed) => typed
@@ -391,8 +391,8 @@ fn wave_value(waves: &Harmonics, key: &str) -> Option<Value> {
     }
 }
 
-/// Takes away the parameters in `values` that a formula just chosen does not have, unless `keep` says that they stay, and
-/// gives back the names it has without a value, each with the one most alike of those taken away and its value.
+/// Removes from `values` the parameters that a newly chosen formula does not have, unless `keep` says that they stay.
+/// Returns the names that it has without a value, each with the most similar one of those removed and its value.
 pub(super) fn fit_parameters(values: &mut Values, keep: impl Fn(&str) -> bool) -> Vec<Unvalued> {
     let Some(Value::Text(text)) = values.get("gap.formula") else { return Vec::new() };
     let Ok(formula) = Formula::parse(text) else { return Vec::new() };
@@ -421,12 +421,12 @@ pub(super) fn fit_parameters(values: &mut Values, keep: impl Fn(&str) -> bool) -
 pub(super) struct Unvalued {
     /// Its name.
     pub(super) name: String,
-    /// The one of the formula before that it may be, misspelt, with its value.
+    /// The parameter of the previous formula that it may be a misspelling of, with its value.
     pub(super) alike: Option<(String, Value)>,
 }
 
-/// What a shape chosen on the screen begins with where `values` lack it: a body of the radius `radius`, with the waves of
-/// the paper's Fig. 9, or with `wave`, the amplitude and wavelength of the shape before.
+/// What a shape chosen on the screen begins with where `values` lack it: a body of the radius `radius`, with the waves
+/// of the paper's Fig. 9, or with `wave`, the amplitude and wavelength of the previous shape.
 pub(super) fn begin(values: &mut Values, word: &str, radius: f64, wave: Option<(f64, f64)>) {
     let (amplitude, wavelength) = wave.unwrap_or((0.0025 * radius, 0.05 * radius));
     let lengths = [

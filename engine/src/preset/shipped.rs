@@ -1,5 +1,5 @@
-//! The presets that come with the program: the paper's cases and one of every other gap, embedded from the
-//! `presets` folder with their data.
+//! The presets that come with the program: the paper's cases and one for every other gap, embedded from the `presets`
+//! folder with their data.
 
 use super::measured::{Files, SHIPPED_DATA, rows, words};
 use super::profile::parse;
@@ -7,12 +7,12 @@ use crate::gap::shapes::ProfileRows;
 use crate::text::quote;
 use std::path::Path;
 
-/// A preset, or data, that comes with the program.
+/// A preset or a data file that comes with the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shipped {
     /// Its name.
     pub name: &'static str,
-    /// The whole of it.
+    /// Its whole text.
     pub text: &'static str,
 }
 
@@ -24,10 +24,10 @@ pub static DATA: &[Shipped] =
 pub static CURVES: &[Shipped] =
     &[Shipped { name: "lens.csv", text: include_str!("../../presets/data/lens.csv") }];
 
-/// The shipped curve that `name`, with [`SHIPPED_DATA`] before it, means.
+/// The shipped curve that `name` refers to, if it begins with [`SHIPPED_DATA`].
 ///
 /// # Errors
-/// Which there are, in words; `None` for another name.
+/// Which curves there are, in words; `None` for a name without the prefix.
 pub fn curve(name: &str) -> Option<Result<&'static str, String>> {
     let wanted = name.strip_prefix(SHIPPED_DATA)?;
     let found = CURVES.iter().find(|shipped| shipped.name == wanted);
@@ -43,7 +43,7 @@ pub fn data(name: &str) -> Option<&'static str> {
     DATA.iter().find(|shipped| shipped.name == name).map(|shipped| shipped.text)
 }
 
-/// The rows of the shipped data that `name` means.
+/// The rows of the shipped data that `name` refers to.
 fn shipped_rows(folder: Option<&Path>, name: &str) -> Result<ProfileRows, String> {
     let Some(wanted) = name.strip_prefix(SHIPPED_DATA) else { return (Files::NONE.rows)(folder, name) };
     let text = data(wanted).ok_or_else(|| {
@@ -53,7 +53,7 @@ fn shipped_rows(folder: Option<&Path>, name: &str) -> Result<ProfileRows, String
     rows(folder, name, parse(text.as_bytes()).map_err(|error| words(&error))?)
 }
 
-/// The bytes of the shipped curve that `name` means.
+/// The bytes of the shipped curve that `name` refers to.
 fn shipped_points(folder: Option<&Path>, name: &str) -> Result<Vec<u8>, String> {
     curve(name)
         .unwrap_or_else(|| (Files::NONE.points)(folder, name).map(|_| ""))
@@ -61,7 +61,7 @@ fn shipped_points(folder: Option<&Path>, name: &str) -> Result<Vec<u8>, String> 
 }
 
 impl Files {
-    /// The data that come with the program, and no other file.
+    /// The data that come with the program, and no other files.
     pub const SHIPPED: Self = Self { rows: shipped_rows, points: shipped_points };
 }
 
@@ -124,7 +124,7 @@ mod tests {
         let files: BTreeSet<_> = std::fs::read_dir(folder)
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            // The profiles that presets name have a folder of their own.
+            // The profiles that presets name are in a folder of their own.
             .filter(|name| name != "data")
             .collect();
         let names: BTreeSet<_> = SHIPPED.iter().map(|shipped| format!("{}.toml", shipped.name)).collect();
@@ -132,7 +132,7 @@ mod tests {
         for shipped in SHIPPED {
             let preset = load(shipped.name);
             assert!(shipped.text.starts_with("# ") && !preset.title.is_empty());
-            // The paper's figures in the paper's discretization, the others in the exact one.
+            // The paper's figures use the paper's discretization, the others the exact one.
             let turns = preset.path.turn.is_some();
             let basis = if shipped.name.starts_with("fig-") && !turns {
                 BasisSpec::Rings { rings: 200, grading: Grading::Uniform }
@@ -150,8 +150,8 @@ mod tests {
                     row.key
                 );
             }
-            // Of the rows that mean something here, two of three starts, the turns, the stiffness, the range of action and what
-            // is said of a measured curve may be missing.
+            // Of the rows that apply here, two of three starts, the turns, the stiffness, the range of action and the
+            // keys of a measured curve may be missing.
             let data = preset
                 .rows()
                 .filter(|row| row.table() == Some("data") && preset.get(&row.key).is_none())

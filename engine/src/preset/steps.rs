@@ -1,4 +1,4 @@
-//! The table `[edge]` as it is read, what is wrong in it, and the parts of a test at a rate.
+//! The table `[edge]` as it is read, what is wrong with it, and the parts of a test at a rate.
 
 use super::edge::{
     CLOSING_ADHESION, CLOSING_EXPONENT, CLOSING_SPEED, EXPONENT, EdgeSpec, HIGHEST_RATIO, RATE,
@@ -34,7 +34,7 @@ impl GivenValues<'_> {
 }
 
 impl EdgeSpec {
-    /// What is wrong across keys.
+    /// What is wrong across several keys.
     pub(super) fn faults(&self, preset: &Preset) -> Vec<Invalid> {
         let gamma = preset.material.work_of_adhesion;
         let mut faults = Vec::new();
@@ -72,8 +72,8 @@ impl EdgeSpec {
 }
 
 impl Preset {
-    /// What a pull does: the parts of `path.steps`, or, where it says none, down at `path.rate` until the bodies are apart. In the units
-    /// of the preset's numbers; empty where neither is given.
+    /// What a pull does: the parts of `path.steps` or, if there are none, down at `path.rate` until the bodies are
+    /// apart. In the units of the preset's numbers; empty if neither is given.
     ///
     /// # Errors
     /// What is wrong with the text of the parts.

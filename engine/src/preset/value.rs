@@ -24,7 +24,8 @@ pub enum Value {
     Text(String),
     /// What the loading device prescribes.
     Control(Control),
-    /// A number with its unit, or the stiffness of a control with its own, as typed: the preset's units read it.
+    /// A number with its unit, or the stiffness of a control with its own unit, as typed: it is read in the preset's
+    /// units.
     Typed(String),
     /// The rows of a measured profile, with the name of their file.
     Profile(Arc<ProfileRows>),
@@ -33,7 +34,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Whether it is the word that takes a value away.
+    /// Whether it is the word that removes a value.
     pub(in crate::preset) fn is_none(&self) -> bool {
         matches!(self, Self::Text(word) if word == NONE)
     }
@@ -52,7 +53,7 @@ impl Value {
         }
     }
 
-    /// What a TOML value is, or a few words on why it is none of ours.
+    /// What a TOML value is, or a few words on why it cannot be a value here.
     ///
     /// # Errors
     /// What was found instead.
@@ -101,7 +102,7 @@ impl fmt::Display for Value {
 }
 
 impl Value {
-    /// Its number, where it is a real one.
+    /// Its number, if it is a real one.
     #[must_use]
     pub fn as_number(&self) -> Option<f64> {
         if let Self::Number(x) = self { Some(*x) } else { None }
@@ -133,13 +134,13 @@ impl From<Control> for Value {
 }
 
 impl Parameter {
-    /// Whether the value is the word that takes its own away.
+    /// Whether `value` is the word that removes this row's value.
     pub(super) fn takes_away(&self, value: &Value) -> bool {
         value.is_none() && self.is_optional()
     }
 
-    /// The value in this row's own type, if the row takes it: whole numbers are numbers, and the words `displacement` and
-    /// `force` are controls. The name of a file is a text until the file is read.
+    /// The value in this row's own type, if the row accepts it: whole numbers are numbers, and the words `displacement`
+    /// and `force` are controls. The name of a file is a text until the file is read.
     ///
     /// # Errors
     /// The value has another type or is out of the row's range.
@@ -198,10 +199,10 @@ impl Parameter {
         }
     }
 
-    /// The value a person typed: a TOML value, or a bare word; a control also as `stiffness=0.15` or `0.15`.
+    /// The value that a user typed: a TOML value, or a bare word; a control also as `stiffness=0.15` or `0.15`.
     ///
     /// # Errors
-    /// The text is no value of this row.
+    /// The text is not a value of this row.
     pub fn parse(&self, text: &str) -> Result<Value, Invalid> {
         let text = text.trim();
         let bare = || Value::Text(text.to_owned());
@@ -224,7 +225,7 @@ impl Parameter {
                 _ => bare(),
             },
             (_, Ok(value)) => Value::from_toml(value.get_ref()).map_err(|found| self.wrong_type(found))?,
-            // Fortran and C habits that TOML does not share: .5, 5., +1e-3.
+            // Habits from Fortran and C that TOML does not share: .5, 5., +1e-3.
             (
                 Kind::Positive | Kind::NonNegative | Kind::Finite | Kind::Between { .. } | Kind::Smoothing,
                 Err(_),
@@ -238,7 +239,8 @@ impl Parameter {
         Invalid::Type { key: self.key.clone(), found, allowed: self.allowed() }
     }
 
-    /// A text that stands for a number: an expression is one at once, a unit waits for those of the preset.
+    /// A text that stands for a number: an expression becomes one at once, while a unit waits for the units of the
+    /// preset.
     fn check_typed(&self, text: String) -> Result<Value, Invalid> {
         match parse_quantity(&text) {
             Ok(value) if value.unit.is_none() => self.check_number(value.number),
@@ -255,7 +257,7 @@ impl Parameter {
             Kind::NonNegative => x == 0.0 || size.contains(&x),
             _ => x.abs() <= LARGEST,
         };
-        // −0 is 0: a sign nobody meant.
+        // −0 becomes 0: nobody means that sign.
         if fine { Ok(Value::Number(x + 0.0)) } else { Err(self.out_of_range(&format!("{x:?}"))) }
     }
 

@@ -1,4 +1,4 @@
-//! Preset → TOML text: every key, every digit, each with what it means.
+//! Preset → TOML text: every key, every digit, each with its meaning.
 
 use super::family::{self, is_parameter};
 use super::model::Preset;
@@ -11,8 +11,8 @@ use crate::units::{Quantity, UnitSystem, parse_quantity};
 
 /// The preset as a file.
 ///
-/// Keys that do not apply (the waves of a sphere, the starts not used) are left out. An end that is left to
-/// follow from the start stands as a comment, so that a file read back is the preset written.
+/// Keys that do not apply (the waves of a sphere, the starts not used) are left out. An end that follows from the start
+/// is written as a comment, so that reading the file back gives the preset that was written.
 #[must_use]
 pub fn write(preset: &Preset) -> String {
     let mut text = head(&preset.units).to_owned();
@@ -29,7 +29,7 @@ pub fn write(preset: &Preset) -> String {
         if row.table() != table.as_deref() {
             table = row.table().map(str::to_owned);
             text.push_str(&table.as_ref().map_or_else(String::new, |name| {
-                // Every wave is an element of one array.
+                // All waves are elements of one array.
                 match family::below(name, family::WAVE_TABLE) {
                     Some(_) => format!("\n[[{}]]\n", family::WAVE_TABLE),
                     None => format!("\n[{name}]\n"),
@@ -42,7 +42,7 @@ pub fn write(preset: &Preset) -> String {
     text
 }
 
-/// The first line, which says what bare numbers are.
+/// The first line, which says what units bare numbers have.
 pub(super) fn head(units: &UnitSystem) -> &'static str {
     match units {
         UnitSystem::Reduced => "# A pulloff preset. Any consistent units.\n",
@@ -53,7 +53,7 @@ pub(super) fn head(units: &UnitSystem) -> &'static str {
 /// The column at which comments begin, after a space.
 pub(super) const COMMENTS: usize = 40;
 
-/// The key that stands as a comment where it follows from others.
+/// The key that is written as a comment if it follows from others.
 pub(super) const FOLLOWING: &str = "path.end_contact_radius";
 
 /// The comment in its place.
@@ -61,12 +61,12 @@ pub(super) fn following(row: &Parameter) -> String {
     line(&format!("# {}", row.name()), &row.fallback_text(), &comment(row))
 }
 
-/// A line of a key, its value and what it means.
+/// A line with a key, its value and its meaning.
 pub(super) fn line(name: &str, value: &str, comment: &str) -> String {
     format!("{:<COMMENTS$}{comment}", format!("{name} = {value}")).trim_end().to_owned()
 }
 
-/// A parameter of a formula as TOML, with its range and its unit where it has them.
+/// A parameter of a formula as TOML, with its range and its unit if it has them.
 pub(super) fn toml_of_parameter(preset: &Preset, row: &Parameter, value: &Value) -> String {
     let value = toml(preset, row, value);
     let ranges = family::PARAMETER_KEYS.iter().filter_map(|part| {
@@ -79,8 +79,8 @@ pub(super) fn toml_of_parameter(preset: &Preset, row: &Parameter, value: &Value)
     }
 }
 
-/// A value of a row as TOML: in an SI preset as text with the unit in which it is shown, where that reads back as the
-/// very same number; bare where a unit of its own stands beside it.
+/// A value of a row as TOML. In an SI preset it is text with the unit in which it is shown, provided that exactly the
+/// same number is read back; it is bare if a unit of its own stands beside it.
 pub(super) fn toml(preset: &Preset, row: &Parameter, value: &Value) -> String {
     let text = |quantity, number| {
         let shown = preset.units.shown(quantity, number);
@@ -107,12 +107,12 @@ pub(super) fn toml(preset: &Preset, row: &Parameter, value: &Value) -> String {
     .unwrap_or_else(|| value.to_toml())
 }
 
-/// What a row means, as a comment; format and title speak for themselves.
+/// What a row means, as a comment; format and title are self-explanatory.
 pub(super) fn comment(row: &Parameter) -> String {
     if row.table().is_none() {
         return String::new();
     }
-    // Where a value's part has a dimension, it is the one worth naming.
+    // If a part of the value has a dimension, that is the one worth naming.
     let part = parameter("path.control.stiffness").filter(|part| part.table() == Some(&*row.key));
     match (&*row.dimension, part) {
         ("", Some(part)) => format!(" # {} ({}: {})", row.meaning, part.name(), part.dimension),

@@ -7,10 +7,10 @@ use std::f64::consts::PI;
 /// D. Maugis, J. Colloid Interface Sci. 150, 243 (1992), doi:10.1016/0021-9797(92)90285-T.
 pub const TABOR_OVER_MAUGIS: f64 = 1.0 / 1.157;
 
-/// `h_c` over z₀ in the same match.
+/// `h_c` over z₀ for the same match.
 pub const RANGE_OVER_ACTION: f64 = 0.97;
 
-/// How the bodies adhere, as it is stated; every number in the units of the preset.
+/// How the bodies adhere, as stated; every number is in the units of the preset.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Adhesion {
     /// At the edge of contact alone, the limit of Johnson, Kendall and Roberts.
@@ -18,7 +18,7 @@ pub enum Adhesion {
     ShortRange,
     /// A constant tension within a range.
     Dugdale(StatedCohesion),
-    /// A liquid bridge at a fixed humidity: the pressure of its meniscus within twice the radius of that.
+    /// A liquid bridge at a fixed humidity: the pressure of its meniscus acts within twice the meniscus radius.
     Capillary {
         /// `γ_L`, the surface tension of the liquid, an energy per area.
         surface_tension: f64,
@@ -29,7 +29,7 @@ pub enum Adhesion {
     },
 }
 
-/// What is stated of a constant tension beside its work.
+/// What is stated about a constant tension besides its work of adhesion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StatedCohesion {
     /// σ₀, a stress.
@@ -41,10 +41,10 @@ pub enum StatedCohesion {
 }
 
 impl Adhesion {
-    /// Its words, in the order of the variants.
+    /// The names, in the order of the variants.
     pub const NAMES: [&'static str; 3] = ["short-range", "dugdale", "capillary"];
 
-    /// Its word.
+    /// Its name.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -54,8 +54,8 @@ impl Adhesion {
         }
     }
 
-    /// The tension and the range of this adhesion with the work `gamma` and the range of action `z0`; `None` of one without a range, or
-    /// where neither is known or there is no adhesion.
+    /// The tension and the range of this adhesion with the work of adhesion `gamma` and the range of action `z0`;
+    /// `None` for one without a range, or if neither is known or there is no adhesion.
     #[must_use]
     pub fn cohesion(self, gamma: f64, z0: Option<f64>) -> Option<Cohesion> {
         let found = match self {
@@ -77,8 +77,8 @@ impl Adhesion {
     }
 }
 
-/// Dugdale's law: the tension `strength` wherever the bodies are nearer to each other than `range`, and none beyond. Its work of
-/// adhesion is their product.
+/// Dugdale's law: the tension `strength` wherever the bodies are closer to each other than `range`, and none beyond.
+/// The work of adhesion is their product.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cohesion {
     /// σ₀, a stress, positive.
@@ -94,13 +94,13 @@ impl Cohesion {
         self.strength * self.range
     }
 
-    /// The same where lengths are divided by `length` and stresses by `stress`.
+    /// The same with lengths divided by `length` and stresses by `stress`.
     #[must_use]
     pub fn reduced_by(self, length: f64, stress: f64) -> Self {
         Self { strength: self.strength / stress, range: self.range / length }
     }
 
-    /// Maugis' `λ_M` = σ₀(9R/(2πγE*²))^{1/3} of a radius of curvature R and a modulus E*.
+    /// Maugis' `λ_M` = σ₀(9R/(2πγE*²))^{1/3} for a radius of curvature R and a modulus E*.
     #[must_use]
     pub fn maugis(self, radius: f64, modulus: f64) -> f64 {
         cbrt(9.0 * radius * self.strength / (2.0 * PI * self.range * modulus)) * cbrt(self.strength / modulus)

@@ -30,8 +30,8 @@ impl Control {
         }
     }
 
-    /// The weights of δ and P in a positive multiple of the controlled quantity: the larger is between ½ and 1, whatever the
-    /// stiffness, and nothing overflows.
+    /// The weights of δ and P in a positive multiple of the controlled quantity. The larger one is between ½ and 1
+    /// whatever the stiffness, so nothing overflows.
     pub fn weights(self) -> (f64, f64) {
         match self {
             Self::Displacement => (1.0, 0.0),

@@ -1,4 +1,4 @@
-//! The dimensionless groups people quote.
+//! The dimensionless groups in common use.
 
 use super::cohesion::{Cohesion, TABOR_OVER_MAUGIS};
 use super::reduced::Problem;
@@ -27,16 +27,17 @@ pub struct Groups {
     pub maugis: Option<f64>,
 }
 
-/// Tabor's μ from which the adhesion acts as if at the edge alone.
+/// Tabor's μ from which on the adhesion acts as if at the edge alone.
 pub const LARGE_TABOR: f64 = 5.0;
 
 impl Groups {
-    /// The groups of `problem`, whose adhesion reaches as far as `range_of_action`, z₀, in its unit of length, or acts as `cohesion`.
+    /// The groups of `problem`, whose adhesion reaches as far as `range_of_action`, z₀, in its unit of length, or acts
+    /// as `cohesion`.
     pub fn of(problem: &Problem, range_of_action: Option<f64>, cohesion: Option<Cohesion>) -> Self {
         let Problem { effective_modulus: e, work_of_adhesion: gamma, ref shape } = *problem;
         let radius = shape.radius_of_curvature();
         let wave = shape.wave();
-        // With A = 0 the last two are infinite, which says nothing: left out.
+        // With A = 0 the last two are infinite, which means nothing, so they are left out.
         let maugis = cohesion.zip(radius).map(|(cohesion, radius)| cohesion.maugis(radius, e));
         let rough = wave.filter(|(a, _)| *a > 0.0);
         Self {
@@ -86,7 +87,7 @@ mod tests {
                 .tabor
                 .unwrap()
         };
-        // (5e-3 · 0.05²/(1e6² · 2.7e-29))^{1/3}, and a nanometre tip of glass.
+        // (5e-3 · 0.05²/(1e6² · 2.7e-29))^{1/3}, and a glass tip of nanometre radius.
         assert!((of(1e6, 5e-3) / 7736.6 - 1.0).abs() < 1e-4, "{}", of(1e6, 5e-3));
         assert!(of(7e10, 1e-8) < LARGE_TABOR);
     }

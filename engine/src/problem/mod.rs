@@ -2,14 +2,14 @@
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`reduced`] | E*, γ and a gap; reduced units E* = 1, lengths by the gap's own |
-//! | [`groups`] | the dimensionless groups people quote |
+//! | [`reduced`] | E*, γ and a gap; reduced units: E* = 1, lengths in units of the gap's own length |
+//! | [`groups`] | the dimensionless groups in common use |
 //! | [`cohesion`] | adhesion with a range |
 //! | [`control`] | what the loading device prescribes |
 //! | [`printer`] | reduced numbers in sentences |
 //! | [`programme`] | what a test does with the control, part by part |
 //! | [`start`] | how the start of a path is given |
-//! | [`turn`] | where a path turns round, which contacts it follows |
+//! | [`turn`] | where a path turns round, and which contacts it follows |
 
 pub mod cohesion;
 pub mod control;

@@ -5,17 +5,17 @@
 pub enum Part {
     /// The control goes to a value at a rate, which is positive.
     Ramp {
-        /// The value: an approach, a force, or the way of the device.
+        /// The value: an approach, a force, or the position of the device.
         to: f64,
-        /// The rate, in its unit over time.
+        /// The rate, in the unit of the value over time.
         rate: f64,
     },
-    /// It goes down at a rate until the bodies are apart.
+    /// The control goes down at a rate until the bodies are apart.
     Apart {
         /// The rate.
         rate: f64,
     },
-    /// It is held for a time.
+    /// The control is held for a time.
     Hold {
         /// The time.
         time: f64,
@@ -23,7 +23,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// The same where control values are `value` times and times `time` times as large.
+    /// The same with control values `value` times and times `time` times as large.
     #[must_use]
     pub fn in_units(self, value: f64, time: f64) -> Self {
         match self {

@@ -15,7 +15,7 @@ pub struct Problem {
     pub shape: Shape,
 }
 
-/// The factors between reduced and the user's units: user = reduced × factor.
+/// The factors between reduced units and the user's: user = reduced × factor.
 ///
 /// Reduced units have E* = 1 and lengths divided by a length of the problem (R = 1, where the gap has an R).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,11 +47,12 @@ pub struct Reduced {
     pub work_of_adhesion: f64,
     /// The gap in units of the length.
     pub gap: Arc<dyn Gap>,
-    /// The way back to the user's units.
+    /// The factors back to the user's units.
     pub units: Units,
 }
 
-/// Contacts come this close to the radius up to which the gap is known: at the equator of a sphere nothing is finite.
+/// Contacts may come this close to the radius up to which the gap is known: at the equator of a sphere nothing is
+/// finite.
 const SHARE_OF_KNOWN: f64 = 0.995;
 
 impl Reduced {
@@ -62,8 +63,8 @@ impl Reduced {
 }
 
 impl Problem {
-    /// The same problem with E* = 1 and lengths in units of the gap's own length; a gap without one, as a cone, in units
-    /// of γ/E*, and without adhesion in the user's.
+    /// The same problem with E* = 1 and lengths in units of the gap's own length. If the gap has none, such as a cone,
+    /// lengths are in units of γ/E*, or without adhesion in the user's unit.
     pub fn reduced(&self) -> Reduced {
         let adhesive = Some(self.work_of_adhesion / self.effective_modulus).filter(|length| *length > 0.0);
         self.reduced_by(self.shape.length().or(adhesive).unwrap_or(1.0))

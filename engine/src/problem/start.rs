@@ -12,7 +12,7 @@ pub enum Start {
 }
 
 impl Start {
-    /// Its number.
+    /// Its value.
     #[must_use]
     pub fn value(self) -> f64 {
         match self {
@@ -21,21 +21,21 @@ impl Start {
     }
 }
 
-/// Where a walk along the equilibria begins.
+/// Where a walk along the equilibrium states begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Begin {
-    /// With the disc at which the path starts, to be pulled off.
+    /// With the disc at which the path starts, which is then pulled off.
     #[default]
     Disc,
-    /// With bodies apart: at the first touch and what it jumps to, to be pressed on.
+    /// With the bodies apart: at first touch and the state it jumps to, which is then pressed on.
     Touch,
 }
 
 impl Begin {
-    /// Its words, in the order of the variants.
+    /// The names, in the order of the variants.
     pub const NAMES: [&'static str; 2] = ["disc", "touch"];
 
-    /// Its word.
+    /// Its name.
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::NAMES[usize::from(self == Self::Touch)]

@@ -11,19 +11,19 @@ pub enum Turn {
     Force(f64),
     /// With an outermost edge of at least this radius, a length.
     Radius(f64),
-    /// At this control value: an approach, a force, or the way of the device.
+    /// At this control value: an approach, a force, or the position of the device.
     Control(f64),
 }
 
 impl Turn {
-    /// Its number.
+    /// Its value.
     pub fn value(self) -> f64 {
         match self {
             Self::Approach(x) | Self::Force(x) | Self::Radius(x) | Self::Control(x) => x,
         }
     }
 
-    /// The same turn where lengths are `length` times and forces `force` times as large.
+    /// The same turn with lengths `length` times and forces `force` times as large.
     #[must_use]
     pub fn in_units(self, length: f64, force: f64, control: Control) -> Self {
         match self {
@@ -41,15 +41,15 @@ pub enum ContactKind {
     /// A disc and rings, wherever they appear.
     #[default]
     Rings,
-    /// One disc alone, through states in which the bodies would overlap.
+    /// A single disc, through states in which the bodies would overlap.
     OneDisc,
 }
 
 impl ContactKind {
-    /// Its words, in the order of the variants.
+    /// The names, in the order of the variants.
     pub const NAMES: [&'static str; 2] = ["rings", "one-disc"];
 
-    /// Its word.
+    /// Its name.
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::NAMES[usize::from(self == Self::OneDisc)]

@@ -1,6 +1,7 @@
 //! Bounds of functions on discs: arithmetic on all complex numbers near a real one.
 //!
-//! With the image of an operand within ρ of its value m at the centre, that of a function of it lies within
+//! Suppose the image of an operand lies within ρ of its value m at the centre. Then the image of a function of it lies
+//! within
 //!
 //! ```text
 //! f + g   ρ₁ + ρ₂                          f g    |m₁|ρ₂ + |m₂|ρ₁ + ρ₁ρ₂
@@ -12,8 +13,9 @@
 //! tanh    sinh ρ/(cosh m √(sinh²(|m| − ρ)₊ + cos²ρ)),  ρ < π/2, or 4/(e^{2(|m|−ρ)} − 1), |m| > ρ
 //! ```
 //!
-//! of its own value at the centre. Where a function is not defined on all of the disc the radius is infinite, and so it is
-//! where the numbers overflow to what is not a number. Radii are not rounded outward: they are used with a factor to spare.
+//! of the function's own value at the centre. Where a function is not defined on all of the disc, the radius is
+//! infinite; so it is where the numbers overflow to NaN. Radii are not rounded outward: they are used with a factor to
+//! spare.
 
 use crate::elementary::{
     asin, atan, cos, cosh, exp, exp_m1, hypot, ln, ln_1p, pow, sin, sin_cos, sinh, tan, tanh,
@@ -33,7 +35,7 @@ pub struct Ball {
 /// A function and its derivative on a ball.
 pub type BallPair = (Ball, Ball);
 
-/// A sine or a hyperbolic one from its value and its slope at the middle.
+/// A sine or cosine, circular or hyperbolic, from its value and slope at the middle.
 fn swing(along: f64, across: f64, radius: f64) -> Ball {
     Ball::new(along, sine_change(along, across, radius))
 }
@@ -43,7 +45,7 @@ impl Ball {
     /// No bound.
     pub const OPEN: Self = Self { middle: 0.0, radius: f64::INFINITY };
 
-    /// A ball; without a bound where one of the numbers is none.
+    /// A ball; it has no bound where `middle` is not finite or `radius` is NaN.
     pub fn new(middle: f64, radius: f64) -> Self {
         let known = middle.is_finite() && !radius.is_nan();
         Self { middle, radius: if known { radius } else { f64::INFINITY } }
@@ -104,7 +106,7 @@ impl Ball {
         } else if radius > size {
             pow(size + radius, n) - pow(size, n)
         } else {
-            // Keeps the digits of a small change.
+            // This keeps the digits of a small change.
             pow(size, n) * exp_m1(n * ln_1p(radius / size))
         };
         Self::new(pow(middle, n), change)
@@ -121,7 +123,7 @@ impl Ball {
             return Self::number(value);
         }
         let x = radius / middle;
-        // At x = 1 the power branches on the rim, where a positive one is bounded all the same.
+        // At x = 1 the branch point lies on the rim, where a positive power is still bounded.
         if !(middle > 0.0 && (x < 1.0 || x <= 1.0 && p > 0.0)) {
             return Self::OPEN;
         }
@@ -173,7 +175,7 @@ impl Ball {
             f64::INFINITY
         };
         let far = if clear > 0.0 { 4.0 / exp_m1(2.0 * clear) } else { f64::INFINITY };
-        // The smaller; what is not a number is an overflow of the first.
+        // The smaller of the two; NaN is an overflow of the first.
         let change = near.min(far);
         let tanh = tanh(middle);
         let slope = cosh(middle).powi(-2);
@@ -206,7 +208,7 @@ impl Ball {
         (self.along(value, slope), slope)
     }
 
-    /// A function of this value at the middle, which changes by its `slope` at most.
+    /// A function with this value at the middle whose derivative is `slope`.
     fn along(self, value: f64, slope: Self) -> Self {
         if self.radius <= 0.0 { Self::number(value) } else { Self::new(value, self.radius * slope.bound()) }
     }

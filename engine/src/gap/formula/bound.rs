@@ -5,7 +5,7 @@ use super::jets::{Block, Jets, LANES};
 use crate::gap::Jet;
 use std::array::from_fn;
 
-/// Blocks that a stack without allocation holds: more than formulas of people need.
+/// Blocks that fit on the stack without allocation: more than typed formulas need.
 const SHALLOW: usize = 8;
 
 /// A gap formula with values for its parameters.
@@ -22,14 +22,14 @@ impl Bound {
         bound
     }
 
-    /// What the formula gives on the axis, a length: it is subtracted, so that h(0) = 0.
+    /// The value of the formula on the axis, a length: it is subtracted, so that h(0) = 0.
     pub fn offset(&self) -> f64 {
         self.offset
     }
 
     /// The gap and its derivatives at the radius `r`.
     ///
-    /// Not a number where the formula has none; on the axis that may be so for the derivatives alone.
+    /// NaN where the formula is undefined; on the axis this may be true of the derivatives alone.
     pub fn jet(&self, r: f64) -> Jet {
         let mut jet = Jet::default();
         self.each(&self.steps.steps, 1.0, &[r], |_, [value, first, second, third]| {
@@ -38,19 +38,20 @@ impl Bound {
         jet
     }
 
-    /// h at the radii s·x for every x of `nodes`, into a slice as long as they are.
+    /// h at the radii s·x for every x of `nodes`, into a slice of the same length.
     pub fn values(&self, s: f64, nodes: &[f64], values: &mut [f64]) {
         self.each(&self.steps.steps, s, nodes, |at, [value]| values[at] = value - self.offset);
     }
 
-    /// h', h'' and h''' at the radii s·x for every x of `nodes`, each into a slice as long as they are.
+    /// h', h'' and h''' at the radii s·x for every x of `nodes`, each into a slice of the same length.
     pub fn derivatives(&self, s: f64, nodes: &[f64], [first, second, third]: [&mut [f64]; 3]) {
         self.each(&self.steps.steps, s, nodes, |at, [_, h1, h2, h3]| {
             (first[at], second[at], third[at]) = (h1, h2, h3);
         });
     }
 
-    /// What these of the steps, the whole of an operand, make of the radii s·x, with N − 1 derivatives, one by one.
+    /// Runs these steps, which make up a whole operand, at the radii s·x and passes on each value with its N − 1
+    /// derivatives.
     pub(super) fn each<const N: usize>(
         &self,
         steps: &[FormulaStep],
@@ -60,7 +61,7 @@ impl Bound {
     ) {
         let mut run_on = |stack: &mut [Jets<N>]| {
             for (block, nodes) in nodes.chunks(LANES).enumerate() {
-                // A last block that is not full repeats its first radius.
+                // If the last block is not full, it repeats its first radius.
                 let radii: [f64; LANES] = from_fn(|lane| s * nodes.get(lane).unwrap_or(&nodes[0]));
                 let found = run(steps, Block::from(radii), stack).0.map(Block::to_array);
                 for lane in 0..nodes.len() {
@@ -76,7 +77,7 @@ impl Bound {
     }
 }
 
-/// The steps on a stack that is large enough for them.
+/// Runs the steps on a stack that is large enough for them.
 fn run<const N: usize>(steps: &[FormulaStep], radii: Block, stack: &mut [Jets<N>]) -> Jets<N> {
     // The number of blocks on the stack; the one on top is at `top - 1`.
     let mut top = 0;

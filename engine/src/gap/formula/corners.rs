@@ -1,20 +1,21 @@
 //! Where a formula is not smooth: its breaks, and what it is at the axis.
 //!
-//! A formula may not be smooth where the argument of `abs`, `sign` or `step`, the difference that `min` and `max` look at,
-//! or the radicand of a root, a broken power, a logarithm is zero. With such a u and its slope bounded on intervals of
-//! the radius (`discs`), from the middle,
+//! A formula may not be smooth where one of these is zero: the argument of `abs`, `sign` or `step`, the difference that
+//! `min` and `max` compare, or the radicand of a root, a broken power or a logarithm. Let u be such a quantity, bounded
+//! together with its slope on intervals of the radius, from their middles (`discs`):
 //!
-//! - u is not zero on the interval, or does not change: there is no break;
-//! - u' is not zero: there is at most one, found by bisection to the last bit;
-//! - else the interval is halved. What is still open at 2e-15 of the largest radius is taken for a break.
+//! - if u is not zero on the interval, or does not change, there is no break;
+//! - if u' is not zero, there is at most one, found by bisection to the last bit;
+//! - otherwise the interval is halved. What is still open at 2e-15 of the largest radius is taken for a break.
 //!
-//! So none is missed, however near to another. What the formula is at the axis follows from the first power of r in
+//! So none is missed, however close it is to another. The parity of the formula at the axis follows from the first
+//! power of r in
 //!
 //! ```text
 //! D = h'/r − h''  ∝  rᵐ      m = 2, 4, …: even,   m = −1, 1, …: odd,   otherwise a broken power
 //! ```
 //!
-//! which the paraboloid leaves out.
+//! which does not depend on the paraboloid.
 
 use super::bound::Bound;
 use super::fold::{Switch, Zero};
@@ -24,24 +25,24 @@ use crate::gap::Parity;
 use crate::gap::function::MOST_BREAKS;
 use crate::root;
 
-/// Intervals to begin with.
+/// The number of intervals to begin with.
 const FIRST: usize = 16;
 
-/// Intervals open at a time at most: u is then zero nearly everywhere.
+/// The largest number of intervals open at a time: with more, u is zero nearly everywhere.
 const MOST_OPEN: usize = 1 << 17;
 
-/// Steps that bring Newton's method from an interval on which u is nearly straight to rounding, and what is left then, as
-/// a share of the radius.
+/// The number of Newton steps that lead from an interval on which u is nearly straight to rounding, and the error left
+/// then, as a share of the radius.
 const NEWTON_STEPS: usize = 6;
 const MARGIN: f64 = 8.0 * f64::EPSILON;
 
-/// Breaks nearer to each other or to the axis, as a share of the largest radius, are one.
+/// Breaks closer than this to each other or to the axis, as a share of the largest radius, count as one.
 const ONE: f64 = 1e-13;
 
-/// How near to a whole number m is found: what follows the first power is smaller than that at the radius looked at.
+/// How close m must be to a whole number: what follows the first power is smaller than that at the radius used.
 const NEAR_WHOLE: f64 = 0.05;
 
-/// The radius looked at, as a share of the first length of the formula.
+/// The radius used, as a share of the first length of the formula.
 const NEAR_AXIS: f64 = 1e-2;
 
 /// D below this share of its terms is rounding.
@@ -56,10 +57,11 @@ struct Break {
 }
 
 impl Bound {
-    /// The radii below `to` where the formula may not be smooth, ascending: the first at which it is no longer what it is
-    /// before. Superfluous ones are possible.
+    /// The radii below `to` where the formula may not be smooth, ascending: at each, the formula is for the first time
+    /// no longer what it was before. Superfluous ones are possible.
     ///
-    /// Of more than [`MOST_BREAKS`], and of a u that is zero nearly everywhere, what has been found until then.
+    /// If there are more than [`MOST_BREAKS`], or if u is zero nearly everywhere, the list holds what was found until
+    /// then.
     pub fn breaks(&self, to: f64) -> Vec<f64> {
         let mut found: Vec<Break> =
             self.steps.switches.iter().flat_map(|switch| self.isolate(switch, to)).collect();
@@ -112,13 +114,13 @@ impl Bound {
         found
     }
 
-    /// Where u is zero, if it is, on an interval on which it rises or falls throughout.
+    /// The zero of u, if it has one, on an interval on which it rises or falls throughout.
     fn crossing(&self, switch: &Switch, [lo, hi]: [f64; 2]) -> Option<Break> {
         let u = |r: f64| self.zero(switch, r)[0];
         let [before, after] = [lo, hi].map(u);
         let (exact, width) = (|radius| Break { radius, exact: true }, hi - lo);
-        // Zero at an end may be rounding beside a place where u touches zero: u changes sign there or not. Of the two
-        // intervals that end there the shorter one sees no other zero.
+        // A zero at an end may be rounding beside a place where u only touches zero; whether u changes sign there
+        // decides. Of the two intervals that meet at that end, the shorter one sees no other zero.
         for (end, value) in [(lo, before), (hi, after)] {
             if value == 0.0 {
                 return (end >= width && u(end - width) * u(end + width).signum() < 0.0).then(|| exact(end));
@@ -129,7 +131,8 @@ impl Bound {
             return None;
         }
         let is_before = |r: f64| u(r) * sign > 0.0;
-        // Newton's steps come near; bisection ends, from far away where they do not.
+        // Newton's steps come close and bisection finishes. Where they do not come close, it starts from the whole
+        // interval.
         let mut near = 0.5 * (lo + hi);
         for _ in 0..NEWTON_STEPS {
             let [value, slope] = self.zero(switch, near);
@@ -140,7 +143,7 @@ impl Bound {
         Some(exact(root::halved(from, to, is_before)[1]))
     }
 
-    /// The break in an interval of some units in the last place.
+    /// The break in an interval a few units in the last place wide.
     fn place(&self, switch: &Switch, [lo, hi]: [f64; 2]) -> Break {
         let (before, after) = (self.zero(switch, lo), self.zero(switch, hi));
         // u jumps, or touches zero where its slope changes sign.
@@ -166,7 +169,7 @@ impl Bound {
         }
     }
 
-    /// What the formula is at the axis, where `length` is the first length of it.
+    /// The parity of the formula at the axis; `length` is the first length of the formula.
     pub fn axis(&self, length: f64) -> Parity {
         let r = NEAR_AXIS * length;
         let [near, far] = [r, 2.0 * r].map(|r| {
@@ -234,7 +237,7 @@ mod tests {
             ("sign(r - 0.3)*(r - 0.3)^2", &[0.3]),
             ("(r - 0.3)^2*log(abs(r - 0.3))", &[0.3]),
             ("step(sign(r - 0.3))", &[0.3]),
-            // Nearer to each other than 4096 nodes, and between them.
+            // Closer together than the nodes of a grid of 4096, and between them.
             ("abs(r - 0.3) + abs(r - 0.30001)", &[0.3, 0.30001]),
             ("max(1e-9 - abs(r - 0.3), 0)", &[0.3 - 1e-9, 0.3, 0.3 + 1e-9]),
             ("0.5*max(0.0008 - abs(r-0.3), 0)", &[0.2992, 0.3, 0.3008]),

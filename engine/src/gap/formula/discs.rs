@@ -1,8 +1,9 @@
 //! A formula and its slope on discs of the complex plane, and on intervals of the radius.
 //!
-//! The steps of the formula are run on a value and a slope, each a [`Ball`]. On a disc a function that switches (abs, sign,
-//! step, min, max) is the branch that holds at one radius, continued: smooth pieces are bounded that way. On an interval of
-//! real radii it is bounded whatever holds where, which finds the places where it switches.
+//! The steps of the formula are run on a value and a slope, each a [`Ball`]. On a disc, a function that switches (abs,
+//! sign, step, min, max) is taken as the branch that holds at one radius, continued: this bounds the smooth pieces. On
+//! an interval of real radii the bound holds for whichever branch applies, which finds the places where the function
+//! switches.
 
 use super::ball::{Ball, BallPair};
 use super::bound::Bound;
@@ -13,7 +14,8 @@ use crate::gap::ComplexDisc;
 use std::f64::consts::LN_10;
 use std::ops::{Neg, Range};
 
-/// How much wider than itself an interval is bounded, as a share of its larger end: rounding must not lose its ends.
+/// By how much an interval is widened before it is bounded, as a share of its larger end: rounding must not lose its
+/// ends.
 const MARGIN: f64 = 4.0 * f64::EPSILON;
 
 /// A value and its slope on a disc.
@@ -22,12 +24,12 @@ const MARGIN: f64 = 4.0 * f64::EPSILON;
 pub struct Image {
     pub value: Ball,
     pub slope: Ball,
-    /// The value at the radius whose branches are meant; on an interval, where all are, not a number.
+    /// The value at the radius that selects the branches; NaN on an interval, where all of them count.
     at: f64,
 }
 
 impl Image {
-    /// Whether nothing of it depends on the radius.
+    /// Whether it does not depend on the radius at all.
     pub fn does_not_change(self) -> bool {
         self.slope == Ball::ZERO
     }
@@ -40,9 +42,9 @@ impl Image {
         Self { value: Ball::number(number), slope: Ball::ZERO, at: number }
     }
 
-    /// f of the value, given with its derivative.
+    /// f of the value, where f is given together with its derivative.
     fn chain(self, (value, derivative): BallPair, at: f64) -> Self {
-        // What does not change has no slope, not even where that of f is infinite: max(r - a, 0)^1.5.
+        // What does not change has no slope, not even where the slope of f is infinite: max(r - a, 0)^1.5.
         let slope = if self.slope == Ball::ZERO { Ball::ZERO } else { derivative * self.slope };
         Self { value, slope, at }
     }
@@ -111,7 +113,7 @@ impl Image {
             Self::number(value)
         } else {
             let [low, high] = [-1.0, 1.0].map(|x| Ball::number(unary.value(x)));
-            // A jump has no slope: what is made of it is looked at more closely.
+            // A jump has no slope; without a bound on it, the interval is examined more closely.
             Self { value: low.hull(high), slope: Ball::OPEN, at: f64::NAN }
         }
     }
@@ -152,7 +154,7 @@ impl Image {
         self.chain((self.value.power(0.5), self.value.power(-0.5).scale(0.5)), at)
     }
 
-    /// The smaller or the larger.
+    /// The smaller or the larger of two.
     fn larger(self, other: Self, binary: Binary, on_disc: bool) -> Self {
         let difference = self.value - other.value;
         let ahead = if on_disc { self.at - other.at } else { difference.middle };
@@ -181,13 +183,13 @@ impl Bound {
         self.operand_on(&(0..self.steps.steps.len()), interval)
     }
 
-    /// The operand that these steps make and its slope on the real interval.
+    /// The operand that these steps compute, and its slope, on the real interval.
     pub(super) fn operand_on(&self, steps: &Range<usize>, [lo, hi]: [f64; 2]) -> Image {
         let radii = Ball::new(0.5 * (lo + hi), 0.5 * (hi - lo) + MARGIN * hi);
         run(&self.steps.steps[steps.clone()], radii, None)
     }
 
-    /// What is zero where the formula switches, on the real interval.
+    /// The quantity that is zero where the formula switches, on the real interval.
     pub(super) fn switch_on(&self, switch: &Switch, interval: [f64; 2]) -> Image {
         let a = self.operand_on(&switch.argument, interval);
         let b = switch.other.as_ref().map(|other| self.operand_on(other, interval));
@@ -203,7 +205,7 @@ impl Bound {
     }
 }
 
-/// The steps on these radii: on the disc with the branches that hold at `branch`, or without one on the interval.
+/// Runs the steps on these radii: on a disc with the branches that hold at `branch`, or on an interval without one.
 fn run(steps: &[FormulaStep], radii: Ball, branch: Option<f64>) -> Image {
     let on_disc = branch.is_some();
     let mut stack: Vec<Image> = Vec::new();
@@ -269,7 +271,7 @@ mod tests {
 
     const ONE: Complex = Complex(1.0, 0.0);
 
-    /// A formula and its slope by hand, at a complex radius, where the branch of the real one holds.
+    /// A formula, and its slope written by hand at a complex radius, on the branch that holds at a real one.
     type Example = (&'static str, fn(Complex, f64) -> Complex);
 
     fn side(branch: f64, at: f64) -> f64 {
@@ -397,7 +399,7 @@ mod tests {
             let most = bound(text).slope_bound(ComplexDisc { centre, radius, branch: centre });
             assert!(most.is_infinite(), "{text}: {most}");
         }
-        // No overflow times zero, and nothing of what is identically zero.
+        // No overflow times zero, and no contribution from what is identically zero.
         for (text, most) in [("exp(-1e6*(r - 0.3)^2)", 1e-300), ("max(r - 0.9, 0)^1.5", 1e-300)] {
             let found = bound(text).slope_bound(ComplexDisc { centre: 0.7, radius: 0.1, branch: 0.7 });
             assert!(found <= most, "{text}: {found}");

@@ -1,4 +1,4 @@
-//! The formula with its parameters put in: constants folded, what is left as steps over a block of radii.
+//! The formula with its parameters inserted and its constants folded; the rest becomes steps over a block of radii.
 
 use crate::expression::function::{Binary, Unary};
 use crate::expression::{Op, Program};
@@ -11,9 +11,9 @@ const LARGEST_POWER: f64 = 1024.0;
 /// One step on a stack of blocks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FormulaStep {
-    /// A number laid on top.
+    /// Pushes a number.
     Number(f64),
-    /// The radii laid on top.
+    /// Pushes the radii.
     Radius,
     /// x → f(x).
     Unary(Unary),
@@ -44,10 +44,11 @@ pub struct FormulaWave {
     pub period: f64,
 }
 
-/// What is zero where the formula may not be smooth.
+/// The quantity that is zero where the formula may not be smooth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Zero {
-    /// x, or x − y: the argument of abs, sign, step, of a root, a broken power, a logarithm, or what min, max compare.
+    /// x, or x − y: the argument of abs, sign, step, of a root, a broken power or a logarithm, or what min and max
+    /// compare.
     Difference,
     /// x² + y², the radicand of hypot.
     Squares,
@@ -62,7 +63,7 @@ pub struct Switch {
     pub argument: Range<usize>,
     /// The steps of y, where there are two.
     pub other: Option<Range<usize>>,
-    /// What of them is zero there.
+    /// Which quantity made from them is zero there.
     pub zero: Zero,
 }
 
@@ -84,7 +85,7 @@ pub struct Steps {
 enum StackSlot {
     /// Known now; no step has been written for it.
     Constant(f64),
-    /// Made by the steps from here on.
+    /// Computed by the steps from here on.
     From(usize),
 }
 
@@ -118,7 +119,7 @@ struct ConstantFolding {
 
 impl ConstantFolding {
     fn pop(&mut self) -> StackSlot {
-        // The grammar gives every operation its operands.
+        // The grammar ensures that every operation has its operands.
         self.slots.pop().unwrap_or(StackSlot::Constant(f64::NAN))
     }
 
@@ -130,7 +131,7 @@ impl ConstantFolding {
         }
     }
 
-    /// A step on the value made by the steps from `start` on.
+    /// Adds a step on the value computed by the steps from `start` on.
     fn step(&mut self, start: usize, step: FormulaStep) {
         let argument = start..self.out.steps.len();
         let wave = |period| FormulaWave { argument: argument.clone(), period };
@@ -151,7 +152,7 @@ impl ConstantFolding {
         self.slots.push(StackSlot::From(start));
     }
 
-    /// What the steps from `start` on make is this number after all.
+    /// Replaces the steps from `start` on by the number that they amount to.
     fn replace(&mut self, start: usize, number: f64) {
         self.out.steps.truncate(start);
         self.out.waves.retain(|wave| wave.argument.end <= start);
@@ -183,7 +184,8 @@ impl ConstantFolding {
         }
     }
 
-    /// Where an operation on what the steps from `start` on make, and those from `second` on, may not be smooth.
+    /// Records where an operation may not be smooth whose operands are computed by the steps from `start` on and from
+    /// `second` on.
     fn compared(&mut self, binary: Binary, start: usize, second: usize) {
         let other = Some(second..self.out.steps.len());
         let (other, zero) = match binary {
@@ -200,7 +202,7 @@ impl ConstantFolding {
         match binary {
             Binary::Add => self.step(start, FormulaStep::Shift(c)),
             Binary::Subtract => self.step(start, FormulaStep::Shift(-c)),
-            // A wave without amplitude is no feature: nothing of it may stay.
+            // A wave without amplitude is no feature: no trace of it may remain.
             Binary::Multiply if c == 0.0 => self.replace(start, 0.0),
             Binary::Multiply => self.step(start, FormulaStep::Scale(c)),
             Binary::Divide => self.step(start, FormulaStep::Divide(c)),

@@ -4,10 +4,10 @@ use super::bound::Bound;
 use super::survey::NotFinite;
 use crate::gap::{Breaks, ComplexDisc, Gap, Jet, Parity};
 
-/// How far beyond the radius asked for a formula is looked at.
+/// How far a formula is examined, as a multiple of the radius asked for.
 const BEYOND: f64 = 16.0;
 
-/// How little of the radius is needed where none is asked for.
+/// The share of the radius that is needed where none is asked for.
 const NEAR_AXIS: f64 = 1e-3;
 
 /// A formula with its parameters, known to be finite up to a radius.
@@ -18,13 +18,13 @@ pub struct FormulaGap {
     feature_length: Option<f64>,
     known: Option<f64>,
     corners: Vec<f64>,
-    /// How far the corners have been looked for.
+    /// How far out corners have been looked for.
     searched: f64,
     axis: Parity,
 }
 
 impl Bound {
-    /// The formula as a gap on 0 ≤ r ≤ `largest`, which must be positive and hold every radius of contact.
+    /// The formula as a gap on 0 ≤ r ≤ `largest`, which must be positive and at least every radius of contact.
     ///
     /// # Errors
     /// Where h, h' or h'' is not finite.
@@ -33,9 +33,9 @@ impl Bound {
         Ok(self.gap(largest, largest, None))
     }
 
-    /// The formula as a gap that is known as far as it is finite, its waves looked for up to `largest`.
+    /// The formula as a gap that is known as far as it is finite; its waves are looked for up to `largest`.
     ///
-    /// Up to there it must be finite where it is `needed`, and at least near the axis else.
+    /// If `needed`, it must be finite up to there, otherwise at least near the axis.
     ///
     /// # Errors
     /// Where h, h' or h'' is not finite.
@@ -52,7 +52,7 @@ impl Bound {
         Ok(self.gap(largest, waves, known))
     }
 
-    /// The gap, its waves and corners looked for up to `surveyed`.
+    /// The gap, with its waves and corners looked for up to `surveyed`.
     fn gap(self, largest: f64, surveyed: f64, known: Option<f64>) -> FormulaGap {
         let feature_length = self.feature_length(surveyed);
         // A path may run outward from its start.
@@ -114,7 +114,7 @@ impl Gap for FormulaGap {
         }
     }
 
-    /// The largest radius: a formula need not have a radius of curvature.
+    /// The largest radius, since a formula need not have a radius of curvature.
     fn reference_length(&self) -> f64 {
         self.largest
     }

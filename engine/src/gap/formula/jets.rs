@@ -7,7 +7,7 @@
 //! f(x)'''   = f₃x'³ + 3f₂x'x'' + f₁x'''                                    Faà di Bruno
 //! ```
 //!
-//! Sine, cosine, exponential and root are computed on the whole block; the rest number by number.
+//! Sine, cosine, exponential and root are computed on the whole block, the rest number by number.
 
 use crate::elementary::{self, acos, asin, atan, cosh, hypot, ln, log10, pow, sinh, tan, tanh};
 use crate::expression::function::{Binary, Unary};
@@ -16,18 +16,18 @@ use std::f64::consts::LN_10;
 use std::ops::{Add, Mul, Neg, Sub};
 use wide::f64x4;
 
-/// Radii of a block.
+/// The number of radii in a block.
 pub const LANES: usize = 4;
 
 /// One number for each radius of a block.
 pub type Block = f64x4;
 
-/// Beyond this the reduction of an angle on the block loses digits.
+/// Beyond this, the reduction of an angle on the block loses digits.
 const LARGEST_ANGLE: f64 = 1e5;
 
 /// A value and its first N − 1 derivatives with respect to r, for each radius of a block; `N` from 1 to 4.
 ///
-/// Sums over the gap often ask for h alone: with `N` = 1 nothing else is computed.
+/// Sums over the gap often need h alone: with `N` = 1 nothing else is computed.
 #[derive(Debug, Clone, Copy)]
 #[must_use]
 pub struct Jets<const N: usize>(pub [Block; N]);
@@ -40,10 +40,10 @@ fn map(block: Block, f: impl Fn(f64) -> f64) -> Block {
     Block::from(block.to_array().map(f))
 }
 
-/// sin x and cos x; what one radius gives does not depend on the others of its block.
+/// sin x and cos x; the result for one radius does not depend on the others in its block.
 fn sin_cos(x: Block) -> (Block, Block) {
     let (sin, cos) = x.sin_cos();
-    // Not set for what is not a number either.
+    // NaN is not small either.
     let small = x.abs().simd_le(all(LARGEST_ANGLE));
     if small.all() {
         return (sin, cos);
@@ -96,7 +96,7 @@ impl<const N: usize> Jets<N> {
         self.chain([f, f1, f2, all(-3.0) * f2 / x])
     }
 
-    /// xⁿ by repeated multiplication, so that it has its derivatives where x = 0; `n` ≥ 2.
+    /// xⁿ by repeated multiplication, so that the derivatives exist at x = 0 too; `n` ≥ 2.
     pub fn integer_power(self, n: u32) -> Self {
         let (x, p) = (self.0[0], f64::from(n));
         if n == 2 {
@@ -123,7 +123,7 @@ impl<const N: usize> Jets<N> {
         if !zero.any() {
             return away;
         }
-        // There xᵖ⁻³ may be infinite where the lower derivatives are not.
+        // Where x = 0, xᵖ⁻³ may be infinite although the lower derivatives are not.
         let (c1, c2) = (p, p * (p - 1.0));
         let third = all(c2 * (p - 2.0)) * power(p - 3.0);
         self.chain([value, all(c1) * power(p - 1.0), all(c2) * power(p - 2.0), third]).or(away, zero)
@@ -159,7 +159,7 @@ impl<const N: usize> Jets<N> {
         }))
     }
 
-    /// Where `mask` is set these, elsewhere `others`.
+    /// These values where `mask` is set, `others` elsewhere.
     fn or(self, others: Self, mask: Block) -> Self {
         Self(from_fn(|n| mask.select(self.0[n], others.0[n])))
     }
@@ -199,7 +199,7 @@ impl<const N: usize> Jets<N> {
                 self.chain([cosh, sinh, cosh, sinh])
             }
             Unary::Tanh => {
-                // 1/cosh² and not 1 - tanh²: it keeps its digits.
+                // 1/cosh² instead of 1 - tanh²: it keeps its digits.
                 let (t, u) = (map(x, tanh), map(x, |x| cosh(x).powi(-2)));
                 self.chain([t, u, all(-2.0) * t * u, u * (all(4.0) * t * t - all(2.0) * u)])
             }
@@ -245,7 +245,7 @@ impl<const N: usize> Jets<N> {
                 let power = map_two(a, b, pow);
                 (self.unary(Unary::Log) * other).chain([power; 4])
             }
-            // What is not a number stays so.
+            // NaN stays NaN.
             Binary::Min => self.or(other, a.simd_lt(b) | a.is_nan()),
             Binary::Max => self.or(other, a.simd_gt(b) | a.is_nan()),
             Binary::Hypot => {

@@ -1,16 +1,16 @@
-//! Gap formulas: h(r) as a person writes it, as `r^2/(2*R) + A*(1 - cos(2*pi*r/lambda))`.
+//! Gap formulas: h(r) as a user writes it, such as `r^2/(2*R) + A*(1 - cos(2*pi*r/lambda))`.
 //!
-//! The text is an expression of [`expression`](crate::expression) in the radius `r` and named parameters. With the
-//! parameters given it becomes a straight program over blocks of radii that carries h, h', h'', h''' together
-//! (forward differentiation), so the derivatives are exact to rounding. The gap is measured from its value on the
-//! axis: h(0) is subtracted.
+//! The text is an expression of [`expression`](crate::expression) in the radius `r` and named parameters. With its
+//! parameters given, it becomes a straight-line program over blocks of radii that carries h, h', h'', h''' together
+//! (forward differentiation), so the derivatives are exact to rounding. The gap is measured from its value on the axis:
+//! h(0) is subtracted.
 //!
-//! On the axis only h must be finite. Formulas as `sqrt(r^2)` or `r^1.5` have derivatives there that are not numbers;
-//! no quadrature has a node there.
+//! On the axis only h must be finite. The derivatives of formulas such as `sqrt(r^2)` or `r^1.5` are not numbers there;
+//! no quadrature has a node on the axis.
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`fold`] | parameters put in, constants folded: text order → steps |
+//! | [`fold`] | parameters inserted, constants folded: text order → steps |
 //! | [`jets`] | the rules of differentiation, on a block of radii |
 //! | [`bound`] | the formula with its parameters given: h and its derivatives anywhere |
 //! | `ball` | functions on complex discs: a value and how far it can change |
@@ -73,7 +73,7 @@ pub enum BindError {
         /// The parameter.
         name: String,
     },
-    /// A value that is no finite number.
+    /// A value that is not a finite number.
     #[error("the parameter {name} = {value} of the formula must be a finite number")]
     NotFinite {
         /// The parameter.
@@ -100,7 +100,7 @@ impl Formula {
     /// The formula with these values for its parameters, in any order and any consistent units.
     ///
     /// # Errors
-    /// A parameter without a value, with two, or with one that is not finite; a value for no parameter.
+    /// A parameter without a value, with two values, or with one that is not finite; a value for an unknown parameter.
     pub fn bind(&self, values: &[(&str, f64)]) -> Result<Bound, BindError> {
         let names = self.parameters();
         let mut given = vec![None; names.len()];

@@ -1,9 +1,10 @@
 //! Is a formula finite up to a radius, and how short are its waves there?
 //!
-//! Both are answered by bounds on intervals (`discs`): one on which h and h' have a bound is done with, any
-//! other is halved. Where there is no bound even at some units in the last place, h and h' beside the place decide: they
-//! are not finite, or grow without end towards it, or it is a corner or a branch point that they pass. A curvature
-//! that overflows before the slope is seen in the middles of the intervals, and followed to its edge by bisection.
+//! Both questions are answered by bounds on intervals (`discs`). An interval on which h and h' have a bound is done;
+//! any other is halved. Where there is still no bound at a width of a few units in the last place, h and h' beside the
+//! place decide: either they are not finite, or they grow without limit towards it, or it is a corner or a branch point
+//! that they pass. A curvature that overflows before the slope does is noticed in the middles of the intervals, and its
+//! edge is found by bisection.
 
 use super::bound::Bound;
 use super::fold::FormulaWave;
@@ -16,23 +17,24 @@ use thiserror::Error;
 /// The width at which an interval is no longer halved, as a share of the largest radius.
 pub(super) const NARROW: f64 = 2e-15;
 
-/// Intervals open at a time at most: rounding then hides what the formula is.
+/// The largest number of intervals open at a time: with more, rounding hides what the formula is.
 const MOST_OPEN: usize = 1 << 15;
 
-/// How far beside a place without a bound the slope is looked at, as shares of the largest radius, from near to far.
+/// How far beside a place without a bound the slope is examined, as shares of the largest radius, from near to far.
 const BESIDE: [f64; 3] = [1e-13, 1e-11, 1e-9];
 
-/// The same beside the axis, whose radius has no rounding.
+/// The same beside the axis, where the radius has no rounding.
 const BESIDE_AXIS: [f64; 3] = [1e-12, 1e-8, 1e-4];
 
-/// A slope that grows without end grows from step to step at least by nearly as much: a logarithm by as much, while the
-/// share of a power r^q that is bounded falls.
+/// A slope that grows without limit grows at each step by at least nearly as much as before: a logarithm by as much,
+/// while the growth of a bounded power r^q falls.
 const ENDLESS: f64 = 0.95;
 
 /// Growth below this share of the slope is rounding.
 const ROUNDING: f64 = 1e-10;
 
-/// The steepest phase is found to this factor, and to the radius over this where it varies more.
+/// The steepest phase is found to this factor; where it varies more, down to intervals of this share of the largest
+/// radius.
 const STEEP: f64 = 1.2;
 const FINEST: f64 = 1.0 / 4096.0;
 
@@ -73,7 +75,8 @@ impl Bound {
         self.bends(&sound).or(pole).map_or(Ok(()), |radius| Err(error(radius)))
     }
 
-    /// The radii up to `largest`, as far as they may be finite, in intervals with a bound and places without one.
+    /// Divides the radii up to `largest`, as far as the formula may be finite, into intervals with a bound and places
+    /// without one.
     fn survey(&self, largest: f64) -> Survey {
         let mut survey = Survey::default();
         let mut open = vec![[0.0, largest]];
@@ -98,14 +101,14 @@ impl Bound {
                     }
                 }
             }
-            // Nearly nowhere a bound, but finite wherever looked at.
+            // There is nearly nowhere a bound, but the formula is finite wherever it was examined.
             open = if halves.len() > MOST_OPEN { Vec::new() } else { halves };
         }
         survey
     }
 
-    /// The first radius looked at in the middle of the interval, if N − 1 derivatives are finite at none of them: not
-    /// one point alone, which h and h' may pass.
+    /// The first radius examined in the middle of the interval, if N − 1 derivatives are finite at none of those radii.
+    /// One point alone would not do: h and h' may pass it.
     fn blank<const N: usize>(&self, [lo, hi]: [f64; 2]) -> Option<f64> {
         let (middle, step) = (0.5 * (lo + hi), 0.125 * (hi - lo));
         let looked_at = [middle - step, middle, middle + step];
@@ -120,7 +123,7 @@ impl Bound {
         self.operand(&(0..self.steps.steps.len()), &[r])[0]
     }
 
-    /// Where in a place without a bound the formula stops being finite, if h or h' does.
+    /// Where, in a place without a bound, the formula stops being finite, if h or h' does.
     fn pole(&self, [lo, hi]: [f64; 2], largest: f64) -> Option<f64> {
         let axis = lo <= 0.0;
         let beside = if axis { BESIDE_AXIS } else { BESIDE }.map(|share| share * largest);
@@ -147,7 +150,7 @@ impl Bound {
         [left, right].into_iter().flatten().any(endless).then_some(middle)
     }
 
-    /// Where h'' stops being finite, looked for in the middles of these intervals.
+    /// Where h'' stops being finite, judged by the middles of these intervals.
     fn bends(&self, intervals: &[[f64; 2]]) -> Option<f64> {
         let mut good = 0.0;
         for &interval in intervals {
@@ -164,8 +167,8 @@ impl Bound {
 
     /// The shortest wave on (0, `largest`], a length: the smallest 2π/|dφ/dr| of the sines and cosines of φ(r).
     ///
-    /// A tangent counts with its period π. A function whose argument runs through less than half a period there is
-    /// no wave.
+    /// A tangent counts with its period π. A function whose argument runs through less than half a period there is not
+    /// counted as a wave.
     pub fn feature_length(&self, largest: f64) -> Option<f64> {
         self.steps.waves.iter().filter_map(|wave| self.wave_length(wave, largest)).min_by(f64::total_cmp)
     }
@@ -194,7 +197,7 @@ impl Bound {
         (highest - lowest >= 0.5 * wave.period && length > 0.0).then_some(length)
     }
 
-    /// The operand made by these steps, with N − 1 derivatives, at each of `radii`.
+    /// The operand computed by these steps, with N − 1 derivatives, at each of `radii`.
     pub(super) fn operand<const N: usize>(&self, steps: &Range<usize>, radii: &[f64]) -> Vec<[f64; N]> {
         let mut operand = Vec::with_capacity(radii.len());
         self.each(&self.steps.steps[steps.clone()], 1.0, radii, |_, jet| operand.push(jet));
@@ -202,12 +205,12 @@ impl Bound {
     }
 }
 
-/// What is known of a formula up to a radius.
+/// What is known about a formula up to a radius.
 #[derive(Debug, Default)]
 struct Survey {
     /// The intervals on which h and h' have a bound.
     sound: Vec<[f64; 2]>,
-    /// Places of some units in the last place, ascending, where they have none.
+    /// Places a few units in the last place wide, ascending, where they have none.
     narrow: Vec<[f64; 2]>,
     /// The smallest radius at and around which they are not finite.
     blank: Option<f64>,
@@ -254,7 +257,7 @@ mod tests {
             ("r^2/max(abs(r - 1.1) - 1e-7, 0)", 1.1 - 1e-7),
             ("sqrt(abs(r - 1.1) - 1e-7)", 1.1 - 1e-7),
             ("max(r - 0.3, 0)^0.9", 0.3),
-            // 1 - sin² is rounding where it is zero, and its root has no slope there.
+            // Where 1 - sin² is zero it is only rounding, and its root has no slope there.
             ("asin(sin(10*r))", std::f64::consts::PI / 20.0),
         ] {
             let error = bound(text).check(2.0).unwrap_err();

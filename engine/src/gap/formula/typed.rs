@@ -1,4 +1,4 @@
-//! A gap as a person types it: the formula's text, its parameters, and what follows from both.
+//! A gap as a user types it: the formula's text, its parameters, and what follows from both.
 
 use super::gap::FormulaGap;
 use super::survey::NotFinite;
@@ -9,10 +9,10 @@ use thiserror::Error;
 /// The most parameters of one formula.
 pub const MOST_PARAMETERS: usize = 64;
 
-/// The parameter that is taken for the radius of curvature.
+/// The parameter that is taken as the radius of curvature.
 pub const RADIUS: &str = "R";
 
-/// Where the length of a gap without a radius of curvature is looked for, over the first radius asked for.
+/// How far the length of a gap without a radius of curvature is looked for, relative to the first radius asked for.
 const DECADES: i32 = 12;
 
 /// A parameter of a formula with its value.
@@ -22,15 +22,15 @@ pub struct FormulaParameter {
     pub name: String,
     /// Its value, in the units of the formula.
     pub value: f64,
-    /// The smallest value that makes sense to the writer.
+    /// The smallest value that makes sense to the author of the formula.
     pub min: Option<f64>,
-    /// The largest value that makes sense to the writer.
+    /// The largest value that makes sense to the author of the formula.
     pub max: Option<f64>,
     /// The unit beside it in its file; the value here is in SI or in reduced units.
     pub unit: Option<String>,
 }
 
-/// A formula with its parameters, as a gap. Equal where the formula and the parameters are: the rest follows.
+/// A formula with its parameters, as a gap. Two are equal when the formula and the parameters are: the rest follows.
 #[derive(Debug, Clone)]
 pub struct TypedGap {
     formula: Formula,
@@ -74,9 +74,9 @@ impl PartialEq for TypedGap {
 
 impl TypedGap {
     /// The gap of the formula `text`. Up to the radius `start` it must be finite, and its waves are looked for there;
-    /// without one, up to its own length. Beyond, it is known as far as it stays finite.
+    /// without a `start`, up to its own length. Beyond that, it is known as far as it stays finite.
     ///
-    /// # Errors
+    /// What is wrong with the text or the parameters, or the first radius where the gap is not finite.
     /// What is wrong with the text or the parameters, or the first radius where the gap is not finite.
     pub fn new(
         text: &str,
@@ -110,8 +110,8 @@ impl TypedGap {
         &self.gap
     }
 
-    /// What the formula gives on the axis, subtracted since a gap is zero there; `None` where that is no more than the rounding
-    /// of the gap's own values.
+    /// The value of the formula on the axis, which is subtracted because a gap is zero there; `None` where it is no
+    /// more than the rounding of the gap's own values.
     pub fn shift(&self) -> Option<f64> {
         let bound = self.gap.bound();
         let size = bound.jet(self.length.unwrap_or(1.0)).value.abs();
@@ -123,20 +123,21 @@ impl TypedGap {
         self.parameters.iter().find(|p| p.name == RADIUS && p.value > 0.0).map(|p| p.value)
     }
 
-    /// The length by which the problem is reduced: `R`, else the radius where h = r/2, as for a paraboloid h(R) = R/2.
+    /// The length by which the problem is reduced: `R`, otherwise the radius where h = r/2, as for a paraboloid, h(R) =
+    /// R/2.
     pub fn length(&self) -> Option<f64> {
         self.length
     }
 }
 
-/// The smallest radius with h = r/2, looked for around the radius `near` in factors of two.
+/// The smallest radius with h = r/2, searched around the radius `near` in factors of two.
 fn half_slope(h: impl Fn(f64) -> f64, near: f64) -> Option<f64> {
     let steep = |r: f64| h(r) >= 0.5 * r;
     let radii = (-4 * DECADES..=4 * DECADES).map(|k| near * 2f64.powi(k));
     let mut before = None;
     for r in radii {
         if steep(r) {
-            // Steep from the first radius on is a cone: no length of its own.
+            // A gap that is steep from the first radius on is a cone, which has no length of its own.
             let (mut low, mut high) = (before?, r);
             for _ in 0..60 {
                 let middle = 0.5 * (low + high);

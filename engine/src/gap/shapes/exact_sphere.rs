@@ -5,8 +5,9 @@
 //! h'  = r/z,   h'' = R²/z³,   h''' = 3R²r/z⁵
 //! ```
 //!
-//! The second form of h loses no digits near the axis, and (R − r)(R + r) none near the equator. The gap ends at
-//! r = R, where the sphere turns upright. R is a length. The exact solution is [`theory::sphere`](crate::theory::sphere).
+//! The second form of h loses no digits near the axis, and (R − r)(R + r) loses none near the equator. The gap ends at
+//! r = R, where the surface of the sphere becomes vertical. R is a length. The exact solution is
+//! [`theory::sphere`](crate::theory::sphere).
 
 use crate::gap::{ComplexDisc, Gap, Jet};
 
@@ -67,7 +68,7 @@ mod tests {
     #[test]
     fn digits_near_the_axis_and_none_beyond_the_equator() {
         let sphere = ExactSphere { radius: 3.0 };
-        // R − √(R² − r²) as written gives 0 here.
+        // R − √(R² − r²) as written would give 0 here.
         let r = 1e-9;
         assert!((sphere.jet(r).value / (r * r / 6.0) - 1.0).abs() < 1e-15);
         assert!((sphere.jet(2.4).value - 1.2).abs() < 1e-15);

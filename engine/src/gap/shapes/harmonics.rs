@@ -7,10 +7,11 @@
 //! h''' =         − Σ Aᵢ qᵢ³ sin(qᵢr + φᵢ)
 //! ```
 //!
-//! so that h(0) = 0, and a term of phase 0 is the A(1 − cos qr) of the paper's eq. (23). A phase that is no multiple of π
-//! gives the axis a slope, Aq sin φ: the tip is then a blunt cone. R, A and λ are lengths, φ an angle in radians.
+//! so that h(0) = 0, and a term of phase 0 is the A(1 − cos qr) of the paper's eq. (23). A phase that is not a multiple
+//! of π gives the gap a slope on the axis, Aq sin φ: the tip is then a blunt cone. R, A and λ are lengths, φ is an
+//! angle in radians.
 //!
-//! With α = qr/2, cos φ − cos(2α + φ) = 2 sin α sin(α + φ), which keeps its digits near the axis, and everything else
+//! With α = qr/2, cos φ − cos(2α + φ) = 2 sin α sin(α + φ), which keeps its digits near the axis. Everything else
 //! follows from the sine and cosine of α by the addition theorems: one call for each wave.
 //!
 //! The feature length is the shortest wavelength with an amplitude. The exact solution is
@@ -23,10 +24,10 @@ use crate::gap::{function::Form, function::Wave};
 use std::f64::consts::TAU;
 use wide::f64x4;
 
-/// The most waves of one gap.
+/// The largest number of waves of one gap.
 pub const MOST_WAVES: usize = 1000;
 
-/// The sine of a phase below which the wave is even: that of π k as rounded, k up to some thousand.
+/// A wave is even where the sine of its phase is below this: that of a rounded π k, for k up to some thousands.
 const PHASE_ROUNDING: f64 = 1e-12;
 
 /// One wave.
@@ -156,7 +157,7 @@ impl Gap for Harmonics {
     }
 
     fn breaks(&self) -> Breaks<'_> {
-        // The sine of a multiple of π as rounded.
+        // The sine of a rounded multiple of π counts as zero.
         let slope = |term: &Term| term.phase_sin.abs() > PHASE_ROUNDING;
         let axis = if self.terms.iter().any(slope) { Parity::Odd } else { Parity::Even };
         Breaks { axis, ..Breaks::default() }
@@ -188,12 +189,12 @@ impl Gap for Harmonics {
     }
 }
 
-/// How far the sine can be from its value on a complex disc of this radius w, by its sine and cosine at the centre x:
-/// sin (x + w) − sin x = sin x (cos w − 1) + cos x sin w.
+/// How far the sine can be from its value at the centre x of a complex disc of this radius, w within it, from the sine
+/// and cosine at x: sin (x + w) − sin x = sin x (cos w − 1) + cos x sin w.
 pub fn sine_change(sin: f64, cos: f64, radius: f64) -> f64 {
     let half = sinh(0.5 * radius);
     let change = 2.0 * sin.abs() * half * half + cos.abs() * sinh(radius);
-    // Zero times an overflow.
+    // NaN is zero times an overflow.
     if change.is_nan() { f64::INFINITY } else { change }
 }
 

@@ -5,15 +5,15 @@ use crate::units::{Quantity, Unit, UnitSystem};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The beginning of a name of data that come with the program.
+/// The prefix of the names of data that come with the program.
 pub const SHIPPED_DATA: &str = "shipped:";
 
-/// The rows of a file, in one unit of length. Equal where the name and the rows are.
+/// The rows of a file, in one unit of length. Two are equal when the names and the rows are.
 #[derive(Debug, Clone, Default)]
 pub struct ProfileRows {
-    /// The file as a person wrote it.
+    /// The file name as the user wrote it.
     pub name: String,
-    /// The folder that a relative `name` is relative to.
+    /// The folder that a relative `name` starts from.
     pub folder: Option<PathBuf>,
     /// r, ascending.
     pub radii: Vec<f64>,
@@ -21,23 +21,23 @@ pub struct ProfileRows {
     pub gaps: Vec<f64>,
     /// The unit of both, where the file names one.
     pub unit: Option<Unit>,
-    /// What was put right, in words.
+    /// What was corrected, in words.
     pub notes: Vec<String>,
 }
 
 impl ProfileRows {
-    /// Whether they come with the program.
+    /// Whether the rows come with the program.
     pub fn is_shipped(&self) -> bool {
         self.name.starts_with(SHIPPED_DATA)
     }
 
-    /// Where the file lies.
+    /// Where the file is.
     pub fn path(&self) -> PathBuf {
         self.folder.as_ref().map_or_else(|| PathBuf::from(&self.name), |folder| folder.join(&self.name))
     }
 
-    /// The rows as a preset in these units holds them: in SI in metres, and those without a unit are taken to be, with a
-    /// note.
+    /// The rows as a preset in these units holds them: in SI, in metres. Rows without a unit are taken to be in metres,
+    /// with a note.
     #[must_use]
     pub fn held_in(self: Arc<Self>, units: &UnitSystem) -> Arc<Self> {
         if *units == UnitSystem::Reduced {
@@ -74,7 +74,8 @@ impl PartialEq for ProfileRows {
     }
 }
 
-/// A measured profile as a gap, with its rows. Equal where what a person sees is: the name, the rows, the smoothing.
+/// A measured profile as a gap, with its rows. Two are equal when what the user sees is equal: the name, the rows, the
+/// smoothing.
 #[derive(Debug, Clone)]
 pub struct MeasuredGap {
     rows: Arc<ProfileRows>,
@@ -92,7 +93,7 @@ impl MeasuredGap {
         Ok(Self { rows, smoothing, profile })
     }
 
-    /// The same gap from a file of this name.
+    /// The same gap with the file named `name`.
     #[must_use]
     pub fn named(self, name: String) -> Self {
         Self { rows: Arc::new(ProfileRows { name, ..ProfileRows::clone(&self.rows) }), ..self }
@@ -113,8 +114,8 @@ impl MeasuredGap {
         &self.profile
     }
 
-    /// The curve through the same rows in half as many cells: where it has other events, the cells decide them, and not the
-    /// gap. None where every row is a knot.
+    /// The curve through the same rows in half as many cells. Events that differ on it are decided by the cells and not
+    /// by the gap. None where every row is a knot.
     pub fn coarser(&self) -> Option<ProfileGap> {
         self.profile.coarser(&self.rows.radii, &self.rows.gaps)
     }
@@ -122,7 +123,7 @@ impl MeasuredGap {
 
 impl PartialEq for MeasuredGap {
     fn eq(&self, other: &Self) -> bool {
-        // The curve follows from the rows and the smoothing; rows shared need no look.
+        // The curve follows from the rows and the smoothing; shared rows need no comparison.
         self.smoothing == other.smoothing && (Arc::ptr_eq(&self.rows, &other.rows) || self.rows == other.rows)
     }
 }

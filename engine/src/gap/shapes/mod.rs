@@ -1,4 +1,4 @@
-//! The gaps, one file each: formula, units, source, and the derivatives as exact as the gap itself.
+//! The gaps, one file each: formula, units, source, and derivatives as exact as the gap itself.
 //!
 //! | file | h(r) |
 //! |---|---|
@@ -8,7 +8,7 @@
 //! | [`random_waves`] | r²/(2R) and cosines drawn from a power law with a seed |
 //! | [`profile`] | a curve through measured rows, by the spline of [`spline`] |
 //! | [`measured`] | the same with the file and the rows it came from |
-//! | [`split_mix`] | the random numbers of all this, the same on every machine |
+//! | [`split_mix`] | the random numbers used for all this, the same on every machine |
 
 pub mod exact_sphere;
 pub mod harmonics;

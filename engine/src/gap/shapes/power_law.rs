@@ -4,14 +4,14 @@
 //! h = c rⁿ,   h' = n c rⁿ⁻¹,   h'' = n (n−1) c rⁿ⁻²,   h''' = n (n−1) (n−2) c rⁿ⁻³
 //! ```
 //!
-//! n ≥ 1 is a real number; whole ones are multiplied out, so that the derivatives that vanish are zero. c is a
-//! length to the power 1 − n; for the cone, n = 1, it is the slope, the cotangent of the half apex angle. On the axis
-//! h'' is infinite for 1 < n < 2 and h''' for 2 < n < 3: no rule of this program has a node there that counts, since
-//! they enter multiplied by powers of r; the jet gives what is multiplied, zero.
+//! n ≥ 1 is a real number. Whole powers are computed by multiplication, so that derivatives that vanish are exactly
+//! zero. c is a length to the power 1 − n; for the cone, n = 1, it is the slope, the cotangent of the half apex angle.
+//! On the axis h'' is infinite for 1 < n < 2, and h''' for 2 < n < 3. No rule of this program feels that, since both
+//! enter multiplied by powers of r; the jet gives zero there, as the product is.
 //!
-//! The length by which the problem is reduced is the radius where the gap is half the radius, (2c)^(−1/(n−1)), which is
-//! R for the paraboloid n = 2, c = 1/(2R). A cone has no length of its own and the formula runs away towards it, so below
-//! n = [`NEARLY_A_CONE`] it is the unit of the user.
+//! The length by which the problem is reduced is the radius where the gap is half the radius, (2c)^(−1/(n−1)). It is R
+//! for the paraboloid n = 2, c = 1/(2R). A cone has no length of its own, and the formula diverges towards it, so below
+//! n = [`NEARLY_A_CONE`] the user's unit of length is used.
 //!
 //! The exact solution is [`theory::power_law`](crate::theory::power_law). L. A. Galin, *Contact Problems in the Theory
 //! of Elasticity* (1953); I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965), doi:10.1016/0020-7225(65)90019-4.
@@ -20,10 +20,10 @@ use crate::elementary::pow;
 use crate::gap::{Breaks, ComplexDisc, Form, Gap, Jet, Parity};
 use std::ops::RangeInclusive;
 
-/// The allowed exponents: below 1 the tip is a cusp without a disc of contact, above 100 it is a flat punch.
+/// The allowed exponents. Below 1 the tip is a cusp without a disc of contact; above 100 the body is a flat punch.
 pub const EXPONENT_RANGE: RangeInclusive<f64> = 1.0..=100.0;
 
-/// Exponents below this are reduced like the cone: (2c)^(−1/(n−1)) may be decades away from every contact.
+/// Exponents below this are reduced like the cone: (2c)^(−1/(n−1)) may be decades away from every contact radius.
 pub const NEARLY_A_CONE: f64 = 1.5;
 
 /// h = c rⁿ.
@@ -50,13 +50,13 @@ impl PowerLaw {
         self.exponent <= 1.0
     }
 
-    /// rᵐ, with the singular powers of the axis left out.
+    /// rᵐ, or zero where it is singular on the axis.
     fn power(&self, r: f64, lowered: u8) -> f64 {
         let m = self.exponent - f64::from(lowered);
         if m < 0.0 && r <= 0.0 {
             return 0.0;
         }
-        // Whole powers by multiplication: exact where the product is.
+        // Whole powers by multiplication: exact where the product is exact.
         #[expect(clippy::cast_possible_truncation, reason = "whole and at most 100")]
         if m.fract() == 0.0 { r.powi(m as i32) } else { pow(r, m) }
     }
@@ -65,7 +65,7 @@ impl PowerLaw {
 impl Gap for PowerLaw {
     fn jet(&self, r: f64) -> Jet {
         let (n, c) = (self.exponent, self.factor);
-        // A factor that is zero keeps its power out: the cone's h'' is 0 on the axis too.
+        // A zero factor drops its power: the cone's h'' is 0 on the axis too.
         let term = |factor: f64, lowered: u8| {
             if factor == 0.0 { 0.0 } else { c * factor * self.power(r, lowered) }
         };
@@ -90,7 +90,7 @@ impl Gap for PowerLaw {
         Breaks { axis, ..Breaks::default() }
     }
 
-    /// |zⁿ⁻¹| = |z|ⁿ⁻¹; a broken power has no bound around the axis, where it branches.
+    /// |zⁿ⁻¹| = |z|ⁿ⁻¹; a broken power has no bound around the axis, where it has a branch point.
     fn slope_bound(&self, ComplexDisc { centre, radius, .. }: ComplexDisc) -> Option<f64> {
         let n = self.exponent;
         if n.fract() != 0.0 && centre <= radius {

@@ -1,25 +1,25 @@
 //! A paraboloid with waves drawn from a power law: a self-affine rough sphere, the same for the same seed.
 //!
-//! A profile is self-affine with the Hurst exponent H when ⟨(h(r+x) − h(r))²⟩ ∝ x^(2H). With C(q) dq the variance that
-//! the waves between q and q + dq carry, the left side is 2∫C(q)(1 − cos qx)dq, and the substitution u = qx shows that in
-//! one dimension
+//! A profile is self-affine with the Hurst exponent H when ⟨(h(r+x) − h(r))²⟩ ∝ x^(2H). If C(q) dq is the variance
+//! carried by the waves between q and q + dq, the left side is 2∫C(q)(1 − cos qx)dq. The substitution u = qx shows that
+//! in one dimension this is met by
 //!
 //! ```text
 //! C(q) ∝ q^(−2H−1),   q_long = 2π/λ_long ≤ q ≤ q_short = 2π/λ_short
 //! ```
 //!
-//! does it (0 < H < 1; H = 1 is the limit). ln q is cut into m equal bands and each gets one wave with all the variance
-//! of its band, at a wavenumber drawn uniformly in ln q within it (fixed ones in equal ratios would repeat themselves)
-//! and with a phase drawn uniformly in 0 ≤ φ < 2π:
+//! for 0 < H < 1; H = 1 is the limit. ln q is cut into m equal bands. Each band gets one wave with all the variance of
+//! the band, at a wavenumber drawn uniformly in ln q within it (fixed wavenumbers in equal ratios would repeat
+//! themselves) and with a phase drawn uniformly in 0 ≤ φ < 2π:
 //!
 //! ```text
 //! Aᵢ²/2 ∝ ∫_band C dq ∝ q₋^(−2H) − q₊^(−2H),   Σ Aᵢ²/2 = rms²
 //! ```
 //!
 //! so rms is the root mean square of the sum of waves over a radius long compared to `λ_long`. The numbers are drawn in
-//! the order wavenumber, phase, from the longest band to the shortest, from [`SplitMix64`] with the seed: bit for bit the
-//! same everywhere. Lengths and exponent only stretch the result, so a knob turned keeps the surface and its
-//! character.
+//! the order wavenumber, phase, from the longest band to the shortest, from [`SplitMix64`] with the seed: bit for bit
+//! the same everywhere. The lengths and the exponent only stretch the result, so changing one of them keeps the surface
+//! and its character.
 //!
 //! M. V. Berry and Z. V. Lewis, Proc. R. Soc. A 370, 459 (1980), doi:10.1098/rspa.1980.0044, for the sum of cosines; B.
 //! N. J. Persson et al., J. Phys.: Condens. Matter 17, R1 (2005), doi:10.1088/0953-8984/17/1/R01, for the power law.
@@ -46,14 +46,14 @@ pub struct RandomWaves {
     pub hurst: f64,
     /// m, from 1 to [`MOST_WAVES`].
     pub count: usize,
-    /// Which of all such surfaces.
+    /// Selects one of all such surfaces.
     pub seed: u64,
 }
 
 /// Why no waves can be drawn.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum RandomWavesError {
-    /// A number that must be positive and finite is not.
+    /// A number is out of its range.
     #[error("{what} = {value:e} is out of range: it must be {allowed}")]
     OutOfRange {
         /// What it is.
@@ -76,7 +76,7 @@ pub enum RandomWavesError {
     Count(usize),
 }
 
-/// The wrong order of the shortest and the longest wavelength, in words.
+/// The error for a shortest and a longest wavelength in the wrong order, in words.
 fn order(units: &UnitSystem, wavelengths: [f64; 2]) -> String {
     let [shortest, longest] = wavelengths.map(|x| said(units, Quantity::Length, x));
     format!("the shortest wavelength {shortest} must be below the longest, {longest}")
@@ -96,7 +96,7 @@ impl RandomWaves {
     /// The gap: the waves drawn, from the longest to the shortest.
     ///
     /// # Errors
-    /// [`RandomWavesError`] with the number that is out of range.
+    /// [`RandomWavesError`], naming the number that is out of range.
     pub fn harmonics(&self) -> Result<Harmonics, RandomWavesError> {
         let waves = self.waves()?;
         Harmonics::new(self.radius_of_curvature, waves).map_err(|e| RandomWavesError::Count(e.0))
@@ -137,7 +137,7 @@ impl RandomWaves {
     fn waves(&self) -> Result<Vec<Harmonic>, RandomWavesError> {
         self.check()?;
         let band = ln(self.longest / self.shortest) / self.count as f64;
-        // The variance falls by this factor from band to band; the first carries the unit.
+        // The logarithm of the variance changes by this from band to band; the first band has the variance 1.
         let fall = -2.0 * self.hurst * band;
         let variance = |i: usize| exp(fall * i as f64);
         let total: f64 = (0..self.count).map(variance).sum();
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn the_same_seed_is_the_same_surface() {
-        // The first and the last wave, from the stream and the formulas of the header by another program.
+        // The first and the last wave, computed by another program from the stream and the formulas above.
         let drawn = ROUGH.harmonics().unwrap();
         let waves = drawn.waves();
         for (wave, [amplitude, wavelength, phase]) in [
@@ -210,7 +210,7 @@ mod tests {
             assert!((variance.sqrt() / 2e-3 - 1.0).abs() < 1e-13);
             assert!(drawn.feature_length().unwrap() >= 0.01);
         }
-        // The sum itself, over many of its longest waves.
+        // The sum itself, over many times its longest wave.
         let drawn = ROUGH.harmonics().unwrap();
         let waves: Vec<f64> = (0..400_000)
             .map(|i| {

@@ -1,42 +1,44 @@
 //! The even cubic spline through given rows, or near them.
 //!
-//! Of all even functions f, known at the radii 0 ≤ r₀ < … < rₙ, that one for which
+//! Of all even functions f, known at the radii 0 ≤ r₀ < … < rₙ, the one for which
 //!
 //! ```text
 //! Σ wᵢ (yᵢ − f(rᵢ))² + (Λ/2π)⁴ ∫₀^{rₙ} f''² dr      is smallest,
 //! ```
 //!
-//! wᵢ the [width](widths) of the cell of rᵢ: the sum is an integral, and the result does not depend on how densely was
-//! measured. It passes a wave of length λ with
-//! the share 1/(1 + (Λ/λ)⁴), half of it at the cutoff λ = Λ; this is the spline filter of ISO 16610-22. Λ = 0 interpolates.
+//! Here wᵢ is the [width](widths) of the cell of rᵢ: the sum is an integral, so the result does not depend on how
+//! densely the rows were measured. The spline passes a wave of length λ with the share 1/(1 + (Λ/λ)⁴), half of it at
+//! the cutoff λ = Λ; this is the spline filter of ISO 16610-22. Λ = 0 interpolates.
 //!
-//! f is a cubic between neighbours, has two continuous derivatives, and f'' = 0 at the last radius. Its second
-//! derivatives mᵢ and values gᵢ obey, dᵢ = rᵢ₊₁ − rᵢ and p = (Λ/2π)⁴,
+//! f is a cubic between neighbours, has two continuous derivatives, and f'' = 0 at the last radius. With dᵢ = rᵢ₊₁ − rᵢ
+//! and p = (Λ/2π)⁴, its second derivatives mᵢ and values gᵢ obey
 //!
 //! ```text
 //! (R + p QᵀW⁻¹Q) m = Qᵀy,   g = y − p W⁻¹Q m                              C. H. Reinsch, Numer. Math. 10, 177 (1967)
 //! (Qᵀy)ᵢ = (yᵢ₊₁ − yᵢ)/dᵢ − (yᵢ − yᵢ₋₁)/dᵢ₋₁,   Rᵢᵢ = (dᵢ₋₁ + dᵢ)/3,   Rᵢ,ᵢ₊₁ = dᵢ/6
 //! ```
 //!
-//! of which the mirror image at −r leaves half: row 0 has (y₁ − y₀)/d₀ and R₀₀ = r₀ + d₀/3, with r₀ = 0 or not. The matrix
-//! has five diagonals and is positive definite; its factors `LDLᵀ` cost time in proportion to the rows.
+//! Because of the mirror image at −r, half of the equations remain: row 0 has (y₁ − y₀)/d₀ and R₀₀ = r₀ + d₀/3, whether
+//! r₀ = 0 or not. The matrix has five diagonals and is positive definite; factoring it as `LDLᵀ` takes time in
+//! proportion to the number of rows.
 //!
-//! How much to smooth, where nobody says: for white noise of unknown size the Λ of the smallest score of generalized
-//! cross-validation, N Σ w(y − g)²/tr(I − A)², g = Ay. The trace takes the five diagonals of the inverse alone. P. Craven
-//! and G. Wahba, Numer. Math. 31, 377 (1979), doi:10.1007/BF01404567; M. F. Hutchinson and F. R. de Hoog, Numer. Math.
-//! 47, 99 (1985), doi:10.1007/BF01389878.
+//! How much to smooth, if not specified: for white noise of unknown size, Λ is where the score of generalized
+//! cross-validation, N Σ w(y − g)²/tr(I − A)², g = Ay, is smallest. The trace needs only the five diagonals of the
+//! inverse. P. Craven and G. Wahba, Numer. Math. 31, 377 (1979), doi:10.1007/BF01404567; M. F. Hutchinson and F. R. de
+//! Hoog, Numer. Math. 47, 99 (1985), doi:10.1007/BF01389878.
 //!
-//! No crate is used: those found have no condition of symmetry and no third derivative, and the ones that smooth bring
-//! general sparse matrices.
+//! No crate is used: those found offer neither a symmetry condition nor a third derivative, and those that smooth bring
+//! in general sparse matrices.
 
 use crate::elementary::pow;
 use crate::gap::Jet;
 use std::f64::consts::TAU;
 
-/// Cutoffs tried between the smallest and the largest before the best is refined.
+/// The number of cutoffs tried between the smallest and the largest before the best is refined.
 const TRIED: u8 = 16;
 
-/// Cuts, in the golden ratio, of the interval around the best: to a few percent of the cutoff, which nothing feels.
+/// Golden-section steps on the interval around the best, to a few percent of the cutoff; a finer cutoff makes no
+/// difference.
 const REFINED: u8 = 8;
 
 /// Five diagonals of a symmetric matrix: the entries (i, i), (i, i + 1), (i, i + 2).
@@ -49,7 +51,7 @@ pub struct SplineRows<'a> {
     values: &'a [f64],
     /// wᵢ, one for each row.
     weights: &'a [f64],
-    /// The entries (i, i−1), (i, i), (i, i+1) of Qᵀ, one row fewer than there are radii.
+    /// The entries (i, i−1), (i, i), (i, i+1) of Qᵀ; there is one row fewer than there are radii.
     second_difference: Vec<[f64; 3]>,
     /// R.
     stiffness: Bands,
@@ -57,7 +59,7 @@ pub struct SplineRows<'a> {
     filter: Bands,
 }
 
-/// A spline found.
+/// A fitted spline.
 #[derive(Debug)]
 pub struct SplineFit {
     /// m, its second derivative at every radius.
@@ -69,7 +71,7 @@ pub struct SplineFit {
 }
 
 impl<'a> SplineRows<'a> {
-    /// The rows `values` at `radii`, which ascend from 0 or above, with their weights; at least three.
+    /// The rows `values` at `radii`, which ascend from 0 or above, with their weights; there must be at least three.
     pub fn new(radii: &'a [f64], values: &'a [f64], weights: &'a [f64]) -> Self {
         let n = radii.len() - 1;
         let d: Vec<f64> = radii.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -126,12 +128,12 @@ impl<'a> SplineRows<'a> {
         let values = y.iter().zip(&moved).map(|(y, moved)| y - moved).collect();
         let removed: f64 = moved.iter().zip(self.weights).map(|(x, w)| w * x * x).sum();
         let trace = penalty * trace_of_product(&factor, &self.filter);
-        // The last one, f'' = 0.
+        // The last one is f'' = 0.
         second.push(0.0);
         Some(SplineFit { second, values, score: y.len() as f64 * removed / (trace * trace) })
     }
 
-    /// The cutoff between `least` and `most` of the smallest score.
+    /// The cutoff between `least` and `most` with the smallest score.
     pub fn cutoff(&self, least: f64, most: f64) -> f64 {
         let score = |place: f64| {
             let score = self.fit(least * pow(most / least, place)).map_or(f64::INFINITY, |fit| fit.score);
@@ -164,7 +166,7 @@ impl<'a> SplineRows<'a> {
         least * pow(most / least, 0.5 * (from + to))
     }
 
-    /// The cubic from every radius to the next, as its jet at the radius.
+    /// The cubic from each radius to the next, as its jet at the first of the two.
     pub fn pieces(&self, fit: &SplineFit) -> Vec<Jet> {
         let (g, m) = (&fit.values, &fit.second);
         self.radii
@@ -179,8 +181,8 @@ impl<'a> SplineRows<'a> {
     }
 }
 
-/// The width of the cell of every radius: from the middle between it and one neighbour to the middle on the other side.
-/// The cell of the first reaches to the axis.
+/// The width of the cell of each radius: from the middle between it and one neighbour to the middle on the other side.
+/// The cell of the first radius reaches to the axis.
 pub fn widths(radii: &[f64]) -> Vec<f64> {
     let half = |i: usize| 0.5 * (radii[i + 1] - radii[i]);
     let inner = |i: usize| if i == 0 { radii[0] } else { half(i - 1) };
@@ -285,10 +287,10 @@ mod tests {
             assert_eq!(fit.values, values);
             let pieces = rows.pieces(&fit);
             assert!(jumps(&radii, &pieces) < 1e-11);
-            // Even: the slope that the parabola of the axis has at the first radius.
+            // Even: the first radius has the slope of the parabola at the axis.
             let axis = pieces[0].first - fit.second[0] * radii[0];
             assert!(axis.abs() < 1e-11, "{axis}");
-            // Fourth order in the middle.
+            // Fourth order in the interior.
             let d = 1.0 / 200.0;
             for (s, r) in fit.second.iter().zip(&radii).take(150).skip(10) {
                 assert!((s + 81.0 * (9.0 * r).cos()).abs() < 9.0_f64.powi(4) * d * d, "{r}");
@@ -326,7 +328,7 @@ mod tests {
             .map(|(r, s)| std::array::from_fn(|k| r[k] + penalty * s[k]))
             .collect();
         let trace = penalty * trace_of_product(&factor(&matrix).unwrap(), &rows.filter);
-        // tr(I − A), column by column: what the fit takes away of a unit at one row.
+        // tr(I − A), column by column: what the fit takes away from a unit at one row.
         let whole: f64 = (0..12)
             .map(|i| {
                 let mut unit = zeros.clone();
@@ -352,7 +354,7 @@ mod tests {
         let fit = rows.fit(cutoff).unwrap();
         let error = radii.iter().zip(&fit.values).map(|(&r, g)| (g - wave(r)).powi(2)).sum::<f64>() / 2000.0;
         println!("cutoff {cutoff}, rms error {}", error.sqrt());
-        // A tenth of the noise is left, and no more of the wave is lost.
+        // A tenth of the noise is left, and no more than that of the wave is lost.
         assert!(error.sqrt() < 0.02, "{cutoff} {}", error.sqrt());
     }
 }

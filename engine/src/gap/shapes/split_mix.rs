@@ -1,4 +1,4 @@
-//! Random numbers that are the same on every machine, with every version, for ever.
+//! Random numbers that are the same on every machine and in every version, for ever.
 //!
 //! ```text
 //! s ← s + 9e3779b97f4a7c15
@@ -8,9 +8,9 @@
 //! modulo 2⁶⁴: the `SplitMix64` of G. L. Steele, D. Lea and C. H. Flood, *Fast splittable pseudorandom number generators*,
 //! OOPSLA 2014, doi:10.1145/2660193.2660195, with the mixing constants of Stafford's variant 13.
 //!
-//! A preset names a surface by its seed, so the stream is part of the file format. This one is fixed by the three
-//! lines above and needs no crate, whose seeding and conversions may change from one version to the next. Every seed
-//! is as good as any other, 0 too.
+//! A preset names a surface by its seed, so the stream is part of the file format. The three lines above define this
+//! generator. It needs no crate, whose seeding and conversions might change from one version to the next. Every seed is
+//! as good as any other, including 0.
 
 /// The generator.
 #[derive(Debug, Clone)]
@@ -23,11 +23,11 @@ impl SplitMix64 {
         Self(seed)
     }
 
-    /// The stream of row `row` of the table that `seed` makes: any row without those before it, each begun at its own bits
-    /// of the stream of `seed`.
+    /// The stream of row `row` of the table that `seed` defines. A row can be drawn without the rows before it, because
+    /// each starts at its own bits of the stream of `seed`.
     #[must_use]
     pub fn row(seed: u64, row: u64) -> Self {
-        // The generator counts: its n-th bits need no others.
+        // The state is a counter, so the n-th output needs no others.
         let mut at = Self(seed.wrapping_add(row.wrapping_mul(0x9e37_79b9_7f4a_7c15)));
         Self(at.bits())
     }
@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn the_stream_is_the_published_one() {
-        // The outputs that other implementations give for these seeds.
+        // The outputs of other implementations for these seeds.
         let mut random = SplitMix64::new(1_234_567);
         let first = [
             6_457_827_717_110_365_317,

@@ -1,10 +1,10 @@
-//! What the programs of makers of instruments write.
+//! What the programs of instrument makers write.
 
 use super::{FileForm, comma, form, half, lines, rows, western};
 use crate::measured::Abscissa;
 use std::fmt::Write;
 
-/// A file of JPK: a block for each segment, in SI.
+/// A JPK file: a block for each segment, in SI.
 fn jpk(segments: &[(&str, Vec<[f64; 2]>)], columns: &str, units: &str) -> String {
     let mut text = "# exportName: standard\n# springConstant: 0.0425\n# sensitivity: 5.9e-8\n#\n".to_owned();
     for (i, (segment, rows)) in segments.iter().enumerate() {
@@ -16,7 +16,7 @@ fn jpk(segments: &[(&str, Vec<[f64; 2]>)], columns: &str, units: &str) -> String
     text
 }
 
-/// Approach and retraction beside each other.
+/// Approach and retraction side by side.
 fn beside(separator: &str) -> String {
     let pairs: Vec<_> = half(false).into_iter().zip(half(true)).collect();
     pairs.iter().fold(String::new(), |mut text, ([x, p], [z, f])| {
@@ -25,7 +25,7 @@ fn beside(separator: &str) -> String {
     })
 }
 
-/// Of the makers of microscopes.
+/// Forms of microscope makers.
 pub(super) fn of_microscopes() -> Vec<FileForm> {
     let both = [("extend", half(false)), ("retract", half(true))];
     let igor = lines(&rows(), |_, x, p| format!("\t{:e}\t{:e}", x * 1e-9, p * 1e-9));
@@ -121,7 +121,7 @@ pub(super) fn of_microscopes() -> Vec<FileForm> {
     ]
 }
 
-/// Of other instruments.
+/// Forms of other instruments.
 pub(super) fn of_indenters() -> Vec<FileForm> {
     let hysitron = |head: &str| {
         let rows = lines(&rows(), |i, x, p| format!("{x}\t{}\t{}\t0.5\t0.25", p * 1e-3, 0.01 * i as f64));
@@ -169,7 +169,7 @@ pub(super) fn of_indenters() -> Vec<FileForm> {
     ]
 }
 
-/// Of testers of materials and of own rigs.
+/// Forms of material testers and of home-built rigs.
 pub(super) fn of_testers() -> Vec<FileForm> {
     let all = "Time [s]\tPiezo [nm]\tDefl [V]\tDefl [nm]\tIndentation [nm]\tForce [nN]\tTemperature [°C]\n"
         .to_owned()

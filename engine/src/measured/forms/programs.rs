@@ -1,8 +1,8 @@
-//! What spreadsheets and people's own programs write.
+//! What spreadsheets and users' own programs write.
 
 use super::{FileForm, comma, form, half, lines, rows, two, utf_16, western};
 
-/// Of spreadsheets.
+/// Forms of spreadsheets.
 pub(super) fn of_spreadsheets() -> Vec<FileForm> {
     let german = "Weg [µm];Kraft [µN]\r\n".to_owned()
         + &lines(&rows(), |_, x, p| format!("{};{}", comma(x * 1e-3), comma(p * 1e-3))).replace('\n', "\r\n");
@@ -70,7 +70,7 @@ pub(super) fn of_spreadsheets() -> Vec<FileForm> {
     ]
 }
 
-/// Of own programs.
+/// Forms of users' own programs.
 pub(super) fn of_own_programs() -> Vec<FileForm> {
     let unit = |name, x: &str, p: &str, of_x: f64, of_p: f64| {
         form(name, format!("indentation [{x}]\tload [{p}]\n{}", two("\t", 1e-9 / of_x, 1e-9 / of_p)))

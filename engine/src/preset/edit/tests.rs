@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::fmt::Write;
 
-/// The text with these assignments made; what it must read as is checked.
+/// The text with these assignments made; also checks what it reads as.
 fn edited(text: &str, assignments: &[&str]) -> String {
     let mut preset = read("p", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     for assignment in assignments {
@@ -18,7 +18,7 @@ fn edited(text: &str, assignments: &[&str]) -> String {
     edited
 }
 
-/// A person's own text, in which no two things look alike.
+/// A user's own text, in which no two things look alike.
 const MINE: &str = "\
 # My notes, 3 May.
 
@@ -48,7 +48,7 @@ fn a_changed_value_is_replaced_and_nothing_else() {
     let both = edited(MINE, &["gap.amplitude=0.003", "material.work_of_adhesion=0.005"]);
     // A comment stays in its column.
     assert_eq!(both, MINE.replace("0.0025 ", "0.003  ").replace("=0.004#", "=0.005#"));
-    // What is the same number in other words stays as it was typed.
+    // A number written differently stays as it was typed if its value is the same.
     assert_eq!(edited(MINE, &["gap.wavelength=0.05", "material.effective_modulus=1"]), MINE);
     assert_eq!(
         edited(MINE, &["title=it's \"new\""]),
@@ -104,7 +104,7 @@ fn dotted_keys_and_inline_tables_stay_what_they_are() {
     assert!(force.ends_with(whole), "{force}");
     let sphere = edited(inline, &["gap.shape=sphere"]);
     assert!(sphere.starts_with("gap = { shape = \"sphere\", radius_of_curvature = 1.0"), "{sphere}");
-    // A control of a table of its own becomes a word.
+    // A control with a table of its own becomes a word.
     let table = "[material]\neffective_modulus = 1\nwork_of_adhesion = 0.004\n[gap]\nshape = \"sphere\"\n\
                  radius_of_curvature = 1\n[path]\nstart_contact_radius = 0.5\n[path.control] # a spring\nstiffness = 0.5\n";
     let force = edited(table, &["path.control=force"]);
@@ -180,7 +180,7 @@ fn line_ends_stay_what_they_are_and_no_preset_is_no_text() {
     }
 }
 
-/// The text that `write` gives, in one of the forms a person may have given it, with comments in it.
+/// The text that `write` gives, in one of the forms that a user may have written, with comments in it.
 fn dressed(preset: &Preset, form: u8) -> String {
     let written = write(preset);
     if form == 2 {
@@ -210,7 +210,7 @@ fn dressed(preset: &Preset, form: u8) -> String {
     all + "# tail\n"
 }
 
-/// The text with its tables in one line each; where a table has tables of its own it is no TOML.
+/// The text with each table on one line; where a table contains tables, the result is not TOML.
 fn inlined(written: &str) -> String {
     let mut all = String::from("# head\n");
     for (i, table) in written.split("\n[").enumerate() {
@@ -245,7 +245,7 @@ proptest! {
     fn a_preset_laid_over_any_text_reads_back_with_all_comments(
         mut from in any_preset(), mut to in any_preset(), form in 0..3u8, same_gap in any::<bool>(),
     ) {
-        // A hash in a title looks like a comment to this test.
+        // In this test, a hash in a title looks like a comment.
         from.title = from.title.replace('#', "");
         to.title = to.title.replace('#', "");
         if same_gap {
@@ -253,7 +253,7 @@ proptest! {
             to.path = from.path;
         }
         let text = dressed(&from, form);
-        // A form that is no TOML, such as a table's header below dotted keys, says nothing.
+        // A form that is not TOML, such as a table's header below dotted keys, proves nothing.
         prop_assume!(read("p", &text).is_ok_and(|read| read == from));
         let unchanged = onto(None, &text, &from);
         prop_assert_eq!(unchanged.as_deref(), Some(&*text));

@@ -23,13 +23,14 @@ use crate::units::{Quantity, UnitSystem, parse_quantity};
 impl Preset {
     /// Gives a key another value.
     ///
-    /// The word `none` takes the value of an [optional](Parameter::is_optional) key away.
+    /// The word `none` removes the value of an [optional](Parameter::is_optional) key.
     ///
-    /// A start replaces another start, a turn another turn; `path.control.stiffness` makes the device a spring; a `gap.shape` drops
-    /// the keys of the old shape, and takes for its waves the proportions of the paper's Fig. 9; a `gap.formula` keeps the
-    /// parameters it has in common with the old one, its others begin with the value of an old one of a like name, or with 1; a `basis.kind` drops the keys of the old
-    /// basis, and takes the defaults of its own. A group (see [`groups`]) changes what it follows from. The rows of a
-    /// `gap.file` come from the preset's files, relative to the folder of the one before.
+    /// A start replaces another start, and a turn another turn; `path.control.stiffness` makes the device a spring. A
+    /// `gap.shape` drops the keys of the old shape, and gives its waves the proportions of the paper's Fig. 9. A
+    /// `gap.formula` keeps the parameters it has in common with the old one; its others begin with the value of an old
+    /// one with a similar name, or with 1. A `basis.kind` drops the keys of the old basis and takes the defaults of the
+    /// new one. A group (see [`groups`]) changes the values it follows from. The rows of a `gap.file` come from the
+    /// preset's files, relative to the folder of the previous file.
     ///
     /// # Errors
     /// The key is unknown, or the preset would no longer be valid; it is left as it was.
@@ -37,8 +38,8 @@ impl Preset {
         self.set_all([(key, value)])
     }
 
-    /// Gives several keys other values at once: the whole is checked when all are laid down, choices first, and groups
-    /// are made last in their order, as assignments on the command line are.
+    /// Gives several keys other values at once. The whole is checked when all are laid down; choices come first, and
+    /// groups are set last, in their order, as for assignments on the command line.
     ///
     /// # Errors
     /// As [`set`](Self::set).
@@ -53,7 +54,7 @@ impl Preset {
             let list = if groups::row(key).is_some() { &mut grouped } else { &mut plain };
             list.push((row, value));
         }
-        // What is said of the columns of a file comes before the file, which is asked for its spring.
+        // What is specified about the columns of a file comes before the file, which is then read for its spring.
         let order = |row: &Parameter| match &*row.key {
             key if CHOOSERS.contains(&key) => 0,
             data::COLUMNS => 1,
@@ -75,10 +76,10 @@ impl Preset {
         Ok(())
     }
 
-    /// Lays a value over the others, with what it drops and begins.
+    /// Lays a value over the others: removes what it displaces, and adds what it requires.
     fn lay(&self, values: &mut Values, row: &Parameter, value: Value) {
         if row.takes_away(&value) {
-            // A number for the range makes the adhesion one with a range: without any it has none.
+            // A number for the range gave the adhesion its range; without any such number it has none.
             let had_range = values.remove(row.whole()).is_some() && RANGE_KEYS.contains(&&*row.key);
             if had_range && self.range_of_action().is_none() {
                 values.remove(ADHESION);
@@ -95,7 +96,8 @@ impl Preset {
                 let radius = self.gap.length().unwrap_or_else(|| self.reduced().units.length);
                 shape::begin(values, &value.to_string(), radius, self.gap.wave());
             }
-            // A number beside a unit, which was a remark, is one of it from now on; what is in SI has lost its unit.
+            // A number beside a unit, which was only a remark, is now in that unit; values already in SI have lost
+            // their unit.
             key if key == CHOOSERS[2] && self.units == UnitSystem::Reduced => {
                 values.insert(row.key.clone(), value.clone());
                 count_in_own_units(values);
@@ -131,18 +133,18 @@ impl Preset {
         put(values, row, value);
         if row.key == "gap.formula" {
             for new in shape::fit_parameters(values, |_| false) {
-                // A name typed in part, or misspelt, does least harm with the value of the one it resembles.
+                // For a partly typed or misspelt name, the value of the name it resembles does the least harm.
                 let value = new.alike.map_or(Value::Number(1.0), |(_, value)| value);
                 values.insert(parameter_key(&new.name).into(), value);
             }
         }
     }
 
-    /// A value of a key as this preset would keep it: in the range of its row, a text with a unit read in the preset's
-    /// units. What other keys say to it is not asked.
+    /// A value of a key as this preset would keep it: within the range of its row, and with a unit in a text read in
+    /// the preset's units. Constraints from other keys are not checked.
     ///
     /// # Errors
-    /// The key is unknown, or does not take the value.
+    /// The key is unknown, or does not accept the value.
     pub fn resolved(&self, key: &str, value: Value) -> Result<Value, Invalid> {
         let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
         let Value::Typed(text) = row.check(value.clone())? else { return row.check(value) };
@@ -167,8 +169,8 @@ impl Preset {
         Ok(())
     }
 
-    /// Gives a key the value of a text, as an assignment on the command line does: in SI a bare number is SI, that
-    /// of a formula's parameter with a unit of its own is one of that unit.
+    /// Gives a key the value of a text, as an assignment on the command line does: in SI a bare number is in SI units,
+    /// or in the unit of its own if a formula's parameter has one.
     ///
     /// # Errors
     /// As [`Parameter::parse`] and [`Preset::set`].
@@ -183,10 +185,11 @@ impl Preset {
         if own { self.typed(&row, text) } else { row.parse(text) }
     }
 
-    /// Gives several keys the values of texts, one after the other as on a command line; where one of them needs a later one, all at once.
+    /// Gives several keys the values of texts, one after the other as on a command line, or all at once if one of them
+    /// needs a later one.
     ///
     /// # Errors
-    /// As [`assign`](Self::assign), for the first that is refused either way; the preset is left as it was.
+    /// As [`assign`](Self::assign), for the first one refused either way; the preset is left as it was.
     pub fn assign_all(&mut self, assignments: &[(Key, String)]) -> Result<(), Invalid> {
         let mut changed = self.clone();
         let refused = assignments.iter().try_for_each(|(key, text)| changed.assign(key, text));
@@ -202,7 +205,7 @@ impl Preset {
         Ok(())
     }
 
-    /// The value of a row as a person types it beside its unit: in SI a bare number counts in the unit shown there.
+    /// The value of a row as a user types it beside its unit: in SI a bare number is in the unit shown there.
     ///
     /// # Errors
     /// As [`Parameter::parse`].
@@ -224,7 +227,8 @@ impl Preset {
         }
     }
 
-    /// The number of a text for a row, as an assignment on the command line would read it, in SI or reduced units.
+    /// The number that a text gives for a row, as an assignment on the command line would read it, in SI or reduced
+    /// units.
     ///
     /// # Errors
     /// As [`Parameter::parse`]; a unit of another dimension; a word.
@@ -235,7 +239,7 @@ impl Preset {
         }
     }
 
-    /// Lets an optional key follow from others again, or takes its default.
+    /// Makes an optional key follow from others again, or sets it to its default.
     ///
     /// # Errors
     /// The key is unknown or required.
@@ -250,7 +254,7 @@ impl Preset {
         Ok(())
     }
 
-    /// A value as it is to be checked: a file is read from the folder of the one before.
+    /// A value in the form to be checked: a file is read from the folder of the previous one.
     fn located(&self, row: &Parameter, value: Value) -> Result<Value, Invalid> {
         let folder = match (&self.gap, row.kind) {
             (_, Kind::Points) => self.data.source.as_ref().and_then(|source| source.folder.as_deref()),
@@ -261,7 +265,7 @@ impl Preset {
     }
 }
 
-/// The number of a text for a group, which has no unit.
+/// The number that a text gives for a group, which has no unit.
 fn pure(row: &Parameter, text: &str) -> Result<f64, Invalid> {
     let cause = |cause| Invalid::Units { key: row.key.clone(), cause };
     parse_quantity(text).and_then(|typed| typed.in_si(Quantity::Number, None)).map_err(cause)

@@ -20,15 +20,15 @@ use crate::text::quote;
 use crate::units::UnitSystem;
 
 impl Preset {
-    /// The value of a dotted key; `None` if the key is unknown, does not apply to this preset or is left
-    /// to follow from others.
+    /// The value of a dotted key; `None` if the key is unknown, does not apply to this preset, or is left to follow
+    /// from others.
     #[must_use]
     pub fn get(&self, key: &str) -> Option<Value> {
         let Self { title, units, material, gap, basis, path, edge, data, files: _ } = self;
         Some(match key {
             "format" => FORMAT.into(),
             "title" => title.as_str().into(),
-            // Reduced units are what a preset has when it says nothing.
+            // A preset that does not name its units is in reduced units.
             "units" => match units {
                 UnitSystem::Reduced => return None,
                 UnitSystem::Si(_) => SYSTEMS[1].into(),
@@ -38,14 +38,14 @@ impl Preset {
                 units.unit(*quantity)?.ascii().as_str().into()
             }
             "material.effective_modulus" => material.effective_modulus.into(),
-            // Of a liquid bridge it follows from the liquid.
+            // For a liquid bridge it follows from the liquid.
             "material.work_of_adhesion" => match material.adhesion {
                 Adhesion::Capillary { .. } => return None,
                 _ => material.work_of_adhesion.into(),
             },
             "material.range_of_action" => material.range_of_action?.into(),
             key if edge::KEYS.contains(&key) => return edge.get(key),
-            // Short-range is what a preset has when it says nothing.
+            // A preset that does not name its adhesion is short-range.
             ADHESION => match material.adhesion {
                 Adhesion::ShortRange => return None,
                 other => other.name().into(),
@@ -93,8 +93,8 @@ impl Preset {
         })
     }
 
-    /// The rows of this preset, in the order in which files and screens show them: those of the table, and those
-    /// that it makes itself.
+    /// The rows of this preset, in the order in which files and screens show them: those of the table, and those that
+    /// the preset adds itself.
     pub fn rows(&self) -> impl Iterator<Item = Row> {
         let after = PARAMETERS.iter().rposition(|row| row.table() == Some("gap")).map_or(0, |last| last + 1);
         let (before, rest) = PARAMETERS.split_at(after);
@@ -103,7 +103,7 @@ impl Preset {
         before.iter().map(|row| shape::own(&self.gap, row)).chain(own).chain(rest)
     }
 
-    /// The row of a key: with the range and the quantity that this preset gives it, where it does.
+    /// The row of a key, with the range and the quantity that this preset gives it, if any.
     #[must_use]
     pub fn row(&self, key: &str) -> Option<Row> {
         self.rows()
@@ -112,9 +112,9 @@ impl Preset {
             .or_else(|| groups::row(key).map(Row::Borrowed))
     }
 
-    /// The rows that are turned and typed on a screen: all but the format, the units, the ranges of parameters, the waves after the
-    /// first [`WAVE_KNOBS`](family::WAVE_KNOBS), and which contacts are followed and how an edge moves, which are set by their keys: the
-    /// others fill 40 rows. What is said of an edge is among them.
+    /// The rows that can be turned and typed on a screen: all but the format, the units, the ranges of parameters, the
+    /// waves after the first [`WAVE_KNOBS`](family::WAVE_KNOBS), which contacts are followed, and how an edge moves.
+    /// Those are set by their keys; the others fill 40 rows. Edge keys that have a value are included.
     pub fn knobs(&self) -> impl Iterator<Item = Row> {
         self.rows().filter(|row| {
             row.key != "format"
@@ -127,7 +127,7 @@ impl Preset {
         })
     }
 
-    /// Whether a row is no key of adhesion with a range, or one of the adhesion that there is.
+    /// Whether a row has nothing to do with adhesion with a range, or belongs to the adhesion in use.
     fn has_adhesion_knob(&self, row: &Row) -> bool {
         let adhesion = self.material.adhesion;
         let is_own =
@@ -159,13 +159,13 @@ impl Preset {
     }
 }
 
-/// The keys of adhesion with a range but for its word.
+/// The keys of adhesion with a range, except for the word that chooses it.
 fn adhesion_keys() -> [&'static str; 5] {
     let ([strength, range], [tension, radius, angle]) = (RANGE_KEYS, LIQUID_KEYS);
     [strength, range, tension, radius, angle]
 }
 
-/// What an adhesion says of one of them.
+/// The value that an adhesion has for one of them.
 fn adhesion_value(adhesion: Adhesion, key: &str) -> Option<f64> {
     match adhesion {
         Adhesion::Dugdale(StatedCohesion::Strength(x)) => (key == RANGE_KEYS[0]).then_some(x),
@@ -178,14 +178,14 @@ fn adhesion_value(adhesion: Adhesion, key: &str) -> Option<f64> {
     }
 }
 
-/// Whether a key says units, not the problem.
+/// Whether a key concerns units rather than the problem.
 #[must_use]
 pub fn is_of_units(key: &str) -> bool {
     key == CHOOSERS[2] || DISPLAY.iter().any(|(known, _)| *known == key)
 }
 
-/// The error for a key without a row, in a preset whose gap has the shape `shape`, where that is known: the keys of other
-/// shapes are not offered.
+/// The error for a key without a row, in a preset whose gap has the shape `shape`, if that is known: keys of other
+/// shapes are not suggested.
 pub(in crate::preset) fn unknown_key(key: &str, shape: Option<&str>) -> Invalid {
     unknown_among(key, PARAMETERS.iter().filter(|row| shape.is_none_or(|shape| row.fits(CHOOSERS[0], shape))))
 }

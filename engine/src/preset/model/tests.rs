@@ -10,7 +10,7 @@ use crate::preset::schema::{ADHESION, Applies, FORMAT, Fallback, Kind, LIQUID_KE
 use crate::preset::value::Value;
 use crate::problem::{Adhesion, StatedCohesion};
 
-/// A value for a key that it does not have in [`wavy`].
+/// A value for a key that differs from the one in [`wavy`].
 fn another(key: &str) -> Value {
     match key {
         "format" => FORMAT.into(),
@@ -136,7 +136,7 @@ const FIELDS: &[&str] = &[
 
 #[test]
 fn the_table_is_total() {
-    // Taken apart without `..`: a new field stops this test from compiling until it has a row below.
+    // Destructured without `..`: a new field stops this test from compiling until it has a row below.
     let Preset { title: _, units: _, material, gap, basis, path, edge, data, files: _ } = wavy();
     let EdgeSpec {
         closing_work_of_adhesion: _,
@@ -194,7 +194,7 @@ fn the_table_is_total() {
     }
     assert_eq!(PARAMETERS.iter().map(|row| &row.key).collect::<Vec<_>>(), FIELDS);
 
-    // Every row can be read back after it was set.
+    // Every row can be read back after it has been set.
     for row in PARAMETERS {
         let mut preset = wavy();
         let value = another(&row.key);
@@ -204,7 +204,7 @@ fn the_table_is_total() {
         if row.fits("units", "SI") && !row.fits("units", "reduced") {
             preset.set("units", "SI".into()).unwrap();
         }
-        // Ring elements know no range.
+        // Ring elements do not support a range.
         if row.key == ADHESION || matches!(row.applies, Applies::With { key: ADHESION, .. }) {
             preset.set("basis.kind", "exact".into()).unwrap();
         }
@@ -265,7 +265,7 @@ fn a_formula_keeps_its_parameters_and_begins_new_ones_with_1() {
     assert!(unknown.ends_with("did you mean gap.parameters.lambda?"), "{unknown}");
     let broken = preset.set("gap.formula", "r^2/(2*R".into()).unwrap_err().to_string();
     assert!(broken.starts_with("gap.formula: column "), "{broken}");
-    // Of the rows, ranges have no knob.
+    // Among the rows, ranges have no knob.
     let knobs: Vec<String> = preset.knobs().map(|row| row.key.to_string()).collect();
     assert!(
         knobs.contains(&"gap.parameters.B".to_owned()) && !knobs.contains(&"gap.parameters.B.max".to_owned())
@@ -326,7 +326,7 @@ fn adhesion_without_a_range_has_none() {
         assert!(matches!(preset.material.adhesion, Adhesion::Dugdale(_)));
         preset.assign(key, "none").unwrap();
         assert_eq!(preset, exact);
-        // With the range of action there is one left.
+        // With the range of action, one range remains.
         for (key, text) in [("material.range_of_action", "0.001"), (key, "0.01"), (key, "none")] {
             preset.assign(key, text).unwrap();
         }

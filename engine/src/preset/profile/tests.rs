@@ -7,7 +7,7 @@ use crate::text::{NotText, is_unsafe};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-/// Ten rows of a paraboloid, parted by `separator`.
+/// Ten rows of a paraboloid, separated by `separator`.
 fn rows(separator: &str) -> String {
     let row =
         |i: u8| [0.5 * f64::from(i), 0.1 * f64::from(i * i)].map(|x| x.to_string()).join(separator) + "\n";
@@ -66,7 +66,7 @@ fn units_come_from_the_header_or_from_a_remark_that_names_both() {
             assert_eq!(names(&columns), units, "{header:?} {separator:?}");
         }
     }
-    // A remark between or below the rows is none.
+    // A remark between or below the rows is not a header.
     assert_eq!(names(&good(&format!("{}# r [um], h [nm]\n", rows(",")))), [None, None]);
 }
 
@@ -76,7 +76,7 @@ fn units_of_length_stand_behind_a_slash_or_a_space_too() {
         ("radius / um, height / nm", [Some("um"), Some("nm")]),
         ("r/um,h/nm", [Some("um"), Some("nm")]),
         ("radius µm, \"height nm\"", [Some("µm"), Some("nm")]),
-        // Ratios, and words that are no unit.
+        // Ratios, and words that are not units.
         ("r/R,h/R", [None, None]),
         ("the radius, the gap", [None, None]),
         ("um, nm", [None, None]),
@@ -91,7 +91,7 @@ fn columns_that_their_header_names_the_other_way_round_are_refused() {
         let said = refused(&format!("{header}\n{}", rows(",")));
         assert!(said.contains("a profile has the radius first"), "{header}: {said}");
     }
-    // Names nobody knows say nothing.
+    // Unknown names mean nothing.
     good(&format!("depth of the scan,length\n{}", rows(",")));
 }
 
@@ -144,10 +144,10 @@ fn a_profile_without_its_centre_is_refused() {
     let said = refused(&format!("r,h\n{}", at(radii(0.15))));
     let expected = "line 2: the smallest radius is 0.15, and the rows behind it are at most 0.1";
     assert!(said.starts_with(expected), "{said}");
-    // The line is that of the smallest radius, wherever it stands.
+    // The line is that of the smallest radius, wherever that is.
     let said = refused(&at((3..23).rev().map(f64::from)));
     assert!(said.starts_with("line 20: the smallest radius is 3.0"), "{said}");
-    // Of uneven radii the widest of the first distances counts.
+    // If the radii are uneven, the widest of the first distances counts.
     good(&at((0..20).map(|i| 0.3 + 0.1 * f64::from(i * i))));
 }
 
@@ -188,7 +188,7 @@ fn every_fault_has_its_line() {
     assert!(
         refused("0;0\n1,5;2\n").contains("line 2: the radius \"1,5\" is no number (decimals have a point)")
     );
-    // A first line that was to be a row is not swallowed as a header.
+    // A first line that was meant to be a row is not swallowed as a header.
     assert!(refused(&format!("1.0, abc\n{}", rows(","))).starts_with("line 1: "));
     assert!(refused(&format!("abc, 1.0\n{}", rows(","))).starts_with("line 1: "));
     assert!(refused(&format!("r,h\nr,h\n{}", rows(","))).starts_with("line 2: "));
@@ -220,7 +220,7 @@ proptest! {
         cases: 512, rng_seed: RngSeed::Fixed(11), failure_persistence: None, ..ProptestConfig::default()
     })]
 
-    /// Whatever is done to a good file, the answer is a sound profile or an error that names lines.
+    /// Whatever is done to a good file, the result is a sound profile or an error that names lines.
     #[test]
     fn damage_is_reported_and_never_panics(
         separator in prop::sample::select(vec![",", ";", "\t", " "]),
@@ -242,7 +242,7 @@ proptest! {
         sound_or_refused(&bytes);
     }
 
-    /// Whole rows doubled, moved, cut short or with a cell that no instrument wrote.
+    /// Whole rows duplicated, moved, cut short, or with a cell that no instrument wrote.
     #[test]
     fn damaged_rows_are_reported_and_never_panic(
         separator in prop::sample::select(vec![",", ";", "\t", " "]),
@@ -267,7 +267,7 @@ proptest! {
     }
 }
 
-/// Cells that no instrument wrote: huge and tiny numbers, other digits, marks of direction, units, formulas.
+/// Cells that no instrument wrote: huge and tiny numbers, foreign digits, directional marks, units, formulas.
 const CELLS: &[&str] = &[
     "1e30",
     "1e29",
@@ -310,7 +310,7 @@ const CELLS: &[&str] = &[
     "99999999999999999999999999999999",
 ];
 
-/// Sound columns, from which a gap is made or refused in words; or an error that names lines.
+/// Sound columns, from which a gap is made or refused with a reason; or an error that names lines.
 fn sound_or_refused(bytes: &[u8]) {
     let columns = match parse(bytes) {
         Ok(columns) => columns,

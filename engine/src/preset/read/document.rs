@@ -28,12 +28,12 @@ impl Sheet {
             let name: &str = key.get_ref();
             let full = match (prefix, name) {
                 ("", _) => name.to_owned(),
-                // `lambda = { value = 1, … }` is `lambda = 1` and more.
+                // `lambda = { value = 1, … }` means `lambda = 1` and more.
                 (_, "value") if family::is_parameter(prefix) => prefix.to_owned(),
                 _ => format!("{prefix}.{name}"),
             };
             let origin = self.origin(place, key.span().start);
-            // A quoted key with a dot in it is none of ours, whatever it spells.
+            // A quoted key with a dot in it is unknown here, whatever it spells.
             let plain = !name.contains('.');
             let row = parameter(&full).filter(|_| plain);
             let known_table = Some(&*full).filter(|table| plain && is_table(table));
@@ -74,7 +74,7 @@ impl Sheet {
                 (other, None, Some(table)) => self.mistake(origin, not_table(table, found(other))),
                 (_, None, None) => {
                     let invalid = match (place, closest(&full, tables())) {
-                        // A table by a wrong name is worth one message, and no guess among the keys.
+                        // A table with an unknown name is worth one message; no guess is made among the keys.
                         (_, Some(table)) if holds_tables(value.get_ref()) => {
                             Invalid::UnknownKey { key: quote(&full), meant: Some(table.into()) }
                         }
@@ -115,7 +115,7 @@ impl Sheet {
         }
     }
 
-    /// Lays down one `KEY=VALUE`.
+    /// Lays down one assignment `KEY=VALUE`.
     pub(super) fn assign(&mut self, assignment: &str) {
         if self.mistakes.len() >= MISTAKES {
             return;
@@ -146,7 +146,7 @@ impl Sheet {
                 self.mistake(origin, not_table(table, format!("\"{}\"", quote(text.trim()))));
             }
             (None, None, _) => {
-                // The file is laid down by now.
+                // By now the file has been laid down.
                 let shape = self.entries.get(CHOOSERS[0]).and_then(|entry| entry.value.as_ref().ok());
                 let unknown = unknown_key(key, shape.map(ToString::to_string).as_deref());
                 self.mistake(origin, unknown);
@@ -157,7 +157,7 @@ impl Sheet {
     pub(super) fn syntax(&mut self, text: &str, error: &toml::de::Error) {
         let span = error.span().unwrap_or_default();
         let origin = self.origin(&LayerOrigin::File(text), span.start);
-        // The parser's words quote no source text, but nothing promises that they never will.
+        // The parser's messages quote no source text, but nothing guarantees that they never will.
         let mut what = sanitize(error.message(), 120);
         if let Some(at) = text.get(span).map(str::trim).filter(|at| !at.is_empty()) {
             what = format!("{what}: {}", quote(at));
@@ -166,7 +166,7 @@ impl Sheet {
     }
 }
 
-/// The keys of a table with their values, as `KEY=VALUE`; what is wrong with one in words.
+/// The keys of a table with their values, as `KEY=VALUE`, or what is wrong with one of them, in words.
 fn assigned(prefix: &str, table: &DeTable<'_>, parts: &mut Vec<String>) -> Result<(), String> {
     for (name, value) in table {
         let name = name.get_ref();

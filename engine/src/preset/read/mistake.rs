@@ -4,10 +4,10 @@ use crate::preset::invalid::Invalid;
 use std::fmt;
 use thiserror::Error;
 
-/// Where a value came from. Names and texts in it are already safe to show.
+/// Where a value came from. Names and texts in it have already been made safe to show.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ValueOrigin {
-    /// A file, and the line where known.
+    /// A file, and the line if known.
     File {
         /// The file's name.
         name: String,
@@ -32,13 +32,13 @@ impl fmt::Display for ValueOrigin {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{origin}: {invalid}")]
 pub struct Mistake {
-    /// Where.
+    /// Where it is.
     pub origin: ValueOrigin,
-    /// What.
+    /// What it is.
     pub invalid: Invalid,
 }
 
-/// All that is wrong with a preset, in the order of its lines; at least one mistake.
+/// Everything that is wrong with a preset, in the order of its lines; at least one mistake.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub struct ReadError {
     /// The mistakes.

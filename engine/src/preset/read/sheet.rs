@@ -1,4 +1,4 @@
-//! The layers laid down so far: what is known of each key, and where it came from.
+//! The layers laid down so far: what is known about each key, and where it came from.
 
 use super::mistake::{Mistake, ValueOrigin};
 use crate::gap::Shape;
@@ -17,13 +17,14 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What is known of one key.
+/// What is known about one key.
 pub(super) struct SheetEntry {
     pub(super) value: Result<Value, Invalid>,
     pub(super) origin: ValueOrigin,
 }
 
-/// What the files of a preset hold. One that has none holds nothing, which is a mistake where a key names it.
+/// What the files of a preset contain. For a preset without files it is empty, which is a mistake if a key names a
+/// file.
 #[derive(Debug, Clone)]
 pub struct HeldFiles {
     /// The rows of its profile.
@@ -39,7 +40,7 @@ impl Default for HeldFiles {
 }
 
 impl HeldFiles {
-    /// What those of `preset` hold.
+    /// What the files of `preset` contain.
     #[must_use]
     pub fn by(preset: &Preset) -> Self {
         let mut held = Self::default();
@@ -61,12 +62,12 @@ pub(super) struct Sheet {
     pub(super) files: Files,
     /// The folder of the file.
     pub(super) folder: Option<PathBuf>,
-    /// What its files hold, where that is known and no file is to be read.
+    /// What its files contain, if that is known and no file is to be read.
     pub(super) held: Option<HeldFiles>,
     /// Whether an assignment chose a formula: its parameters need not fit those of the file.
     pub(super) refit: bool,
     pub(super) entries: BTreeMap<Key, SheetEntry>,
-    /// Assignments of groups: laid over the whole, when all they follow from is known.
+    /// Assignments of groups: laid over the whole once everything they follow from is known.
     pub(super) groups: Vec<(String, String, ValueOrigin)>,
     /// Where the file's tables begin.
     pub(super) tables: BTreeMap<Key, ValueOrigin>,
@@ -89,8 +90,8 @@ impl Sheet {
         }
     }
 
-    /// Stores what was found for a key. An assignment replaces what the file said in another way: another start,
-    /// the waves of another shape, the size of another basis.
+    /// Stores what was found for a key. An assignment replaces what the file gave in another form: another start, the
+    /// waves of another shape, the size of another basis.
     pub(super) fn put(&mut self, row: &Parameter, value: Result<Value, Invalid>, origin: ValueOrigin) {
         if value.as_ref().is_ok_and(|value| row.takes_away(value)) {
             self.entries.remove(row.whole());

@@ -1,4 +1,4 @@
-//! What a preset file and its assignments may say, and how each mistake is told.
+//! What a preset file and its assignments may contain, and how each mistake is reported.
 
 mod assignments;
 mod families;

@@ -1,4 +1,4 @@
-//! The layers as one preset, or all that is wrong with them.
+//! The layers combined into one preset, or everything that is wrong with them.
 
 use super::MISTAKES;
 use super::mistake::{Mistake, ReadError, ValueOrigin};
@@ -13,9 +13,9 @@ use crate::preset::shape::fit_parameters;
 use crate::preset::values::Values;
 
 impl Sheet {
-    /// The preset, or all that is wrong with it.
+    /// The preset, or everything that is wrong with it.
     pub(super) fn finish(mut self) -> Result<Preset, ReadError> {
-        // A file of another format, or no TOML at all: what else is wrong with it means nothing.
+        // If the file has another format, or is not TOML at all, its other mistakes mean nothing.
         if self.mistakes.iter().any(|mistake| matches!(mistake.invalid, Invalid::Syntax { .. })) {
             self.mistakes.retain(|mistake| matches!(mistake.invalid, Invalid::Syntax { .. }));
             return Err(ReadError { mistakes: self.mistakes });
@@ -42,7 +42,7 @@ impl Sheet {
             let assigned = |key: &str| {
                 self.entries.get(key).is_some_and(|entry| matches!(entry.origin, ValueOrigin::Assignment(_)))
             };
-            // Another formula's parameters are not guessed: a misspelt one would be a gap that nobody meant.
+            // Another formula's parameters are not guessed: a misspelt one would give a gap that nobody meant.
             for new in fit_parameters(&mut values, assigned) {
                 let meant = new.alike.map(|(name, _)| parameter_key(&name).into());
                 let key = parameter_key(&new.name).into();
@@ -72,7 +72,7 @@ impl Sheet {
                 }
             }
         }
-        // Lines in order; what has no line, and the assignments, at the end.
+        // Lines in order; at the end, mistakes without a line, and the assignments.
         mistakes.sort_by_key(|mistake| match mistake.origin {
             ValueOrigin::File { line: Some(line), .. } => (0, line),
             ValueOrigin::File { line: None, .. } => (1, 0),
@@ -98,9 +98,9 @@ impl Sheet {
         }
     }
 
-    /// Where to point for a fault found in the whole: the key, else its table, else the file.
+    /// Where to point for a fault found in the whole: the key, otherwise its table, otherwise the file.
     fn origin_of(&self, invalid: &Invalid) -> ValueOrigin {
-        // A range that two keys make together is the later layer's doing.
+        // A range that two keys determine together is the fault of the later layer.
         if let Invalid::EndBeyondStart { .. } | Invalid::Wide { .. } = invalid {
             let partners = [START_KEYS[0], "path.end_contact_radius", "gap.radius_of_curvature"];
             let said = partners.iter().filter_map(|key| self.entries.get(*key));
@@ -119,11 +119,11 @@ impl Sheet {
     }
 }
 
-/// What the unknown keys were meant to be, and what has been said to lack a value or have a wrong one.
+/// What the unknown keys were meant to be, and the keys already reported as lacking a value or having a wrong one.
 fn meant_keys(mistakes: &[Mistake]) -> Vec<Key> {
     let meant = |mistake: &Mistake| match &mistake.invalid {
         Invalid::UnknownKey { meant, .. } => meant.clone(),
-        // Said already, in words of its own.
+        // Already reported in its own words.
         Invalid::Unset { key, .. } | Invalid::Range { key, .. } => Some(key.clone()),
         Invalid::NotTable { table, .. } => Some(table.clone()),
         _ => None,

@@ -12,10 +12,10 @@ use std::borrow::Cow::Borrowed;
 /// The dimension of speeds.
 const SPEED: (&str, Quantity) = ("length / time", Quantity::Speed);
 
-/// Where a loop turns when no key says it.
+/// Where a loop turns if no key gives it.
 const TURN: &str = "at the contact radius at which the unloading starts";
 
-/// How far a tension reaches when no key says it.
+/// How far a tension reaches if no key gives it.
 const RANGE: &str = "h_c = 0.97 z0, and gamma/h_c";
 
 /// The row of a pure number, a count, a text or a choice: required, in every preset.
@@ -28,12 +28,12 @@ pub(in crate::preset) const fn row(
     measured(key, label, meaning, kind, ("", Quantity::Number))
 }
 
-/// The same of a length.
+/// The same for a length.
 const fn length(key: &'static str, label: &'static str, meaning: &'static str, kind: Kind) -> Parameter {
     measured(key, label, meaning, kind, ("length", Quantity::Length))
 }
 
-/// The same of a quantity, with its dimension in words.
+/// The same for a quantity, with its dimension in words.
 const fn measured(
     key: &'static str,
     label: &'static str,
@@ -62,24 +62,24 @@ const fn display(at: usize, label: &'static str, meaning: &'static str, fallback
 }
 
 impl Parameter {
-    /// The same row, with what it is when not given.
+    /// The same row, with what it is when it is not given.
     pub(in crate::preset) const fn or(mut self, fallback: Fallback) -> Self {
         self.fallback = fallback;
         self
     }
 
-    /// The same row, where it means something.
+    /// The same row, with where it applies.
     pub(in crate::preset) const fn only(mut self, applies: Applies) -> Self {
         self.applies = applies;
         self
     }
 
-    /// The same row, of gaps of these shapes.
+    /// The same row, for gaps of these shapes.
     const fn of_shape(self, words: &'static [&'static str]) -> Self {
         self.only(Applies::With { key: CHOOSERS[0], words })
     }
 
-    /// The same row, of these bases.
+    /// The same row, for these bases.
     const fn of_basis(self, words: &'static [&'static str]) -> Self {
         self.only(Applies::With { key: CHOOSERS[1], words })
     }

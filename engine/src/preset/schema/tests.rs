@@ -1,4 +1,4 @@
-//! What every row keeps to.
+//! What every row must satisfy.
 
 use super::*;
 use crate::preset::rows::{parameter, tables};

@@ -1,4 +1,4 @@
-//! Rows made a curve: the paraboloid taken off, what is left averaged in cells or smoothed.
+//! Rows turned into a curve: the paraboloid is taken off, and what is left is averaged in cells or smoothed.
 
 use super::curve::ProfileGap;
 use super::invalid::{CLOSEST, Cells, FEWEST_ROWS, InvalidProfile, MOST_KNOTS, largest};
@@ -7,29 +7,30 @@ use crate::gap::Jet;
 use crate::gap::shapes::spline::{SplineFit, SplineRows, widths};
 use std::f64::consts::TAU;
 
-/// Cells in a cutoff.
+/// The number of cells in a cutoff.
 const CELLS_IN_CUTOFF: f64 = 8.0;
 
-/// The largest cutoff in mean distances of the rows with which they stay knots: nine digits of the curve are left.
+/// The largest cutoff at which rows stay knots, in mean distances between rows: nine digits of the curve are left.
 const KEPT_SPACINGS: f64 = 64.0;
 
-/// The same where a cell would be empty: six digits are left.
+/// The same where a cell would otherwise be empty: six digits are left.
 const MOST_SPACINGS: f64 = 1000.0;
 
-/// A cutoff out of range by less than this share is in range: messages round to six digits.
+/// A cutoff that is out of range by less than this share counts as in range: messages round to six digits.
 const ROUNDED: f64 = 1e-5;
 
-/// A cutoff of so many widest distances of neighbours leaves no cell empty: more than eight, since the cells are a whole
-/// number, hence narrower than asked for by up to an eighth.
+/// A cutoff of this many times the widest distance between neighbours leaves no cell empty. It is more than eight
+/// because the number of cells is whole, so they can be up to an eighth narrower than asked for.
 const WIDE_ENOUGH: f64 = 9.1;
 
-/// Rows this many mean distances apart are no hole even if a cell falls between them.
+/// Rows this many mean distances apart leave no hole, even if a cell falls between them.
 const NO_HOLE: f64 = 2.0;
 
-/// What the paraboloid leaves is rounding below this share of the largest gap.
+/// Below this share of the largest gap, what the paraboloid leaves is rounding.
 const NO_WAVES: f64 = 1e-12;
 
-/// Rows of the order of one, by powers of two: fourth powers of lengths keep their range, numbers their digits.
+/// The rows scaled to order one by powers of two: fourth powers of lengths stay in range, and numbers keep their
+/// digits.
 pub(super) struct Body {
     /// The units of x and y.
     pub(super) length: f64,
@@ -43,12 +44,12 @@ pub(super) struct Body {
     weights: Vec<f64>,
 }
 
-/// What the spline goes through or near: rows, or the means of cells.
+/// What the spline goes through or near: rows, or means of cells.
 pub(super) struct SplinePoints {
     x: Vec<f64>,
     values: Vec<f64>,
     weights: Vec<f64>,
-    /// How many cells.
+    /// The number of cells.
     cells: Option<usize>,
 }
 
@@ -67,7 +68,7 @@ impl Body {
         self.x[self.x.len() - 1]
     }
 
-    /// The mean distance of the rows.
+    /// The mean distance between the rows.
     fn spacing(&self) -> f64 {
         (self.last() - self.x[0]) / (self.x.len() - 1) as f64
     }
@@ -92,7 +93,7 @@ impl Body {
         let width = last / count as f64;
         let widest = width.max(NO_HOLE * self.spacing()) * (1.0 + ROUNDED);
         let mut values = Vec::with_capacity(count);
-        // The rows passed, and how far the integral has come.
+        // How many rows have been passed, and how far the integral has come.
         let (mut passed, mut from) = (0, 0.0);
         for cell in 1..=count {
             let to = if cell == count { last } else { cell as f64 * width };
@@ -118,7 +119,8 @@ impl Body {
         Ok(SplinePoints { x: middles, values, weights: vec![width; count], cells: Some(count) })
     }
 
-    /// What the paraboloid leaves at x, on the straight line from the row before `next` to this one; to the axis it stays.
+    /// What the paraboloid leaves at x, on the straight line from the row before `next` to row `next`. Before the first
+    /// row it is constant.
     fn straight(&self, x: f64, next: usize) -> f64 {
         match (next.checked_sub(1), self.x.get(next)) {
             (Some(i), Some(end)) => {
@@ -130,7 +132,7 @@ impl Body {
         }
     }
 
-    /// A cell between these radii has no row.
+    /// The error for a cell between these radii that has no row.
     fn empty(&self, radii: [f64; 2], cells: Cells) -> InvalidProfile {
         let [before, behind] = radii.map(|x| x * self.length);
         let widest = self.x.windows(2).map(|pair| pair[1] - pair[0]).fold(self.x[0], f64::max);
@@ -139,7 +141,7 @@ impl Body {
         InvalidProfile::Empty { before, behind, cells, works }
     }
 
-    /// The cutoff of the noise.
+    /// The cutoff found from the noise.
     pub(super) fn found(&self) -> Result<f64, InvalidProfile> {
         let last = self.last();
         let (points, spacing) = if self.is_small() {
@@ -151,7 +153,7 @@ impl Body {
         Ok(rows.cutoff(2.0 * spacing, last.min(MOST_SPACINGS * spacing)))
     }
 
-    /// The curve of a cutoff. One that was `given` is refused where it needs more cells than there may be.
+    /// The curve smoothed with a cutoff. A `given` cutoff is refused if it needs more cells than are allowed.
     pub(super) fn smoothed(&self, cutoff: f64, given: bool) -> Result<ProfileGap, InvalidProfile> {
         let last = self.last();
         let least = if self.is_small() { 0.0 } else { CELLS_IN_CUTOFF * last / MOST_KNOTS as f64 };
@@ -164,7 +166,7 @@ impl Body {
         if self.is_small() && cutoff <= KEPT_SPACINGS * self.spacing() {
             return rows();
         }
-        // Between 8 and the most.
+        // Between 8 and the largest number of cells.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let cells =
             (CELLS_IN_CUTOFF * last / cutoff).ceil().clamp(FEWEST_ROWS as f64, MOST_KNOTS as f64) as usize;
@@ -230,7 +232,7 @@ fn paraboloid(x: &[f64], y: &[f64], weights: &[f64]) -> f64 {
     product / mean(&mut halves.iter().map(|x| (x - half) * (x - half)))
 }
 
-/// The mean distance of the crests of f; none where f is rounding or wider than the profile.
+/// The mean distance between the crests of f; none where f is only rounding or the distance exceeds the profile.
 fn feature(rows: &SplineRows, fit: &SplineFit, height: f64, widest: f64) -> Option<f64> {
     let weights = rows.weights();
     let mean = fit.values.iter().zip(weights).map(|(g, w)| g * w).sum::<f64>() / weights.iter().sum::<f64>();
@@ -242,12 +244,12 @@ fn feature(rows: &SplineRows, fit: &SplineFit, height: f64, widest: f64) -> Opti
     Some(TAU * slope / bend).filter(|wave| *wave < widest)
 }
 
-/// f(0): an even cubic is a parabola, so the second derivative at the first radius stays to the axis.
+/// f(0): an even cubic is a parabola, so the second derivative at the first radius holds up to the axis.
 fn axis(fit: &SplineFit, first: f64) -> f64 {
     fit.values[0] - 0.5 * fit.second[0] * first * first
 }
 
-/// The knots from the axis on to `last`, and the jets of h there.
+/// The knots from the axis to `last`, and the jets of h there.
 fn pieces(rows: &SplineRows, fit: &SplineFit, x: &[f64], last: f64, curvature: f64) -> (Vec<f64>, Vec<Jet>) {
     let mut jets = rows.pieces(fit);
     let mut knots = x.to_vec();

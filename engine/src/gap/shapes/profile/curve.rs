@@ -1,11 +1,11 @@
-//! The curve of a profile: cubics between knots, as a gap.
+//! The curve of a profile, cubics between knots, as a gap.
 
 use super::invalid::{Cells, grouped, length};
 use crate::gap::{Breaks, ComplexDisc, Gap, Jet, Parity};
 use crate::gap::{function::Form, function::Piece};
 use crate::units::UnitSystem;
 
-/// Beyond the last row by rounding: what a change of units there and back may cost.
+/// How far beyond the last row rounding may put a radius: what converting units there and back may cost.
 const ROUNDING: f64 = 1e-15;
 
 /// The gap of a measured profile.
@@ -13,7 +13,7 @@ const ROUNDING: f64 = 1e-15;
 pub struct ProfileGap {
     /// 0, the radii of the rows or the middles of the cells, and the last radius.
     pub(super) knots: Vec<f64>,
-    /// The jet at each knot but the last: the cubic from there on.
+    /// The jet at each knot but the last, which gives the cubic from there on.
     pub(super) pieces: Vec<Jet>,
     pub(super) curvature: f64,
     pub(super) feature: Option<f64>,
@@ -48,7 +48,7 @@ impl ProfileGap {
         &self.knots
     }
 
-    /// What of the rows is not in the curve, in words with numbers as `units` show them.
+    /// Which details of the rows the curve leaves out, in words, with numbers as `units` show them.
     pub fn remarks(&self, units: &UnitSystem) -> Vec<String> {
         let averaged = self.cells.map(|Cells { rows, count, width }| {
             let said =
@@ -65,7 +65,7 @@ impl ProfileGap {
         averaged.into_iter().chain(passed).collect()
     }
 
-    /// The same in other units, of which the ones it is in are so many.
+    /// The same curve in other units; its present units of length and height are `length` and `height` of the new ones.
     pub(super) fn scaled(mut self, length: f64, height: f64) -> Self {
         for jet in &mut self.pieces {
             jet.value *= height;
@@ -84,12 +84,12 @@ impl ProfileGap {
         self
     }
 
-    /// The jet at `r`; `at` is the piece it is looked for in first, and then that of `r`.
+    /// The jet at `r`. The piece `at` is tried first, and is then set to the piece of `r`.
     pub(super) fn jet_near(&self, r: f64, at: &mut usize) -> Jet {
         if !self.is_known(r) {
             return Jet::UNKNOWN;
         }
-        // Sums ask in order: most radii lie in the piece of the one before.
+        // Sums ask for radii in order: most lie in the same piece as the previous one.
         if r < self.knots[*at] || r >= self.knots[*at + 1] {
             *at = self.piece(r);
         }
@@ -106,7 +106,7 @@ impl ProfileGap {
         above.saturating_sub(1).min(self.pieces.len() - 1)
     }
 
-    /// The cubic of this piece at `r`, within it or continued.
+    /// The cubic of this piece at `r`, inside the piece or continued beyond it.
     fn cubic(&self, i: usize, r: f64) -> Jet {
         let (x, Jet { value, first, second, third }) = (r - self.knots[i], self.pieces[i]);
         Jet {

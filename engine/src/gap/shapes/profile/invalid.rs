@@ -1,4 +1,4 @@
-//! What a profile is held to, and why rows are none.
+//! What the rows of a profile must satisfy, and why rows are no profile.
 
 use crate::units::number::said;
 use crate::units::{Quantity, UnitSystem};
@@ -6,7 +6,7 @@ use crate::units::{Quantity, UnitSystem};
 /// The fewest rows of a profile.
 pub const FEWEST_ROWS: usize = 8;
 
-/// The most rows that are knots themselves, and the most cells in which more rows are averaged.
+/// The largest number of rows that are knots themselves, and of cells in which more rows are averaged.
 pub const MOST_KNOTS: usize = 4000;
 
 /// Neighbours closer than this share of the largest radius are one row measured twice.
@@ -37,7 +37,7 @@ pub enum InvalidProfile {
     /// Too few rows.
     #[error("{0} rows are too few for a profile: at least {FEWEST_ROWS} are needed")]
     TooFew(usize),
-    /// A number is infinite or no number.
+    /// A number is infinite or NaN.
     #[error("row {0} of the profile is not finite")]
     NotFinite(usize),
     /// A radius is negative.
@@ -55,7 +55,7 @@ pub enum InvalidProfile {
         row: usize,
         /// Its radius.
         radius: f64,
-        /// The radius before it.
+        /// The previous radius.
         before: f64,
     },
     /// The cutoff is out of range.
@@ -63,23 +63,23 @@ pub enum InvalidProfile {
     Cutoff {
         /// The cutoff.
         cutoff: f64,
-        /// The smallest, 0 where the rows are few enough to be knots.
+        /// The smallest allowed, 0 where the rows are few enough to be knots.
         least: f64,
-        /// The largest.
+        /// The largest allowed.
         most: f64,
         /// The rows.
         rows: usize,
     },
-    /// A cell in which rows are averaged has none.
+    /// A cell has no rows to average.
     #[error("{}", empty(&UnitSystem::Reduced, [*.before, *.behind], .cells, *.works))]
     Empty {
         /// The last radius before the cell.
         before: f64,
-        /// The first behind it.
+        /// The first radius behind it.
         behind: f64,
         /// The rows and their cells.
         cells: Cells,
-        /// A cutoff with cells wide enough, where there is one.
+        /// A cutoff whose cells are wide enough, where there is one.
         works: Option<f64>,
     },
     /// The equations of the spline cannot be solved.
@@ -118,7 +118,7 @@ fn empty(units: &UnitSystem, [before, behind]: [f64; 2], cells: &Cells, works: O
     let [before, behind, width] = [before, behind, cells.width].map(|x| length(units, x));
     let (rows, count) = (grouped(cells.rows), cells.count);
     let way = match works.map(|works| length(units, works)) {
-        // A value with a unit is text.
+        // A value with a unit is written as text.
         Some(works) => {
             let works = if *units == UnitSystem::Reduced { works } else { format!("\"{works}\"") };
             format!("gap.smoothing = {works} averages in cells wide enough")
@@ -141,7 +141,7 @@ fn unsolved(units: &UnitSystem, cutoff: f64) -> String {
     )
 }
 
-/// A number of rows with its thousands apart: 1 000 000.
+/// A number of rows with its thousands separated: 1 000 000.
 pub(super) fn grouped(number: usize) -> String {
     let digits = number.to_string();
     if digits.len() < 5 {
@@ -169,7 +169,7 @@ impl InvalidProfile {
         }
     }
 
-    /// Whether another smoothing mends it, and not other rows.
+    /// Whether a different smoothing would solve it, rather than different rows.
     pub fn is_of_smoothing(&self) -> bool {
         matches!(self, Self::Cutoff { .. } | Self::Empty { .. } | Self::Unsolved(_))
     }
@@ -189,7 +189,7 @@ pub(super) fn check(radii: &[f64], gaps: &[f64]) -> Result<(), InvalidProfile> {
     if radii[0] < 0.0 {
         return Err(InvalidProfile::Negative { row: 0, radius: radii[0] });
     }
-    // Averaged rows may be as close as they are.
+    // Rows that are averaged may be arbitrarily close.
     let closest = if radii.len() > MOST_KNOTS { 0.0 } else { CLOSEST * largest(radii) };
     for (row, pair) in radii.windows(2).enumerate() {
         if pair[1] - pair[0] <= closest {

@@ -24,7 +24,7 @@ fn derivatives_agree_with_central_differences_between_the_rows() {
     let radii = even(300, 0.5);
     let profile = ProfileGap::new(&radii, &sampled(&wavy(), &radii), Smoothing::None).unwrap();
     for i in 1..299 {
-        // In the middle of a piece, over less than its width: there h is one cubic and h''' its own.
+        // In the middle of a piece, over less than its width: there h is a single cubic with a single h'''.
         let r = 0.5 * (radii[i] + radii[i + 1]);
         check_two_derivatives(&profile, r, 0.1);
         let (e, at) = (1e-4, profile.jet(r));
@@ -53,7 +53,7 @@ fn it_passes_the_rows_and_nears_the_gap_in_the_fourth_order() {
 
 #[test]
 fn a_measured_paraboloid_stays_one() {
-    // In odd units, with the heights counted from elsewhere, and not from the axis.
+    // In unusual units, with the heights measured from another level, and without a row on the axis.
     let radii: Vec<f64> = even(50, 3e-4).into_iter().skip(1).collect();
     let gaps: Vec<f64> = radii.iter().map(|r| 5e-6 + r * r / (2.0 * 2e-2)).collect();
     for smoothing in [Smoothing::None, Smoothing::Cutoff(1e-4), Smoothing::Auto] {
@@ -163,7 +163,7 @@ fn many_rows_are_averaged_in_cells() {
     assert!((cells.width / 1.25e-4 - 1.0).abs() < 1e-12);
     // The axis, every mean, the last row.
     assert_eq!((profile.knots().len(), profile.largest_radius()), (MOST_KNOTS + 2, Some(0.5)));
-    // A cell mean passes sin(x)/x of the wave, x = πw/λ.
+    // A cell mean passes the share sin(x)/x of the wave, x = πw/λ.
     let x = std::f64::consts::PI * cells.width / 0.1;
     let lost = 0.0025 * TAU / 0.1 * (1.0 - x.sin() / x);
     assert!(error(&profile, 0.45) < 2.0 * lost + 1e-7, "{}", error(&profile, 0.45));
@@ -171,7 +171,7 @@ fn many_rows_are_averaged_in_cells() {
         profile.remarks(&UnitSystem::Reduced),
         ["40 001 rows averaged in 4000 cells of 0.000125: waves shorter than 0.0005 are not in the gap"]
     );
-    // As many rows as there may be knots are knots.
+    // All rows are knots as long as there are no more than the largest number of knots.
     let radii = even(3999, 0.5);
     let profile = ProfileGap::new(&radii, &sampled(&wavy(), &radii), Smoothing::None).unwrap();
     assert_eq!(
@@ -204,7 +204,7 @@ fn averaging_takes_noise_away_and_leaves_the_wave() {
 
 #[test]
 fn a_cutoff_passes_half_of_its_wave_through_cells_too() {
-    // Beside the wave a parabola, of which the paraboloid takes nearly all.
+    // Besides the wave there is a parabola, nearly all of which the paraboloid takes.
     let (n, wavelength) = (100_000, 0.02);
     let radii = even(n, 1.0);
     let gaps: Vec<f64> = radii.iter().map(|r| r * r / 2.0 + 1e-3 * (TAU * r / wavelength).cos()).collect();
@@ -263,7 +263,7 @@ fn empty_cells_are_refused_with_their_radius_and_a_cutoff_that_works() {
         let cutoff = works.parse().unwrap();
         assert!(ProfileGap::new(&radii, &gaps, Smoothing::Cutoff(cutoff)).is_ok(), "{said}");
     }
-    // Without half of the radii no cutoff helps.
+    // With so many radii missing, no cutoff helps.
     let radii: Vec<f64> = even(50_000, 0.5).into_iter().filter(|r| !(0.2..0.4).contains(r)).collect();
     let said = ProfileGap::new(&radii, &noisy(&radii, 1e-5), Smoothing::None).unwrap_err().to_string();
     assert!(
@@ -285,7 +285,7 @@ fn it_does_not_matter_how_many_rows_fall_in_a_cell() {
     radii.dedup();
     let profile = ProfileGap::new(&radii, &sampled(&wavy(), &radii), Smoothing::None).unwrap();
     assert!(error(&profile, 0.49) < 1e-4, "{}", error(&profile, 0.49));
-    // As many as the cells, to rounding on their borders, and a few more.
+    // As many rows as cells, up to rounding at their borders, and a few more.
     for n in [4000, 4001, 4100, 5500, 7999, 8000, 8001] {
         let radii = even(n, 0.5);
         let profile = ProfileGap::new(&radii, &sampled(&wavy(), &radii), Smoothing::None).unwrap();

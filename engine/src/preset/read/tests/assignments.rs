@@ -36,7 +36,7 @@ fn none_takes_an_optional_value_away() {
     assert_eq!(rated.get("path.rate"), Some(2.0.into()));
     let mut preset = read_with("w.toml", &text, &["path.rate=none"]).unwrap();
     assert_eq!(preset.get("path.rate"), None);
-    // The start given instead stays: none is no rival.
+    // The other start given stays: none is no rival.
     assert_eq!(
         read_with("w.toml", &text, &["path.start_approach=none"]).unwrap().path.start,
         rated.path.start

@@ -50,7 +50,7 @@ fn formulas_and_waves_read() {
     let formula = "gap.formula=r^2/(2*R) + b*r^4";
     let other = with(&[formula, "gap.parameters.R=2", "gap.parameters.b=1"]);
     assert_eq!(other.get("gap.parameters.R"), Some(2.0.into()));
-    // A name without a value is not guessed.
+    // No value is guessed for a name without one.
     for (set, message) in [
         (formula, "the formula needs a value for gap.parameters.b, as gap.parameters.b=1"),
         (
@@ -133,7 +133,7 @@ fn harmonics_have_waves() {
     assert!(read("h.toml", &one).is_ok());
     let message = read_with("h.toml", &one, &["gap.waves=[]"]).unwrap_err().to_string();
     assert!(message.contains(words), "{message}");
-    // A table that is misspelt is named, and not missed as well.
+    // A misspelt table is reported, and not also reported as missing.
     let misspelt = read("h.toml", &one.replace("[[gap.waves]]", "[[gap.wave]]")).unwrap_err();
     assert_eq!(misspelt.mistakes.len(), 1, "{misspelt:?}");
 }
@@ -155,7 +155,7 @@ fn a_gap_that_falls_from_the_axis_everywhere_is_refused() {
             let words = "f.toml:6: gap.formula: the gap falls from the axis outward at every radius";
             assert!(message.starts_with(words), "{formula}, {path}: {message}");
         }
-        // Somewhere each of these rises: where, and whether a state is possible, is not for the reader to say.
+        // Each of these rises somewhere: where, and whether a state is possible, is not for the reader to decide.
         for formula in
             ["r^2", "0", "-r^2 + r^4", "r^2 - r^4/9", "-r^2 + 0.001*sin(100*r)", "-0.001*sin(40*r)"]
         {

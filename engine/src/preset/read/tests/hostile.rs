@@ -67,7 +67,7 @@ proptest! {
         }
     }
 
-    /// Lines doubled, dropped, swapped, cut, or with a value that nobody means.
+    /// Lines duplicated, dropped, swapped, cut, or with a value that nobody means.
     #[test]
     fn no_damaged_lines_bring_the_reader_down(
         which in 0..5usize,
@@ -143,7 +143,7 @@ const VALUES: &[&str] = &[
     "\"r^-1\"",
 ];
 
-/// A preset that holds up, or mistakes with a place, in words that a terminal can show.
+/// A sound preset, or mistakes with a place, in words that a terminal can show.
 fn sound_or_refused(text: &str) {
     match crate::fixtures::read("p.toml", text) {
         Ok(preset) => {
