@@ -1,7 +1,7 @@
-//! A preset made ready for the engine: its problem reduced, its basis built, its start found.
+//! A preset prepared for the engine: its problem reduced, its basis built, its start found.
 //!
-//! Everything that computes for a person (the commands, the explorer's worker, the benches) begins here, so
-//! they all see the same numbers.
+//! Everything that computes for a user (the commands, the explorer's worker, the benches) begins here, so that all of
+//! them see the same numbers.
 
 use crate::continuation::Branch;
 use crate::disc::table::KeptTables;
@@ -33,7 +33,7 @@ use std::sync::{Arc, Mutex};
 /// Points of an arc-length trace before it stops.
 pub const TRACE_POINTS: usize = 20_000;
 
-/// A preset made ready for the engine.
+/// A preset prepared for the engine.
 #[derive(Debug, Clone)]
 pub struct Case {
     /// The problem in the user's units.
@@ -54,13 +54,15 @@ pub struct Case {
     pub start: f64,
     /// The contact radius at the end, reduced.
     pub end: f64,
-    /// Where a loop turns round, reduced; none leaves it to the start.
+    /// Where a loop turns round, reduced; `None` means at the start.
     pub turn: Option<Turn>,
-    /// What a closing edge gains where that is less than the work of adhesion, reduced; the edge at the start is one that closed.
+    /// What a closing edge gains if that is less than the work of adhesion, reduced; the edge at the start is one that
+    /// has closed.
     pub closing: Option<f64>,
-    /// Tabor's μ, where it is known.
+    /// Tabor's μ, if it is known.
     pub tabor: Option<f64>,
-    /// The tension and the range of adhesion that has one, reduced; paths and the curves of its zones know it.
+    /// The tension and the range of an adhesion that has a range, reduced; paths and the curves of its zones take it
+    /// into account.
     pub cohesion: Option<Cohesion>,
     /// How the adhesion is stated.
     pub adhesion: Adhesion,
@@ -103,13 +105,13 @@ pub enum CaseError {
         /// Prints both.
         printer: Box<Printer>,
     },
-    /// Adhesion with a range, in what knows none.
+    /// Adhesion with a range, in a computation that does not support it.
     #[error(
         "material.adhesion = \"{word}\": the explorer, trace, unload, cycle, fit and sweeps compute adhesion with a range, this does not; \
          \"short-range\" is computed everywhere"
     )]
     HasRange {
-        /// Its word.
+        /// The word for that adhesion.
         word: &'static str,
     },
     /// There is no path.
@@ -120,25 +122,25 @@ pub enum CaseError {
         /// Prints its numbers.
         printer: Box<Printer>,
     },
-    /// It was no longer wanted.
+    /// The result was no longer wanted.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
 
 impl Case {
-    /// Makes `preset` ready: builds or reuses its basis and finds its start state.
+    /// Prepares `preset`: builds or reuses its basis and finds its start state.
     ///
     /// # Errors
-    /// [`CaseError`] when the basis or the start state cannot be had.
+    /// [`CaseError`] if the basis or the start state cannot be made.
     pub fn new(preset: &Preset) -> Result<Self, CaseError> {
         Self::prepare(preset, &Unwatched)
     }
 
-    /// The same for a basis that takes long: `progress` is told the share of it that is built, and may stop it.
+    /// The same for a basis that takes long: `progress` is told the share of the basis that is built, and may stop it.
     ///
     /// # Errors
-    /// As [`Case::new`], and [`CaseError::Stopped`] when `progress` said stop. [`CaseError::HasRange`] where the adhesion has a range:
-    /// who asks for a case expects the states of short-range adhesion.
+    /// As [`Case::new`], and [`CaseError::Stopped`] if `progress` said stop. [`CaseError::HasRange`] if the adhesion
+    /// has a range: callers of this function expect the states of short-range adhesion.
     pub fn prepare(preset: &Preset, progress: &dyn Progress) -> Result<Self, CaseError> {
         if preset.cohesion().is_some() {
             return Err(CaseError::HasRange { word: preset.material.adhesion.name() });
@@ -146,7 +148,7 @@ impl Case {
         Self::with_range(preset, progress)
     }
 
-    /// The same for what knows adhesion with a range, where [`Case::cohesion`] is not to be overlooked.
+    /// The same for callers that support adhesion with a range and do not overlook [`Case::cohesion`].
     ///
     /// # Errors
     /// As [`Case::prepare`].
@@ -189,7 +191,7 @@ impl Case {
             error => CaseError::Start { error, printer: Box::new(printer.clone()) },
         })?;
         if preset.basis == BasisSpec::Exact {
-            // From here on the start decides how far it reaches, however it was given.
+            // However the start was given, from here on it decides how far the basis reaches.
             basis = Arc::new(ExactBasis::new(Arc::clone(&table), start));
         }
         let end = preset.end_contact_radius(start * units.length) / units.length;
@@ -221,7 +223,7 @@ impl Case {
     /// The table of g from the axis to the start.
     ///
     /// # Errors
-    /// [`CaseError::Table`], and [`CaseError::Stopped`] when `progress` said stop.
+    /// [`CaseError::Table`], and [`CaseError::Stopped`] if `progress` said stop.
     pub fn panels(&self, progress: &dyn Progress) -> Result<Arc<Panels>, CaseError> {
         self.panels_to(self.start, progress)
     }
@@ -250,7 +252,7 @@ impl Case {
         control.in_units(1.0 / self.units().stiffness)
     }
 
-    /// The controls whose limit points are reported: displacement, force, and the device where it is a spring.
+    /// The controls whose limit points are reported: displacement, force, and the device if it is a spring.
     pub fn controls(&self) -> Vec<Control> {
         let mut controls = vec![Control::Displacement, Control::Force];
         if !controls.contains(&self.control) {
@@ -262,12 +264,12 @@ impl Case {
     /// The curve from start to end.
     ///
     /// # Errors
-    /// [`CaseError::Start`] when there is no equilibrium at the start, [`CaseError::Stopped`] when `progress` said stop.
+    /// [`CaseError::Start`] if there is no equilibrium at the start, [`CaseError::Stopped`] if `progress` said stop.
     pub fn curve(&self, progress: &dyn Progress) -> Result<Curve, CaseError> {
         self.curve_in(Detail::Drawn, progress)
     }
 
-    /// The same with as many states as asked for.
+    /// The same with as many states as `detail` asks for.
     ///
     /// # Errors
     /// As [`Case::curve`].
@@ -300,10 +302,10 @@ impl Case {
         curve.ok_or_else(|| self.no_start())
     }
 
-    /// The same stretch of `curve` by arc-length continuation, and why it ends.
+    /// The same stretch of `curve` by arc-length continuation, with the reason why it ends.
     ///
     /// # Errors
-    /// [`CaseError::Start`] when there is no equilibrium at the start.
+    /// [`CaseError::Start`] if there is no equilibrium at the start.
     pub fn trace(&self, curve: &Curve) -> Result<(Branch, CurveStop), CaseError> {
         self.trace_while(curve, &Unwatched)
     }
@@ -311,7 +313,7 @@ impl Case {
     /// The same; `progress` is asked before each point.
     ///
     /// # Errors
-    /// As [`Case::trace`], and [`CaseError::Stopped`] when `progress` said stop.
+    /// As [`Case::trace`], and [`CaseError::Stopped`] if `progress` said stop.
     pub fn trace_while(
         &self,
         curve: &Curve,
@@ -322,12 +324,12 @@ impl Case {
         traced.ok_or_else(|| self.no_start())
     }
 
-    /// What a path is asked for: the device and the contacts of the preset, losses twice, states to draw.
+    /// The setting of a path: the device and the contacts of the preset, losses computed in both ways, states to draw.
     pub fn setting(&self) -> PathSetting<'static> {
         PathSetting { contact: self.contact, closing: self.closing, ..PathSetting::new(self.control) }
     }
 
-    /// The same for an unloading, which ring elements follow as one disc.
+    /// The same for an unloading, in which ring elements follow a single disc.
     pub fn setting_of_unloading(&self) -> PathSetting<'static> {
         let contact = if self.has_elements { ContactKind::OneDisc } else { self.contact };
         PathSetting { contact, ..self.setting() }
@@ -336,23 +338,23 @@ impl Case {
     /// The quasi-static unloading along `curve`, reduced; `progress` is asked often.
     ///
     /// # Errors
-    /// [`CaseError::Path`] where there is none, [`CaseError::Stopped`] when `progress` said stop.
+    /// [`CaseError::Path`] if there is none, [`CaseError::Stopped`] if `progress` said stop.
     pub fn unload(
         &self,
         curve: &Curve,
         setting: &PathSetting<'_>,
         progress: &dyn Progress,
     ) -> Result<Path, CaseError> {
-        // The equations of a curve of zones are not those of its states.
+        // For adhesion with a range, the equations of the curve are not those of its states.
         if let Some(path) = self.unload_in_zone(setting, progress)? {
             return Ok(path);
         }
         unload(curve, setting, progress).map_err(|error| self.no_path(error, setting.control))
     }
 
-    /// The whole loop, reduced: from apart to the first touch, up to `turn` (reduced; that of the preset, or the start of its
-    /// unloading, where none is given) and down until the bodies are apart. `progress` is asked before each step with the share of the
-    /// way that is done, roughly.
+    /// The whole loop, reduced: from apart to the first touch, up to `turn` and down until the bodies are apart. `turn`
+    /// is reduced; if it is not given, it is that of the preset or the start of its unloading. `progress` is asked
+    /// before each step, with the rough share of the way that is done.
     ///
     /// # Errors
     /// As [`Case::unload`].
@@ -371,8 +373,8 @@ impl Case {
             .map_err(|error| self.no_path(error, setting.control))
     }
 
-    /// The unloading from the start with adhesion that has a range, reduced; `None` of short-range adhesion, which has a curve to
-    /// [`unload`](Self::unload) along.
+    /// The unloading from the start for adhesion with a range, reduced; `None` for short-range adhesion, which has a
+    /// curve to [`unload`](Self::unload) along.
     ///
     /// # Errors
     /// As [`Case::unload`].
@@ -382,16 +384,16 @@ impl Case {
         progress: &dyn Progress,
     ) -> Result<Option<Path>, CaseError> {
         let Some(law) = self.cohesion else { return Ok(None) };
-        // Zones hold on below the smallest contact: the way down ends apart.
+        // Zones persist below the smallest contact, so the way down ends with the bodies apart.
         unload_in_zone(&self.table, law, self.start, setting, progress)
             .map(Some)
             .map_err(|error| self.no_path(error, setting.control))
     }
 
-    /// The equilibria of adhesion with a range as far out as the start.
+    /// The equilibria of adhesion with a range, as far out as the start.
     ///
     /// # Errors
-    /// [`CaseError::Path`] where the start has none, [`CaseError::Stopped`] when `progress` said stop.
+    /// [`CaseError::Path`] if the start has none, [`CaseError::Stopped`] if `progress` said stop.
     pub fn zones(&self, progress: &dyn Progress) -> Result<Zones, CaseError> {
         let law = self.cohesion.unwrap_or(Cohesion { strength: f64::NAN, range: f64::NAN });
         Zones::up_to(&self.table, law, self.start, progress)
@@ -404,8 +406,9 @@ impl Case {
         refused_path(error, self.printer().under(control))
     }
 
-    /// What is to be said where the events of an unloading of averaged rows depend on how finely they are averaged: with cells
-    /// twice as wide others are found. `None` where they are the same, or the gap is no profile of averaged rows.
+    /// A warning if the events of an unloading on averaged rows depend on how finely the rows are averaged, because
+    /// other events are found with cells twice as wide. `None` if they are the same, or if the gap is not a profile of
+    /// averaged rows.
     pub fn unsettled(&self, path: &Path, progress: &dyn Progress) -> Option<String> {
         let Shape::Profile(measured) = &self.problem.shape else { return None };
         let profile = measured.coarser()?;
@@ -436,19 +439,19 @@ impl Case {
         smooth(*effective_modulus, *work_of_adhesion, shape)
     }
 
-    /// Its pull-off force `P_c`, where there is one and it adheres.
+    /// The pull-off force `P_c` of that sphere, if there is one and it adheres.
     pub fn critical_force(&self) -> Option<f64> {
         pull_off_force(self.smooth())
     }
 
-    /// What to be careful about, for a largest contact of radius `largest` (reduced).
+    /// Warnings for a largest contact of radius `largest` (reduced).
     pub fn warnings(&self, largest: f64) -> Vec<String> {
         let mut warnings = self.warnings_of_problem();
         warnings.extend(self.basis.cautions(&self.reduced, largest));
         warnings
     }
 
-    /// The same where no basis is asked.
+    /// The same without those of the basis.
     pub fn warnings_of_problem(&self) -> Vec<String> {
         let mut warnings = self.problem.shape.notes(&self.shown);
         if let Some(tabor) = self.tabor.filter(|tabor| self.cohesion.is_none() && *tabor < LARGE_TABOR) {
@@ -461,7 +464,7 @@ impl Case {
         warnings
     }
 
-    /// What is to be said of states that know no dead band, where there is one.
+    /// A warning, if there is a dead band, about states that do not include it.
     pub fn warning_of_dead_band(&self) -> Option<String> {
         self.closing?;
         Some(
@@ -482,7 +485,7 @@ impl Case {
         )
     }
 
-    /// What else is worth knowing, for a largest contact of radius `largest` (reduced).
+    /// Other remarks worth knowing, for a largest contact of radius `largest` (reduced).
     pub fn notes(&self, largest: f64) -> Vec<String> {
         let text = if self.reduced.work_of_adhesion > 0.0 {
             "the gap falls within the contact: without adhesion it would not be one connected disc. Whether the bodies stay \
@@ -508,7 +511,7 @@ impl Case {
     }
 }
 
-/// The smooth sphere of the curvature of `shape`, which may have none.
+/// The smooth sphere with the curvature of `shape`; `None` if the shape has no curvature.
 fn smooth(effective_modulus: f64, work_of_adhesion: f64, shape: &Shape) -> Option<Jkr> {
     Some(Jkr { effective_modulus, work_of_adhesion, radius_of_curvature: shape.radius_of_curvature()? })
 }
@@ -517,18 +520,18 @@ fn pull_off_force(smooth: Option<Jkr>) -> Option<f64> {
     smooth.map(|jkr| jkr.pull_off_force()).filter(|force| *force > 0.0)
 }
 
-/// [`Case::critical_force`] of a preset that is not made ready.
+/// [`Case::critical_force`] of a preset that is not prepared.
 pub fn critical_force(preset: &Preset) -> Option<f64> {
     let Material { effective_modulus, work_of_adhesion, .. } = preset.material;
     pull_off_force(smooth(effective_modulus, work_of_adhesion, &preset.gap))
 }
 
-/// The tables of the last gaps, by shape and unit of length.
+/// The tables of the last gaps used, by shape and unit of length.
 static TABLES: KeptTables<(Shape, u64)> = Mutex::new(Vec::new());
 
-/// How far the table of a gap reaches to begin with.
+/// How far the table of a gap reaches at first.
 fn reach(reduced: &Reduced, wanted: Start) -> f64 {
-    // Twice the paraboloid of R = 1 with its adhesion: as far as a start is looked for first.
+    // Twice the contact on a paraboloid of R = 1 with its adhesion: the first distance to which a start is looked for.
     let unit = |elastic: f64| 2.0 * elastic.max(cbrt(reduced.work_of_adhesion));
     match wanted {
         Start::ContactRadius(s) => s,
@@ -537,7 +540,8 @@ fn reach(reduced: &Reduced, wanted: Start) -> f64 {
     }
 }
 
-/// The table of the gap, shared by all problems with the same gap: adhesion, modulus, device and start are no part of it.
+/// The table of the gap, shared by all problems with the same gap: adhesion, modulus, device and start do not affect
+/// it.
 pub(crate) fn table(
     shape: &Shape,
     reduced: &Reduced,

@@ -1,7 +1,7 @@
-//! Tables of text from instruments taken apart: cells, headers with units, and the list of what is wrong in which line.
+//! Splits text tables from instruments: cells, headers with units, and the list of what is wrong in which line.
 //!
-//! The text is taken apart here and not by a CSV library, since the parting character is not known beforehand, spaces
-//! come in runs, and every fault must name its line.
+//! The text is split here and not by a CSV library, because the separator is not known beforehand, spaces come in runs,
+//! and every fault must name its line.
 
 use crate::text::{is_unsafe, quote};
 use crate::units::{Dimension, Unit};
@@ -33,7 +33,7 @@ impl<F> Default for Faults<F> {
 }
 
 impl<F> Faults<F> {
-    /// One more, in `line`.
+    /// Adds one more fault, in `line`.
     pub fn add(&mut self, line: usize, fault: F) {
         if self.shown.len() < FAULTS_SHOWN {
             self.shown.push((line, fault));
@@ -41,7 +41,7 @@ impl<F> Faults<F> {
         self.total += 1;
     }
 
-    /// These and `more`, in the order of their lines.
+    /// These faults and `more`, in the order of their lines.
     #[must_use]
     pub fn and(mut self, more: impl Iterator<Item = (usize, F)>) -> Self {
         let mut other = Self::default();
@@ -66,13 +66,13 @@ impl<F: fmt::Display> fmt::Display for Faults<F> {
     }
 }
 
-/// What is wrong with a line, whatever its columns are.
+/// What is wrong with a line, regardless of its columns.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum LineFault {
     /// The line is far too long.
     #[error("has {0} bytes, more than the {LONGEST_LINE} of a row")]
     Long(usize),
-    /// Characters that are not for the eye.
+    /// Characters that cannot be seen.
     #[error("holds control or invisible characters")]
     Unprintable,
 }
@@ -86,7 +86,7 @@ pub enum CellFault {
     /// Not a number.
     #[error("the {what} \"{text}\" is no number{}", if text.contains(',') { " (decimals have a point)" } else { "" })]
     Number {
-        /// What it holds.
+        /// What the cell should hold.
         what: &'static str,
         /// Its text, safe to show.
         text: String,
@@ -96,7 +96,7 @@ pub enum CellFault {
         "the {what} \"{text}\" is out of range: it must be a number from -{LARGEST_NUMBER:e} to {LARGEST_NUMBER:e}"
     )]
     Range {
-        /// What it holds.
+        /// What the cell should hold.
         what: &'static str,
         /// Its text, safe to show.
         text: String,
@@ -113,38 +113,38 @@ pub fn number(text: &str, what: &'static str) -> Result<f64, CellFault> {
     }
     let number: f64 = text.parse().map_err(|_| CellFault::Number { what, text: quote(text) })?;
     if number.abs() <= LARGEST_NUMBER {
-        // -0 is 0, so that rows are compared as numbers.
+        // -0 becomes 0, so that rows can be compared as numbers.
         Ok(number + 0.0)
     } else {
         Err(CellFault::Range { what, text: quote(text) })
     }
 }
 
-/// Whether a line holds what is not for the eye; a tab parts cells.
+/// Whether a line holds characters that cannot be seen; a tab is allowed, because it separates cells.
 pub fn is_unprintable(line: &str) -> bool {
     line.chars().any(|c| c != '\t' && is_unsafe(c))
 }
 
-/// What parts the cells of a line.
+/// What separates the cells of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Separator {
     /// One character.
     Character(char),
     /// Any run of spaces.
     Spaces,
-    /// Two spaces or more: names that have spaces themselves.
+    /// Two spaces or more, for names that contain spaces themselves.
     Wide,
-    /// A comma and a space, where commas without one stand in numbers.
+    /// A comma and a space, for lines in which commas without a space belong to numbers.
     CommaSpace,
 }
 
 impl Separator {
-    /// What a line shows.
+    /// The separator that a line shows.
     pub fn of(line: &str) -> Self {
         [';', '\t', ','].into_iter().find(|c| line.contains(*c)).map_or(Self::Spaces, Self::Character)
     }
 
-    /// The cells of a row. What stands in quotation marks is not parted.
+    /// The cells of a row. Text in quotation marks is not split.
     pub fn cells(self, line: &str) -> Vec<&str> {
         match self {
             Self::Character(c) if line.contains('"') => quoted(line, |at| at == c),
@@ -169,7 +169,7 @@ fn quoted(line: &str, parts: impl Fn(char) -> bool) -> Vec<&str> {
     line.split(parting).map(bare).collect()
 }
 
-/// A cell without the space and the quotation marks around it.
+/// A cell without the spaces and the quotation marks around it.
 pub fn bare(cell: &str) -> &str {
     let cell = cell.trim();
     cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')).map_or(cell, str::trim)
@@ -180,7 +180,7 @@ pub fn remark(line: &str) -> Option<&str> {
     ["#", "%", "//"].into_iter().find_map(|mark| line.strip_prefix(mark))
 }
 
-/// A line before the first row of which no cell begins a number.
+/// Whether a line before the first row is a header: no cell of it is a number, and it does not begin like one.
 pub fn is_header(line: &str) -> bool {
     let cells = Separator::of(line).cells(line);
     cells.iter().any(|cell| cell.chars().any(char::is_alphabetic))
@@ -188,13 +188,13 @@ pub fn is_header(line: &str) -> bool {
         && !line.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
 }
 
-/// A column as a header has it: its name, and its unit as written.
+/// A column as given in a header: its name, and its unit as written.
 pub type ColumnHead = (String, Option<String>);
 
-/// The columns of a header: a unit stands in brackets or parentheses, or, where it is one of `dimensions`, behind a slash or a
-/// space.
+/// The columns of a header. A unit stands in brackets or parentheses, or, if its dimension is one of `dimensions`,
+/// after a slash or a space.
 ///
-/// What stands in brackets is not parted, and belongs to the cell before it.
+/// Text in brackets is not split, and belongs to the cell before it.
 pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<ColumnHead> {
     let mut cells: Vec<ColumnHead> = Vec::new();
     let mut at: ColumnHead = Default::default();
@@ -204,7 +204,7 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
             (Some((close, unit)), _) if c == *close => {
                 let unit = unit.trim().to_owned();
                 open = None;
-                // Spaces between a name and its unit have opened a cell too many.
+                // Spaces between a name and its unit have started one cell too many.
                 if separator == Separator::Spaces
                     && at.0.is_empty()
                     && let Some(before) = cells.pop()
@@ -238,9 +238,10 @@ pub fn heads(line: &str, separator: Separator, dimensions: &[Dimension]) -> Vec<
     cells.into_iter().map(apart).collect()
 }
 
-/// A name with its unit behind a slash or a space, where that is one of `dimensions`: `r / um`, `height nm`.
+/// A name with its unit after a slash or a space, if the unit's dimension is one of `dimensions`: `r / um`,
+/// `height nm`.
 ///
-/// Another word there may be anything: `r/R` is a ratio.
+/// Any other word there may mean anything: `r/R` is a ratio.
 fn unbracketed(text: &str, dimensions: &[Dimension]) -> ColumnHead {
     let is_unit = |unit: &str| Unit::parse(unit, 0).is_ok_and(|unit| dimensions.contains(&unit.dimension()));
     let parted = text.rsplit_once('/').or_else(|| text.rsplit_once(char::is_whitespace));

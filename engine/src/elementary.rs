@@ -1,10 +1,11 @@
-//! The elementary functions of everything here, the same to the last bit on every machine.
+//! The elementary functions used everywhere in this crate, the same to the last bit on every machine.
 //!
-//! A function of `f64` such as `sin` is the library's of the machine: glibc's and musl's round differently in the last
-//! digit, and one library differs from processor to processor. These are the crate `libm`'s, in Rust alone. Only +, −, ×, ÷,
-//! √ and the fused product are the same everywhere by themselves, and `powi`, which is a loop of products.
+//! A function of `f64` such as `sin` comes from the machine's library: those of glibc and musl round differently in the
+//! last digit, and even one library differs from processor to processor. The functions here are those of the crate
+//! `libm`, in pure Rust. Only +, −, ×, ÷, √, the fused product, and `powi`, which is a loop of products, are the same
+//! everywhere by themselves.
 //!
-//! `pow` is the slowest of them by far: take √ or `cbrt` and products where the exponent is known.
+//! `pow` is by far the slowest of them: use √ or `cbrt` and products if the exponent is known.
 
 macro_rules! of_the_crate {
     ($($name:ident($($x:ident),+) = $theirs:ident;)+) => {

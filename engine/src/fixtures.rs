@@ -17,7 +17,7 @@ pub fn preset(name: &str) -> Preset {
     read(name, &text(name)).unwrap()
 }
 
-/// Files as the program has them: its own data, and the disk.
+/// Files as the program supplies them: its own data, and the disk.
 pub const FILES: Files = Files { rows: load, points };
 
 /// The bytes of a file.
@@ -38,7 +38,7 @@ pub fn load(folder: Option<&Path>, name: &str) -> Result<ProfileRows, String> {
     rows(folder, name, parse(&points(folder, name)?).map_err(|error| error.to_string())?)
 }
 
-/// A preset that may name files.
+/// A preset whose text may name files.
 pub fn read(name: &str, text: &str) -> Result<Preset, crate::preset::ReadError> {
     read_in(FILES, None, name, text, &[] as &[&str])
 }

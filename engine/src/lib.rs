@@ -1,20 +1,20 @@
-//! Adhesive contact of two elastic bodies, from the text of a problem to a report: equilibrium curves of the force P, the
-//! approach δ and the contact radius s, their limit points, the jumps at them and what each dissipates.
+//! Adhesive contact of two elastic bodies, from the text of a problem to a report: equilibrium curves of the force P,
+//! the approach δ and the contact radius s, their limit points, the jumps at these, and what each jump dissipates.
 //!
-//! Two elastic half-spaces with the effective modulus E* are a gap h(r) apart before they touch. Pressed to the approach δ
-//! they stick on a disc of radius s, and the state is in equilibrium where the potential is stationary in s:
+//! Two elastic half-spaces with the effective modulus E* have a gap h(r) between them before they touch. Pressed to the
+//! approach δ they stick on a disc of radius s, and the state is in equilibrium where the potential is stationary in s:
 //!
 //! ```text
 //! U(δ, s) = E* ∫₀ˢ (δ − g(a))² da − π s² γ,     g(a) = a ∫₀^{π/2} h'(a sin θ) dθ,     ∂U/∂s = 0
 //! ```
 //!
-//! with γ the work of adhesion. On a wavy gap the curve of such states has folds, and a pulled contact jumps across them.
-//! The method is the variational principle of J. J. Kalker (1977) with the ring elements of its source paper, or exact by
-//! the transform g of I. N. Sneddon (1965), doi:10.1016/0020-7225(65)90019-4, for any gap.
+//! with γ the work of adhesion. On a wavy gap the curve of such states has folds, and a pulled contact jumps across
+//! them. The method is either the variational principle of J. J. Kalker (1977) with the ring elements of its source
+//! paper, or, exact for any gap, the transform g of I. N. Sneddon (1965), doi:10.1016/0020-7225(65)90019-4.
 //!
 //! # A first computation
 //!
-//! A wavy sphere pulled off at given approach: its edge jumps seven times from wave to wave before it lets go.
+//! A wavy sphere pulled off at a given approach: its edge jumps seven times from wave to wave before it lets go.
 //!
 //! ```
 //! use pulloff_engine::{Adhesion, Extent, Material, PathReport, Preset, Shape, Start, Unwatched};
@@ -36,8 +36,9 @@
 //!
 //! | to | take |
 //! |---|---|
-//! | state a problem | [`Preset`] (in code, or its text by [`read`](fn@read), with files by [`read_in`]), [`Shape`], [`Material`], [`Control`], [`Start`] |
-//! | make it ready | [`Case`]: reduced, its basis built, its start found |
+//! | state a problem in code | [`Preset`], [`Shape`], [`Material`], [`Control`], [`Start`] |
+//! | read one from its text | [`read`](fn@read), with files [`read_in`] |
+//! | prepare it | [`Case`]: reduced, its basis built, its start found |
 //! | follow the curve | [`Case::curve`], [`Curve`], [`Case::trace`] |
 //! | unload, or press and unload | [`Case::unload`], [`Case::cycle`], [`Path`], [`Event`] |
 //! | look inside one state | [`Profile`], [`Landscape`], [`Admissibility`] |
@@ -45,22 +46,22 @@
 //! | pull at a rate | [`PullReport`] |
 //! | fit a measured curve | [`FitReport`] |
 //! | compute many problems | [`sweep::Spec`] |
-//! | have it as JSON, CSV or a table | [`TraceReport`], [`PathReport`], [`VerifyReport`] and the others, [`json`] |
+//! | get the result as JSON, CSV or a table | [`TraceReport`], [`PathReport`], [`VerifyReport`] and the others, [`json`] |
 //!
-//! Nothing here reads a disk, a clock or the environment: texts of presets and rows of measured profiles come from the
-//! caller ([`Files`]).
+//! Nothing here reads a disk, a clock or the environment: the caller supplies texts of presets and rows of measured
+//! profiles ([`Files`]).
 //!
 //! # How it is built
 //!
-//! The rooms below stand on each other from the first to the last: none knows of a later one. The names at the root of the crate
-//! are what stays, as `public-items.txt` lists them; what is in a room only may change with any version.
+//! The modules below build on each other from first to last: none uses a later one. The names at the root of the crate
+//! are the stable ones, as `public-items.txt` lists them; whatever is only in a module may change with any version.
 //!
-//! | room | what lives there |
+//! | module | what lives there |
 //! |---|---|
 //! | [`elementary`], [`root`] | sin, exp, ln and such, the same on every machine; roots of functions of one number |
-//! | [`text`], [`units`], [`expression`] | quoting foreign text, dimensions and units, the one grammar of formulas and values |
+//! | [`text`], [`units`], [`expression`] | quoting foreign text, dimensions and units, the common grammar of formulas and values |
 //! | [`cells`] | tables of text from instruments |
-//! | [`gap`] | r → (h, h', h'', …), its breaks, panels on which it is resolved; one file per shape |
+//! | [`gap`] | r → (h, h', h'', …), its breaks, the panels that resolve it; one file per shape |
 //! | [`problem`] | E*, γ, the gap, the loading device, the start; reduced units, dimensionless groups |
 //! | [`continuation`] | arc-length continuation and the location of limit points for any system |
 //! | [`disc`] | one disc of contact, exactly: the table of g and what is read from it |
@@ -68,14 +69,14 @@
 //! | [`annuli`] | the state of a disc and any number of rings of contact |
 //! | [`zone`] | adhesion with a range: one disc of contact in one zone |
 //! | [`rate`] | one disc whose edge has a speed: pulls, times to failure |
-//! | [`theory`] | closed forms that share only functions and roots of one number with the above: Hertz, JKR, Guduru, Kesari-Lew; the judges |
+//! | [`theory`] | references in closed form that share only functions and roots with the above: Hertz, JKR, Guduru, Kesari-Lew |
 //! | [`quasistatic`] | the curve, devices, stability, jumps, losses, unloading, admissibility |
-//! | [`preset`], [`case`] | the table of keys, reading and writing presets; a preset made ready |
+//! | [`preset`], [`case`] | the table of keys, reading and writing presets; a preset prepared for the engine |
 //! | [`stability`] | the law of stability, limit points in two parameters, counts of snaps |
 //! | [`measured`], [`fit`] | measured curves, and the values of a preset that they give |
 //! | [`report`], [`verify`] | the one serializable form of results; our numbers against theory |
 //! | [`sweep`] | one preset over many values of its keys, row by row |
-//! | [`progress`] | who watches a long computation, and may end it |
+//! | [`progress`] | watching a long computation, and ending it |
 
 #![cfg_attr(
     test,
@@ -85,7 +86,7 @@
     )
 )]
 
-/// The page of the package, whose code is run with the tests.
+/// The page of the package, whose code is run as part of the tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 pub struct Readme;

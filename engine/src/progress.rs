@@ -1,22 +1,23 @@
-//! Who watches a long computation: it is told how far the computation is, and asked whether to end it.
+//! Watching a long computation: the watcher is told how far it is, and asked whether to end it.
 
 /// Watches a long computation.
 ///
-/// Every function of this crate that may take long takes one. It asks [`Progress::stop`] at least every 50 ms, mostly far more
-/// often: an answer should be cheap. A function without a parameter that says whether to stop is a `Progress`, too.
+/// Every function of this crate that may take long accepts one. It asks [`Progress::stop`] at least every 50 ms,
+/// usually far more often, so an answer should be cheap. A function without parameters that returns whether to stop is
+/// a `Progress` too.
 pub trait Progress {
-    /// Takes the share of the work that is done, from 0 to 1, roughly.
+    /// Takes the rough share of the work that is done, from 0 to 1.
     fn report(&self, share: f64) {
         _ = share;
     }
 
-    /// Whether to end, for the result is not wanted any more. Once yes, it must stay yes.
+    /// Whether to end, because the result is no longer wanted. Once it is true, it must stay true.
     fn stop(&self) -> bool;
 
     /// Asks [`Progress::stop`].
     ///
     /// # Errors
-    /// [`Stopped`] where it says yes.
+    /// [`Stopped`] if the answer is yes.
     fn go_on(&self) -> Result<(), Stopped> {
         if self.stop() { Err(Stopped) } else { Ok(()) }
     }
@@ -33,7 +34,7 @@ impl<F: Fn() -> bool> Progress for F {
     }
 }
 
-/// Nobody watches: the computation goes on to its end.
+/// Nobody watches: the computation runs to its end.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Unwatched;
 
@@ -43,7 +44,7 @@ impl Progress for Unwatched {
     }
 }
 
-/// One part of a longer computation: its share is a share of that part.
+/// One part of a longer computation: its shares are shares of that part.
 pub(crate) struct ProgressPart<'a> {
     whole: &'a dyn Progress,
     from: f64,
@@ -68,7 +69,7 @@ impl Progress for ProgressPart<'_> {
     }
 }
 
-/// Keeps the shares that it is told, and stops from the share `stop` on: for tests.
+/// Keeps the shares it is told, and stops from the share `stop` on: for tests.
 #[cfg(test)]
 pub(crate) struct Heard {
     pub(crate) told: std::cell::RefCell<Vec<f64>>,
@@ -93,7 +94,7 @@ impl Progress for Heard {
     }
 }
 
-/// Says stop from the question with this number on, the first being 0: for tests.
+/// Says stop from this question on, counted from 0: for tests.
 #[cfg(test)]
 pub(crate) fn until(questions: usize) -> impl Fn() -> bool {
     let asked = std::cell::Cell::new(0);

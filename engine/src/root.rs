@@ -1,9 +1,11 @@
-//! Roots of a function of one number: halving where only the side of the root is known, interpolation where the value is.
+//! Roots of a function of one number: by halving if only the side of the root is known, by interpolation if the value
+//! is.
 
-/// The last number found from `from` towards `to`, which may stand in either order, at which `stays` holds, and the first at which it
+/// The last number found from `from` towards `to` (in either order) at which `stays` holds, and the first at which it
 /// does not: the interval is halved until no number lies between.
 ///
-/// About sixty questions, and nothing that could miss. `stays` is taken to hold at `from` and not at `to`, neither of which is asked.
+/// About sixty calls, and nothing can be missed. `stays` is assumed to hold at `from` and not at `to`; neither is
+/// tested.
 pub fn halved(mut from: f64, mut to: f64, mut stays: impl FnMut(f64) -> bool) -> [f64; 2] {
     loop {
         let middle = 0.5 * (from + to);
@@ -14,14 +16,15 @@ pub fn halved(mut from: f64, mut to: f64, mut stays: impl FnMut(f64) -> bool) ->
     }
 }
 
-/// Where `f` changes its sign between `a` and `b`, which may stand in either order, by halving. Where `f` has one sign at both ends
-/// the answer is an end.
+/// Where `f` changes its sign between `a` and `b`, which may be in either order, by halving. If `f` has the same sign
+/// at both ends, the answer is one of the ends.
 pub fn sign_change(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let side = f(a) > 0.0;
     halved(a, b, |x| (f(x) > 0.0) == side)[1]
 }
 
-/// Where a function with one minimum between `lo` and `hi` is least, by the golden section: to half the digits of its values.
+/// Where a function with a single minimum between `lo` and `hi` is smallest, by golden-section search: to half the
+/// digits of its values.
 pub fn least(mut lo: f64, mut hi: f64, f: impl Fn(f64) -> f64) -> f64 {
     const SECTION: f64 = 0.618_033_988_749_894_9;
     const ROUNDS: usize = 48;
@@ -32,23 +35,24 @@ pub fn least(mut lo: f64, mut hi: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (lo + hi)
 }
 
-/// An interval between whose ends a function changes its sign.
+/// An interval with a change of sign of a function between its ends.
 ///
-/// It is narrowed by Chandrupatla's rule: inverse quadratic interpolation where three values allow it, halving elsewhere. T. R.
-/// Chandrupatla, Adv. Eng. Softw. 28, 145 (1997), doi:10.1016/S0965-9978(96)00051-8. The first place is that of the chord.
+/// It is narrowed by Chandrupatla's rule: inverse quadratic interpolation where three values allow it, halving
+/// elsewhere. T. R. Chandrupatla, Adv. Eng. Softw. 28, 145 (1997), doi:10.1016/S0965-9978(96)00051-8. The first place
+/// tried is that of the chord.
 #[derive(Debug, Clone)]
 pub struct RootBracket {
-    /// The place asked for last with its value, the end of the other sign, and what was left.
+    /// The place tried last with its value, the end of the other sign, and the end given up.
     last: [f64; 2],
     other: [f64; 2],
     left: Option<[f64; 2]>,
 }
 
 impl RootBracket {
-    /// Questions at most.
+    /// Most evaluations.
     const MOST: usize = 200;
 
-    /// Between two places with their values; `None` where these have one sign.
+    /// The bracket between two places with their values; `None` if these have the same sign.
     pub fn new(a: [f64; 2], b: [f64; 2]) -> Option<Self> {
         ((a[1] > 0.0) != (b[1] > 0.0)).then_some(Self { last: a, other: b, left: None })
     }
@@ -58,7 +62,7 @@ impl RootBracket {
         if (self.last[1] > 0.0) == positive { self.last[0] } else { self.other[0] }
     }
 
-    /// Asks until the next place lies within `near` of the last one. `None` where `f` has no value.
+    /// Evaluates until the next place lies within `near` of the last one. `None` if `f` has no value.
     pub fn find(&mut self, near: f64, mut f: impl FnMut(f64) -> Option<f64>) -> Option<()> {
         for _ in 0..Self::MOST {
             let x = self.next(0.5 * near);
@@ -69,7 +73,7 @@ impl RootBracket {
         Some(())
     }
 
-    /// Asks until both ends lie within `near` of each other, or one is a root. `None` where `f` has no value.
+    /// Evaluates until both ends lie within `near` of each other, or one is a root. `None` if `f` has no value.
     pub fn close(&mut self, near: f64, mut f: impl FnMut(f64) -> Option<f64>) -> Option<()> {
         for _ in 0..Self::MOST {
             let x = self.next(0.5 * near);
@@ -86,7 +90,7 @@ impl RootBracket {
         (a - b).abs() <= near || !(a.min(b) < middle && middle < a.max(b))
     }
 
-    /// Where to look next: no nearer to an end than `near`.
+    /// Where to evaluate next: no nearer to an end than `near`.
     fn next(&self, near: f64) -> f64 {
         let ([a, fa], [b, fb]) = (self.last, self.other);
         let share = match self.left {
@@ -106,7 +110,7 @@ impl RootBracket {
         a + share * (b - a)
     }
 
-    /// Takes the value at a place between its ends; whether it is a root.
+    /// Takes the value at a place between its ends; returns whether it is a root.
     fn take(&mut self, x: f64, value: f64) -> bool {
         if (value > 0.0) == (self.last[1] > 0.0) {
             self.left = Some(self.last);

@@ -1,4 +1,4 @@
-//! numpy, whose import nothing may interrupt.
+//! numpy, whose import must not be interrupted.
 
 use numpy::PyArray1;
 use pyo3::exceptions::PyRuntimeError;
@@ -9,8 +9,8 @@ static READY: PyOnceLock<()> = PyOnceLock::new();
 
 /// Imports numpy and what makes its arrays, once.
 ///
-/// It runs on a thread of its own: Python raises `KeyboardInterrupt` on the main thread alone, and numpy half imported can
-/// neither be used nor imported again. The signal is raised when this returns.
+/// It runs on a thread of its own: Python raises `KeyboardInterrupt` only on the main thread, and a half-imported numpy
+/// can neither be used nor imported again. The signal is raised when this returns.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! A result: its JSON, the very one that the program writes, and the columns of its CSV as arrays.
+//! A result: its JSON, exactly as the program writes it, and the columns of its CSV as arrays.
 
 use crate::arrays::arrays_ready;
 use crate::errors::in_python;
@@ -18,7 +18,7 @@ pub trait Report: Send + Sync {
     fn json(&self) -> Result<String, serde_json::Error>;
     /// Its rows under the names of their columns.
     fn table(&self) -> Result<ReportTable, RowsError>;
-    /// What to be careful about.
+    /// Its warnings.
     fn warnings(&self) -> &[String];
 }
 
@@ -83,12 +83,12 @@ impl Document {
         Ok(self.table()?.columns.clone())
     }
 
-    /// What to be careful about.
+    /// Its warnings.
     fn warnings(&self) -> Vec<String> {
         self.report.warnings().iter().map(|warning| in_python(warning).into_owned()).collect()
     }
 
-    /// A column as an array; one of texts as a list, in which None is nothing.
+    /// A column as an array; a column of texts as a list, with None for missing cells.
     fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let table = self.table()?;
         let at = table.columns.iter().position(|column| column == name);
@@ -104,8 +104,8 @@ const WHOLE: [&str; 3] = ["step", "newton_iterations", "number"];
 /// Columns of texts.
 const TEXTS: [&str; 5] = ["kind", "direction", "stable", "key", "unit"];
 
-/// The cells of a column by its name, whatever rows there are: true or false, whole numbers, texts, else numbers with NaN
-/// for nothing. Texts, and flags that are not known, are a list with None for nothing.
+/// The cells of a column by its name, whatever its rows are: true or false, whole numbers, texts, otherwise numbers
+/// with NaN for missing ones. Texts, and flags of which some are unknown, become a list with None for missing ones.
 fn array<'py, 'a>(
     py: Python<'py>,
     name: &str,

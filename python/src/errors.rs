@@ -1,4 +1,5 @@
-//! Errors of the engine as exceptions of the package: `pulloff.errors` has the classes, the engine has the sentences.
+//! Errors of the engine as exceptions of the package: the classes are in `pulloff.errors`, the sentences come from the
+//! engine.
 
 use pulloff_engine::CaseError;
 use pulloff_engine::preset::{Invalid, Mistake, ReadError, ValueOrigin};
@@ -12,7 +13,7 @@ use pyo3::types::PyDict;
 use std::any::Any;
 use std::borrow::Cow;
 
-/// An exception of the class `name` in `pulloff.errors`, with this sentence and these attributes.
+/// An exception of the class `name` in `pulloff.errors`, with the given sentence and attributes.
 pub fn raise(py: Python<'_>, name: &str, sentence: &str, attributes: &Bound<'_, PyDict>) -> PyErr {
     let made = py
         .import("pulloff.errors")
@@ -24,7 +25,7 @@ pub fn raise(py: Python<'_>, name: &str, sentence: &str, attributes: &Bound<'_, 
     }
 }
 
-/// The words of the engine with Python's arguments in place of the options of the command line: `sigma_x` for `--sigma-x`.
+/// The engine's words with Python's argument names in place of command-line options: `sigma_x` for `--sigma-x`.
 pub fn in_python(sentence: &str) -> Cow<'_, str> {
     if !sentence.contains("--") {
         return Cow::Borrowed(sentence);
@@ -50,7 +51,7 @@ fn plain(py: Python<'_>, name: &str, sentence: &str) -> PyErr {
     raise(py, name, sentence, &PyDict::new(py))
 }
 
-/// A preset that is refused, with the first mistake's key and line.
+/// A refused preset, with the key and the line of the first mistake.
 fn preset(py: Python<'_>, sentence: &str, mistakes: &[(Option<usize>, Option<&str>, String)]) -> PyErr {
     let attributes = PyDict::new(py);
     let filled = || {
@@ -80,22 +81,22 @@ pub fn of_reading(py: Python<'_>, error: &ReadError) -> PyErr {
     preset(py, &error.to_string(), &mistakes)
 }
 
-/// A value that a problem does not take.
+/// A value that a problem does not accept.
 pub fn of_value(py: Python<'_>, error: &Invalid) -> PyErr {
     preset(py, &error.to_string(), &[(None, error.key(), error.to_string())])
 }
 
-/// A value of a key that is of no type a key takes.
+/// A value of a type that no key accepts.
 pub fn of_type(py: Python<'_>, key: &str, sentence: &str) -> PyErr {
     preset(py, sentence, &[(None, Some(key), sentence.to_owned())])
 }
 
-/// A name or a file that gives no preset.
+/// A name or a file that does not give a preset.
 pub fn of_source(py: Python<'_>, sentence: &str) -> PyErr {
     preset(py, sentence, &[(None, None, sentence.to_owned())])
 }
 
-/// A spec of a sweep that is refused.
+/// A refused spec of a sweep.
 pub fn of_spec(py: Python<'_>, error: &SpecError) -> PyErr {
     let attributes = PyDict::new(py);
     let line = match &error.origin {
@@ -108,12 +109,12 @@ pub fn of_spec(py: Python<'_>, error: &SpecError) -> PyErr {
     }
 }
 
-/// What a sweep is asked for beside its spec, and is no such thing.
+/// An invalid argument of a sweep other than its spec.
 pub fn of_shard(py: Python<'_>, sentence: &str) -> PyErr {
     plain(py, "SpecError", sentence)
 }
 
-/// Results that cannot be begun, gone on with or written.
+/// Results that cannot be begun, continued or written.
 pub fn of_output(py: Python<'_>, sentence: &str) -> PyErr {
     plain(py, "OutputError", sentence)
 }
@@ -151,27 +152,27 @@ pub fn of_pull(py: Python<'_>, error: &PullError) -> PyErr {
     }
 }
 
-/// An axis of a map that is none.
+/// An invalid axis of a map.
 pub fn of_axis(py: Python<'_>, sentence: &str) -> PyErr {
     plain(py, "MapError", sentence)
 }
 
-/// Measured points, or what is asked of them, that are refused.
+/// Measured points, or requests about them, that are refused.
 pub fn of_data(py: Python<'_>, sentence: &str) -> PyErr {
     plain(py, "DataError", sentence)
 }
 
-/// A fit that comes to nothing.
+/// A fit without a result.
 pub fn of_fit(py: Python<'_>, sentence: &str) -> PyErr {
     plain(py, "FitError", sentence)
 }
 
-/// A state that is asked for and is not there.
+/// A state that was asked for and does not exist.
 pub fn of_state(py: Python<'_>, sentence: &str) -> PyErr {
     plain(py, "NoState", sentence)
 }
 
-/// A panic, a fault of the engine itself.
+/// A panic, which is a fault of the engine itself.
 pub fn of_panic(py: Python<'_>, payload: &(dyn Any + Send)) -> PyErr {
     let words = payload.downcast_ref::<String>().map(String::as_str);
     let words = words.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("no words");

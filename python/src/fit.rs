@@ -18,13 +18,13 @@ use pyo3::prelude::*;
 use serde_json::Value;
 use std::sync::Arc;
 
-/// What a fit comes to, in the order of [`fitted`].
+/// The result of a fit, in the order of [`fitted`].
 type Fitted = (Document, Problem, &'static str, Option<String>, String, Option<String>);
 
-/// The columns of a fit: a row for each value.
+/// The columns of a fit: one row for each value.
 const COLUMNS: [&str; 5] = ["key", "value", "standard_error", "start", "unit"];
 
-/// A row for each value.
+/// One row for each value.
 fn table(values: &[ParameterReport]) -> ReportTable {
     let rows = values.iter().map(|parameter| {
         let error = parameter.standard_error.map_or(Value::Null, Value::from);
@@ -63,12 +63,12 @@ impl Report for FitReport {
     }
 
     fn warnings(&self) -> &[String] {
-        // What speaks against it is a warning too.
+        // Doubts about the fit are warnings too.
         self.doubts.as_slice()
     }
 }
 
-/// What is asked of a fit, by the names that Python gives it.
+/// The arguments of a fit, under the names that Python gives them.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an argument of its own")]
@@ -115,8 +115,8 @@ impl Wanted {
     }
 }
 
-/// The name of the points and the preset of `problem` with `data`, the name and the text of a table, in place of its own measured curve,
-/// read as `reading` says: columns, segment, free part and signs.
+/// The name of the points, and the preset of `problem` with `data`, the name and the text of a table, in place of its
+/// own measured curve. The table is read as `reading` says: columns, segment, free part and signs.
 fn attached(
     py: Python<'_>,
     problem: &Problem,
@@ -133,7 +133,7 @@ fn attached(
         let source = PointsFile::new(name, None, text.into());
         changes.push((data_keys::FILE, PresetValue::Points(Arc::new(source))));
     }
-    // With the file that they are of, not with the one before.
+    // Set together with the file they belong to, not with the previous one.
     let keys = [data_keys::COLUMNS, data_keys::SEGMENT, data_keys::FREE_PART, data_keys::SIGNS];
     let texts = keys.into_iter().zip(reading.map(Option::as_ref)).chain([(data_keys::UNCERTAIN, uncertain)]);
     changes.extend(texts.filter_map(|(key, text)| Some((key, PresetValue::Text(text?.clone())))));
@@ -147,8 +147,9 @@ fn attached(
     Ok((name, preset))
 }
 
-/// G of the rows of `data`, or of the measured curve of `problem`, beside the speed of their edge; `reading` says what the columns are,
-/// which branch is used, which rows are apart, and the signs; `of` the two columns of which G is computed.
+/// G of the rows of `data`, or of the measured curve of `problem`, against the speed of their edge. `reading` gives the
+/// columns, the branch used, the rows that are apart, and the signs; `of` gives the two columns from which G is
+/// computed.
 #[pyfunction]
 pub fn speeds(
     py: Python<'_>,
@@ -175,9 +176,9 @@ pub fn speeds(
     })
 }
 
-/// The fit of `problem` to `data`, the name and the text of a table, or to its own measured curve: the document, the fitted
-/// problem, how it ended, what is not determined, the points beside it as CSV, and where several models were fitted the document that compares
-/// them.
+/// The fit of `problem` to `data`, the name and the text of a table, or to its own measured curve: the document, the
+/// fitted problem, how the fit ended, what is not determined, the points beside the fit as CSV, and, if several models
+/// were fitted, the document that compares them.
 #[pyfunction]
 pub fn fitted(
     py: Python<'_>,
@@ -226,7 +227,8 @@ fn of_fit(py: Python<'_>, name: &str, error: &FitError) -> PyErr {
     }
 }
 
-/// One law fitted to the own measured curves of `problems`: the document, the first problem with the law, and what is not determined.
+/// One law fitted to the measured curves of `problems`: the document, the first problem with the law, and what is not
+/// determined.
 #[pyfunction]
 pub fn fitted_together(
     py: Python<'_>,

@@ -1,15 +1,16 @@
-//! The engine of pulloff for Python: the module `pulloff._engine`, under the package `pulloff`, which is what people see.
+//! The engine of pulloff for Python: the module `pulloff._engine`, inside the package `pulloff`, which is what users
+//! see.
 //!
-//! Here is only what needs Rust: problems, long computations that let other threads run and can be interrupted, and results
-//! as columns and JSON. Names, defaults and everything a person reads are in the package's Python.
+//! Only what needs Rust is here: problems, long computations that let other threads run and can be interrupted, and
+//! results as columns and JSON. Names, defaults and everything a user reads are in the package's Python.
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | `arrays` | numpy, imported so that Ctrl-C cannot leave half of it |
+//! | `arrays` | numpy, imported so that Ctrl-C cannot leave it half imported |
 //! | `errors` | errors of the engine as exceptions of the package |
-//! | `running` | a long computation: other threads run, Ctrl-C ends it, progress is told |
+//! | `running` | a long computation: other threads run, Ctrl-C ends it, progress is reported |
 //! | `document` | a result: its JSON, its columns as arrays |
-//! | `problem` | a problem, and all that is computed of it |
+//! | `problem` | a problem, and everything that is computed for it |
 //! | `fit` | a problem fitted to a measured curve |
 //! | `sweep` | many problems on all cores |
 
@@ -23,7 +24,7 @@ mod sweep;
 
 use pyo3::prelude::*;
 
-/// The engine: not for use by itself, the package `pulloff` is.
+/// The engine: not for direct use; use the package `pulloff`.
 #[pymodule]
 fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;

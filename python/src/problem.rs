@@ -1,4 +1,4 @@
-//! A problem, and all that is computed of it.
+//! A problem, and everything that is computed for it.
 
 use crate::arrays::arrays_ready;
 use crate::document::Document;
@@ -62,7 +62,7 @@ fn preset_of(py: Python<'_>, folder: Option<&Path>, name: &str, text: &str) -> P
     read_in(FILES, folder, name, text, &[] as &[&str]).map_err(|error| errors::of_reading(py, &error))
 }
 
-/// The value of a key, as Python has it.
+/// The value of a key, as given in Python.
 fn value(preset: &Preset, key: &str, given: &Bound<'_, PyAny>) -> PyResult<Value> {
     let py = given.py();
     let other = || {
@@ -109,7 +109,7 @@ type Array<'py> = Bound<'py, PyArray1<f64>>;
 type HeldRows<'py> = (String, Option<PathBuf>, Array<'py>, Array<'py>, Option<String>, Vec<String>);
 /// A measured curve as Python keeps it: name, folder, bytes.
 type HeldPoints<'py> = (String, Option<PathBuf>, Bound<'py, PyBytes>);
-/// All that a problem is.
+/// The whole state of a problem.
 type State<'py> = (String, Option<HeldRows<'py>>, Option<HeldPoints<'py>>);
 
 /// One problem, immutable.
@@ -140,7 +140,7 @@ impl Problem {
         Ok(Self { preset: preset_of(py, path.parent(), &path.to_string_lossy(), &text)? })
     }
 
-    /// The text of a preset whose profile has these rows, in its own unit of length.
+    /// A preset from its text, whose profile has these rows in its own unit of length.
     #[staticmethod]
     fn of_rows(
         py: Python<'_>,
@@ -160,7 +160,7 @@ impl Problem {
         Ok(Self { preset: read.map_err(|error| errors::of_reading(py, &error))? })
     }
 
-    /// All that it is: the text of its preset, and what the files that this names hold.
+    /// Its whole state: the text of its preset, and the contents of the files that the text names.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<State<'py>> {
         arrays_ready(py)?;
         let rows = match &self.preset.gap {
@@ -181,7 +181,7 @@ impl Problem {
         Ok((write(&self.preset), rows, points))
     }
 
-    /// The way back from [`state`](Self::state): no file is read.
+    /// The inverse of [`state`](Self::state): no file is read.
     #[staticmethod]
     #[expect(clippy::type_complexity, reason = "what Python keeps of a problem")]
     fn of_state(
@@ -210,7 +210,8 @@ impl Problem {
         Ok(Self { preset: read.map_err(|error| errors::of_reading(py, &error))? })
     }
 
-    /// The same problem with its gap and its measured curve in files of these names; those that come with the package keep theirs.
+    /// The same problem with its gap and its measured curve in files of these names; files that come with the package
+    /// keep theirs.
     fn named(&self, rows: &str, points: &str) -> Self {
         let mut preset = self.preset.clone();
         if let Shape::Profile(measured) = &self.preset.gap
@@ -224,12 +225,12 @@ impl Problem {
         Self { preset }
     }
 
-    /// Whether it is the same problem: the same values and data, whatever files these came from.
+    /// Whether it is the same problem: the same values and data, whatever files they came from.
     fn same(&self, other: &Bound<'_, Self>) -> bool {
         Content::of(&self.preset) == Content::of(&other.get().preset)
     }
 
-    /// A hash that problems which are the same have in common.
+    /// A hash that is equal for problems that are the same.
     fn digest(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         Content::of(&self.preset).hash(&mut hasher);
@@ -272,7 +273,8 @@ impl Problem {
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
     }
 
-    /// The unloading. Without `areas` losses are by energy alone, without `admissibility` it is not known.
+    /// The unloading. Without `areas`, losses are by energy alone; without `admissibility`, admissibility is not
+    /// checked.
     fn unload(
         &self,
         py: Python<'_>,
@@ -287,7 +289,7 @@ impl Problem {
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
     }
 
-    /// The loop of loading and unloading; it turns round at the control value `to_control`, where one is given.
+    /// The loop of loading and unloading; it turns round at the control value `to_control`, if one is given.
     fn cycle(
         &self,
         py: Python<'_>,
@@ -321,7 +323,7 @@ impl Problem {
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))
     }
 
-    /// Where snaps begin, as lines in two numbers, or the limit points over one.
+    /// Where snaps begin, as lines in two numbers, or the limit points as functions of one.
     #[expect(clippy::too_many_arguments, reason = "the axes of a map as Python hands them over")]
     fn map(
         &self,
@@ -340,7 +342,7 @@ impl Problem {
             (None, "force") => Ordinate::Force,
             (None, _) => Ordinate::Control,
         };
-        // What a map has done says nothing of what is left.
+        // How much of a map is done says nothing about how much is left.
         let made = long(py, progress, |progress| {
             MapReport::compute(&self.preset, x, &y, [columns, rows], progress)
         })?;
@@ -348,8 +350,8 @@ impl Problem {
     }
 
     /// The approach, the pressure and the gap at the radii `r` in equilibrium at the contact radius `s`, by the exact
-    /// solution: pressure minus infinity at an adhesive edge and NaN outside, the gap 0 inside and NaN beyond what is known of
-    /// the bodies.
+    /// solution. The pressure is minus infinity at an adhesive edge and NaN outside; the gap is 0 inside and NaN beyond
+    /// the known part of the bodies.
     fn across<'py>(
         &self,
         py: Python<'py>,
@@ -397,7 +399,7 @@ impl Problem {
     }
 }
 
-/// The smooth curve through the samples (r, h), as the engine has it, at the radii `at`.
+/// The smooth curve through the samples (r, h), as the engine constructs it, at the radii `at`.
 #[pyfunction]
 pub fn between(
     r: PyReadonlyArray1<'_, f64>,
@@ -409,7 +411,8 @@ pub fn between(
     Ok(at.as_slice()?.iter().map(|r| profile.jet(*r).value).collect())
 }
 
-/// Writes files whole, by their paths, in this order; all or none where one exists already and is not to be replaced.
+/// Writes whole files, given by their paths, in this order: either all, or none if one exists already and must not be
+/// replaced.
 #[pyfunction]
 pub fn write_files(py: Python<'_>, files: &Bound<'_, PyDict>, overwrite: bool) -> PyResult<()> {
     let mut all: Vec<(PathBuf, Vec<u8>)> = Vec::new();
@@ -436,13 +439,13 @@ pub fn read_file(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyBytes>> 
     Ok(PyBytes::new(py, &read.0))
 }
 
-/// The SI unit of what a column of this name holds in a measured curve; nothing for a name that is not known or has a unit.
+/// The SI unit of a column of this name in a measured curve; empty for a name that is unknown or states a unit.
 #[pyfunction]
 pub fn unit_of(column: &str) -> &'static str {
     ColumnRole::of_bare(column).and_then(ColumnRole::si).unwrap_or("")
 }
 
-/// What makes two problems the same: the text of the preset without the names of files, and what these hold.
+/// What makes two problems the same: the text of the preset without file names, and the contents of the files.
 #[derive(PartialEq, Eq, Hash)]
 struct Content {
     text: String,
@@ -466,10 +469,11 @@ impl Content {
     }
 }
 
-/// The contact radii of states that are asked for: those that a preset takes.
+/// The contact radii for which states may be asked: those that a preset accepts.
 const RADII: RangeInclusive<f64> = 1e-30..=1e30;
 
-/// A radius counts as that of the edge up to this share: a share of it is rounded, as those of `numpy.linspace` are.
+/// A radius within this share of the edge counts as the edge: fractions of it are rounded, as those of `numpy.linspace`
+/// are.
 const AT_EDGE: f64 = 8.0 * f64::EPSILON;
 
 /// A state across the radius, in the units of the preset.
@@ -507,7 +511,7 @@ impl Across {
                 f64::NAN
             }
         };
-        // With the farthest radius for which the table is asked: no gap depends on the other radii.
+        // Together with the farthest radius that the table is asked for, so that no gap depends on the other radii.
         let outer: Vec<f64> = reduced.iter().map(|r| r.max(s)).chain([FAR * s]).collect();
         let opened = exact.gap_outside(&case.reduced, s, delta, &outer);
         let gap = reduced.iter().zip(opened).map(|(r, gap)| if *r < s { 0.0 } else { gap * units.length });

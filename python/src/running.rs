@@ -1,4 +1,4 @@
-//! A long computation: the interpreter's other threads run meanwhile, Ctrl-C ends it, and progress is told.
+//! A long computation: the interpreter's other threads keep running, Ctrl-C ends it, and progress is reported.
 
 use crate::errors;
 use pulloff_engine::progress::Progress;
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// How often Python is asked whether to go on.
 pub const PAUSE: Duration = Duration::from_millis(25);
 
-/// What Python says to a computation: a signal has come, or its progress function has failed.
+/// What Python says to a computation: whether a signal has come, or its progress function has failed.
 pub struct Listener {
     progress: Option<Py<PyAny>>,
     share: Cell<f64>,
@@ -19,12 +19,12 @@ pub struct Listener {
 }
 
 impl Listener {
-    /// One that tells `progress`, where there is one, the share that is done.
+    /// A listener that reports the share done to `progress`, if there is one.
     pub fn new(progress: Option<Py<PyAny>>) -> Self {
         Self { progress, share: Cell::new(0.0), asked: Cell::new(None), said: RefCell::new(None) }
     }
 
-    /// The exception that ended it, if one did.
+    /// The exception that ended the computation, if one did.
     pub fn said(self) -> Option<PyErr> {
         self.said.into_inner()
     }
@@ -35,7 +35,7 @@ impl Progress for Listener {
         self.share.set(share);
     }
 
-    /// Python is asked no more often than is useful: the engine asks far more often.
+    /// Python is asked no more often than is useful; the engine asks far more often.
     fn stop(&self) -> bool {
         if self.said.borrow().is_some() {
             return true;

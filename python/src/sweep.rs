@@ -52,7 +52,7 @@ fn preset(folder: &Path, name: &str, set: &[&str]) -> Result<Preset, String> {
     read_in(FILES, None, name, found.text, set).map_err(|error| error.to_string())
 }
 
-/// The problem that stands in place of a preset, with the assignments of the spec.
+/// The problem used instead of a preset, with the assignments of the spec.
 fn assigned(problem: &Preset, set: &[&str]) -> Result<Preset, String> {
     let mut preset = problem.clone();
     for assignment in set {
@@ -63,7 +63,7 @@ fn assigned(problem: &Preset, set: &[&str]) -> Result<Preset, String> {
     Ok(preset)
 }
 
-/// Where the rows go, and which they are.
+/// Where the rows go, and which rows they are.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Wanted {
@@ -75,7 +75,7 @@ pub struct Wanted {
     overwrite: bool,
 }
 
-/// Rows as they are handed over: their numbers, the cells of each column, their faults.
+/// Rows as they are handed over: their numbers, the cells of each column, and their faults.
 #[derive(Default)]
 struct Rows {
     numbers: Vec<u64>,
@@ -88,7 +88,7 @@ type Columns<'py> = (Bound<'py, PyDict>, Vec<String>);
 /// The rows of a sweep, the statistics of an ensemble, and the interrupt that ended it early.
 type Swept<'py> = (Columns<'py>, Option<Columns<'py>>, Option<PyErr>);
 
-/// The rows of the spec `text` as columns. `problem` stands in place of its preset.
+/// The rows of the spec `text` as columns. `problem`, if given, replaces its preset.
 #[pyfunction]
 pub fn sweep<'py>(
     py: Python<'py>,
@@ -118,7 +118,7 @@ pub fn sweep<'py>(
         (made, listener.said())
     });
     let made = made.map_err(|sentence| errors::of_output(py, &sentence))?;
-    // An exception of `progress` is the caller's own; an interrupt leaves what is done.
+    // An exception of `progress` belongs to the caller; an interrupt keeps what is done.
     let interrupt = match said {
         Some(error) if error.is_instance_of::<PyKeyboardInterrupt>(py) => Some(error),
         Some(error) => return Err(error),
@@ -129,7 +129,7 @@ pub fn sweep<'py>(
     Ok(((columns(py, &spec, &made)?, axes), statistics, interrupt))
 }
 
-/// Joins the parts of a sweep to `out`.
+/// Joins the parts of a sweep into `out`.
 #[pyfunction]
 pub fn merge(py: Python<'_>, parts: Vec<PathBuf>, out: PathBuf, overwrite: bool) -> PyResult<()> {
     let existing = if overwrite { Existing::Overwrite } else { Existing::GoOn };
@@ -137,7 +137,7 @@ pub fn merge(py: Python<'_>, parts: Vec<PathBuf>, out: PathBuf, overwrite: bool)
     joined.map(drop).map_err(|sentence| errors::of_output(py, &sentence))
 }
 
-/// Asks `listener` while rows are handed over on its own thread, and tells all threads what it said.
+/// Asks `listener`, on the listener's own thread, while rows are handed over, and passes its answer to all threads.
 struct Stop(AtomicBool);
 
 impl Stop {
@@ -155,7 +155,7 @@ impl Progress for Stop {
     }
 }
 
-/// The rows of a part; those before the end where Python said no.
+/// The rows of a part; if Python said stop, only the rows up to then.
 fn in_memory(spec: &Spec, shard: Shard, means: Means, listener: &Listener) -> Result<Rows, String> {
     let (stop, of) = (Stop(AtomicBool::new(false)), shard.len(spec.rows));
     let mut made = Rows { columns: vec![Vec::new(); spec.columns.len()], ..Rows::default() };
@@ -175,7 +175,7 @@ fn in_memory(spec: &Spec, shard: Shard, means: Means, listener: &Listener) -> Re
     Ok(made)
 }
 
-/// The rows of a part through its file, as the program writes it: those that were there before too.
+/// The rows of a part, written to its file as the program does, including rows that were there before.
 fn to_file(
     spec: &Spec,
     shard: Shard,
@@ -233,7 +233,7 @@ fn read_back(spec: &Spec, out: &Path) -> Result<Rows, String> {
     })
 }
 
-/// The statistics of the members at each point; none where it is no ensemble.
+/// The statistics of the members at each point; `None` if it is not an ensemble.
 fn statistics<'py>(py: Python<'py>, spec: &Spec, made: &Rows) -> PyResult<Option<Columns<'py>>> {
     let Design::Ensemble { members, seed, .. } = spec.design else { return Ok(None) };
     arrays_ready(py)?;
@@ -265,7 +265,7 @@ fn statistics<'py>(py: Python<'py>, spec: &Spec, made: &Rows) -> PyResult<Option
     Ok(Some((all, axes.into_iter().map(|axis| axis.key).collect())))
 }
 
-/// A cell as a number; what is not there is none.
+/// A cell as a number; NaN if it is missing.
 fn number(cell: Option<Cell>) -> f64 {
     match cell {
         Some(Cell::Number(x)) => x,

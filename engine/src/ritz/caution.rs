@@ -1,15 +1,16 @@
-//! What to be careful about in the answers of rings.
+//! Warnings about the answers of ring elements.
 
 use super::mesh::Grading;
 use std::fmt;
 
-/// Fewer rings than this per shortest wave in the largest contact is a warning: losses are then off by percents.
+/// Fewer rings than this per shortest wave in the largest contact raise a warning: losses are then off by several per
+/// cent.
 pub const RINGS_PER_WAVE: f64 = 10.0;
 
 /// γ/(E* R) below which the error of 200 rings on a sphere exceeds the adhesion.
 pub const WEAK_ADHESION: f64 = 1e-6;
 
-/// A reason to trust the answers of rings less than one would; its text says what to do.
+/// A reason to trust the answers of rings less than usual; its text says what to do.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Caution {
     /// Too few rings for the waves of the gap.

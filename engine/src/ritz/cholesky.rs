@@ -1,27 +1,27 @@
 //! The Cholesky factor of a symmetric positive definite matrix, by blocks of columns.
 //!
-//! `A = LLᵀ`. Block k of L follows from those before it ("left-looking"):
+//! `A = LLᵀ`. Block k of L follows from the blocks before it ("left-looking"):
 //!
 //! ```text
 //! C   = A[k.., k] − L[k.., ..k] L[k, ..k]ᵀ         one matrix product
 //! L_kk = Cholesky of C's first block,  L[k+1.., k] = C[k+1..] L_kk⁻ᵀ
 //! ```
 //!
-//! and L x = b is solved the same way, `x_k = L_kk⁻¹ (b_k − L[k, ..k] x[..k])`, for many b at once. Nearly all the work is
-//! matrix products, and between blocks the factorization can be asked to stop.
+//! and L x = b is solved the same way, `x_k = L_kk⁻¹ (b_k − L[k, ..k] x[..k])`, for many b at once. Nearly all the work
+//! is matrix products, and the factorization can be stopped between blocks.
 
 use crate::progress::{Progress, Stopped};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::array;
 use wide::f64x4;
 
-/// Columns of a block: wide enough for fast products, few enough that stopping comes within milliseconds.
+/// Columns of a block: wide enough for fast products, few enough that a stop takes effect within milliseconds.
 pub const BLOCK: usize = 64;
 
 /// With fewer right-hand sides than this, products of blocks are slower than plain substitution.
 const MANY: usize = 6;
 
-/// Rows of L that plain substitution takes together: their sums do not wait for each other.
+/// Rows of L that plain substitution takes together: their sums do not depend on each other.
 const PANEL: usize = 4;
 
 /// Why there is no factor.
@@ -30,7 +30,7 @@ pub enum NoFactor {
     /// The matrix is not positive definite.
     #[error("not positive definite")]
     NotPositiveDefinite,
-    /// It was no longer wanted.
+    /// The factor was no longer wanted.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
@@ -38,14 +38,14 @@ pub enum NoFactor {
 /// L of `A = LLᵀ`.
 #[derive(Debug)]
 pub struct CholeskyFactor {
-    /// L, and Lᵀ above its diagonal: there each row of L lies in one piece.
+    /// L below the diagonal, and Lᵀ above it, where each row of L is contiguous in memory.
     lower: DMatrix<f64>,
     /// `L_kk⁻¹` of every block.
     inverses: Vec<DMatrix<f64>>,
 }
 
 impl CholeskyFactor {
-    /// The factor of `a` (n × n, its lower triangle is read); `progress` is told the share of the blocks done.
+    /// The factor of `a` (n × n; only its lower triangle is read); `progress` is told the share of the blocks done.
     ///
     /// # Errors
     /// [`NoFactor`].
@@ -97,7 +97,7 @@ impl CholeskyFactor {
         }
     }
 
-    /// As [`CholeskyFactor::forward`] row by row, up to four columns at once.
+    /// As [`CholeskyFactor::forward`], row by row, up to four columns at once.
     fn substitute(&self, columns: &mut DMatrix<f64>) {
         let n = columns.nrows();
         let lower = self.lower.as_slice();
@@ -112,7 +112,7 @@ impl CholeskyFactor {
             }
             for begin in (0..n).step_by(PANEL) {
                 let (known, rest) = rows.split_at_mut(begin);
-                // A row too many is not read.
+                // Rows past the end repeat the last one; their sums are not read.
                 let across = array::from_fn(|r| &lower[(begin + r).min(n - 1) * n..][..n]);
                 let sums = sums(across.map(|row| &row[..begin]), known);
                 for i in 0..PANEL.min(n - begin) {

@@ -9,9 +9,9 @@
 //! G   = (½ wᵀKw + s h1ᵀKw)/(2πs)                             (energy release rate; F = 0 ⇔ G = γ)
 //! ```
 //!
-//! The residual of Newton and of the continuation on rings is ρ = √(G/γ) − 1 for γ > 0, which is nearly
-//! linear in s and converges in a handful of rounds from a threefold radius, and F at γ = 0, where the
-//! root form is degenerate.
+//! The residual that Newton and the continuation on rings drive to zero is ρ = √(G/γ) − 1 for γ > 0, which is nearly
+//! linear in s and converges in a handful of rounds from a threefold radius. At γ = 0, where the root form is
+//! degenerate, it is F.
 
 use crate::disc::Evaluation;
 use std::f64::consts::PI;
@@ -45,7 +45,7 @@ pub struct Forms {
     pub f12: f64,
 }
 
-/// Rounding of the forms, relative to their size, with room for the sums over some thousand nodes.
+/// Rounding of the forms, relative to their size, with a margin for sums over some thousand nodes.
 const FORM_ROUNDING: f64 = 1e-4;
 
 impl Forms {
@@ -68,7 +68,7 @@ impl Forms {
         self.hh - 2.0 * delta * self.ch + delta * delta * self.cc
     }
 
-    /// Residual and force with their derivatives at (s, δ) for the work of adhesion `gamma`.
+    /// Residual and force with their derivatives at (s, δ), for the work of adhesion `gamma`.
     pub fn evaluate(&self, s: f64, delta: f64, gamma: f64) -> Evaluation {
         let ww = self.ww(delta);
         let cw = self.ch - delta * self.cc;

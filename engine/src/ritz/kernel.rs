@@ -6,9 +6,9 @@
 //! I(a, b) = ∫_{disc a} u[disc b] dS = (8/3) b³ [(1 + k²) E(k) − (1 − k²) K(k)]
 //! ```
 //!
-//! with complete elliptic integrals of modulus k. Both come from one arithmetic-geometric mean that begins with 1 and the
-//! complementary modulus k' = √((b − a)(b + a))/b, which keeps the digits where a ring is thin: with
-//! `c_n` half the difference of the two means, `S = Σ 2ⁿ⁻¹ c_n²` (n ≥ 1) and K = π/2 over their limit,
+//! with complete elliptic integrals of modulus k. Both come from one arithmetic-geometric mean that begins with 1 and
+//! the complementary modulus k' = √((b − a)(b + a))/b, which keeps its digits for a thin ring. With `c_n` half the
+//! difference of the two means, `S = Σ 2ⁿ⁻¹ c_n²` (n ≥ 1) and K = π/2 over their limit,
 //!
 //! ```text
 //! E = K [(1 + k'²)/2 − S]     ⇒     (1 + k²) E − (1 − k²) K = K [½ k² (2 + k'²) − (1 + k²) S]
@@ -18,15 +18,15 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Half-differences of the means below this share are the last that count: the next one is its square.
+/// A half-difference of the means below this share is the last that counts: the next one is its square.
 const LAST_HALF_DIFFERENCE: f64 = 1e-8;
 
-/// Rounds of the mean at most: eight do for the smallest k' of two doubles that differ.
+/// Most rounds of the mean: eight suffice for the smallest k' of two doubles that differ.
 const MOST_ROUNDS: usize = 12;
 
-/// I(a, b) for 0 ≤ a ≤ b, radii in any length; the result is that length cubed.
+/// I(a, b) for 0 ≤ a ≤ b, with radii in any unit of length; the result is in that unit cubed.
 ///
-/// Not a number where a radius is not; the factorization then reports it.
+/// NaN if a radius is NaN; the factorization then reports it.
 pub fn disc_interaction(a: f64, b: f64) -> f64 {
     if a <= 0.0 {
         return 0.0;
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn agrees_with_carlson_to_rounding() {
-        // E and K by Carlson's forms, of which the thinnest rings leave the complementary modulus 1e-5.
+        // E and K by Carlson's forms; for the thinnest rings the complementary modulus is about 1e-5.
         for i in 1..60 {
             for k in [1.0 - 0.7_f64.powi(i), 0.7_f64.powi(i)] {
                 let complement = (1.0 - k) * (1.0 + k);

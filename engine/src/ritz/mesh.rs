@@ -4,8 +4,8 @@
 //! uniform   r̃_j = j/N              edge   r̃_j = sin(πj/2N)
 //! ```
 //!
-//! With adhesion the pressure has the singularity 1/√(1 − r̃²) at the edge, which uniform rings resolve to first
-//! order in 1/N; the graded ones are even in the angle asin r̃, in which it is smooth, and reach second order.
+//! With adhesion the pressure has the singularity 1/√(1 − r̃²) at the edge, which uniform rings resolve to first order
+//! in 1/N. The graded rings are even in the angle asin r̃, in which the pressure is smooth, and reach second order.
 
 use crate::elementary::sin;
 use std::f64::consts::FRAC_PI_2;
@@ -33,9 +33,9 @@ impl Grading {
         }
     }
 
-    /// The allowed number of rings: fewer than 4 resolve nothing. More than 2000 uniform ones cost seconds and add
-    /// no digits; of more than 400 graded ones the last are so thin that the second difference of the
-    /// interaction loses the digits the grading gains.
+    /// The allowed number of rings: fewer than 4 resolve nothing. More than 2000 uniform rings cost seconds and add no
+    /// digits. With more than 400 graded rings the outermost are so thin that the second difference of the interaction
+    /// loses the digits that the grading gains.
     pub fn ring_range(self) -> RangeInclusive<usize> {
         match self {
             Self::Uniform => 4..=2000,
@@ -43,7 +43,7 @@ impl Grading {
         }
     }
 
-    /// The N + 1 edges in a unit of their own, with the radius of the disc in it.
+    /// The N + 1 edges in a unit of their own, and the radius of the disc in that unit.
     ///
     /// Uniform edges are counted in ring widths: exact integers, whose differences lose least.
     pub(super) fn edges(self, rings: usize) -> (Vec<f64>, f64) {

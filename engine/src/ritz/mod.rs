@@ -3,7 +3,7 @@
 //! | file | what lives there |
 //! |---|---|
 //! | [`cholesky`] | the factor of the rings' matrix, by blocks |
-//! | [`caution`] | what to be careful about in a basis' answers |
+//! | [`caution`] | warnings about a basis' answers |
 //! | [`functional`] | the functional (16) with the pressure eliminated, its derivatives, the residual |
 //! | [`kernel`] | the closed-form interaction of two uniformly loaded discs |
 //! | [`mesh`] | how the rings are spaced |
@@ -12,8 +12,8 @@
 //! | [`parallel`] | work on every core |
 //! | [`rings`] | the paper's ring elements (13)-(18) |
 //!
-//! [`Rings`] are a [`Basis`](crate::disc::Basis), which is all that the rest of the program knows of them. Everything here is in
-//! reduced units (E* = 1).
+//! [`Rings`] are a [`Basis`](crate::disc::Basis), and the rest of the program knows them only as such. Everything here
+//! is in reduced units (E* = 1).
 
 pub mod caution;
 pub mod cholesky;

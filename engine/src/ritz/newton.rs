@@ -16,9 +16,9 @@ use crate::problem::{Control, Reduced};
 /// When Newton-Raphson stops.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NewtonSettings {
-    /// Largest residual relative to its scale. 1e-10: |√(G/γ) − 1| as the paper's accuracy asks.
+    /// Largest residual relative to its scale. 1e-10: |√(G/γ) − 1| at the paper's accuracy.
     pub tolerance: f64,
-    /// Most rounds. 40: weak adhesion and states near limit points need up to 17.
+    /// Most rounds allowed. 40: weak adhesion and states near limit points need up to 17.
     pub rounds: usize,
 }
 
@@ -45,7 +45,7 @@ pub enum SolveFailure {
     Left {
         /// The round.
         round: usize,
-        /// The radius it came to.
+        /// The radius it reached.
         s: f64,
     },
     /// The iteration did not converge.
@@ -53,7 +53,7 @@ pub enum SolveFailure {
     NotConverged(#[from] NewtonFailure),
 }
 
-/// An iterate so many times as far out as the first has lost its way, and a basis may have to be made for it.
+/// An iterate this many times as far out as the first has lost its way, and evaluating it might need a new basis.
 const FARTHEST: f64 = 1e3;
 
 /// The weight 1/k of the force in the controlled quantity δ + P/k, and the weight of δ.
@@ -65,7 +65,7 @@ fn weights(control: Control) -> (f64, f64) {
     }
 }
 
-/// The equilibrium at which `control` takes `value`, from the contact radius `s`.
+/// The equilibrium at which `control` takes `value`, starting from the contact radius `s`.
 ///
 /// # Errors
 /// [`SolveFailure`] with the round and the numbers; nothing is clamped on the way.

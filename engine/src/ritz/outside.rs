@@ -6,9 +6,9 @@
 //! u(r) = (4r/π) [E(k) − k'²K(k)] = (4r/π) K(k) [½ k² − S],   k = b/r,   k'² = (r − b)(r + b)/r²
 //! ```
 //!
-//! with K and S of the arithmetic-geometric mean of [`super::kernel`], and far out, where nothing is left of S but rounding,
-//! `u = r k² (1 + k²/8 + 3k⁴/64 + …)`. A pressure constant on rings is a sum of discs,
-//! `Σ (p_j − p_{j+1})` over the outer edges, so that no thin ring is ever the difference of two nearly equal discs.
+//! with K and S of the arithmetic-geometric mean of [`super::kernel`]. Far out, where S is nothing but rounding,
+//! `u = r k² (1 + k²/8 + 3k⁴/64 + …)`. A pressure constant on rings is a sum of discs, `Σ (p_j − p_{j+1})` over the
+//! outer edges, so a thin ring is never the difference of two nearly equal discs.
 
 use super::kernel::mean;
 use std::f64::consts::PI;
@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 /// k² below which the next term of the series, of the order of k⁶, is less than rounding.
 const FAR: f64 = 1e-5;
 
-/// The displacement at `r ≥ b` by a unit pressure on a disc of radius `b`; radii and result in one length.
+/// The displacement at `r ≥ b` by a unit pressure on a disc of radius `b`; radii and result in the same unit.
 pub(super) fn by_disc(b: f64, r: f64) -> f64 {
     let complement = (r - b) * (r + b) / (r * r);
     if complement <= 0.0 {
@@ -68,7 +68,7 @@ mod tests {
         for i in 1..60 {
             for k in [1.0 - 0.6_f64.powi(i), 0.6_f64.powi(i)] {
                 let complement = (1.0 - k) * (1.0 + k);
-                // At equal arguments R_D = 3π/4, where the library divides zero by zero.
+                // At equal arguments, where the library divides zero by zero, R_D = 3π/4.
                 let equal = 0.75 * PI;
                 let carlson =
                     if complement < 1.0 { ellip::elliprd(0.0, 1.0, complement).unwrap() } else { equal };
@@ -94,7 +94,7 @@ mod tests {
                         errors[i] = errors[i].max((a - b).abs());
                     }
                 }
-                // First order in the width of a ring, away from the edge.
+                // Away from the edge, first order in the width of a ring.
                 let size = s * s + (TAU * gamma * s).sqrt();
                 assert!(
                     errors[1] < 0.35 * errors[0] && errors[1] < 0.01 * size,

@@ -1,14 +1,14 @@
-//! Work in equal parts on every core.
+//! Work shared evenly among all cores.
 
 use std::num::NonZeroUsize;
 use std::thread;
 
-/// Parts that run at the same time.
+/// Number of parts that run at the same time.
 pub fn cores() -> usize {
     thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
-/// Does `work` on every part at the same time, the first on the caller's thread; returns when all are done.
+/// Does `work` on all parts at the same time, the first on the caller's thread; returns when all are done.
 pub fn each<T: Send>(parts: impl IntoIterator<Item = T>, work: impl Fn(T) + Sync) {
     let mut parts = parts.into_iter();
     let Some(own) = parts.next() else { return };

@@ -9,13 +9,13 @@
 //! W̃_aj = ∫_ring a ψ_j dS = π d (x_a + d/3), π d (x_a + 2d/3) for j = a, a + 1  (N × (N+1))
 //! ```
 //!
-//! `B̃ = LLᵀ` is factored once per mesh. The forms of [`super::functional`] are then dot products of the
-//! vectors L⁻¹W̃v: one triangular solve per vector, never the N³ product K. A curve asks for many radii at
-//! once: their vectors are solved for together, in products of matrices, on every core.
+//! `B̃ = LLᵀ` is factored once per mesh. The forms of [`super::functional`] are then dot products of the vectors
+//! L⁻¹W̃v: one triangular solve per vector, and never the N³ product K. A curve asks for many radii at once; their
+//! vectors are solved for together, as matrix products on every core.
 //!
 //! Accuracy (relative, JKR at δ = 0.1 R, γ = 0.01 E*R): with uniform rings the contact radius is good to about 0.16/N
-//! and the force to 1.4/N, with graded ones to 0.34/N² and 9.4/N²; without adhesion the radius to 0.5/N, graded 0.37/N,
-//! and the force to better than 1/N² with either.
+//! and the force to 1.4/N; with graded rings to 0.34/N² and 9.4/N². Without adhesion the radius is good to 0.5/N
+//! (graded 0.37/N), and the force to better than 1/N² with either.
 
 use super::caution::{Caution, RINGS_PER_WAVE, WEAK_ADHESION};
 use super::cholesky::{BLOCK, CholeskyFactor, NoFactor};
@@ -37,13 +37,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// How many factorizations are kept: enough to go back and forth between two meshes, 32 MB each at most.
 const KEPT: usize = 3;
 
-/// Radii of a curve whose vectors are solved for together: four columns each, 2 MB at most.
+/// Radii of a curve whose vectors are solved for together: four columns for each radius, 2 MB at most.
 const TOGETHER: usize = 32;
 
 /// Fewer rings than this do not repay a thread.
 const RINGS_PER_THREAD: usize = 100;
 
-/// How far inward of a path's end its landings are looked for, as a share of it.
+/// How far inward of a path's end its landings are looked for, as a fraction of the end radius.
 const INWARD_REACH: f64 = 1e-4;
 
 /// Samples of the gap at a node: h, h1, h2 and h3 of [`super::functional`].
@@ -66,18 +66,19 @@ pub enum RingsError {
     /// The matrix of the pressures lost positive definiteness.
     #[error("the pressure matrix of {0} rings is not positive definite")]
     NotPositiveDefinite(usize),
-    /// It was no longer wanted.
+    /// The basis was no longer wanted.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
 
-/// Ring elements with their factored matrix; geometry independent, so one serves every problem.
+/// Ring elements with their factored matrix; independent of the geometry, so one set serves every problem.
 #[derive(Debug)]
 pub struct Rings {
     grading: Grading,
     /// `r̃_j`, N + 1 of them.
     nodes: Vec<f64>,
-    /// What the values at the inner and the outer edge add to the integral over each ring: the entries of W̃.
+    /// How much the values at the inner and the outer edge of each ring contribute to the integral over it: the entries
+    /// of W̃.
     weights: Vec<[f64; 2]>,
     factor: CholeskyFactor,
     /// L⁻¹W̃1, and its square 1ᵀK1.
@@ -94,7 +95,7 @@ impl Rings {
         Self::shared_with(rings, Grading::Uniform, &Unwatched)
     }
 
-    /// N rings; computed once per mesh and then shared. `progress` is told how far it is.
+    /// N rings; computed once per mesh and then shared. `progress` is told how far the work is.
     ///
     /// # Errors
     /// As [`Rings::new`].
@@ -113,7 +114,7 @@ impl Rings {
                 return Ok(found);
             }
         }
-        // Not under the lock: another mesh must not wait for this one.
+        // Made without holding the lock: another mesh must not wait for this one.
         let made = Arc::new(Self::new(rings, grading, progress)?);
         let mut cache = CACHE.lock().unwrap_or_else(PoisonError::into_inner);
         if cache.len() >= KEPT {
@@ -129,7 +130,7 @@ impl Rings {
     /// [`RingsError::OutOfRange`] outside [`Grading::ring_range`], [`RingsError::NotPositiveDefinite`], and
     /// [`RingsError::Stopped`] when `progress` said stop.
     pub fn new(rings: usize, grading: Grading, progress: &dyn Progress) -> Result<Self, RingsError> {
-        /// The assembly's share of the work; with the N² of the one and N³ of the other it is about half.
+        /// The share of the assembly: it costs N² and the factorization N³, and in practice each takes about half.
         const ASSEMBLY: f64 = 0.5;
         if !grading.ring_range().contains(&rings) {
             return Err(RingsError::OutOfRange { rings, grading });
@@ -157,7 +158,7 @@ impl Rings {
         Ok(Self { grading, nodes, weights, factor, ones, cc })
     }
 
-    /// L⁻¹W̃v for the first M samples at each of `radii`, M columns for each.
+    /// L⁻¹W̃v for the first M samples at each of `radii`: M columns per radius.
     fn reduced<const M: usize>(&self, gap: &dyn Gap, radii: &[f64]) -> DMatrix<f64> {
         let rings = self.size();
         let mut columns = DMatrix::zeros(rings, M * radii.len());
@@ -188,7 +189,7 @@ impl Rings {
         }
     }
 
-    /// The forms of the M columns of one radius; those that need more columns are not numbers.
+    /// The forms of the M columns of one radius; forms that need more columns are NaN.
     fn forms_of<const M: usize>(&self, columns: &[f64]) -> Forms {
         let columns = DMatrixView::from_slice(columns, self.size(), M);
         let product = |a: usize, b: usize| {
@@ -215,8 +216,8 @@ impl Rings {
         self.forms_of::<SAMPLES>(self.reduced::<SAMPLES>(gap, &[s]).as_slice())
     }
 
-    /// What `evaluate` makes of the forms from the first M samples at each of `places`, each of a radius, up to the first of
-    /// which it makes nothing, or where `progress` said stop.
+    /// What `evaluate` makes of the forms from the first M samples at each of `places`, in order; it ends at the first
+    /// place for which `evaluate` gives nothing, or where `progress` said stop. `radius` gives the radius of a place.
     fn together<const M: usize, T: Copy + Sync>(
         &self,
         gap: &dyn Gap,
@@ -231,7 +232,7 @@ impl Rings {
             let complete = found.len() + round.len();
             let wanted = round.iter().take_while(|_| !progress.stop()).count();
             let mut answers = vec![None; wanted];
-            // As many on one thread as on the other, also where the round is short.
+            // Every thread gets equally many, even in a short round.
             let share = wanted.div_ceil(threads).max(1);
             let parts = round[..wanted].chunks(share).zip(answers.chunks_mut(share));
             parallel::each(parts, |(places, answers)| {
@@ -285,10 +286,10 @@ fn pressure_matrix(edges: &[f64], radius: f64, progress: &dyn Progress) -> Resul
     Ok(matrix)
 }
 
-/// The columns of the lower triangle from the one of ring `first` on.
+/// The columns of the lower triangle, from that of ring `first` on.
 fn fill(columns: &mut [f64], first: usize, edges: &[f64], unit: f64) {
     let rings = edges.len() - 1;
-    // I of the disc inside edge j with those not smaller.
+    // I of the disc inside edge j with each disc that is not smaller.
     let discs = |j: usize| -> Vec<f64> {
         let not_smaller = edges.iter().enumerate().skip(j);
         std::iter::repeat_n(0.0, j).chain(not_smaller.map(|(_, &b)| disc_interaction(edges[j], b))).collect()
@@ -296,7 +297,7 @@ fn fill(columns: &mut [f64], first: usize, edges: &[f64], unit: f64) {
     let mut inner = discs(first);
     for (b, column) in (first..).zip(columns.chunks_mut(rings)) {
         let outer = discs(b + 1);
-        // I is symmetric: what `outer` has not at b, `inner` has at b + 1.
+        // I is symmetric: the value that `outer` lacks at b is that of `inner` at b + 1.
         column[b] = unit * ((outer[b + 1] - inner[b + 1]) - (inner[b + 1] - inner[b]));
         for a in b + 1..rings {
             column[a] = unit * ((outer[a + 1] - inner[a + 1]) - (outer[a] - inner[a]));
@@ -348,8 +349,9 @@ impl Basis for Rings {
         to: f64,
         progress: &dyn Progress,
     ) -> Result<Option<Arc<dyn Solution>>, Stopped> {
-        // Landings lie anywhere further in; far inward adhesion alone rules, and the curve is monotone.
-        // It reaches to a power of 2^(1/4), so that a radius has the same series however far the curve was asked for.
+        // Landings lie anywhere further in; far inward only adhesion matters, and the curve is monotone. The curve
+        // reaches to a power of 2^(1/4), so that a given radius always has the same series, however far the curve was
+        // asked for.
         let stage = exp2(0.25 * (4.0 * log2(to) - 1e-9).ceil()).max(to);
         let range = [INWARD_REACH * from, stage.min(problem.largest_contact().max(from))];
         let found = Sampled::new(self, problem, range, progress)?;
@@ -364,7 +366,7 @@ impl Basis for Rings {
 
     fn gap_outside(&self, problem: &Reduced, s: f64, delta: f64, radii: &[f64]) -> Vec<f64> {
         let pressures = self.ring_pressures(problem.gap.as_ref(), s, delta);
-        // A ring's pressure up to its outer edge, less what the next one has.
+        // The pressure of a ring minus that of the next one outward.
         let inward = |j: usize| pressures[j] - pressures.get(j + 1).copied().unwrap_or(0.0);
         let discs: Vec<(f64, f64)> =
             self.nodes[1..].iter().enumerate().map(|(j, edge)| (s * edge, inward(j))).collect();
@@ -392,7 +394,7 @@ impl Basis for Rings {
     fn cautions(&self, problem: &Reduced, s: f64) -> Vec<String> {
         let mut cautions = Vec::new();
         if let Some(wave) = problem.gap.feature_length() {
-            // By the widest ring: waves are everywhere.
+            // Judged by the widest ring, because waves are everywhere.
             let per_wave = wave / (s * self.grading.widest(self.size()));
             if per_wave < RINGS_PER_WAVE {
                 let wanted = (self.size() as f64 * RINGS_PER_WAVE / per_wave).ceil();
@@ -429,7 +431,7 @@ mod tests {
                 let sum = 2.0 * b.sum() - b.trace();
                 assert!((sum / (16.0 / 3.0) - 1.0).abs() < 1e-12, "{grading:?} {rings}: {sum}");
                 assert!((0..rings).all(|a| (0..=a).all(|b_| b[(a, b_)] > 0.0)));
-                // Symmetric: the other triangle by its own differences.
+                // Symmetric: the other triangle from its own differences.
                 let at = |i: usize, j: usize| disc_interaction(edges[i.min(j)], edges[i.max(j)]);
                 for (a, c) in
                     [(0, 0), (rings - 1, rings - 1), (rings - 1, rings - 2), (rings - 1, 0), (rings / 2, 1)]
@@ -459,7 +461,7 @@ mod tests {
                 assert!((one.force - alone.force).abs() < 1e-12);
                 assert!((one.residual_second[2] / alone.residual_second[2] - 1.0).abs() < 1e-9);
             }
-            // What is not asked for is missing, the rest is the same.
+            // What was not asked for is missing; the rest is the same.
             let of = |order| basis.equilibria(&problem, &radii, order, &Unwatched);
             let same = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
             for ((state, slopes), full) in of(Order::State).iter().zip(&of(Order::Slopes)).zip(&all) {
@@ -473,7 +475,7 @@ mod tests {
                 let until = until(wanted);
                 assert_eq!(basis.equilibria(&problem, &radii, Order::State, &until).len(), wanted);
             }
-            // A radius without an equilibrium ends them.
+            // The equilibria end at a radius without one.
             let ended = [&radii[..40], &[f64::NAN], &radii[40..]].concat();
             assert_eq!(basis.equilibria(&problem, &ended, Order::Slopes, &Unwatched).len(), 40);
         }
@@ -527,7 +529,7 @@ mod tests {
             let force: f64 =
                 pressure.iter().zip(widths).map(|((r, p), width)| p * 2.0 * PI * r * width).sum();
             assert!((force / at.force - 1.0).abs() < 1e-10, "{grading:?}");
-            // Tension that grows towards the edge.
+            // Tension grows towards the edge.
             assert!(pressure[99].1 < pressure[98].1 && pressure[98].1 < 0.0);
         }
     }

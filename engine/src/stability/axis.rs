@@ -1,16 +1,16 @@
-//! A key of a preset over a range: an axis of a map.
+//! One key of a preset over a range: an axis of a map.
 
 use crate::elementary::{ln, pow};
 use std::fmt;
 
-/// How the values of an axis are spread over it.
+/// How the values of an axis are distributed over it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Spacing {
     /// Equal steps.
     Linear,
     /// Equal factors.
     Logarithmic,
-    /// c/(c + c₀) in equal steps: from zero to infinity.
+    /// Equal steps of c/(c + c₀): from zero to infinity.
     Share(f64),
 }
 
@@ -19,16 +19,16 @@ pub enum Spacing {
 pub struct MapAxis {
     /// The dotted key, or [`COMPLIANCE`].
     pub key: String,
-    /// The ends, ascending; the last may be infinite where the spacing is [`Spacing::Share`].
+    /// The ends, ascending; the upper one may be infinite with [`Spacing::Share`].
     pub range: [f64; 2],
     /// How its values are spread.
     pub spacing: Spacing,
 }
 
-/// The name of an axis of 1/k: zero is displacement control, infinity a dead load.
+/// The name of an axis of the compliance 1/k: zero is displacement control, infinity a dead load.
 pub const COMPLIANCE: &str = "compliance";
 
-/// A range that is none of an axis.
+/// A range that no axis can have.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{range:?} is no range of {key}: {expected}")]
 pub struct AxisError {
@@ -38,7 +38,8 @@ pub struct AxisError {
 }
 
 impl MapAxis {
-    /// An axis of `key` from `lo` to `hi`; where `hi` is infinite, which only a compliance may be, `unit` stands in the middle.
+    /// An axis of `key` from `lo` to `hi`. Only a compliance may have an infinite `hi`; `unit` is then the value in the
+    /// middle.
     ///
     /// # Errors
     /// The range does not ascend, or is not positive on a logarithmic axis.
@@ -66,7 +67,7 @@ impl MapAxis {
         Ok(Self { key: key.to_owned(), range: [lo, hi], spacing })
     }
 
-    /// The value at a share of the axis, 0 at its beginning and 1 at its end.
+    /// The value at a share of the axis: 0 at its lower end, 1 at its upper end.
     pub fn value(&self, share: f64) -> f64 {
         let [lo, hi] = self.range;
         match self.spacing {
@@ -80,7 +81,7 @@ impl MapAxis {
         }
     }
 
-    /// The share of the axis at which it has a value.
+    /// The share of the axis at which the given value lies.
     pub fn share(&self, value: f64) -> f64 {
         let [lo, hi] = self.range;
         match self.spacing {

@@ -1,5 +1,5 @@
-//! The snaps of a member's own quasi-static path, from the limit points and landings of its table alone; and where along an axis
-//! their number changes.
+//! The snaps of a member's own quasi-static path, from the limit points and landings of its table alone, and where
+//! their number changes along an axis.
 
 use super::family::{AxisShares, Family, FamilyError};
 use super::law::Cusp;
@@ -10,25 +10,25 @@ use crate::quasistatic::path::{PathSetting, unload};
 use crate::quasistatic::{Curve, Detail, EventKind, Losses, Monotone};
 use std::sync::Arc;
 
-/// Halvings that find a change along an axis: to rounding, and near enough for Newton's method.
+/// Halvings that locate a change along an axis: down to rounding.
 pub const EXACTLY: usize = 40;
-/// The same for what Newton's method finds exactly.
+/// Halvings that suffice as a starting point for Newton's method.
 pub const NEARLY: usize = 12;
 
 /// The path of one member.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Passage {
-    /// The snaps, without the last contact.
+    /// The snaps, not counting the loss of the last contact.
     pub snaps: usize,
-    /// The minima of the control between the end and the start of the path, ascending: s and the weighted control.
+    /// Radius s and weighted control at the minima of the control between the end and the start of the path, ascending.
     pub minima: Vec<[f64; 2]>,
-    /// The maxima further out than the start, of a start from which the edge runs outward first.
+    /// The maxima further out than the start, if the start is one from which the edge first runs outward.
     pub crests: Vec<[f64; 2]>,
-    /// The limit points there, of both kinds.
+    /// The limit points between the end and the start, of both kinds.
     pub limits: usize,
-    /// Those from which the edge snaps, s.
+    /// The s of those from which the edge snaps.
     pub jumps: Vec<f64>,
-    /// s at its end and at its start: of an unstable start, where the edge runs to.
+    /// s at the end and at the start of the path; for an unstable start, the s that the edge runs to.
     pub radii: [f64; 2],
 }
 
@@ -43,10 +43,10 @@ pub enum Cause {
     Start,
 }
 
-/// A change of the number of snaps along an axis.
+/// A change in the number of snaps along an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Change {
-    /// Where, as a share of the axis.
+    /// Where it is, as a share of the axis.
     pub share: f64,
     /// The snaps before and after.
     pub snaps: [usize; 2],
@@ -75,7 +75,7 @@ impl Family {
             let radius = |place| solution.radius(place);
             (descent.snaps(), landed.map(|jump| radius(jump.before)).collect())
         } else {
-            // The edge runs outward first: the path of the whole unloading knows how far.
+            // The edge runs outward first; the path of the whole unloading knows how far.
             let table = Arc::clone(basis.table());
             let of = Arc::new(basis.clone());
             let curve = Curve::new(problem.clone(), of, table, [start, end], Detail::Borders, &Unwatched);
@@ -112,8 +112,9 @@ impl Family {
         }))
     }
 
-    /// The changes of the number of snaps along `axis`, the other number held at its share of `at`; looked for between
-    /// neighbours of `samples`, shares that ascend, and halved so many times. `progress` is asked before each, and what was found until then is given.
+    /// The changes in the number of snaps along `axis`, with the other number held at its share in `at`. They are
+    /// looked for between neighbours in `samples` (ascending shares) and located with this many halvings. `progress` is
+    /// asked before each sample; on a stop, what was found until then is returned.
     pub fn changes(
         &self,
         axis: usize,
@@ -154,7 +155,7 @@ impl Family {
         found: &mut Vec<Change>,
     ) {
         while lo.1.snaps != hi.1.snaps {
-            // The first of them.
+            // The first of the changes.
             let (mut a, mut b) = (lo.clone(), hi.clone());
             for _ in 0..halvings {
                 let middle = 0.5 * (a.0 + b.0);
@@ -187,7 +188,8 @@ impl Family {
         if born == 1 {
             return Cause::Start;
         }
-        // Of the minima from which the edge snaps on either side, the one whose control is nearest to that of one further in.
+        // Among the minima from which the edge snaps on either side: the one whose control is nearest to that of a
+        // minimum further in.
         let jumps: Vec<f64> = before.jumps.iter().chain(&after.jumps).copied().collect();
         let minima = &after.minima;
         let is_jump = |s: f64| jumps.iter().any(|jump| (jump - s).abs() <= 1e-4 * s);
@@ -205,7 +207,7 @@ impl Family {
     }
 }
 
-/// Shares evenly over an axis.
+/// Shares spread evenly over an axis.
 pub fn even(count: u32) -> Vec<f64> {
     (0..=count).map(|k| f64::from(k) / f64::from(count)).collect()
 }

@@ -1,9 +1,9 @@
-//! Between two neighbouring cells of a map with different numbers of snaps there is a line: this is where that is seen to.
+//! Makes sure that a line runs between any two neighbouring cells of a map with different numbers of snaps.
 //!
-//! Along the edge from the one to the other the snaps are counted on both sides of every line that crosses it. Where they differ
-//! with no line between, the change is found by halving; the cusp, landing or start that it is gives a line, which is followed
-//! over the map, or a point of a line that the chord between two of its points just missed. What is none of these is joined
-//! from edge to edge.
+//! Along the edge of the grid from one cell to the other, the snaps are counted on both sides of every line that
+//! crosses it. Where they differ with no line between, the change is found by halving. If it is a cusp, a landing or a
+//! start, it either begins a line, which is followed over the map, or is a point of a line that the chord between two
+//! of its points just missed. Changes that are none of these are joined from edge to edge.
 
 use super::count::NEARLY;
 use super::equations::{Equations, Sort};
@@ -11,19 +11,19 @@ use super::family::Family;
 use super::map::{Counts, Map, MapLine, MapPoint};
 use crate::progress::Progress;
 
-/// On both sides of a line the snaps are counted so far from it, as a share of the edge.
+/// How far from a line the snaps are counted on both its sides, as a share of the edge.
 const ASIDE: f64 = 0.05;
 
-/// A line this far beyond the end of an edge, in shares of the map, crosses it.
+/// A line this far beyond the end of an edge, in shares of the map, still crosses it.
 const TOUCHES: f64 = 1e-9;
 
-/// A solution this far from the change that was found by halving, in shares of the map, is not what changes.
+/// A solution further than this from the change found by halving, in shares of the map, is not that change.
 const SAME: f64 = 1e-4;
 
-/// A solution this near to the chord between two points of a line, in waves and shares, is a point of it.
+/// A solution this near to the chord between two points of a line, in waves and shares, is a point of that line.
 const BESIDE: f64 = 0.01;
 
-/// Cusps and landings nearest to the change that are tried, and changes looked for on one edge.
+/// How many of the cusps and landings nearest to the change are tried, and how many changes are looked for on one edge.
 const TRIED: usize = 4;
 const MOST: usize = 12;
 
@@ -59,7 +59,7 @@ struct Loose {
 }
 
 impl Family {
-    /// Adds to `map` what is missing between neighbouring cells of `counts`.
+    /// Adds to `map` the lines that are missing between neighbouring cells of `counts`.
     pub(super) fn complete(&self, map: &mut Map, counts: &Counts, progress: &dyn Progress) {
         let mut loose = Vec::new();
         let [columns, rows] = counts.shares.each_ref().map(Vec::len);
@@ -89,7 +89,8 @@ impl Family {
         }
     }
 
-    /// Sees to the changes along an edge between these numbers of snaps; the first that is on no line.
+    /// Accounts for the changes along an edge between these numbers of snaps; returns the first change that is on no
+    /// line.
     fn explain(
         &self,
         edge: GridEdge,
@@ -101,14 +102,14 @@ impl Family {
         let aside = ASIDE * (to - from);
         let mut last = None;
         for _ in 0..MOST {
-            // Pairs: what lies before the first line, between two of them, and behind the last.
+            // In pairs: before the first line, between each two lines, and behind the last.
             let mut stops = vec![Counted { share: from, snaps: known[0] }];
             for share in map.crossings(edge) {
                 let [before, after] = [-aside, aside].map(|by| (share + by).clamp(from, to));
                 if before > stops.last().map_or(from, |last| last.share) {
                     stops.extend([before, after].map(|share| self.counted(edge, share)));
                 } else if let Some(last) = stops.last_mut() {
-                    // One line beside another, or at the end of the edge.
+                    // A line next to another one, or at the end of the edge.
                     *last = self.counted(edge, after);
                 }
             }
@@ -133,7 +134,7 @@ impl Family {
         Counted { share, snaps: self.passage(&edge.at(share)).map(|path| path.snaps) }
     }
 
-    /// The first change between two places of an edge, from both sides.
+    /// The first change between two places of an edge, as its two sides.
     fn first_change(&self, edge: GridEdge, [mut a, mut b]: [Counted; 2]) -> [Counted; 2] {
         for _ in 0..NEARLY {
             let here = self.counted(edge, 0.5 * (a.share + b.share));
@@ -142,7 +143,7 @@ impl Family {
         [a, b]
     }
 
-    /// Whether the change is a cusp, a landing or a start; it is on a line of `map` then.
+    /// Whether the change is a cusp, a landing or a start; if so, it is on a line of `map` afterwards.
     fn on_line(
         &self,
         edge: GridEdge,
@@ -194,14 +195,14 @@ impl Family {
             let found = of.polished(&y, of.radii() + held);
             let near = found.filter(|y| (y[of.radii() + edge.axis] - share).abs() <= same);
             near.is_some_and(|mut y| {
-                // On the map where the change is at its border.
+                // If the change is at the border of the map, keep the solution on the map.
                 y[of.radii() + edge.axis] = y[of.radii() + edge.axis].clamp(edge.ends[0], edge.ends[1]);
                 of.is_good(&y) && self.add(&of, &y, map, progress)
             })
         })
     }
 
-    /// Adds a solution to the line it is on, or its line to the map; whether there is one.
+    /// Adds a solution to the line it lies on, or its line to the map; returns whether there is one.
     fn add(&self, of: &Equations<'_>, y: &[f64], map: &mut Map, progress: &dyn Progress) -> bool {
         let lines = map.lines.iter_mut().filter(|line| line.sort == Some(of.sort));
         let nearest = lines.filter_map(|line| line.nearest(y).map(|(off, k)| (off, k, line)));
@@ -263,7 +264,7 @@ impl Map {
 }
 
 impl MapLine {
-    /// How far the solution `y` is from the nearest chord, in waves and shares, and the number of that chord.
+    /// The distance of the solution `y` from the nearest chord, in waves and shares, and the number of that chord.
     fn nearest(&self, y: &[f64]) -> Option<(f64, usize)> {
         let chords = self.solutions.windows(2).enumerate().map(|(k, pair)| {
             let along = pair[0].iter().zip(&pair[1]).map(|(a, b)| b - a);
@@ -280,7 +281,7 @@ impl MapLine {
     }
 }
 
-/// What is said of changes that are on no line of cusps, landings or starts.
+/// The note on changes that are on no line of cusps, landings or starts.
 fn words(count: usize) -> String {
     format!(
         "between {count} pairs of neighbouring cells the number of snaps changes at no cusp, landing or limit point at the start: \
@@ -288,7 +289,7 @@ fn words(count: usize) -> String {
     )
 }
 
-/// The lines through loose changes: in each cell with two of them from the one to the other, else to its middle.
+/// The lines through loose changes: in a cell with two of them from one to the other, otherwise to its middle.
 fn joined(loose: &[Loose], counts: &Counts) -> Vec<MapLine> {
     let [columns, rows] = counts.shares.each_ref().map(Vec::len);
     let mut lines = Vec::new();

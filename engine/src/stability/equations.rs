@@ -1,4 +1,5 @@
-//! Lines in two numbers as curves of a system, for the one tracer: pairs of numbers for which no line follows from s.
+//! Lines in two numbers as curves of a system, for the common tracer: for pairs of numbers whose lines do not follow
+//! from s.
 //!
 //! ```text
 //! fold      (s, p)           F = √(πγ/2)
@@ -15,7 +16,7 @@ use crate::continuation::{Linearization, Point, Settings, System, Vector};
 use crate::quasistatic::monotone::weighted;
 use nalgebra::{DMatrix, DVector};
 
-/// What a line is of.
+/// What a line consists of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sort {
     /// Limit points.
@@ -30,14 +31,14 @@ pub enum Sort {
     Arrival,
 }
 
-/// Half the step of a difference by a share: rounding of the table leaves eight digits.
+/// Half the step of a difference quotient by a share: the rounding of the table leaves eight digits.
 const STEP: f64 = 3e-6;
 
-/// Rounds of Newton's method, and the correction at which it has converged.
+/// Rounds of Newton's method, and the size of correction at which it has converged.
 const ROUNDS: usize = 30;
 const CONVERGED: f64 = 1e-12;
 
-/// The equations of a sort of line.
+/// The equations of one sort of line.
 #[derive(Debug, Clone, Copy)]
 pub struct Equations<'a> {
     /// The family.
@@ -48,7 +49,7 @@ pub struct Equations<'a> {
     pub unit: f64,
 }
 
-/// One equation: its value, the size of its terms, its derivatives by the radii.
+/// One equation: its value, the size of its terms, and its derivatives by the radii.
 struct EquationRow {
     value: f64,
     size: f64,
@@ -70,7 +71,7 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// Settings of the tracer: steps short beside a wave and beside the map.
+    /// Settings of the tracer: steps that are short compared with a wave and with the map.
     pub fn settings(&self) -> Settings {
         let mut settings = Settings::new(self.unknowns());
         settings.largest_increment.fill(0.05);
@@ -82,7 +83,7 @@ impl<'a> Equations<'a> {
         settings
     }
 
-    /// What the law needs of the radii of `y`.
+    /// What the law needs to know at the radii of `y`.
     pub fn locals(&self, y: &[f64]) -> Option<Vec<LocalLaw>> {
         let (radii, shares) = y.split_at(self.radii());
         let member = self.family.member(shares).ok()?;
@@ -129,7 +130,7 @@ impl<'a> Equations<'a> {
         Some(rows)
     }
 
-    /// The solution next to `y` with the unknown `held` as it is; `None` where Newton's method finds none.
+    /// The solution next to `y` with the unknown `held` kept fixed; `None` where Newton's method finds none.
     pub fn polished(&self, y: &[f64], held: usize) -> Option<Vec<f64>> {
         let n = self.unknowns();
         let mut y = DVector::from_column_slice(y);
@@ -150,12 +151,12 @@ impl<'a> Equations<'a> {
                 return Some(y.as_slice().to_vec());
             }
         }
-        // Differences of tables leave corrections of their own rounding.
+        // Differences of tables leave corrections as large as their own rounding.
         self.linearize(&y, &mut at)?;
         (at.relative_residual() <= 1e-9).then(|| y.as_slice().to_vec())
     }
 
-    /// The point of a solution, its tangent along `forward`.
+    /// The point of a solution, with its tangent along `forward`.
     pub fn point(&self, y: &[f64], forward: &[f64]) -> Option<Point> {
         let y = DVector::from_column_slice(y);
         let mut at = Linearization::new(self.unknowns());
@@ -180,7 +181,7 @@ impl System for Equations<'_> {
             }
         }
         for k in radii..self.unknowns() {
-            // One-sided at the border of what a number may be.
+            // One-sided at the border of the values a number may take.
             let moved = |by: f64| {
                 let mut moved = y.as_slice().to_vec();
                 moved[k] += by;

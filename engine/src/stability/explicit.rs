@@ -1,4 +1,5 @@
-//! Lines of cusps without continuation: each radius s says at which pair of numbers a pair of limit points is born there.
+//! Lines of cusps without continuation: each radius s gives the pair of numbers at which a pair of limit points is born
+//! there.
 //!
 //! ```text
 //! a number A that enters linearly, F = F₀ + t F₁:    F' = 0  at  t = −F₀'/F₁',    γ = (2E*/π) F²
@@ -6,7 +7,7 @@
 //!              3(1 − M)x² − 4M x + (1 − M) = 0,   k = 2E*s/x
 //! ```
 //!
-//! The tip of a line, where two of them are born, is where F'' = 0 too: a swallowtail.
+//! The tip of a line, where two lines are born, is where F'' = 0 as well: a swallowtail.
 
 use super::family::{Family, FamilyError, LocalLaw};
 use super::law::{EdgeJet, adhesion_of};
@@ -15,18 +16,19 @@ use crate::problem::Control;
 use crate::progress::Progress;
 use crate::root;
 
-/// Radii at which a line is sampled: so many on each stretch of this share of a wave or a panel.
+/// Radii at which a line is sampled: this many per half wave.
 const PER_PANEL: f64 = 24.0;
-/// The most of all.
+/// The most samples in all.
 const MOST: f64 = 40_000.0;
-/// Neighbours on a line are nearer to each other than this, in shares of the axes, after so many halvings at most.
+/// Neighbours on a line are nearer to each other than this, in shares of the axes, unless this many halvings are not
+/// enough.
 const CLOSE: f64 = 0.02;
 const DEPTH: usize = 20;
-/// Halvings of a step in which a line is looked for that neither end is on; the first ones look everywhere, the others where
-/// the ends say that it may be.
+/// Halvings of a step in which a line is looked for although neither end is on it. The first ones look everywhere, the
+/// others only where the ends allow a line.
 const SOUGHT: usize = 40;
 const BLIND: usize = 3;
-/// Halvings of the last step at the border of the map, and at a swallowtail.
+/// Halvings that locate the border of the map on the last step, and a swallowtail.
 const HALVINGS: usize = 48;
 
 /// A point of a line of cusps.
@@ -50,10 +52,10 @@ impl Born {
 pub type ExplicitLine = (Vec<Born>, Vec<Born>);
 
 impl Family {
-    /// The lines of cusps, where both numbers follow from s; `None` where they do not.
+    /// The lines of cusps, if both numbers follow from s; otherwise `None`.
     ///
     /// # Errors
-    /// A table cannot be had.
+    /// A gap cannot be tabulated.
     pub fn explicit_cusps(&self, progress: &dyn Progress) -> Result<Option<Vec<ExplicitLine>>, FamilyError> {
         let (Some(adhesion), Some(factor), 2) = (self.adhesion(), self.adhesion_factor(), self.axes.len())
         else {
@@ -72,7 +74,7 @@ impl Family {
                 at[other] = share;
                 self.member(&at)
             };
-            // At the ends of the axis, whatever its spacing.
+            // From the ends of the axis, whatever its spacing.
             let (lo, hi) = (member(0.0)?, member(1.0)?);
             let [from, to] = self.axes[other].range;
             let born = |s: f64| {
@@ -99,7 +101,7 @@ impl Family {
                     let local = grips.local(s)?;
                     let x = relative_compliance(s, &local, soft)?;
                     let control = Control::Stiffness(2.0 * s / x);
-                    // F of this device, from g alone.
+                    // F under this device, from g alone.
                     let edge = edge_under(&local, grips.control, control, s);
                     let compliance = x / (2.0 * s) / stiffness;
                     let share = self.axes[other].share(compliance);
@@ -116,18 +118,18 @@ impl Family {
         Ok(None)
     }
 
-    /// The cusps along the only axis, whose number enters linearly: s and the share of each, ascending by share. Empty where the
-    /// axis is another.
+    /// The cusps along the only axis, if its number enters linearly: s and the share of each, ascending by share. Empty
+    /// for any other axis.
     ///
     /// # Errors
-    /// A table cannot be had.
+    /// A gap cannot be tabulated.
     pub fn births(&self) -> Result<Vec<[f64; 2]>, FamilyError> {
         if self.linear() != Some(0) || self.axes.len() != 1 {
             return Ok(Vec::new());
         }
         let (lo, hi) = (self.member(&[0.0])?, self.member(&[1.0])?);
         let [from, to] = self.axes[0].range;
-        // What F lacks at the radius where it turns, and the share at which it does.
+        // How far F at its turning point lies above √(πγ/2), and the share at which F turns at this radius.
         let born = |s: f64| {
             let (a, b) = (lo.local(s)?.edge, hi.local(s)?.edge);
             let t = -a.slope / (b.slope - a.slope);
@@ -137,7 +139,7 @@ impl Family {
         };
         let mut found = Vec::new();
         for pair in self.sampled_radii().windows(2) {
-            // Where only one end has a line, as far as it goes.
+            // If only one end has a value, go as far as there is one.
             let [mut a, mut b] = match (born(pair[0]), born(pair[1])) {
                 (Some(_), Some(_)) => [pair[0], pair[1]],
                 (Some(_), None) => [pair[0], last(&born, pair[1], pair[0])],
@@ -156,7 +158,7 @@ impl Family {
                     None => break,
                 }
             }
-            // Not at a pole, and on the axis.
+            // Only if it is no pole, and on the axis.
             let on_axis =
                 |(off, share): &(f64, f64)| off.abs() <= f.abs().max(g.abs()) && (0.0..=1.0).contains(share);
             found.extend(born(a).filter(on_axis).map(|(_, share)| [a, share]));
@@ -165,7 +167,7 @@ impl Family {
         Ok(found)
     }
 
-    /// The lines of a function of s, parted where it leaves the map, with their swallowtails.
+    /// The lines of a function of s, split where it leaves the map, with their swallowtails.
     pub(super) fn sampled(
         &self,
         progress: &dyn Progress,
@@ -180,12 +182,12 @@ impl Family {
             }
             let here = good(s);
             if let Some((from, old)) = before {
-                // Where it enters or leaves the map, the piece of a step that is on it.
+                // Where the line enters or leaves the map, the part of the step that is on the map.
                 let ends = match (old, here) {
                     (Some(old), Some(here)) => Some((old, here)),
                     (None, Some(here)) => good(last(&good, from, s)).map(|edge| (edge, here)),
                     (Some(old), None) => good(last(&good, s, from)).map(|edge| (old, edge)),
-                    // A whole line may lie between: where F is steep.
+                    // Where F is steep, a whole line may lie between.
                     (None, None) => {
                         let ends = [(from, born(from)), (s, born(s))];
                         within(born, ends, SOUGHT).and_then(|middle| {
@@ -228,7 +230,7 @@ impl Family {
     }
 }
 
-/// 2s/k of the device for which s is a cusp: the stiffer one, or the softer.
+/// 2s/k of a device for which s is a cusp; there are two such devices, the stiffer and the softer.
 fn relative_compliance(s: f64, grips: &LocalLaw, soft: bool) -> Option<f64> {
     let [first, second, _] = third_of(grips, grips.control, s);
     let m = -2.0 * s * second / first;
@@ -236,12 +238,12 @@ fn relative_compliance(s: f64, grips: &LocalLaw, soft: bool) -> Option<f64> {
     if !(m < 1.0 && m > 0.0 && square >= 0.0) {
         return None;
     }
-    // The two multiply to 1/3.
+    // The product of the two is 1/3.
     let larger = (2.0 * m + square.sqrt()) / (3.0 * (1.0 - m));
     Some(if soft { larger } else { 1.0 / (3.0 * larger) })
 }
 
-/// F under the device `to`, from that under `from`.
+/// F under the device `to`, from F under `from`.
 pub(super) fn edge_under(local: &LocalLaw, from: Control, to: Control, s: f64) -> EdgeJet {
     EdgeJet::of(to, s, third_of(local, from, s))
 }
@@ -254,20 +256,21 @@ fn third_of(local: &LocalLaw, control: Control, s: f64) -> [f64; 3] {
     [f, second, ddf - (weight.slope * weight.slope + weight.bend) * f - 2.0 * weight.slope * second]
 }
 
-/// The last radius on the way from `inside` to `outside`, where there is none, at which `good` has an answer.
+/// The last radius at which `good` has an answer, on the way from `inside`, where it has one, to `outside`, where it
+/// has none.
 fn last<T>(good: &dyn Fn(f64) -> Option<T>, outside: f64, inside: f64) -> f64 {
     root::halved(inside, outside, |s| good(s).is_some())[0]
 }
 
-/// A radius between two, at neither of which the line is on the map, at which it is. A line may cross the whole map in a small
-/// part of a step, where F is steep.
+/// A radius at which the line is on the map, between two radii at which it is not. A line may cross the whole map in a
+/// small part of a step, where F is steep.
 fn within(
     born: &dyn Fn(f64) -> Option<Born>,
     [a, b]: [(f64, Option<Born>); 2],
     halvings: usize,
 ) -> Option<f64> {
     let is_sought = match (a.1, b.1) {
-        // Both beyond one border: so, in a part so small, is what lies between.
+        // If both ends are beyond the same border, so is everything between them in so small a part.
         (Some(a), Some(b)) => (0..2).all(|k| a.at[k].max(b.at[k]) >= 0.0 && a.at[k].min(b.at[k]) <= 1.0),
         (None, None) => false,
         _ => true,
@@ -284,8 +287,8 @@ fn within(
     parts.into_iter().find_map(|ends| within(born, ends, halvings - 1))
 }
 
-/// Adds the line from `a` to `b` to the last one, its points closer to each other than [`CLOSE`], with the swallowtails between
-/// them. Where it leaves the map on the way, or jumps, another line begins.
+/// Appends the line from `a` to `b` to the last one, with points closer to each other than [`CLOSE`] and the
+/// swallowtails between them. Where it leaves the map on the way, or jumps, a new line begins.
 fn refine(good: &dyn Fn(f64) -> Option<Born>, a: Born, b: Born, depth: usize, lines: &mut Vec<ExplicitLine>) {
     let apart = hypot(a.at[0] - b.at[0], a.at[1] - b.at[1]);
     if apart > CLOSE {
@@ -320,7 +323,7 @@ fn refine(good: &dyn Fn(f64) -> Option<Born>, a: Born, b: Born, depth: usize, li
     line.0.push(b);
 }
 
-/// The swallowtail between two points, where F'' passes zero; `None` where it passes a pole.
+/// The swallowtail between two points, where F'' passes through zero; `None` if it passes a pole.
 fn tip(good: &dyn Fn(f64) -> Option<Born>, mut a: Born, mut b: Born) -> Option<Born> {
     let largest = a.bend.abs().max(b.bend.abs());
     for _ in 0..HALVINGS {

@@ -1,8 +1,8 @@
-//! A preset with one or two of its numbers left open: what the lines of a map are looked for in.
+//! A preset with one or two of its numbers left open: the lines of a map are looked for in such a family.
 //!
-//! How a number enters decides what it costs. The work of adhesion and the device leave the table of g alone; where the gap is
-//! linear in a number (a wave's amplitude) so is g, and two tables give it for all its values; any other number asks for the
-//! table of its own gap at each value.
+//! How a number enters decides what it costs. The work of adhesion and the device do not change the table of g. Where
+//! the gap is linear in a number (a wave's amplitude), so is g, and two tables give it for all values. Any other number
+//! needs the table of its own gap at each value.
 
 use super::axis::{COMPLIANCE, MapAxis};
 use super::law::{EdgeJet, Law, root_of};
@@ -23,7 +23,7 @@ pub type AxisShares<'a> = &'a [f64];
 /// How a number enters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum NumberRole {
-    /// The reduced work of adhesion is this times it.
+    /// The reduced work of adhesion is the number times this factor.
     Adhesion(f64),
     /// It is the compliance of the device.
     Device,
@@ -33,7 +33,7 @@ enum NumberRole {
     Other,
 }
 
-/// Radii at which a gap is asked whether it is linear in a number, and the difference that is rounding.
+/// Number of radii at which a gap is tested for linearity in a number, and the difference that counts as rounding.
 const ASKED: u32 = 24;
 const ROUNDING: f64 = 1e-13;
 
@@ -47,27 +47,27 @@ pub struct Family {
     roles: Vec<NumberRole>,
     /// The unit of length, the same for all members.
     pub length: f64,
-    /// The tables of the gaps at both ends of the number that enters linearly; of two such numbers at all four corners, the second
-    /// number first.
+    /// The tables of the gaps at both ends of the number that enters linearly; for two such numbers at all four
+    /// corners, the second number varying more slowly.
     ends: Vec<Arc<Table>>,
-    /// What the gaps of all members are mixtures of, where that costs less than a table of their own.
+    /// What the gaps of all members are mixtures of, where that costs less than a table for each.
     blend: Option<Arc<Blend>>,
-    /// The table of the gap where no axis changes it.
+    /// The table of the gap, if no axis changes it.
     own: Option<Arc<Table>>,
     kept: KeptTables<Shape>,
-    /// The preset as it is.
+    /// The preset as given.
     base: Arc<MemberCase>,
-    /// The last members made, with the bits of the numbers that change their gaps.
+    /// The last members made, keyed by the bits of the numbers that change their gaps.
     made: Mutex<Vec<(Vec<u64>, Arc<MemberCase>)>>,
-    /// The contact radii between which lines are looked for, reduced: the end and the start of the preset's path, or the smallest
-    /// and the largest radius of all paths once they are known.
+    /// The contact radii between which lines are looked for, reduced: the end and the start of the preset's path, or,
+    /// once they are known, the smallest and the largest radius of all paths.
     pub radii: [f64; 2],
 }
 
-/// Members kept: the differences of one place ask for three gaps.
+/// Members kept: the difference quotients at one place need three gaps.
 const KEPT: usize = 4;
 
-/// A preset whose gap is a member's, with what follows from it; what leaves the gap alone is not set.
+/// A preset with the gap of a member, and what follows from it; numbers that do not change the gap are not set.
 #[derive(Debug)]
 struct MemberCase {
     preset: Preset,
@@ -85,7 +85,7 @@ impl MemberCase {
 /// Why there is no family.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FamilyError {
-    /// A value is none of the preset's.
+    /// The preset does not allow a value.
     #[error(transparent)]
     Invalid(#[from] Invalid),
     /// A gap cannot be tabulated.
@@ -94,7 +94,7 @@ pub enum FamilyError {
     /// The start state does not exist.
     #[error(transparent)]
     Start(#[from] StartError),
-    /// It was no longer wanted.
+    /// The result was no longer wanted.
     #[error(transparent)]
     Stopped(#[from] Stopped),
     /// The key holds no number.
@@ -117,7 +117,7 @@ pub enum FamilyError {
     Twice(String),
 }
 
-/// Waves, or other features of the gap, in the disc at the start: with more of them a map would take minutes.
+/// Most waves, or other features of the gap, in the disc at the start: with more, a map would take minutes.
 const MOST_FEATURES: f64 = 3000.0;
 
 /// What the law needs to know of one state.
@@ -125,7 +125,7 @@ const MOST_FEATURES: f64 = 3000.0;
 pub struct LocalLaw {
     /// F with its derivatives.
     pub edge: EdgeJet,
-    /// √(πγ/2): the state is a limit point where F is equal to it.
+    /// √(πγ/2): the state is a limit point where F equals it.
     pub root: f64,
     /// g.
     pub transform: f64,
@@ -177,7 +177,7 @@ impl Family {
                     && preset.get(&axis.key).is_none_or(|value| value.as_number().is_some())
             };
             if axis.key != COMPLIANCE && !number(preset) {
-                // An unknown key is said as such, with the nearest name.
+                // An unknown key is reported as such, with the nearest name.
                 preset.clone().set(&axis.key, 1.0.into())?;
                 return Err(FamilyError::NoNumber(axis.key.clone()));
             }
@@ -220,7 +220,8 @@ impl Family {
         Ok(family)
     }
 
-    /// Tabulates the gaps at the ends of the numbers that enter linearly; what they make of all members, where it is worth it.
+    /// Tabulates the gaps at the ends of the numbers that enter linearly; returns their blend for all members, where it
+    /// is worthwhile.
     fn corners(&mut self) -> Result<Option<Arc<Blend>>, FamilyError> {
         let linear: Vec<&MapAxis> = (0..self.axes.len())
             .filter(|k| self.roles[*k] == NumberRole::Linear)
@@ -242,7 +243,7 @@ impl Family {
         Ok(blend.map(Arc::new))
     }
 
-    /// The weights of the corners at values of the numbers left open.
+    /// The weights of the corners at given values of the numbers left open.
     fn weights(&self, value: &dyn Fn(usize) -> f64) -> Vec<f64> {
         let mut weights = vec![1.0];
         for k in (0..self.axes.len()).filter(|k| self.roles[*k] == NumberRole::Linear) {
@@ -254,7 +255,7 @@ impl Family {
         weights
     }
 
-    /// Refuses an axis on which the gap becomes too fine to be tabulated again and again.
+    /// Refuses an axis on which the gap becomes too fine to be tabulated over and over.
     fn check_features(&self) -> Result<(), FamilyError> {
         for (axis, _) in self.axes.iter().zip(&self.roles).filter(|(_, role)| **role == NumberRole::Other) {
             for end in axis.range {
@@ -284,7 +285,7 @@ impl Family {
         Ok(preset)
     }
 
-    /// The gap at these shares: the last ones are kept.
+    /// The gap at these shares; the last few are kept.
     fn made(&self, at: AxisShares<'_>) -> Result<Arc<MemberCase>, FamilyError> {
         let values: Vec<(&MapAxis, f64)> = (0..self.axes.len())
             .filter(|k| !self.keeps_gap(*k))
@@ -330,18 +331,19 @@ impl Family {
         }
     }
 
-    /// The radius at which the paths of all members start, reduced, before the edge runs from there; `None` where they differ.
+    /// The radius at which the paths of all members start, reduced, before the edge runs away from it; `None` if they
+    /// differ.
     pub fn start(&self) -> Option<f64> {
         let Start::ContactRadius(s) = self.preset.path.start else { return None };
         let is_free = self.axes.iter().any(|axis| axis.key.starts_with("path.start"));
         (!is_free).then_some(s / self.length)
     }
 
-    /// Widens the radii between which lines are looked for, so that a path's are among them. With more features of the gap in
-    /// them than a map takes they end there.
+    /// Widens the radii between which lines are looked for, so that they include those of a path. If that would include
+    /// more features of the gap than a map takes, they end there.
     ///
     /// # Errors
-    /// What is to be said of radii that are left out.
+    /// A message about the radii that are left out.
     pub fn widen(&mut self, [end, start]: [f64; 2]) -> Result<(), String> {
         let most = self.wave().map_or(f64::INFINITY, |wave| MOST_FEATURES * wave);
         let [from, to] = self.radii;
@@ -376,7 +378,7 @@ impl Family {
         }
         let [lo, hi] = axis.range;
         let middle = axis.value(0.5);
-        // Of the other axis too: it may change what this one is measured by.
+        // At the ends of the other axis too: it may change the scale of this one.
         let others: Vec<&MapAxis> = self.axes.iter().filter(|other| other.key != axis.key).collect();
         let ends = |other: &MapAxis| [0.0, 1.0].map(|share| other.value(share));
         let corners: Vec<Vec<(&MapAxis, f64)>> = match others.first() {
@@ -410,7 +412,7 @@ impl Family {
         Ok(if alike { first } else { NumberRole::Other })
     }
 
-    /// Whether the gap `m` lies at `share` of the way between `a` and `b`, at many radii.
+    /// Whether the gap `m` lies at `share` of the way from `a` to `b`, at many radii.
     fn is_linear(&self, a: &Shape, b: &Shape, m: &Shape, share: f64) -> bool {
         let reach = match self.preset.path.start {
             Start::ContactRadius(s) => s,
@@ -425,35 +427,35 @@ impl Family {
             })
     }
 
-    /// The number whose gap is linear in it, by its place among the axes.
+    /// The index of the axis whose number enters the gap linearly.
     pub fn linear(&self) -> Option<usize> {
         self.roles.iter().position(|role| *role == NumberRole::Linear)
     }
 
-    /// The axis of the work of adhesion.
+    /// The index of the axis of the work of adhesion.
     pub fn adhesion(&self) -> Option<usize> {
         self.roles.iter().position(|role| matches!(role, NumberRole::Adhesion(_)))
     }
 
-    /// The axis of the compliance.
+    /// The index of the axis of the compliance.
     pub fn compliance(&self) -> Option<usize> {
         self.roles.iter().position(|role| *role == NumberRole::Device)
     }
 
-    /// Whether the gap is the same all over the axis.
+    /// Whether the gap is the same everywhere on the axis.
     pub fn keeps_gap(&self, axis: usize) -> bool {
         matches!(self.roles[axis], NumberRole::Adhesion(_) | NumberRole::Device)
     }
 
-    /// The reduced work of adhesion over the number on its axis.
+    /// The reduced work of adhesion divided by the number on its axis.
     pub fn adhesion_factor(&self) -> Option<f64> {
         self.roles.iter().find_map(|role| if let NumberRole::Adhesion(c) = role { Some(*c) } else { None })
     }
 
-    /// The member at these shares: its adhesion and device, and its preset where some number asks for it.
+    /// The member at these shares: its adhesion and device, and its preset where some number requires it.
     ///
     /// # Errors
-    /// [`FamilyError`] where the values are refused.
+    /// [`FamilyError`] if the values are refused.
     pub fn member(&self, at: AxisShares<'_>) -> Result<Member<'_>, FamilyError> {
         let value = |k: usize| self.axes[k].value(at[k]);
         let (mut source, made) = if self.roles.contains(&NumberRole::Other) {
@@ -495,7 +497,7 @@ impl Family {
     }
 }
 
-/// The device of a compliance.
+/// The device with this compliance.
 fn device(compliance: f64) -> Control {
     if compliance <= 0.0 {
         Control::Displacement
@@ -510,12 +512,12 @@ fn device(compliance: f64) -> Control {
 #[derive(Debug, Clone)]
 enum TransformSource {
     One(Arc<Panels>),
-    /// A paraboloid with waves, of which one radius needs no table.
+    /// A paraboloid with waves; a single radius needs no table.
     Waves {
         curvature: f64,
         waves: Vec<Wave>,
     },
-    /// At the corners of the numbers that enter linearly, each with its weight.
+    /// The tables at the corners of the numbers that enter linearly, each with its weight.
     Mixed(Vec<(f64, Arc<Panels>)>),
 }
 
@@ -533,7 +535,7 @@ pub struct Member<'a> {
 }
 
 impl Member<'_> {
-    /// What the law needs at the radius `s`; `None` beyond the table, and where it has no number.
+    /// What the law needs at the radius `s`; `None` beyond the table, and where it is not a number.
     pub fn local(&self, s: f64) -> Option<LocalLaw> {
         let of = |panels: &Panels| {
             let place = (s > 0.0 && s <= panels.reach()).then(|| panels.place(s))?;
@@ -570,7 +572,7 @@ impl Member<'_> {
         })
     }
 
-    /// The law of this member: on the table of its own gap.
+    /// The law of this member, on the table of its own gap.
     ///
     /// # Errors
     /// The gap cannot be tabulated.
@@ -585,7 +587,8 @@ impl Member<'_> {
         Ok(Law { panels, control: self.control })
     }
 
-    /// The exact basis on the table of its own gap, its problem, and the radii at which its path starts and ends; all reduced.
+    /// The exact basis on the table of the member's own gap, its problem, and the radii at which its path ends and
+    /// starts; all reduced.
     ///
     /// # Errors
     /// [`FamilyError`].

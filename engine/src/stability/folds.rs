@@ -1,10 +1,11 @@
-//! Fold curves: where each limit point happens, over one number.
+//! Fold curves: where each limit point lies, as a function of one number.
 //!
 //! ```text
 //! γ = γ_k(s)      A: t = (√(πγ/2) − F₀)/F₁      k: x = (1 − q)/(3q − 1),  q = √(πγ/2)/(√s g')
 //! ```
 //!
-//! Each radius says the value of the number at which it is a limit point, and there δ and P. Any other number is traced.
+//! Each radius gives the value of the number at which it is a limit point, and with it δ and P. For any other number
+//! the curve is traced.
 
 use super::count::{Cause, EXACTLY, even};
 use super::equations::{Equations, Sort};
@@ -17,37 +18,38 @@ use super::weight::Weight;
 use crate::problem::Control;
 use crate::progress::Progress;
 
-/// Values of the number at which limit points are looked for where no curve follows from s.
+/// Values of the number at which limit points are looked for if no curve follows from s.
 const COLUMNS: u32 = 24;
-/// Values between which landings are looked for, and just before and after a cusp, as a share of the axis.
+/// Values between which landings are looked for; also just before and after each cusp, by this share of the axis.
 const SAMPLES: u32 = 100;
 const BESIDE: f64 = 1e-7;
 
-/// One limit point over the number.
+/// One limit point as a function of the number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoldLine {
-    /// The crest at which it is, from the axis; none without a wave.
+    /// The crest it lies at, numbered from the axis; none without a wave.
     pub crest: Option<u32>,
-    /// Whether the control is smallest there: the edge runs inward from it, and stable states lie outward. Otherwise it runs
-    /// outward, and they lie inward.
+    /// Whether the control has a minimum there: the edge runs inward from it, and stable states lie outward. Otherwise
+    /// the edge runs outward, and they lie inward.
     pub is_minimum: bool,
-    /// Its points in order.
+    /// The points of the curve in order.
     pub points: Vec<MapPoint>,
 }
 
-/// All of them.
+/// All fold curves with their cusps and landings.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Folds {
     /// The curves, cut at the cusps.
     pub lines: Vec<FoldLine>,
     /// The cusps.
     pub cusps: Vec<MapPoint>,
-    /// Where a jump just reaches, or just passes over, a crest: the limit points from which it begins.
+    /// Where a jump just reaches, or just passes over, a crest: the limit points from which the jump begins.
     pub landings: Vec<MapPoint>,
 }
 
 impl Family {
-    /// The fold curves over the only axis. `progress` is asked now and then; what is found until it says stop is given.
+    /// The fold curves over the only axis. `progress` is asked now and then; on a stop, what was found until then is
+    /// returned.
     ///
     /// # Errors
     /// A gap cannot be tabulated, or a value is out of its range.
@@ -90,7 +92,7 @@ impl Family {
                 known.push(line);
             }
         }
-        // On both sides of every cusp too: what is won there may be lost before the next sample.
+        // On both sides of every cusp too: a snap gained there may be lost again before the next sample.
         let beside = folds.cusps.iter().flat_map(|cusp| [cusp.at[0] - BESIDE, cusp.at[0] + BESIDE]);
         let mut samples: Vec<f64> = even(SAMPLES).into_iter().chain(beside).collect();
         samples.retain(|share| (0.0..=1.0).contains(share));
@@ -179,7 +181,7 @@ impl Family {
     }
 }
 
-/// The parts of a line between changes of the sign of F'; the point at a change belongs to both.
+/// The parts of a line between sign changes of F'; the point at a change belongs to both.
 fn cut<T>(points: &[T], slope: impl Fn(&T) -> f64) -> Vec<&[T]> {
     let mut parts = Vec::new();
     let mut from = 0;
@@ -193,7 +195,7 @@ fn cut<T>(points: &[T], slope: impl Fn(&T) -> f64) -> Vec<&[T]> {
     parts
 }
 
-/// Whether F grows at the limit points of a part, by most of its points.
+/// Whether F grows at the limit points of a part, judged by the majority of its points.
 fn sign<T>(part: &[T], slope: impl Fn(&T) -> f64) -> bool {
     2 * part.iter().filter(|point| slope(point) > 0.0).count() > part.len()
 }

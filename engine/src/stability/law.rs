@@ -5,8 +5,9 @@
 //! state s is stable  ⇔  γ < γ_k(s),    a limit point  ⇔  γ = γ_k(s)
 //! ```
 //!
-//! One curve answers for every work of adhesion: the line γ cuts it at all limit points. At its extrema pairs of them are born:
-//! F' = 0, a cusp. Where h'' jumps `γ_k` has a corner and no derivative: an extremum there is none.
+//! One curve answers for every work of adhesion: the line of constant γ cuts it at all limit points. At its extrema
+//! pairs of limit points are born: F' = 0, a cusp. Where h'' jumps, `γ_k` has a corner and no derivative; an extremum
+//! there is not a cusp.
 
 use super::weight::Weight;
 use crate::disc::chebyshev::{self, ChebyshevRule, ROOT_NODES};
@@ -19,7 +20,8 @@ use std::sync::Arc;
 /// Values of F' below this share of its terms are rounding.
 const ROUNDING: f64 = 1e-11;
 
-/// A derivative of g' by the panel's variable below this share of its size, at the break, says that h'' does not jump there.
+/// If the derivative of g' by the panel's variable is below this share of its size at the break, h'' does not jump
+/// there.
 const SMOOTH: f64 = 1e-8;
 
 /// F = `W_k g'` and its derivatives by s at one radius, reduced.
@@ -34,7 +36,7 @@ pub struct EdgeJet {
 }
 
 impl EdgeJet {
-    /// F of the derivatives of g at the radius `s`.
+    /// F from the derivatives of g at the radius `s`.
     pub fn of(control: Control, s: f64, [first, second, third]: [f64; 3]) -> Self {
         let Weight { value, slope, bend } = Weight::of(control, s);
         Self {
@@ -45,25 +47,25 @@ impl EdgeJet {
     }
 }
 
-/// √(πγ/2), that F is held against, of a reduced work of adhesion.
+/// √(πγ/2) of a reduced work of adhesion; F is compared with it.
 pub fn root_of(work_of_adhesion: f64) -> f64 {
     (FRAC_PI_2 * work_of_adhesion).sqrt()
 }
 
-/// γ of F, reduced: zero where F is not positive.
+/// The reduced γ that belongs to F: zero where F is not positive.
 pub fn adhesion_of(value: f64) -> f64 {
     let f = value.max(0.0);
     f * f / FRAC_PI_2
 }
 
-/// A place at which F is largest or smallest along the radius: at such an adhesion a pair of limit points is born.
+/// A place at which F has an extremum along the radius: at this adhesion a pair of limit points is born.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cusp {
     /// s, reduced.
     pub contact_radius: f64,
     /// F there.
     pub value: f64,
-    /// Whether F is smallest there.
+    /// Whether F has a minimum there.
     pub is_minimum: bool,
 }
 
@@ -90,12 +92,12 @@ impl Law {
         Some(adhesion_of(Weight::of(self.control, s).value * slope))
     }
 
-    /// [`Law::critical`] at many radii, which run one way; not a number where it is none.
+    /// [`Law::critical`] at many radii in ascending or descending order; NaN where there is none.
     pub fn over(&self, radii: &[f64]) -> Vec<f64> {
         let mut found = Vec::with_capacity(radii.len());
         let mut rest = radii;
         while let Some((s, others)) = rest.split_first() {
-            // Eight at a time where they lie on one panel.
+            // Eight at a time if they lie on one panel.
             let place = self.place(*s);
             let eight = rest.first_chunk::<8>().zip(place).filter(|(eight, place)| {
                 let span = &self.panels.list()[place.panel].span;
@@ -119,7 +121,7 @@ impl Law {
         known.then(|| self.panels.place(s)).filter(|place| place.panel > 0)
     }
 
-    /// The extrema of F with F > 0 between two radii, ascending, and the radii of the corners of F there.
+    /// The extrema of F with F > 0 between two radii, ascending, and the radii of the corners of F between them.
     pub fn cusps(&self, [from, to]: [f64; 2]) -> (Vec<Cusp>, Vec<f64>) {
         let (mut cusps, mut corners) = (Vec::new(), Vec::new());
         let mut before: Option<bool> = None;
@@ -156,7 +158,8 @@ impl Law {
         cusps.extend(edge.map(|edge| Cusp { contact_radius: s, value: edge.value, is_minimum }));
     }
 
-    /// With which power of the stretch F' is smooth on a panel: 3 where h' jumps at its inner end, 1 where h'' does, else 0.
+    /// The power of the stretch that makes F' smooth on a panel: 3 if h' jumps at its inner end, 1 if h'' does,
+    /// otherwise 0.
     fn singular(&self, panel: usize) -> i32 {
         let of = &self.panels.list()[panel];
         match of.span.variable {
@@ -173,7 +176,7 @@ impl Law {
         }
     }
 
-    /// On a panel, the series of F' times a power of the stretch.
+    /// On a panel, the series of F' times this power of the stretch.
     fn tendency(&self, panel: usize, power: i32) -> Vec<f64> {
         let span = self.panels.list()[panel].span;
         ChebyshevRule::of(ROOT_NODES).series(|x| {

@@ -1,4 +1,4 @@
-//! Lines followed by the tracer from points known on them, to the border of the map.
+//! Lines followed by the tracer from known points on them, up to the border of the map.
 
 use super::equations::{Equations, Sort};
 use crate::continuation::{Bracket, Point, Tracer, Vector};
@@ -10,17 +10,18 @@ const CLOSED: f64 = 0.03;
 /// A point this near to a line, in waves and shares, is on it.
 const ON_LINE: f64 = 0.05;
 
-/// A line of a map: its points, each radii (in the unit of the equations) and shares, with the places of its swallowtails.
+/// A line of a map: its points, each with radii (in the unit of the equations) and shares, and the places of its
+/// swallowtails.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Traced {
     /// The points in order.
     pub points: Vec<Vec<f64>>,
-    /// The swallowtails of a line of cusps, the cusps of one of limit points.
+    /// The swallowtails of a line of cusps, or the cusps of a line of limit points.
     pub tips: Vec<Vec<f64>>,
 }
 
 impl Traced {
-    /// Whether the solution `y` lies on it.
+    /// Whether the solution `y` lies on the line.
     pub fn has(&self, y: &[f64]) -> bool {
         self.points.windows(2).any(|pair| {
             let (a, b) = (Vector::from_column_slice(&pair[0]), Vector::from_column_slice(&pair[1]));
@@ -32,7 +33,7 @@ impl Traced {
 }
 
 impl Equations<'_> {
-    /// Whether a solution is on the map and means something there.
+    /// Whether a solution is on the map and meaningful there.
     pub(super) fn is_good(&self, y: &[f64]) -> bool {
         let radii = self.radii();
         let [end, start] = self.family.radii.map(|s| s / self.unit);
@@ -42,7 +43,7 @@ impl Equations<'_> {
         let is_met = match self.sort {
             // A jump begins and lands at minima of the control.
             Sort::Landing => y[0] - y[1] > 1e-3 && locals().iter().all(|local| local.edge.slope > 0.0),
-            // Further out than the start, which is unstable, a maximum.
+            // A maximum further out than the start, which is unstable.
             Sort::Arrival => matches!(locals()[..], [crest, start]
                 if crest.contact_radius > start.contact_radius
                     && crest.edge.slope < 0.0
@@ -52,7 +53,7 @@ impl Equations<'_> {
         known && inside && is_met
     }
 
-    /// The line through the solution `y`, both ways from it.
+    /// The line through the solution `y`, in both directions from it.
     pub fn line(&self, y: &[f64], progress: &dyn Progress) -> Option<Traced> {
         let n = y.len();
         let forward: Vec<f64> =
@@ -84,7 +85,7 @@ impl Equations<'_> {
         let mut points = if closed { Vec::new() } else { half(start.reversed()).0 };
         points.reverse();
         points.pop();
-        // All in the direction of the first half.
+        // All in the same direction as the first half.
         let mut points: Vec<Point> = points.into_iter().map(Point::reversed).collect();
         points.extend(ahead);
         if closed {
@@ -98,7 +99,7 @@ impl Equations<'_> {
         Some(Traced { points, tips })
     }
 
-    /// The point at which the line leaves the map between two others, by the unknown that leaves first.
+    /// The point at which the line leaves the map between two others, located by the unknown that leaves first.
     fn border(&self, from: &Point, to: &Point) -> Option<Point> {
         let (from, to) = (from.y(), to.y());
         let [end, start] = self.family.radii.map(|s| s / self.unit);
@@ -120,7 +121,8 @@ impl Equations<'_> {
         self.point(&y, &chord)
     }
 
-    /// The swallowtails of a line of cusps, where both numbers turn; the cusps of a line of limit points, where the one does.
+    /// The swallowtails of a line of cusps, where both numbers turn; the cusps of a line of limit points, where its one
+    /// number turns.
     fn tips(&self, points: &[Point]) -> Vec<Vec<f64>> {
         let mut tracer = Tracer::new(self, self.settings());
         let mut row = Vector::zeros(points.first().map_or(0, |point| point.y().len()));

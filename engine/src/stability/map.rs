@@ -12,10 +12,10 @@ use crate::progress::{Progress, ProgressPart, Stopped};
 /// Columns of the map in which cusps are looked for.
 const CUSP_COLUMNS: u32 = 24;
 
-/// Cells a side of the grid on which cusps are looked for where neither number is the work of adhesion.
+/// Cells per side of the grid on which cusps are looked for if neither number is the work of adhesion.
 const CUSP_CELLS: u32 = 14;
 
-/// On both sides of a line the snaps are counted so far from it, in shares.
+/// How far from a line the snaps are counted on both its sides, in shares.
 const ASIDE: f64 = 1e-4;
 
 /// A point of a line.
@@ -23,7 +23,7 @@ const ASIDE: f64 = 1e-4;
 pub struct MapPoint {
     /// s, reduced.
     pub contact_radius: f64,
-    /// The shares of both axes; zero for one that is not there.
+    /// The shares of both axes; zero for an axis that does not exist.
     pub at: [f64; 2],
     /// The weighted control there.
     pub control_value: f64,
@@ -36,17 +36,17 @@ pub struct MapPoint {
 /// A line of a map.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MapLine {
-    /// What it is of; `None` where the number of snaps changes for some other reason.
+    /// What it consists of; `None` where the number of snaps changes for some other reason.
     pub sort: Option<Sort>,
-    /// The crest at which it is, by its number from the axis; none without a wave.
+    /// The crest it lies at, numbered from the axis; none without a wave.
     pub crest: Option<u32>,
     /// Its points in order.
     pub points: Vec<MapPoint>,
     /// Its swallowtails.
     pub tips: Vec<MapPoint>,
-    /// At each point, whether the number of snaps differs on its two sides; empty before that is known.
+    /// At each point, whether the number of snaps differs on its two sides; empty until that is known.
     pub changes: Vec<bool>,
-    /// The unknowns of its equations at each point; none where it has no equations.
+    /// The unknowns of its equations at each point; empty if it has no equations.
     pub(super) solutions: Vec<Vec<f64>>,
 }
 
@@ -55,7 +55,7 @@ pub struct MapLine {
 pub struct Map {
     /// The lines.
     pub lines: Vec<MapLine>,
-    /// What is to be said of them.
+    /// Remarks about the lines.
     pub notes: Vec<String>,
 }
 
@@ -64,16 +64,16 @@ pub struct Map {
 pub struct Counts {
     /// The shares of the columns and of the rows.
     pub shares: [Vec<f64>; 2],
-    /// The snaps, a row for each share up the map; none where there is no path.
+    /// The snaps, one row per share up the map; none where there is no path.
     pub cells: Vec<Vec<Option<usize>>>,
 }
 
 impl Family {
-    /// The map of both axes, with the snaps on a grid of so many columns and rows: between two neighbouring cells with different
-    /// numbers of snaps there is a line.
+    /// The map of both axes, with the snaps on a grid of this many columns and rows: between two neighbouring cells
+    /// with different numbers of snaps there is a line.
     ///
     /// # Errors
-    /// [`FamilyError::Stopped`]; the gap cannot be tabulated somewhere, or a value is out of its range.
+    /// [`FamilyError::Stopped`]; also if the gap cannot be tabulated somewhere, or a value is out of its range.
     pub fn map(&mut self, cells: [u32; 2], progress: &dyn Progress) -> Result<(Map, Counts), FamilyError> {
         let mut map = Map::default();
         let counted = self.counts(cells, &ProgressPart::new(progress, [0.0, 0.4]));
@@ -95,7 +95,7 @@ impl Family {
         Ok(progress.go_on().map(|()| (map, counts))?)
     }
 
-    /// The lines that are looked for all over the map, whether the number of snaps changes across them or not.
+    /// The lines that are looked for all over the map, whether or not the number of snaps changes across them.
     fn draw(&self, map: &mut Map, progress: &dyn Progress) -> Result<(), FamilyError> {
         let cusps = Equations::new(self, Sort::Cusp);
         if let Some(lines) = self.explicit_cusps(progress)? {
@@ -120,7 +120,7 @@ impl Family {
         Ok(())
     }
 
-    /// Traces the lines through `starts` that are on none yet.
+    /// Traces the lines through those of `starts` that are not yet on a line.
     fn follow(&self, of: &Equations<'_>, starts: Vec<Vec<f64>>, map: &mut Map, progress: &dyn Progress) {
         let mut known: Vec<Traced> = Vec::new();
         for y in starts {
@@ -136,7 +136,7 @@ impl Family {
         }
     }
 
-    /// A line as the tracer has it, on the map.
+    /// A line of the tracer as a line of the map.
     pub(super) fn map_line(&self, of: &Equations<'_>, line: &Traced) -> MapLine {
         let known = line.points.iter().filter_map(|y| Some((self.map_point(of, y)?, y.clone())));
         let (points, solutions) = known.unzip();
@@ -144,7 +144,7 @@ impl Family {
         self.line_of(of.sort, points, solutions, tips)
     }
 
-    /// A solution, on the map.
+    /// A solution as a point of the map.
     pub(super) fn map_point(&self, of: &Equations<'_>, y: &[f64]) -> Option<MapPoint> {
         let (radii, shares) = y.split_at(of.radii());
         let s = radii.first().map_or_else(|| self.start(), |s| Some(s * of.unit))?;
@@ -186,7 +186,7 @@ impl Family {
     fn cusp_starts(&self, progress: &dyn Progress) -> Vec<Vec<f64>> {
         let of = Equations::new(self, Sort::Cusp);
         if let (Some(adhesion), Some(factor)) = (self.adhesion(), self.adhesion_factor()) {
-            // Along the adhesion every cusp of the law is one of the map.
+            // Where the adhesion is an axis, every cusp of the law is a cusp of the map.
             let other = 1 - adhesion;
             let mut starts = Vec::new();
             for share in even(CUSP_COLUMNS) {
@@ -279,7 +279,7 @@ impl Family {
         starts
     }
 
-    /// Says of every line where the number of snaps changes across it.
+    /// Marks for every line where the number of snaps changes across it.
     fn mark_changes(&self, map: &mut Map, progress: &dyn Progress) {
         let count = map.lines.len() as f64;
         for (i, line) in map.lines.iter_mut().enumerate() {
@@ -301,8 +301,8 @@ impl Family {
         }
     }
 
-    /// The snaps on a grid of so many columns and rows, cell by cell, with the smallest and the largest radius of their paths,
-    /// where there is one; `None` when `progress` said stop.
+    /// The snaps on a grid of this many columns and rows, cell by cell, and the smallest and the largest radius of
+    /// their paths, if there is any path; `None` if `progress` said stop.
     fn counts(
         &self,
         [columns, rows]: [u32; 2],
@@ -311,7 +311,7 @@ impl Family {
         let shares = [even(columns), even(rows)];
         let mut cells = vec![vec![None; shares[0].len()]; shares[1].len()];
         let mut radii: Option<[f64; 2]> = None;
-        // Column by column, so that a table serves a whole one.
+        // Column by column, so that one table serves a whole column.
         for (i, x) in shares[0].iter().enumerate() {
             progress.report(*x);
             for (j, y) in shares[1].iter().enumerate() {

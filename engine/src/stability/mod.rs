@@ -4,18 +4,18 @@
 //! |---|---|
 //! | [`weight`] | `W_k`, the weight of a loading device |
 //! | [`law`] | `γ_k(s)`, the law itself, and its cusps |
-//! | [`axis`] | a number of a preset over a range |
+//! | [`axis`] | one number of a preset over a range |
 //! | [`family`] | a preset with one or two numbers left open |
 //! | [`count`] | the snaps of a path, and where their number changes |
 //! | [`explicit`] | lines of cusps that follow from s |
 //! | [`equations`] | cusps, landings, starts and folds as systems for the tracer |
 //! | [`lines`] | lines followed by the tracer |
-//! | [`edges`] | a line between neighbouring cells of a map whose snaps differ |
+//! | [`edges`] | makes sure a line runs between neighbouring cells of a map whose snaps differ |
 //! | [`map`] | the lines of two numbers, and the snaps in every cell |
-//! | [`folds`] | the limit points over one number |
+//! | [`folds`] | the limit points as functions of one number |
 //! | [`onset`] | the smallest amplitude at which a preset snaps |
 //!
-//! The law is of the exact equation of one disc; presets in ring elements are judged by it all the same.
+//! The law is that of the exact equation of one disc; presets in ring elements are judged by it all the same.
 
 pub mod axis;
 pub mod count;

@@ -8,11 +8,11 @@ use crate::preset::Preset;
 use crate::problem::Adhesion;
 use crate::progress::Progress;
 
-/// The group that is turned, and how far.
+/// The group that is varied, and its range.
 const GROUP: &str = "groups.amplitude_over_wavelength";
 const RANGE: [f64; 2] = [0.0, 0.5];
 
-/// Besides cusps the snaps are counted at so many amplitudes, of equal factors over this many decades.
+/// Besides at the cusps, the snaps are counted at this many amplitudes in equal factors over this many decades.
 const SAMPLES: i32 = 40;
 const DECADES: f64 = 4.0;
 
@@ -24,16 +24,16 @@ const BESIDE: f64 = 1e-7;
 pub struct Onset {
     /// A/λ.
     pub amplitude_over_wavelength: f64,
-    /// Why there.
+    /// Its cause.
     pub cause: Cause,
 }
 
 impl Onset {
-    /// The onset of `preset`; `None` for a gap without one wave, without adhesion, where that has a range, and where nothing snaps up
-    /// to A/λ = 0.5.
+    /// The onset of `preset`. `None` for a gap without a single wave, without adhesion, for adhesion with a range, and
+    /// if nothing snaps up to A/λ = 0.5.
     ///
     /// # Errors
-    /// The gap cannot be tabulated, or the path has no start.
+    /// The gap cannot be tabulated, or the path has no start state.
     pub fn of(preset: &Preset, progress: &dyn Progress) -> Result<Option<Self>, FamilyError> {
         let has_range = preset.material.adhesion != Adhesion::ShortRange;
         if preset.get(GROUP).is_none() || preset.material.work_of_adhesion <= 0.0 || has_range {
@@ -50,7 +50,7 @@ impl Onset {
         }
         samples.retain(|share| (0.0..=1.0).contains(share));
         samples.sort_by(f64::total_cmp);
-        // As far as the first sample with a snap: the change lies before it.
+        // Only as far as the first sample with a snap: the onset lies before it.
         let snaps = |share: &f64| family.passage(&[*share]).is_some_and(|passage| passage.snaps > 0);
         let Some(first) = samples.iter().position(|share| progress.stop() || snaps(share)) else {
             return Ok(None);

@@ -28,7 +28,7 @@ impl Weight {
             Control::Displacement => [1.0, 0.0, 0.0],
             Control::Force => [1.0 / 3.0, 0.0, 0.0],
             Control::Stiffness(k) => {
-                // x and 1/x: neither overflows where it is used.
+                // Both x and 1/x are used, each where it does not overflow.
                 let (x, y) = (2.0 * s / k, k / (2.0 * s));
                 let u = 2.0 / ((1.0 + x) * (y + 3.0));
                 let bend = if x < 1.0 {

@@ -22,12 +22,12 @@ pub struct SweepAxis {
     pub points: AxisValues,
 }
 
-/// The values of an axis; every number is in the units of the preset: SI, or reduced.
+/// The values of an axis; every number is in the preset's units: SI, or reduced.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AxisValues {
-    /// As they are listed.
+    /// Listed one by one.
     Values(Vec<Value>),
-    /// By equal differences.
+    /// With equal differences.
     Linear {
         /// The first.
         from: f64,
@@ -36,7 +36,7 @@ pub enum AxisValues {
         /// How many.
         count: u64,
     },
-    /// Whole numbers by equal differences.
+    /// Whole numbers with equal differences.
     Whole {
         /// The first.
         from: i64,
@@ -45,7 +45,7 @@ pub enum AxisValues {
         /// How many.
         count: u64,
     },
-    /// By equal factors.
+    /// With equal factors.
     Logarithmic {
         /// The first, positive.
         from: f64,
@@ -58,31 +58,31 @@ pub enum AxisValues {
     Drawn(Distribution),
 }
 
-/// From what values are drawn.
+/// The distribution that values are drawn from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Distribution {
-    /// Between two ends, each value as likely.
+    /// Between two ends, all values equally likely.
     Uniform([f64; 2]),
-    /// Between two positive ends, each logarithm as likely.
+    /// Between two positive ends, all logarithms equally likely.
     LogUniform([f64; 2]),
-    /// Gauss's.
+    /// The normal distribution.
     Normal {
         /// Its mean.
         mean: f64,
         /// Its standard deviation, not negative.
         deviation: f64,
     },
-    /// Whole numbers, each as likely, both ends included.
+    /// Whole numbers, both ends included, all equally likely.
     Integers([i64; 2]),
 }
 
-/// The kinds of values, of which an axis has one.
+/// The kinds of values; an axis has exactly one.
 const KINDS: [&str; 4] = ["values", "linear", "logarithmic", "distribution"];
 /// The kinds of distributions.
 const DISTRIBUTIONS: [&str; 4] = ["uniform", "log-uniform", "normal", "integers"];
 
 impl SweepAxis {
-    /// Reads `[[axis]]`; `preset` checks its values. With `fixed` no axis changes which keys the preset has.
+    /// Reads `[[axis]]`; `preset` checks its values. With `fixed`, no axis may change which keys the preset has.
     ///
     /// # Errors
     /// [`SpecError`] with the line.
@@ -94,7 +94,7 @@ impl SweepAxis {
         if model::is_of_units(key) || ["format", "title"].contains(&key) {
             return Err(entry.fault(&format!("{key} is no quantity of the problem: it cannot be swept")));
         }
-        // Unknown keys are told here, whatever the values are.
+        // Unknown keys are reported here, whatever the values are.
         if let Err(unknown @ (Invalid::UnknownKey { .. } | Invalid::UnknownGroup { .. })) =
             preset.resolved(key, 0.0.into())
         {
@@ -108,10 +108,10 @@ impl SweepAxis {
         Ok(axis)
     }
 
-    /// Reads an axis of the [`canonical`](Self::canonical) form; its values were checked before.
+    /// Reads an axis in the [`canonical`](Self::canonical) form; its values were checked earlier.
     ///
     /// # Errors
-    /// [`SpecError`] where it has another form.
+    /// [`SpecError`] if it has another form.
     pub fn of_canonical(section: &SpecSection<'_>) -> Result<Self, SpecError> {
         let entry = section.need("key", "a key")?;
         let key = entry.text("a key")?;
@@ -128,7 +128,7 @@ impl SweepAxis {
         }
     }
 
-    /// Its first value, or a likely one.
+    /// Its first value, or a likely one if the values are drawn.
     pub fn first(&self) -> Option<Value> {
         match &self.points {
             AxisValues::Drawn(Distribution::Normal { mean, .. }) => Some((*mean).into()),
@@ -140,7 +140,7 @@ impl SweepAxis {
         }
     }
 
-    /// Whether all its values are numbers, which have a place on an axis.
+    /// Whether all its values are numbers, so that they have a place on an axis.
     #[must_use]
     pub fn is_numeric(&self) -> bool {
         match &self.points {
@@ -151,7 +151,7 @@ impl SweepAxis {
         }
     }
 
-    /// How many values it has; `None` where they are drawn.
+    /// How many values it has; `None` if they are drawn.
     #[must_use]
     pub fn count(&self) -> Option<u64> {
         match &self.points {
@@ -163,21 +163,21 @@ impl SweepAxis {
         }
     }
 
-    /// The value at `index`, below its count; `None` where they are drawn.
+    /// The value at `index`, which is below the count; `None` if the values are drawn.
     #[must_use]
     pub fn value(&self, index: u64) -> Option<Value> {
         let last = |count: u64| index > 0 && index + 1 >= count;
         let share = |count: u64| index as f64 / (count.max(2) - 1) as f64;
         match &self.points {
             AxisValues::Values(values) => values.get(usize::try_from(index).ok()?).cloned(),
-            // The last is the one that was typed, to the bit.
+            // The last value is the one that was typed, to the bit.
             AxisValues::Linear { to, count, .. } | AxisValues::Logarithmic { to, count, .. }
                 if last(*count) =>
             {
                 Some((*to).into())
             }
             AxisValues::Linear { from, to, count } => Some((from + (to - from) * share(*count)).into()),
-            // In software: the same on every machine.
+            // Computed in software, so that it is the same on every machine.
             AxisValues::Logarithmic { from, to, count } => {
                 Some((from * pow(to / from, share(*count))).into())
             }
@@ -224,21 +224,21 @@ impl SweepAxis {
 }
 
 impl Distribution {
-    /// The next value of `random`, of which every draw takes two numbers.
+    /// The next value from `random`; every draw takes two numbers.
     pub fn draw(&self, random: &mut SplitMix64) -> Value {
         let (bits, other) = (random.clone().bits(), [random.unit(), random.unit()]);
         let [u, v] = other;
         match *self {
             Self::Uniform([a, b]) => (a + (b - a) * u).into(),
             Self::LogUniform([a, b]) => (a * pow(b / a, u)).into(),
-            // Box and Muller's; 1 − u is never 0.
+            // The Box-Muller transform; 1 − u is never 0.
             Self::Normal { mean, deviation } => {
                 let radius = (-2.0 * ln(1.0 - u)).sqrt();
                 (mean + deviation * radius * cos(TAU * v)).into()
             }
             Self::Integers([a, b]) => {
                 let span = (i128::from(b) - i128::from(a) + 1).unsigned_abs();
-                // A whole number below the span: the upper half of a product with 64 random bits.
+                // A whole number below the span: the upper half of its product with 64 random bits.
                 let above = i128::try_from((u128::from(bits) * span) >> 64).unwrap_or_default();
                 i64::try_from(i128::from(a) + above).unwrap_or(b).into()
             }
@@ -246,7 +246,7 @@ impl Distribution {
     }
 }
 
-/// Whether no row of an axis over `axis` has the value that an assignment gives to `key`.
+/// Whether an axis over `axis` overrides, in every row, the value that an assignment gives to `key`.
 pub fn overrides(axis: &str, key: &str) -> bool {
     let is_part_of = |part: &str, whole: &str| {
         parameter(part).is_some_and(|row| row.is_part() && row.table() == Some(whole))
@@ -258,21 +258,21 @@ pub fn overrides(axis: &str, key: &str) -> bool {
         || groups::changed(key) == [axis]
 }
 
-/// The key of `before` that sets what `key` sets: itself, or another start or turn, of which only the
-/// later would be left.
+/// The key in `before` that sets the same thing as `key`: the key itself, or another start or turn, of which only the
+/// later one would take effect.
 pub fn rival<'a>(key: &str, before: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     before.into_iter().find(|other| *other == key || rivals(key).contains(other))
 }
 
 /// Reads the values of one key.
 struct KeyReader<'a> {
-    /// What checks them; without it they are as they stand.
+    /// Checks the values; without it they are taken as they stand.
     preset: Option<&'a Preset>,
     key: &'a str,
 }
 
 impl KeyReader<'_> {
-    /// The values of the axis of a `section`, whose key is `named`.
+    /// The values of the axis in `section`, whose key is `named`.
     fn points(&self, section: &SpecSection<'_>, named: &SpecEntry<'_>) -> Result<AxisValues, SpecError> {
         let given: Vec<SpecEntry<'_>> = KINDS.iter().filter_map(|kind| section.get(kind)).collect();
         let [points] = &given[..] else {
@@ -312,7 +312,7 @@ impl KeyReader<'_> {
         preset.resolved(self.key, value).map_err(|e| entry.fault(&e.to_string()))
     }
 
-    /// `{ stiffness = k }`, as a canonical form has it.
+    /// `{ stiffness = k }`, as in the canonical form.
     fn stiffness(entry: &SpecEntry<'_>) -> Result<Value, SpecError> {
         let allowed = "{ stiffness = k }";
         let stiffness = entry.section(allowed)?.need("stiffness", "a number")?;
@@ -433,7 +433,7 @@ impl KeyReader<'_> {
         section.only(&["mean", "deviation"])?;
         let mean = self.number(&section.need("mean", "a value of the key")?)?;
         let deviation = section.need("deviation", "above 0")?;
-        // Not a value of the key: its range may lie far from 0.
+        // Not a value of the key itself: the key's range may lie far from 0.
         let x = match Value::from_toml(deviation.value) {
             Ok(Value::Number(x)) => x,
             Ok(Value::Integer(n)) => n as f64,

@@ -1,4 +1,4 @@
-//! A TOML text read entry by entry, each mistake with its line.
+//! A TOML text read entry by entry, with the line of each mistake.
 
 use crate::preset::read::{ValueOrigin, line};
 use crate::text::{closest, quote, sanitize, show_name};
@@ -10,16 +10,16 @@ use toml::de::{DeArray, DeTable, DeValue};
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{origin}: {what}")]
 pub struct SpecError {
-    /// Where it stands.
+    /// Where it is.
     pub origin: ValueOrigin,
-    /// What, safe to show.
+    /// What is wrong, safe to show.
     pub what: String,
 }
 
 /// The text of a file with its name.
 #[derive(Debug, Clone, Copy)]
 pub struct SpecText<'a> {
-    /// Its name, as it is shown.
+    /// Its name, as shown to the user.
     pub name: &'a str,
     /// TOML.
     pub text: &'a str,
@@ -50,7 +50,7 @@ impl<'a> SpecText<'a> {
     /// The document.
     ///
     /// # Errors
-    /// [`SpecError`] with the line where it is no TOML.
+    /// [`SpecError`] with the line if it is not TOML.
     pub fn parse(self) -> Result<DeTable<'a>, SpecError> {
         match DeTable::parse(self.text) {
             Ok(table) => Ok(table.into_inner()),
@@ -66,17 +66,17 @@ impl<'a> SpecText<'a> {
         SpecError { origin, what }
     }
 
-    /// The document as a table of itself.
+    /// The document itself as a table.
     pub fn section(self, table: &'a DeTable<'a>) -> SpecSection<'a> {
         SpecSection { document: self, name: String::new(), table, at: 0 }
     }
 }
 
 impl<'a> SpecSection<'a> {
-    /// Refuses every key that is none of `keys`.
+    /// Refuses every key that is not among `keys`.
     ///
     /// # Errors
-    /// [`SpecError`] that names the key, and the one that may have been meant.
+    /// [`SpecError`] that names the key, and the one that was probably meant.
     pub fn only(&self, keys: &[&str]) -> Result<(), SpecError> {
         for (key, _) in self.table {
             let name: &str = key.get_ref();
@@ -104,7 +104,7 @@ impl<'a> SpecSection<'a> {
         Some(SpecEntry { document: self.document, name: self.full(key), value: value.get_ref(), at })
     }
 
-    /// The same of a key that must be there.
+    /// The same for a key that must be present.
     ///
     /// # Errors
     /// [`SpecError`], which says what is `allowed`.
@@ -155,7 +155,7 @@ impl<'a> SpecEntry<'a> {
     /// The value as an array of two.
     ///
     /// # Errors
-    /// [`SpecError`] where it has another length.
+    /// [`SpecError`] if it has another length.
     pub fn pair(&self) -> Result<[SpecEntry<'a>; 2], SpecError> {
         let allowed = "two values, [from, to]";
         <[SpecEntry<'a>; 2]>::try_from(self.array(allowed)?).map_err(|_| self.wrong(allowed))
@@ -170,10 +170,10 @@ impl<'a> SpecEntry<'a> {
         Ok(SpecSection { document: self.document, name: self.name.clone(), table, at: self.at })
     }
 
-    /// A whole number of `range`.
+    /// A whole number in `range`.
     ///
     /// # Errors
-    /// [`SpecError`] where it is no whole number in the range.
+    /// [`SpecError`] if it is not a whole number in the range.
     pub fn count(&self, range: RangeInclusive<u64>) -> Result<u64, SpecError> {
         let allowed = format!("a whole number from {} to {}", range.start(), range.end());
         let DeValue::Integer(n) = self.value else { return Err(self.wrong(&allowed)) };

@@ -1,30 +1,30 @@
-//! What many members of an ensemble say of one quantity: mean, spread, quantiles, and how sure they are.
+//! What the members of an ensemble say about one quantity: mean, spread, quantiles, and their uncertainty.
 //!
 //! ```text
 //! sd² = Σ (xᵢ − mean)²/(n − 1),    q_p: linear between the order statistics, at the place (n − 1) p from the first
 //! ```
 //!
-//! The errors of mean and median are their standard deviations over [`RESAMPLES`] bootstrap samples: n values drawn from the n with
-//! replacement. B. Efron, *Bootstrap methods: another look at the jackknife*, Ann. Statist. 7, 1 (1979),
-//! doi:10.1214/aos/1176344552. The quantiles are type 7 of R. J. Hyndman and Y. Fan, *Sample quantiles in statistical packages*,
-//! Am. Stat. 50, 361 (1996), doi:10.2307/2684934, as those of `NumPy` and R.
+//! The errors of mean and median are their standard deviations over [`RESAMPLES`] bootstrap samples: n values drawn
+//! from the n with replacement. B. Efron, *Bootstrap methods: another look at the jackknife*, Ann. Statist. 7, 1
+//! (1979), doi:10.1214/aos/1176344552. The quantiles are type 7 of R. J. Hyndman and Y. Fan, *Sample quantiles in
+//! statistical packages*, Am. Stat. 50, 361 (1996), doi:10.2307/2684934, like those of `NumPy` and R.
 
 use super::stage::Cell;
 use crate::gap::shapes::split_mix::SplitMix64;
 
-/// Bootstrap samples: the errors themselves are then known to 2 %.
+/// Bootstrap samples: with this many the errors themselves are known to 2 %.
 pub const RESAMPLES: u32 = 1000;
 
 /// The fewest and the most members.
 pub const MEMBERS: std::ops::RangeInclusive<u64> = 2..=100_000;
 
-/// The shares of the members below a quantile.
+/// The shares of the members that lie below the quantiles.
 const SHARES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
 /// The statistic that has no unit.
 pub const COUNT: &str = "count";
 
-/// What stands behind the name of a quantity, and what it means, in the order of [`Statistics::cells`].
+/// The suffix to the name of a quantity, and its meaning, in the order of [`Statistics::cells`].
 pub const STATISTICS: [(&str, &str); 10] = [
     ("mean", "mean"),
     ("sd", "standard deviation"),
@@ -38,25 +38,25 @@ pub const STATISTICS: [(&str, &str); 10] = [
     (COUNT, "members that have a value"),
 ];
 
-/// One quantity over the members that have it, at least one.
+/// The statistics of one quantity over the members that have it, at least one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
     /// The mean.
     pub mean: f64,
-    /// The standard deviation. None of one member alone, as are the errors.
+    /// The standard deviation; `None`, like the errors, for a single member.
     pub deviation: Option<f64>,
-    /// At 5, 25, 50, 75 and 95 %.
+    /// The quantiles at 5, 25, 50, 75 and 95 %.
     pub quantiles: [f64; 5],
     /// The standard error of the mean, by the bootstrap.
     pub mean_error: Option<f64>,
-    /// That of the median.
+    /// The standard error of the median, by the bootstrap.
     pub median_error: Option<f64>,
     /// Members that have a value.
     pub count: usize,
 }
 
 impl Statistics {
-    /// Of the finite ones of `values`; none where there is none. The bootstrap draws from `random`.
+    /// The statistics of the finite ones of `values`; `None` if there are none. The bootstrap draws from `random`.
     pub fn of(values: impl IntoIterator<Item = f64>, random: &mut SplitMix64) -> Option<Self> {
         let mut sorted: Vec<f64> = values.into_iter().filter(|x| x.is_finite()).collect();
         sorted.sort_unstable_by(f64::total_cmp);
@@ -77,10 +77,10 @@ impl Statistics {
     }
 }
 
-/// The statistics of every point, of which the members have the `values` in the order of the rows: all points of the first member,
-/// then all of the second, …; what is not finite is no value.
+/// The statistics of every point. `values` holds the members' values in the order of the rows: all points of the first
+/// member, then all of the second, …; what is not finite does not count as a value.
 pub fn at_points(values: &[f64], points: usize, seed: u64) -> Vec<Option<Statistics>> {
-    // No row has this number: the bootstrap shares no bits with what the members draw.
+    // No row has this number, so the bootstrap shares no bits with what the members draw.
     let seed = SplitMix64::row(seed, u64::MAX).bits();
     let at = |point: usize| {
         let mut random = SplitMix64::row(seed, point as u64);
@@ -89,7 +89,7 @@ pub fn at_points(values: &[f64], points: usize, seed: u64) -> Vec<Option<Statist
     (0..points).map(at).collect()
 }
 
-/// The quantiles of the finite ones of `values` at 5, 25, 50, 75 and 95 %; none where there is none.
+/// The quantiles of the finite ones of `values` at 5, 25, 50, 75 and 95 %; `None` if there are none.
 pub fn quantiles(values: &[f64]) -> Option<[f64; 5]> {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
@@ -101,19 +101,20 @@ fn of_sorted(sorted: &[f64]) -> [f64; 5] {
     SHARES.map(|share| quantile(sorted, &counts, share))
 }
 
-/// √(Σ (x − mean)²/(n − 1)); none of fewer than two.
+/// √(Σ (x − mean)²/(n − 1)); `None` for fewer than two values.
 fn deviation(values: &[f64]) -> Option<f64> {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
     (values.len() > 1).then(|| (squares / (values.len() - 1) as f64).sqrt())
 }
 
-/// The quantile of a sample that has each of `sorted` so many times, as many in all as there are.
+/// The quantile of a sample that contains each of `sorted` as often as `counts` says, and as many values in all as
+/// `sorted`.
 fn quantile(sorted: &[f64], counts: &[u32], share: f64) -> f64 {
     let place = (sorted.len() - 1) as f64 * share;
     let (mut below, mut lower) = (0.0, f64::NAN);
     for (x, count) in sorted.iter().zip(counts).filter(|(_, count)| **count > 0) {
-        // Those before end at `below`; this one stands at the places from `below` to `last`.
+        // The values before it end at `below`; this one occupies the places from `below` to `last`.
         let last = below + f64::from(*count) - 1.0;
         if place < below {
             return lower + (place - (below - 1.0)) * (x - lower);
@@ -133,7 +134,7 @@ fn bootstrap(sorted: &[f64], random: &mut SplitMix64) -> [Option<f64>; 2] {
     for _ in 0..RESAMPLES {
         counts.fill(0);
         for _ in 0..sorted.len() {
-            // The upper half of the product is uniform below the length.
+            // The upper half of the product is uniformly distributed below the length.
             let at = (u128::from(random.bits()) * sorted.len() as u128) >> 64;
             counts[usize::try_from(at).unwrap_or_default()] += 1;
         }
@@ -148,7 +149,7 @@ fn bootstrap(sorted: &[f64], random: &mut SplitMix64) -> [Option<f64>; 2] {
 mod tests {
     use super::*;
 
-    /// An exponential distribution: skewed, of mean 1 and median ln 2.
+    /// An exponential distribution: skewed, with mean 1 and median ln 2.
     fn skewed(random: &mut SplitMix64) -> f64 {
         -(1.0 - random.unit()).ln()
     }
@@ -177,7 +178,7 @@ mod tests {
         let exact = (found.mean, found.count, found.quantiles);
         assert_eq!(exact, (10.5, 6, [1.25, 2.5, 6.0, 14.0, 28.0]));
         assert!((found.deviation.unwrap() - 11.861_703_081_766_97).abs() < 1e-13);
-        // That of the mean is known: σ/√n, where σ² divides by n.
+        // The error of the mean is known: σ/√n, where σ² divides by n.
         let exact = found.deviation.unwrap() * (5.0_f64 / 36.0).sqrt();
         assert!((found.mean_error.unwrap() / exact - 1.0).abs() < 0.07);
     }

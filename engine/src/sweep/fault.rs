@@ -1,4 +1,4 @@
-//! Why a row has no result, or not all of it.
+//! Why a row has no result, or only part of one.
 
 use crate::case::CaseError;
 use crate::fit::FitError;
@@ -15,7 +15,7 @@ use std::time::Duration;
 /// The longest text of a fault, in characters.
 const LONGEST: usize = 300;
 
-/// What went wrong in a row: one of a few reasons, and the whole in words. On one line and safe to show.
+/// What went wrong in a row: one of a few reasons, and the full text in words. On one line and safe to show.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
     /// One of [`REASONS`].
@@ -80,7 +80,7 @@ impl Fault {
         Self::new(REASONS[9], &error.to_string())
     }
 
-    /// A fit whose values are none.
+    /// A fit whose values are not usable.
     #[must_use]
     pub fn bad_fit(why: &str) -> Self {
         Self::new(REASONS[9], why)
@@ -92,8 +92,8 @@ impl Fault {
         Self::new(REASONS[4], why)
     }
 
-    /// A point of an ensemble at which members are missing: so many are there of all, and some of them have a fault of these
-    /// reasons.
+    /// A point of an ensemble with missing members: how many there are, of how many in all, and the reasons of those
+    /// that have a fault.
     #[must_use]
     pub fn of_members([there, of]: [u64; 2], refused: &BTreeMap<&str, u64>) -> Option<Self> {
         let counts: Vec<String> = refused.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
@@ -115,13 +115,13 @@ impl Fault {
         }
     }
 
-    /// A row that took longer than it may.
+    /// A row that took longer than allowed.
     #[must_use]
     pub fn of_limit(limit: Duration) -> Self {
         Self::new(REASONS[8], &format!("it took longer than {} s", limit.as_secs_f64()))
     }
 
-    /// A curve whose start cuts off the state at which something is smallest.
+    /// A curve on which the start cuts off the state at which something is smallest.
     #[must_use]
     pub fn small_start() -> Self {
         Self::new(
@@ -130,7 +130,7 @@ impl Fault {
         )
     }
 
-    /// A panic, a fault of the program itself.
+    /// A panic, which is a fault of the program itself.
     #[must_use]
     pub fn of_panic(payload: &(dyn Any + Send)) -> Self {
         let words = payload.downcast_ref::<String>().map(String::as_str);

@@ -1,5 +1,5 @@
-//! The wanted quantities of one preset, and nothing else: no curve where the groups are all, no losses where none are
-//! asked for.
+//! Computes the wanted quantities of one preset and nothing else: no curve if only groups are wanted, no losses if none
+//! are asked for.
 
 use super::fault::Fault;
 use super::quantity::{QuantityColumn, Stage, SweepQuantity};
@@ -18,13 +18,13 @@ use crate::units::Quantity;
 /// The quantities of a preset.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredQuantities {
-    /// One for each wanted column; `None` where it is not defined or could not be had.
+    /// One for each wanted column; `None` if it is undefined or could not be computed.
     pub cells: Vec<Option<Cell>>,
-    /// The first reason for which one could not be had.
+    /// Why the first missing quantity could not be computed.
     pub fault: Option<Fault>,
 }
 
-/// What has been computed of a preset so far: each part once, when the first quantity needs it.
+/// What has been computed for a preset so far: each part once, when the first quantity needs it.
 struct Workings<'a> {
     preset: &'a Preset,
     ground: PresetValues,
@@ -37,7 +37,7 @@ struct Workings<'a> {
     progress: &'a dyn Progress,
 }
 
-/// The `wanted` quantities of `preset`; `progress` is asked now and then, `None` when it said stop.
+/// The `wanted` quantities of `preset`; `progress` is asked now and then, and the result is `None` if it said stop.
 pub fn measure(
     preset: &Preset,
     wanted: &[QuantityColumn],
@@ -102,7 +102,7 @@ impl Workings<'_> {
         }
     }
 
-    /// What is asked of a path with this end: one that stopped early has no answer.
+    /// A quantity found on a path with this end: a path that stopped early has no answer.
     fn ended(&mut self, found: Option<Cell>, stop: PathStop) -> Result<Option<Cell>, Fault> {
         if matches!(stop, PathStop::Apart | PathStop::End) {
             return Ok(found);
@@ -139,7 +139,7 @@ impl Workings<'_> {
         }
     }
 
-    /// The unloading under a control; of the contacts of the preset where none are named.
+    /// The unloading under a control; with the contacts of the preset if none are named.
     fn path(&mut self, control: Control, contact: Option<ContactKind>) -> Result<&OnPath, Fault> {
         let own = self.start()?.case.setting_of_unloading();
         let contact = contact.unwrap_or(own.contact);
@@ -209,7 +209,7 @@ impl Workings<'_> {
         Ok((whole > 0.0).then(|| Cell::Number(lost / whole)))
     }
 
-    /// A cell in the user's units: what comes of the preset alone, or of a report, is in them already.
+    /// A cell in the user's units: what comes from the preset alone, or from a report, is in them already.
     fn shown(&self, cell: Cell, quantity: &SweepQuantity) -> Cell {
         let (Cell::Number(x), Some(Ok(start)), false) =
             (cell, &self.start, matches!(quantity.of, Stage::Preset(_) | Stage::Pull(_) | Stage::Fit(_)))

@@ -1,18 +1,18 @@
 //! Sweeps: one preset over many values of its keys, row by row.
 //!
-//! A spec names the preset, the axes and the quantities wanted. Row n of the results is a pure function of the spec and n:
-//! in a grid the last axis runs fastest, at random each row has its own random numbers, and so has each member of an ensemble. So
-//! any part of the rows can be computed anywhere, in any order.
+//! A spec names the preset, the axes and the quantities wanted. Row n of the results is a pure function of the spec and
+//! n: in a grid the last axis runs fastest; in a random design each row has its own random numbers, and in an ensemble
+//! so has each member. Any part of the rows can therefore be computed anywhere, in any order.
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`spec`] | the spec read, and the values of each row |
-//! | [`axis`] | one axis: its values, or what they are drawn from |
-//! | [`document`] | TOML entry by entry, each mistake with its line |
+//! | [`spec`] | reads the spec, and gives the values of each row |
+//! | [`axis`] | one axis: its values, or the distribution they are drawn from |
+//! | [`document`] | TOML entry by entry, with the line of each mistake |
 //! | [`quantity`] | the table of quantities |
 //! | [`stage`] | what quantities are computed from |
 //! | [`measure`](mod@measure) | the wanted quantities of one preset |
-//! | [`ensemble`] | what many members say of a quantity |
+//! | [`ensemble`] | what the members say about a quantity |
 //! | [`fault`] | why a row has no result |
 
 pub mod axis;

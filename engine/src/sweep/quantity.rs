@@ -12,17 +12,17 @@ use crate::units::Quantity;
 pub struct SweepQuantity {
     /// Its name in a spec and in the results.
     pub name: &'static str,
-    /// What it is called in formulas; empty where it has no such name.
+    /// Its symbol in formulas; empty if it has none.
     pub symbol: &'static str,
-    /// What it is measured in.
+    /// The kind of quantity that gives its unit.
     pub unit: Quantity,
-    /// One line for tables.
+    /// Its meaning in one line, for tables.
     pub meaning: &'static str,
     pub(super) of: Stage,
 }
 
-/// From what a quantity is computed: each needs all before it but the paths, which need the curve alone, the loop, which needs
-/// the start, and the fit, which needs nothing.
+/// What a quantity is computed from. Each stage needs all the stages before it, except that the paths need only the
+/// curve, the loop only the start, and the fit nothing.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Stage {
     Preset(fn(&PresetValues) -> Option<Cell>),
@@ -32,9 +32,9 @@ pub(super) enum Stage {
     /// The limit points of a control on the curve.
     Limits,
     Unloading(fn(&OnPath) -> Option<Cell>),
-    /// The states it passes that are not admissible: to find them takes longer than all the rest.
+    /// The states passed that are not admissible: finding them takes longer than everything else.
     Passed,
-    /// The whole loop of loading and unloading, by energies alone.
+    /// The whole loop of loading and unloading, from energies alone.
     Loop(fn(&OnPath) -> Option<Cell>),
     /// The pull at `path.rate`, or by `path.steps`.
     Pull(fn(&RunReport) -> Option<Cell>),
@@ -42,7 +42,7 @@ pub(super) enum Stage {
     Fit(fn(&Fitting) -> Option<Cell>),
 }
 
-/// Makes [`QUANTITIES`] of the table: name, symbol, unit, meaning, and from what it is computed.
+/// Makes [`QUANTITIES`] from the table: name, symbol, unit, meaning, and what it is computed from.
 macro_rules! quantities {
     ($($name:literal $symbol:literal $unit:ident $meaning:literal: $of:expr;)*) => {
         /// The quantities.
@@ -157,14 +157,14 @@ quantities! {
     "fit_warnings" "" Number "reasons and warnings of the fit; pulloff fit says which": Stage::Fit(|fit| Some(fit.warnings()));
 }
 
-/// The quantities of a spec that names none.
+/// The quantities of a spec that does not name any.
 pub const USUAL: [&str; 6] =
     ["last_contact_force", "last_contact_approach", "snaps", "enhancement", "waves", "kesari_lew"];
 
-/// Under which control a quantity is wanted.
+/// The control under which a quantity is wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Under {
-    /// That of the preset, `path.control`.
+    /// The preset's own, `path.control`.
     Own,
     /// Fixed grips.
     Displacement,
@@ -173,11 +173,11 @@ pub enum Under {
 }
 
 impl Under {
-    /// All of them, with what stands behind the name of a quantity.
+    /// All of them, each with its suffix to the name of a quantity.
     const ALL: [(Self, &'static str); 3] =
         [(Self::Own, ""), (Self::Displacement, "_displacement"), (Self::Force, "_force")];
 
-    /// The control, where `own` is that of the preset.
+    /// The control itself; `own` is that of the preset.
     #[must_use]
     pub fn control(self, own: Control) -> Control {
         match self {
@@ -188,12 +188,12 @@ impl Under {
     }
 }
 
-/// A quantity as it is wanted: a column of the results.
+/// A wanted quantity: a column of the results.
 #[derive(Debug, Clone, Copy)]
 pub struct QuantityColumn {
     /// The quantity.
     pub quantity: &'static SweepQuantity,
-    /// Under which control, where that matters.
+    /// The control it is wanted under, where that matters.
     pub under: Under,
 }
 
@@ -204,21 +204,22 @@ impl PartialEq for QuantityColumn {
 }
 
 impl SweepQuantity {
-    /// Whether it depends on the control: then `NAME` is under the preset's own, `NAME_displacement` and `NAME_force`
-    /// under these.
+    /// Whether it depends on the control. Then `NAME` is under the preset's own, and `NAME_displacement` and
+    /// `NAME_force` are under these two.
     #[must_use]
     pub fn is_of_control(&self) -> bool {
         matches!(self.of, Stage::Limits | Stage::Unloading(_) | Stage::Passed | Stage::Loop(_))
     }
 
-    /// As a column under each control that matters.
+    /// Its columns, one under each control that matters.
     pub fn columns(&'static self) -> impl Iterator<Item = QuantityColumn> {
         let last = if self.is_of_control() { Under::ALL.len() } else { 1 };
         Under::ALL[..last].iter().map(move |(under, _)| QuantityColumn { quantity: self, under: *under })
     }
 }
 
-/// What people call the last contact, said of several things: the force there, and the largest pull.
+/// The name of the quantity that may be meant by "pull-off", a word used for several things: the force at the last
+/// contact, and the largest pull.
 fn renamed(name: &str) -> Option<String> {
     name.strip_prefix("pull_off_").map(|rest| format!("last_contact_{rest}")).filter(|now| {
         let all = QUANTITIES.iter().flat_map(SweepQuantity::columns);
@@ -227,10 +228,10 @@ fn renamed(name: &str) -> Option<String> {
 }
 
 impl QuantityColumn {
-    /// The column of a name.
+    /// The column with this name.
     ///
     /// # Errors
-    /// What is wrong with the name, and the one that may have been meant.
+    /// What is wrong with the name, and the name that was probably meant.
     pub fn named(name: &str) -> Result<Self, String> {
         let all = || QUANTITIES.iter().flat_map(SweepQuantity::columns);
         all().find(|column| column.name() == name).ok_or_else(|| {
@@ -245,7 +246,7 @@ impl QuantityColumn {
         })
     }
 
-    /// Its name: that of the quantity, with the control behind it.
+    /// Its name: that of the quantity, followed by the control.
     #[must_use]
     pub fn name(&self) -> String {
         let suffix = Under::ALL.iter().find(|(under, _)| *under == self.under).map_or("", |(_, name)| *name);

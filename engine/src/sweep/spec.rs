@@ -1,4 +1,4 @@
-//! The spec of a sweep: TOML text → preset, axes, quantities; and the values of each row.
+//! The spec of a sweep: TOML text → preset, axes, quantities, and the values of each row.
 
 use super::MOST_ROWS;
 use super::axis::{AxisValues, Distribution, SweepAxis, overrides, rival};
@@ -16,37 +16,37 @@ use std::borrow::Cow;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Where the preset of a spec comes from: told the name that the spec gives and the `KEY=VALUE` assignments over it, it
-/// answers with the preset, or with why there is none, in words that are safe to show.
+/// The source of the preset of a spec. Given the name in the spec and the `KEY=VALUE` assignments over it, it returns
+/// the preset, or why there is none, in words that are safe to show.
 pub type Presets<'a> = &'a dyn Fn(&str, &[&str]) -> Result<Preset, String>;
 
 /// How the axes make rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Design {
-    /// Every value with every other; the last axis runs fastest.
+    /// Every value with every other one; the last axis runs fastest.
     Grid,
-    /// The first values together, then the second ones, …
+    /// All first values together, then all second ones, …
     Pairs,
     /// Drawn at random.
     Random {
-        /// How many rows.
+        /// Number of rows.
         draws: u64,
-        /// From which all random numbers follow.
+        /// The seed of all random numbers.
         seed: u64,
     },
     /// Members drawn at random at every point of the other axes: all points of the first member, then those of the second, …
     Ensemble {
-        /// How many members.
+        /// Number of members.
         members: u64,
-        /// From which all random numbers follow.
+        /// The seed of all random numbers.
         seed: u64,
-        /// Whether the points are pairs, and not a grid.
+        /// Whether the points are pairs rather than a grid.
         in_pairs: bool,
     },
 }
 
 impl Design {
-    /// How the axes that are not drawn make the points of an ensemble; any other design itself.
+    /// How the axes that are not drawn make the points of an ensemble; any other design is returned as it is.
     #[must_use]
     pub fn of_points(self) -> Self {
         match self {
@@ -57,12 +57,12 @@ impl Design {
     }
 }
 
-/// A sweep: what is computed of what.
+/// A sweep: what is computed, and for which problems.
 #[derive(Debug, Clone)]
 pub struct Spec {
-    /// What every row begins with.
+    /// The preset that every row starts from.
     pub preset: Preset,
-    /// The axes; at least one. An ensemble has those that its members draw behind the others.
+    /// The axes; at least one. In an ensemble those that its members draw come after the others.
     pub axes: Vec<SweepAxis>,
     /// How they make rows.
     pub design: Design,
@@ -72,15 +72,15 @@ pub struct Spec {
     pub rows: u64,
 }
 
-/// What `set` is.
+/// What `set` must be.
 const ASSIGNMENTS: &str = "an array of texts \"KEY=VALUE\"";
-/// The words of `combine`.
+/// The possible values of `combine`.
 const DESIGNS: [&str; 2] = ["grid", "pairs"];
-/// The key by which one random surface differs from another.
+/// The key that tells one random surface from another.
 const SEED: &str = "gap.seed";
 
 impl Spec {
-    /// Reads a spec from text that `name` names in messages; its preset comes from `presets`.
+    /// Reads a spec from text, called `name` in messages; its preset comes from `presets`.
     ///
     /// # Errors
     /// The first mistake, with its line.
@@ -93,7 +93,7 @@ impl Spec {
         let assigned = assigned(&section)?;
         let design = design(&section)?;
         let wanted = "one or more tables [[axis]]";
-        // One surface with its error bars needs no axis.
+        // A single surface with error bars needs no axis.
         let axes = match section.get("axis") {
             None if matches!(design, Design::Ensemble { .. }) => None,
             _ => Some(section.need("axis", wanted)?),
@@ -138,7 +138,7 @@ impl Spec {
         Ok(Self { preset, axes: read, design, columns: columns(&section)?, rows })
     }
 
-    /// The number of points at which there are members; all rows where it is no ensemble.
+    /// The number of points at which there are members; for other designs, the number of rows.
     #[must_use]
     pub fn points(&self) -> u64 {
         match self.design {
@@ -147,13 +147,13 @@ impl Spec {
         }
     }
 
-    /// Whether a point has many members, of which there are statistics.
+    /// Whether every point has many members, and so statistics.
     #[must_use]
     pub fn is_ensemble(&self) -> bool {
         matches!(self.design, Design::Ensemble { .. })
     }
 
-    /// The values of the axes in a row below [`rows`](Self::rows), in the order of the axes.
+    /// The values of the axes in a row, which is below [`rows`](Self::rows), in the order of the axes.
     #[must_use]
     pub fn values(&self, row: u64) -> Vec<Value> {
         values(&self.axes, self.design, row)
@@ -162,7 +162,7 @@ impl Spec {
     /// The preset of a row.
     ///
     /// # Errors
-    /// A value that the preset does not take.
+    /// A value that the preset does not accept.
     pub fn problem(&self, row: u64) -> Result<Preset, Fault> {
         let mut preset = self.preset.clone();
         let keys = self.axes.iter().map(|axis| &*axis.key);
@@ -190,7 +190,7 @@ impl Spec {
         }
     }
 
-    /// A row without any quantity.
+    /// A row without any quantities.
     #[must_use]
     pub fn lost(&self, fault: Fault) -> MeasuredQuantities {
         MeasuredQuantities { cells: vec![None; self.columns.len()], fault: Some(fault) }
@@ -228,10 +228,10 @@ pub fn points(axes: &[SweepAxis], design: Design) -> u64 {
     count.max(1)
 }
 
-/// The values at a point of a grid or of pairs, of the axes that are not drawn.
+/// The values of the axes that are not drawn, at a point of a grid or of pairs.
 fn point(axes: &[SweepAxis], design: Design, mut index: u64) -> Vec<Value> {
     let mut values: Vec<Value> = Vec::with_capacity(axes.len());
-    // Counted from the last, which runs fastest.
+    // Counted from the last axis, which runs fastest.
     for axis in axes.iter().rev() {
         let count = axis.count().unwrap_or(1).max(1);
         let own = if design == Design::Grid { index % count } else { index };
@@ -242,14 +242,14 @@ fn point(axes: &[SweepAxis], design: Design, mut index: u64) -> Vec<Value> {
     values
 }
 
-/// The axes of an ensemble: those of its points, then what its members draw, a surface each where the preset has a seed that is
-/// not `fixed`.
+/// The axes of an ensemble: those of its points, then those its members draw. Each member draws a surface of its own if
+/// the preset has a seed that is not `fixed`.
 fn drawn(axes: Vec<SweepAxis>, preset: &Preset, fixed: bool) -> Result<Vec<SweepAxis>, String> {
     let has_seed = preset.get(SEED).is_some() && !axes.iter().any(|axis| axis.key == SEED) && !fixed;
     let (mut own, mut all): (Vec<SweepAxis>, Vec<SweepAxis>) =
         axes.into_iter().partition(|axis| axis.count().is_none());
     if has_seed {
-        // Every seed is as good as any other; a table of numbers in double precision keeps these.
+        // Every seed is as good as any other; these are exact in a table of double-precision numbers.
         let points = AxisValues::Drawn(Distribution::Integers([0, (1 << 53) - 1]));
         own.push(SweepAxis { key: SEED.to_owned(), points });
     }
@@ -262,10 +262,10 @@ fn drawn(axes: Vec<SweepAxis>, preset: &Preset, fixed: bool) -> Result<Vec<Sweep
     Ok(all)
 }
 
-/// The axes of a canonical form, as the program keeps it beside results, and how they make rows.
+/// The axes of a canonical form, which the program keeps beside results, and how they make rows.
 ///
 /// # Errors
-/// What of it is not as it was written.
+/// The first part that is not as the program writes it.
 pub fn of_canonical(document: SpecText<'_>) -> Result<(Vec<SweepAxis>, Design), SpecError> {
     let table = document.parse()?;
     let sweep = document.section(&table).need("sweep", "a table")?.section("a table")?;
@@ -282,7 +282,7 @@ fn preset(presets: Presets<'_>, section: &SpecSection<'_>) -> Result<Preset, Spe
     let set: Vec<SpecEntry<'_>> =
         section.get("set").map_or_else(|| Ok(Vec::new()), |set| set.array(ASSIGNMENTS))?;
     let set: Vec<&str> = set.iter().map(|entry| entry.text(ASSIGNMENTS)).collect::<Result<_, _>>()?;
-    // The preset itself first, so that a mistake is told where it is made.
+    // The preset itself first, so that a mistake is reported where it was made.
     let preset = presets(name, &[]).map_err(|what| entry.fault(&format!("preset: {what}")))?;
     if set.is_empty() {
         return Ok(preset);
@@ -290,12 +290,12 @@ fn preset(presets: Presets<'_>, section: &SpecSection<'_>) -> Result<Preset, Spe
     presets(name, &set).map_err(|what| section.get("set").unwrap_or(entry).fault(&what))
 }
 
-/// The keys to which `set` gives values, each with its place.
+/// The keys that `set` gives values to, each with its place.
 fn assigned<'a>(section: &SpecSection<'a>) -> Result<Vec<(SpecEntry<'a>, String)>, SpecError> {
     let mut keys = Vec::new();
     let Some(set) = section.get("set") else { return Ok(keys) };
     for entry in set.array(ASSIGNMENTS)? {
-        // Whatever is no assignment was refused when it was made.
+        // Anything that is not an assignment was refused when the preset was made.
         let Some((key, text)) = entry.text(ASSIGNMENTS)?.split_once('=') else { continue };
         let value = DeValue::parse(text.trim()).ok();
         let table = value.as_ref().and_then(|value| value.get_ref().as_table());
@@ -305,11 +305,11 @@ fn assigned<'a>(section: &SpecSection<'a>) -> Result<Vec<(SpecEntry<'a>, String)
     Ok(keys)
 }
 
-/// `key`, or the keys below it that an inline table gives values.
+/// `key`, or the keys below it that an inline table gives values to.
 fn keys_of(key: &str, table: Option<&DeTable<'_>>) -> Vec<String> {
     let Some(table) = table else { return vec![key.to_owned()] };
     let below = |(name, value): (&Spanned<Cow<'_, str>>, &Spanned<DeValue<'_>>)| match &**name.get_ref() {
-        // A parameter is its value, and more.
+        // A parameter is its value, with more attached.
         "value" => vec![key.to_owned()],
         name => keys_of(&format!("{key}.{name}"), value.get_ref().as_table()),
     };
@@ -365,7 +365,7 @@ fn is_pairs(combine: &SpecEntry<'_>) -> Result<bool, SpecError> {
 /// The number of rows, or of points of an ensemble; every axis must fit the design.
 fn rows(design: Design, axes: &[SweepAxis], tables: &[SpecSection<'_>]) -> Result<u64, SpecError> {
     let counts: Vec<Option<u64>> = axes.iter().map(SweepAxis::count).collect();
-    // The first of the axes that are not drawn, which all others of pairs are as long as.
+    // The first of the axes that are not drawn; in pairs all the others must be as long as it.
     let first = axes.iter().zip(&counts).find_map(|(axis, count)| Some((axis, (*count)?)));
     let mut product = 1_u64;
     for ((axis, table), count) in axes.iter().zip(tables).zip(&counts) {
@@ -375,7 +375,7 @@ fn rows(design: Design, axes: &[SweepAxis], tables: &[SpecSection<'_>]) -> Resul
                 return Err(table.fault(&format!("with [random] the axis {key} must have a distribution")));
             }
             (Design::Random { draws, .. }, _, None) => product = draws,
-            // Of the members, whatever the points are.
+            // An axis drawn by the members goes with any points.
             (Design::Ensemble { .. }, _, None) => {}
             (_, _, None) => {
                 let what = format!(

@@ -1,5 +1,5 @@
-//! What quantities are computed from, each stage from the one before: the values of the preset, its start, its curve, the
-//! unloading under one control, the loop under one.
+//! What quantities are computed from, each stage from the one before: the values of the preset, its start, its curve,
+//! the unloading under one control, the loop under one control.
 
 use super::fault::Fault;
 use crate::case::{Case, CaseError};
@@ -23,7 +23,7 @@ use std::fmt;
 pub enum Cell {
     /// A number; in the user's units once it is in a row.
     Number(f64),
-    /// How many of something.
+    /// A count.
     Count(usize),
 }
 
@@ -50,7 +50,7 @@ pub(super) struct StartState {
 /// The curve, reduced.
 pub(super) struct CurveMinima {
     pub(super) curve: Curve,
-    /// The state of smallest force and that of smallest approach.
+    /// The state of smallest force and the state of smallest approach.
     least: [LeastState; 2],
     critical_force: Option<f64>,
 }
@@ -62,12 +62,12 @@ struct LeastState {
     control: Control,
 }
 
-/// Smaller values are sought up to so many start radii and waves further out.
+/// Smaller values are looked for up to this many start radii, and waves, further out.
 const REACH: f64 = 1.5;
 
 const WAVES: f64 = 2.0;
 
-/// Differences below this share do not count.
+/// Relative differences below this do not count.
 const SMALLER: f64 = 1e-3;
 
 /// An unloading or a loop under one control, reduced.
@@ -81,8 +81,8 @@ pub(super) struct Fitting {
 }
 
 impl Fitting {
-    /// The fit as `pulloff fit` makes it when nothing else is asked; one that did not come to its end, or whose values
-    /// the points do not determine, is a fault.
+    /// The fit as `pulloff fit` makes it without further options; a fit that did not finish, or whose values the points
+    /// do not determine, is a fault.
     pub(super) fn new(preset: &Preset, progress: &dyn Progress) -> Result<Self, Fault> {
         let free = preset.data.free().map(str::to_owned).collect();
         let options = Options { free, ..Options::default() };
@@ -163,7 +163,7 @@ impl OnPath {
     }
 
     pub(super) fn first_touch(&self, of: fn(&PathState) -> f64) -> Option<Cell> {
-        // Bodies that jump in may touch in the same jump.
+        // Bodies that jump in may make contact in the same jump.
         let touches = |event: &&Event| {
             let lands = event.after.as_ref().is_some_and(|state| !state.contacts.is_empty());
             event.kind == EventKind::FirstTouch || event.kind == EventKind::JumpIn && lands
@@ -209,7 +209,7 @@ impl PresetValues {
         Some(Cell::Number(1.5 * std::f64::consts::PI * self.problem.work_of_adhesion * radius))
     }
 
-    /// The gap without its waves, and they; none where it has none, or no adhesion.
+    /// The gap without its waves, and the waves; `None` if there are no waves or no adhesion.
     fn worst_phase(&self) -> Option<WorstPhase> {
         let smooth = Jkr {
             effective_modulus: self.problem.effective_modulus,
@@ -265,7 +265,7 @@ impl CurveMinima {
         Ok(Some(Cell::Number(self.smallest(0)?.contact_radius / wave)))
     }
 
-    /// The state of smallest force, or of smallest approach, of all contacts and not only of those up to the start's.
+    /// The state of smallest force, or of smallest approach, among all contacts and not only those up to the start.
     fn smallest(&self, which: usize) -> Result<&State, Fault> {
         let LeastState { state, is_cut_off, control } = &self.least[which];
         let is_cut_off = is_cut_off.get_or_init(|| {
@@ -298,7 +298,7 @@ impl CurveMinima {
     }
 }
 
-/// The state of the curve at which the quantity that `control` holds is smallest.
+/// The state of the curve at which the quantity held by `control` is smallest.
 fn least(curve: &Curve, control: Control) -> State {
     let limits = curve
         .limit_points(control)
@@ -309,6 +309,6 @@ fn least(curve: &Curve, control: Control) -> State {
     let value = |[_, approach, force]: &[f64; 3]| weighted(control, *approach, *force);
     let found = limits.chain(ends).min_by(|a, b| value(a).total_cmp(&value(b)));
     let [contact_radius, approach, force] = found.unwrap_or([f64::NAN; 3]);
-    // No energy is asked for here.
+    // The energy is not needed here.
     State { contact_radius, approach, force, energy: f64::NAN }
 }

@@ -1,30 +1,32 @@
-//! Bytes of a file → text: UTF-8, UTF-16 and the 8-bit encoding of Western Windows, which instruments and spreadsheets write.
+//! Bytes of a file → text: UTF-8, UTF-16 and the 8-bit encoding of Western Windows, which are what instruments and
+//! spreadsheets write.
 //!
-//! Only what is certain is taken for text. A byte order mark decides; without one, text in UTF-8 is UTF-8, bytes of which
-//! every other one is zero are UTF-16, and what has no zero at all is Windows-1252. Any other zero is no text.
+//! Only what is certain is taken for text. A byte order mark decides. Without one, valid UTF-8 is UTF-8, bytes of which
+//! every other one is zero are UTF-16, and bytes without any zero are Windows-1252. Anything else with a zero byte is
+//! not text.
 
 use encoding_rs::{UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 use std::borrow::Cow;
 use thiserror::Error;
 
-/// So many bytes at the beginning tell whether a file without a byte order mark is UTF-16.
+/// This many bytes at the beginning tell whether a file without a byte order mark is UTF-16.
 const LOOKED_AT: usize = 4096;
 
-/// Why bytes are no text.
+/// Why bytes are not text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum NotText {
-    /// A kind of file that is known by its first bytes.
+    /// A kind of file recognized by its first bytes.
     #[error("is {0}, not text")]
     Known(&'static str),
     /// A zero byte among letters.
     #[error("line {0}: holds a zero byte: the file is binary or damaged, not text")]
     Zero(usize),
-    /// A byte order mark says an encoding that the bytes behind it are not.
+    /// A byte order mark that names an encoding which the bytes behind it do not have.
     #[error("is damaged: its byte order mark says {0}, and its bytes are not")]
     Damaged(&'static str),
 }
 
-/// The first bytes of files that people try to read as tables.
+/// The first bytes of files that people mistake for tables.
 const KNOWN: [(&[u8], &str); 5] = [
     (b"PK\x03\x04", "a ZIP archive, such as an Excel workbook (.xlsx) or a force curve of JPK (.jpk-force)"),
     (b"\x89HDF\r\n", "an HDF5 file"),
@@ -33,7 +35,7 @@ const KNOWN: [(&[u8], &str); 5] = [
     (b"%PDF-", "a PDF file"),
 ];
 
-/// The text in `bytes`, without a byte order mark, and what had to be assumed of its encoding.
+/// The text in `bytes`, without a byte order mark, and what had to be assumed about its encoding.
 ///
 /// # Errors
 /// [`NotText`].
@@ -57,7 +59,7 @@ pub fn decode(bytes: &[u8]) -> Result<(Cow<'_, str>, Option<&'static str>), NotT
     }
 }
 
-/// UTF-16 without a byte order mark: nearly every other byte is zero, and hardly any of the rest.
+/// UTF-16 without a byte order mark: nearly every other byte is zero, and hardly any of the others are.
 fn utf_16(bytes: &[u8]) -> Option<&'static encoding_rs::Encoding> {
     let (pairs, _) = bytes.get(..bytes.len().min(LOOKED_AT))?.as_chunks::<2>();
     let zeros = |at: usize| pairs.iter().filter(|pair| pair[at] == 0).count();

@@ -1,6 +1,6 @@
 //! The beginning of a longer description.
 
-/// What stands before the first comma, colon, semicolon or bracket of a text: a heading made of a description.
+/// The part of a text before the first comma, colon, semicolon or bracket: a heading made from a description.
 #[must_use]
 pub fn headline(text: &str) -> &str {
     let end = text.find([',', ':', ';', '(']).unwrap_or(text.len());

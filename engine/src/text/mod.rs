@@ -1,4 +1,4 @@
-//! Foreign text: read from bytes, and made safe to show in messages; names that may have been meant.
+//! Foreign text: read from bytes, and made safe to show in messages; also the names that were probably meant.
 
 mod decode;
 mod headline;

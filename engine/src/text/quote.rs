@@ -1,4 +1,4 @@
-//! Foreign text made safe to show: no control, no hidden and no direction-changing character leaves here.
+//! Foreign text made safe to show: no control character, no hidden and no direction-changing character gets through.
 
 use std::path::Path;
 
@@ -7,8 +7,8 @@ pub const QUOTED: usize = 40;
 /// How much of a path a message shows, in characters.
 pub const PATH: usize = 120;
 
-/// Whether a character must not reach a terminal: controls, and Unicode's invisible formatting
-/// (direction overrides, zero-width characters, separators, tags).
+/// Whether a character must not reach a terminal: control characters, and Unicode's invisible formatting (direction
+/// overrides, zero-width characters, separators, tags).
 #[must_use]
 pub fn is_unsafe(c: char) -> bool {
     c.is_control()
@@ -26,7 +26,7 @@ pub fn is_unsafe(c: char) -> bool {
         )
 }
 
-/// `text` with unsafe characters replaced and at most `max` characters long, cut at the end.
+/// `text` with unsafe characters replaced, cut at the end to at most `max` characters.
 #[must_use]
 pub fn sanitize(text: &str, max: usize) -> String {
     let safe = |c: char| if is_unsafe(c) { char::REPLACEMENT_CHARACTER } else { c };
@@ -38,7 +38,7 @@ pub fn sanitize(text: &str, max: usize) -> String {
     short
 }
 
-/// A label of the parameter table with its Greek letters.
+/// A label from the parameter table with its Greek letters.
 #[must_use]
 pub fn greek(label: &str) -> String {
     label.replace("gamma", "γ").replace("lambda", "λ").replace("delta", "δ")
@@ -50,13 +50,13 @@ pub fn quote(text: &str) -> String {
     sanitize(text, QUOTED)
 }
 
-/// A path for a message; a long one keeps its end, which names the file.
+/// A path for a message; a long path keeps its end, which names the file.
 #[must_use]
 pub fn show_path(path: &Path) -> String {
     show_name(&path.to_string_lossy())
 }
 
-/// A file's name for a message, as [`show_path`].
+/// A file's name for a message, shortened as in [`show_path`].
 #[must_use]
 pub fn show_name(name: &str) -> String {
     let surplus = name.chars().count().saturating_sub(PATH);

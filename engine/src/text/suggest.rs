@@ -1,13 +1,13 @@
 //! "Did you mean": the known word closest to a mistyped one.
 
-/// How alike two words must be to be offered, from 0 to 1.
+/// How similar a word must be to be offered, from 0 to 1.
 const ALIKE: f64 = 0.6;
-/// How alike the beginning of a word is to it, at least.
+/// The least similarity of a word to a known one that begins with it.
 const BEGUN: f64 = 0.75;
-/// The longest word worth comparing, in bytes: the comparison takes time in proportion to it.
+/// The longest word worth comparing, in bytes: the time for a comparison grows with it.
 const LONGEST: usize = 80;
 
-/// The most alike of `known`, if one is alike enough.
+/// The most similar of `known`, if one is similar enough.
 pub fn closest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if word.len() > LONGEST {
         return None;
@@ -16,7 +16,7 @@ pub fn closest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
     best(known.into_iter().map(|k| (likeness(&word, k), k)))
 }
 
-/// The dotted key most alike to `key`, as a whole or in its last part; `labels` gives other names of a key.
+/// The dotted key most similar to `key`, as a whole or in its last part; `labels` gives other names of a key.
 pub fn closest_key<'a>(key: &str, known: impl IntoIterator<Item = (&'a str, &'a str)>) -> Option<&'a str> {
     if key.len() > LONGEST {
         return None;
@@ -25,7 +25,7 @@ pub fn closest_key<'a>(key: &str, known: impl IntoIterator<Item = (&'a str, &'a 
     best(known.into_iter().map(|(k, label)| {
         let whole = likeness(&lower, k);
         let part = likeness(last(&lower), last(k));
-        // A known part in the wrong table, or the symbol, counts a little less than the key itself.
+        // A known part in the wrong table, or the symbol, counts for a little less than the key itself.
         let symbol = if last(key) == label { 0.95 } else { 0.0 };
         (whole.max(0.97 * part).max(symbol), k)
     }))

@@ -8,13 +8,13 @@
 //! p(r) = (E*/π) [∫_r^s g'(a)/√(a² − r²) da − T/√(s² − r²)]
 //! ```
 //!
-//! The forms with M₁, M₂ do not cancel where s is small and adhesion rules. Along the curve `dU = P dδ`, so the energy
-//! of one radius follows from that of another by the rise of M₂ between them. The root with −T is the one whose edge
-//! pulls.
+//! The forms with M₁ and M₂ do not cancel where s is small and adhesion dominates. Along the curve `dU = P dδ`, so the
+//! energy at one radius follows from that at another by the rise of M₂ between them. The root with −T is the one whose
+//! edge is in tension.
 //!
 //! I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965), doi:10.1016/0020-7225(65)90019-4; the adhesive edge as in K. L.
 //! Johnson, K. Kendall and A. D. Roberts, Proc. R. Soc. A 324, 301 (1971), doi:10.1098/rspa.1971.0141. The formulas
-//! hold for one connected disc; whether the gap outside stays open is not asked here.
+//! hold for one connected disc; whether the gap outside stays open is not checked here.
 
 use super::quadrature::{Integral, integrate, integrate_broken};
 use crate::elementary::hypot;
@@ -30,8 +30,8 @@ pub struct Transform {
     pub slope: f64,
     /// M₁ = ∫₀ᵃ a g' da, an area.
     pub moment: f64,
-    /// Whether the three are good to rounding: closed forms are, a quadrature that met structure of the gap too fine
-    /// for it is not.
+    /// Whether the three are good to rounding: closed forms are; a quadrature is not if the gap had structure too fine
+    /// for it.
     pub resolved: bool,
 }
 
@@ -44,22 +44,22 @@ pub struct ExactEquilibrium {
     pub approach: f64,
     /// P, compression positive.
     pub force: f64,
-    /// U, the elastic energy less γ times the area of contact.
+    /// U, the elastic energy minus γ times the area of contact.
     pub energy: f64,
     /// The larger of the two forces whose difference P is, 2E*|M₁| of the gap and 2E*sT of the edge.
     ///
-    /// What an error of P is fairly measured by: P itself passes through zero.
+    /// The fair scale for an error of P, because P itself passes through zero.
     pub force_scale: f64,
-    /// Whether every integral behind it was [resolved](super::quadrature::Integral::resolved), so that all is good to
-    /// rounding.
+    /// Whether every integral used for it was [resolved](super::quadrature::Integral::resolved), so that everything is
+    /// good to rounding.
     pub resolved: bool,
 }
 
-/// One connected contact disc: what a gap, E* and γ say about it.
+/// One connected contact disc: what follows from a gap, E* and γ.
 ///
 /// Radii are positive unless said otherwise; any consistent units.
 pub trait Disc: std::fmt::Debug + Send + Sync {
-    /// The solution by name, with its year.
+    /// The name of the solution, with its year.
     fn name(&self) -> &'static str;
 
     /// E*, a stress.
@@ -68,7 +68,7 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
     /// γ, a stress times a length.
     fn work_of_adhesion(&self) -> f64;
 
-    /// The shortest wave of the gap, by which integrals are divided.
+    /// The shortest wave of the gap, which sets the panels of integrals.
     fn wave(&self) -> Option<f64> {
         None
     }
@@ -111,7 +111,7 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
 
     /// The pressure p(r), compression positive, in a disc of radius `s` at `0 ≤ r < s`.
     ///
-    /// Its integral has the waves of g', which the transform of the gap has resolved where it says so.
+    /// Its integral contains the waves of g', which the transform of the gap has resolved if it says so.
     fn pressure(&self, s: f64, r: f64) -> f64 {
         let depth = ((s - r) * (s + r)).sqrt();
         self.effective_modulus() / PI * (pressed(self, s, r) - self.edge(s) / depth)
@@ -122,7 +122,7 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
         radii.iter().map(|&r| self.pressure(s, r)).collect()
     }
 
-    /// M₂ at `to` less M₂ at `from`.
+    /// M₂ at `to` minus M₂ at `from`.
     fn rise(&self, from: f64, to: f64) -> Integral<1> {
         // A product of two waves has waves of half the length.
         let wave = self.wave().map(|wave| 0.5 * wave);
@@ -132,7 +132,7 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
         })
     }
 
-    /// The equilibrium at `s`, M₂ there known.
+    /// The equilibrium at `s`, given M₂ there.
     fn equilibrium(&self, s: f64, square: f64) -> ExactEquilibrium {
         let modulus = self.effective_modulus();
         let (g, edge) = (self.transform(s), self.edge(s));
@@ -146,7 +146,7 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
         }
     }
 
-    /// The equilibria at `radii`, in any order, their energies from one pass over the whole curve.
+    /// The equilibria at `radii`, in any order, with their energies from one pass over the whole curve.
     fn curve(&self, radii: &[f64]) -> Vec<ExactEquilibrium> {
         let mut order: Vec<usize> = (0..radii.len()).collect();
         order.sort_by(|&i, &j| radii[i].total_cmp(&radii[j]));
@@ -170,7 +170,7 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
 /// ∫_r^s g'(a)/√(a² − r²) da.
 pub(super) fn pressed(disc: &(impl Disc + ?Sized), s: f64, r: f64) -> f64 {
     let depth = ((s - r) * (s + r)).sqrt();
-    // With a² = r² + t² the root goes away and the integrand is smooth: g'/a is even in a.
+    // With a² = r² + t² the root disappears and the integrand is smooth: g'/a is even in a.
     let pressed = integrate(0.0, depth, disc.wave(), |t| {
         let a = hypot(r, t);
         [disc.transform(a).slope / a]

@@ -13,7 +13,7 @@ use crate::problem::Problem;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// The exact solution of one problem, to be asked as a [`Disc`].
+/// The exact solution of one problem, used as a [`Disc`].
 ///
 /// ```
 /// use pulloff_engine::gap::Shape;
@@ -28,7 +28,7 @@ use std::sync::Arc;
 pub struct Exact(Arc<dyn Disc>);
 
 impl Exact {
-    /// The solution of `problem`, in its units: in closed form where the shape has one, by quadrature for a formula and a
+    /// The solution of `problem`, in its units: in closed form if the shape has one, by quadrature for a formula and a
     /// profile.
     pub fn of(problem: &Problem) -> Self {
         let Problem { effective_modulus, work_of_adhesion, ref shape } = *problem;

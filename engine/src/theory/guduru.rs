@@ -10,7 +10,7 @@
 //! P(s)  = 4E*s³/(3R) + (2π²AE*s²/λ) [H₀(q) − H₁(q)/q] − √(8πγE*s³)
 //! ```
 //!
-//! The energy has no such form: it is the integral of the module [`disc`](super::disc). P. R. Guduru, J. Mech. Phys.
+//! The energy has no such form: it is the integral in the module [`disc`](super::disc). P. R. Guduru, J. Mech. Phys.
 //! Solids 55, 445 (2007), doi:10.1016/j.jmps.2006.09.004.
 
 use super::disc::{Disc, Transform};

@@ -6,8 +6,8 @@
 //! ∫₀^{π/2} sin(x sin θ) dθ = (π/2) H₀(x),   ∫₀^{π/2} cos(x sin θ) dθ = (π/2) J₀(x)
 //! ```
 //!
-//! (Abramowitz and Stegun 12.1.7, 9.1.18), so that a sine and a cosine share one pattern. With F = H₀ cos φ + J₀ sin φ,
-//! G = H₁ cos φ + J₁ sin φ and, as H₀' = 2/π − H₁, J₀' = −J₁, (xH₁)' = xH₀, (xJ₁)' = xJ₀,
+//! (Abramowitz and Stegun 12.1.7, 9.1.18), so that sine and cosine follow one pattern. With F = H₀ cos φ + J₀ sin φ,
+//! G = H₁ cos φ + J₁ sin φ and, because H₀' = 2/π − H₁, J₀' = −J₁, (xH₁)' = xH₀, (xJ₁)' = xJ₀,
 //!
 //! ```text
 //! g  = a²/R     + Σ (π/2) Aᵢ x F

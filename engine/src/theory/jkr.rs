@@ -6,7 +6,7 @@
 //! δ = s²/R − √(2πγs/E*),   P = 4E*s³/(3R) − √(8πγE*s³),   P_c = (3/2)πγR,   s_c = (9πγR²/(8E*))^{1/3}
 //! ```
 //!
-//! The paper's (22) prints the force with the surface energy of one face and a plus sign; these hold.
+//! The paper's (22) prints the force with the surface energy of one face and a plus sign; the forms above are correct.
 //! Proc. R. Soc. A 324, 301 (1971), doi:10.1098/rspa.1971.0141.
 
 use super::disc::{Disc, Transform};

@@ -1,24 +1,24 @@
-//! Kesari and Lew: the wavy sphere when its waves are small, as two smooth envelopes.
+//! Kesari and Lew: the wavy sphere with small waves, as two smooth envelopes.
 //!
-//! For q = 2πs/λ ≫ 1 the Struve functions of [`guduru`](super::guduru) are a wave and a mean, and with Johnson's
-//! α = √(2γλ/(π²E*A²)) the wave is 1/(√π α) of the adhesive edge T = √(2πγs/E*):
+//! For q = 2πs/λ ≫ 1 the Struve functions of [`guduru`](super::guduru) are a wave plus a mean. With Johnson's α =
+//! √(2γλ/(π²E*A²)), the wave is 1/(√π α) of the adhesive edge T = √(2πγs/E*):
 //!
 //! ```text
 //! δ ≈ s²/R + A − T [1 − sin(q − π/4)/(√π α)],   P ≈ 4E*s³/(3R) − 2E*s T [1 − sin(q − π/4)/(√π α)]
 //! ```
 //!
-//! So the curve winds between two JKR curves, moved by A, whose works of adhesion are γ(1 ± 1/(√π α))². The edge lets go
-//! near the one that pulls more, and
+//! So the curve winds between two JKR curves, shifted by A, whose works of adhesion are γ(1 ± 1/(√π α))². The edge lets
+//! go near the curve that pulls more, and
 //!
 //! ```text
 //! P_off/P_c ≈ (1 + 1/(√π α))²,   at s = s_c (1 + 1/(√π α))^{2/3}
 //! ```
 //!
-//! It needs many waves in the disc: n = s/λ at pull-off is the measure, [`KesariLew::waves`].
+//! The formulas need many waves in the disc; the measure is n = s/λ at pull-off, [`KesariLew::waves`].
 //!
 //! H. Kesari and A. J. Lew, J. Mech. Phys. Solids 59, 2488 (2011), for the envelopes; that the pull-off depends on α
-//! alone is M. Ciavarella's remark, *On roughness-induced adhesion enhancement*. The mean A of the approach follows from
-//! the same asymptotic forms, H₀ → Y₀ + 2/(πq).
+//! alone was pointed out by M. Ciavarella, *On roughness-induced adhesion enhancement*. The mean A of the approach
+//! follows from the same asymptotic forms, H₀ → Y₀ + 2/(πq).
 
 use super::guduru::Guduru;
 use super::jkr::Jkr;
@@ -61,20 +61,20 @@ impl KesariLew {
         (approach, 4.0 * e * s.powi(3) / (3.0 * radius_of_curvature) - 2.0 * e * s * edge)
     }
 
-    /// `P_off/P_c`, the pull-off force under a dead load over that of the smooth sphere.
+    /// `P_off/P_c`, the pull-off force under a dead load divided by that of the smooth sphere.
     pub fn pull_off_ratio(&self) -> f64 {
         (1.0 + self.share()).powi(2)
     }
 
-    /// The smooth sphere whose pull-off is that of the envelope: its work of adhesion is γ(1 + 1/(√π α))².
+    /// The smooth sphere with the pull-off of the envelope: its work of adhesion is γ(1 + 1/(√π α))².
     pub fn effective(&self) -> Jkr {
         let Guduru { effective_modulus, work_of_adhesion, radius_of_curvature, .. } = self.sphere;
         let work_of_adhesion = work_of_adhesion * self.pull_off_ratio();
         Jkr { effective_modulus, work_of_adhesion, radius_of_curvature }
     }
 
-    /// n = s/λ, the waves in the disc at pull-off under a dead load. The larger, the better the formulas hold: with
-    /// n ≥ 5 the ratio is within 2 % of the exact one, with n ≥ 20 within 0.2 %.
+    /// n = s/λ, the waves in the disc at pull-off under a dead load. The formulas hold better the larger it is: with n
+    /// ≥ 5 the ratio is within 2 % of the exact one, with n ≥ 20 within 0.2 %.
     pub fn waves(&self) -> f64 {
         self.effective().pull_off_radius() / self.sphere.wavelength
     }
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
     use crate::theory::Disc;
 
-    /// The exact peak pull-off over `P_c`, by a scan finer than the waves.
+    /// The exact peak pull-off divided by `P_c`, by a scan finer than the waves.
     fn exact_ratio(sphere: &Guduru) -> f64 {
         let smooth = Jkr {
             effective_modulus: sphere.effective_modulus,

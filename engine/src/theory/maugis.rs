@@ -1,4 +1,5 @@
-//! A sphere with a constant tension within a range, in closed form (Maugis): the judge of adhesion with a range.
+//! A sphere with a constant tension over a finite range, in closed form (Maugis): the reference for adhesion with a
+//! range.
 //!
 //! With s = c cos ψ the gap at the edge c of the zone is `h_c` where a quadratic in c vanishes:
 //!
@@ -13,7 +14,7 @@ use crate::elementary::{cbrt, sin_cos};
 use crate::root;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Angles at which the largest pull is looked for, and steps of its golden section.
+/// Angles at which the largest pull is looked for, and steps of its golden-section search.
 const ANGLES: u32 = 200;
 
 /// A sphere of R = E* = 1.
@@ -32,7 +33,7 @@ impl Maugis {
         Self { work_of_adhesion, strength: parameter / cbrt(9.0 / (2.0 * PI * work_of_adhesion)) }
     }
 
-    /// c of the zone whose contact covers the share cos ψ of it, 0 < ψ ≤ π/2.
+    /// c of the zone with s/c = cos ψ, 0 < ψ ≤ π/2.
     #[must_use]
     pub fn edge(&self, angle: f64) -> f64 {
         let (sine, cosine) = sin_cos(angle);

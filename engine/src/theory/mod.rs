@@ -1,7 +1,7 @@
-//! Exact solutions, independent of the Ritz code: used by tests and by the screen alike.
+//! Exact solutions, independent of the Ritz code: used by the tests and by the screen alike.
 //!
-//! For any gap with a connected contact disc all of them follow from one function, the Abel transform g of the gap;
-//! they differ in how they come by it.
+//! For any gap with a connected contact disc they all follow from one function, the Abel transform g of the gap; they
+//! differ in how they obtain it.
 //!
 //! | file | what lives there |
 //! |---|---|
@@ -14,8 +14,8 @@
 //! | [`harmonics`] | a paraboloid with any sum of waves: the transform in closed form |
 //! | [`guduru`] | the wavy sphere: the transform in closed form |
 //! | [`struve`] | the functions H₀, H₁ of that closed form |
-//! | [`kesari_lew`] | the wavy sphere of many small waves: envelope and pull-off |
-//! | [`worst_phase`] | waves of unknown phases: bounds of the pull-off |
+//! | [`kesari_lew`] | the wavy sphere with many small waves: envelope and pull-off |
+//! | [`worst_phase`] | waves of unknown phases: bounds on the pull-off |
 //! | [`maugis`] | a sphere whose adhesion has a range, in closed form |
 //! | [`onset`] | the smallest waves on which a crest can snap at all |
 //! | [`exact`] | the best of these for a problem |

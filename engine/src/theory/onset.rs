@@ -1,14 +1,14 @@
-//! The envelope of snaps on small waves: below it none is possible on a crest, whatever the adhesion.
+//! The envelope of snaps on small waves: below it no snap is possible on a crest, whatever the adhesion.
 //!
-//! On a paraboloid of radius R with a wave of length λ ≪ s, g' is 2s/R and a wave of slowly growing height; the tip at which
-//! the first pair of limit points of the crest at s is born has
+//! On a paraboloid of radius R with a wave of length λ ≪ s, g' is 2s/R plus a wave of slowly growing height. The tip at
+//! which the first pair of limit points is born on the crest at s has
 //!
 //! ```text
 //! A*/λ = (3/(4π³)) (λ/R)^{3/2} √(R/s),       γ' = 16 (s/R)³     (under force a ninth of it)
 //! ```
 //!
-//! to leading order in λ/s: 0.3 % in A* and 1 % in γ' at s = 3.4 λ, 15 % and 40 % at the innermost crest. It is an envelope: at a
-//! given adhesion a preset snaps from 1.5 to 4 times larger amplitudes on.
+//! to leading order in λ/s. The error is 0.3 % in A* and 1 % in γ' at s = 3.4 λ, and 15 % and 40 % at the innermost
+//! crest. It is an envelope: at a given adhesion a preset snaps only from amplitudes 1.5 to 4 times larger.
 
 use crate::elementary::pow;
 use std::f64::consts::PI;

@@ -2,7 +2,7 @@
 //!
 //! A panel is accepted when the last two Legendre coefficients of its integrand, which the nodes give without another
 //! evaluation, are below [`TOLERANCE`] of the integral of |f|. For a smooth integrand the error of the rule is then
-//! far smaller still; at a kink the coefficients fall slowly and the panels crowd there.
+//! much smaller still; at a kink the coefficients fall slowly and the panels cluster there.
 
 use crate::gap::Breaks;
 use crate::gap::breaks::SmoothStretch;
@@ -14,17 +14,17 @@ use std::sync::LazyLock;
 /// Nodes of one panel: a panel that spans one wave then needs no halving.
 const NODES: NonZeroUsize = NonZeroUsize::new(24).unwrap();
 
-/// The share of the integral of |f| that the last coefficients of a panel may have.
+/// The largest share of the integral of |f| that the last coefficients of a panel may have.
 pub const TOLERANCE: f64 = 2e-14;
 
-/// Panels at the start at most; a wave so short that more were wanted is left to the halving.
+/// Most panels to start with; a wave so short that it would need more is left to the halving.
 const STARTED: f64 = 4096.0;
 
-/// Panels of one integral at most: what is not resolved then stays as good as it is, and says so.
+/// Most panels of one integral: whatever is not resolved by then stays as it is and is reported.
 const PANELS: usize = 1 << 15;
 
-/// Nodes of a stretch between two knots of a cubic gap. What is singular one stretch further in then counts by 4.1⁻²⁴ of
-/// itself, and itself is small.
+/// Nodes of a stretch between two knots of a cubic gap. A singularity one stretch further in then contributes 4.1⁻²⁴ of
+/// itself, and is itself small.
 const STRETCH_NODES: NonZeroUsize = NonZeroUsize::new(12).unwrap();
 
 /// Its nodes and weights on (−1, 1).
@@ -87,8 +87,8 @@ impl<const K: usize> QuadraturePanel<K> {
 pub struct Integral<const K: usize> {
     /// The integrals.
     pub values: [f64; K],
-    /// Whether every panel met [`TOLERANCE`]. If not, the integrand has structure too fine for the panels, or is no
-    /// number, and the values are only as good as the last panels.
+    /// Whether every panel met [`TOLERANCE`]. If not, the integrand has structure too fine for the panels, or is NaN,
+    /// and the values are only as good as the last panels.
     pub resolved: bool,
 }
 
@@ -101,7 +101,7 @@ impl<const K: usize> AddAssign for Integral<K> {
     }
 }
 
-/// The integrals from `from` to `to ≥ from` of what has been made from transforms of a gap with these breaks: powers of
+/// The integrals from `from` to `to ≥ from` of something derived from transforms of a gap with these breaks: powers of
 /// √(a − c) beyond each knot c, elsewhere as in [`integrate`].
 pub fn integrate_broken<const K: usize>(
     breaks: Breaks<'_>,
@@ -127,7 +127,7 @@ pub fn integrate_broken<const K: usize>(
             }
             Integral { values, resolved: values.iter().all(|value| value.is_finite()) }
         } else {
-            // a = base + x²: a wave is shortest in x at the far end.
+            // a = base + x²: in x a wave is shortest at the far end.
             integrate(x_from, x_to, wave.map(|wave| 0.5 * wave / x_to), rooted)
         };
     }
@@ -136,8 +136,8 @@ pub fn integrate_broken<const K: usize>(
 
 /// The integrals from `from` to `to` of the `K` values of `f`, which has waves of the length `wave` there.
 ///
-/// The error is about 1e-14 of the integrals of |f| where they are [resolved](Integral::resolved). An integrand with
-/// endless fine structure is given up at a fixed number of panels.
+/// The error is about 1e-14 of the integrals of |f| if they are [resolved](Integral::resolved). An integrand with
+/// endlessly fine structure is abandoned at a fixed number of panels.
 pub fn integrate<const K: usize>(
     from: f64,
     to: f64,

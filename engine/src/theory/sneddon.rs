@@ -1,14 +1,14 @@
 //! Any gap with a connected contact disc: its Abel transform by quadrature.
 //!
-//! With r = a sin θ, and M₁ after one exchange of the integrals,
+//! With r = a sin θ, and with M₁ after one exchange of the integrals,
 //!
 //! ```text
 //! g  = a ∫₀^{π/2} h'(r) dθ,   g' = ∫₀^{π/2} [h'(r) + r h''(r)] dθ,   M₁ = a² ∫₀^{π/2} h'(r) sin²θ dθ
 //! ```
 //!
-//! so that δ, P and their slopes cost one pass over the gap, in pieces between its knots: there a measured profile is a
-//! cubic, a polynomial in sin θ of which a rule of known size is exact to rounding. I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965),
-//! doi:10.1016/0020-7225(65)90019-4.
+//! so that δ, P and their slopes cost one pass over the gap, in pieces between its knots. There a measured profile is a
+//! cubic, a polynomial in sin θ, for which a rule of known size is exact to rounding. I. N. Sneddon, Int. J. Eng. Sci.
+//! 3, 47 (1965), doi:10.1016/0020-7225(65)90019-4.
 
 use super::disc::{self, Disc, Transform};
 use super::quadrature::{Integral, STRETCH, integrate};
@@ -74,7 +74,7 @@ impl Disc for Sneddon {
 impl Sneddon {
     /// ∫h', ∫(h' + rh'') and ∫h' sin²θ over θ.
     fn sums(&self, a: f64) -> Integral<3> {
-        // Near θ = 0 a wave spans λ/a of θ.
+        // Near θ = 0 a wave spans λ/a in θ.
         let wave = self.wave().map(|wave| wave / a);
         let mut sums = Integral { values: [0.0; 3], resolved: true };
         let mut from = 0.0;
@@ -92,14 +92,14 @@ impl Sneddon {
         sums
     }
 
-    /// What the jumps J of h' at knots q < a add to g': Σ J q/√(a² − q²).
+    /// The contribution to g' of the jumps J of h' at knots q < a: Σ J q/√(a² − q²).
     fn jumps(&self, a: f64) -> f64 {
         let knots = self.breaks().between(0.0, a).iter();
         knots
             .map(|&q| {
                 let [outer, inner] =
                     [1.0, -1.0].map(|side| self.gap.jet(q * (1.0 + 4.0 * side * f64::EPSILON)).first);
-                // What is left of a slope that does not jump is rounding.
+                // For a slope that does not jump, the difference is rounding.
                 let jump = if (outer - inner).abs() > 1e-10 * (outer.abs() + inner.abs()) {
                     outer - inner
                 } else {
@@ -110,7 +110,7 @@ impl Sneddon {
             .sum()
     }
 
-    /// The same over a gap that is a cubic between its knots.
+    /// The same sums for a gap that is a cubic between its knots.
     fn cubic_sums(&self, a: f64) -> Integral<3> {
         let Angles { sines, weights, .. } = Angles::new(self.breaks(), a, CUBIC_FREQUENCY);
         let [mut first, mut second, mut third] = [(); 3].map(|()| vec![0.0; sines.len()]);
@@ -125,7 +125,7 @@ impl Sneddon {
     }
 }
 
-/// g' of a gap with many knots, on Gauss's nodes between them: the pressures at many radii share it.
+/// g' of a gap with many knots, at Gauss nodes between them; shared by the pressures at many radii.
 struct SlopeTable<'a> {
     disc: &'a Sneddon,
     /// Each stretch with its nodes a and the weights of ∫ g' da there.
@@ -138,7 +138,7 @@ impl<'a> SlopeTable<'a> {
             let SmoothStretch { from, to, base } = stretch;
             let nodes = STRETCH.iter().map(|(x, weight)| {
                 let (half, middle) = (0.5 * (to - base).sqrt(), 0.5 * (from - base).sqrt());
-                // In √(a − base), at which g' is smooth.
+                // In √(a − base), in which g' is smooth.
                 let root = (middle + half) + (half - middle) * x;
                 let a = base + root * root;
                 (a, 2.0 * root * (half - middle) * weight * disc.transform(a).slope)
@@ -156,7 +156,7 @@ impl<'a> SlopeTable<'a> {
             if from - r >= to - from {
                 return nodes.iter().map(|(a, weight)| weight / ((a - r) * (a + r)).sqrt()).sum();
             }
-            // So near to the singularity nodes of its own, in √(a − r).
+            // This near to the singularity it gets nodes of its own, in √(a − r).
             let (near, far) = ((from - r).max(0.0).sqrt(), (to - r).sqrt());
             let (middle, half) = (0.5 * (far + near), 0.5 * (far - near));
             STRETCH

@@ -14,7 +14,7 @@
 use super::disc::{Disc, Transform};
 use crate::elementary::atanh;
 
-/// Where the sum gives way to the closed form: 26 terms below, one digit lost above.
+/// Where the sum gives way to the closed form: below, 26 terms suffice; above, one digit is lost.
 const SUM_BELOW: f64 = 0.4;
 
 /// Terms of the sum: 0.4⁵⁰ is below 1e-19.

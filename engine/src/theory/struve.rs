@@ -1,4 +1,4 @@
-//! The Struve functions H₀ and H₁ of a real argument, on which the closed form of the wavy sphere rests.
+//! The Struve functions H₀ and H₁ of a real argument, the basis of the closed form of the wavy sphere.
 //!
 //! ```text
 //! x < 4        H₀ = (2/π) Σ (−1)ᵏ x²ᵏ⁺¹/((2k+1)!!)²                     the power series
@@ -8,15 +8,15 @@
 //! ```
 //!
 //! Abramowitz and Stegun, *Handbook of Mathematical Functions*, 12.1.4, 12.1.5, 12.1.19, 12.1.20, 12.1.29. The power
-//! series loses digits by cancellation beyond 4; below 30 the smallest term of the asymptotic series is not yet below
+//! series loses digits by cancellation beyond 4; below 30 the smallest term of the asymptotic series is still above
 //! rounding.
 
 use std::f64::consts::{FRAC_1_PI, FRAC_2_PI};
 
-/// Where the power series ends: its largest term is then a few units, so cancellation costs one digit at most.
+/// Where the power series ends: up to there its largest term is a few units, so cancellation costs one digit at most.
 const SERIES_BELOW: f64 = 4.0;
 
-/// Where the asymptotic series begins: its smallest term, about e⁻ˣ/x, is then below 1e-14.
+/// Where the asymptotic series begins: from there its smallest term, about e⁻ˣ/x, is below 1e-14.
 const ASYMPTOTIC_ABOVE: f64 = 30.0;
 
 /// H₀(x) and H₁(x) for `x ≥ 0`, each with an absolute error of about 1e-15.
@@ -76,7 +76,7 @@ fn asymptotic(x: f64) -> (f64, f64) {
     let (mut h0, mut h1) = (t0, t1);
     let mut odd = 1.0;
     loop {
-        // The series diverges in the end: it is summed while its terms fall and still count.
+        // The series diverges eventually: it is summed as long as its terms fall and still matter.
         let ratio = odd * odd * inverse;
         if ratio >= 1.0 || t0.abs() < 1e-18 {
             break;

@@ -1,4 +1,4 @@
-//! The quasi-static path of an exact disc: its limit points, landings and losses from the closed form alone.
+//! The quasi-static path of an exact disc: its limit points, landings and losses, from the closed form alone.
 //!
 //! The device prescribes c = δ, P or δ + P/k. Along the curve of a [`Disc`] both c(s) and its slope are known,
 //!
@@ -10,9 +10,9 @@
 //! loss           the drop of U,  U − P*δ  or  U + ½k(Δ* − δ)²
 //! ```
 //!
-//! Signs of c' are looked for on a grid much finer than the waves and each change is halved to rounding; between two
-//! limit points c is monotone, so a landing lies between two nodes and is halved likewise. Nothing here knows of a
-//! basis, of Newton or of continuation, so it can judge them. The path is that of P. R. Guduru, J. Mech. Phys. Solids
+//! Sign changes of c' are looked for on a grid much finer than the waves, and each is halved down to rounding. Between
+//! two limit points c is monotone, so a landing lies between two nodes and is halved likewise. Nothing here depends on
+//! a basis, on Newton or on continuation, so it can judge them. The path is that of P. R. Guduru, J. Mech. Phys. Solids
 //! 55, 445 (2007), doi:10.1016/j.jmps.2006.09.004, and of Fig. 10 of the paper.
 
 use super::disc::{Disc, ExactEquilibrium};
@@ -25,10 +25,10 @@ const STEPS_PER_WAVE: f64 = 200.0;
 /// Largest step relative to the radius: towards s = 0 the curve behaves like √s.
 const STEP_RATIO: f64 = 0.01;
 
-/// Smallest step as a share of the largest radius, so that a grid over any number of waves ends.
+/// Smallest step as a fraction of the largest radius, so that the grid stays finite for any number of waves.
 const LEAST_STEP: f64 = 1e-5;
 
-/// How far inward a path is followed, as a share of its first radius: adhesion alone rules long before.
+/// How far inward a path is followed, as a fraction of its first radius: adhesion alone dominates long before.
 pub const INWARD_REACH: f64 = 1e-4;
 
 /// How far outward a stable state is looked for, as a multiple of the radius asked for.
@@ -37,7 +37,7 @@ pub const OUTWARD_REACH: f64 = 1000.0;
 /// A limit point of a control on an exact curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExactLimit {
-    /// Whether the control is smallest there, along s: the edge leaves it on unloading. Otherwise it is largest.
+    /// Whether the control has a minimum there along s: the edge leaves it on unloading. Otherwise it has a maximum.
     pub minimum: bool,
     /// The state.
     pub state: ExactEquilibrium,
@@ -46,7 +46,7 @@ pub struct ExactLimit {
 /// One instability of an exact path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExactJump {
-    /// c*, the controlled quantity at which it happens.
+    /// c*, the value of the controlled quantity at which it happens.
     pub control_value: f64,
     /// The limit point.
     pub before: ExactEquilibrium,
@@ -61,10 +61,10 @@ pub struct ExactJump {
 pub struct ExactPath {
     /// What was controlled.
     pub control: Control,
-    /// The first state, stable: where the one asked for is not, the edge first runs outward from it.
+    /// The first state, which is stable: if the one asked for is not, the edge first runs outward from it.
     pub start: ExactEquilibrium,
-    /// The instabilities in order. Only the last can be a pull-off; without one the disc shrinks to nothing, as it does
-    /// without adhesion.
+    /// The instabilities in order. Only the last can be a pull-off; without a pull-off the disc shrinks to nothing, as
+    /// it does without adhesion.
     pub jumps: Vec<ExactJump>,
 }
 
@@ -74,7 +74,7 @@ struct GridNode {
     radius: f64,
     /// c there.
     value: f64,
-    /// Whether it is a limit point, and then whether a minimum.
+    /// Whether it is a limit point, and if so, whether a minimum.
     minimum: Option<bool>,
 }
 
@@ -102,7 +102,7 @@ fn nodes(disc: &dyn Disc, control: Control, from: f64, to: f64) -> Vec<GridNode>
     for s in grid(disc, from, to) {
         let here = slope(disc, control, s);
         if let Some((outer, rise)) = before.filter(|(_, rise)| (*rise > 0.0) != (here > 0.0)) {
-            // Outside a minimum the control grows with s.
+            // Just outside a minimum the control grows with s.
             nodes.push(node(root::sign_change(outer, s, |s| slope(disc, control, s)), Some(rise > 0.0)));
         }
         nodes.push(node(s, None));
@@ -125,12 +125,12 @@ pub fn limit_points(disc: &dyn Disc, control: Control, from: f64, to: f64) -> Ve
         .collect()
 }
 
-/// The smallest value of what `control` holds between the radii `from` and `to < from`.
+/// The smallest value of the quantity held by `control` between the radii `from` and `to < from`.
 pub fn least(disc: &dyn Disc, control: Control, from: f64, to: f64) -> f64 {
     nodes(disc, control, from, to).into_iter().map(|node| node.value).fold(f64::INFINITY, f64::min)
 }
 
-/// The radius asked for, or the next stable one outward where it is not stable under `control`.
+/// The radius asked for, or, if it is not stable under `control`, the next stable one outward.
 fn stable_start(disc: &dyn Disc, control: Control, from: f64) -> Option<f64> {
     if slope(disc, control, from) > 0.0 {
         return Some(from);
@@ -151,7 +151,7 @@ fn stable_start(disc: &dyn Disc, control: Control, from: f64) -> Option<f64> {
 
 /// Unloads an exact disc under `control` from the contact radius `from > 0`.
 ///
-/// `None` where that state is unstable and no stable one lies outward up to [`OUTWARD_REACH`].
+/// `None` if that state is unstable and there is no stable one outward up to [`OUTWARD_REACH`].
 pub fn unload(disc: &dyn Disc, control: Control, from: f64) -> Option<ExactPath> {
     let start = stable_start(disc, control, from)?;
     let nodes = nodes(disc, control, start, INWARD_REACH * start);
@@ -187,7 +187,7 @@ pub fn unload(disc: &dyn Disc, control: Control, from: f64) -> Option<ExactPath>
     Some(ExactPath { control, start, jumps })
 }
 
-/// The drop of the potential of bodies and device in a jump, the control held at `value`.
+/// The drop in the potential of bodies and device in a jump, with the control held at `value`.
 fn loss(
     control: Control,
     value: f64,
@@ -197,7 +197,7 @@ fn loss(
     let (approach, energy) = match (after, control) {
         (Some(after), _) => (after.approach, after.energy),
         (None, Control::Force) => return None,
-        // Apart: no energy in the bodies, and a slack spring where δ = Δ*.
+        // Apart: no energy in the bodies, and a slack spring, with δ = Δ*.
         (None, _) => (value, 0.0),
     };
     let given = before.approach - approach;

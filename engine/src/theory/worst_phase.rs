@@ -1,14 +1,15 @@
-//! The largest pull of a disc on a paraboloid with waves, whatever their phases: two bounds of the enhancement.
+//! The largest pull of a disc on a paraboloid with waves of any phases: two bounds on the enhancement.
 //!
-//! The force of [`harmonics`](super::harmonics) is linear in the sine and the cosine of each phase, so at a contact radius s no
-//! phases make it smaller than, with xᵢ = qᵢs,
+//! The force of [`harmonics`](super::harmonics) is linear in the sine and the cosine of each phase. So at a contact
+//! radius s no phases make it smaller than, with xᵢ = qᵢs,
 //!
 //! ```text
 //! P(s) = 4E*s³/(3R) − √(8πγE*s³) − πE* Σ (Aᵢ/qᵢ) xᵢ √[(xᵢH₀(xᵢ) − H₁(xᵢ))² + (xᵢJ₀(xᵢ) − J₁(xᵢ))²]
 //! ```
 //!
-//! The least of it bounds the pull-off of one disc by Guduru's solution. For many waves under the disc, qs ≫ 1, it is that of a
-//! smooth sphere whose adhesive edge is 1 + Σ 1/(√π αᵢ) times as strong, which is Kesari and Lew's envelope with all waves added.
+//! Its minimum bounds the pull-off of one disc by Guduru's solution. For many waves under the disc, qs ≫ 1, the minimum
+//! is that of a smooth sphere whose adhesive edge is 1 + Σ 1/(√π αᵢ) times as strong: Kesari and Lew's envelope with
+//! all waves added up.
 //!
 //! P. R. Guduru, J. Mech. Phys. Solids 55, 445 (2007), doi:10.1016/j.jmps.2006.09.004; H. Kesari and A. J. Lew, J. Mech. Phys. Solids
 //! 59, 2488 (2011).
@@ -21,10 +22,10 @@ use crate::elementary::{cbrt, exp, ln};
 use crate::root;
 use std::f64::consts::{PI, TAU};
 
-/// Radii at which the force is looked at before the least is enclosed.
+/// Radii at which the force is evaluated before its minimum is bracketed.
 const RADII: i32 = 24;
 
-/// A paraboloid with waves of unknown phases and the adhesion `smooth` has.
+/// A paraboloid with waves of unknown phases and the adhesion of `smooth`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorstPhase {
     /// The sphere without waves.
@@ -54,12 +55,12 @@ impl WorstPhase {
         self.waves.iter().map(share).sum()
     }
 
-    /// Kesari and Lew's `P_off/P_c` with all waves in phase: that of [`KesariLew::pull_off_ratio`] where there is one wave.
+    /// Kesari and Lew's `P_off/P_c` with all waves in phase; for a single wave it equals [`KesariLew::pull_off_ratio`].
     pub fn kesari_lew(&self) -> f64 {
         (1.0 + self.share()).powi(2)
     }
 
-    /// The least force of a disc at the contact radius `s` for any phases.
+    /// The smallest force of a disc at the contact radius `s` for any phases.
     pub fn force(&self, s: f64) -> f64 {
         let Jkr { effective_modulus: e, work_of_adhesion, radius_of_curvature } = self.smooth;
         let wave = |(amplitude, wavelength): &(f64, f64)| {
@@ -76,11 +77,11 @@ impl WorstPhase {
             - PI * e * waves
     }
 
-    /// The largest `P_off/P_c` of one disc, for any phases, by Guduru's solution; none without adhesion.
+    /// The largest `P_off/P_c` of one disc, for any phases, by Guduru's solution; `None` without adhesion.
     pub fn guduru(&self) -> Option<f64> {
         let critical = self.smooth.pull_off_force();
         let share = Some(self.share()).filter(|share| share.is_finite() && critical > 0.0)?;
-        // By where the smooth sphere lets go, and where the strongest edge does.
+        // Around where the smooth sphere lets go, and where the strongest edge does.
         let radius = self.smooth.pull_off_radius();
         let (lo, hi) = (ln(0.1 * radius), ln(3.0 * radius * cbrt((1.0 + share).powi(2))));
         let at = |k: i32| lo + (hi - lo) * f64::from(k) / f64::from(RADII);

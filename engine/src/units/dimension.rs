@@ -3,14 +3,14 @@
 use std::fmt;
 use std::ops::{Add, Mul};
 
-/// The exponents of metre, kilogram and second; those of a product add.
+/// The exponents of metre, kilogram and second; for a product they add up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Dimension {
-    /// Of the metre.
+    /// The exponent of the metre.
     pub metre: i32,
-    /// Of the kilogram.
+    /// The exponent of the kilogram.
     pub kilogram: i32,
-    /// Of the second.
+    /// The exponent of the second.
     pub second: i32,
 }
 
@@ -19,7 +19,7 @@ pub struct Dimension {
 pub enum Quantity {
     /// Contact radius, approach, amplitude, wavelength: m.
     Length,
-    /// N.
+    /// A force: N.
     Force,
     /// Elastic moduli and pressures: Pa.
     Stress,
@@ -27,15 +27,15 @@ pub enum Quantity {
     EnergyPerArea,
     /// Losses: J.
     Energy,
-    /// The stiffness of the device: N/m, of the same dimension as J/m².
+    /// The stiffness of the device: N/m, which has the same dimension as J/m².
     ForcePerLength,
-    /// A length to the power −k, k from 1 to [`Quantity::DEEPEST`], as the coefficient of a power law: m⁻ᵏ.
+    /// A length to the power −k, with k from 1 to [`Quantity::DEEPEST`], such as the coefficient of a power law: m⁻ᵏ.
     InverseLength(u8),
-    /// The speed of an edge, the rate of an approach: m/s.
+    /// The speed of an edge, or the rate of an approach: m/s.
     Speed,
     /// The rate of a force: N/s.
     ForceRate,
-    /// s.
+    /// A time: s.
     Time,
     /// A ratio, an angle or a count.
     Number,
@@ -61,9 +61,9 @@ impl Dimension {
         factors.into_iter().filter_map(factor).collect::<Vec<_>>().join(" ")
     }
 
-    /// What it is called, with its article, if it has a name here.
+    /// Its name, with the article, if it has a name here.
     ///
-    /// An energy per area and a force per length have one dimension.
+    /// An energy per area and a force per length have the same dimension.
     pub fn name(self) -> Option<&'static str> {
         Some(match (self.metre, self.kilogram, self.second) {
             (0, 0, 0) => "a pure number",
@@ -86,7 +86,7 @@ impl Dimension {
     }
 }
 
-/// m⁻ᵏ at the place k.
+/// m⁻ᵏ at index k.
 const INVERSE_METRES: [&str; 10] =
     ["", "m^-1", "m^-2", "m^-3", "m^-4", "m^-5", "m^-6", "m^-7", "m^-8", "m^-9"];
 
@@ -116,7 +116,7 @@ impl fmt::Display for Dimension {
 }
 
 impl Quantity {
-    /// The largest k of a length to the power −k.
+    /// The largest k in a length to the power −k.
     pub const DEEPEST: u8 = 9;
 
     /// All of them.
@@ -142,7 +142,7 @@ impl Quantity {
         Self::InverseLength(9),
     ];
 
-    /// What is measured in a length to the power −`k`, where `k` is a whole number from 0 to [`Self::DEEPEST`].
+    /// The quantity of a length to the power −`k`, where `k` is a whole number from 0 to [`Self::DEEPEST`].
     pub fn of_inverse_length(k: f64) -> Option<Self> {
         let whole = (0..=Self::DEEPEST).find(|whole| k - f64::from(*whole) == 0.0)?;
         Some(if whole == 0 { Self::Number } else { Self::InverseLength(whole) })
@@ -164,7 +164,7 @@ impl Quantity {
         }
     }
 
-    /// What it is called, with its article.
+    /// Its name, with the article.
     pub fn name(self) -> &'static str {
         match self {
             Self::Length => "a length",
@@ -184,7 +184,7 @@ impl Quantity {
         }
     }
 
-    /// Its unit in SI; a pure number has none.
+    /// Its SI unit; a pure number has none.
     pub fn si(self) -> Option<&'static str> {
         match self {
             Self::Length => Some("m"),
@@ -201,7 +201,7 @@ impl Quantity {
         }
     }
 
-    /// A unit of it for a message; a pure number has none.
+    /// An example of its unit for messages; a pure number has none.
     pub fn example(self) -> Option<&'static str> {
         match self {
             Self::InverseLength(_) => self.si(),

@@ -1,15 +1,15 @@
 //! Values with units, as people type and read them: `30 mJ/m^2`, `3*pi/2 um`, `2.5 MPa`.
 //!
-//! A value is an expression of numbers ([`expression`](crate::expression), the grammar of gap formulas) and then,
-//! where there is one, a product of units. Dimensions are the exponents of metre, kilogram and second; an angle has
-//! none. Factors are kept as decimal powers, so `12.5 um` is the double nearest to 12.5·10⁻⁶.
+//! A value is an expression of numbers ([`expression`](crate::expression), the grammar of gap formulas), optionally
+//! followed by a product of units. Dimensions are the exponents of metre, kilogram and second; an angle has none.
+//! Factors are kept as decimal powers, so `12.5 um` is the double nearest to 12.5·10⁻⁶.
 //!
 //! | file | what lives there |
 //! |---|---|
 //! | [`dimension`] | exponent vectors, and the quantities of contact mechanics |
 //! | [`table`] | unit names and SI prefixes |
 //! | [`mod@unit`] | a product of units, read and written |
-//! | [`value`] | a number with its unit, read |
+//! | [`value`] | reads a number with its unit |
 //! | [`number`] | how numbers are written for people |
 //! | [`system`] | reduced or SI: how a quantity is typed and shown |
 

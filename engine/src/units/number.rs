@@ -3,7 +3,7 @@
 use super::unit::superscript;
 use super::{Quantity, UnitSystem};
 
-/// `x` with `digits` significant digits: plain where that is short, with an exponent otherwise.
+/// `x` with `digits` significant digits: plain if that is short, otherwise with an exponent.
 pub fn significant(x: f64, digits: usize) -> String {
     if x == 0.0 {
         return "0".to_owned();
@@ -13,12 +13,12 @@ pub fn significant(x: f64, digits: usize) -> String {
     }
     let digits = digits.max(1);
     let scientific = format!("{x:.*e}", digits - 1);
-    // Rounding can carry into the next decade (9.99 → 10.0): the exponent is read off the rounded number.
+    // Rounding can carry into the next decade (9.99 → 10.0), so the exponent is read off the rounded number.
     let Some((mantissa, exponent)) = scientific.split_once('e') else { return scientific };
     let Ok(exponent) = exponent.parse::<i32>() else { return scientific };
     let last = i32::try_from(digits).unwrap_or(i32::MAX) - 1 - exponent;
     if (-4..6).contains(&exponent) {
-        // Non-negative unless more digits stand before the point than are significant.
+        // Not negative, unless there are more digits before the point than are significant.
         return format!("{x:.*}", usize::try_from(last).unwrap_or(0));
     }
     format!("{}e{exponent}", trim_zeros(mantissa))
@@ -30,22 +30,22 @@ pub fn short(x: f64, digits: usize) -> String {
     if text.contains('e') { text } else { trim_zeros(&text).to_owned() }
 }
 
-/// `x` with as many digits as bring back the very same number.
+/// `x` with as many digits as are needed to read back the very same number.
 pub fn exact(x: f64) -> String {
     format!("{x:?}")
 }
 
-/// A loss: four digits, small and large ones with an exponent each, so that losses of very different size align.
+/// A loss: four digits, with an exponent if it is small or large, so that losses of very different size align.
 pub fn loss(x: f64) -> String {
     if (0.1..1e5).contains(&x.abs()) { significant(x, 4) } else { format!("{x:.3e}") }
 }
 
-/// `x` with so many decimals.
+/// `x` with this many decimals.
 pub fn fixed(x: f64, decimals: usize) -> String {
     format!("{x:.decimals$}")
 }
 
-/// A formatted number as it stands in print: −0.5, 1.5×10⁻⁴.
+/// A formatted number as in print: −0.5, 1.5×10⁻⁴.
 pub fn printed(text: &str) -> String {
     let minus = |text: &str| text.replace('-', "−");
     let parts = text.split_once('e').and_then(|(mantissa, power)| Some((mantissa, power.parse().ok()?)));
@@ -55,7 +55,7 @@ pub fn printed(text: &str) -> String {
     )
 }
 
-/// A relative difference: its sign, two digits and the decade.
+/// A relative difference: its sign, two digits and its decade.
 pub fn difference(x: f64) -> String {
     format!("{x:+.1e}")
 }
@@ -64,8 +64,8 @@ fn trim_zeros(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
-/// A value of a quantity, in SI or reduced units, as a person sees it: `number` writes it in its display unit, and the
-/// unit stands behind it.
+/// A value of a quantity, in SI or reduced units, as shown to a person: `number` formats it in its display unit, and
+/// the unit follows.
 pub fn with_unit(
     units: &UnitSystem,
     quantity: Quantity,
@@ -77,7 +77,7 @@ pub fn with_unit(
     shown.text(&number(shown.number), ascii)
 }
 
-/// A value as a message tells it: six digits, in ASCII, since a message may go anywhere.
+/// A value for a message: six digits, in ASCII, because a message may go anywhere.
 pub fn said(units: &UnitSystem, quantity: Quantity, x: f64) -> String {
     with_unit(units, quantity, x, true, |x| short(x, 6))
 }

@@ -10,9 +10,9 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "a preset has one, and an error boxes it")]
 pub enum UnitSystem {
-    /// Pure numbers: E* and R are what a person makes them.
+    /// Pure numbers: E* and R are whatever the user makes them.
     Reduced,
-    /// SI, each quantity shown in a unit of its own.
+    /// SI, with each quantity shown in its own unit.
     Si(DisplayUnits),
 }
 
@@ -26,7 +26,7 @@ pub struct DisplayUnits {
     energy: Unit,
     force_per_length: Unit,
     time: Unit,
-    /// The length and the force in a second.
+    /// The length per second and the force per second.
     speed: Unit,
     force_rate: Unit,
     /// The powers −1, −2, … of the length.
@@ -34,7 +34,7 @@ pub struct DisplayUnits {
 }
 
 impl Default for DisplayUnits {
-    /// µm, µN, kPa, mJ/m², pJ and N/m: those of a soft sphere of a millimetre.
+    /// µm, µN, kPa, mJ/m², pJ and N/m: suited to a soft sphere of a millimetre.
     fn default() -> Self {
         let factor =
             |prefix: &'static Prefix, unit: &'static NamedUnit, power| Factor { prefix, unit, power };
@@ -78,11 +78,11 @@ impl DisplayUnits {
         })
     }
 
-    /// The same units but for `quantity`, which is shown in the unit of this name; a pure number stays without, the
-    /// inverse powers of a length and speeds follow the length, rates of a force the force.
+    /// The same units except for `quantity`, which is shown in the unit of this name. A pure number stays without a
+    /// unit, inverse powers of a length and speeds follow the length, and rates of a force follow the force.
     ///
     /// # Errors
-    /// A text that is no unit, or one of another dimension.
+    /// A text that is not a unit, or a unit of another dimension.
     pub fn with(mut self, quantity: Quantity, name: &str) -> Result<Self, ValueError> {
         let unit = Unit::parse(name, 0)?;
         if unit.dimension() != quantity.dimension() {
@@ -112,17 +112,17 @@ impl DisplayUnits {
     }
 }
 
-/// A value as it is shown: its [`Display`](fmt::Display) has every digit, so that it is read back as the same value.
+/// A value as shown: its [`Display`](fmt::Display) has every digit, so that it is read back as the same value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shown<'a> {
-    /// The number in the unit.
+    /// The number, in the unit.
     pub number: f64,
     /// The unit, if it has one.
     pub unit: Option<&'a Unit>,
 }
 
 impl Shown<'_> {
-    /// The text with the number written as `number`, in ASCII if the terminal has nothing else.
+    /// The text with the number written as `number`, in ASCII if the terminal can show nothing else.
     pub fn text(&self, number: &str, ascii: bool) -> String {
         match self.unit {
             None => number.to_owned(),
@@ -147,7 +147,7 @@ impl UnitSystem {
         }
     }
 
-    /// The SI value of one display unit; 1 where there is none.
+    /// The SI value of one display unit; 1 if there is none.
     pub fn factor(&self, quantity: Quantity) -> f64 {
         self.unit(quantity).map_or(1.0, |unit| unit.to_si(1.0))
     }

@@ -8,9 +8,9 @@ use std::f64::consts::PI;
 pub struct NamedUnit {
     /// How it is shown.
     pub symbol: &'static str,
-    /// How it is shown where only ASCII can be.
+    /// How it is shown if only ASCII is possible.
     pub ascii: &'static str,
-    /// What else is read as it.
+    /// What else is read as this unit.
     pub alias: &'static str,
     /// Its dimension.
     pub dimension: Dimension,
@@ -27,9 +27,9 @@ pub struct NamedUnit {
 pub struct Prefix {
     /// How it is shown.
     pub symbol: &'static str,
-    /// How it is shown where only ASCII can be.
+    /// How it is shown if only ASCII is possible.
     pub ascii: &'static str,
-    /// What else is read as it.
+    /// What else is read as this prefix.
     pub alias: &'static str,
     /// Its power of ten.
     pub exponent: i32,
@@ -68,7 +68,7 @@ static MICRON: NamedUnit = NamedUnit { prefixed: false, ..named("micron", LENGTH
 static INCH: NamedUnit = NamedUnit { mantissa: 2.54, prefixed: false, ..named("in", LENGTH, -2) };
 static BAR: NamedUnit = named("bar", STRESS, 5);
 static DYNE: NamedUnit = NamedUnit { prefixed: false, ..named("dyn", FORCE, -5) };
-// The weight of a gram and of a pound under standard gravity, exact by definition: NIST SP 811, appendix B.
+// The weights of a gram and of a pound under standard gravity, exact by definition: NIST SP 811, appendix B.
 static GRAM_FORCE: NamedUnit = NamedUnit { mantissa: 9.806_65, ..named("gf", FORCE, -3) };
 static POUND_FORCE: NamedUnit =
     NamedUnit { mantissa: 4.448_221_615_260_5, prefixed: false, ..named("lbf", FORCE, 0) };
@@ -133,7 +133,7 @@ static OTHERS: [Prefix; 16] = [
     prefix("y", -24),
 ];
 
-/// The unit of this name and its prefix.
+/// The prefix and the unit with this name.
 pub fn lookup(word: &str) -> Option<(&'static Prefix, &'static NamedUnit)> {
     let prefixes = || [&NONE, &KILO, &MILLI, &MICRO, &PICO].into_iter().chain(&OTHERS);
     UNITS.iter().find_map(|&unit| {

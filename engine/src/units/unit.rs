@@ -19,7 +19,7 @@ use winnow::prelude::*;
 use winnow::stream::{LocatingSlice, Location};
 use winnow::token::{one_of, take_while};
 
-/// Factors of a product at most.
+/// Most factors in a product.
 const FACTORS: usize = 8;
 
 /// The largest power of a factor.
@@ -45,26 +45,26 @@ pub struct Unit {
     factors: Vec<Factor>,
 }
 
-/// Why a text is no unit, and where.
+/// Why a text is not a unit, and where.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum UnitError {
-    /// Something else where a unit must stand.
+    /// Something else in the place of a unit.
     #[error("column {}: expected a unit such as um, mN, kPa or mJ/m^2, found {found}", place.column)]
     Expected {
         /// Where.
         place: TextPlace,
-        /// What stands there.
+        /// What was found there.
         found: String,
     },
-    /// The expression goes on behind its unit.
+    /// The expression continues after its unit.
     #[error("column {}: found {found} behind a unit, which stands once behind the whole expression, as in (1+1/2) um", place.column)]
     Behind {
         /// Where.
         place: TextPlace,
-        /// What stands there.
+        /// What was found there.
         found: String,
     },
-    /// A name that is no unit.
+    /// A name that is not a unit.
     #[error("column {}: unknown unit {name}", place.column)]
     Unknown {
         /// Where.
@@ -72,13 +72,13 @@ pub enum UnitError {
         /// The name.
         name: String,
     },
-    /// A power that no unit needs.
+    /// A power that no unit has.
     #[error("column {}: the power of a unit must be an integer from -{POWER} to {POWER}, not 0", place.column)]
     Power {
         /// Where.
         place: TextPlace,
     },
-    /// A product that goes on and on.
+    /// A product with too many factors.
     #[error("column {}: a unit has at most {FACTORS} factors", place.column)]
     TooLong {
         /// Where.
@@ -89,7 +89,7 @@ pub enum UnitError {
 type UnitInput<'a> = LocatingSlice<&'a str>;
 
 impl Unit {
-    /// The unit written in `text` from the byte `start` on.
+    /// The unit written in `text` from byte `start` on.
     ///
     /// # Errors
     /// What is wrong, with its place in the whole text.
@@ -139,13 +139,13 @@ impl Unit {
         Self { factors }
     }
 
-    /// It to the power `power`, not 0.
+    /// The unit to the power `power`, not 0.
     pub(super) fn to_power(&self, power: i32) -> Self {
         let raised = |factor: &Factor| Factor { power: factor.power * power, ..*factor };
         Self { factors: self.factors.iter().map(raised).collect() }
     }
 
-    /// It in a second.
+    /// The unit per second.
     pub(super) fn per_second(&self) -> Self {
         let second = Factor { prefix: &NONE, unit: &SECOND, power: -1 };
         Self { factors: self.factors.iter().copied().chain([second]).collect() }
@@ -156,7 +156,7 @@ impl Unit {
         self.factors.iter().fold(Dimension::NONE, |sum, factor| sum + factor.unit.dimension * factor.power)
     }
 
-    /// What is measured in it, with its article: 30 mJ/m² is an energy per area, 30 mN/m a force per length.
+    /// What is measured in it, with the article: 30 mJ/m² is an energy per area, 30 mN/m a force per length.
     pub fn measures(&self) -> String {
         let dimension = self.dimension();
         if dimension != Dimension::new(0, 1, -2) {
@@ -166,7 +166,7 @@ impl Unit {
         if energy { "an energy per area" } else { "a force per length" }.to_owned()
     }
 
-    /// `number` of this unit in SI, an overflow infinite.
+    /// `number` of this unit in SI; infinite on overflow.
     pub fn to_si(&self, number: f64) -> f64 {
         scaled(number * self.mantissa(), self.exponent())
     }
@@ -195,7 +195,7 @@ impl Unit {
     fn written(&self, name: impl Fn(&Factor) -> String, power: impl Fn(i32) -> String) -> String {
         let mut text = String::new();
         for (i, factor) in self.factors.iter().enumerate() {
-            // A slash needs something before it.
+            // A slash needs something in front of it.
             let below = factor.power < 0 && i > 0;
             if i > 0 {
                 text.push(if below { '/' } else { ' ' });
@@ -217,13 +217,13 @@ impl fmt::Display for Unit {
     }
 }
 
-/// x × 10^`exponent`, rounded once as long as the power is a double.
+/// x × 10^`exponent`, rounded only once as long as the power is a double.
 fn scaled(x: f64, exponent: i32) -> f64 {
     let power = 10f64.powi(exponent.abs());
     if exponent < 0 { x / power } else { x * power }
 }
 
-/// A power as it stands behind its base: ⁻⁴.
+/// A power as a superscript: ⁻⁴.
 pub(super) fn superscript(power: i32) -> String {
     let digit = |c: char| SUPERSCRIPTS[c.to_digit(10).map_or(0, |digit| digit as usize + 1)];
     power.to_string().chars().map(digit).collect()
@@ -237,10 +237,10 @@ fn word<'a>(input: &mut UnitInput<'a>) -> Option<&'a str> {
     taken(input, take_while(1.., |c: char| c.is_alphabetic() || c == '°'))
 }
 
-/// The power at this place: 1 if none is written, none if it is no integer.
+/// The power at this place: 1 if none is written, `None` if it is not an integer.
 fn power(input: &mut UnitInput) -> Option<i32> {
     let caret = ('^', opt(one_of(['-', '+'])), digit1).take().map(|text: &str| text[1..].parse().ok());
-    // m2 and m-2, as many write them.
+    // Many people write m2 and m-2.
     let bare = (opt('-'), digit1).take().map(|text: &str| text.parse().ok());
     let raised = take_while(1.., SUPERSCRIPTS).map(|text: &str| plain(text).parse().ok());
     taken(input, alt((caret, bare, raised, '^'.value(None)))).unwrap_or(Some(1))
@@ -255,7 +255,7 @@ fn plain(text: &str) -> String {
         .collect()
 }
 
-/// The sign between two factors; a blank is none.
+/// The sign between two factors; a blank counts as no sign.
 fn separator(input: &mut UnitInput) -> Option<char> {
     taken(input, one_of(['/', '*', '·', '⋅']))
 }

@@ -1,4 +1,4 @@
-//! A number with its unit, read.
+//! Reads a number with its unit.
 
 use super::dimension::{Dimension, Quantity};
 use super::unit::{Unit, UnitError};
@@ -7,10 +7,10 @@ use crate::expression::{FormulaError, grammar};
 use std::fmt;
 use thiserror::Error;
 
-/// Characters of a value that a message quotes.
+/// Most characters of a value that a message quotes.
 const QUOTED: usize = 40;
 
-/// A number as typed, with the unit behind it.
+/// A number as typed, with the unit that follows it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TypedValue {
     /// The number before the unit, finite.
@@ -20,13 +20,13 @@ pub struct TypedValue {
     text: String,
 }
 
-/// Why a text is no value of the quantity it stands for. Foreign text in it is short and safe to show.
+/// Why a text is not a value of the quantity it is meant for. Foreign text in it is short and safe to show.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ValueError {
-    /// The number is none.
+    /// The number cannot be read.
     #[error(transparent)]
     Number(#[from] FormulaError),
-    /// The unit is none.
+    /// The unit cannot be read.
     #[error(transparent)]
     Unit(#[from] UnitError),
     /// An overflow, or a division of zero by zero.
@@ -35,7 +35,7 @@ pub enum ValueError {
         /// The value as typed.
         text: String,
     },
-    /// Another dimension than that of the quantity.
+    /// A dimension other than that of the quantity.
     #[error("expected {}, got {text}, {got}", wanted(*.expected))]
     Dimension {
         /// The quantity.
@@ -45,7 +45,7 @@ pub enum ValueError {
         /// What is measured in its unit.
         got: String,
     },
-    /// A value with a unit where only pure numbers have a meaning.
+    /// A value with a unit where only pure numbers make sense.
     #[error("the problem is in reduced units: expected a pure number, got {text}, {got}")]
     Reduced {
         /// The value as typed.
@@ -62,11 +62,11 @@ fn wanted(quantity: Quantity) -> String {
     }
 }
 
-/// The value of a text: an expression of numbers, then a unit if there is one. Where the expression ends with a
-/// division by a unit, as `3/mm^2` does, the unit begins with that slash.
+/// Parses a value: an expression of numbers, then a unit if there is one. If the expression ends with a division by a
+/// unit, as in `3/mm^2`, the unit begins with that slash.
 ///
 /// # Errors
-/// Text that is neither, with its column; a number that is not finite.
+/// Text that is neither, with its column; or a number that is not finite.
 pub fn parse_quantity(text: &str) -> Result<TypedValue, ValueError> {
     let (program, end) = match grammar::number(text) {
         Ok(read) => read,
@@ -78,7 +78,7 @@ pub fn parse_quantity(text: &str) -> Result<TypedValue, ValueError> {
     if number.is_finite() { Ok(value) } else { Err(ValueError::NotFinite { text: value.text }) }
 }
 
-/// The number of a text and the byte of the slash behind it, if what the grammar refused in it stands behind a slash.
+/// The number in a text and the byte of the slash after it, if what the grammar refused comes after a slash.
 fn divided(text: &str, error: &FormulaError) -> Option<(Program, usize)> {
     let before = text.get(..error.place.byte)?.trim_end().strip_suffix('/')?;
     let (program, end) = grammar::number(before).ok()?;
@@ -86,7 +86,7 @@ fn divided(text: &str, error: &FormulaError) -> Option<(Program, usize)> {
     (end == before.len() && is_unit).then_some((program, end))
 }
 
-/// The text on one line and not too long; what could be read holds nothing unsafe.
+/// The text on one line and not too long; what could be read contains nothing unsafe.
 fn quoted(text: &str) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     if line.chars().nth(QUOTED).is_none() {
@@ -108,7 +108,7 @@ impl TypedValue {
         self.unit.as_ref().map(Unit::dimension)
     }
 
-    /// The value of this quantity in SI; a bare number is one of `unit`, or of SI without one.
+    /// The value of this quantity in SI; a bare number is taken in `unit`, or in SI without one.
     ///
     /// # Errors
     /// Another dimension; a value that is too large or too small for a double.
@@ -121,7 +121,7 @@ impl TypedValue {
         self.in_si_of(unit)
     }
 
-    /// The value in SI, of whatever dimension its unit has.
+    /// The value in SI, whatever the dimension of its unit.
     ///
     /// # Errors
     /// A value that is too large or too small for a double.
@@ -129,7 +129,7 @@ impl TypedValue {
         self.in_si_of(None)
     }
 
-    /// The value in SI; a bare number is one of `unit`, or of SI without one.
+    /// The value in SI; a bare number is taken in `unit`, or in SI without one.
     fn in_si_of(&self, unit: Option<&Unit>) -> Result<f64, ValueError> {
         let si = self.unit.as_ref().or(unit).map_or(self.number, |unit| unit.to_si(self.number));
         if si.is_finite() && (si != 0.0 || self.number == 0.0) {
@@ -139,10 +139,10 @@ impl TypedValue {
         }
     }
 
-    /// The value of a quantity without units; an angle in degrees is a pure number too.
+    /// The value of a quantity without units; an angle in degrees counts as a pure number too.
     ///
     /// # Errors
-    /// A unit of another dimension, a value that is too large or too small for a double.
+    /// A unit of another dimension, or a value that is too large or too small for a double.
     pub fn pure(&self) -> Result<f64, ValueError> {
         match &self.unit {
             Some(unit) if unit.dimension() == Quantity::Number.dimension() => self.in_si_of(None),

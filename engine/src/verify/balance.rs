@@ -1,16 +1,16 @@
-//! The first law over a whole unloading: the work of the device is what the bodies and its spring store more, and what
-//! the instabilities lose.
+//! The first law over a whole unloading: the work of the device is the increase of the energy stored in the bodies and
+//! its spring, plus the losses in the instabilities.
 //!
 //! ```text
 //! W = ∫ P dx = [U + P²/(2k)] at the end − at the start + Σ losses
 //! ```
 //!
-//! x is the far end of the device: δ of the grips, Δ = δ + P/k of a spring, both at rest in a jump; a dead load hangs on
-//! the bodies and so moves, P held, in a jump too. The integral runs along the stable pieces of the curve, solved again at
-//! the nodes of a Gauss rule, and knows nothing of energies. A pull-off leaves nothing stored; under a dead load, where its loss
-//! has no bound, the balance ends at the last limit point.
+//! x is the far end of the device: δ for fixed grips, Δ = δ + P/k for a spring, both at rest in a jump. A dead load
+//! hangs on the bodies and so also moves in a jump, with P held. The integral runs along the stable pieces of the
+//! curve, which are solved again at the nodes of a Gauss rule, and does not use energies. A pull-off leaves nothing
+//! stored; under a dead load, where its loss has no bound, the balance ends at the last limit point.
 //!
-//! It holds in any basis as it does in theory, because the functional is stationary in s: dU = P dδ.
+//! It holds in any basis, as in theory, because the functional is stationary in s: dU = P dδ.
 
 use super::row::VerifyRow;
 use crate::gap::Gap;
@@ -19,20 +19,21 @@ use crate::quasistatic::curve::radii;
 use crate::quasistatic::{Curve, Equilibrium, Path, PathState};
 use gauss_quad::GaussLegendre;
 
-/// Steps per wave of the Gauss rule, eight nodes each, and the largest relative to the radius: far finer than the bound needs.
+/// Steps of the Gauss rule per wave, with eight nodes each, and the largest step relative to the radius: far finer than
+/// the bound needs.
 const STEPS_PER_WAVE: f64 = 10.0;
 const RATIO: f64 = 0.025;
 
 /// Nodes of each step.
 const NODES: usize = 8;
 
-/// The largest share of the energy turned over that may be missing.
+/// The largest share of the energy turned over that may be unaccounted for.
 const BOUND: f64 = 1e-9;
 
-/// By what the differences of two numbers of ours are divided: the loss, the energy turned over.
+/// What the difference of two numbers of ours is divided by: the loss, or the energy turned over.
 pub const OWN_MEASURE: &str = "relative";
 
-/// Work against storage and loss along `ours`, the unloading of `curve`.
+/// Work against stored and lost energy along `ours`, the unloading of `curve`.
 pub fn row(curve: &Curve, ours: &Path) -> VerifyRow {
     const WHAT: &str = "device's work against stored and lost";
     let Some(work) = work(&curve.equilibrium, ours) else {
@@ -76,7 +77,7 @@ fn work(equilibrium: &Equilibrium, ours: &Path) -> Option<f64> {
     Some(work)
 }
 
-/// ∫ P dx along the curve from one radius inward to another; `None` where the basis has no equilibrium between.
+/// ∫ P dx along the curve from one radius inward to another; `None` if the basis has no equilibrium somewhere between.
 fn along(equilibrium: &Equilibrium, control: Control, from: f64, to: f64) -> Option<f64> {
     let rule = GaussLegendre::new(NODES.try_into().ok()?);
     let wave = equilibrium.problem.gap.feature_length();

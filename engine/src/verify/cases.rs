@@ -5,7 +5,7 @@ use crate::problem::{Control, Problem};
 use crate::theory::jkr::Jkr;
 use std::f64::consts::TAU;
 
-/// A figure of the paper: a wavy sphere, and how it is unloaded.
+/// A figure of the paper: a wavy sphere, and the way it is unloaded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PaperFigure {
     /// Its name in the paper.
@@ -14,7 +14,7 @@ pub struct PaperFigure {
     pub problem: Problem,
     /// The contact radius at which its paths start.
     pub start: f64,
-    /// The stiffness of a device between the two extremes, below the steepest slope of the curve.
+    /// The stiffness of a device between the two extremes; it is below the steepest slope of the curve.
     pub stiffness: f64,
 }
 

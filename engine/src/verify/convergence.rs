@@ -1,4 +1,4 @@
-//! Hertz and JKR in rings at a given approach: the errors of contact radius and force, and their observed order.
+//! Hertz and JKR in rings at a given approach: the errors in contact radius and force, and their observed order.
 //!
 //! ```text
 //!                uniform rings                        rings crowded towards the edge
@@ -24,7 +24,7 @@ use crate::theory::jkr::Jkr;
 /// δ/R of the comparison.
 const APPROACH: f64 = 0.1;
 
-/// How an error falls with N: at most `constant`/N^`order`, the observed order within `spread` of it.
+/// How an error falls with N: at most `constant`/N^`order`, with the observed order within `spread` of `order`.
 #[derive(Debug, Clone, Copy)]
 struct ConvergenceLaw {
     constant: f64,
@@ -76,15 +76,15 @@ const STUDIES: [Study; 4] = [
 
 /// The contact radius of the smooth sphere at the approach `delta`, on its stable branch.
 pub fn radius_at(exact: &Jkr, delta: f64) -> f64 {
-    // Far beyond any approach asked for here.
+    // Far beyond any approach used here.
     let far = 10.0 * exact.radius_of_curvature;
     root::sign_change(exact.fixed_grips_radius(), far, |s| exact.approach(s) - delta)
 }
 
-/// Both spheres on every kind of mesh, from a quarter of the rings of `settings`.
+/// Both spheres on every kind of mesh, starting from a quarter of the rings in `settings`.
 ///
 /// # Errors
-/// [`VerifyError`] when a basis cannot be made.
+/// [`VerifyError`] if a basis cannot be made.
 pub fn groups(settings: &VerifySettings) -> Result<Vec<Group>, VerifyError> {
     STUDIES.iter().map(|study| group(study, settings.rings)).collect()
 }

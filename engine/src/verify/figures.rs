@@ -1,8 +1,8 @@
-//! The smallest force and the smallest approach on the curves of Fig. 8 and 9, and where they are.
+//! The smallest force and the smallest approach on the curves of Figs. 8 and 9, and where they occur.
 //!
-//! The exact ones are roots of dP/ds and dδ/ds of the closed form, the lowest of all limit points from the start of the
-//! figure inward: P. R. Guduru, doi:10.1016/j.jmps.2006.09.004. Forces are told over `P_c = (3/2)πγR` of the smooth
-//! sphere.
+//! The exact values are roots of dP/ds and dδ/ds of the closed form, the lowest of all limit points from the start of
+//! the figure inward: P. R. Guduru, doi:10.1016/j.jmps.2006.09.004. Forces are given relative to `P_c = (3/2)πγR` of
+//! the smooth sphere.
 
 use super::cases::{PaperFigure, smooth};
 use super::row::{Group, VerifyRow};
@@ -14,7 +14,7 @@ use crate::theory::unloading::{INWARD_REACH, limit_points};
 use crate::theory::{Disc, Exact};
 use std::sync::Arc;
 
-/// s and the control at the limit point of `control` where it is smallest.
+/// s and the control at the limit point where `control` is smallest.
 fn ours(curve: &Curve, control: Control) -> Option<(f64, f64)> {
     let states = curve.limit_points(control).into_iter().filter(|limit| limit.turn == Extremum::Minimum);
     let values = states.map(|limit| (limit.contact_radius, control.value(limit.approach, limit.force)));

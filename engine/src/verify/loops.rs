@@ -1,12 +1,14 @@
 //! Contact on rings, and whole loops of loading and unloading.
 //!
-//! The rigid flat annulus carries P = 2E*δb times a number of a/b alone, known in closed form at its ends alone:
-//! for a narrow hole 1 − 4ε³/(3π²), ε = a/b, for a thin ring π²(1 + ε)/(4 ln(16(1 + ε)/(1 − ε))), with an error that goes to zero
-//! (W. D. Collins, Proc. Edinburgh Math. Soc. 13, 235 (1963)). Between them, and for the loops on the waves of Fig. 9, the numbers
-//! are those of a program of another kind, which shares no code with this one: contact added and taken away in ring elements, its
-//! states polished by collocation. Where a loop has no rings its unloading is that of the exact path.
+//! The rigid flat annulus carries P = 2E*δb times a number that depends only on a/b and is known in closed form only in
+//! its limits: for a narrow hole 1 − 4ε³/(3π²), ε = a/b, and for a thin ring π²(1 + ε)/(4 ln(16(1 + ε)/(1 − ε))), with
+//! an error that goes to zero (W. D. Collins, Proc. Edinburgh Math. Soc. 13, 235 (1963)). Between the limits, and for
+//! the loops on the waves of Fig. 9, the reference numbers come from a program of another kind that shares no code with
+//! this one: contact added and removed in ring elements, its states refined by collocation. The unloading of a loop
+//! without rings is that of the exact path.
 //!
-//! The balance of a loop puts energies beside works: what is lost in all jumps against ∮ P dδ along the stable states.
+//! The balance of a loop compares energies with works: what is lost in all jumps against ∮ P dδ along the stable
+//! states.
 
 use super::cases::fig_9;
 use super::row::{Group, VerifyRow};
@@ -23,7 +25,7 @@ use crate::quasistatic::path::{Event, EventKind, Path, PathSetting, cycle};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// P/(2E*δb) of the rigid flat annulus by a/b.
+/// P/(2E*δb) of the rigid flat annulus, by a/b.
 const ANNULUS: [[f64; 2]; 6] = [
     [0.1, 0.999_864_355_578],
     [0.2, 0.998_901_152_221],
@@ -33,26 +35,26 @@ const ANNULUS: [[f64; 2]; 6] = [
     [0.99, 0.608_763_092_119],
 ];
 
-/// The approach at which the loops turn.
+/// The approach at which the loops turn round.
 const TURN: f64 = 0.14;
 
-/// γ/(E*R) of the weak adhesion.
+/// γ/(E*R) of the weak-adhesion loop.
 const WEAK: f64 = 1e-4;
 
-/// What another program found of a loop.
+/// What the other program found for a loop.
 struct KnownLoop {
     name: &'static str,
     work_of_adhesion: f64,
     /// The approach of every event in order.
     approaches: &'static [f64],
-    /// The outermost edge after every event but the last contact.
+    /// The outermost edge after every event except the last contact.
     landings: &'static [f64],
     lost: f64,
     first_touch: [f64; 2],
     last_contact: [f64; 2],
 }
 
-/// Without rings that last.
+/// A loop without rings that last.
 fn strong() -> KnownLoop {
     KnownLoop {
         name: "Fig. 9",
@@ -96,7 +98,7 @@ fn strong() -> KnownLoop {
     }
 }
 
-/// With a ring before every merge.
+/// A loop with a ring before every merge.
 fn weak() -> KnownLoop {
     KnownLoop {
         name: "Fig. 9, γ = 1e-4",
@@ -170,11 +172,11 @@ pub fn groups() -> Result<Vec<Group>, VerifyError> {
 }
 
 fn annulus() -> Result<Group, VerifyError> {
-    /// Digits of the constants; the limits are of leading order.
+    /// Rounding of the constants; the limits are of leading order.
     const ROUNDING: f64 = 1e-11;
     const NARROW: f64 = 1e-11;
     const THIN: f64 = 1e-6;
-    // Flat: a sphere so large that nothing of it is seen.
+    // Flat: a sphere so large that its curvature does not matter.
     const FLAT: f64 = 1e12;
     let waves = vec![Harmonic { amplitude: 0.0, wavelength: 10.0, phase: 0.0 }];
     let title = "Rigid flat annulus, force over 2E*δb".to_owned();
@@ -200,7 +202,7 @@ fn annulus() -> Result<Group, VerifyError> {
     Ok(Group { title, measure, rows })
 }
 
-/// The loop on the waves of Fig. 9; `None` where it could not be computed.
+/// The loop on the waves of Fig. 9; `None` if it could not be computed.
 fn run(work_of_adhesion: f64) -> Result<Option<Path>, VerifyError> {
     let Shape::WavySphere { radius_of_curvature, amplitude, wavelength } = fig_9().problem.shape else {
         return Ok(None);
@@ -213,7 +215,7 @@ fn run(work_of_adhesion: f64) -> Result<Option<Path>, VerifyError> {
 }
 
 fn of_loop(known: &KnownLoop, found: Option<&Path>) -> Group {
-    /// Of states over their range, and of losses relative.
+    /// Bounds for states, relative to their range, and for losses, relative to themselves.
     const STATES: f64 = 1e-9;
     const LOSSES: f64 = 1e-8;
     let title = format!("{}: the loop up to δ = {TURN}", known.name);
@@ -221,7 +223,7 @@ fn of_loop(known: &KnownLoop, found: Option<&Path>) -> Group {
     let events = found.map_or(&[][..], |found| &found.events);
     let pairs = |of: &dyn Fn(&Event) -> Option<f64>, known: &[f64]| -> Vec<(f64, f64)> {
         let ours: Vec<f64> = events.iter().filter_map(of).collect();
-        // One too many or too few is no loop of this kind.
+        // One event too many or too few means that it is not a loop of this kind.
         if ours.len() == known.len() { ours.into_iter().zip(known.iter().copied()).collect() } else { vec![] }
     };
     let range = |values: &[f64]| {
@@ -260,9 +262,9 @@ fn of_loop(known: &KnownLoop, found: Option<&Path>) -> Group {
     Group { title, measure, rows }
 }
 
-/// The energies lost against the areas that the path encloses.
+/// The energies lost compared with the areas that the path encloses.
 fn balance(known: &KnownLoop, found: Option<&Path>) -> VerifyRow {
-    /// The share of the losses that may be missing.
+    /// The share of the losses that may be unaccounted for.
     const BOUND: f64 = 1e-7;
     let what = format!("{}: work against loss", known.name);
     let sums = found.and_then(|found| {

@@ -1,8 +1,8 @@
 //! Our numbers against theory, as rows that pass or fail.
 //!
-//! A row puts a number of the engine beside the exact one, which comes from the closed forms of
-//! [`theory`](crate::theory) and never from the engine: see the files for the source of each. Where two numbers of the
-//! engine are compared instead, which theory says are the same, they stand in groups of their own that say so.
+//! A row compares a number of the engine with the exact one, which comes from the closed forms of
+//! [`theory`](crate::theory) and never from the engine; see the files for the source of each. Where instead two numbers
+//! of the engine are compared that theory says are the same, they are in groups of their own that say so.
 //!
 //! | file | what is compared |
 //! |---|---|
@@ -12,7 +12,7 @@
 //! | [`smooth`] | Hertz and JKR in the exact basis |
 //! | [`convergence`] | Hertz and JKR in rings: errors, and the observed order |
 //! | [`newton`] | the rounds of Newton-Raphson from a threefold contact radius |
-//! | [`figures`] | the smallest force and approach of Fig. 8 and 9 |
+//! | [`figures`] | the smallest force and approach of Figs. 8 and 9 |
 //! | [`unloading`] | every limit point, landing and loss of Fig. 9 under three controls |
 //! | [`stability`] | the law of stability and its cusps on Fig. 9 |
 //! | [`loops`] | a rigid annulus, and the whole loop with and without rings |
@@ -39,9 +39,9 @@ pub mod unloading;
 pub use row::{Group, VerifyRow};
 pub use settings::{VerifyError, VerifySettings};
 
-/// All comparisons, in seconds.
+/// All comparisons; takes seconds.
 ///
-/// A number that could not be computed is a row that fails, not an error.
+/// A number that could not be computed makes a row that fails, not an error.
 ///
 /// ```
 /// use pulloff_engine::{VerifyReport, verify};
@@ -52,7 +52,7 @@ pub use settings::{VerifyError, VerifySettings};
 /// ```
 ///
 /// # Errors
-/// [`VerifyError`] when a basis of `settings` cannot be made.
+/// [`VerifyError`] if a basis of `settings` cannot be made.
 pub fn verify(settings: &VerifySettings) -> Result<Vec<Group>, VerifyError> {
     let fig_9 = settings.candidates(&cases::fig_9())?;
     let fig_8 = settings.candidates(&cases::fig_8())?;

@@ -1,7 +1,8 @@
-//! The rounds of Newton-Raphson from a contact radius three times too large, at given approach on the smooth sphere.
+//! The rounds of Newton-Raphson from a contact radius three times too large, at a given approach on the smooth sphere.
 //!
-//! The paper reports 5 to 6; from 4 to 6 pass, down to 90 % of the smallest approach. At fixed grips s = `s_c/3^{2/3}`
-//! gives the exact smallest: K. L. Johnson, K. Kendall and A. D. Roberts, doi:10.1098/rspa.1971.0141.
+//! The paper reports 5 to 6; rows pass from 4 to 6, down to 90 % of the smallest approach. At fixed grips s =
+//! `s_c/3^{2/3}` gives the exact smallest approach: K. L. Johnson, K. Kendall and A. D. Roberts,
+//! doi:10.1098/rspa.1971.0141.
 
 use super::cases::{smooth, sphere};
 use super::convergence::radius_at;
@@ -15,13 +16,13 @@ use std::sync::Arc;
 /// γ/(E*R).
 const WORK_OF_ADHESION: f64 = 0.01;
 
-/// What the paper reports, and how far from it passes.
+/// What the paper reports, and how far from it a row still passes.
 const ROUNDS: (f64, f64) = (5.0, 1.0);
 
 /// The rounds at several approaches, in both bases.
 ///
 /// # Errors
-/// [`VerifyError`] when a basis cannot be made.
+/// [`VerifyError`] if a basis cannot be made.
 pub fn group(settings: &VerifySettings) -> Result<Group, VerifyError> {
     let (problem, exact) = (sphere(WORK_OF_ADHESION), smooth(WORK_OF_ADHESION));
     let smallest = exact.approach(exact.fixed_grips_radius());

@@ -1,4 +1,4 @@
-//! Adhesion with a range on the smooth sphere against the closed forms of Maugis, which share no code with it.
+//! Adhesion with a range on the smooth sphere, against the closed forms of Maugis, which share no code with it.
 //!
 //! D. Maugis, J. Colloid Interface Sci. 150, 243 (1992), doi:10.1016/0021-9797(92)90285-T.
 
@@ -13,7 +13,7 @@ use crate::zone::Equilibria;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
-/// `λ_M` from the long range to the short.
+/// `λ_M` from a long range to a short one.
 const PARAMETERS: [f64; 9] = [0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0];
 
 /// γ/(E*R).
@@ -22,10 +22,10 @@ const WORK: f64 = 0.01;
 /// Angles at which states are compared.
 const ANGLES: u32 = 12;
 
-/// States with zones out to so many R are compared.
+/// States whose zones reach out to at most this many R are compared.
 const FARTHEST: f64 = 4.0;
 
-/// Of a state, and of the largest pull, which a path finds on its panels.
+/// The bound for a state, and for the largest pull, which a path finds on its panels.
 const BOUND: f64 = 1e-10;
 
 /// States of one zone, and the largest pull of a whole loop under a dead load.

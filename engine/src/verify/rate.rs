@@ -1,4 +1,4 @@
-//! An edge with a speed against its asymptotic laws, as slow as they hold.
+//! An edge with a speed against its asymptotic laws, at rates slow enough for them to hold.
 //!
 //! ```text
 //! peak under displacement   −P = P_c [1 + (3RV/(4 s_c v₀))ⁿ]                 sphere, s_c its radius at P_c
@@ -7,8 +7,8 @@
 //! creep, P = −P_c − ε held  t = B(½, 1/n − ½) √(2/P'') (T_c/2)^{1/n} ε^{½ − 1/n}/v₀,  T_c = 2s_c √(2πγs_c)
 //! ```
 //!
-//! All follow from the law of the edge by expansion about an equilibrium, of the sphere in closed form: at a state that the slow edge
-//! passes, at a limit point, at the state that it creeps to, and beside the least force.
+//! All follow from the law of the edge by expansion about an equilibrium of the sphere in closed form: a state that the
+//! slow edge passes, a limit point, the state that it creeps to, or a state near the smallest force.
 
 use super::cases::{PaperFigure, fig_9, smooth, sphere};
 use super::row::{Group, VerifyRow};
@@ -55,7 +55,7 @@ fn pulled(table: &Table, edge: MovingEdge, start: f64, parts: &[Part]) -> Option
     puller.pull(parts, &Unwatched).ok()
 }
 
-/// The rows against laws, and the one that puts two numbers of ours side by side.
+/// The rows against laws, and the row that compares two numbers of ours.
 pub fn groups() -> [Group; 2] {
     let fig_9 = fig_9();
     let gaps = table(&sphere(WORK), 1.0)
@@ -99,7 +99,7 @@ fn peaks(gaps: &Gaps) -> Vec<VerifyRow> {
         .collect()
 }
 
-/// What a sphere does that is held: at an approach, and under a load that is a little too large.
+/// How a sphere creeps when it is held: at an approach, and under a load that is slightly too large.
 fn creep(gaps: &Gaps) -> Vec<VerifyRow> {
     let mut rows = Vec::new();
     for exponent in [0.25, 0.5] {
@@ -129,7 +129,7 @@ fn creep(gaps: &Gaps) -> Vec<VerifyRow> {
     rows
 }
 
-/// How what a pull of Fig. 9 dissipates comes to the losses of its unloading.
+/// How the dissipation in a pull of Fig. 9 approaches the losses of its unloading.
 fn dissipation(gaps: &Gaps, figure: &PaperFigure, own: &mut Vec<VerifyRow>) -> Vec<VerifyRow> {
     let gamma = figure.problem.work_of_adhesion;
     let lost = losses(gaps, figure);

@@ -1,19 +1,19 @@
-//! One comparison: a number of ours beside the exact one, or two of ours that theory says are the same.
+//! One comparison: a number of ours with the exact one, or two numbers of ours that theory says are the same.
 
-/// One number against theory, or against another of ours.
+/// One number compared with theory, or with another number of ours.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VerifyRow {
     /// What the number is.
     pub what: String,
-    /// The engine's; not a number where it could not be computed.
+    /// The engine's number; NaN if it could not be computed.
     pub ours: f64,
-    /// The exact one; not a number where ours stands beside another of ours.
+    /// The exact number; NaN if ours is compared with another number of ours.
     pub exact: f64,
-    /// The other of ours, where it is compared with that.
+    /// The other number of ours, if that is what it is compared with.
     pub other: Option<f64>,
-    /// (ours − exact)/scale or (ours − other)/scale, the scale being what the group says.
+    /// (ours − exact)/scale or (ours − other)/scale, with the scale that the group states.
     pub difference: f64,
-    /// The largest difference, without its sign, that passes.
+    /// The largest absolute difference that passes.
     pub bound: f64,
 }
 
@@ -22,15 +22,15 @@ pub struct VerifyRow {
 pub struct Group {
     /// What is compared, with the basis.
     pub title: String,
-    /// By what its differences are divided.
+    /// What its differences are divided by.
     pub measure: &'static str,
     /// The comparisons.
     pub rows: Vec<VerifyRow>,
 }
 
 impl Group {
-    /// The rows against theory, and those that compare two numbers of ours under a heading that says so, with the
-    /// differences of these divided as `own_measure` says.
+    /// The rows against theory, and, under a heading that says so, the rows that compare two numbers of ours, whose
+    /// differences are divided as `own_measure` says.
     #[must_use]
     pub fn apart(self, own_measure: &'static str) -> [Self; 2] {
         let Self { title, measure, rows } = self;
@@ -41,24 +41,24 @@ impl Group {
 }
 
 impl VerifyRow {
-    /// `ours` beside `exact`, the difference divided by `scale > 0`.
+    /// `ours` compared with `exact`, the difference divided by `scale > 0`.
     pub fn new(what: impl Into<String>, ours: f64, exact: f64, scale: f64, bound: f64) -> Self {
         Self { what: what.into(), ours, exact, other: None, difference: (ours - exact) / scale, bound }
     }
 
-    /// `ours` beside another number of ours that theory says is the same, the difference divided by `scale > 0`.
+    /// `ours` compared with another number of ours that theory says is the same, the difference divided by `scale > 0`.
     pub fn own(what: impl Into<String>, ours: f64, other: f64, scale: f64, bound: f64) -> Self {
         let row = Self::new(what, ours, other, scale, bound);
         Self { exact: f64::NAN, other: Some(other), ..row }
     }
 
-    /// `ours` beside `exact`, the difference divided by the exact number.
+    /// `ours` compared with `exact`, the difference divided by the exact number.
     pub fn relative(what: impl Into<String>, ours: f64, exact: f64, bound: f64) -> Self {
         Self::new(what, ours, exact, exact.abs(), bound)
     }
 
-    /// The pair of `(ours, exact)` that differs most, the difference divided by `scale`; one that is no number counts
-    /// as the worst, and no pair at all fails.
+    /// The pair `(ours, exact)` that differs most, the difference divided by `scale`. A NaN counts as the worst, and no
+    /// pair at all fails.
     pub fn worst(
         what: impl Into<String>,
         pairs: impl IntoIterator<Item = (f64, f64)>,
@@ -71,7 +71,7 @@ impl VerifyRow {
         Self::new(what, ours, exact, scale, bound)
     }
 
-    /// Whether the difference is within its bound; not a number is not.
+    /// Whether the difference is within its bound; NaN is not.
     pub fn passes(&self) -> bool {
         self.difference.abs() <= self.bound
     }

@@ -1,7 +1,7 @@
-//! The bases that are verified, and what each is held to.
+//! The bases that are verified, and the bounds each must meet.
 //!
-//! The bounds of the rings are for 200 of them, the default number: what a user may expect, up to twice what is
-//! measured. Those of the exact basis leave rounding some room.
+//! The bounds for rings are for 200 of them, the default number: what a user may expect, up to twice the measured
+//! error. The bounds for the exact basis leave some room for rounding.
 
 use super::cases::PaperFigure;
 use crate::disc::{Basis, ExactBasis, TableError};
@@ -23,8 +23,8 @@ pub enum VerifyError {
 /// What is verified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VerifySettings {
-    /// N of the ring elements, 200 by default: the bounds are for it. Orders of convergence are observed from a
-    /// quarter of it.
+    /// N of the ring elements; the bounds are for the default of 200. Orders of convergence are observed starting from
+    /// a quarter of it.
     pub rings: usize,
 }
 
@@ -37,32 +37,32 @@ impl Default for VerifySettings {
 /// The largest differences that pass on the wavy spheres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerances {
-    /// Of δ, P and s at limit points and landings, over their ranges on the curve.
+    /// For δ, P and s at limit points and landings, relative to their ranges on the curve.
     pub state: f64,
-    /// Of the smallest force and approach and of their contact radii, relative.
+    /// For the smallest force and approach and their contact radii, relative.
     pub extreme: f64,
-    /// Of a loss, relative.
+    /// For a loss, relative.
     pub loss: f64,
 }
 
-/// N = 200. Measured are 0.06 % of the range, 0.1 % of the extreme values, 0.8 % of the losses.
+/// For N = 200. Measured: 0.06 % of the range, 0.1 % of the extreme values, 0.8 % of the losses.
 const RINGS: Tolerances = Tolerances { state: 1e-3, extreme: 2e-3, loss: 1e-2 };
 
 /// Rounding; losses are small differences of energies.
 const EXACT: Tolerances = Tolerances { state: 1e-10, extreme: 1e-10, loss: 1e-8 };
 
-/// A basis on trial.
+/// A basis to be verified.
 #[derive(Debug, Clone)]
 pub struct Candidate {
-    /// Its name with its number.
+    /// Its name; for rings, with their number.
     pub name: String,
     /// The basis.
     pub basis: Arc<dyn Basis>,
-    /// What it is held to.
+    /// The bounds it must meet.
     pub bounds: Tolerances,
 }
 
-/// The exact basis for `problem` in a largest contact of radius `s`.
+/// The exact basis for `problem`, for contacts of radius up to `s`.
 ///
 /// # Errors
 /// [`VerifyError::Table`].
@@ -74,7 +74,7 @@ impl VerifySettings {
     /// Both bases for the paths of `figure`.
     ///
     /// # Errors
-    /// [`VerifyError`] when one cannot be made.
+    /// [`VerifyError`] if one cannot be made.
     pub fn candidates(&self, figure: &PaperFigure) -> Result<Vec<Candidate>, VerifyError> {
         let exact = exact(&figure.problem, figure.start)?;
         Ok(vec![

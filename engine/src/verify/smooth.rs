@@ -1,6 +1,6 @@
 //! Hertz and JKR in the exact basis.
 //!
-//! At a given contact radius, so that nothing but the basis is compared:
+//! At a given contact radius, so that only the basis is compared:
 //!
 //! ```text
 //! δ = s²/R − √(2πγs/E*),   P = 4E*s³/(3R) − √(8πγE*s³),   U = E*∫₀^s (δ − a²/R)² da − πγs²
@@ -21,13 +21,13 @@ const RADIUS: f64 = 0.3;
 /// γ/(E*R) without adhesion and with it.
 const WORKS: [(&str, f64); 2] = [("Hertz", 0.0), ("JKR", 0.01)];
 
-/// Rounding, with room for the sums.
+/// Rounding, with a margin for the sums.
 const BOUND: f64 = 1e-12;
 
 /// δ, P and U of the smooth sphere without adhesion and with it.
 ///
 /// # Errors
-/// [`VerifyError`] when the basis cannot be made.
+/// [`VerifyError`] if the basis cannot be made.
 pub fn group() -> Result<Group, VerifyError> {
     let mut rows = Vec::new();
     for (theory, gamma) in WORKS {

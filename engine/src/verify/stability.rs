@@ -1,6 +1,6 @@
-//! The law of stability on the waves of Fig. 9 against Guduru's closed form (doi:10.1016/j.jmps.2006.09.004): at its limit points
-//! the law must give the work of adhesion of the problem, under force a ninth of that under displacement, and its cusps are the
-//! extrema of √s g' there.
+//! The law of stability on the waves of Fig. 9 against Guduru's closed form (doi:10.1016/j.jmps.2006.09.004). At the
+//! limit points of the closed form the law must give the work of adhesion of the problem, and under force a ninth of
+//! the value under displacement; its cusps are the extrema of √s g' there.
 
 use super::cases::PaperFigure;
 use super::row::{Group, VerifyRow};
@@ -17,7 +17,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// Rounding of the table and of the closed form.
 const BOUND: f64 = 1e-10;
 
-/// The innermost cusps that are compared.
+/// How many of the innermost cusps are compared.
 const CUSPS: usize = 4;
 
 /// The law on the waves of `figure`.
@@ -63,7 +63,7 @@ pub fn group(figure: &PaperFigure) -> Result<Group, TableError> {
             adhesion,
             BOUND,
         ));
-        // Flat at the top: half the digits.
+        // F is flat at its top, so half the digits are lost.
         rows.push(VerifyRow::relative(format!("contact radius of {name}"), s, highest, 1e-6));
     }
     let title = format!("{}, the law of stability, exact", figure.name);

@@ -1,9 +1,9 @@
 //! The unloading of a figure under three controls: every limit point, landing and loss against the exact path.
 //!
-//! The exact path is [`theory::unloading`](crate::theory::unloading): roots of the slopes of Guduru's closed form, the
-//! landings by monotone pieces between them, the losses from its energies (P. R. Guduru,
+//! The exact path is [`theory::unloading`](crate::theory::unloading): roots of the slopes of Guduru's closed form,
+//! landings from the monotone pieces between them, losses from its energies (P. R. Guduru,
 //! doi:10.1016/j.jmps.2006.09.004; the paper's Fig. 10). Losses are compared twice: the drop of the potential with the
-//! exact one, and the area between the curve and the control line with that drop, instability by instability.
+//! exact one, and, instability by instability, the area between the curve and the control line with that drop.
 
 use super::balance;
 use super::cases::PaperFigure;
@@ -29,7 +29,7 @@ pub fn swept(figure: &PaperFigure, basis: &Arc<dyn Basis>) -> Option<Curve> {
     Curve::of(figure.problem.reduced(), Arc::clone(basis), figure.start, END * figure.start)
 }
 
-/// s, δ and P as they are compared.
+/// The names of s, δ and P in the comparison.
 const QUANTITIES: [&str; 3] = ["contact radius", "approach", "force"];
 
 fn of_ours(state: &PathState) -> [f64; 3] {
@@ -40,7 +40,7 @@ fn of_exact(state: &ExactEquilibrium) -> [f64; 3] {
     [state.contact_radius, state.approach, state.force]
 }
 
-/// The unloadings of `figure` in one basis, a group for each control.
+/// The unloadings of `figure` in one basis, one group for each control.
 pub fn groups(figure: &PaperFigure, candidate: &Candidate) -> Vec<Group> {
     let exact = Exact::of(&figure.problem);
     let curve = swept(figure, &candidate.basis);
@@ -78,7 +78,7 @@ fn rows(
 
 /// The ranges of s, δ and P on the exact curve from the start inward.
 fn ranges(exact: &dyn Disc, figure: &PaperFigure) -> [f64; 3] {
-    /// As fine as a chart: only the size matters.
+    /// As fine as a chart: only their size matters.
     const POINTS: u32 = 1000;
     let radii = (1..=POINTS).map(|i| figure.start * f64::from(i) / f64::from(POINTS));
     let mut ranges = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
@@ -137,7 +137,7 @@ fn states(ours: &Path, exact: &[ExactJump], candidate: &Candidate, ranges: [f64;
     rows
 }
 
-/// What each instability loses, in both ways; a last contact under a dead load has no loss.
+/// The loss in each instability, in both ways; a last contact under a dead load has no loss.
 fn losses(ours: &Path, exact: &[ExactJump], candidate: &Candidate) -> Vec<VerifyRow> {
     let mut rows = Vec::new();
     for (number, (event, jump)) in ours.events.iter().zip(exact).enumerate() {

@@ -5,11 +5,12 @@
 //! r < s   p(r)   = (1/π)∫_r^s g'/√(a² − r²) da − 2σ₀(½ − arcsin √((s² − r²)/(c² − r²))/π)
 //! ```
 //!
-//! A state is whole where the gap is positive in the zone and below `h_c`, not below `h_c` beyond it, and p ≥ −σ₀ in the contact. Along a
-//! stable stretch δ and c grow together, and with them the gap falls everywhere outside the contact and the pressure grows everywhere
-//! inside, for the increment of a tension that pulls at the edge and of an approach is a pressure; what the edge s reaches it finds
-//! closed, but for a corner at which h' falls, and what c reaches it finds at `h_c`. So the stretch is whole where at its outer end nothing touches in the zone or comes within
-//! range beyond it, and at its inner end nothing opens in the zone or under the contact.
+//! A state is whole if in the zone the gap is positive and below `h_c`, beyond the zone it is not below `h_c`, and in
+//! the contact p ≥ −σ₀. Along a stable stretch δ and c grow together. With them the gap falls everywhere outside the
+//! contact and the pressure grows everywhere inside, because the increment due to a tension that pulls at the edge, and
+//! to an approach, is a pressure. What the edge s reaches is already closed, except at a corner at which h' falls, and
+//! what c reaches has the gap `h_c`. So the stretch is whole if at its outer end nothing touches in the zone or comes
+//! within range beyond it, and at its inner end nothing opens in the zone or under the contact.
 
 use super::state::Zone;
 use crate::annuli::Ground;
@@ -19,22 +20,22 @@ use crate::elementary::{acos, asin, sin};
 use crate::problem::Cohesion;
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 
-/// What a gap may be off, as a share of `h_c`, and a pressure as a share of σ₀.
+/// The tolerance of a gap, as a share of `h_c`, and of a pressure, as a share of σ₀.
 const ROUNDING: f64 = 1e-9;
 
-/// Radii in a zone and per wave in it at which the gap is looked at, and at most.
+/// Radii in a zone, and per wave in it, at which the gap is checked, and the most of them.
 const IN_ZONE: f64 = 24.0;
 const PER_WAVE: f64 = 16.0;
 const MOST: f64 = 4000.0;
 
-/// At a corner of the gap at which h' falls a disc pulls without bound, and a hole opens there: one narrower than this, of the contact
-/// radius, is none.
+/// At a corner of the gap at which h' falls, a disc pulls without bound and a hole opens. A hole narrower than this
+/// share of the contact radius does not count.
 const HOLE: f64 = 1e-6;
 
-/// What a displacement beyond the zone may be more than at its edge.
+/// How many times that at its edge a displacement beyond the zone may be.
 const FARTHER: f64 = 1.2;
 
-/// What is not one disc in one zone.
+/// Why a state is not one disc in one zone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FaultKind {
     /// Beyond the zone the bodies are within range.
@@ -43,11 +44,11 @@ pub enum FaultKind {
     Touches,
     /// In the zone they are out of range.
     Opens,
-    /// Under the contact the tension is more than there can be.
+    /// Under the contact the tension is larger than possible.
     Torn,
 }
 
-/// Numbers ½, 1½ … up to how many places between two radii are looked at, with that.
+/// The numbers ½, 1½, … up to the count of places checked between two radii, each with that count.
 fn places(ground: &Ground, ends: [f64; 2]) -> impl Iterator<Item = [f64; 2]> + use<> {
     let count = (IN_ZONE + PER_WAVE * ground.lengths_between(ends)).min(MOST).ceil();
     std::iter::successors(Some(0.5), |k| Some(k + 1.0))
@@ -58,7 +59,7 @@ fn places(ground: &Ground, ends: [f64; 2]) -> impl Iterator<Item = [f64; 2]> + u
 /// Where a state is not one disc in one zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ZoneFault {
-    /// What is there.
+    /// What is wrong there.
     pub kind: FaultKind,
     /// Where, a length.
     pub radius: f64,
@@ -75,7 +76,7 @@ pub enum Ends {
     Both,
 }
 
-/// A state by its numbers.
+/// A state, given by its numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ZoneAt {
     /// c.
@@ -94,7 +95,7 @@ impl Zone {
             return 0.0;
         }
         let inner = r.min(c);
-        // a = inner sin(π/2 − χ): beside the edge the integrand changes within χ = d/c.
+        // a = inner sin(π/2 − χ): next to the edge the integrand changes within χ = d/c.
         let square = (c - r) * (c + r);
         let end = acos((s / inner).min(1.0));
         let of = |chi: f64| {
@@ -118,7 +119,7 @@ impl Zone {
         outside::gap_from(&self.panels, at.contact_radius, at.approach, r) - ring
     }
 
-    /// The pressure at a radius, compression positive: −σ₀ in the free part of the zone, none beyond it.
+    /// The pressure at a radius, compression positive: −σ₀ in the free part of the zone, zero beyond it.
     pub fn pressure_at(&self, at: ZoneAt, r: f64) -> f64 {
         let Cohesion { strength, .. } = self.cohesion;
         let (c, s) = (at.edge, at.contact_radius);
@@ -134,8 +135,8 @@ impl Zone {
         outside::pressure(panels, s, value, r) - 2.0 * strength * (0.5 - asin(share.min(1.0)) / PI)
     }
 
-    /// Radii in the zone, closer together towards both edges, and the corners in it, with the gap there; without contact the axis is one of
-    /// them.
+    /// Radii in the zone, denser towards both edges, and the corners in it, each with the gap there; without contact
+    /// the axis is one of them.
     fn gaps<'a>(&'a self, ground: &Ground, at: ZoneAt) -> impl Iterator<Item = (f64, f64)> + 'a {
         let (c, s) = (at.edge, at.contact_radius);
         let from = 0.5 * f64::from(u8::from(s <= 0.0));
@@ -147,21 +148,21 @@ impl Zone {
         even.chain(corners).map(move |radius| (radius, self.gap_at(at, radius)))
     }
 
-    /// Radii beside the corners in the contact at which h' falls, with the pressure there.
+    /// Radii just beside the corners in the contact at which h' falls, each with the pressure there.
     fn at_corners(&self, at: ZoneAt) -> impl Iterator<Item = (f64, f64)> + '_ {
         let s = at.contact_radius;
         let beside = self.corners().flat_map(move |r| [r - HOLE * s, r + HOLE * s]);
         beside.filter(move |r| 0.0 < *r && *r < s).map(move |radius| (radius, self.pressure_at(at, radius)))
     }
 
-    /// Radii in the contact with the pressure there.
+    /// Radii in the contact, each with the pressure there.
     fn pressures<'a>(&'a self, ground: &Ground, at: ZoneAt) -> impl Iterator<Item = (f64, f64)> + 'a {
         let s = at.contact_radius;
         let even = places(ground, [0.0, s]).map(move |[k, count]| s * k / count);
         even.take_while(move |_| s > 0.0).map(move |radius| (radius, self.pressure_at(at, radius)))
     }
 
-    /// The first fault of a state on the gap of `ground`, of those asked for.
+    /// The first fault of a state on the gap of `ground`, among those asked for.
     pub fn fault(&self, ground: &Ground, at: ZoneAt, ends: Ends) -> Option<ZoneFault> {
         let Cohesion { strength, range } = self.cohesion;
         let (outer, inner) = (ends != Ends::Inner, ends != Ends::Outer);
@@ -182,12 +183,13 @@ impl Zone {
             .map(|(radius, _)| ZoneFault { kind: FaultKind::Torn, radius })
     }
 
-    /// By how much δ and P of the zone with the edge of this state may be larger than its own, where its contact is no disc: not at all
-    /// where it is.
+    /// By how much δ and P of the zone with the same edge may exceed those of this state if its contact is not a disc;
+    /// zero if it is a disc.
     ///
-    /// With the gap raised by what it is below zero, and a pressure added where the tension is more than σ₀, the displacement is a
-    /// supersolution of the contact problem. The pressure, nowhere more than p on the disc, raises the gap at c by (4/π)ps at most; an
-    /// approach lowers it by the share (2/π)ψ, to first order in the edges of contact.
+    /// If the gap is raised by as much as it is below zero, and a pressure is added where the tension exceeds σ₀, the
+    /// displacement is a supersolution of the contact problem. The pressure, nowhere larger than p on the disc, raises
+    /// the gap at c by at most (4/π)ps; an approach lowers it by the share (2/π)ψ, to first order in the edges of
+    /// contact.
     pub fn slack(&self, ground: &Ground, at: ZoneAt) -> [f64; 2] {
         let (c, s) = (at.edge, at.contact_radius);
         let lowest = self.gaps(ground, at).fold(0.0_f64, |least, (_, gap)| least.min(gap));
@@ -201,8 +203,8 @@ impl Zone {
 
     /// A radius beyond the zone at which the bodies are within range.
     ///
-    /// The displacement θ has one sign at the rim and the other inside, so that beyond the zone it is nowhere much lower than at its
-    /// edge, and only crests of the gap that are lower than the edge can be within range.
+    /// The displacement θ has one sign at the rim and the other inside, so beyond the zone it is nowhere much lower
+    /// than at the zone's edge. Only crests of the gap that are lower than the edge can therefore be within range.
     fn second_zone(&self, ground: &Ground, at: ZoneAt) -> Option<f64> {
         let Cohesion { range, .. } = self.cohesion;
         let c = at.edge;
@@ -213,7 +215,7 @@ impl Zone {
         let mut candidates: Vec<f64> =
             ground.samples().into_iter().chain(ground.breaks.iter().copied()).collect();
         if c <= 0.0 {
-            // Of bodies apart the lowest place comes within range.
+            // For bodies apart, the lowest place comes within range.
             let lowest = candidates
                 .into_iter()
                 .filter(|r| *r < end)
@@ -224,7 +226,7 @@ impl Zone {
         candidates.into_iter().find(|r| self.gap_at(at, *r) < range * (1.0 - ROUNDING))
     }
 
-    /// How far the gap must be known for a state: beyond it nothing can come within range.
+    /// How far out the gap must be known for a state: nothing further out can come within range.
     pub fn sees(&self, ground: &Ground, at: ZoneAt) -> f64 {
         let low = at.approach
             + self.cohesion.range

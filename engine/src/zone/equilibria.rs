@@ -1,7 +1,7 @@
-//! The equilibria of one disc in one zone over all outer edges, in panels, grown outward when asked.
+//! The equilibria of one disc in one zone over all outer edges, in panels that are grown outward on demand.
 //!
-//! Borders of panels lie where contact in the zone begins or ends, at the corners of the gap, and where the edge of contact passes one.
-//! Beyond the first touch s grows like √(c − c₀), and the variable of the panels is √(c − c₀).
+//! Panels end where contact in the zone begins or ends, at the corners of the gap, and where the edge of contact passes
+//! a corner. Beyond the first touch s grows like √(c − c₀), and that is the variable of the panels.
 
 use super::around::ZoneAt;
 use super::state::{Zone, ZoneState};
@@ -15,31 +15,32 @@ use crate::problem::Cohesion;
 use crate::progress::Progress;
 use std::sync::Arc;
 
-/// Of series that are read to eleven digits; where δ(c) jumps from one root to another there is no disc in one zone between them.
+/// For series that are read to eleven digits; where δ(c) jumps from one root to another, no state of one disc in one
+/// zone lies between them.
 const FINENESS: Fineness = Fineness { tail: 1e-11, halvings: 13, of_holes: 14, loose: 1e-5 };
 
-/// A panel is at most so many times as far out at its outer end as at its inner.
+/// The largest ratio of a panel's outer end to its inner end.
 const RATIO: f64 = 3.0;
 
-/// The width of a panel before it is halved, as a share of the length in which the gap changes there.
+/// The width of a panel before it is halved, as a share of the length over which the gap changes there.
 const SHARE_OF_LENGTH: f64 = 0.25;
 
-/// How much wider than the last panel one may be before it is halved.
+/// How many times as wide as the last panel a new one may be before it is halved.
 const WIDER: f64 = 2.0;
 
 /// Nodes at which the touch is looked for on a panel.
 const NODES: usize = 32;
 
-/// The share of a radius within which a root is that of a border.
+/// A root within this share of a radius from a border is the root of that border.
 const AT_BORDER: f64 = 1e-9;
 
 /// Halvings of an edge.
 const HALVINGS: usize = 60;
 
-/// Panels at most.
+/// Most panels.
 const MOST: usize = 20_000;
 
-/// How far beyond the zone the table goes at first.
+/// How far beyond the zone the table reaches at first.
 const BEYOND: f64 = 1.3;
 
 /// The equilibria of one gap and tension, as far out as they have been asked for.
@@ -47,18 +48,18 @@ const BEYOND: f64 = 1.3;
 pub struct Equilibria {
     /// The gap with its table.
     pub ground: Ground,
-    /// What is solved.
+    /// The zone problem that is solved.
     pub zone: Zone,
     panels: Vec<Arc<SampledPanel>>,
     touches: Vec<f64>,
-    /// The panels reach up to here, a length.
+    /// The panels reach out to here, a length.
     at: f64,
-    /// Where the contact that there is began.
+    /// Where the present contact began.
     base: Option<f64>,
 }
 
 impl Equilibria {
-    /// None yet.
+    /// No equilibria yet.
     ///
     /// # Errors
     /// [`TableError`].
@@ -85,7 +86,7 @@ impl Equilibria {
         &self.touches
     }
 
-    /// How far out they have been looked for, a length.
+    /// How far out equilibria have been looked for, a length.
     #[must_use]
     pub fn reach(&self) -> f64 {
         self.at
@@ -102,7 +103,8 @@ impl Equilibria {
         0.995 * self.ground.table.end()
     }
 
-    /// Makes the table of the gap reach as far as `radius`, or to where the gap ends; whether it reaches further than before.
+    /// Extends the table of the gap to `radius`, or to where the gap ends; returns whether it reaches further than
+    /// before.
     ///
     /// # Errors
     /// [`TableError`].
@@ -117,7 +119,7 @@ impl Equilibria {
         Ok(true)
     }
 
-    /// Adds panels until `enough` says of the last state that it lies far enough out, or the gap ends.
+    /// Adds panels until `enough` accepts the last state as far enough out, or the gap ends.
     ///
     /// # Errors
     /// [`TableError`].
@@ -135,7 +137,7 @@ impl Equilibria {
         Ok(())
     }
 
-    /// Where the first panel ends: some way inside the first touch.
+    /// Where the first panel ends: well inside the first touch.
     fn first(&self) -> f64 {
         /// The share of the first touch.
         const SHARE: f64 = 0.25;
@@ -154,7 +156,7 @@ impl Equilibria {
     fn next(&mut self, progress: &dyn Progress) -> Result<(), TableError> {
         let lo = self.at;
         let mut hi = if lo > 0.0 {
-            // About as wide as was fine enough before.
+            // About as wide as the last panel that was fine enough.
             let widest = SHARE_OF_LENGTH * self.ground.length_at(lo);
             let last = self.panels.last().map_or(widest, |panel| panel.width());
             (RATIO * lo).min(lo + widest.min(WIDER * last))
@@ -234,7 +236,7 @@ impl Equilibria {
     }
 }
 
-/// The states at edges, up to the first that is none.
+/// The states at edges, up to the first edge without a state.
 fn samples(zone: &Zone, edges: &[f64], progress: &dyn Progress) -> Vec<SampledState> {
     let mut near = None;
     let mut found = Vec::with_capacity(edges.len());
@@ -253,7 +255,7 @@ impl From<ZoneState> for ZoneAt {
     }
 }
 
-/// About how far a zone with contact of the radius `s` reaches, for R = 1: where a path begins to look.
+/// Roughly how far a zone with contact of radius `s` reaches, for R = 1: where a path starts to look.
 #[must_use]
 pub fn about(cohesion: Cohesion, s: f64) -> f64 {
     let wide = (2.0 * cohesion.range).sqrt().min(cbrt(cohesion.work()) + cohesion.range / cohesion.strength);

@@ -10,17 +10,18 @@
 //! no contact (ψ = π/2), where h(c) + 2σ₀c(1 − 2/π) ≤ h_c:      δ = h(c) − 4σ₀c/π − h_c,      P = −πσ₀c²
 //! ```
 //!
-//! The unknown is z = sin²ψ = 1 − (s/c)² where the zone is thin and 1 − z where little of it is in contact, so that both keep their
-//! digits; D is nearly a line in either. It grows with z while the gap opens just outside s,
+//! The unknown is z = sin²ψ = 1 − (s/c)² where the zone is thin, and 1 − z where little of it is in contact, so that
+//! both keep their digits; D is almost linear in either. D grows with z as long as the gap opens just outside s,
 //!
 //! ```text
 //! ω'(s) = g'(s) + 2σ₀s/√(c² − s²) > 0
 //! ```
 //!
-//! and turns where it does not, which needs a falling g. Then several s may hold one zone. **Only that with the largest δ can be a state**:
-//! the displacement of each is a subsolution of the contact problem of its zone, for where the bodies are apart nothing presses and
-//! where they touch it may pull more than σ₀. So the gap of the true contact, a disc or not, is nowhere smaller at that δ, and the zone
-//! is in equilibrium at no smaller δ and P than any of them.
+//! and turns where the gap does not, which requires a falling g. Then one zone may have several s. **Only the s with
+//! the largest δ can be a state**: the displacement of each is a subsolution of the contact problem of its zone,
+//! because nothing presses where the bodies are apart, and where they touch the tension may exceed σ₀. So at that δ the
+//! gap of the true contact, a disc or not, is nowhere smaller, and the zone is in equilibrium at no smaller δ and P
+//! than any of them.
 //!
 //! D. Maugis, J. Colloid Interface Sci. 150, 243 (1992), doi:10.1016/0021-9797(92)90285-T, for a sphere.
 
@@ -34,35 +35,36 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 use wide::f64x4;
 
-/// Newton's steps, each kept in its bracket.
+/// Most steps of Newton's method, each kept in its bracket.
 const STEPS: usize = 80;
 
-/// Shares up to this are those that are looked for.
+/// The share solved for, z or 1 − z, is the one that is at most this.
 const HALF: f64 = 0.5;
 
-/// What is left of a share where Newton's method goes below nothing.
+/// The fraction of a share at which to go on where Newton's method would go below zero.
 const TOWARDS_NOTHING: f64 = 0.1;
 
-/// Below this angle ψ − sin ψ cos ψ is a series.
+/// Below this angle ψ − sin ψ cos ψ is computed by a series.
 const SMALL_ANGLE: f64 = 0.2;
 
-/// Places on a panel of the table at which it is looked whether g falls.
+/// Places on a panel of the table at which g is checked for falling.
 const ON_PANEL: u32 = 16;
 
-/// A share of a panel, or of a stretch, that is beside its end.
+/// This share of a panel, or of a stretch, from its end is still beside the end.
 const BESIDE: f64 = 1e-6;
 
 /// Places on a falling stretch of g at which the gap may close outside s.
 const ON_FALL: u32 = 8;
 
-/// A share of the slope of g below which an opening may close beside, and the shortest way there as a share of that between places.
+/// If the least opening is below this share of the slope of g, the gap may close nearby; the shortest step of the
+/// search for that, as a share of the step between places.
 const NEARLY: f64 = 0.3;
 const SHORTEST: f64 = 1e-4;
 
-/// A turn of D is found to this share of c.
+/// A turn of D is located to this share of c.
 const TURN: f64 = 1e-14;
 
-/// Inside an s with a gap at c of so many ranges there is no other.
+/// Further in than an s whose gap at c is this many ranges there is no other s.
 const FAR: f64 = 2.0;
 
 /// Radii between which g falls, and its least slope there.
@@ -104,7 +106,8 @@ pub struct ZoneState {
     pub slopes: [f64; 2],
 }
 
-/// How much of a zone is free, z, and in contact, 1 − z. The smaller of the two is known to all of its digits.
+/// The share of a zone that is free, z, and the share in contact, 1 − z. The smaller of the two is known to all its
+/// digits.
 #[derive(Debug, Clone, Copy)]
 struct Shares {
     free: f64,
@@ -150,7 +153,7 @@ fn falls(panels: &Panels) -> Vec<Fall> {
     let mut before = 0.0;
     let mut falling = false;
     for (panel, of) in panels.list().iter().enumerate() {
-        // Right of a corner at which h' falls g falls as a root.
+        // Just outside a corner at which h' falls, g falls like a square root.
         let corner = matches!(of.span.variable, Variable::Root { base } if base > 0.0 && base >= of.span.lo);
         if corner && panels.values(Place { panel, x: BESIDE - 1.0 }).slope < 0.0 {
             found.push(Fall { lo: of.span.lo, hi: of.span.lo, slope: f64::NEG_INFINITY });
@@ -172,7 +175,7 @@ fn falls(panels: &Panels) -> Vec<Fall> {
 }
 
 impl Zone {
-    /// That of a gap with its table.
+    /// The zone of a gap with its table.
     #[must_use]
     pub fn new(gap: Arc<dyn Gap>, panels: Arc<Panels>, cohesion: Cohesion) -> Self {
         let falls = falls(&panels).into();
@@ -186,14 +189,15 @@ impl Zone {
             .chain(self.falls.iter().filter(|fall| fall.slope == f64::NEG_INFINITY).map(|fall| fall.lo))
     }
 
-    /// How much the gap at the edge c of a zone that only just touches is wider than `h_c`: there is contact where it is positive.
+    /// How much wider than `h_c` the gap is at the edge c of a zone that only just touches: where this is positive
+    /// there is contact.
     pub fn excess(&self, c: f64) -> f64 {
         let Cohesion { strength, range } = self.cohesion;
         self.gap.jet(c).value + 2.0 * strength * c * (1.0 - 2.0 / PI) - range
     }
 
-    /// The equilibrium of the zone with the outer edge `c`, a positive length; (s/c)² is looked for from `near` on. `None` where there is
-    /// none of one disc.
+    /// The equilibrium of the zone with the outer edge `c`, a positive length; the search for (s/c)² begins at `near`.
+    /// `None` if there is no equilibrium of one disc.
     pub fn state(&self, c: f64, near: Option<f64>) -> Option<ZoneState> {
         if self.excess(c) <= 0.0 { self.without_contact(c) } else { self.in_contact(c, near) }
     }
@@ -214,7 +218,7 @@ impl Zone {
         })
     }
 
-    /// U, where s > 0 with what is stored in the disc.
+    /// U; for s > 0 with the energy stored in the disc.
     fn energy(&self, c: f64, s: f64, approach: f64) -> f64 {
         let Cohesion { strength, .. } = self.cohesion;
         let panels = &*self.panels;
@@ -240,13 +244,14 @@ impl Zone {
         self.panels.values(self.panels.place(s)).slope + pull
     }
 
-    /// Where between two radii the gap closes outside a contact, by most to some digits; `unit` is the size of g'.
+    /// The radius between two at which the gap closes fastest outside a contact, to some digits; `unit` is the size of
+    /// g'.
     fn closing(&self, c: f64, [lo, hi]: [f64; 2], unit: f64) -> Option<f64> {
         let step = (hi - lo) / f64::from(ON_FALL);
         let even = (0..ON_FALL).map(|k| lo + step * (f64::from(k) + 0.5));
         let openings = even.chain([lo + BESIDE * step]).map(|s| (s, self.opening(c, s)));
         let (mut at, mut least) = openings.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        // Where D has just begun to turn it does so on a short way, beside the least of these.
+        // Where D has only just begun to turn, it does so over a short distance, beside the least of these.
         let mut by = 0.5 * step;
         while least >= 0.0 && least < NEARLY * unit && by > SHORTEST * step {
             let around = [at - by, at + by].map(|s| (s, self.opening(c, s.clamp(lo, hi))));
@@ -260,8 +265,8 @@ impl Zone {
         (least < 0.0).then_some(at)
     }
 
-    /// z of the largest D and of the smallest further in, for each stretch on which D falls with z, from the edge inward, as far in as
-    /// there may be a state.
+    /// z at the largest D and at the smallest D further in, for each stretch on which D falls with z. The stretches
+    /// come from the edge inward, as far in as there may be a state.
     fn turns(&self, c: f64) -> Vec<[f64; 2]> {
         let mut turns = Vec::new();
         let inner = self.falls.partition_point(|fall| fall.lo < c);
@@ -272,7 +277,7 @@ impl Zone {
             }
             let hi = fall.hi.min(c);
             let free = (c - hi) * (c + hi) / (c * c);
-            // By no more than this D falls on the way in.
+            // D falls by no more than this on the way in.
             let drop = -fall.slope * (hi - fall.lo);
             if free > 0.0 && drop.is_finite() && self.is_far(c, free, drop) {
                 break;
@@ -294,7 +299,7 @@ impl Zone {
         turns
     }
 
-    /// Whether there is no state with a larger share free than this, where D falls by no more than `drop` on the way in.
+    /// Whether there is no state with a larger free share than this, if D falls by no more than `drop` on the way in.
     fn is_far(&self, c: f64, free: f64, drop: f64) -> bool {
         self.miss(c, Shares::of_free(free)).0 - drop > (FAR - 1.0) * self.cohesion.range
     }
@@ -327,7 +332,7 @@ impl Zone {
             .max_by(|a, b| a.approach.total_cmp(&b.approach))
     }
 
-    /// The state between two z between which D grows from below `h_c` to above it.
+    /// The state between two values of z between which D grows from below `h_c` to above it.
     fn root(&self, c: f64, [lo, hi]: [f64; 2], near: Option<f64>) -> Option<ZoneState> {
         let Cohesion { strength, range } = self.cohesion;
         let half = Shares::of_free(HALF);
@@ -338,7 +343,7 @@ impl Zone {
         let begin = match near {
             Some(share) if is_thin => 1.0 - share,
             Some(share) => share,
-            // Of a thin zone the second term of D is σ₀c z 2/π.
+            // For a thin zone the second term of D is σ₀c z 2/π.
             None if is_thin => (0.5 * PI * range / (strength * c)).max(1e-12),
             None => hi,
         };
@@ -362,7 +367,7 @@ impl Zone {
             } else if lo > 0.0 {
                 0.5 * (lo + hi)
             } else {
-                // Beside a cone D goes as the root of what is in contact: Newton's method comes up from below.
+                // Beside a cone D varies as the root of the share in contact: Newton's method comes up from below.
                 TOWARDS_NOTHING * hi
             };
         }

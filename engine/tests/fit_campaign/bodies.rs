@@ -1,21 +1,21 @@
-//! Closed forms of bodies in contact: what a measured curve is made of.
+//! Closed forms of bodies in contact, from which measured curves are made.
 //!
-//! Nothing of the engine is used. Symbols: s is the contact radius, R the radius of curvature, E the effective modulus, w the work
-//! of adhesion, g(a) = a∫₀^{π/2} h'(a sin t) dt the transform of the gap h. A body that pulls within its contact alone has
-//!
+//! Nothing of the engine is used. Symbols: s is the contact radius, R the radius of curvature, E the effective modulus,
+//! w the work of adhesion, g(a) = a∫₀^{π/2} h'(a sin t) dt the transform of the gap h. For a body whose adhesion acts
+//! only within its contact,
 //! ```text
 //! δ = g(s) − √(2πws/E)        P = 2E (δs − ∫₀^s g)
 //! ```
 //!
-//! K. L. Johnson, K. Kendall and A. D. Roberts, Proc. R. Soc. A 324, 301 (1971); P. R. Guduru, J. Mech. Phys. Solids 55, 445 (2007)
-//! for the wavy sphere; D. Maugis, J. Colloid Interface Sci. 150, 243 (1992) for an adhesion that has a range.
+//! K. L. Johnson, K. Kendall and A. D. Roberts, Proc. R. Soc. A 324, 301 (1971); P. R. Guduru, J. Mech. Phys. Solids
+//! 55, 445 (2007) for the wavy sphere; D. Maugis, J. Colloid Interface Sci. 150, 243 (1992) for adhesion with a range.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// One equilibrium, in SI.
 #[derive(Debug, Clone, Copy)]
 pub struct State {
-    /// δ, grows as the bodies are pressed together.
+    /// δ, which grows as the bodies are pressed together.
     pub approach: f64,
     /// P, positive in compression.
     pub force: f64,
@@ -46,9 +46,9 @@ fn quarter(of: impl Fn(f64) -> f64, intervals: usize) -> f64 {
     (of(0.0) + of(FRAC_PI_2) + (1..intervals).map(inside).sum::<f64>()) * h / 3.0
 }
 
-/// H₀ and H₁, Struve's functions, by their integrals (NIST Handbook of Mathematical Functions, 11.5.1).
+/// H₀ and H₁, the Struve functions, by their integrals (NIST Handbook of Mathematical Functions, 11.5.1).
 fn struve(z: f64) -> [f64; 2] {
-    // Even, and fine enough for the waves of the integrand.
+    // An even number, and fine enough for the waves of the integrand.
     let intervals = 40 + 4 * (z.abs().ceil().min(1e6) as usize);
     let zeroth = quarter(|t| (z * t.cos()).sin(), intervals) * 2.0 / PI;
     let first = quarter(|t| (z * t.cos()).sin() * t.sin().powi(2), intervals) * 2.0 * z / PI;
@@ -68,7 +68,7 @@ impl Gap {
                 let over_q = if q > 0.0 { first / q } else { 0.0 };
                 let wave = PI * PI * a * s / wavelength;
                 let g = s * s / radius + wave * zeroth;
-                // g s − ∫g is half of Guduru's force without adhesion, over E.
+                // g s − ∫g is half of Guduru's force without adhesion, divided by E.
                 let pressed = 2.0 * s.powi(3) / (3.0 * radius) + wave * s * (zeroth - over_q);
                 [g, g * s - pressed]
             }
@@ -77,12 +77,13 @@ impl Gap {
 }
 
 impl Body {
-    /// The equilibrium at the share `at` of the way outward.
+    /// The equilibrium at the share `at` of the way from the first touch outward.
     pub fn at(&self, at: f64) -> State {
         (self.0)(at)
     }
 
-    /// Adhesion without a range, of the work `w`, up to the contact radius `most`; none where `w` is 0.
+    /// Adhesion without a range, with the work of adhesion `w`, up to the contact radius `most`; no adhesion if `w` is
+    /// 0.
     pub fn adhesive(gap: Gap, e: f64, w: f64, most: f64) -> Self {
         Self(Box::new(move |at| {
             let radius = at * most;
@@ -92,7 +93,8 @@ impl Body {
         }))
     }
 
-    /// A flat punch of the radius `radius` that lets go where its edge has the energy `w`, pressed to the approach `most`.
+    /// A flat punch of the radius `radius` whose edge lets go when it offers the energy `w`, pressed to the approach
+    /// `most`.
     pub fn punch(radius: f64, e: f64, w: f64, most: f64) -> Self {
         let least = -(TAU * w * radius / e).sqrt();
         Self(Box::new(move |at| {
@@ -101,8 +103,8 @@ impl Body {
         }))
     }
 
-    /// A sphere without adhesion on a layer of the thickness `thickness` that is bonded to a rigid base and does not change its
-    /// volume: E. K. Dimitriadis et al., Biophys. J. 82, 2798 (2002), equation 12.
+    /// A sphere without adhesion on an incompressible layer of the thickness `thickness` that is bonded to a rigid
+    /// base: E. K. Dimitriadis et al., Biophys. J. 82, 2798 (2002), equation 12.
     pub fn layer(radius: f64, e: f64, thickness: f64, most: f64) -> Self {
         Self(Box::new(move |at| {
             let s = at * most;
@@ -113,10 +115,11 @@ impl Body {
         }))
     }
 
-    /// A sphere whose adhesion is a tension `w/h_c` up to the separation `h_c`, with Tabor's number `mu` by the usual match of Maugis'
-    /// λ = 1.157 μ. The zone of the tension ends at c = s / cos ψ; it alone is left once s is 0.
+    /// A sphere whose adhesion is a tension `w/h_c` up to the separation `h_c`, with Tabor's number `mu` by the usual
+    /// match with Maugis' λ = 1.157 μ. The zone of the tension ends at c = s / cos ψ; once s is 0, only the zone is
+    /// left.
     pub fn of_range(radius: f64, e: f64, w: f64, mu: f64, most: f64) -> Self {
-        /// The share of the way that is apart.
+        /// The share of the way on which the bodies are apart.
         const APART: f64 = 0.1;
         let tension = 1.157 * mu * (TAU * w * e * e / (9.0 * radius)).cbrt();
         let range = w / tension;
@@ -135,7 +138,7 @@ impl Body {
             let pressed = 2.0 * e * (approach * s - s.powi(3) / (3.0 * radius));
             State { approach, force: pressed - 2.0 * tension * c * c * (psi - sin * cos), radius: s }
         };
-        // The angle at which s is `most`.
+        // Finds the angle at which s is `most`.
         let (mut lo, mut hi) = (1e-6, FRAC_PI_2);
         for _ in 0..100 {
             let middle = 0.5 * (lo + hi);
@@ -148,7 +151,7 @@ impl Body {
                 let approach = c * c / (2.0 * radius) - 4.0 * tension * c / (PI * e) - range;
                 return State { approach, force: -PI * tension * c * c, radius: 0.0 };
             }
-            // Angles by their logarithm: they fall by decades as the contact grows.
+            // The angles run over their logarithm, because they fall by decades as the contact grows.
             let share = (at - APART) / (1.0 - APART);
             touched(FRAC_PI_2 * (last / FRAC_PI_2).powf(share))
         }))
@@ -167,10 +170,10 @@ mod tests {
         };
         let sphere = Body::adhesive(Gap::Sphere { radius: r }, e, w, 2e-4);
         assert!((least(&sphere) / (-1.5 * PI * w * r) - 1.0).abs() < 1e-6);
-        // Waves of no height are a sphere.
+        // Waves of zero amplitude make a sphere.
         let flat = Gap::Wavy { radius: r, amplitude: 0.0, wavelength: 1e-5 };
         assert!((least(&Body::adhesive(flat, e, w, 2e-4)) / least(&sphere) - 1.0).abs() < 1e-9);
-        // Maugis' pull-off under force at λ = 1, over πwR.
+        // Maugis' pull-off under force at λ = 1, divided by πwR.
         let ranged = Body::of_range(r, e, w, 1.0 / 1.157, 2e-4);
         assert!((least(&ranged) / (PI * w * r) + 1.60073).abs() < 1e-4, "{}", least(&ranged) / (PI * w * r));
         // The derivative of the energy: dP/ds = 2Es dδ/ds − √(8πwEs) … of the transform's integral.

@@ -6,16 +6,18 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// A trusted value may be off by so many of its errors, and one that is right is off by at most so many.
+/// A trusted value may be off by at most this many of its errors, and a value that is right by at most the second
+/// number.
 const WRONG: f64 = 5.0;
 const RIGHT: f64 = 2.0;
-/// The share of 95 % intervals that must hold the truth, and by how many of its own deviations it may be off where there are few seeds.
+/// The share of 95 % intervals that must hold the truth, and by how many of its own deviations it may be off with few
+/// seeds.
 const HELD: [f64; 2] = [0.93, 0.97];
 const DEVIATIONS: f64 = 3.0;
-/// The share of right sets of the model that may be doubted.
+/// The share of sets of the model that may be doubted although they are right.
 const DOUBTED: f64 = 0.02;
 
-/// The numbers asked for, `usual` where nobody does.
+/// The range of seeds asked for; `usual` if none is.
 pub fn asked(usual: Range<u64>) -> Range<u64> {
     let Ok(asked) = std::env::var("PULLOFF_CAMPAIGN") else { return usual };
     let (from, to) = asked.split_once("..").unwrap();
@@ -26,23 +28,23 @@ pub fn wanted(kind: &Kind) -> bool {
     std::env::var("PULLOFF_KIND").map_or(true, |name| name == kind.name)
 }
 
-/// What was counted of one kind.
+/// The counts for one kind.
 #[derive(Debug, Default)]
 struct Counted {
     sets: usize,
     trusted: usize,
-    /// Trusted, and far off.
+    /// Trusted, but far off.
     wrong: usize,
-    /// Right, and doubted.
+    /// Right, but doubted.
     doubted: usize,
-    /// Trusted intervals, and those that hold the truth.
+    /// The number of trusted intervals, and of those that hold the truth.
     intervals: [usize; 2],
-    /// The same of each key.
+    /// The same for each key.
     by_key: BTreeMap<&'static str, [usize; 2]>,
     failures: Vec<String>,
 }
 
-/// Tries these numbers of a kind, and prints what became of them.
+/// Tries these seeds of a kind, and prints what became of them.
 fn count(kind: &Kind, numbers: Range<u64>) -> Counted {
     let outcomes: Vec<Outcome> = numbers.into_par_iter().map(|number| tried(kind, number)).collect();
     let mut counted = Counted { sets: outcomes.len(), ..Counted::default() };
@@ -121,7 +123,7 @@ fn campaign(kinds: &[&Kind], numbers: &Range<u64>, has_coverage: bool) -> Vec<St
         }
         let [all, inside] = counted.intervals.map(|count| count as f64);
         let spread = DEVIATIONS * (0.95 * 0.05 / all.max(1.0)).sqrt();
-        // The two values of one curve hang together: they count as one and a half.
+        // The two values of one curve are correlated: they count as one and a half.
         let spread = 1.2 * spread;
         let held = inside / all.max(1.0);
         let beyond = f64::max(HELD[0] - held, held - HELD[1]);
@@ -134,7 +136,7 @@ fn campaign(kinds: &[&Kind], numbers: &Range<u64>, has_coverage: bool) -> Vec<St
         failures.extend(counted.failures);
     }
     println!("{doubted} of {of_model} sets of the model are right and doubted");
-    // A chance of some more where there are few.
+    // With few sets, chance may add some more.
     let most = DOUBTED * f64::from(of_model as u32);
     if f64::from(doubted as u32) > most + if of_model < 2000 { DEVIATIONS * most.sqrt() } else { 0.0 } {
         failures.push(format!("{doubted} of {of_model} sets of the model are right and doubted"));

@@ -1,42 +1,43 @@
-//! What a device sees of a body: approach and retraction at an even speed, quasi-static or with an edge that has a speed.
+//! What a device sees of a body: approach and retraction at constant speed, quasi-static or with an edge that has a
+//! speed.
 
 use super::bodies::{Body, State};
 use std::f64::consts::TAU;
 
-/// Which way the device goes.
+/// The direction in which the device moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Way {
     /// The bodies come together.
     In,
-    /// They go apart.
+    /// The bodies move apart.
     Out,
 }
 
 /// One sample.
 #[derive(Debug, Clone, Copy)]
 pub struct Sample {
-    /// Which way the device goes.
+    /// The direction in which the device moves.
     pub way: Way,
-    /// When it is taken, in seconds; of a quasi-static device in steps.
+    /// When it is taken: in seconds, or in steps for a quasi-static device.
     pub time: f64,
-    /// The way of its far end, δ + P/k.
+    /// The travel of its far end, δ + P/k.
     pub position: f64,
-    /// What the body does; P and s are 0 where the bodies are apart.
+    /// The state of the body; P and s are 0 where the bodies are apart.
     pub state: State,
 }
 
-/// A load, its rows and its spring.
+/// A spring and its rows of samples.
 #[derive(Debug, Clone, Copy)]
 pub struct Device {
     /// k in N/m; infinite for fixed grips.
     pub stiffness: f64,
-    /// Rows on each way.
+    /// Rows in each direction.
     pub rows: usize,
     /// The share of the rows of the retraction at which the bodies are apart.
     pub apart: f64,
 }
 
-/// Cells in which the state of a position is looked for.
+/// Cells in which the state for a position is looked for.
 const CELLS: u32 = 4000;
 
 impl Device {
@@ -44,14 +45,14 @@ impl Device {
         state.approach + state.force / self.stiffness
     }
 
-    /// There and back.
+    /// Approach and retraction.
     pub fn cycle(&self, body: &Body) -> Vec<Sample> {
         let at = |cell: u32| f64::from(cell) / f64::from(CELLS);
         let positions: Vec<f64> = (0..=CELLS).map(|cell| self.position(&body.at(at(cell)))).collect();
         let top = positions[positions.len() - 1];
         let off = positions.iter().copied().fold(f64::INFINITY, f64::min);
         let bottom = off - self.apart / (1.0 - self.apart) * (top - off);
-        // The state between two neighbouring cells at which the position is passed.
+        // The state between two neighbouring cells at which the position is reached.
         let between = |inner: usize, position: f64| {
             let (mut lo, mut hi) = (at(u32::try_from(inner).unwrap()), at(u32::try_from(inner + 1).unwrap()));
             let rises = positions[inner + 1] > positions[inner];
@@ -63,7 +64,7 @@ impl Device {
         };
         let apart = |position: f64| State { approach: position, force: 0.0, radius: 0.0 };
         let mut samples = Vec::new();
-        // Outward: the first state that reaches as far as the device does.
+        // Outward: the first state that reaches as far as the device.
         let mut cell = 0;
         for i in 0..self.rows {
             let position = bottom + (i as f64 + 0.5) / self.rows as f64 * (top - bottom);
@@ -77,7 +78,7 @@ impl Device {
             };
             samples.push(Sample { way: Way::In, time: samples.len() as f64, position, state });
         }
-        // Inward: the first state that is no farther than the device is.
+        // Inward: the first state that is no farther than the device.
         let mut cell = positions.len() - 1;
         for i in 0..self.rows {
             let position = top - (i as f64 + 0.5) / self.rows as f64 * (top - bottom);
@@ -102,15 +103,15 @@ pub struct Peel {
     pub exponent: f64,
     /// v₀ in m/s.
     pub reference: f64,
-    /// How fast the device goes, m/s.
+    /// The speed of the device, m/s.
     pub speed: f64,
     /// k in N/m.
     pub stiffness: f64,
-    /// The contact radius at which the retraction begins, at equilibrium.
+    /// The contact radius at which the retraction begins, in equilibrium.
     pub begin: f64,
 }
 
-/// What samples are even by.
+/// The quantity in which samples are evenly spaced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
     Time,
@@ -131,13 +132,14 @@ impl Peel {
 
     /// The speed of the edge.
     fn edge(&self, s: f64, position: f64) -> f64 {
-        // An edge that is pressed does not open.
+        // An edge under pressure does not open.
         let open = (s * s / self.radius - self.approach(s, position)).max(0.0);
         let released = self.modulus * open * open / (TAU * s);
         self.reference * (released / self.adhesion - 1.0).max(0.0).powf(1.0 / self.exponent)
     }
 
-    /// `rows` samples in contact, even by time or by contact radius, down to the share `last` of the first contact radius.
+    /// `rows` samples in contact, evenly spaced in time or in contact radius, down to the share `last` of the first
+    /// contact radius.
     pub fn samples(&self, rows: usize, last: f64, by: By) -> Vec<Sample> {
         let whole = self.whole(last);
         let end = whole.len() - 1;
@@ -160,14 +162,14 @@ impl Peel {
         let approach = s * s / self.radius - (TAU * self.adhesion * s / self.modulus).sqrt();
         let force = 2.0 * self.modulus * (approach * s - s.powi(3) / (3.0 * self.radius));
         let begin = approach + force / self.stiffness;
-        // The way is some approaches long; it ends where the contact does.
+        // The travel is several approaches long; it ends where the contact does.
         let step = 4.0 * (s * s / self.radius) / STEPS as f64;
         let time = step / self.speed;
         let (mut s, mut position) = (s, begin);
         let mut whole = Vec::new();
         for _ in 0..20 * STEPS {
             position -= step;
-            // Backward: the edge has the speed that it has at the end of the step.
+            // Implicit: the edge has the speed that it has at the end of the step.
             let (mut lo, mut hi) = (0.0, s);
             for _ in 0..50 {
                 let middle = 0.5 * (lo + hi);

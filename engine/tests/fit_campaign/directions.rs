@@ -1,4 +1,4 @@
-//! Which way the columns of made curves run: found from their rows, whatever is flipped.
+//! The directions in which the columns of made curves run: found from their rows, whatever is flipped.
 
 use super::campaign::{all, asked, wanted};
 use super::kinds::{Kind, any_retraction};
@@ -11,15 +11,16 @@ use std::ops::Range;
 /// A retraction alone, of any kind.
 static ANY: Kind = Kind { name: "retraction of any kind", is_model: true, make: any_retraction };
 
-/// The kinds whose rows show which way their columns run, and whether x of them is turned.
+/// The kinds whose rows show in which direction their columns run, and whether their x is turned.
 fn directed() -> impl Iterator<Item = (&'static Kind, bool)> {
-    // Contact radii run one way alone.
+    // Contact radii run in one direction only.
     const WITHOUT: [&str; 5] = ["P(s)", "ends at the last contact", "Hertz", "cone", "punch"];
     let has = |kind: &&Kind| wanted(kind) && !WITHOUT.iter().any(|without| kind.name.contains(without));
     all().into_iter().chain([&ANY]).filter(has).map(|kind| (kind, kind.name.starts_with("x turned")))
 }
 
-/// The share of sets, in each of the four directions of both columns, whose direction is found, and whose other is not thought as likely.
+/// The share of sets, with both columns in each of their directions, for which the direction is found and no other is
+/// thought as likely.
 fn directions(numbers: &Range<u64>) -> Vec<String> {
     let mut failures = Vec::new();
     for (kind, is_turned) in directed() {

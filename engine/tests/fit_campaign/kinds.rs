@@ -1,4 +1,4 @@
-//! Kinds of measured curves, each made of a seed: what was measured, what is asked, and what is true.
+//! Kinds of measured curves, each made from a seed: what was measured, what is asked, and what is true.
 
 use super::bodies::{Body, Gap};
 use super::device::{By, Device, Peel, Way};
@@ -13,14 +13,14 @@ pub struct Made {
     pub preset: String,
     /// The free keys.
     pub free: Vec<&'static str>,
-    /// What is true of them.
+    /// Their true values.
     pub truth: Vec<(&'static str, f64)>,
 }
 
 /// A kind of curves.
 pub struct Kind {
     pub name: &'static str,
-    /// Whether the model that is fitted is that of the generator, so that what is right need not be doubted.
+    /// Whether the fitted model is the one that made the curve, so that a right value need not be doubted.
     pub is_model: bool,
     pub make: fn(&mut Random) -> Made,
 }
@@ -29,7 +29,7 @@ pub const MODULUS: &str = "material.effective_modulus";
 pub const ADHESION: &str = "material.work_of_adhesion";
 pub const STIFFNESS: &str = "path.control.stiffness";
 
-/// The kinds of the thousand seeds.
+/// The kinds that are tried with a thousand seeds.
 pub const MEASURED: [Kind; 11] = [
     Kind { name: "white noise", is_model: true, make: white },
     Kind { name: "k free", is_model: true, make: free_spring },
@@ -44,7 +44,8 @@ pub const MEASURED: [Kind; 11] = [
     Kind { name: "12 bit", is_model: true, make: converted },
 ];
 
-/// What no sphere with adhesion at its edge alone is, or no instrument should do: right, or said.
+/// Curves that no sphere with adhesion only at its edge gives, or that no instrument should: values are right, or
+/// doubted.
 pub const DOUBTFUL: [Kind; 38] = [
     Kind {
         name: "Gent-Schultz P(s), 29 rows",
@@ -106,7 +107,7 @@ pub const DOUBTFUL: [Kind; 38] = [
     Kind { name: "two works of adhesion", is_model: false, make: hysteretic },
 ];
 
-/// A soft sphere, and what is known of it before.
+/// A soft sphere, and the guesses for it.
 #[derive(Debug, Clone, Copy)]
 struct Ball {
     radius: f64,
@@ -114,7 +115,7 @@ struct Ball {
     adhesion: f64,
     /// The contact radius at the largest load.
     most: f64,
-    /// The values of the preset, over the true ones.
+    /// The values in the preset, divided by the true ones.
     guess: [f64; 2],
 }
 
@@ -124,7 +125,7 @@ impl Ball {
         let adhesion = random.scale(0.02, 0.2);
         // A multiple of the contact radius without load.
         let most = random.even(1.2, 2.2) * (4.5 * PI * adhesion * radius * radius / modulus).cbrt();
-        // A wider contact is none of a paraboloid, which is said.
+        // A wider contact is not that of a paraboloid, and the fit says so.
         let most = most.min(0.4 * radius);
         let guess = [random.scale(1.0 / 3.0, 3.0), random.scale(1.0 / 3.0, 3.0)];
         Self { radius, modulus, adhesion, most, guess }
@@ -164,14 +165,14 @@ impl Ball {
         vec![(MODULUS, self.modulus), (ADHESION, self.adhesion)]
     }
 
-    /// δ and P, with an offset of x and a baseline.
+    /// δ and P, with an offset of x and a baseline of P.
     fn under_grips(&self, record: &Record, random: &mut Random) -> Made {
         let mut made = self.made(&shifted(record, self, random), "\"displacement\"");
         made.free.push("data.offset");
         made
     }
 
-    /// Behind a spring that is said to have the stiffness `k`.
+    /// Behind a spring whose stiffness is stated as `k`.
     fn behind(&self, k: f64, record: &Record, random: &mut Random) -> Made {
         let mut made = self.made(&shifted(record, self, random), &format!("{{ stiffness = {k:e} }}"));
         made.free.push("data.offset");
@@ -188,7 +189,7 @@ impl Ball {
     }
 }
 
-/// x and P from somewhere else.
+/// The record with x and P shifted to other zeros.
 fn shifted(record: &Record, ball: &Ball, random: &mut Random) -> Record {
     let offset = random.even(-3.0, 3.0) * ball.most * ball.most / ball.radius;
     let baseline = random.even(-1.0, 1.0) * ball.critical();
@@ -224,7 +225,7 @@ fn free_spring(random: &mut Random) -> Made {
     made
 }
 
-/// A spring that is off by as much as is said of it.
+/// A spring whose stiffness is off by as much as its stated uncertainty.
 fn uncertain_spring(random: &mut Random) -> Made {
     let ball = Ball::draw(random);
     let k = random.scale(0.3, 2.0) * ball.contact();
@@ -237,7 +238,7 @@ fn uncertain_spring(random: &mut Random) -> Made {
     made
 }
 
-/// A radius that is off by as much as is said of it.
+/// A radius that is off by as much as its stated uncertainty.
 fn uncertain_radius(random: &mut Random) -> Made {
     let mut ball = Ball::draw(random);
     let sigma = random.scale(0.003, 0.02) * ball.critical();
@@ -313,7 +314,7 @@ fn of_radius(random: &mut Random) -> Made {
     ball.made(&record, "\"displacement\"")
 }
 
-/// Samples at times of their own, more of them where it pleases a person.
+/// Samples at uneven times, denser where an operator likes.
 fn radii_with_times(random: &mut Random) -> Made {
     let ball = Ball::draw(random);
     let share = random.even(0.2, 0.8);
@@ -337,7 +338,7 @@ fn tare(random: &mut Random) -> Made {
     ball.made(&record, "\"displacement\"")
 }
 
-/// Twelve bits over a range that the loop fills to some part.
+/// Twelve bits over a range of which the loop fills some part.
 fn converted(random: &mut Random) -> Made {
     let ball = Ball::draw(random);
     let filled = random.scale(0.1, 0.8);
@@ -356,7 +357,7 @@ fn digitized(ball: &Ball, filled: f64, random: &mut Random) -> Made {
     let [lo, hi] = ends(&record.force);
     let step = (hi - lo) / filled / 4096.0;
     let baseline = random.even(-1.0, 1.0) * ball.critical();
-    // The converter is behind the baseline, not before it.
+    // The converter comes after the baseline, not before it.
     let record = record.changed(|_, x, force| [x, force + baseline]).quantized(step);
     let mut made = ball.made(&record, "\"displacement\"");
     made.free.push("data.offset");
@@ -408,7 +409,7 @@ fn cut_retraction(random: &mut Random) -> Made {
     let samples = grips(150, 0.3).cycle(&ball.body());
     let touches = |i: usize| samples[i].way == Way::Out && samples[i].state.radius > 0.0;
     let record = Record::of(&samples, Seen::Approach).kept(touches).noisy(sigma, random);
-    // The zero of the force is what it is taken for: nothing in the file says it.
+    // The zero of the force is taken as given: nothing in the file shows it.
     let mut made = ball.made(&record, "\"displacement\"");
     made.free.push("data.offset");
     made
@@ -424,7 +425,7 @@ fn clipped(random: &mut Random) -> Made {
 
 fn quartic(random: &mut Random) -> Made {
     let ball = Ball::draw(random);
-    // As high as the sphere at its edge.
+    // As high as the sphere at the edge of contact.
     let gap = Gap::Quartic { coefficient: 0.5 / (ball.radius * ball.most * ball.most) };
     let body = Body::adhesive(gap, ball.modulus, ball.adhesion, ball.most);
     of_body(&ball, &body, random)
@@ -443,7 +444,7 @@ fn ranged(random: &mut Random, mu: f64) -> Made {
     of_body(&ball, &body, random)
 }
 
-/// A retraction alone behind a soft spring.
+/// A retraction alone, behind a soft spring.
 fn soft(random: &mut Random, apart: f64) -> (Ball, f64, Record) {
     let ball = Ball::draw(random);
     let k = random.scale(0.1, 0.4) * ball.contact();
@@ -453,12 +454,12 @@ fn soft(random: &mut Random, apart: f64) -> (Ball, f64, Record) {
     (ball, k, record)
 }
 
-/// A retraction on springs stiff and soft, of few rows and many, with much noise and little, from any load.
+/// A retraction with a stiff or soft spring, few or many rows, much or little noise, from any load.
 pub fn any_retraction(random: &mut Random) -> Made {
     let mut ball = Ball::draw(random);
     ball.most *= random.even(0.7, 1.3);
     let rows = random.scale(30.0, 600.0);
-    // Three rows apart at least: two more are within what is rounded.
+    // At least three rows apart: two of them can be lost to rounding.
     let apart = random.scale(0.02, 0.3).max(5.0 / rows);
     let rows = rows as usize;
     let device = Device { stiffness: random.scale(0.02, 2.0) * ball.contact(), rows, apart };
@@ -519,7 +520,7 @@ fn hertz(random: &mut Random) -> Made {
     let ball = Ball::draw(random);
     let body = Body::adhesive(ball.gap(), ball.modulus, 0.0, ball.most);
     let mut made = of_body(&ball, &body, random);
-    // No work of adhesion is true: what is found must be none of its errors away from nothing, or doubted.
+    // The true work of adhesion is zero: the value found must be within one of its errors of zero, or doubted.
     made.truth[1].1 = 0.0;
     made
 }
@@ -567,7 +568,7 @@ fn dragged(random: &mut Random) -> Made {
 fn wavy(random: &mut Random) -> Made {
     let ball = Ball::draw(random);
     let wavelength = ball.most / random.even(3.0, 8.0);
-    // Crests that are no more than just seen, up to those that touch before the contact comes to them.
+    // From crests that are only just visible up to crests that touch before the contact reaches them.
     let amplitude = random.even(0.2, 1.0) * wavelength * wavelength / (8.5761 * ball.radius);
     let gap = Gap::Wavy { radius: ball.radius, amplitude, wavelength };
     of_body(&ball, &Body::adhesive(gap, ball.modulus, ball.adhesion, ball.most), random)
@@ -581,7 +582,7 @@ fn hysteretic(random: &mut Random) -> Made {
     ball.under_grips(&there.then(&back).noisy(sigma, random), random)
 }
 
-/// White noise of one seed.
+/// White noise from one seed.
 pub fn plain(seed: u64) -> Made {
     white(&mut Random::new(seed))
 }

@@ -1,4 +1,5 @@
-//! Other models than that of adhesion at the edge alone: how their paths move with their values, and which the points tell apart.
+//! Models other than adhesion at the edge alone: how their paths move with their values, and which of them the points
+//! tell apart.
 
 use super::bodies::State;
 use super::device::{By, Peel, Sample};
@@ -16,7 +17,7 @@ use pulloff_engine::problem::Groups;
 use pulloff_engine::progress::Unwatched;
 use std::ops::Range;
 
-/// What a key moves by its logarithm.
+/// What a key moves, through its logarithm.
 const MOVED: [(&str, Mover); 4] = [
     ("material.effective_modulus", Mover::Modulus),
     ("material.work_of_adhesion", Mover::Adhesion),
@@ -54,7 +55,7 @@ fn a_zone_moves_by_closed_forms() {
                     path(&other, abscissa)
                 };
                 let [below, above] = [beside(-STEP), beside(STEP)];
-                // Without contact, just in contact, far in.
+                // Without contact, just in contact, and far in contact.
                 for along in [0.1, 0.17, 0.2, 0.25, 0.39] {
                     let (at, _) = here.at(along).unwrap();
                     let moved = here.moves(*mover, along, at).unwrap();
@@ -91,7 +92,7 @@ fn adhesion_of_a_range_is_found_with_its_model() {
                 pair.sentence, outcome.verdict, outcome.found, fit.direction
             );
             if !outcome.is_trusted() {
-                // Too little is seen of the range, and no other reason there is.
+                // Too little of the range is visible, and there is no other reason.
                 assert_eq!(outcome.verdict, "not-determined", "{outcome:#?} {pair:?}");
                 continue;
             }
@@ -122,7 +123,7 @@ fn a_range_that_the_points_do_not_show_is_not_determined() {
 /// Rows after the last contact.
 const APART: u32 = 40;
 
-/// A pull of a soft ball on glass, and a preset that knows its rate and device, with guesses of the rest.
+/// A pull of a soft ball on glass, and a preset that knows its rate and device, with guesses for the rest.
 struct Pulled {
     peel: Peel,
     text: String,
@@ -134,7 +135,7 @@ impl Pulled {
         let mut random = Random::new(seed);
         let mut samples = peel.samples(rows as usize, 0.1, By::Time);
         let (last, before) = (samples[samples.len() - 1], samples[samples.len() - 2]);
-        // The device goes on, the bodies apart.
+        // The device goes on with the bodies apart.
         samples.extend((1..=APART).map(|i| {
             let further = f64::from(i);
             let [time, position] = [[last.time, before.time], [last.position, before.position]]
@@ -171,7 +172,7 @@ impl Pulled {
         Self { peel, text: record.text(), preset }
     }
 
-    /// What is fitted, `free` with its truths.
+    /// What is fitted: `free`, with the true values.
     fn made(&self, free: &[&'static str]) -> Made {
         let Peel { modulus, adhesion, exponent, reference, .. } = self.peel;
         let all = [
@@ -194,7 +195,7 @@ impl Pulled {
     }
 }
 
-/// The ball of a usual apparatus, pulled at v₀.
+/// A ball in a typical apparatus, pulled at v₀.
 const LENS: Peel = Peel {
     radius: 1e-2,
     modulus: 1.5e6,
@@ -206,7 +207,7 @@ const LENS: Peel = Peel {
     begin: 6e-4,
 };
 
-/// How often γ, v₀ and n of sets lie in their intervals, and the root of the mean square of what n is off.
+/// How many of the sets have γ, v₀ and n in their intervals, and the root mean square error of n.
 fn laws(seen: Seen, numbers: Range<u64>) -> ([usize; 3], f64) {
     let (mut held, mut square) = ([0; 3], 0.0);
     let count = (numbers.end - numbers.start) as f64;
@@ -226,7 +227,8 @@ fn laws(seen: Seen, numbers: Range<u64>) -> ([usize; 3], f64) {
 #[test]
 #[ignore = "minutes without optimization; three of them are below"]
 fn the_laws_of_thirty_pulls_lie_within_their_errors() {
-    // Fewer than 26 of 30 in a 95 % interval are a chance of one in sixty. The force over the approach tells the law better than radii do.
+    // With 30 sets, fewer than 26 in a 95 % interval have a probability of one in sixty. The force over the approach
+    // determines the law better than radii do.
     for (seen, most) in [(Seen::Radius, 0.02), (Seen::Approach, 0.01)] {
         let (held, off) = laws(seen, 0..30);
         println!("{seen:?}: {held:?} of 30, n off by {off}");
@@ -263,13 +265,14 @@ fn the_speed_of_an_edge_is_told_from_adhesion_that_has_none() {
     assert_eq!(fit.verdict, Verdict::Describes, "{:?}", fit.reasons);
     let n = fit.parameters.iter().find(|of| of.key == "edge.exponent").unwrap();
     assert!((n.value - LENS.exponent).abs() < 4.0 * n.standard_error.unwrap(), "{n:?}");
-    // Nothing says at which rate it is pulled.
+    // Nothing states the rate at which it is pulled.
     let found = fit_models(&preset(&plain(3)), &MODELS, &options(&["E*", "gamma"]), &Unwatched).unwrap();
     assert_eq!(found.best, Some(0));
     assert!(found.fits[1].fit.as_ref().is_err_and(|error| error.to_string().contains("path.rate")));
 }
 
-/// Three pulls, two decades apart, fitted together; the last of a body of another work of adhesion, so many times that of the others.
+/// Three pulls, two decades apart, fitted together; in the last the body's work of adhesion is `other` times that of
+/// the others.
 fn three(other: f64, seed: u64) -> Together {
     const FREE: [&str; 3] = ["gamma", "v0", "edge.exponent"];
     let speeds = [1e-7, 1e-6, 1e-5];
@@ -307,7 +310,7 @@ fn three_speeds_have_one_law_better_known_than_that_of_each() {
             assert!(error < 0.6 * least, "{}: {error} {least}", of.key);
         }
     }
-    // Files that are given twice know no more than once.
+    // A file that is given twice contains no more information than once.
     let made = Pulled::new(LENS, Seen::Approach, [300.0, 0.003], 100).made(&["gamma"]);
     let twice = [preset(&made), preset(&made)];
     let error = fit_together(&twice, &options(&made.free), &Unwatched).unwrap_err();

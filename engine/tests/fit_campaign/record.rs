@@ -1,10 +1,10 @@
-//! What an instrument writes of samples, with its faults, and the text of its file.
+//! What an instrument writes from samples, with its faults, and the text of its file.
 
 use super::device::{Sample, Way};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-/// Random numbers of one seed.
+/// Random numbers from one seed.
 pub struct Random(fastrand::Rng);
 
 impl Random {
@@ -16,12 +16,12 @@ impl Random {
         lo + (hi - lo) * self.0.f64()
     }
 
-    /// Even in the logarithm.
+    /// Uniform in the logarithm.
     pub fn scale(&mut self, lo: f64, hi: f64) -> f64 {
         self.even(lo.ln(), hi.ln()).exp()
     }
 
-    /// Normal, of the standard deviation 1.
+    /// Normal, with standard deviation 1.
     pub fn normal(&mut self) -> f64 {
         let (u, v) = (1.0 - self.0.f64(), self.0.f64());
         (-2.0 * u.ln()).sqrt() * (TAU * v).cos()
@@ -45,9 +45,9 @@ pub struct Record {
     pub ways: Vec<Way>,
     /// When each row was taken.
     times: Vec<f64>,
-    /// Whether a column says it.
+    /// Whether a column holds the times.
     pub has_times: bool,
-    /// Whether a column says which way the device goes.
+    /// Whether a column names the direction of the device.
     pub names_ways: bool,
 }
 
@@ -69,12 +69,12 @@ impl Record {
         }
     }
 
-    /// The rows `keep` says, by their numbers.
+    /// The rows that `keep` selects by their numbers.
     pub fn kept(&self, keep: impl Fn(usize) -> bool) -> Self {
         self.ordered(&(0..self.x.len()).filter(|i| keep(*i)).collect::<Vec<_>>())
     }
 
-    /// The rows of these numbers, in their order.
+    /// The rows with these numbers, in their order.
     pub fn ordered(&self, rows: &[usize]) -> Self {
         Self {
             x: rows.iter().map(|i| self.x[*i]).collect(),
@@ -91,12 +91,12 @@ impl Record {
         self.ordered(&of(Way::Out).chain(of(Way::In)).collect::<Vec<_>>())
     }
 
-    /// Every row twice, one below the other.
+    /// Every row twice in succession.
     pub fn doubled(&self) -> Self {
         self.ordered(&(0..2 * self.x.len()).map(|i| i / 2).collect::<Vec<_>>())
     }
 
-    /// Another record behind this one.
+    /// This record followed by another one.
     pub fn then(mut self, other: &Self) -> Self {
         self.x.extend(&other.x);
         self.force.extend(&other.force);
@@ -105,12 +105,12 @@ impl Record {
         self
     }
 
-    /// Only one way.
+    /// Only one direction.
     pub fn only(&self, way: Way) -> Self {
         self.kept(|i| self.ways[i] == way)
     }
 
-    /// x and P by what they are and the number of their row.
+    /// x and P replaced by `change`, which gets the number of the row and both values.
     pub fn changed(mut self, mut change: impl FnMut(usize, f64, f64) -> [f64; 2]) -> Self {
         for i in 0..self.x.len() {
             [self.x[i], self.force[i]] = change(i, self.x[i], self.force[i]);
@@ -122,7 +122,7 @@ impl Record {
         self.changed(|_, x, force| [x, force + sigma * random.normal()])
     }
 
-    /// Noise that remembers the share `memory` of itself from row to row.
+    /// Noise of which the share `memory` carries over from row to row.
     pub fn correlated(self, sigma: f64, memory: f64, random: &mut Random) -> Self {
         let mut noise = random.normal();
         self.changed(|_, x, force| {
@@ -131,7 +131,7 @@ impl Record {
         })
     }
 
-    /// The share `share` of the rows is off by `by`, either way.
+    /// The share `share` of the rows is off by `by`, in either direction.
     pub fn with_outliers(self, share: f64, by: f64, random: &mut Random) -> Self {
         self.changed(|_, x, force| {
             let off = if random.even(0.0, 1.0) < share { by * random.normal().signum() } else { 0.0 };
@@ -139,7 +139,7 @@ impl Record {
         })
     }
 
-    /// The nearest of the steps of a converter.
+    /// Rounded to the nearest step of a converter.
     pub fn quantized(self, step: f64) -> Self {
         self.changed(|_, x, force| [x, (force / step).round() * step])
     }

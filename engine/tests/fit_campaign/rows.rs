@@ -1,4 +1,4 @@
-//! What fits once told wrong with a small error: each is right now, or said not to be.
+//! Curves for which fits once gave wrong values with small errors: now each value is right, or is said not to be.
 
 use super::kinds::{ADHESION, DOUBTFUL, Kind, MEASURED, plain};
 use super::trial::{Outcome, fitted, made, options, outcome, tried};
@@ -8,9 +8,9 @@ use pulloff_engine::preset::{Value, data, read, write};
 use pulloff_engine::progress::Unwatched;
 use std::sync::Arc;
 
-/// Seeds of each.
+/// Seeds for each kind.
 const SEEDS: u64 = 6;
-/// A trusted value is off by no more than so many of its errors.
+/// A trusted value is off by no more than this many of its errors.
 const MOST: f64 = 4.0;
 
 fn kind(name: &str) -> &'static Kind {
@@ -21,7 +21,7 @@ fn outcomes(name: &str) -> Vec<Outcome> {
     (0..SEEDS).map(|number| tried(kind(name), number)).collect()
 }
 
-/// No value that is off is trusted; how many are trusted.
+/// Checks that no value that is off is trusted; returns how many are trusted.
 fn right_or_said(name: &str) -> usize {
     let outcomes = outcomes(name);
     for outcome in &outcomes {
@@ -30,7 +30,7 @@ fn right_or_said(name: &str) -> usize {
     outcomes.iter().filter(|outcome| outcome.is_trusted()).count()
 }
 
-/// So is it, and no more than one of the six is doubted.
+/// The same, and no more than one of the six is doubted.
 fn right(name: &str) {
     let trusted = right_or_said(name);
     assert!(
@@ -40,7 +40,7 @@ fn right(name: &str) {
     );
 }
 
-/// None is trusted.
+/// Checks that none is trusted.
 fn said(name: &str) {
     for outcome in outcomes(name) {
         assert!(!outcome.is_trusted(), "{name} {}: {outcome:#?}", outcome.number);
@@ -139,7 +139,7 @@ fn a_written_preset_is_fitted_with_a_baseline_that_is_free_again_or_said() {
     let made = plain(3);
     let options = options(&made.free);
     let first = fitted(&made, &options).unwrap();
-    // The file comes with a wrong baseline of a former fit.
+    // The file comes with a wrong baseline from an earlier fit.
     for off in [0.0, 0.3] {
         let mut again = first.preset.clone();
         let was = again.get(data::BASELINE);
@@ -147,7 +147,7 @@ fn a_written_preset_is_fitted_with_a_baseline_that_is_free_again_or_said() {
             let range = made.truth.iter().find(|(key, _)| *key == ADHESION).unwrap().1 * 1e-2;
             again.set(data::BASELINE, Value::Number(baseline + off * range)).unwrap();
         }
-        // By way of its text, as a person has it.
+        // Through its text, as a user has it.
         let text: String =
             write(&again).lines().filter(|line| !line.starts_with("file = ")).collect::<Vec<_>>().join("\n");
         let mut again = read("again", &text).unwrap();

@@ -1,4 +1,4 @@
-//! One made curve through the engine, as its file, and what is to be thought of the answer.
+//! One made curve through the engine, as its file, and a judgement of the answer.
 
 use super::kinds::{Kind, Made};
 use super::record::Random;
@@ -9,7 +9,7 @@ use pulloff_engine::progress::Unwatched;
 use pulloff_engine::report::fit::FitReport;
 use std::sync::Arc;
 
-/// The value and the error of one key beside its truth.
+/// The value and the error of one key, beside its true value.
 #[derive(Debug, Clone)]
 pub struct Found {
     #[allow(dead_code, reason = "shown where a value is wrong")]
@@ -28,23 +28,24 @@ pub struct Outcome {
     pub number: u64,
     /// `describes` and the like, or `refused`.
     pub verdict: String,
-    /// The kinds of the reasons, or why it was refused.
+    /// The kinds of the reasons, or the cause of the refusal.
     pub reasons: Vec<String>,
-    /// What the fit says of itself: the sentences of the reasons, its notes and the rows in contact and apart.
+    /// What the fit says about itself: the sentences of the reasons, its notes, and the rows in contact and apart.
     #[allow(dead_code, reason = "shown where a value is wrong")]
     pub said: Vec<String>,
-    /// What is to be doubted, whatever the verdict is.
+    /// Doubts, whatever the verdict is.
     pub warnings: Vec<String>,
     pub found: Vec<Found>,
 }
 
 impl Outcome {
-    /// Whether the values are told as those of the body.
+    /// Whether the values are presented as those of the body.
     pub fn is_trusted(&self) -> bool {
         self.verdict == "describes"
     }
 
-    /// How far the worst value is off, in its errors; without an error, by its share of the truth as if the error were a hundredth.
+    /// How far the worst value is off, in its errors; without an error, relative to the truth, as if the error were one
+    /// per cent.
     pub fn off(&self) -> f64 {
         let share = |found: &Found| 100.0 * (found.value - found.truth).abs() / found.truth.abs().max(1e-300);
         self.found.iter().map(|found| found.off.unwrap_or_else(|| share(found))).fold(0.0, f64::max)
@@ -60,7 +61,7 @@ pub fn preset(made: &Made) -> Preset {
 }
 
 pub fn options(free: &[&str]) -> Options {
-    /// The bootstrap of few rows is not judged here: these are its fewest fits.
+    /// The bootstrap with few rows is not judged here: these are the fewest fits it allows.
     const FEWEST: (usize, u64) = (10, 1);
     let free = free.iter().map(|key| (*key).to_owned()).collect();
     Options { free, bootstrap: Some(FEWEST), ..Options::default() }
@@ -71,7 +72,7 @@ pub fn fitted(made: &Made, options: &Options) -> Result<Fit, String> {
     fit_own(&preset(made), options, &Unwatched).map_err(|error| error.to_string())
 }
 
-/// What is to be thought of a fit whose truth is known.
+/// The judgement of a fit whose truth is known.
 pub fn outcome(number: u64, made: &Made, fit: &Result<Fit, String>) -> Outcome {
     let fit = match fit {
         Ok(fit) => fit,

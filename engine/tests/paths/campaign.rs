@@ -1,15 +1,16 @@
-//! Campaigns over paths and reports: a tenth of each in every run of the tests, all of it where ignored tests are asked for.
+//! Campaigns over paths and reports: a tenth of each in every run of the tests, all of it when ignored tests are run.
 //!
-//! **Paths as they were.** `data/frozen.txt` has the events of unloadings and loops of random problems, rounded, so that a change of what
-//! follows them is seen event by event. A line is one path: `u` an unloading from the start of the problem, `c` the loop that turns at its
-//! radius, and the number of the problem. Then each event by the first letter of its kind with the outermost edge before and after, in
-//! 1e-5 of the start radius, the number of events, the sum of the losses and the smallest force in reduced units. A refusal is its
-//! sentence without numbers. `FREEZE=0..100 cargo test -p pulloff-engine --test paths campaign::as_they_were -- --ignored` writes the
-//! lines of these problems anew; that is right only where every difference was looked into.
+//! **Paths as they were.** `data/frozen.txt` has the events of unloadings and loops of random problems, rounded, so
+//! that a change in what follows them shows event by event. A line is one path: `u` for an unloading from the start of
+//! the problem, or `c` for the loop that turns at its radius, followed by the number of the problem. Then comes each
+//! event as the first letter of its kind with the outermost edge before and after, in 1e-5 of the start radius; then
+//! the number of events, the sum of the losses and the smallest force in reduced units. A refusal is its sentence
+//! without numbers. `FREEZE=0..100 cargo test -p pulloff-engine --test paths campaign::as_they_were -- --ignored`
+//! rewrites the lines of these problems; do so only after looking into every difference.
 //!
-//! **Loops with rings.** No event gains energy, and states computed anew are in equilibrium and overlap nowhere.
+//! **Loops with rings.** No event gains energy, and recomputed states are in equilibrium and overlap nowhere.
 //!
-//! **Stops.** A report that is told to stop at its n-th question ends cancelled, whatever n is.
+//! **Stops.** A report that is told to stop at its n-th question ends as cancelled, whatever n is.
 
 #![allow(
     clippy::float_cmp,
@@ -47,24 +48,24 @@ use std::fmt::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The problems below this number are looped as well.
+/// Problems below this number are looped as well.
 const LOOPS: u64 = 300;
 
-/// Of the problems in the file one in so many is looked at in every run of the tests.
+/// One in this many of the problems in the file is checked in every run of the tests.
 const SHARE: u64 = 10;
 
 /// The questions that a loop may ask before it counts as too long.
 const QUESTIONS: u64 = 2_000;
 
-/// Of longer paths the first events and the last stand in the file.
+/// For longer paths only the first and the last events are in the file.
 const FIRST: usize = 6;
 const LAST: usize = 3;
 
-/// What may differ: radii in their last digit, sums as a share of themselves.
+/// Allowed differences: of radii in their last digit, of sums relative to themselves.
 const RADII: i64 = 2;
 const SUMS: f64 = 2e-5;
 
-/// By how much the loss of a jump by area may differ, with a warning.
+/// How much the loss of a jump by area may differ, if there is a warning.
 const AREA: f64 = 1e-2;
 
 fn letter(kind: EventKind) -> char {
@@ -84,7 +85,7 @@ fn letter(kind: EventKind) -> char {
     }
 }
 
-/// A path in a line.
+/// A path as a line.
 fn line(found: Result<Path, CaseError>, unit: f64) -> String {
     let path = match found {
         Ok(path) => path,
@@ -130,7 +131,7 @@ fn a_loop(problem: &Problem) -> String {
     }
 }
 
-/// The lines of the problems of these numbers, under their names.
+/// The lines of the problems with these numbers, by name.
 fn lines(numbers: impl Iterator<Item = u64>) -> BTreeMap<String, String> {
     let numbers: Vec<u64> = numbers.collect();
     let of = |number: &u64| {
@@ -141,11 +142,11 @@ fn lines(numbers: impl Iterator<Item = u64>) -> BTreeMap<String, String> {
         }
         Some(lines)
     };
-    // What takes too long is left out.
+    // Paths that take too long are left out.
     numbers.par_iter().filter_map(of).flatten().filter(|(_, line)| line != "! cancelled").collect()
 }
 
-/// Whether two lines are the same but for rounding.
+/// Whether two lines are the same except for rounding.
 fn same(a: &str, b: &str) -> bool {
     let words = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
     let (a, b) = (words(a), words(b));
@@ -172,13 +173,13 @@ fn file() -> String {
     format!("{}/tests/data/frozen.txt", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The lines of the file under their names.
+/// The lines of the file, by name.
 fn frozen() -> BTreeMap<String, String> {
     let text = std::fs::read_to_string(file()).unwrap_or_default();
     text.lines().filter_map(|line| line.split_once(' ')).map(|(a, b)| (a.to_owned(), b.to_owned())).collect()
 }
 
-/// Compares what the file has of one in `share` problems.
+/// Compares the lines in the file for one in `share` problems.
 fn compare(share: u64) {
     let frozen = frozen();
     let numbers = frozen.keys().filter_map(|name| name.strip_prefix('u')?.parse::<u64>().ok());
@@ -209,7 +210,8 @@ fn all_paths_are_as_they_were() {
     std::fs::write(file(), lines.join("\n") + "\n").unwrap();
 }
 
-/// What is wrong with a random loop: events that gain, areas that differ, states out of equilibrium or that overlap.
+/// What is wrong with a random loop: events that gain energy, areas that differ, states that are out of equilibrium or
+/// overlap.
 fn faults(number: u64) -> Vec<String> {
     let mut random = fastrand::Rng::with_seed(number ^ 0x7269_6E67);
     let (gap, name) = random_gap(&mut random);
@@ -230,7 +232,7 @@ fn faults(number: u64) -> Vec<String> {
             faults.push(format!("{name}: event {} gains {:?}", k + 1, event.dissipated));
         }
     }
-    // An area may differ a little where a narrow ring comes or goes, and says so.
+    // An area may differ slightly where a narrow ring appears or disappears; there is a warning then.
     let told = |warning: &Warning| match warning {
         Warning::Digits { .. } => true,
         Warning::Area { share, .. } => *share < AREA,
@@ -281,20 +283,20 @@ fn three_hundred_loops_with_rings_stand_when_computed_anew() {
     loops_stand(0..300);
 }
 
-/// Stops a computation at some of its questions: the answer is whether it was cancelled.
+/// Stops a computation at some of its questions and checks that it is cancelled; `computed` returns whether it was.
 fn stops(name: &str, times: usize, computed: &dyn Fn(&dyn Progress) -> Result<bool, String>) {
     let ended = |last: u64| {
         let asked = AtomicU64::new(0);
         let stop = || asked.fetch_add(1, Ordering::Relaxed) >= last;
         (computed(&stop), asked.load(Ordering::Relaxed))
     };
-    // Tables are kept: the first run may ask more.
+    // Tables are kept, so the first run may ask more questions.
     for _ in 0..2 {
         assert_eq!(ended(u64::MAX).0, Ok(false), "{name}");
     }
     let (_, questions) = ended(u64::MAX);
     if questions == 0 {
-        // All of it is known by now, as the law of stability is once there is a table.
+        // Everything is already known, as for the law of stability once there is a table.
         assert!(name.starts_with("stability"), "{name}");
         return;
     }
@@ -305,7 +307,7 @@ fn stops(name: &str, times: usize, computed: &dyn Fn(&dyn Progress) -> Result<bo
     }
 }
 
-/// Stops every report of some presets at so many of its questions.
+/// Stops every report of some presets at this many of its questions.
 fn every_report_stops(times: usize) {
     let of_case = |found: Result<(), CaseError>| match found {
         Ok(()) => Ok(false),

@@ -1,4 +1,4 @@
-//! Whole loops against those of another program, and what holds for every loop.
+//! Whole loops against those of another program, and properties that hold for every loop.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 #![allow(
@@ -30,7 +30,7 @@ fn looped(gap: Arc<dyn Gap>, gamma: f64, control: Control, turn: Turn, losses: L
     cycle(&table, gamma, turn, &setting, &Unwatched).unwrap()
 }
 
-/// Holds the events of a loop to a reference, `tolerance` of each range; losses to `losses` of themselves.
+/// Compares the events of a loop with a reference, to `tolerance` of each range; losses relatively, to `losses`.
 fn agrees(found: &Path, reference: &Value, tolerance: f64, losses: f64) {
     let events = reference["events"].as_array().unwrap();
     let name = |kind: EventKind| kind.name().replace("first-touch", "first touch");
@@ -193,7 +193,7 @@ fn without_adhesion_the_loop_is_that_of_the_table() {
     assert_eq!(down, mirrored);
 }
 
-/// What holds for every loop.
+/// Properties that hold for every loop.
 fn check(found: &Path, name: &str, identity: f64) {
     for event in &found.events {
         if let Some(lost) = event.dissipated {
@@ -400,7 +400,7 @@ fn without_adhesion_solving_afresh_finds_the_same() {
     }
 }
 
-/// Contact, pressed everywhere, gaps open everywhere else: without adhesion that is one solution alone.
+/// Contacts pressed everywhere, gaps open everywhere else: without adhesion there is only one such solution.
 fn is_the_one_solution(ground: &Ground, found: &Path, name: &str) {
     let balance = Balance {
         ground,
@@ -446,7 +446,7 @@ fn without_adhesion_corners_are_passed() {
     }
 }
 
-/// Loops of ten measured profiles: waves in rows of λ/20 with noise, the figures printed.
+/// Loops of ten measured profiles: waves in rows of λ/20 with noise; prints the figures.
 #[test]
 #[ignore = "figures, to be read"]
 fn loops_of_measured_profiles() {
@@ -501,8 +501,9 @@ fn a_wave_with_a_corner_is_that_of_another_program() {
     let found = cycle_on(&ground, 1e-4, Turn::Approach(0.03), &setting, &Unwatched).unwrap();
     println!("{:?} {:?}", found.totals, found.warnings);
     assert!(found.totals.balance.unwrap() < 1e-6);
-    // Within r < 0.1 this gap is that of the smooth wave, and so is the second touch; the other program took its least gap from a
-    // series across the corner, and let it touch a little early: its landing there is held at its own control value.
+    // Within r < 0.1 this gap is that of the smooth wave, and so is the second touch. The other program took its
+    // smallest gap from a series across the corner, and let it touch slightly early; its landing there is compared at
+    // its own control value.
     let mut expected = reference("corner-cycle");
     let smooth = reference("fig9-weak");
     let [ours, theirs] = [&found.events[2], &found.events[2]].map(|event| event.before.as_ref().unwrap());
@@ -543,7 +544,7 @@ fn a_wave_with_a_corner_is_that_of_another_program() {
     agrees(&rest, &expected, 1e-8, 1e-8);
 }
 
-/// Waves with one corner or kink, or two far enough apart.
+/// Waves with one corner or kink, or with two that are far enough apart.
 fn broken_loop(number: u64) -> Result<(Path, String), String> {
     let mut random = fastrand::Rng::with_seed(number);
     let between = |random: &mut fastrand::Rng, lo: f64, hi: f64| lo * (hi / lo).powf(random.f64());
@@ -572,7 +573,7 @@ fn broken_loop(number: u64) -> Result<(Path, String), String> {
     Ok((found, name))
 }
 
-/// All close within 1e-6 of their losses, but for some that say so themselves; these are returned.
+/// All loops close within 1e-6 of their losses, except some that say so themselves; these are returned.
 fn broken_loops(numbers: std::ops::Range<u64>) -> Vec<u64> {
     let (mut failures, mut warned) = (Vec::new(), Vec::new());
     for number in numbers {

@@ -1,4 +1,5 @@
-//! Loops whose edges gain less in closing than they cost to open, against closed forms and what holds for every loop.
+//! Loops whose edges gain less on closing than it costs to open them, against closed forms and properties of every
+//! loop.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 #![allow(
@@ -26,8 +27,8 @@ fn looped(gap: &Arc<dyn Gap>, [gamma, closing]: [f64; 2], control: Control, turn
     cycle(&table, gamma, turn, &setting, &Unwatched).unwrap()
 }
 
-/// δ, P and the elastic energy of a sphere of R = 1 at the contact radius s, where its edge offers G (Johnson, Kendall and Roberts
-/// 1971, doi:10.1098/rspa.1971.0141).
+/// δ, P and the elastic energy of a sphere of R = 1 at the contact radius s, where its edge offers G (Johnson, Kendall
+/// and Roberts 1971, doi:10.1098/rspa.1971.0141).
 fn sphere(s: f64, g: f64) -> [f64; 3] {
     let delta = s * s - (TAU * g * s).sqrt();
     [
@@ -73,7 +74,7 @@ fn the_loop_of_a_sphere_is_that_of_its_closed_form() {
     near(depin.contact_radius, turn);
     near(depin.approach, free[0]);
     near(depin.force, free[1]);
-    // The straight line between.
+    // The straight line between the two.
     near((held[1] - free[1]) / (held[0] - free[0]), 2.0 * turn);
     let [in_, off] = [sphere(first, closing)[2], sphere(last, gamma)[2]];
     let lost = [closing * PI * first * first - in_, off - gamma * PI * last * last];
@@ -82,7 +83,7 @@ fn the_loop_of_a_sphere_is_that_of_its_closed_form() {
     let band = path.totals.dead_band.unwrap();
     near(band.area, PI * turn * turn);
     near(band.lost, (gamma - closing) * PI * turn * turn);
-    // What the device does, along the closed form: with the jumps at its ends it does nothing.
+    // The work of the device, from the closed form; in the jumps at its ends the device does no work.
     let pinned = 0.5 * (held[1] + free[1]) * (free[0] - held[0]);
     let up = work(closing, Control::Displacement, [first, turn]);
     let down = pinned + work(gamma, Control::Displacement, [turn, last]);
@@ -113,7 +114,8 @@ fn a_spring_and_a_dead_load_hold_an_edge_as_well() {
     }
 }
 
-/// Whether what a state says of its edges is allowed: those that closed have `γ_a`, those that open γ, those that are held between.
+/// Whether the edges of a state are as they may be: edges that closed have `γ_a`, edges that open γ, and edges that are
+/// held are between.
 fn holds(ground: &Ground, path: &Path, [gamma, closing]: [f64; 2], name: &str) {
     let turn = path.events.iter().find(|event| event.kind == EventKind::Turn);
     let at_turn = turn.map_or(&path.states[0], |turn| turn.before.as_ref().unwrap());

@@ -1,5 +1,5 @@
-//! Loading with rings of contact against ring elements that know nothing of edges: elements of constant pressure are added while
-//! the energy falls. Coarse, and of another method altogether.
+//! Loading with rings of contact against ring elements without a notion of edges: elements of constant pressure are
+//! added as long as the energy falls. A coarse and entirely different method.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 const WAVELENGTH: f64 = 0.05;
 const GAMMA: f64 = 1e-4;
-/// Elements, and how far out they reach.
+/// Number of elements, and how far out they reach.
 const ELEMENTS: usize = 240;
 const REACH: f64 = 0.2;
 /// Values of the approach between two that are compared.
@@ -52,7 +52,7 @@ impl Elements {
         }
     }
 
-    /// Adds elements at this approach while one overlaps or lowers the energy; the force.
+    /// Adds elements at this approach as long as one overlaps or lowers the energy; returns the force.
     fn settle(&mut self, approach: f64) -> f64 {
         let wanted: Vec<f64> =
             self.areas.iter().zip(&self.gaps).map(|(area, gap)| approach * area - gap).collect();
@@ -67,7 +67,7 @@ impl Elements {
             let pressure =
                 solver.solve(&DVector::from_iterator(inside.len(), inside.iter().map(|i| wanted[*i])));
             let response = solver.solve(&between);
-            // To hold an element costs ½ r²/s of elastic energy and gains γ on its area.
+            // Holding an element costs ½ r²/s of elastic energy and gains γ on its area.
             let change = |k: usize| {
                 let i = outside[k];
                 let overlap = wanted[i] - between.column(k).dot(&pressure);
@@ -77,7 +77,7 @@ impl Elements {
                 if overlap > 0.0 {
                     f64::NEG_INFINITY
                 } else if !beside {
-                    // Adhesion has no range: apart from a contact, only what touches begins one.
+                    // Adhesion has no range: away from a contact, only an element that touches begins a new one.
                     f64::INFINITY
                 } else {
                     0.5 * overlap * overlap / stiffness - GAMMA * self.areas[i]
@@ -91,7 +91,7 @@ impl Elements {
         }
     }
 
-    /// The contacts, by their elements.
+    /// The contacts formed by the elements.
     fn contacts(&self) -> Vec<[f64; 2]> {
         let width = REACH / ELEMENTS as f64;
         let mut contacts: Vec<[f64; 2]> = Vec::new();
@@ -116,7 +116,7 @@ fn elements_added_while_the_energy_falls_find_the_same_contacts() {
     let found = cycle_on(&ground, GAMMA, turn, &setting, &pulloff_engine::progress::Unwatched).unwrap();
     let loading = |state: &&PathState| state.direction == Direction::Loading;
     let pieces = found.states.iter().filter(loading).map(|state| state.piece).max().unwrap();
-    // The middle of each stretch of loading: limit points move with the width of an element.
+    // The middle of each stretch of loading, because limit points move with the width of an element.
     let middles: Vec<&PathState> = (0..=pieces)
         .filter_map(|piece| {
             let states: Vec<_> = found.states.iter().filter(loading).filter(|s| s.piece == piece).collect();
@@ -126,7 +126,7 @@ fn elements_added_while_the_energy_falls_find_the_same_contacts() {
                 away(a).total_cmp(&away(b))
             })
         })
-        // Wide enough for elements, and within them.
+        // Wide enough for the elements, and within their reach.
         .filter(|state| (0.2 * REACH..0.9 * REACH).contains(&state.contact_radius))
         .collect();
     assert!(middles.len() >= 4 && middles.iter().any(|state| state.contacts.len() > 1));

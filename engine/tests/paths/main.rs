@@ -1,4 +1,4 @@
-//! Curves, paths, maps and the law of stability, held to tables of another program and to invariants.
+//! Curves, paths, maps and the law of stability, checked against tables of another program and against invariants.
 
 #[path = "../support/mod.rs"]
 mod support;

@@ -1,5 +1,5 @@
-//! Between two neighbouring cells of a map with different numbers of snaps there is always a line: on three maps that once lost
-//! lines and on random ones, by snaps counted without the law.
+//! Between two neighbouring cells of a map with different numbers of snaps there is always a line: on three maps that
+//! once lost lines, and on random ones, with snaps counted without the law.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -12,14 +12,14 @@ use pulloff_engine::stability::{COMPLIANCE, MapAxis};
 use pulloff_engine::{Case, Control, Preset, preset};
 use std::fmt::Write;
 
-/// A line that ends at the border of the map to this, in shares, reaches it.
+/// A line that ends this near to the border of the map, in shares, reaches it.
 const SLACK: f64 = 1e-6;
 
 fn axis(key: &str, range: [f64; 2], logarithmic: bool) -> MapAxis {
     MapAxis::new(key, range, logarithmic, 1.0).unwrap()
 }
 
-/// The snaps of the preset with these values by its own unloading; `None` where it has no path.
+/// The snaps of the preset with these values, by its own unloading; `None` if it has no path.
 fn snaps(preset: &Preset, values: [(&MapAxis, f64); 2]) -> Option<usize> {
     let mut preset = preset.clone();
     let keys = values.iter().filter(|(axis, _)| axis.key != COMPLIANCE);
@@ -39,7 +39,7 @@ fn snaps(preset: &Preset, values: [(&MapAxis, f64); 2]) -> Option<usize> {
     Some(path.events.iter().filter(|event| event.kind == EventKind::Snap).count())
 }
 
-/// Pairs of neighbouring cells with different snaps, and what is wrong with the map.
+/// The number of pairs of neighbouring cells with different snaps, and what is wrong with the map.
 fn judged(preset: &Preset, [x, y]: [MapAxis; 2], cells: [u32; 2]) -> (usize, String) {
     let name = format!("{x} {y}");
     let report = MapReport::compute(preset, x.clone(), &Ordinate::Key(y.clone()), cells, &Unwatched).unwrap();
@@ -131,7 +131,7 @@ fn maps_that_lost_lines_have_them() {
     }
 }
 
-/// Numbers between 0 and 1 that look random.
+/// Pseudo-random numbers between 0 and 1.
 struct Random(u64);
 
 impl Random {
@@ -144,18 +144,18 @@ impl Random {
         lo + (hi - lo) * self.next()
     }
 
-    /// By equal factors.
+    /// Uniform in the logarithm.
     fn over(&mut self, range: [f64; 2]) -> f64 {
         axis("any", range, true).value(self.next())
     }
 
-    /// One of so many.
+    /// One of this many.
     fn one_of(&mut self, count: usize) -> usize {
         (0..count).find(|k| self.next() * (count - k) as f64 <= 1.0).unwrap_or(0)
     }
 }
 
-/// A random problem with the numbers that a map of it may have, each with its range.
+/// A random problem and the numbers that a map of it may have, each with its range.
 fn problem(random: &mut Random, number: usize) -> (Preset, Vec<MapAxis>) {
     let wave = random.over([0.04, 0.12]);
     let amplitude = random.over([1e-4, 5e-3]);

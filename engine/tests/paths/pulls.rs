@@ -1,4 +1,4 @@
-//! Slow pulls against the unloading, of which they are the limit.
+//! Slow pulls against the unloading, which is their limit.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -9,14 +9,15 @@ use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::path::{PathSetting, PathState};
 use pulloff_engine::rate::{EdgeLaw, MovingEdge, PullSettings, Puller};
 
-/// Gaps with snaps, under displacement and behind a spring: a slow pull has the snaps of the unloading, from and to where those are.
+/// Gaps with snaps, under displacement and behind a spring: a slow pull has the same snaps as the unloading, from and
+/// to the same places.
 #[test]
 fn slow_pulls_show_the_events_of_the_unloading() {
     let gaps = [
         ("shape = \"wavy-sphere\"\nradius_of_curvature = 1.0\namplitude = 0.0025\nwavelength = 0.05", 0.41),
         ("shape = \"wavy-sphere\"\nradius_of_curvature = 1.0\namplitude = 0.0025\nwavelength = 0.05", 0.5),
         ("shape = \"wavy-sphere\"\nradius_of_curvature = 1.0\namplitude = 0.004\nwavelength = 0.11", 0.45),
-        // The waves only hasten the edge here and there.
+        // The waves only speed up the edge here and there.
         ("shape = \"wavy-sphere\"\nradius_of_curvature = 1.0\namplitude = 0.0006\nwavelength = 0.07", 0.5),
         ("shape = \"power-law\"\ncoefficient = 1.0\nexponent = 3.0", 0.5),
         ("shape = \"formula\"\nformula = \"r^2/2 + 0.02*exp(-((r-0.3)/0.03)^2)\"", 0.5),

@@ -1,4 +1,4 @@
-//! Adhesion with a range against closed forms, differences and the numbers of an independent prototype.
+//! Adhesion with a range against closed forms, differences, and numbers from an independent prototype.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 #![allow(clippy::disallowed_methods, reason = "the judge needs no reproducible last digit")]
@@ -35,7 +35,7 @@ fn equilibria(shape: &Shape, gamma: f64, strength: f64, reach: f64) -> Equilibri
     found
 }
 
-/// σ₀ of Maugis' `λ_M` for R = 1.
+/// σ₀ for Maugis' `λ_M` at R = 1.
 fn strength(gamma: f64, maugis: f64) -> f64 {
     maugis / (9.0 / (2.0 * PI * gamma)).cbrt()
 }
@@ -48,7 +48,7 @@ fn of_kind(path: &Path, kind: EventKind) -> Option<&Event> {
     path.events.iter().find(|event| event.kind == kind)
 }
 
-/// Every loss by energy and by area, to a share of the work done.
+/// Checks every loss by energy and by area, to a share of the work done.
 fn balanced(path: &Path, share: f64) {
     crate::zones::balanced(path, share, "");
 }
@@ -98,7 +98,7 @@ fn gap_and_pressure_are_those_of_the_law() {
         let at_edge = of.zone.gap_at(at, c) / of.zone.cohesion.range;
         assert!((at_edge - 1.0).abs() < 1e-8, "{c} {at_edge}");
         assert!(of.zone.gap_at(at, at.contact_radius * (1.0 + 1e-9)).abs() < 1e-9);
-        // The force is the sum of the pressure: r = s sin x resolves its root at s.
+        // The force is the integral of the pressure: r = s sin x resolves the root at s.
         let inside: f64 = (0..20_000)
             .map(|k| {
                 let x = 0.5 * PI * (f64::from(k) + 0.5) / 20_000.0;
@@ -133,7 +133,8 @@ fn the_largest_pull_of_a_sphere_goes_from_dmt_to_jkr() {
             let pull = -path.largest_pull().unwrap().force / (PI * gamma);
             assert!((pull - expected).abs() < 6e-6, "{maugis}: {pull} {expected}");
             assert!((cohesion.maugis(1.0, 1.0) / maugis - 1.0).abs() < 1e-12);
-            // The zone and the contact begin at once, at no force, where rounding alone says whether P falls.
+            // The zone and the contact begin at the same time, at zero force, where only rounding decides whether P
+            // falls.
             let kinds: Vec<_> = path.events.iter().map(|event| event.kind).collect();
             assert_eq!(kinds, [EventKind::JumpIn, EventKind::Turn, EventKind::SnapOff], "{gamma} {maugis}");
             balanced(&path, 1e-9);
@@ -205,7 +206,8 @@ fn figure_9_comes_to_the_short_range_limit() {
         assert!((total / losses - 1.0).abs() < tolerance, "{strength}: {total}");
         balanced(&path, 1e-9);
     }
-    // −P_min/P_c is 1.4796729 and the first snap at the radius of the limit point in the limit: both of order 2 in 1/σ₀.
+    // In the limit −P_min/P_c is 1.4796729 and the first snap is at the radius of the limit point; both are approached
+    // with order 2 in 1/σ₀.
     let pull = |strength: f64| unload(strength).largest_pull().unwrap().force / (1.5 * PI * GAMMA);
     let snap = |strength: f64| unload(strength).events[0].before.as_ref().unwrap().contact_radius;
     for f in [&pull as &dyn Fn(f64) -> f64, &snap] {
@@ -221,12 +223,12 @@ fn what_one_zone_does_not_hold_is_refused_by_name() {
     let of =
         |strength| cycle(&FIGURE_9, cohesion(GAMMA, strength), Turn::Approach(0.02), Control::Displacement);
     assert!(of(0.5).is_ok());
-    // Up to the last jump, which would land on two contacts in one zone.
+    // Followed up to the last jump, which would land on two contacts in one zone.
     let path = of(0.4).unwrap();
     assert!(matches!(path.stop, PathStop::BeyondZone { .. }), "{}", path.stop);
     assert!(path.totals.dissipated.is_none() && path.events.len() == 6, "{path:?}");
     balanced(&path, 1e-9);
-    // The jump from apart does, or one soon after it.
+    // Here the jump from apart does, or one soon after it.
     let error = of(0.3).unwrap_err();
     assert!(matches!(error, PathError::BeyondZone { .. }), "{error}");
     for strength in [0.1, 0.02] {
@@ -234,7 +236,7 @@ fn what_one_zone_does_not_hold_is_refused_by_name() {
         assert!(matches!(path.stop, PathStop::BeyondZone { .. }) && path.turn.is_none(), "{}", path.stop);
         balanced(&path, 1e-9);
     }
-    // A crest beside the axis that is lower: nothing can be followed.
+    // Next to the axis there is a lower crest: nothing can be followed.
     let dimple = Shape::Harmonics(Arc::new(
         Harmonics::new(1.0, vec![Harmonic { amplitude: 0.01, wavelength: 0.2, phase: 3.0 }]).unwrap(),
     ));
@@ -243,13 +245,14 @@ fn what_one_zone_does_not_hold_is_refused_by_name() {
 }
 
 /// The median of what each of some runs takes, in seconds.
-/// The gap r⁸ is so flat that its zone is 10⁻⁸ of the contact: where what is known of s and c has lost half of its digits, the slopes keep all.
+/// The gap r⁸ is so flat that its zone is 10⁻⁸ of the contact: even where s and c are known to only half of their
+/// digits, the slopes keep all of theirs.
 #[test]
 fn the_slopes_of_a_thin_zone_have_all_their_digits() {
     let shape = Shape::PowerLaw(PowerLaw { factor: 1.0, exponent: 8.0 });
     let of = equilibria(&shape, 3.94e-18, 1.148e-4, 0.2);
     for edge in [0.005, 0.02, 0.04, 0.1] {
-        // Of a smooth function the sixth differences over a thousandth of c are below rounding.
+        // For a smooth function the sixth differences over a thousandth of c are below rounding.
         let states = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
             .map(|k| of.zone.state(edge * (1.0 + 1e-3 * k), None).unwrap());
         assert!(states[3].share > 0.999_999, "{:?}", states[3]);
@@ -276,13 +279,13 @@ fn a_start_without_contact_says_why_there_is_none() {
     let contact: Vec<&ZoneState> = states.iter().filter(|state| state.contact_radius > 0.0).collect();
     let at = contact.iter().rev().find(|state| state.approach <= 0.01).unwrap();
     assert!((at.contact_radius - found).abs() < 2e-4, "{found} {at:?}");
-    // No contact is so far apart.
+    // No contact exists with the bodies so far apart.
     let least = contact.iter().map(|state| state.approach).fold(f64::INFINITY, f64::min);
     let Err(StartError::OutOfReach { name: "approach", smallest, .. }) = start(&SPHERE, -1.0) else {
         panic!()
     };
     assert!(smallest <= least && smallest > least - 1e-6, "{smallest} {least}");
-    // What is known of the gap ends before.
+    // The known part of the gap ends before that.
     let known = start(&Shape::ExactSphere(ExactSphere { radius: 1.0 }), 50.0);
     assert!(matches!(known, Err(StartError::NotKnown { known: 1.0, .. })), "{known:?}");
 }

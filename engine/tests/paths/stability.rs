@@ -1,4 +1,4 @@
-//! The law of stability against known numbers of the waves of Fig. 9, and against the traced curve.
+//! The law of stability against known numbers for the waves of Fig. 9, and against the traced curve.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -44,7 +44,7 @@ fn control(name: &str) -> Control {
     name.parse().unwrap_or_else(|_| Control::Stiffness(name.parse().unwrap()))
 }
 
-/// Whether `ours` is `given` in all of its digits.
+/// Whether `ours` agrees with `given` in all of its digits.
 fn same(ours: f64, given: f64, last: f64) -> bool {
     (ours - given).abs() <= 0.51 * last
 }
@@ -92,7 +92,7 @@ fn cusps_in_the_amplitude_are_those_known_and_their_lines_pass_them() {
             let hit =
                 births.iter().find(|[at, share]| same(*at, s, 1e-4) && same(0.0125 * share, amplitude, 1e-6));
             let [s, share] = hit.unwrap_or_else(|| panic!("{name} {row:?}: {births:?}"));
-            // The line, sampled at radii, is as near to it as its steps are long.
+            // The line, sampled at radii, comes as near to it as its steps are long.
             let near = lines.iter().any(|(points, _)| {
                 points.windows(2).any(|pair| {
                     let [a, b] = [pair[0], pair[1]];
@@ -121,7 +121,7 @@ fn swallowtails_are_those_known() {
             let [s, amplitude, adhesion] = [0, 1, 2].map(|k| row[k].as_f64().unwrap());
             let hit = tips.iter().any(|tip| {
                 let [a, y] = [0, 1].map(|k| family.axes[k].value(tip.at[k]));
-                // From Struve functions with thirty digits; there the adhesion hardly changes along the line.
+                // From Struve functions with thirty digits; the adhesion hardly changes along the line there.
                 (tip.contact_radius / s - 1.0).abs() < 1e-6
                     && (a / amplitude - 1.0).abs() < 1e-7
                     && (ratio * y / adhesion - 1.0).abs() < 1e-7
@@ -186,7 +186,7 @@ fn the_law_holds_at_every_limit_point_of_the_curve() {
 fn the_smallest_amplitude_that_snaps_is_that_known_for_every_device() {
     let known = &data()["first_pair"];
     let adhesion = known["adhesion"].as_f64().unwrap();
-    // The first pair of limit points, wherever it is.
+    // The first pair of limit points, wherever it lies.
     for row in rows(&known["by_stiffness"]) {
         let (device, given) = (control(row[0].as_str().unwrap()), row[1].as_f64().unwrap());
         let preset = waves(device, 0.41, 0.05, adhesion);
@@ -252,12 +252,12 @@ fn fold_curves_pass_the_limit_points_of_the_curve() {
             }
         }
         assert_eq!(hits, limits.len(), "{key}");
-        // Pairs are born by turning the adhesion or the amplitude.
+        // Pairs are born as the adhesion or the amplitude is varied.
         assert!(![ADHESION, AMPLITUDE].contains(&key) || !folds.cusps.is_empty(), "{key}");
     }
 }
 
-/// The next of a series of numbers between 0 and 1 that looks random.
+/// The next in a series of pseudo-random numbers between 0 and 1.
 fn next(seed: &mut u64) -> f64 {
     *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*seed >> 11) as f64 / (1_u64 << 53) as f64

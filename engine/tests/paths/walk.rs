@@ -1,4 +1,4 @@
-//! A walk by hand through rings: to the next limit point or touch, let it run, turn round.
+//! A manual walk through rings: to the next limit point or touch, let it run, turn round.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 #![allow(
@@ -35,7 +35,7 @@ pub fn curve(gap: Arc<dyn Gap>, gamma: f64, end: f64) -> Curve {
     Curve::of(problem, basis, end, 0.002).unwrap()
 }
 
-/// A walker that makes its way by keys.
+/// A walker driven by keys.
 pub struct Walker<'a> {
     pub curve: &'a Curve,
     pub control: Control,
@@ -85,7 +85,7 @@ fn near(ours: &[[f64; 2]], theirs: &[[f64; 2]]) -> f64 {
     ours.iter().flatten().zip(theirs.iter().flatten()).fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()))
 }
 
-/// Walks the loop by n and x; the largest differences of edges, δ and P, and of losses as a share.
+/// Walks the loop with n and x; returns the largest differences of edges, δ and P, and of losses in relative terms.
 fn walks(curve: &Curve, control: Control, found: &Path) -> [f64; 4] {
     let mut walker = Walker { curve, control, at: None, inward: false, range: [curve.outermost(), 0.0] };
     let (end, made) = walker.asked(|walk, emit| walk.first_touch(emit));
@@ -134,7 +134,7 @@ fn looped(gap: &Arc<dyn Gap>, gamma: f64, control: Control, turn: Turn) -> Path 
     cycle(&table, gamma, turn, &setting, &pulloff_engine::progress::Unwatched).unwrap()
 }
 
-/// Holds a walk to the events of another program, through the loop, which is held to them.
+/// Compares a walk with the events of another program, by way of the loop, which is compared with them.
 fn reproduces(gamma: f64, reference: &str) {
     let gap = wavy(0.0025, 0.05);
     let found = looped(&gap, gamma, Control::Displacement, Turn::Approach(0.14));
@@ -145,7 +145,7 @@ fn reproduces(gamma: f64, reference: &str) {
     let worst = walks(&curve, Control::Displacement, &found);
     println!("{worst:?}");
     assert!(worst[..3].iter().all(|error| *error < 1e-10) && worst[3] < 1e-8, "{worst:?}");
-    // The last jump of loading, by the other program's own numbers.
+    // The last jump of loading, with the other program's own numbers.
     let jumps = |event: &&serde_json::Value| event["kind"] == "touch" || event["kind"] == "snap-in";
     let last = expected.iter().rposition(jumps).unwrap();
     let (delta, force, contacts) = crate::support::numbers(&expected[last]["before"]);
@@ -164,7 +164,7 @@ fn by_hand_the_rings_of_weak_adhesion_are_walked() {
     reproduces(1e-4, "fig9-weak");
 }
 
-/// The eigenvalues of the J of each control at a walked state say what its slopes say.
+/// The eigenvalues of J under each control at a walked state agree with its slopes.
 #[test]
 fn stability_is_that_of_the_eigenvalues() {
     let gamma = 1e-4;
@@ -205,7 +205,7 @@ fn stability_is_that_of_the_eigenvalues() {
             }
         }
         match end {
-            // Let it run once in a while, else go on along the branch, which then is unstable.
+            // At a touch let it run; at a limit point go on along the branch, which is then unstable.
             WalkEnd::AtTouch => {
                 walker.asked(|walk, emit| walk.jump(emit));
             }
@@ -246,7 +246,7 @@ fn past_a_touch_states_without_the_ring_are_not_admissible() {
         assert!(!edges::has_rings(&reached.point) && !reached.admissibility.holds, "{reached:?}");
         assert!(reached.admissibility.overlapping().is_some());
     }
-    // Back at the touch and turned round nothing is missed: the gap opens.
+    // Back at the touch and turned round, nothing is missed: the gap opens.
     walker.inward = true;
     let (_, made) = walker.asked(|walk, emit| walk.steps(12, false, emit));
     assert!(made.last().unwrap().admissibility.holds);
@@ -299,7 +299,8 @@ fn corners_of_the_gap_are_passed_by_hand() {
     assert!(worst[..3].iter().all(|error| *error < 1e-9) && worst[3] < 1e-7, "{worst:?}");
 }
 
-/// Near a cusp under force: a step from beyond both limit points ends at the first, where a longer one would pass both.
+/// Near a cusp under force: a step from beyond both limit points ends at the first one, although a longer step would
+/// pass both.
 #[test]
 fn of_two_limit_points_within_a_step_the_first_is_met() {
     let wave = Harmonic {

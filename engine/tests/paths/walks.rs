@@ -1,11 +1,11 @@
-//! Walks by hand over rings as they were.
+//! Manual walks over rings as they were.
 //!
-//! `data/walks.txt` has what random walks came to, so that a change of what follows them is seen request by request. A line is one walk:
-//! the number of its problem, then what each request ended at. `L` is a limit point of the control and `T` a touch, each with the control
-//! value, the edges and the loss of the jump ahead; `J` is a jump with its loss, the edges after it and its loss by area; other ends are
-//! words. The walker jumps, walks on through states that cannot be, or turns round at random. `FREEZE=0..40 cargo test -p
-//! pulloff-engine --test paths walks:: -- --ignored` writes the lines of these problems anew; that is right only where every difference
-//! was looked into.
+//! `data/walks.txt` has the results of random walks, so that a change in what follows them shows request by request. A
+//! line is one walk: the number of its problem, then where each request ended. `L` is a limit point of the control and
+//! `T` a touch, each with the control value, the edges and the loss of the jump ahead; `J` is a jump with its loss, the
+//! edges after it and its loss by area; other ends are words. The walker jumps, walks on through states that cannot
+//! exist, or turns round at random. `FREEZE=0..40 cargo test -p pulloff-engine --test paths walks:: -- --ignored`
+//! rewrites the lines of these problems; do so only after looking into every difference.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 #![allow(clippy::disallowed_methods, reason = "a random problem needs no reproducible last digit")]
@@ -17,13 +17,13 @@ use pulloff_engine::quasistatic::walk::{Arrival, At, Reached, WalkEnd, edges};
 use rayon::prelude::*;
 use std::fmt::Write;
 
-/// The requests of one walk.
+/// Requests in one walk.
 const REQUESTS: usize = 14;
 
-/// Of the walks in the file one in so many is made in every run of the tests.
+/// One in this many of the walks in the file is made in every run of the tests.
 const SHARE: usize = 4;
 
-/// What may differ: edges and control values, and losses as a share of themselves.
+/// Allowed differences: of edges and control values, and of losses relative to themselves.
 const EDGES: f64 = 2e-8;
 const LOSSES: f64 = 1e-5;
 
@@ -37,7 +37,7 @@ fn ended(end: &WalkEnd) -> String {
     format!("| {words} ")
 }
 
-/// The walk of a problem in a line.
+/// The walk of a problem as a line.
 fn line(number: u64) -> String {
     let mut random = fastrand::Rng::with_seed(number ^ 0x7761_6C6B);
     let (gap, _) = random_gap(&mut random);
@@ -61,7 +61,7 @@ fn line(number: u64) -> String {
     for _ in 0..REQUESTS {
         let goes_past = matches!(walker.at, Some((_, At::Touch(_))));
         let (end, made) = walker.asked(|walk, emit| walk.steps(STEPS, true, emit));
-        // A walk over rings that is not led past a touch comes to none that it does not say.
+        // A walk over rings that is not led past a touch does not reach one without reporting it.
         let overlaps = |reached: &Reached| {
             let admissibility = &reached.admissibility;
             gamma > 0.0 && edges::has_rings(&reached.point) && admissibility.overlapping().is_some()
@@ -107,7 +107,7 @@ fn line(number: u64) -> String {
     text
 }
 
-/// Whether two walks are the same but for rounding.
+/// Whether two walks are the same except for rounding.
 fn same(a: &str, b: &str) -> bool {
     let (a, b): (Vec<&str>, Vec<&str>) = (a.split_whitespace().collect(), b.split_whitespace().collect());
     a.len() == b.len()

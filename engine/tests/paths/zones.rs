@@ -1,4 +1,5 @@
-//! States and loops of adhesion with a range, computed anew by quadrature: it shares no code with the zones of the engine.
+//! States and loops of adhesion with a range, recomputed by quadrature, without sharing code with the zones of the
+//! engine.
 //!
 //! With θ = δ − g on the contact, −2σ₀√(c² − a²) on the free part of the zone and 0 beyond (E* = 1)
 //!
@@ -23,12 +24,12 @@ use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
-/// A gap in whose zone a tension σ₀ acts within `range`.
+/// A gap with a zone in which a tension σ₀ acts within `range`.
 struct Judge {
     disc: Disc,
     strength: f64,
     range: f64,
-    /// The largest force on the path, which is read from series: smaller ones are known to its rounding.
+    /// The largest force on the path, which is read from series: smaller forces are only known to its rounding.
     most: f64,
     rule: Vec<[f64; 2]>,
 }
@@ -48,7 +49,8 @@ impl Judge {
         Self { disc: Disc::new(terms, 0.0, reach), strength, range, most: 0.0, rule: gauss(16) }
     }
 
-    /// ∫ f between two values of x, broken at values, with all ends rounded off as x = lo + (hi − lo)(3u² − 2u³): roots there do no harm.
+    /// ∫ f between two values of x, split at breaks; all ends are smoothed by x = lo + (hi − lo)(3u² − 2u³), so that
+    /// roots there do no harm.
     fn integral(&self, [lo, hi]: [f64; 2], breaks: impl Iterator<Item = f64>, f: impl Fn(f64) -> f64) -> f64 {
         let mut ends: Vec<f64> = breaks.filter(|x| lo < *x && *x < hi).chain([lo, hi]).collect();
         ends.sort_by(f64::total_cmp);
@@ -68,7 +70,7 @@ impl Judge {
         ends.windows(2).map(piece).sum()
     }
 
-    /// Where integrals over a are broken, with the edges.
+    /// Where integrals over a are split, including the edges.
     fn breaks(&self, at: &State) -> impl Iterator<Item = f64> {
         self.disc.marks().to_vec().into_iter().chain([at.s, at.c])
     }
@@ -97,7 +99,8 @@ impl Judge {
         (contact - self.strength * (FRAC_PI_2 - ((2.0 * s - c) / c).asin())) / PI
     }
 
-    /// The state with its contact radius as its δ and c have it, which a series gives to fewer digits.
+    /// The state with the contact radius that follows from its δ and c, because a series gives the radius to fewer
+    /// digits.
     fn exact(&self, mut at: State) -> State {
         if at.s == 0.0 {
             return at;
@@ -132,7 +135,7 @@ impl Judge {
         stored + self.strength * (apart - PI * self.range * at.c * at.c)
     }
 
-    /// Holds a state to the law at so many radii in each part.
+    /// Checks a state against the law at this many radii in each part.
     fn holds(&self, at: &State, count: u32, name: &str) {
         let at = &self.exact(*at);
         let (c, s, range) = (at.c, at.s, self.range);
@@ -182,9 +185,9 @@ fn state(at: &PathState, length: f64) -> State {
     }
 }
 
-/// Losses by energy and by area agree and gain nothing, to a share of the work.
+/// Checks that losses by energy and by area agree and gain nothing, to a share of the work.
 pub fn balanced(path: &Path, share: f64, name: &str) {
-    // Of a path that ends on its way up what is stored.
+    // For a path that ends on its way up, the stored energy.
     let stored = path.states.last().map_or(0.0, |state| state.potential(path.control).abs());
     let work = path.totals.work_of_loading.unwrap_or(stored).abs().max(path.losses().abs());
     for event in &path.events {
@@ -240,7 +243,8 @@ fn figure_9_just_above_the_tension_that_holds_its_troughs_together() {
             }
         }
     }
-    // The prototype of many zones lost so much up to its last jump, which needs two contacts in one zone: here the path ends before it.
+    // The prototype of many zones lost this much up to its last jump, which needs two contacts in one zone; here the
+    // path ends before that jump.
     let path = loops(0.4, Control::Displacement);
     assert!(matches!(path.stop, PathStop::BeyondZone { .. }) && path.totals.dissipated.is_none());
     let lost: Vec<f64> = path.events.iter().map(|event| event.dissipated.unwrap()).collect();
@@ -248,18 +252,18 @@ fn figure_9_just_above_the_tension_that_holds_its_troughs_together() {
     assert!((lost[3..].iter().sum::<f64>() / 1.668e-4 - 1.0).abs() < 4e-4 && lost.len() == 6, "{lost:?}");
 }
 
-/// What became of a loop.
+/// The outcome of a loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Came {
-    /// To its end.
+    /// It came to its end.
     Whole,
-    /// To a state with more, after some states or before any.
+    /// It came to a state with more than one disc in one zone, after some states or before any.
     Further,
-    /// To another refusal, or there is no such problem.
+    /// It came to another refusal, or there is no such problem.
     Refused,
 }
 
-/// The loop of a random problem at a random `λ_M`, judged.
+/// The loop of a random problem at a random `λ_M`, checked.
 fn judged(number: u64) -> (Came, String) {
     let Ok(problem) = draw(number) else { return (Came::Refused, "no problem".to_owned()) };
     let mut random = fastrand::Rng::with_seed(number ^ 0x52A4_6E17);
@@ -279,7 +283,7 @@ fn judged(number: u64) -> (Came, String) {
             let words = error.to_string();
             let further = words.contains("one disc of contact in one zone alone");
             let came = if further { Came::Further } else { Came::Refused };
-            // The preset is for whoever looks for the reason.
+            // The preset helps whoever looks for the reason.
             let of = if further { String::new() } else { pulloff_engine::preset::write(&preset) };
             return (came, format!("{name}: {words}\n{of}"));
         }
@@ -290,7 +294,7 @@ fn judged(number: u64) -> (Came, String) {
     let reach = (2.5 * widest).min(problem.end);
     let mut judge = Judge::new(&problem.terms, strength, problem.gamma / strength, reach);
     judge.most = path.states.iter().map(|at| state(at, length).force.abs()).fold(0.0, f64::max);
-    // The states between which it jumps, and some of those on the way; fewer where the gap is fine.
+    // The states between which it jumps, and some of those on the way; fewer if the gap is fine.
     let most = (600 / judge.disc.marks().len()).clamp(1, 10);
     let shown = path.events.iter().flat_map(|event| [&event.before, &event.after]).flatten();
     let some = path.states.iter().skip(random.usize(..50)).step_by(path.states.len() / 4 + 1);

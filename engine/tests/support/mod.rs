@@ -1,4 +1,4 @@
-//! Gaps and references of the tests of loops and walks.
+//! Gaps and reference values for the tests of loops and walks.
 
 #![allow(dead_code, reason = "each test uses some of them")]
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
@@ -33,7 +33,7 @@ pub fn numbers(state: &Value) -> Numbers {
     (number("delta"), number("P"), disc.into_iter().chain(rings).collect())
 }
 
-/// A random gap of one wave with a phase, two, or many.
+/// A random gap with one wave that has a phase, with two waves, or with many.
 pub fn random_gap(random: &mut fastrand::Rng) -> (Arc<dyn Gap>, String) {
     let between = |random: &mut fastrand::Rng, lo: f64, hi: f64| lo * (hi / lo).powf(random.f64());
     let kind = random.usize(0..4);
