@@ -1,4 +1,4 @@
-//! Which states of the curve on the screen are admissible, found once no newer curve is computed.
+//! Which states of the curve on the screen are admissible, found once no newer curve is being computed.
 
 use super::background::{Background, Tell, Want, Watcher};
 use super::command::Id;
@@ -7,7 +7,7 @@ use super::effect::Effect;
 use super::model::Model;
 use std::sync::Arc;
 
-/// The same curve with what is not admissible on it.
+/// The same curve with its inadmissible states marked.
 #[derive(Debug, Clone)]
 pub struct AdmissibilityData(Arc<CurveData>);
 

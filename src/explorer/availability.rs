@@ -1,4 +1,4 @@
-//! What must be there before a command can be done: `Err` says why it cannot be done now.
+//! What a command requires before it can be run: `Err` says why it cannot be run now.
 
 use super::branches as walk_branches;
 use super::command::Id;
@@ -7,7 +7,7 @@ use super::node::Node;
 use super::status_line::back_or_anew;
 use super::view::{ScreenPanel, Window};
 
-/// Why a command cannot be done, in words.
+/// Why a command cannot be run, in words.
 pub type Available = Result<(), String>;
 
 fn when(is_there: bool, why: impl FnOnce() -> String) -> Available {
@@ -21,18 +21,18 @@ fn no_curve(model: &Model) -> String {
     format!("there is no curve: change a value, or {} computes it again", Id::Restart.named())
 }
 
-/// Nothing.
+/// Requires nothing.
 #[expect(clippy::unnecessary_wraps, reason = "all that is needed has one form")]
 pub(super) fn always(_: &Model) -> Available {
     Ok(())
 }
 
-/// A state of the walk.
+/// Requires a state of the walk.
 pub(super) fn walker(model: &Model) -> Available {
     when(model.history.current().is_some(), || no_curve(model))
 }
 
-/// A state of a walk that may turn round: along a path it goes as the device does.
+/// Requires a state of a walk that may turn round; along a path, the walk follows the device.
 pub(super) fn turns(model: &Model) -> Available {
     walker(model)?;
     when(model.curve.as_ref().is_none_or(|curve| curve.along.is_none()), || {
@@ -40,12 +40,12 @@ pub(super) fn turns(model: &Model) -> Available {
     })
 }
 
-/// A state of the walk, or no curve being computed: one that was given up or failed is computed again.
+/// Requires a state of the walk, or that no curve is being computed: one given up or failed is computed again.
 pub(super) fn walker_or_no_curve(model: &Model) -> Available {
     if model.is_computing() { walker(model) } else { Ok(()) }
 }
 
-/// A state in which the edge can run.
+/// Requires a state in which an edge can run.
 pub(super) fn jump(model: &Model) -> Available {
     let is_apart = model.history.current().is_some_and(Node::is_apart);
     when(model.can_jump(), || {
@@ -56,41 +56,41 @@ pub(super) fn jump(model: &Model) -> Available {
     })
 }
 
-/// A command to take back.
+/// Requires a command to undo.
 pub(super) fn undo(model: &Model) -> Available {
     when(model.can_travel(model.undo.past()), || "this is the start: there is nothing to undo".to_owned())
 }
 
-/// One to do again.
+/// Requires a command to redo.
 pub(super) fn redo(model: &Model) -> Available {
     when(model.can_travel(model.undo.future()), || "there is nothing to redo".to_owned())
 }
 
-/// A second branch of the walk.
+/// Requires a second branch of the walk.
 pub(super) fn branches(model: &Model) -> Available {
     when(walk_branches::are_several(&model.history), || {
         format!("the walk has one branch: {} goes back, and another step begins a second", Id::Undo.named())
     })
 }
 
-/// A curve.
+/// Requires a curve.
 pub(super) fn curve(model: &Model) -> Available {
     when(model.curve.is_some(), || no_curve(model))
 }
 
-/// A pinned curve.
+/// Requires a pinned curve.
 pub(super) fn pins(model: &Model) -> Available {
     let why = || format!("no curve is pinned: {} pins the one on the screen", Id::Pin.named());
     when(!model.pins.is_empty(), why)
 }
 
-/// A selected value.
+/// Requires a selected value.
 pub(super) fn parameter(model: &Model) -> Available {
     let why = || format!("select a value first: {} goes to Problem", Id::NextPanel.named());
     when(model.panel == ScreenPanel::Problem, why)
 }
 
-/// A view that shows a part of its chart only.
+/// Requires a view that shows only a part of its chart.
 pub(super) fn zoomed(model: &Model) -> Available {
     when(model.window(model.view) != Window::WHOLE, || "the whole chart is shown".to_owned())
 }

@@ -1,7 +1,8 @@
 //! Results that belong to the values and are computed in the background.
 //!
-//! A result says which one is wanted now, computes it and is kept: [`Background`]. What is asked for, stopped, told of and thrown
-//! away follows from that. A new one is a file with an `impl Background`, and its name in [`backgrounds`](super::backgrounds).
+//! A result says which one is wanted now, computes it, and is then kept: see [`Background`]. What is requested,
+//! stopped, reported and discarded follows from that. To add a result, write a file with an `impl Background` and add
+//! its name to [`backgrounds`](super::backgrounds).
 
 use super::effect::Effect;
 use super::model::{Level, Model};
@@ -11,81 +12,81 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// What is wanted of a result now.
+/// Which result is wanted now.
 #[derive(Debug, Clone)]
 pub enum Want<K> {
-    /// The one of this key.
+    /// The result for this key.
     Now(K),
-    /// Nothing new: what was asked for goes on, and what is there stays.
+    /// Nothing new: a computation under way goes on, and the present result stays.
     Later,
-    /// None: what was asked for is stopped, and what is there is not shown.
+    /// None: a computation under way is stopped, and the present result is not shown.
     Not,
 }
 
-/// Whoever watches a computation.
+/// Watches a computation, and can stop it.
 pub type Watcher<'a> = &'a (dyn Progress + Sync);
-/// Whoever is told what is done so far.
+/// Receives what is done so far.
 pub type Tell<'a, R> = &'a mut dyn FnMut(R);
 
-/// A result that belongs to the values.
+/// A result that belongs to the values of the preset.
 pub trait Background: fmt::Debug + Send + Sync + Sized + 'static {
-    /// All that it is computed from.
+    /// Everything it is computed from.
     type Key: fmt::Debug + Clone + Send + Sync + 'static;
 
-    /// Its name, and that of its thread.
+    /// Its name, which is also that of its thread.
     const NAME: &'static str;
-    /// Computed this long, one is finished though a newer one waits, so that a held key shows some.
+    /// After this long, a computation is finished although a newer one waits, so that a held key shows some results.
     const PATIENCE: Duration = Duration::ZERO;
-    /// Whether an answer to an older question is of no use.
+    /// Whether the answer to an older question is useless.
     const ONLY_NEWEST: bool = false;
 
-    /// Whether it changes the values when it comes, which undo takes back.
+    /// Whether its arrival changes the values, which undo takes back.
     const CHANGES_VALUES: bool = false;
 
-    /// What is wanted now.
+    /// Which result is wanted now.
     fn wanted(model: &Model) -> Want<Self::Key>;
     /// Whether two keys have the same answer.
     fn is_same(asked: &Self::Key, wanted: &Self::Key) -> bool;
-    /// Computes it, and tells of what is done so far; `None` where it was stopped.
+    /// Computes it and reports what is done so far; `None` if it was stopped.
     fn compute(key: &Self::Key, progress: Watcher<'_>, told: Tell<'_, Self>) -> Option<Self>;
 
-    /// Whether this is the answer, so that nothing need be asked.
+    /// Whether this is the answer for the key, so that nothing need be requested.
     fn is_of(&self, _: &Self::Key) -> bool {
         false
     }
-    /// Whether it is computed where nobody looks.
+    /// Whether it is computed even where nobody looks, as in scripts.
     fn is_for_scripts(_: &Self::Key) -> bool {
         true
     }
-    /// What follows once it has come.
+    /// What follows once it has arrived.
     fn came(_: &mut Model, _: Arc<Self>) -> Vec<Effect> {
         Vec::new()
     }
-    /// What is said while it is under way, where that takes long.
+    /// The message while it is under way, if that takes long.
     fn says(_: &Model) -> Option<String> {
         None
     }
-    /// What is said when it is given up; `None` where it is not under way, or cannot be given up.
+    /// The message when it is given up; `None` if it is not under way, or cannot be given up.
     fn given_up(_: &mut Model) -> Option<String> {
         None
     }
 }
 
-/// A kind of result, whatever it is.
+/// One kind of result, with its type erased.
 #[derive(Debug, Clone, Copy)]
 pub struct ResultKind {
     pub name: &'static str,
     pub changes_values: bool,
-    /// Asks for it where it is wanted, and stops it where it is wanted no longer.
+    /// Requests it if it is wanted, and stops it once it is no longer wanted.
     pub want: fn(&mut Model) -> Option<Effect>,
     pub keep: fn(&mut Model, Found) -> Vec<Effect>,
     pub says: fn(&Model) -> Option<String>,
-    /// Gives it up; `None` where there is nothing to give up.
+    /// Gives it up; `None` if there is nothing to give up.
     pub give_up: fn(&mut Model) -> Option<Vec<Effect>>,
 }
 
 impl ResultKind {
-    /// That of a result.
+    /// The kind of the result `R`.
     pub const fn of<R: Background>() -> Self {
         Self {
             name: R::NAME,
@@ -98,7 +99,7 @@ impl ResultKind {
     }
 }
 
-/// Asks for the result that is wanted, unless it is there or on its way; stops one that is wanted no longer.
+/// Requests the wanted result, unless it is there or on its way; stops one that is no longer wanted.
 fn want<R: Background>(model: &mut Model) -> Option<Effect> {
     let key = match R::wanted(model) {
         Want::Later => return None,
@@ -124,12 +125,12 @@ fn want<R: Background>(model: &mut Model) -> Option<Effect> {
     Some(ask::<R>(model, key))
 }
 
-/// The key of what was asked for last, and is still wanted.
+/// The key of the last request, if it is still wanted.
 pub(super) fn asked<R: Background>(model: &Model) -> Option<&R::Key> {
     model.results.asked::<R, R::Key>()
 }
 
-/// Asks for a result.
+/// Requests a result.
 pub(super) fn ask<R: Background>(model: &mut Model, key: R::Key) -> Effect {
     let id = model.number();
     let (name, patience, is_for_scripts) = (R::NAME, R::PATIENCE, R::is_for_scripts(&key));
@@ -141,12 +142,12 @@ pub(super) fn ask<R: Background>(model: &mut Model, key: R::Key) -> Effect {
     Effect::Compute(Task { name, id, patience, is_for_scripts, work: Arc::new(work) })
 }
 
-/// Stops what is under way; what comes of it is still taken.
+/// Stops what is under way; a result that still arrives is accepted.
 pub(super) fn stop<R: Background>(model: &Model) -> Option<Effect> {
     model.results.under_way::<R>().map(|id| Effect::Stop { name: R::NAME, id })
 }
 
-/// Stops what is under way, says so, and does not ask for it again.
+/// Stops what is under way, says so, and does not request it again.
 fn give_up<R: Background>(model: &mut Model) -> Option<Vec<Effect>> {
     let said = R::given_up(model)?;
     let stops = stop::<R>(model);
@@ -157,7 +158,7 @@ fn give_up<R: Background>(model: &mut Model) -> Option<Vec<Effect>> {
     Some(stops.into_iter().collect())
 }
 
-/// Takes an answer, unless a newer one is there.
+/// Accepts an answer, unless a newer one is there.
 fn keep<R: Background>(model: &mut Model, found: Found) -> Vec<Effect> {
     let slot = model.results.slot_mut::<R>();
     let newest = slot.asked.as_ref().map(|(id, _)| *id);

@@ -1,4 +1,4 @@
-//! All results that are computed in the background. Of several under way the first is told of, and given up first.
+//! All results that are computed in the background. Of several under way, the first is reported, and is given up first.
 
 use super::admissibility::AdmissibilityData;
 use super::background::ResultKind;
@@ -15,7 +15,7 @@ use super::pulls::PullData;
 use super::speeds::SpeedsData;
 use super::studies::StudyData;
 
-/// The kinds, in the order in which they are told of.
+/// The kinds, in the order in which they are reported.
 pub static KINDS: [ResultKind; 11] = [
     ResultKind::of::<FitProgress>(),
     ResultKind::of::<PinCurve>(),
@@ -30,22 +30,22 @@ pub static KINDS: [ResultKind; 11] = [
     ResultKind::of::<SnapsFrom>(),
 ];
 
-/// Asks for all that is wanted now.
+/// Requests everything that is wanted now.
 pub(super) fn want_all(model: &mut Model) -> Vec<Effect> {
     KINDS.iter().filter_map(|kind| (kind.want)(model)).collect()
 }
 
-/// The kind of a name.
+/// The kind with this name.
 pub(super) fn kind_of(name: &str) -> Option<&'static ResultKind> {
     KINDS.iter().find(|kind| kind.name == name)
 }
 
-/// Gives up the first that is under way.
+/// Gives up the first one under way.
 pub(super) fn give_up_first(model: &mut Model) -> Vec<Effect> {
     KINDS.iter().find_map(|kind| (kind.give_up)(model)).unwrap_or_default()
 }
 
-/// What is under way and is told of where it takes long: its name, and the words.
+/// What is under way and worth reporting because it takes long: its name and the message.
 pub fn under_way(model: &Model) -> Option<(&'static str, String)> {
     KINDS.iter().find_map(|kind| Some((kind.name, (kind.says)(model)?)))
 }
@@ -66,7 +66,7 @@ mod tests {
         under_way(model).is_some_and(|(_, says)| says.contains(text))
     }
 
-    /// A session whose curve has come, and its driver.
+    /// A session whose curve has arrived, and its driver.
     fn session() -> (Model, Inline, Vec<Effect>) {
         let store = Store::at("/nowhere", &[]);
         let loaded = store.load(&store.resolve("fig-3-jkr").unwrap(), &[] as &[&str]).unwrap();
@@ -93,13 +93,13 @@ mod tests {
         );
         assert_eq!(under_way(&model), None);
         assert!(model.status().1.contains("which states of this curve are admissible"));
-        // Nothing that happens on this curve asks again.
+        // Nothing that happens on this curve requests the check again.
         for effect in update(&mut model, Id::Step.into()) {
             let effects = driver.run(effect).map_or_else(Vec::new, |reply| answer(&mut model, reply));
             assert!(!asked(&effects), "{effects:?}");
         }
         assert!(update(&mut model, Id::Cancel.into()).is_empty());
-        // Another curve is asked about.
+        // Another curve is checked anew.
         let set = Command::Set { key: "material.effective_modulus".into(), text: "2".to_owned() };
         let mut waiting = update(&mut model, set);
         let mut again = false;

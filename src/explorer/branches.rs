@@ -1,10 +1,10 @@
-//! The branches of the walk: every end that was reached, and the way there from the walk of now.
+//! The branches of the walk: every end that was reached, and the way to it from the current walk.
 
 use super::history::History;
 use super::node::Node;
 use super::prune::{children, is_repeated};
 
-/// At most so many branches are drawn and listed: the newest.
+/// At most this many branches are drawn and listed: the newest ones.
 pub const MOST: usize = 40;
 
 /// A branch.
@@ -12,7 +12,7 @@ pub const MOST: usize = 40;
 pub struct WalkBranch<'a> {
     pub end: usize,
     pub is_here: bool,
-    /// Its states from the fork to its end; of the current branch, all.
+    /// Its states from the fork to its end; for the current branch, all states.
     pub nodes: Vec<&'a Node>,
 }
 

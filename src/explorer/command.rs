@@ -1,9 +1,9 @@
-//! Commands: their identities, of the one [`list`] of them, and what they carry.
+//! Commands: their identities, which come from one [`list`], and what they carry.
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | `list` | the rows, of which the identities here and the [table](super::table) are made |
-//! | `named` | commands in sentences |
+//! | `list` | the rows, from which the identities here and the [table](super::table) are made |
+//! | `named` | commands named in sentences |
 
 pub mod list;
 mod named;
@@ -16,7 +16,7 @@ use pulloff_engine::preset::Key;
 use pulloff_engine::sweep::QuantityColumn;
 use std::path::PathBuf;
 
-/// Makes [`Id`] of the list.
+/// Makes [`Id`] from the list.
 macro_rules! identities {
     ($($section:literal { $(
         $id:ident $name:literal $keys:literal $short:literal $needs:ident $waits:ident $script:ident $(($what:literal))?
@@ -30,7 +30,7 @@ macro_rules! identities {
         )*)* }
 
         impl Id {
-            /// All, in the order of the help.
+            /// All commands, in the order of the help.
             pub const ALL: &[Self] = &[$($(Self::$id,)*)*];
 
             /// The name in scripts, in the settings and on the command line.
@@ -44,7 +44,7 @@ macro_rules! identities {
 each_command!(identities);
 
 impl Id {
-    /// The command of a name.
+    /// The command with this name.
     pub fn called(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|id| id.name() == name)
     }
@@ -53,19 +53,19 @@ impl Id {
 /// A key and the text of its value.
 pub type Assignment = (Key, String);
 
-/// Most steps that one command takes.
+/// The most steps that one command takes.
 pub const MOST_STEPS: usize = 9999;
 
 /// The first step length: a fiftieth of the range of every quantity.
 pub const FIRST_LENGTH: f64 = 0.02;
 
-/// The step lengths a person can choose.
+/// The step lengths that can be chosen.
 pub const LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=0.2;
 
-/// States a second of a run, at first.
+/// The initial pace of a run, in states per second.
 pub const FIRST_PACE: f64 = 20.0;
 
-/// The paces a person can choose: each half or twice the next.
+/// The paces that can be chosen: each is half or twice its neighbour.
 pub const PACES: std::ops::RangeInclusive<f64> = 1.25..=160.0;
 
 /// A command with its argument.
@@ -74,28 +74,28 @@ pub enum Command {
     /// A command without an argument.
     Plain(Id),
     Steps(usize),
-    /// A step by a key that may be held down: undo takes it back with so many before it.
+    /// A step by a key that may be held down: undo takes it back together with this many before it.
     HeldStep(usize),
-    /// A run that ends after so many states, if it meets nothing before.
+    /// A run that ends after this many states, unless it meets something before.
     RunOf(usize),
     /// The longest step by hand, in the scaled unknowns.
     StepLength(f64),
-    /// The walker to the event of this number, from 1, among those shown.
+    /// The walker to the event with this number, counted from 1 among those shown.
     SelectEvent(usize),
-    /// Other values for some keys, as one change; as on a command line a bare number is SI in an SI preset.
+    /// Other values for some keys, as one change; as on a command line, a bare number is SI in an SI preset.
     Assign(Vec<Assignment>),
     Set {
         key: Key,
         text: String,
     },
-    /// Another value for a key while it is typed: what was there before can be taken back.
+    /// Another value for a key while it is being typed: the previous one can be restored.
     Try {
         key: Key,
         text: String,
     },
-    /// Back to the values before those tried.
+    /// Back to the values before the ones tried.
     TakeBack,
-    /// List the files for this key in this folder; without one, in that of the preset's own file.
+    /// List the files for this key in this folder; without a folder, in that of the preset's own file.
     Browse {
         key: Key,
         folder: Option<PathBuf>,
@@ -104,16 +104,16 @@ pub enum Command {
         panel: ScreenPanel,
         line: Option<usize>,
     },
-    /// Go to the state of this contact radius, in the user's units.
+    /// Go to the state with this contact radius, in the user's units.
     MoveTo(f64),
-    /// Closer to a place of a view, or further away.
+    /// Zoom towards a place of a view, or away from it.
     Zoom {
         view: View,
         closer: bool,
-        /// The place that stays where it is, in shares of the window.
+        /// The place that stays fixed, in shares of the window.
         about: (f64, f64),
     },
-    /// Show the map of this key, and what stands up it: another, or what limit points have.
+    /// Show the map of this key; its vertical axis is another key, or what limit points have.
     Map {
         x: Key,
         y: Option<Key>,
@@ -124,29 +124,29 @@ pub enum Command {
     Go(Home),
     /// Show this quantity over the range of the selected value.
     Study(QuantityColumn),
-    /// Draw this theory over the curve, or no longer.
+    /// Draw this theory over the curve, or remove it.
     Overlay(Overlay),
-    /// So many commands taken back ([`Id::Undo`]) or done again ([`Id::Redo`]).
+    /// This many commands undone ([`Id::Undo`]) or redone ([`Id::Redo`]).
     Travel {
         id: Id,
         count: usize,
-        /// Whether single states along the walk are counted instead, as scripts of earlier versions did.
+        /// Whether single states along the walk are counted instead, as in scripts of earlier versions.
         states: bool,
     },
-    /// The value of a key turned; which one was selected when the key was pressed, before what it waits for.
+    /// Turn the value of a key: the one that was selected when the key was pressed, before what the command waits for.
     Turn {
         id: Id,
         key: Key,
     },
-    /// Go to the last state walked with exactly these δ, P and s (reduced).
+    /// Go to the last state of the walk with exactly these δ, P and s (reduced).
     GoToState([f64; 3]),
     /// Go to this node of the walk.
     GoTo {
         node: usize,
-        /// [`History::numbering`](super::History::numbering) when it was asked for.
+        /// [`History::numbering`](super::History::numbering) at the time of the request.
         numbering: u64,
     },
-    /// Take away the pinned curve of this number, or all.
+    /// Remove the pinned curve with this number, or all.
     Unpin(Option<usize>),
     Open(String),
     /// Open this preset with other values for some keys.
@@ -154,36 +154,36 @@ pub enum Command {
         name: String,
         assignments: Vec<Assignment>,
     },
-    /// Delete the person's own preset of this name, for good.
+    /// Permanently delete the person's own preset of this name.
     Delete(String),
     SaveAs {
         name: String,
-        /// Whether a preset of that name is to be replaced.
+        /// Whether an existing preset of that name is replaced.
         replace: bool,
         /// Whether the data of a profile are copied beside it.
         with_data: bool,
     },
-    /// Save although the file was changed by somebody else meanwhile.
+    /// Save although somebody else has changed the file meanwhile.
     SaveAnyway,
     /// Write the screen to a file ending in `.txt`, or a figure to one whose ending chooses its format.
     ExportPage {
         page: super::export::Page,
         path: String,
-        /// Whether a file of that name is to be replaced.
+        /// Whether an existing file of that name is replaced.
         replace: bool,
     },
-    /// Write what is seen: whoever draws makes an [`ExportPage`](Self::ExportPage) of it.
+    /// Write what is seen: the part that draws turns it into an [`ExportPage`](Self::ExportPage).
     Picture {
         picture: super::export::Picture,
         path: String,
-        /// Whether a file of that name is to be replaced.
+        /// Whether an existing file of that name is replaced.
         replace: bool,
     },
-    /// Export to a file, its ending chooses CSV or JSON.
+    /// Export to a file, whose extension chooses CSV or JSON.
     Export {
         what: super::export::ExportKind,
         path: String,
-        /// Whether a file of that name is to be replaced.
+        /// Whether an existing file of that name is replaced.
         replace: bool,
     },
 }

@@ -20,7 +20,7 @@ use pulloff_engine::quasistatic::{
 use pulloff_engine::report::{OverlapReport, PathReport};
 use std::sync::Arc;
 
-/// Decimal digits of states of adhesion with a range: their series are read to as many.
+/// Decimal digits of states of adhesion with a range: their series are evaluated to as many.
 const ZONE_DIGITS: f64 = 11.0;
 /// The controls whose limit points are shown under every control.
 const SHOWN: [Control; 2] = [Control::Displacement, Control::Force];
@@ -37,7 +37,7 @@ pub struct CurvePoint {
     pub stable: bool,
 }
 
-/// Neighbouring states of the curve that are not admissible.
+/// Neighbouring states of the curve that are inadmissible.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inadmissible {
     pub report: OverlapReport,
@@ -55,7 +55,7 @@ pub struct ProblemCurve {
     pub curve: Curve,
     pub theory: Theory,
     pub groups: Groups,
-    /// Decimal digits the basis can be trusted for at the start.
+    /// Decimal digits to which the basis can be trusted at the start.
     pub digits: f64,
     /// dP/dδ and dA/dδ at the start, reduced; `None` for an empty curve.
     pub stiffness: Option<Stiffness>,
@@ -77,18 +77,18 @@ pub struct CurveData {
     pub case: Case,
     /// The problem and its control, shared with the nodes walked on it.
     pub setting: Arc<Setting>,
-    /// The curve in the user's units, with the part before it on which the path of an unstable start begins.
+    /// The curve in the user's units, including the part before it on which the path of an unstable start begins.
     pub points: Vec<CurvePoint>,
     /// The limit points under the chosen control, reduced, from the start inward.
     pub limits: Vec<Limit>,
     /// The limit points of the other controls in the user's units, with their control.
     pub other_limits: Vec<(Control, CurvePoint)>,
-    /// The quasi-static path down, reduced, or why there is none.
+    /// The quasi-static unloading path, reduced, or why there is none.
     pub unloading: Result<Path, String>,
-    /// The path of the device along which a walker goes where the states lie on no single curve, or why there is none.
+    /// The path of the device, along which the walker goes if the states lie on no single curve, or why there is none.
     pub along: Option<Result<Arc<Path>, String>>,
     pub report: Option<PathReport>,
-    /// Whether what takes longer is known of the path too.
+    /// Whether the checks that take longer have been made for the path too.
     checked: bool,
 }
 
@@ -103,7 +103,8 @@ impl ProblemCurve {
             progress.go_on()?;
             curve.hold(control);
         }
-        // Of adhesion with a range each state has been looked at, and the equations of the curve are not theirs.
+        // With a range of adhesion, each state has been checked already, and the equations of the curve do not hold for
+        // it.
         let in_zone = case.cohesion.is_some();
         let start = (!in_zone).then(|| curve.equilibrium.explicit(curve.outermost())).flatten();
         let digits = if in_zone { ZONE_DIGITS } else { case.basis.trusted_digits(&case.reduced, case.start) };
@@ -124,7 +125,7 @@ impl ProblemCurve {
         })
     }
 
-    /// Whether it is the curve of `preset`, whose control may be another.
+    /// Whether it is the curve of `preset`, whose control may differ.
     pub fn is_of(&self, preset: &Preset) -> bool {
         same_curve(&self.preset, preset)
     }
@@ -229,7 +230,7 @@ impl CurveData {
         self.base.inadmissible.is_some() && self.checked
     }
 
-    /// The same curve with the inadmissible states of it and of its path; `None` if `progress` said stop.
+    /// The same curve with its inadmissible states and those of its path; `None` if `progress` asked to stop.
     #[must_use]
     pub fn checked(&self, progress: &dyn Progress) -> Option<Self> {
         if self.is_checked() {
@@ -248,7 +249,7 @@ impl CurveData {
             checked.warnings.extend(self.case.unsettled(unloading, progress));
             report = Some(checked);
         }
-        // What was given up may lack its warning.
+        // A check that was given up may lack its warning.
         (!progress.stop()).then(|| Self { base, report, checked: true, ..self.clone() })
     }
 }

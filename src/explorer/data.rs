@@ -1,5 +1,5 @@
-//! The files of a folder, to choose from: those that end as tables of numbers do, and the folders beside them. And the columns of a
-//! measured curve whose header does not say what they are.
+//! The files of a folder to choose from: its subfolders, and the files whose extensions are used for tables of numbers.
+//! Also the columns of a measured curve whose header does not say what they are.
 
 use super::command::Assignment;
 use crate::store::FILES;
@@ -9,9 +9,9 @@ use pulloff_engine::text::{is_unsafe, show_name, show_path};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The endings of files that may hold a table.
+/// The extensions of files that may hold a table.
 pub const ENDINGS: [&str; 8] = ["csv", "txt", "dat", "tab", "tsv", "asc", "lvm", "itx"];
-/// At most so many entries of a folder are read.
+/// At most this many entries of a folder are read.
 const MOST: usize = 10_000;
 
 /// What there is to choose from in a folder.
@@ -21,16 +21,16 @@ pub struct Folder {
     pub path: PathBuf,
     /// Whether file names in the preset are relative to this folder.
     pub is_own: bool,
-    /// The folders in it by their names, sorted.
+    /// The names of the folders in it, sorted.
     pub folders: Vec<String>,
     /// The files in it that may hold a profile, sorted.
     pub files: Vec<String>,
 }
 
-/// A file of a measured curve whose columns a person must name.
+/// A file of a measured curve whose columns the person must name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Foreign {
-    /// The values that were asked for, the file's name among them.
+    /// The values that were requested, the file's name among them.
     pub assignments: Vec<Assignment>,
     /// Its name, safe to show.
     pub shown: String,
@@ -39,7 +39,7 @@ pub struct Foreign {
 }
 
 impl Foreign {
-    /// The file among `assignments` to `preset`, if nothing but its columns is in the way.
+    /// The file that `assignments` give to `preset`, if only its columns are in the way.
     pub fn of(preset: &Preset, assignments: &[Assignment]) -> Option<Self> {
         let value = |key: &str| assignments.iter().rfind(|(of, _)| of == key).map(|(_, text)| &**text);
         let name = value(data::FILE)?;
@@ -63,15 +63,15 @@ impl Foreign {
 }
 
 impl Folder {
-    /// How a preset calls the file `name` of this folder.
+    /// The name a preset uses for the file `name` of this folder.
     #[must_use]
     pub fn name_of(&self, name: &str) -> String {
         if self.is_own { name.to_owned() } else { self.path.join(name).to_string_lossy().into_owned() }
     }
 }
 
-/// Lists `folder`, or without one `own`, to which names are relative; without that they are relative to the current
-/// folder. Hidden files are left out, and names that cannot be shown.
+/// Lists `folder`, or without one `own`, to which names are relative; without either, the current folder. Leaves out
+/// hidden files and names that cannot be shown.
 /// Errors: Why the folder cannot be listed, in words.
 pub fn list(folder: Option<&Path>, own: Option<&Path>) -> Result<Folder, String> {
     let own = own.filter(|own| !own.as_os_str().is_empty()).unwrap_or(Path::new("."));

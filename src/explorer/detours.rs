@@ -1,30 +1,30 @@
-//! Lines of a session without the walks that were taken back: what nothing goes back to leaves nothing.
+//! The lines of a session without the walks that were undone: a detour that nothing later needs leaves no lines.
 //!
-//! A line that made so many states and the undo of as many states belong together; steps are shortened. Where a later line does
-//! again what was taken back, or goes to a state by its numbers, all lines stay, for what was left may be what it needs.
+//! A line that made some states and the undo of as many states cancel each other; steps are shortened. If a later line
+//! redoes what was undone, or goes to a state by its numbers, all lines stay, because it may need the states left out.
 
 use super::command::{Command, Id};
 use super::script;
 
-/// Of longer walks some states are forgotten: an undo of so many states is not of as many as were made.
+/// A longer walk forgets some of its states, so an undo of N states need not take back N of those that were made.
 const LONGEST: usize = 4000;
 
-/// A line, and how many states it made; `None` where that is not known.
+/// A line, and how many states it made; `None` if that is not known.
 pub type MadeLine = (String, Option<usize>);
 
-/// What a line does, as far as that matters here.
+/// What a line does, as far as it matters here.
 enum LineKind {
     /// Steps, which can be shortened.
     Steps,
     /// Another walk, which is left out whole or not at all.
     Walk,
-    /// Turned round, or another step length: an undo leaves it as it is.
+    /// A reversal or another step length: an undo leaves it unchanged.
     Way,
-    /// Values: an undo of states takes them back only where they made one.
+    /// Values: an undo of states takes them back only if they made a state.
     Values,
-    /// So many states taken back.
+    /// This many states undone.
     Undo(usize),
-    /// Something that needs what was taken back.
+    /// Something that needs what was undone.
     Needs,
 }
 
@@ -40,7 +40,7 @@ fn kind(line: &str) -> LineKind {
     }
 }
 
-/// The lines without what was taken back for good.
+/// The lines without what was undone for good.
 pub fn without_detours(lines: &[MadeLine]) -> Vec<String> {
     let all = || lines.iter().map(|(line, _)| line.clone()).collect();
     if lines.iter().filter_map(|(_, made)| *made).sum::<usize>() > LONGEST {
@@ -60,7 +60,7 @@ pub fn without_detours(lines: &[MadeLine]) -> Vec<String> {
     kept.into_iter().map(|(line, ..)| line).collect()
 }
 
-/// Leaves out what made the last `count` states; false, and nothing is changed, where that cannot be told.
+/// Leaves out what made the last `count` states; returns false and changes nothing if that cannot be determined.
 fn take_back(kept: &mut Vec<(String, Option<usize>, LineKind)>, count: usize) -> bool {
     let mut left = count;
     let mut out = Vec::new();
@@ -90,7 +90,7 @@ fn take_back(kept: &mut Vec<(String, Option<usize>, LineKind)>, count: usize) ->
     {
         kept[at] = (line, Some(steps), LineKind::Steps);
     }
-    // From the last on: the places before stay.
+    // From the last to the first, so that the earlier indices stay valid.
     for at in out {
         kept.remove(at);
     }
@@ -115,7 +115,7 @@ mod tests {
             without(&[("next-event", 9), ("jump", 1), ("undo 10 states", 0), ("step 1", 1)]),
             ["step 1"]
         );
-        // What turns the walk stays: an undo does not turn it back.
+        // What turns the walk stays: an undo does not reverse it.
         let turned = [("step 2", 2), ("reverse", 0), ("step 3", 3), ("undo 4 states", 0)];
         assert_eq!(without(&turned), ["step 1", "reverse"]);
         assert_eq!(

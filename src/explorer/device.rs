@@ -1,16 +1,16 @@
 //! The line of the loading device: why an instability happens.
 //!
-//! While its far end is held, the device gives the force P = k(Δ − δ): on the chart of P over δ a line of slope −k through
-//! the walker, upright for displacement control and level for force control. The contact follows its own curve. Where
-//! the curve touches that line the two have no more states in common on one side, and the edge runs along the line to
-//! the next crossing.
+//! While its far end is held, the device gives the force P = k(Δ − δ): on the chart of P over δ, a line of slope −k
+//! through the walker, vertical for displacement control and horizontal for force control. The contact follows its own
+//! curve. Where the curve touches that line, the two have no more states in common on one side, and the edge runs along
+//! the line to the next crossing.
 
 use super::model::Model;
 use pulloff_engine::problem::Control;
 
-/// The ends (δ, P) of the line through the walker in the user's units; `None` where it is not shown.
+/// The ends (δ, P) of the line through the walker in the user's units; `None` if it is not shown.
 ///
-/// At a limit point of the control it ends at the landing, elsewhere where it leaves the range of the curve.
+/// At a limit point of the control it ends at the landing, otherwise where it leaves the range of the curve.
 pub fn line(model: &Model) -> Option<[(f64, f64); 2]> {
     let node = model.walker().filter(|node| model.shows_device() && !node.is_apart())?;
     let (curve, control) = (model.curve.as_ref()?, model.control()?);
@@ -32,7 +32,7 @@ pub fn line(model: &Model) -> Option<[(f64, f64); 2]> {
         low = (low.0.min(point.approach), low.1.min(point.force));
         high = (high.0.max(point.approach), high.1.max(point.force));
     }
-    // How far along the line each side of the range is; a side it runs beside is never met.
+    // The distance along the line to each side of the range; a side parallel to the line is never met.
     let sides = [
         (low.0 - at.0, along.0),
         (high.0 - at.0, along.0),
@@ -40,7 +40,7 @@ pub fn line(model: &Model) -> Option<[(f64, f64); 2]> {
         (high.1 - at.1, along.1),
     ];
     let met = sides.into_iter().filter(|(_, slope)| *slope != 0.0).map(|(away, slope)| away / slope);
-    // The walker is inside: the nearest side each way. An end on the walker itself counts for both ways.
+    // The walker is inside: take the nearest side each way. An end at the walker itself counts for both ways.
     let (mut back, mut ahead) = (f64::NEG_INFINITY, f64::INFINITY);
     for t in met {
         if t >= 0.0 {

@@ -1,8 +1,8 @@
 //! Effects, and the two drivers that run them.
 //!
-//! Inline for tests and scripts: each effect is done before the next command, so nothing depends on timing. On
-//! threads for the screen: the newest curve and the newest result of each kind win, walks are done in order and stream their
-//! states, files have a lane of their own, and none of them waits for another.
+//! The inline driver is for tests and scripts: each effect is done before the next command, so nothing depends on
+//! timing. The threaded driver is for the screen: the newest curve and the newest result of each kind win, walks are
+//! done in order and stream their states, files have a lane of their own, and none of them waits for another.
 
 use super::backgrounds::KINDS;
 use super::curve::{CurveData, ProblemCurve};
@@ -42,7 +42,7 @@ impl Inline {
         Self { store }
     }
 
-    /// Does `effects` and all that follows from them, until nothing is left.
+    /// Runs `effects` and everything that follows from them, until nothing is left.
     pub fn settle(&self, model: &mut Model, effects: Vec<Effect>) {
         let mut left = VecDeque::from(effects);
         while let Some(effect) = left.pop_front() {
@@ -52,7 +52,7 @@ impl Inline {
         }
     }
 
-    /// Does one effect; it is over when this returns, so there is nothing to stop. What is only seen on the way is left out.
+    /// Runs one effect; it is over when this returns, so there is nothing to stop. Intermediate results are left out.
     pub fn run(&self, effect: Effect) -> Option<Reply> {
         match effect {
             Effect::Curve(wish) => compute(&wish, &Staged::unwatched()),
@@ -91,12 +91,12 @@ fn compute(wish: &Wish, progress: &Staged<'_>) -> Option<Reply> {
     }
 }
 
-/// A curve computed this long is finished though a newer one waits, so that a held key shows curves.
+/// After this long, a curve is finished although a newer one waits, so that a held key shows curves.
 const PATIENCE: Duration = Duration::from_millis(50);
 /// The states of a run are sent in batches, one per frame.
 const CHUNK: Duration = Duration::from_millis(30);
 
-/// Runs effects on threads of their own; replies go to one function.
+/// Runs effects on their own threads; all replies go to one function.
 #[derive(Debug)]
 pub struct Workers {
     curve: Arc<RequestSlot<Box<Wish>>>,
@@ -112,11 +112,11 @@ pub struct Workers {
 #[derive(Debug)]
 struct ResultLane {
     slot: RequestSlot<Task>,
-    /// Results up to this number are to end.
+    /// Results up to this number must stop.
     stopped: AtomicU64,
 }
 
-/// Holds the newest request only.
+/// Holds only the newest request.
 #[derive(Debug)]
 struct RequestSlot<T> {
     wish: Mutex<Option<T>>,
@@ -223,7 +223,7 @@ fn curves(slot: &RequestSlot<Box<Wish>>, given_up: &AtomicU64, reply: &dyn Fn(Re
     loop {
         let mut wish = slot.take();
         fault::point(fault::WORKER);
-        // If only the control changed while the curve was computed, the last curve serves.
+        // If only the control changed while the curve was computed, the last curve can be reused.
         let known = last.take_if(|base| wish.base.is_none() && base.is_of(&wish.preset));
         wish.base = wish.base.or(known);
         let begun = Instant::now();
@@ -250,7 +250,7 @@ fn results(lane: &ResultLane, reply: &dyn Fn(Reply)) {
     loop {
         let task = lane.slot.take();
         let begun = Instant::now();
-        // For good, once it is so.
+        // Once set, it stays set.
         let outdated = AtomicBool::new(false);
         let stop = || {
             let is_early = task.patience.is_zero() || begun.elapsed() <= task.patience;

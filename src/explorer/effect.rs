@@ -1,4 +1,4 @@
-//! Effects: the work that the model asks for. Replies: what came of it.
+//! Effects: the work that the model requests. Replies: the outcome of that work.
 
 use super::curve::{CurveData, ProblemCurve};
 use super::job::{Done, Job};
@@ -9,24 +9,24 @@ use crate::mend::WordedFault;
 use pulloff_engine::preset::Preset;
 use std::sync::Arc;
 
-/// Work that the model asks for.
+/// Work that the model requests.
 #[derive(Debug, Clone)]
 pub enum Effect {
-    /// Compute the curve of a preset; an older one still waiting is forgotten.
+    /// Compute the curve of a preset; an older request still waiting is dropped.
     Curve(Box<Wish>),
     /// Give up the curves up to this number.
     StopCurve(u64),
-    /// Compute a result; an older one of its kind still waiting is forgotten.
+    /// Compute a result; an older request of its kind still waiting is dropped.
     Compute(Task),
-    /// Stop the result of this kind up to this number; what is done of it may still come.
+    /// Stop the results of this kind up to this number; what is done of them may still arrive.
     Stop {
         name: &'static str,
         id: u64,
     },
     Walk(Box<Request>),
-    /// The run goes on at so many states a second.
+    /// The run continues at this many states per second.
     Pace(f64),
-    /// End the walk of this number; its states so far stay.
+    /// End the walk with this number; its states so far stay.
     StopWalk(u64),
     File(Box<Job>),
 }
@@ -36,11 +36,11 @@ pub enum Effect {
 pub struct Wish {
     pub id: u64,
     pub preset: Preset,
-    /// The curve of the same problem, where it is known: then only what belongs to the control is computed.
+    /// The curve of the same problem, if known: then only what belongs to the control is computed.
     pub base: Option<Arc<ProblemCurve>>,
 }
 
-/// What came of it.
+/// The outcome of an effect.
 #[derive(Debug, Clone)]
 pub enum Reply {
     Curve {
@@ -51,12 +51,12 @@ pub enum Reply {
         id: u64,
         stage: CurveStage,
     },
-    /// A result, or as much of it as is done.
+    /// A result, or the part of it that is done.
     Found(Found),
     Walked {
         id: u64,
         made: Vec<MadeState>,
-        /// How it ended; `None` while it goes on.
+        /// How it ended; `None` while it continues.
         outcome: Option<WalkOutcome>,
     },
     /// A message about the session for the person.

@@ -1,4 +1,4 @@
-//! What can be written to a file: the kinds of export and the endings of their files.
+//! What can be written to a file: the kinds of export and the extensions of their files.
 
 use super::view::View;
 use crate::print::PictureFormat;
@@ -43,7 +43,7 @@ impl ExportKind {
         }
     }
 
-    /// The endings its file may have, the usual one first.
+    /// The extensions its file may have, the usual one first.
     pub fn endings(self) -> &'static [&'static str] {
         match self {
             Self::Curve | Self::Walk | Self::Events => &["csv", "json"],
@@ -53,18 +53,18 @@ impl ExportKind {
     }
 }
 
-/// Whether the name of a file has one of these endings.
+/// Whether a file name has one of these extensions.
 pub fn ends_in(path: &str, endings: &[&str]) -> bool {
     let ending = Path::new(path).extension().and_then(|ending| ending.to_str());
     ending.is_some_and(|ending| endings.iter().any(|known| known.eq_ignore_ascii_case(ending)))
 }
 
-/// What is seen and can be drawn for a file.
+/// What is on the screen and can be written to a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Picture {
     /// The screen as text.
     Screen,
-    /// A view as a figure for print; the first on the screen where none is named.
+    /// A view as a figure for print; without a view, the first one on the screen.
     Figure(Option<View>),
 }
 
@@ -85,7 +85,7 @@ impl Picture {
         }
     }
 
-    /// The endings its file may have, the usual one first.
+    /// The extensions its file may have, the usual one first.
     pub fn endings(self) -> &'static [&'static str] {
         match self {
             Self::Screen => &["txt"],
@@ -94,7 +94,7 @@ impl Picture {
     }
 }
 
-/// The name of a file for a document of this name: that of the preset is in it.
+/// The file name for a document of this name; it contains the name of the preset.
 pub fn file_for(source: &Source, document: &str, ending: &str) -> String {
     let base = match source {
         Source::User { name, .. } => name.clone(),
@@ -105,10 +105,10 @@ pub fn file_for(source: &Source, document: &str, ending: &str) -> String {
     format!("{}-{document}.{ending}", sanitize(&base, 60))
 }
 
-/// What is seen, for a file.
+/// What is on the screen, ready for a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Page {
     Screen(String),
-    /// A figure as SVG, drawn as its file's ending says.
+    /// A figure as SVG, converted to the format of the file's extension.
     Figure(String),
 }

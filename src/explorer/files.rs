@@ -1,4 +1,4 @@
-//! Opening, saving, exporting, and reading profiles: the jobs on files, done.
+//! Runs the jobs on files: opening, saving, exporting, and reading profiles.
 
 use super::command::{Assignment, Command};
 use super::curve::CurveData;
@@ -35,7 +35,7 @@ impl Page {
     }
 }
 
-/// Gives `preset` other values; a measured curve comes last, together with what is said of its columns.
+/// Gives `preset` other values; a measured curve comes last, together with the values that describe its columns.
 fn assign(preset: &mut Preset, assignments: &[Assignment]) -> Result<(), Invalid> {
     let is_curve = |assignment: &&Assignment| [data_keys::FILE, data_keys::COLUMNS].contains(&&*assignment.0);
     let (curve, others): (Vec<_>, Vec<_>) = assignments.iter().partition(is_curve);
@@ -54,7 +54,7 @@ pub fn run(store: &Store, job: Job) -> Done {
         Job::Assign { mut preset, assignments } => {
             match assign(&mut preset, &assignments) {
                 Ok(()) => {
-                    // Found here, its branches need not be found where nobody may wait for them.
+                    // Found here, its branches need not be found later where nobody may wait for them.
                     let _ = preset.branches();
                     Done::Assigned(preset)
                 }
@@ -116,7 +116,7 @@ pub fn run(store: &Store, job: Job) -> Done {
     }
 }
 
-/// Saves under a name, with the data of a profile if wanted.
+/// Saves under a name, together with the data of a profile if wanted.
 fn save_as(
     store: &Store,
     name: String,
@@ -181,7 +181,7 @@ pub fn target(path: &str) -> PathBuf {
     }
 }
 
-/// A session as a script: opens the preset it began with, with the values that differ from its file, and follows its
+/// A session as a script: opens the preset it began with, with the values that differ from its file, followed by its
 /// lines.
 fn script_text(store: &Store, start: &Beginning, lines: &[String]) -> Result<String, String> {
     let (name, assignments) = named(store, start)?;
@@ -196,12 +196,12 @@ fn script_text(store: &Store, start: &Beginning, lines: &[String]) -> Result<Str
     ))
 }
 
-/// Why a preset cannot be said by its name and assignments.
+/// Why a preset cannot be expressed by its name and assignments.
 fn lost(source: &Source) -> String {
     format!("its preset does not come of {} by values that can be assigned", source.shown())
 }
 
-/// How a preset is called: its name or path, and the values that differ from its file.
+/// How to refer to a preset: its name or path, and the values that differ from its file.
 fn named(store: &Store, start: &Beginning) -> Result<(String, Vec<Assignment>), String> {
     let name = match &start.source {
         Source::Shipped(shipped) => shipped.name.to_owned(),
@@ -218,7 +218,7 @@ fn named(store: &Store, start: &Beginning) -> Result<(String, Vec<Assignment>), 
     let none = &[] as &[&str];
     let source = store.resolve(&name).map_err(|error| error.to_string())?;
     let now = store.load(&source, none).map_err(|error| error.to_string())?.preset;
-    // Laid over the file as a whole, as a replay does.
+    // Applied to the file as a whole, as a replay does.
     let leads_there = |assignments: &Vec<Assignment>| {
         let laid: Vec<String> = assignments.iter().map(|(key, text)| format!("{key}={text}")).collect();
         store.load(&source, &laid).is_ok_and(|back| back.preset == start.preset)
@@ -228,7 +228,7 @@ fn named(store: &Store, start: &Beginning) -> Result<(String, Vec<Assignment>), 
     Ok((name, assignments))
 }
 
-/// The text of a document; of a script its lines alone.
+/// The text of a document; for a script, only its lines.
 fn text(content: &Content, as_json: bool) -> Result<String, Box<dyn std::error::Error>> {
     let walked = |curve: &CurveData, points: Vec<WalkRow>, events: &[EventReport]| {
         json(&WalkReport {

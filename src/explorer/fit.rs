@@ -1,4 +1,4 @@
-//! The commands about a fit: which keys it may change, its beginning and what comes of it.
+//! The commands for a fit: which keys it may change, its start and its outcome.
 
 use super::background::{Background, Tell, Want, Watcher, ask, asked, stop};
 use super::command::Id;
@@ -17,7 +17,7 @@ use pulloff_engine::text::greek;
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 
-/// Marks the selected key as free to be fitted, or no longer.
+/// Marks the selected key as free to be fitted, or unmarks it.
 pub(super) fn mark(model: &mut Model) -> Vec<Effect> {
     let Some((row, _)) = model.selected_knob() else { return Vec::new() };
     let mut preset = model.preset.clone();
@@ -36,15 +36,15 @@ pub(super) fn mark(model: &mut Model) -> Vec<Effect> {
     }
 }
 
-/// What is done of a fit.
+/// How far a fit has come, or its outcome.
 #[derive(Debug, Clone)]
 pub enum FitProgress {
-    /// So many per cent.
+    /// Progress in per cent.
     Percent(u8),
     Done(Result<Arc<Fit>, WordedFault>),
 }
 
-/// Tells of a fit how far it has come.
+/// Reports the progress of a fit.
 struct Told<'a> {
     percent: Cell<u8>,
     progress: &'a dyn Progress,
@@ -53,7 +53,7 @@ struct Told<'a> {
 
 impl Progress for Told<'_> {
     fn report(&self, share: f64) {
-        // A share of a hundred; every fifth is enough for who waits.
+        // From 0 to 100; a report every five per cent is enough for someone waiting.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let percent = (share.clamp(0.0, 1.0) * 100.0) as u8;
         if percent >= self.percent.get() + 5 {
@@ -72,7 +72,7 @@ impl Background for FitProgress {
     const NAME: &'static str = "fit";
     const CHANGES_VALUES: bool = true;
 
-    /// A command asks for it; once it is done, it is wanted no longer.
+    /// Requested by a command; once it is done, it is no longer wanted.
     fn wanted(model: &Model) -> Want<Preset> {
         if model.results.under_way::<Self>().is_some() { Want::Later } else { Want::Not }
     }
@@ -113,7 +113,7 @@ impl Background for FitProgress {
     }
 }
 
-/// Asks for a fit of the values as they are; ends one that is under way with the best so far.
+/// Requests a fit of the present values; a fit under way ends with the best result so far.
 pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
     if let Some(stops) = stop::<FitProgress>(model) {
         return vec![stops];
@@ -127,7 +127,7 @@ pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
     vec![ask::<FitProgress>(model, preset)]
 }
 
-/// Takes what a fit found.
+/// Adopts what a fit found.
 fn taken(model: &mut Model, found: &Arc<Fit>) -> Vec<Effect> {
     if let Some(direction) = &found.direction {
         return model.refuse(format!("not determined, and not taken: {direction}"));
@@ -137,7 +137,7 @@ fn taken(model: &mut Model, found: &Arc<Fit>) -> Vec<Effect> {
     change(model, found.preset.clone())
 }
 
-/// What a fit found, in a line: the verdict first, since narrow screens cut the end.
+/// What a fit found, in one line: the verdict comes first, since narrow screens cut off the end.
 fn told(fit: &Fit) -> String {
     let ended = match (fit.ending, fit.verdict) {
         (Ending::Rounds, _) => "not converged, the best so far".to_owned(),
@@ -154,13 +154,13 @@ fn told(fit: &Fit) -> String {
 }
 
 impl Model {
-    /// What the fit found whose values these are.
+    /// What the fit found, if the present values are still its values.
     pub(super) fn fit_said(&self) -> Option<String> {
         self.fit.as_deref().filter(|fit| fit.holds_for(&self.preset)).map(told)
     }
 
-    /// The standard error of the value of `key`, for as long as all is as the fit found it: of another file, another R or another
-    /// column nothing is known. There is none where the model does not describe the points.
+    /// The standard error of the value of `key`, as long as everything is as the fit found it: for another file,
+    /// another R or another column nothing is known. There is none if the model does not describe the points.
     pub fn standard_error(&self, key: &str) -> Option<f64> {
         let fit = self.fit.as_deref().filter(|fit| fit.verdict == Verdict::Describes)?;
         if !fit.holds_for(&self.preset) {

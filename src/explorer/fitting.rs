@@ -7,7 +7,7 @@ use pulloff_engine::fit::run::{Residual, residuals_own};
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{Preset, data};
 
-/// What is said where there are none to be looked at.
+/// The message where there are no points to look at.
 pub const NO_POINTS: &str = "no measured curve: :data FILE lays one behind the chart";
 
 /// The distances of the points from the curve of a preset, in σ.
@@ -18,7 +18,7 @@ pub struct Distances {
 }
 
 impl Distances {
-    /// Finds them.
+    /// Computes the distances.
     pub fn of(preset: &Preset) -> Self {
         let found = residuals_own(preset).map_err(|error| error.to_string());
         Self { preset: preset.clone(), found }
@@ -47,7 +47,7 @@ impl Background for Distances {
     }
 }
 
-/// The dotted key that a name in `data.free` means.
+/// The dotted key that a name in `data.free` stands for.
 pub(super) fn named(preset: &Preset, name: &str) -> Option<String> {
     use pulloff_engine::fit::problem::Target;
     Some(match pulloff_engine::fit::options::target(preset, Abscissa::Approach, name).ok()? {

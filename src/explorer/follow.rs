@@ -1,7 +1,8 @@
 //! The edges of contacts with rings, followed through a change of the problem.
 //!
-//! Newton's method begins at the edges of before with the same contacts. Where it does not end, the change is made in smaller parts, each
-//! from the edges of the one before: where that does not lead there either, there is no state, and none is claimed.
+//! Newton's method starts from the previous edges, with the same contacts. Where it does not converge, the change is
+//! made in smaller parts, each starting from the edges of the previous part. If that fails too, there is no state, and
+//! none is claimed.
 
 use super::curve::CurveData;
 use super::node::Node;
@@ -12,7 +13,7 @@ use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::walk::{At, Emit, Walk, WalkEnd, WalkFailure, edges};
 use pulloff_engine::quasistatic::{Curve, Detail, State};
 
-/// The smallest part of a change, and how many are tried.
+/// The smallest part of a change, and how many parts are tried.
 const SMALLEST: f64 = 1.0 / 64.0;
 const MOST: usize = 100;
 
@@ -26,7 +27,7 @@ pub struct Before {
 }
 
 impl Before {
-    /// The edges of a state, where there are more than a disc has.
+    /// The edges of a state, if it has more than a disc has.
     pub fn of(node: &Node) -> Option<Box<Self>> {
         let contacts = scaled(&node.contacts(), node.setting.units().length);
         node.has_rings().then(|| Box::new(Self { contacts, preset: node.setting.preset.clone() }))
@@ -60,7 +61,7 @@ impl Before {
         WalkEnd::Failed(WalkFailure::NotSolved)
     }
 
-    /// The contacts when this share of the change to `preset` is made.
+    /// The contacts after this share of the change to `preset`.
     fn part(&self, preset: &Preset, share: f64, from: &Contacts, state: &State) -> Option<Contacts> {
         let case = Case::new(&between(&self.preset, preset, share)?).ok()?;
         let curve = case.curve_in(Detail::Borders, &Unwatched).ok()?;
@@ -95,7 +96,7 @@ fn scaled(contacts: &Contacts, by: f64) -> Contacts {
     contacts.with_edges(&radii)
 }
 
-/// The preset on the way from one to the other; `None` where they differ in more than numbers.
+/// The preset this share of the way from one to the other; `None` if they differ in more than numbers.
 fn between(from: &Preset, to: &Preset, share: f64) -> Option<Preset> {
     let mut preset = to.clone();
     let mut changes = Vec::new();

@@ -12,11 +12,11 @@ const CHUNK: usize = 256;
 struct TreeNode {
     node: Node,
     forward: Option<usize>,
-    /// Its lasting number: pruning keeps it, and it grows from node to node.
+    /// Its permanent number: pruning keeps it, and it grows from node to node.
     id: u64,
 }
 
-/// A place to come back to: a node, and the child last gone to from there.
+/// A place to return to: a node, and the child last visited from there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bookmark {
     cursor: Option<usize>,
@@ -24,15 +24,15 @@ pub struct Bookmark {
     numbering: u64,
 }
 
-/// The tree. A clone is cheap however long the walk: what is not changed afterwards stays shared.
+/// The tree. A clone is cheap however long the walk: what does not change afterwards stays shared.
 #[derive(Debug, Clone, Default)]
 pub struct History {
     chunks: Vec<Arc<Vec<TreeNode>>>,
     cursor: Option<usize>,
     revision: u64,
-    /// How often nodes were forgotten and the others numbered anew.
+    /// How often nodes have been forgotten and the others renumbered.
     numbering: u64,
-    /// The tree is pruned when it has so many nodes.
+    /// The tree is pruned when it has this many nodes.
     prune_at: usize,
     next_id: u64,
 }
@@ -77,22 +77,22 @@ impl History {
         self.forward(self.cursor?)
     }
 
-    /// The child of a node last gone to.
+    /// The child last visited from a node.
     pub fn forward(&self, number: usize) -> Option<usize> {
         self.entry(number)?.forward
     }
 
-    /// The node of a number.
+    /// The node with this number.
     pub fn node(&self, number: usize) -> Option<&Node> {
         self.entry(number).map(|entry| &entry.node)
     }
 
-    /// The lasting number of the current node.
+    /// The permanent number of the current node.
     pub fn id(&self) -> Option<u64> {
         self.entry(self.cursor?).map(|entry| entry.id)
     }
 
-    /// The number of the node of a lasting number, or of the last one before it that was not pruned.
+    /// The number of the node with this permanent number, or of the last one before it that was not pruned.
     pub fn find(&self, id: u64) -> Option<usize> {
         let (mut low, mut high) = (0, self.len());
         while low < high {
@@ -106,7 +106,7 @@ impl History {
         low.checked_sub(1)
     }
 
-    /// All nodes, by number; a node comes behind its parent.
+    /// All nodes, by number; a node comes after its parent.
     pub fn nodes(&self) -> impl ExactSizeIterator<Item = &Node> {
         (0..self.len()).map(|at| &self.chunks[at / CHUNK][at % CHUNK].node)
     }
@@ -121,7 +121,7 @@ impl History {
         self.chunks.is_empty()
     }
 
-    /// A tree of the same revision without its nodes: to see later whether anything has changed, not to hold them.
+    /// A tree of the same revision without its nodes: to tell later whether anything has changed, not to hold them.
     #[must_use]
     pub fn stamp(&self) -> Self {
         Self { revision: self.revision, ..Self::default() }
@@ -166,13 +166,13 @@ impl History {
         self.add(TreeNode { node, forward, id });
     }
 
-    /// Appends a node behind the current one and stands on it.
+    /// Appends a node after the current one and moves to it.
     pub fn push(&mut self, mut node: Node) {
         node.parent = self.cursor;
         self.append(node);
     }
 
-    /// Appends a node beside the current one: the same change made further is one undo.
+    /// Appends a node beside the current one: continuing the same change remains one undo.
     pub fn push_beside(&mut self, mut node: Node) {
         node.parent = self.parent();
         self.append(node);
@@ -187,8 +187,8 @@ impl History {
         self.stand(at);
     }
 
-    /// Of a walk that has become long forgets plain states far back, and numbers the others anew; those of the lasting
-    /// numbers in `held`, ascending, stay.
+    /// In a walk that has become long, forgets plain states far back and renumbers the others; the nodes whose
+    /// permanent numbers are in `held`, ascending, stay.
     pub fn shorten(&mut self, held: &[u64]) {
         if self.len() <= self.prune_at.max(prune::MOST) {
             return;
@@ -205,7 +205,7 @@ impl History {
             next_id: self.next_id,
             ..Self::default()
         };
-        // The new number of each node, or of the last one before it that stays.
+        // The new number of each node, or of the last node before it that stays.
         let mut place: Vec<usize> = Vec::with_capacity(nodes.len());
         for (at, node) in nodes.iter().enumerate() {
             let parent = node.parent.map(|parent| place[parent]);
@@ -214,12 +214,12 @@ impl History {
                 let id = self.entry(at).map_or(0, |entry| entry.id);
                 tree.add(TreeNode { node: Node { parent, ..(*node).clone() }, forward: None, id });
             } else {
-                // The first node has no parent, and stays.
+                // The first node has no parent, and always stays.
                 place.push(parent.unwrap_or(0));
             }
         }
         for at in 0..nodes.len() {
-            // Skips the pruned nodes, which have one child each.
+            // Skips pruned nodes; each has exactly one child.
             let mut child = self.forward(at).filter(|_| stays[at]);
             while let Some(gone) = child.filter(|child| !stays[*child]) {
                 child = self.forward(gone);
@@ -229,7 +229,7 @@ impl History {
             }
         }
         tree.cursor = self.cursor.map(|cursor| place[cursor]);
-        // Not at every step where little could be pruned.
+        // Keeps a tree in which little could be pruned from being pruned at every step.
         tree.prune_at = tree.len() + tree.len() / 4;
         *self = tree;
     }
@@ -244,9 +244,9 @@ impl History {
         Bookmark { cursor: self.cursor, forward: self.redo_target(), numbering: self.numbering }
     }
 
-    /// Stands where it stood, as if nothing had been walked since; the nodes made since are kept.
+    /// Returns to where it stood, as if nothing had been walked since; the nodes made since are kept.
     ///
-    /// Where nodes were numbered anew since, it stays where it is.
+    /// If nodes have been renumbered since, it stays where it is.
     pub fn return_to(&mut self, mark: Bookmark) {
         let Some(at) = mark.cursor.filter(|_| mark.numbering == self.numbering) else { return };
         self.stand(at);
@@ -256,7 +256,7 @@ impl History {
         }
     }
 
-    /// Stands on the node before; false when there is none.
+    /// Moves to the previous node; false if there is none.
     pub fn undo(&mut self) -> bool {
         let (Some(here), Some(parent)) = (self.cursor, self.parent()) else { return false };
         self.set_forward(parent, here);
@@ -264,7 +264,7 @@ impl History {
         true
     }
 
-    /// Stands on the child last gone to; false when there is none.
+    /// Moves to the child last visited; false if there is none.
     pub fn redo(&mut self) -> bool {
         let target = self.redo_target();
         if let Some(target) = target {
@@ -273,7 +273,7 @@ impl History {
         target.is_some()
     }
 
-    /// Stands on the node of this number, and redo leads back to it from wherever undo goes; false when there is none.
+    /// Moves to the node with this number, and redo leads back to it from wherever undo goes; false if there is none.
     pub fn go(&mut self, number: usize) -> bool {
         if self.node(number).is_none() {
             return false;
@@ -287,12 +287,12 @@ impl History {
         true
     }
 
-    /// The walk that led to the current node: from where it began, each node with its number.
+    /// The walk that led to the current node: from its beginning, each node with its number.
     pub fn path(&self) -> Vec<(usize, &Node)> {
         self.cursor.map_or_else(Vec::new, |cursor| self.path_to(cursor))
     }
 
-    /// The walk that led to the node of this number.
+    /// The walk that led to the node with this number.
     pub fn path_to(&self, number: usize) -> Vec<(usize, &Node)> {
         let mut path = Vec::new();
         let mut at = Some(number);

@@ -1,4 +1,4 @@
-//! Jobs on files that the model asks for, and how they end.
+//! Jobs on files that the model requests, and how they end.
 
 use super::command::Assignment;
 use super::curve::CurveData;
@@ -15,11 +15,11 @@ use pulloff_engine::report::path::EventReport;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What is written into a document.
+/// The content of a document.
 #[derive(Debug, Clone)]
 pub enum Content {
     Curve(Arc<CurveData>),
-    /// The nodes walked, from where the walk began to the walker, and the curve.
+    /// The nodes walked, from the beginning of the walk to the walker, and the curve.
     Walk(Arc<CurveData>, Vec<Node>),
     Events(Arc<CurveData>, Vec<EventReport>),
     /// Where the session began, and the lines that follow.
@@ -51,7 +51,7 @@ pub enum Job {
         assignments: Vec<Assignment>,
     },
     Delete(String),
-    /// Give some keys other values, that of a file among them.
+    /// Give some keys other values, among them that of a file.
     Assign {
         preset: Box<Preset>,
         assignments: Vec<Assignment>,
@@ -59,13 +59,13 @@ pub enum Job {
     Browse {
         /// The key whose file is chosen.
         key: Key,
-        /// The folder; without one, that of the key's own file.
+        /// The folder; without one, the folder of the key's own file.
         folder: Option<PathBuf>,
-        /// The folder that names are relative to; the current one without it.
+        /// The folder that names are relative to; without one, the current folder.
         own: Option<PathBuf>,
     },
     Read {
-        /// The folder that its name is relative to; the current one without it.
+        /// The folder that its name is relative to; without one, the current folder.
         folder: Option<PathBuf>,
         name: String,
     },
@@ -77,7 +77,7 @@ pub enum Job {
     SaveAs {
         name: String,
         preset: Box<Preset>,
-        /// Whether a preset of that name may be replaced.
+        /// Whether an existing preset of that name may be replaced.
         replace: bool,
         /// Whether the data of a profile are copied beside it.
         with_data: bool,
@@ -114,9 +114,9 @@ pub enum Done {
         fingerprint: Fingerprint,
         preset: Box<Preset>,
     },
-    /// The file was changed by somebody else: not saved.
+    /// Somebody else has changed the file: not saved.
     Conflict,
-    /// A preset of this name exists: not saved; whether its data were to be copied.
+    /// A preset of this name exists: not saved. Says whether its data were to be copied.
     NameTaken(String, bool),
     Exported(String),
     FileExists(ExportKind, String),

@@ -1,10 +1,10 @@
-//! What was done in a session, as the lines of a script that does it again.
+//! What was done in a session, as the lines of a script that repeats it.
 //!
-//! A line is written when something took effect, not when it was asked for: the answer to a walk says how many states it
-//! made, and only then are they a line. What a walk depends on besides the walker's state (the values, the way, the step
-//! length) is compared with what a replay has at that place, and set before it where it differs. So values tried and taken
-//! back, a way reversed twice and what only a screen shows leave nothing, and the order is that in which states were made,
-//! whatever the timing was.
+//! A line is written when something took effect, not when it was requested: the reply to a walk says how many states it
+//! made, and only then do they become a line. What a walk depends on besides the walker's state (the values, the
+//! direction, the step length) is compared with what a replay has at that place, and set first where it differs. So
+//! values tried and taken back, a direction reversed twice and what affects only the screen leave nothing, and the
+//! order is that in which states were made, whatever the timing was.
 
 use super::command::{Command, FIRST_LENGTH, Id, MOST_STEPS};
 use super::curve::CurveData;
@@ -18,7 +18,7 @@ use pulloff_engine::preset::changes::changes;
 use pulloff_engine::problem::Begin;
 use std::sync::Arc;
 
-/// Most lines kept, and bytes in them: half of what a script may have.
+/// The most lines kept, and the most bytes in them: half of what a script may have.
 const LINES: usize = script::MOST_LINES / 2;
 const BYTES: usize = 1 << 19;
 
@@ -26,7 +26,7 @@ const BYTES: usize = 1 << 19;
 #[derive(Debug, Clone, Default)]
 pub struct Journal {
     lines: Arc<Vec<String>>,
-    /// How many states each line made; fewer are known of a session that goes on.
+    /// How many states each line made; not known for the earlier lines of a resumed session.
     states: Arc<Vec<Option<usize>>>,
     bytes: usize,
     start: Option<Box<Beginning>>,
@@ -45,7 +45,7 @@ pub struct Beginning {
     pub preset: Preset,
 }
 
-/// What a replay of the lines has at their end.
+/// What a replay has set at the end of the lines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replay {
     pub preset: Preset,
@@ -53,7 +53,7 @@ pub struct Replay {
     pub length: f64,
 }
 
-/// A walk that is not over.
+/// A walk that is not over yet.
 #[derive(Debug, Clone)]
 struct OpenWalk {
     action: Action,
@@ -63,7 +63,7 @@ struct OpenWalk {
     made: usize,
 }
 
-/// What is kept of a journal in a session: all but a walk that is not over.
+/// What a session keeps of a journal: everything but a walk that is not over yet.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct KeptJournal {
     pub lines: Arc<Vec<String>>,
@@ -88,7 +88,7 @@ impl Journal {
         }
     }
 
-    /// The journal of a session that goes on.
+    /// The journal of a resumed session.
     pub fn of(kept: KeptJournal) -> Self {
         let KeptJournal { lines, start, replay, steps, broken } = kept;
         let bytes = lines.iter().map(String::len).sum();
@@ -97,7 +97,7 @@ impl Journal {
         Self { lines, states, bytes, start, replay, steps, walking: None, broken }
     }
 
-    /// Its lines so far; a walk that goes on is not in them yet.
+    /// Its lines so far; a walk under way is not among them yet.
     pub fn lines(&self) -> &[String] {
         &self.lines
     }
@@ -107,8 +107,8 @@ impl Journal {
         self.start.as_deref()
     }
 
-    /// The lines that lead to `preset`, or to the walker's state where there is none, walked `way` (inward or not, step
-    /// length); `failed` where it has no curve.
+    /// The lines that lead to `preset`, or without one to the walker's state, walked `way` (inward or not, step
+    /// length); `failed` if the preset has no curve.
     pub fn so_far(
         &self,
         preset: Option<&Preset>,
@@ -154,9 +154,9 @@ impl Journal {
     pub(super) fn ended(&mut self, outcome: &WalkOutcome, is_stale: bool) {
         let Some(walking) = self.walking.take() else { return };
         let mut preset = walking.curve.setting.preset.clone();
-        // Where a walk begins is no matter of the curve: only a restart asks for it.
+        // Where a walk begins is not part of the curve: only a restart asks for it.
         preset.path.begin = match (&walking.action, &self.replay) {
-            // A path is that of one beginning.
+            // A path belongs to one beginning.
             _ if walking.curve.along.is_some() => preset.path.begin,
             (Action::Begin, _) => Begin::Touch,
             (Action::MoveTo(s), _) if s.total_cmp(&walking.curve.case.start).is_eq() => Begin::Disc,
@@ -166,7 +166,7 @@ impl Journal {
         let preset = &preset;
         let way = Some((walking.inward, walking.length));
         let is_solve = matches!(walking.action, Action::Solve { .. });
-        // A value that could not be solved and was taken back meanwhile leaves nothing to replay.
+        // A value that could not be solved and has been taken back meanwhile leaves nothing to replay.
         if walking.made == 0 && !(is_stale && is_solve) {
             return;
         }
@@ -175,7 +175,7 @@ impl Journal {
             Action::Solve { .. } => self.sync(preset, None, is_stale),
             Action::Steps(_) => {
                 self.sync(preset, way, false);
-                // Beyond a limit point, or the end, a further step is a walk of its own.
+                // Beyond a limit point, or after the end, a further step is a separate walk.
                 self.step(walking.made, matches!(outcome, WalkOutcome::Done | WalkOutcome::Paused));
             }
             Action::ToLimit | Action::ToEvent(_) | Action::Run(_) => {
@@ -223,7 +223,7 @@ impl Journal {
         let all = self.steps.filter(|all| *all > made).unwrap_or(made);
         let has_line = self.lines.len() > before || all > made;
         if let Some(last) = Arc::make_mut(&mut self.states).last_mut() {
-            // States that no line has made leave it open which line an undo takes back.
+            // If states were made without a line, it is not known which line an undo takes back.
             *last = has_line.then_some(all);
         }
     }
@@ -241,14 +241,14 @@ impl Journal {
         }
     }
 
-    /// A command of before leaves the walk turned so.
+    /// The last command leaves the walk in this direction.
     pub(super) fn turned(&mut self, inward: bool) {
         if let Some(replay) = &mut self.replay {
             replay.inward = inward;
         }
     }
 
-    /// Writes what a replay needs set before the next line: values, direction, step length.
+    /// Writes what a replay needs to have set before the next line: values, direction, step length.
     fn sync(&mut self, preset: &Preset, way: Option<(bool, f64)>, may_fail: bool) {
         let Some(mut replay) = self.replay.take() else { return };
         if replay.preset != *preset {
@@ -308,7 +308,7 @@ impl Journal {
     }
 }
 
-/// The number that is `x` again when it is divided by `unit`, where rounding leaves one.
+/// The number that gives `x` again when divided by `unit`, if rounding permits one.
 fn product(x: f64, unit: f64) -> f64 {
     let near = x * unit;
     let all = [near, near.next_up(), near.next_down()];

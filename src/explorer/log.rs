@@ -1,7 +1,8 @@
-//! What happens on the path, as one list: what is done, where the walker stands, what lies ahead.
+//! What happens on the path, as one list: what is done, where the walker stands, and what lies ahead.
 //!
-//! The path is the way of the device: down from the disc to begin with, or from apart to the turn and back. Its events have one number
-//! each, on charts, in the log, on the status line and in files. A jump that was walked by hand and is none of them has no number.
+//! The path is that of the device: unloading from the initial disc, or loading from apart to the turn and back. Each of
+//! its events has one number, on charts, in the log, on the status line and in files. A jump walked by hand that is not
+//! an event of the path has no number.
 
 use super::model::Model;
 use super::node::{Node, NodeKind};
@@ -10,7 +11,7 @@ use pulloff_engine::quasistatic::walk::Passing;
 use pulloff_engine::report::PathReport;
 use pulloff_engine::report::path::{EventReport, StateReport};
 
-/// Radii of one state, found in two ways, are as near as this.
+/// Radii of one state that were found in two ways agree to this accuracy.
 const SAME: f64 = 1e-6;
 
 /// Whether an event has happened.
@@ -20,7 +21,7 @@ pub enum EventMark {
     /// The walker stands where it begins.
     Here,
     Ahead,
-    /// Behind the walker, who left the path before it and came back after it.
+    /// Behind the walker, who left the path before the event and rejoined it after.
     PassedBy,
 }
 
@@ -28,7 +29,7 @@ pub enum EventMark {
 #[derive(Debug, Clone)]
 pub struct LogEntry {
     pub mark: EventMark,
-    /// Its number on the path, from 1; none of what was walked off it.
+    /// Its number on the path, counted from 1; `None` for a jump walked off the path.
     pub number: Option<usize>,
     pub event: EventReport,
     /// The node of the walk that it made.
@@ -47,7 +48,7 @@ impl Log {
         self.sum(|mark| mark == EventMark::Done)
     }
 
-    /// The energy lost when all that lies ahead has happened too, and whether a loss without bound is among it.
+    /// The energy lost once everything ahead has happened too, and whether a loss without bound is among it.
     pub fn lost_in_all(&self) -> (f64, bool) {
         self.sum(|mark| mark != EventMark::PassedBy)
     }
@@ -60,7 +61,7 @@ impl Log {
         })
     }
 
-    /// The place in the list of the event of this number.
+    /// The index in the list of the event with this number.
     pub fn place(&self, number: usize) -> Option<usize> {
         self.entries.iter().position(|entry| entry.number == Some(number))
     }
@@ -79,7 +80,7 @@ fn radius(state: Option<&StateReport>) -> Option<f64> {
     state.map(|state| state.contact_radius)
 }
 
-/// Whether both begin and end in one state.
+/// Whether both begin and end in the same state.
 fn is_same(a: &EventReport, b: &EventReport) -> bool {
     let near = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => is_near(a, b),
@@ -90,7 +91,7 @@ fn is_same(a: &EventReport, b: &EventReport) -> bool {
         && near(radius(a.after.as_ref()), radius(b.after.as_ref()))
 }
 
-/// How many events of a path lie behind a state on its way in a direction.
+/// How many events of a path lie behind a state on its way in this direction.
 fn behind(events: &[EventReport], s: f64, direction: &str) -> usize {
     let is_behind = |event: &&EventReport| match (event.direction, direction) {
         ("loading", "unloading") => true,
@@ -102,7 +103,7 @@ fn behind(events: &[EventReport], s: f64, direction: &str) -> usize {
 }
 
 impl Model {
-    /// The path of the device from where it begins; it can be that of values before.
+    /// The path of the device from its beginning; it can be that of earlier values.
     pub fn path(&self) -> Option<&PathReport> {
         match self.preset.path.begin {
             Begin::Touch => self.cycle()?.report(),
@@ -115,7 +116,7 @@ impl Model {
         self.path().map_or(&[], |path| &path.events)
     }
 
-    /// How many lines the log has: its events, and the inadmissible parts of the curve behind them.
+    /// The number of lines in the log: its events, and after them the inadmissible parts of the curve.
     pub fn log_lines(&self) -> usize {
         self.log().entries.len() + self.shown_inadmissible().len()
     }
@@ -125,7 +126,8 @@ impl Model {
         self.log_along().unwrap_or_else(|| self.log_on_curve())
     }
 
-    /// That of a walk along the path, where the number of its state says what is done; `None` of one along the curve.
+    /// The log of a walk along the path, where the number of its state says what is done; `None` for a walk along the
+    /// curve.
     fn log_along(&self) -> Option<Log> {
         let node = self.walker()?;
         let (at, path) = (node.on_path?, self.curve.as_ref()?.along.as_ref()?.as_ref().ok()?);
@@ -146,7 +148,7 @@ impl Model {
             event if event.before.is_none() => true,
             event if event.after.is_none() => node.is_apart(),
             _ if passing.after > passing.before => passing.after <= at,
-            // Nothing runs there: it is behind unless the walker was sent to where it begins.
+            // No edge runs there: the event is behind unless the walker was sent to its beginning.
             _ => passing.before < at || passing.before == at && node.kind != NodeKind::Moved,
         };
         let here = passings.iter().position(|passing| !is_done(passing) && passing.before == at);
@@ -163,7 +165,7 @@ impl Model {
         Some(Log { entries: entries.collect() })
     }
 
-    /// That of a walk along the curve, by the radii at which jumps begin and end.
+    /// The log of a walk along the curve, by the radii at which jumps begin and end.
     fn log_on_curve(&self) -> Log {
         let events = self.path_events();
         let walk = self.history.path();
@@ -176,16 +178,16 @@ impl Model {
         if let Some((_, node)) = of_curve.first() {
             let behind = self.passed_before(events, node);
             match node.kind {
-                // Bodies that touch have come together.
+                // Bodies in contact have come together at some point.
                 NodeKind::Start => done.iter_mut().take(behind).for_each(|done| *done = Some(None)),
-                // Sent there, or solved again for other values where it stood: what lies behind did not happen.
+                // Sent there, or solved again in place for other values: what lies behind did not happen.
                 NodeKind::Moved | NodeKind::Solved | NodeKind::Limit if !self.is_start(node) => {
                     passed = behind;
                 }
                 _ => {}
             }
         }
-        // What was walked and is no event of the path stands behind the last one that was.
+        // A jump that is not an event of the path comes after the last event that was done.
         let mut strays: Vec<(usize, LogEntry)> = Vec::new();
         let mut last = done.iter().rposition(Option::is_some).map_or(passed, |at| at + 1);
         for (number, event) in self.walked_events() {
@@ -249,13 +251,14 @@ impl Model {
         Log { entries }
     }
 
-    /// Whether a walk begins with the disc of the preset's start: the path begins there, or further out where that is unstable.
+    /// Whether a walk begins with the disc at the preset's start; the path begins there, or further out if it is
+    /// unstable.
     fn is_start(&self, node: &Node) -> bool {
         let start = self.curve.as_ref().map(|curve| curve.case.start);
         node.begins && start.is_some_and(|start| is_near(node.state.contact_radius, start))
     }
 
-    /// How many events of the path lie before a state with which a walk begins.
+    /// How many events of the path lie before the state with which a walk begins.
     fn passed_before(&self, events: &[EventReport], node: &Node) -> usize {
         let s = node.state.in_units(node.setting.units()).contact_radius;
         let direction =

@@ -1,4 +1,4 @@
-//! The commands that change what is shown, and nothing else: views, windows, the cross-hair, overlays, pins.
+//! The commands that change only what is shown: views, windows, the cross-hair, overlays, pins.
 
 use super::backgrounds::want_all;
 use super::command::Id;
@@ -9,25 +9,26 @@ use super::reach::{pick_walk_line, walk_line};
 use super::view::{Axes, Overlay, ScreenPanel, View, Window};
 use pulloff_engine::preset::Key;
 
-/// One press brings the chart closer by this factor.
+/// One press magnifies the chart by this factor.
 const CLOSER: f64 = 2.0;
-/// One press moves the chart by this share of what is seen.
+/// One press moves the chart by this share of what is visible.
 const PAN: f64 = 0.125;
-/// One press moves the cross-hair by this share: across, and upwards, where a screen has fewer rows.
+/// One press moves the cross-hair by this share: across, and upwards, where a screen has fewer cells.
 const ACROSS: f64 = 1.0 / 64.0;
 const UPWARDS: f64 = 1.0 / 32.0;
 
-/// Where there is an envelope of small waves.
+/// The problems for which there is an envelope of small waves.
 pub const NO_ENVELOPE: &str = "for wavy spheres with adhesion only";
 
 /// The middle of a window.
 pub const MIDDLE: (f64, f64) = (0.5, 0.5);
 
-/// Shows where each limit point happens over the selected value; where that is shown, the map of it and the adhesion.
+/// Shows where each limit point happens over the selected value; if that is shown already, the map of it and the
+/// adhesion.
 pub(super) fn map(model: &mut Model) {
     let Some((row, _)) = model.selected_knob().filter(|(row, _)| can_be_axis(row)) else {
         let text = match model.selected_knob() {
-            // Problem is where it stands.
+            // Problem is where the value is selected.
             Some((row, _)) => format!("{} is no number: select one in Problem, or the control", row.label),
             None => {
                 format!("select a number first, or the control: {} goes to Problem", Id::NextPanel.named())
@@ -41,7 +42,7 @@ pub(super) fn map(model: &mut Model) {
     show_map(model, axes);
 }
 
-/// Shows the map of these axes; without a second, the limit points over the first.
+/// Shows the map of these axes; without a second one, the limit points over the first.
 pub(super) fn map_of(model: &mut Model, x: &Key, y: Option<Key>) {
     let over = MapAxes::over(x);
     let axes = MapAxes { y: y.map_or(over.y, Key::into_owned), x: over.x };
@@ -74,7 +75,7 @@ pub(super) fn zoom(model: &mut Model, view: View, closer: bool, about: (f64, f64
 }
 
 pub(super) fn whole(model: &mut Model) {
-    // All that stands side by side with one axis.
+    // All views side by side that share an axis.
     for view in model.shown_views() {
         if view == model.view || (view.is_of_force() && model.view.is_of_force()) {
             model.set_window(view, Window::WHOLE);
@@ -89,12 +90,12 @@ pub(super) fn cross_hair(model: &mut Model) {
     }
     model.cross = if model.cross.is_some() { None } else { Some(MIDDLE) };
     if model.cross.is_some() {
-        // In this panel the arrow keys move it.
+        // In this panel the arrow keys move the cross-hair.
         model.panel = ScreenPanel::Charts;
     }
 }
 
-/// An arrow key in Charts moves the cross-hair, or without one the window.
+/// An arrow key in Charts moves the cross-hair, or, without one, the window.
 pub(super) fn go(model: &mut Model, right: f64, up: f64) {
     if model.view.is_table() {
         let line = walk_line(model);
@@ -134,7 +135,7 @@ pub(super) fn overlay(model: &mut Model, overlay: Overlay) {
     }
 }
 
-/// Reduced axes, or raw values.
+/// Switches between reduced axes and raw values.
 pub(super) fn axes(model: &mut Model) {
     model.axes = if model.axes == Axes::Reduced { Axes::Raw } else { Axes::Reduced };
 }
@@ -152,7 +153,7 @@ pub(super) fn pin(model: &mut Model) {
     }
 }
 
-/// The same problem in ring elements pinned beside its exact solution, or that beside the rings; away again where it is there.
+/// Pins the same problem in ring elements beside its exact solution, or the reverse; removes the pin if it is there.
 pub(super) fn in_rings(model: &mut Model) {
     const KIND: &str = "basis.kind";
     let is_exact = model.preset.get(KIND).is_none_or(|kind| kind.to_string() != "rings");
@@ -188,7 +189,7 @@ pub(super) fn carry_on(from: &Model, to: &mut Model) {
     to.pins = from.pins.clone();
 }
 
-/// The screen has room for so many views.
+/// The screen has room for this many views.
 pub fn make_room(model: &mut Model, views: usize) -> Vec<Effect> {
     model.views = views.clamp(1, View::ALL.len());
     want_all(model)

@@ -1,7 +1,7 @@
 //! The whole loop of loading and unloading, computed in the background for gaps with more than one crest.
 //!
-//! It takes longer than the curve, which never waits for it. While values are turned the loop on the screen may be that of
-//! values before: it says so.
+//! It takes longer than the curve, which never waits for it. While values are being turned, the loop on the screen may
+//! be that of earlier values; it then says so.
 
 use super::background::{Background, Tell, Want, Watcher};
 use super::curve::CurveData;
@@ -27,7 +27,7 @@ pub struct LoopKey {
     pub preset: Preset,
     /// The curve of the same problem.
     pub curve: Arc<CurveData>,
-    /// Whether the person looks at the loop itself: a script computes no other.
+    /// Whether the person is looking at the loop itself: a script computes no other.
     pub is_shown: bool,
 }
 
@@ -43,11 +43,11 @@ impl Background for LoopData {
     const NAME: &'static str = "loop";
     const PATIENCE: Duration = Duration::from_millis(50);
 
-    /// The loop of the values as they are, once their curve is there; where the gap has no crests, only when it is looked at.
+    /// The loop of the present values, once their curve is there; if the gap has no crests, only when it is looked at.
     fn wanted(model: &Model) -> Want<LoopKey> {
         let curve = model.curve.as_ref().filter(|_| model.shows_its_curve() && !model.is_computing());
         let Some(curve) = curve.cloned() else { return Want::Later };
-        // From apart the loop is the path.
+        // From apart, the loop is the path.
         let is_path = model.preset.path.begin == Begin::Touch;
         let is_shown = is_path || model.shown_views().into_iter().any(View::is_cycle);
         if !is_shown && !has_crests(&curve) {
@@ -57,7 +57,7 @@ impl Background for LoopData {
     }
 
     fn is_same(asked: &LoopKey, wanted: &LoopKey) -> bool {
-        // A script computes only the loop that is looked at, and so asks again for one that was not.
+        // A script computes only a loop that is looked at, so it asks again for one that was not.
         same_loop(&asked.preset, &wanted.preset) && (asked.is_shown || !wanted.is_shown)
     }
 
@@ -75,7 +75,7 @@ impl Background for LoopData {
         let turn = key.preset.path.turn;
         let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, base.control));
         let case = Case { turn, ..base.clone() };
-        // Where the walk goes along the loop it is known.
+        // Where the walk follows the loop, the loop is already known.
         if let (Begin::Touch, Some(Ok(along))) = (key.preset.path.begin, &key.curve.along) {
             let report = Ok(PathReport::new(&key.preset, &case, along));
             return Some(Self { preset: key.preset.clone(), report });
@@ -96,7 +96,7 @@ impl Background for LoopData {
 }
 
 impl Model {
-    /// The loop of loading and unloading, where the gap has crests or it is looked at; it can be that of values before.
+    /// The loop of loading and unloading, if the gap has crests or it is looked at; it can be that of earlier values.
     pub fn cycle(&self) -> Option<&LoopData> {
         self.results.shown()
     }
@@ -122,7 +122,7 @@ fn same_loop(a: &Preset, b: &Preset) -> bool {
     same_curve(a, b) && of(a) == of(b)
 }
 
-/// Whether the gap of a curve has crests further out: else the loop is the first touch and the unloading.
+/// Whether the gap of a curve has crests further out; without them, the loop is the first touch and the unloading.
 #[must_use]
 fn has_crests(curve: &CurveData) -> bool {
     let reduced = &curve.case.reduced;

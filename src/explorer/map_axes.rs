@@ -1,4 +1,4 @@
-//! What stands on the axes of a map: two numbers, or one and what limit points have.
+//! What the axes of a map show: two numbers, or one number and a quantity of limit points.
 
 use pulloff_engine::gap::Gap;
 use pulloff_engine::preset::schema::Kind;
@@ -11,30 +11,31 @@ use serde::{Deserialize, Serialize};
 const AMPLITUDE: &str = "groups.amplitude_over_wavelength";
 const ADHESIONS: [&str; 2] = ["groups.adhesion", "material.work_of_adhesion"];
 
-/// Decades of adhesion on both sides of the preset's.
+/// Decades of adhesion on either side of the preset's value.
 const DECADES: f64 = 1.0;
 
-/// A/λ at the end of an axis on which the preset stands at zero.
+/// A/λ at the end of an axis if the preset's value is zero.
 const FROM_ZERO: f64 = 0.05;
 
-/// An end of an axis that is no value of the preset comes nearer to it, halving the way so often at most.
+/// An end of an axis that is no valid value moves towards the preset's value, halving the distance at most this many
+/// times.
 const HALVINGS: usize = 20;
 
-/// What stands on the axes of a map.
+/// What the axes of a map show.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MapAxes {
     /// A key, a group, or [`COMPLIANCE`].
     pub x: String,
-    /// Another of them, or what limit points have: `control`, `approach` or `force`.
+    /// Another of these, or a quantity of limit points: `control`, `approach` or `force`.
     pub y: String,
 }
 
-/// What limit points have, over one number.
+/// The quantities of limit points, over one number.
 pub const CURVES: [(&str, Ordinate); 3] =
     [("control", Ordinate::Control), ("approach", Ordinate::Approach), ("force", Ordinate::Force)];
 
 impl MapAxes {
-    /// The usual ones: A/λ, or the compliance where there is no one wave, and the adhesion.
+    /// The usual axes: A/λ, or the compliance unless there is exactly one wave, and the adhesion.
     #[must_use]
     pub fn usual(preset: &Preset) -> Self {
         let has = |key: &str| preset.get(key).is_some();
@@ -43,14 +44,14 @@ impl MapAxes {
         Self { x: x.to_owned(), y: y.to_owned() }
     }
 
-    /// The limit points over a key; the control over the device's own compliance would be two quantities.
+    /// The limit points over a key; over the device's own compliance, the control would be two quantities.
     #[must_use]
     pub fn over(key: &Key) -> Self {
         let y = if is_device(key) { "force" } else { "control" };
         Self { x: axis_of(key), y: y.to_owned() }
     }
 
-    /// The map of a key and the adhesion, or of the adhesion and what is usual beside it.
+    /// The map of a key and the adhesion, or of the adhesion and the key usually shown with it.
     #[must_use]
     pub fn beside_adhesion(key: &Key, preset: &Preset) -> Self {
         let usual = Self::usual(preset);
@@ -66,7 +67,7 @@ impl MapAxes {
         CURVES.iter().any(|(name, _)| *name == self.y)
     }
 
-    /// The axes with their ranges about the values of `preset`.
+    /// The axes with their ranges around the values of `preset`.
     /// Errors: In words.
     pub(super) fn ranges(&self, preset: &Preset) -> Result<(MapAxis, Ordinate), String> {
         let x = range(preset, &self.x)?;
@@ -90,7 +91,7 @@ pub fn can_be_axis(row: &Parameter) -> bool {
     row.kind.is_number() || row.kind == Kind::Control
 }
 
-/// An axis of `key` about the value that `preset` has.
+/// An axis of `key` around the value in `preset`.
 fn range(preset: &Preset, key: &str) -> Result<MapAxis, String> {
     let axis =
         |range, logarithmic| MapAxis::new(key, range, logarithmic, 1.0).map_err(|error| error.to_string());
@@ -99,7 +100,7 @@ fn range(preset: &Preset, key: &str) -> Result<MapAxis, String> {
         return MapAxis::new(key, [0.0, f64::INFINITY], false, 1.0 / unit).map_err(|error| error.to_string());
     }
     let Some(row) = preset.row(key) else {
-        // With the nearest name.
+        // The error suggests the nearest name.
         let unknown = preset.clone().set(key, 1.0.into()).err();
         return Err(unknown.map_or_else(|| format!("{key} is no number of this preset"), |e| e.to_string()));
     };
@@ -118,7 +119,7 @@ fn range(preset: &Preset, key: &str) -> Result<MapAxis, String> {
         (_, Kind::Finite) => [x - x.abs(), x + x.abs()],
         _ => [0.5 * x, 2.0 * x],
     };
-    // Ends that are no values, such as a start beyond the gap, come nearer.
+    // Ends that are not valid values, such as a start beyond the gap, are moved closer.
     let [lo, hi] = ends.map(|mut end| {
         for _ in 0..HALVINGS {
             if preset.clone().set(key, end.into()).is_ok() {

@@ -1,6 +1,6 @@
-//! The map of two numbers, or the limit points over one, computed while it is looked at.
+//! The map of two numbers, or the limit points over one, computed while it is being looked at.
 //!
-//! Turning one of its numbers moves the preset on it and asks for nothing.
+//! Turning one of its numbers moves the preset on the map and requests nothing.
 
 use super::background::{Background, Tell, Want, Watcher};
 use super::map_axes::MapAxes;
@@ -13,10 +13,10 @@ use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::MapError;
 use pulloff_engine::stability::COMPLIANCE;
 
-/// Columns and rows in which snaps are counted.
+/// The columns and rows in which snaps are counted.
 const CELLS: [u32; 2] = [32, 24];
 
-/// A map that is wanted: its values, and what stands on its axes.
+/// A map that is wanted: its values and its axes.
 pub type MapKey = (Preset, MapAxes);
 
 /// A map, or why there is none.
@@ -53,7 +53,7 @@ impl Background for MapData {
 }
 
 impl MapData {
-    /// The map of a preset; `None` when `progress` said stop.
+    /// The map of a preset; `None` if `progress` asked to stop.
     #[must_use]
     pub fn of(preset: &Preset, axes: &MapAxes, progress: &dyn Progress) -> Option<Self> {
         let report = if preset.material.work_of_adhesion > 0.0 {
@@ -75,12 +75,12 @@ impl MapData {
         self.report.as_ref().map_err(|reason| reason.text.as_str())
     }
 
-    /// Whether it is the map of `preset` over `axes`; the preset may stand elsewhere on it.
+    /// Whether it is the map of `preset` over `axes`; the preset may be at another point of it.
     fn is_over(&self, preset: &Preset, axes: &MapAxes) -> bool {
         if self.axes != *axes {
             return false;
         }
-        // Measured points do not change it.
+        // Measured points do not affect it.
         let preset = &Preset { data: self.preset.data.clone(), ..preset.clone() };
         let Ok(report) = &self.report else { return self.preset == *preset };
         let mut moved = self.preset.clone();

@@ -6,34 +6,34 @@
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`command`], [`table`] | the commands; the table of what is to be known of each |
-//! | [`availability`] | what must be there before a command can be done |
+//! | [`command`], [`table`] | the commands; the table of what is known of each |
+//! | [`availability`] | what a command requires before it can be run |
 //! | [`model`] | the state of a session |
 //! | [`update`](mod@update) | the only code that changes the model; it never solves and never reads a file |
 //! | [`effect`] | the work that the model asks for, and the replies |
-//! | [`requests`] | the effects that several commands ask for |
+//! | [`requests`] | the effects that several commands request |
 //! | [`status_line`] | what the status line says |
 //! | [`view`] | panels, views, windows, overlays |
 //! | [`look`] | the commands that change them |
 //! | [`log`] | what happens on the path: done, here, ahead |
-//! | [`reach`] | which views have something to show, and why the others have not |
-//! | [`pins`] | curves kept to compare the next ones with |
+//! | [`reach`] | which views have something to show, and why the others have nothing |
+//! | [`pins`] | curves kept for comparison with later ones |
 //! | [`theory`] | closed forms drawn over a curve |
-//! | [`nudge`] | a parameter changed by a little |
+//! | [`nudge`] | a parameter changed by a small amount |
 //! | [`setting`], [`node`], [`history`] | the walk: the problem of a state, a state, and the tree of all states |
 //! | [`undo`] | where the session stood before each command |
 //! | [`branches`] | the branches of the walk, and what each ended with |
 //! | `prune` | which states of a long walk may be forgotten |
 //! | [`curve`] | the equilibrium curve of a problem, and what belongs to its control |
 //! | [`progress`] | how far the computation of a curve has come |
-//! | [`background`], [`backgrounds`], [`results`] | results that belong to the values: how one is wanted, computed and kept; the list of them; what there is |
+//! | [`background`], [`backgrounds`], [`results`] | results computed in the background; the list of them; what there is |
 //! | [`admissibility`], `pinned` | which states of the curve are admissible; the curves of pins |
 //! | [`loops`] | the loop of loading and unloading with rings of contact |
 //! | [`pulls`] | the pull at the rate of the preset |
 //! | [`onset`] | the smallest amplitude at which a problem snaps |
-//! | [`maps`], [`map_axes`], [`studies`], [`study`], `study_table` | the map of two numbers, its axes; a quantity over one, and its documents |
+//! | [`maps`], [`map_axes`], [`studies`], [`study`], `study_table` | a map of two numbers, its axes; a study, its documents |
 //! | [`fitting`], `fit` | the distances of measured points; a fit |
-//! | [`speeds`] | G of measured rows, and how fast the edge goes there |
+//! | [`speeds`] | G of measured rows, and the speed of the edge there |
 //! | [`device`] | the line of the loading device through the walker |
 //! | [`profile`] | pressure, gap and potential of one state |
 //! | [`walk`] | steps, runs and jumps along the curve |
@@ -44,7 +44,7 @@
 //! | `saves` | saves that follow each other faster than they are answered |
 //! | [`session`] | a session as a document, to be resumed |
 //! | [`archive`] | the sessions on disk |
-//! | [`journal`], `detours` | what was done, as the lines of a script; without what was taken back |
+//! | [`journal`], `detours` | what was done, as the lines of a script; without what was undone |
 //! | [`script`] | commands as text, and scripts run on a model |
 //! | [`driver`] | runs effects inline (tests, scripts) or on worker threads (the screen) |
 //!

@@ -28,7 +28,7 @@ use pulloff_engine::sweep::{QUANTITIES, QuantityColumn};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Why the values as they are have no curve, in words.
+/// Why the present values have no curve, in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CurveError {
     GivenUp(String),
@@ -36,7 +36,7 @@ pub enum CurveError {
 }
 
 impl CurveError {
-    /// The words.
+    /// The reason in words.
     pub fn text(&self) -> &str {
         match self {
             Self::GivenUp(text) | Self::Failed(text) => text,
@@ -44,18 +44,18 @@ impl CurveError {
     }
 }
 
-/// What a job on files leaves for the person to choose or to answer.
+/// What a job on files asks the person to choose or answer.
 #[derive(Debug, Clone)]
 pub enum Question {
     Preset(Box<Listing>),
     /// A file for this key.
     File(Key, Box<Folder>),
-    /// What the columns of a measured curve are.
+    /// What the columns of a measured curve mean.
     Columns(Box<super::data::Foreign>),
     SaveAnyway,
-    /// Replace the preset of this name; whether with the data of its profile.
+    /// Whether to replace the preset of this name; the flag says whether with the data of its profile.
     ReplacePreset(String, bool),
-    /// Replace the file of this path by this document.
+    /// Whether to replace the file at this path with this document.
     ReplaceFile(super::export::ExportKind, String),
     ReplacePage(super::export::Page, String),
 }
@@ -73,13 +73,13 @@ pub enum Awaits {
 pub struct Walking {
     pub id: u64,
     pub made: usize,
-    /// Those it was asked for; a run goes on until something happens.
+    /// The number of states requested; `None` for a run, which goes on until something happens.
     pub wanted: Option<usize>,
-    /// Whether nobody asked for it: the state is solved again for other values.
+    /// Whether it was started automatically: the state is solved again for other values.
     pub solves: bool,
-    /// Whether it goes at the pace.
+    /// Whether it runs at the pace.
     pub paced: bool,
-    /// Whether its end was asked for: more states may be on their way.
+    /// Whether it has been asked to end: more states may still arrive.
     pub stops: bool,
 }
 
@@ -87,14 +87,14 @@ pub struct Walking {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Level {
     Info,
-    /// Something could not be done as it was asked for.
+    /// Something could not be done as requested.
     Error,
     /// The computation or the system failed: no other input helps.
     Failure,
 }
 
 impl Level {
-    /// That of something that could not be done for this reason.
+    /// The level of a failure for this reason.
     pub fn of(reason: &WordedFault) -> Self {
         if reason.can_be_mended { Self::Error } else { Self::Failure }
     }
@@ -108,38 +108,38 @@ impl Level {
 /// A session.
 #[derive(Debug, Clone)]
 pub struct Model {
-    /// Which session of the program it is: another after a preset was opened.
+    /// Which session of the program it is: each opened preset starts another.
     pub session: u64,
     pub preset: Preset,
-    /// The preset as loaded or last saved: what differs is unsaved.
+    /// The preset as loaded or last saved: any difference is unsaved.
     pub saved: Preset,
     /// The state before the value that is being typed and tried.
     pub untried: Option<Box<Untried>>,
     pub source: Source,
-    /// What the file of the preset says before its first key, a line each; empty where that is not known.
+    /// The comment before the first key in the file of the preset, one line each; empty if not known.
     pub comment: String,
     pub fingerprint: Option<Fingerprint>,
     /// The curve on the screen; it can be older than the preset while a new one is computed.
     pub curve: Option<Arc<CurveData>>,
     /// Why the preset as it is has no curve.
     pub curve_error: Option<CurveError>,
-    /// The number of the newest curve asked for.
+    /// The number of the newest curve requested.
     pub curve_wanted: u64,
-    /// The number of the newest curve that came, failed or was given up.
+    /// The number of the newest curve that arrived, failed or was given up.
     pub curve_shown: u64,
-    /// Progress of the curve being computed, once that takes long.
+    /// Progress of the curve being computed, if that takes long.
     pub stage: Option<CurveStage>,
-    /// What is computed in the background.
+    /// Results computed in the background.
     pub results: Results,
-    /// What stands on the axes of the map; `None` for what is usual.
+    /// The axes of the map; `None` for the usual ones.
     pub map_axes: Option<MapAxes>,
-    /// The last fit that was taken; the values may be others by now.
+    /// The last fit that was adopted; the values may have changed since.
     pub fit: Option<Arc<Fit>>,
-    /// The quantity that is studied.
+    /// The quantity being studied.
     pub studied: QuantityColumn,
     /// The last stiffness of the device, in the user's units.
     pub stiffness: Option<f64>,
-    /// Whether the line of the device is drawn; `None` where only that of a spring is.
+    /// Whether the line of the device is drawn; `None` draws it only for a spring.
     pub device: Option<bool>,
     pub history: History,
     pub journal: Journal,
@@ -147,21 +147,21 @@ pub struct Model {
     pub inward: bool,
     /// The longest step by hand, in the scaled unknowns.
     pub length: f64,
-    /// States a second of a run.
+    /// The pace of a run, in states per second.
     pub pace: f64,
-    /// Whether the walk of a resumed session has been tried on its first curve already.
+    /// Whether the walk of a resumed session has already been tried on its first curve.
     pub is_tried: bool,
     pub walking: Option<Walking>,
     /// Commands that wait for the walk, the curve or a file, in order.
     pub queue: VecDeque<Command>,
-    /// What they wait for besides.
+    /// What else they wait for.
     pub awaits: Awaits,
     pub panel: ScreenPanel,
     pub parameter: usize,
     pub event: usize,
     /// The selected line of the table of states; `None` follows the walker.
     pub walk_line: Option<usize>,
-    /// The view shown where only one fits, and the first where more do.
+    /// The view shown if only one fits, and the first if more do.
     pub view: View,
     /// The view last looked at in each place, in the order of [`Home::ALL`].
     pub homes: [View; Home::ALL.len()],
@@ -174,9 +174,9 @@ pub struct Model {
     /// The theory drawn over the curve.
     pub overlays: Overlays,
     pub pins: Pins,
-    /// What to tell; `None` leaves the line to the hint.
+    /// The message to show; `None` leaves the line to the hint.
     pub message: Option<(Level, String)>,
-    /// The names of the presets and their titles, once the list of commands was opened.
+    /// The names and titles of the presets, once the list of commands has been opened.
     pub preset_names: Vec<[String; 2]>,
     pub question: Option<Question>,
     pub next_request: u64,
@@ -194,13 +194,13 @@ pub struct Untried {
 /// Whether a state solves the problem of `curve`.
 pub fn is_on_curve(curve: &CurveData, node: &Node) -> bool {
     let [its, ours] = [&node.setting.preset, &curve.setting.preset];
-    // The number of a state is that of one path.
+    // The number of a state belongs to one path.
     let way =
         |preset: &Preset| (preset.path.control, preset.path.contact, preset.path.begin, preset.path.turn);
     let same_path = match (node.on_path, &curve.along) {
         (None, None) => true,
         (Some(_), Some(_)) => way(its) == way(ours),
-        // Apart there is nothing to solve.
+        // When apart, there is nothing to solve.
         (None, Some(_)) | (Some(_), None) => node.is_apart(),
     };
     same_curve(its, ours) && same_path && !matches!(node.kind, NodeKind::Stale(_))
@@ -261,12 +261,12 @@ impl Model {
             next_request: 1,
             quit: false,
         };
-        // The amplitude, where there is one, is the knob that shows most.
+        // The amplitude, if there is one, is the knob that shows most.
         model.parameter = model.knobs().iter().position(|(row, _)| row.key == "gap.amplitude").unwrap_or(0);
         model
     }
 
-    /// Takes the place of `before`: request numbers go on, so that late replies to that session are recognised.
+    /// Takes the place of `before`: request numbers continue, so that late replies to that session are recognised.
     pub(super) fn follow(&mut self, before: &Self) {
         self.session = before.session + 1;
         self.next_request = before.next_request + 1;
@@ -298,12 +298,12 @@ impl Model {
         self.preset != self.saved
     }
 
-    /// Whether the walker has been tried on the problem as it is: no curve and no walk is under way.
+    /// Whether the walker has been tried on the present problem: no curve and no walk is under way.
     pub fn is_settled(&self) -> bool {
         self.walking.is_none() && self.shows_its_curve()
     }
 
-    /// Whether the curve on the screen is that of the values as they are, under their control.
+    /// Whether the curve on the screen is that of the present values, under their control.
     pub fn shows_its_curve(&self) -> bool {
         self.curve.as_ref().is_some_and(|curve| {
             let [ours, its] = [&self.preset, &curve.setting.preset].map(|preset| &preset.path);
@@ -323,17 +323,17 @@ impl Model {
         }
     }
 
-    /// Whether the line of the device is drawn: that of a spring, where nobody has said otherwise.
+    /// Whether the line of the device is drawn: by default, only that of a spring.
     pub fn shows_device(&self) -> bool {
         self.device.unwrap_or(matches!(self.control(), Some(Control::Stiffness(_))))
     }
 
-    /// Whether a run goes on at the pace, which any key but those of the pace ends.
+    /// Whether a paced run is under way; any key but those of the pace ends it.
     pub fn is_running(&self) -> bool {
         self.walking.is_some_and(|walking| walking.paced && !walking.stops)
     }
 
-    /// Whether a walk is under way, or the curve that the next one walks on.
+    /// Whether a walk is under way, or the curve for the next walk is being computed.
     pub fn is_busy(&self) -> bool {
         self.walking.is_some() || self.is_computing()
     }
@@ -343,7 +343,7 @@ impl Model {
         self.curve_shown < self.curve_wanted
     }
 
-    /// The parameters that can be changed with their values, then the dimensionless groups that can be set.
+    /// The parameters that can be changed, with their values, then the dimensionless groups that can be set.
     pub fn knobs(&self) -> Vec<(Row, Option<Value>)> {
         // The title comes last: the numbers are what people change.
         let (texts, numbers): (Vec<Row>, Vec<Row>) = self.preset.knobs().partition(|row| row.key == "title");
@@ -356,7 +356,7 @@ impl Model {
             .collect()
     }
 
-    /// Whether a key without a value is offered all the same.
+    /// Whether a key without a value is offered anyway.
     fn may_be_typed(&self, key: &str) -> bool {
         match key {
             "path.end_contact_radius" => true,
@@ -370,7 +370,7 @@ impl Model {
         self.knobs().into_iter().nth(self.parameter)
     }
 
-    /// The control in reduced units, by the curve's problem.
+    /// The control in reduced units, for the curve's problem.
     pub fn control(&self) -> Option<Control> {
         self.curve.as_ref().map(|curve| curve.case.control)
     }
@@ -395,7 +395,7 @@ impl Model {
         }
     }
 
-    /// Looks at a view, and at it again when its place is gone to.
+    /// Looks at a view; its place will return to it.
     pub(super) fn look_at(&mut self, view: View) {
         self.view = view;
         self.homes[view.home() as usize] = view;
@@ -434,24 +434,24 @@ impl Model {
             && self.preset == place.preset
     }
 
-    /// Whether any of `places` is another than where the session stands.
+    /// Whether any of `places` differs from where the session stands.
     pub(super) fn can_travel(&self, places: &[Arc<SessionPlace>]) -> bool {
         places.iter().rev().any(|place| !self.is_at(place))
     }
 
-    /// Whether the values have been changed since the walker's state was made.
+    /// Whether the values have changed since the walker's state was made.
     pub fn is_ahead(&self) -> bool {
         self.history.current().is_some_and(|node| {
             !same_curve(&node.setting.preset, &self.preset) && !matches!(node.kind, NodeKind::Stale(_))
         })
     }
 
-    /// The walker's node, where it stands on the curve on the screen.
+    /// The walker's node, if it lies on the curve on the screen.
     pub fn walker(&self) -> Option<&Node> {
         self.history.current().filter(|node| self.is_on_curve(node))
     }
 
-    /// The number of the limit point of the control on which the walker stands, among the curve's.
+    /// The number, among the curve's limit points of the control, of the one on which the walker stands.
     pub fn limit_number(&self) -> Option<usize> {
         let node = self.walker()?;
         let curve = self.curve.as_ref()?;
@@ -465,13 +465,13 @@ impl Model {
     /// Whether edges can run from here: at a limit point of the control, at a touch, or in an unstable state.
     pub fn can_jump(&self) -> bool {
         let (Some(node), Some(control)) = (self.walker(), self.control()) else { return false };
-        // The states of a path are stable but for rounding.
+        // The states of a path are stable up to rounding.
         let is_unstable = node.on_path.is_none() && !node.stability.under(control);
         let runs = node.at(control) != At::Nothing || is_unstable;
         !node.is_apart() && runs
     }
 
-    /// Where the path ends outward (reduced): its turn, or where it begins from a disc.
+    /// Where the path ends outward (reduced): its turn, or its beginning if it starts from a disc.
     pub fn outer_end(&self) -> Option<Turn> {
         let curve = self.curve.as_ref()?;
         let (path, units) = (&self.preset.path, curve.case.units());
@@ -482,7 +482,7 @@ impl Model {
         Some(turn.unwrap_or(Turn::Radius(curve.case.start.max(start))))
     }
 
-    /// Whether the walker stands there, or beyond.
+    /// Whether the walker stands at that end, or beyond it.
     pub fn is_at_outer_end(&self) -> bool {
         let (Some(node), Some(end), Some(control)) = (self.walker(), self.outer_end(), self.control()) else {
             return false;
@@ -515,7 +515,7 @@ impl Model {
         self.history.path().into_iter().filter_map(event).collect()
     }
 
-    /// The inadmissible parts of the curve; they stand behind the events.
+    /// The inadmissible parts of the curve; in the log they come after the events.
     pub fn shown_inadmissible(&self) -> &[Inadmissible] {
         let base = self.curve.as_ref().map(|curve| &curve.base);
         base.and_then(|base| base.inadmissible.as_deref()).unwrap_or_default()

@@ -14,22 +14,22 @@ pub enum NodeKind {
     Step,
     /// A limit point of the control, located exactly.
     Limit,
-    /// Where the crest at this radius (reduced) touches, located exactly: from here on the real path has a ring.
+    /// Where the crest at this radius (reduced) touches, located exactly: from here on, the real path has a ring.
     Touch(f64),
-    /// The landing of a jump, or `None` inside for a pull-off, with what it cost.
+    /// The landing of a jump, or `None` inside for a pull-off, with the energy lost.
     Jump(Box<Event>),
-    /// Moved to by hand: an event selected, the start again.
+    /// Moved to by hand: a selected event, or the start again.
     Moved,
     /// Solved again after a parameter or the control had changed.
     Solved,
-    /// Not solved after a change: the state before, with the reason.
+    /// Not solved after a change: the previous state, with the reason.
     Stale(String),
 }
 
 /// One state of the walk.
 #[derive(Debug, Clone)]
 pub struct Node {
-    /// The node before.
+    /// The previous node.
     pub parent: Option<usize>,
     pub kind: NodeKind,
     pub setting: Arc<Setting>,
@@ -44,19 +44,19 @@ pub struct Node {
     pub step: usize,
     /// dP/dδ and dA/dδ here, reduced.
     pub stiffness: Stiffness,
-    /// At a limit point of the control: where the jump leads, if that is known.
+    /// At a limit point of the control: where the jump leads, if known.
     pub ahead: Option<Ahead>,
     /// Whether the state is admissible, and the nearest crest.
     pub admissibility: Admissibility,
-    /// Decimal digits the basis can be trusted for here.
+    /// Decimal digits to which the basis can be trusted here.
     pub digits: f64,
     /// The relative difference of P from the exact solution of one disc at the same contact radius; not a number with rings.
     pub from_exact: f64,
-    /// The number of the state on the path along which the walker goes, from 0; `None` where it goes along the curve.
+    /// The number, from 0, of the state on the path that the walker follows; `None` if it follows the curve.
     pub on_path: Option<usize>,
-    /// Whether a walk of its own begins here: at the start, at a restart, at a selected event.
+    /// Whether a new walk begins here: at the start, at a restart, at a selected event.
     pub begins: bool,
-    /// The number of the walk request that made it: what one command made has one number.
+    /// The number of the walk request that made it: all states made by one command share a number.
     pub request: u64,
 }
 
@@ -66,7 +66,7 @@ impl Node {
         edges::has_rings(&self.point)
     }
 
-    /// Where the bodies touch, reduced lengths.
+    /// Where the bodies touch, in reduced lengths.
     pub fn contacts(&self) -> Contacts {
         edges::contacts(&self.setting.scales, &self.point)
     }
@@ -85,7 +85,7 @@ impl Node {
         matches!(&self.kind, NodeKind::Jump(event) if event.after.is_none())
     }
 
-    /// Of an inadmissible state, the reduced r at fault, with the crest that would touch there (and its number), or
+    /// For an inadmissible state, the reduced r at fault, with the crest that would touch there (and its number), or
     /// `None` where the disc would have to pull.
     pub fn fault_radius(&self) -> Option<(f64, Option<Option<u64>>)> {
         let found = self.admissibility;

@@ -13,11 +13,11 @@ use std::ops::RangeInclusive;
 /// How far one key press goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Amount {
-    /// The third digit; of the rate of a pull a third of a decade.
+    /// The third digit; for the rate of a pull, a third of a decade.
     Third,
-    /// The second digit; of the rate of a pull a third of a decade.
+    /// The second digit; for the rate of a pull, a third of a decade.
     Second,
-    /// The first digit; of the device's stiffness 1, 2 and 5 of a decade, of the rate of a pull a decade.
+    /// The first digit; for the device's stiffness 1, 2 and 5 of a decade, for the rate of a pull a decade.
     First,
 }
 
@@ -32,28 +32,28 @@ impl Amount {
     }
 }
 
-/// The next value after `x` up or down that has so many digits; `x` is not 0, and its sign stays.
+/// The next value above or below `x` that has this many digits; `x` is not 0, and its sign stays.
 fn turned(x: f64, up: bool, digits: i32) -> f64 {
-    /// What rounding leaves of a digit.
+    /// The rounding error allowed in a digit.
     const ROUNDING: f64 = 1e-9;
     let (size, grows) = (x.abs(), up == (x > 0.0));
-    // Of a double it is between -324 and 308.
+    // For a double it is between -324 and 308.
     #[expect(clippy::cast_possible_truncation)]
     let mut unit = size.log10().floor() as i32 + 1 - digits;
     let steps = |unit: i32| size / 10f64.powi(unit);
-    // A power of ten goes down by the digits of the decade below.
+    // Going down, a power of ten uses the digits of the decade below.
     if !grows && steps(unit) <= 10f64.powi(digits - 1) * (1.0 + ROUNDING) {
         unit -= 1;
     }
     let at = steps(unit);
     let next =
         if grows { (at * (1.0 + ROUNDING)).floor() + 1.0 } else { (at * (1.0 - ROUNDING)).ceil() - 1.0 };
-    // As it is read: exactly the number that is written.
+    // Parsed from text: exactly the number that is written.
     format!("{}{next}e{unit}", if x < 0.0 { "-" } else { "" }).parse().unwrap_or(x)
 }
 
 /// `preset` with the value of `row` nudged up or down; `contact` is the contact's own stiffness in the user's units,
-/// against which that of the device is judged.
+/// the scale for the stiffness of the device.
 /// Errors: Why it cannot be nudged, in words: out of range, or a text.
 pub fn nudge(
     preset: &Preset,
@@ -110,7 +110,7 @@ pub fn nudge(
     Ok(changed)
 }
 
-/// A rate so many thirds of a decade further: one that is at a third of a decade goes to another, whatever its last digits.
+/// A rate this many thirds of a decade further: one at a third of a decade goes to another, whatever its last digits.
 fn by_thirds(x: f64, thirds: f64) -> f64 {
     const NEAR: f64 = 1e-4;
     let here = 3.0 * x.log10();
@@ -118,7 +118,8 @@ fn by_thirds(x: f64, thirds: f64) -> f64 {
     10.0_f64.powf(there / 3.0)
 }
 
-/// δ₀ or P₀ moved by a tenth of `share` of the range of the measured curve: either may be 0, and has no scale of its own.
+/// δ₀ or P₀ moved by a tenth of `share` of the range of the measured curve: either may be 0, so it has no scale of its
+/// own.
 fn shifted(preset: &Preset, key: &str, value: Option<Value>, share: f64) -> Result<f64, String> {
     let Some(branches) = preset.branches().transpose()? else {
         return Err("there is no measured curve to shift".to_owned());
@@ -130,14 +131,14 @@ fn shifted(preset: &Preset, key: &str, value: Option<Value>, share: f64) -> Resu
     Ok(value.and_then(|value| value.as_number()).unwrap_or(found) + 0.1 * share * range)
 }
 
-/// Stiffnesses over the contact's own; beyond them the device is displacement or force control to a few thousandths.
+/// Stiffnesses over the contact's own; beyond them, the device is displacement or force control to a few thousandths.
 const STIFFNESSES: RangeInclusive<f64> = 1e-3..=1e3;
 
 /// `control` made stiffer or softer: force, a spring of stiffness k by its logarithm, displacement.
 ///
 /// `contact` is the stiffness of the contact itself, in the user's units.
 fn stiffened(control: Control, up: bool, amount: Amount, contact: f64) -> Result<Control, String> {
-    // By the first digit 1, 2 and 5 of a decade: there are six of them.
+    // By the first digit: 1, 2 and 5 of a decade; that range has six decades.
     let next = |k: f64| {
         let round = |k: f64| turned(k, up, amount.digits());
         let is_round =
@@ -163,9 +164,9 @@ fn stiffened(control: Control, up: bool, amount: Amount, contact: f64) -> Result
     })
 }
 
-/// The control after that of `preset`: displacement, force, a spring (of stiffness `last`), and round again.
+/// The control after that of `preset`: displacement, force, a spring (of stiffness `last`), and so on in a cycle.
 pub fn next_control(preset: &Preset, last: Option<f64>) -> Control {
-    // As stiff as the paper's contacts themselves in reduced units: all three kinds of limit points differ.
+    // As stiff as the paper's contacts themselves in reduced units, so that all three kinds of limit points differ.
     const STIFFNESS: f64 = 0.15;
     match preset.path.control {
         Control::Displacement => Control::Force,
@@ -177,7 +178,7 @@ pub fn next_control(preset: &Preset, last: Option<f64>) -> Control {
     }
 }
 
-/// `x` rounded to six significant digits: nudged values stay readable and a nudge back comes close.
+/// `x` rounded to six significant digits: nudged values stay readable, and a nudge back comes close.
 fn tidy(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
 }
@@ -238,7 +239,7 @@ mod tests {
             preset = nudge(&preset, row, false, Amount::First, 1.0).unwrap();
         }
         assert!(matches!(preset.get(&row.key), Some(Value::Number(x)) if x > 0.0));
-        // In its own unit.
+        // In the preset's own unit.
         let preset = read("t", crate::store::shipped::find("fig-9-si").unwrap().text).unwrap();
         let up = nudge(&preset, row, true, Amount::Second, 1.0).unwrap();
         assert_eq!(up.get(&row.key), Some(Value::Number(1.3e-5)));
@@ -295,7 +296,7 @@ mod tests {
         preset.path.control = Control::Stiffness(1999.0);
         assert_eq!(turn(&mut preset, true, Amount::First), Ok(Control::Stiffness(2000.0)));
         assert_eq!(turn(&mut preset, true, Amount::First), Ok(Control::Displacement));
-        // A stiffness typed beyond the ends turns back by steps, and on to the end.
+        // A stiffness typed beyond the ends turns back in steps, and on to the end.
         preset.path.control = Control::Stiffness(1e6);
         assert_eq!(turn(&mut preset, false, Amount::First), Ok(Control::Stiffness(500_000.0)));
         assert_eq!(turn(&mut preset, true, Amount::First), Ok(Control::Displacement));

@@ -1,4 +1,5 @@
-//! The smallest A/λ at which a problem snaps at all, found behind its curve and kept while only the amplitude is turned.
+//! The smallest A/λ at which a problem snaps at all, computed after its curve and kept while only the amplitude is
+//! turned.
 
 use super::background::{Background, Tell, Want, Watcher};
 use super::model::Model;
@@ -10,7 +11,7 @@ use pulloff_engine::stability::Onset;
 #[derive(Debug, Clone)]
 pub struct SnapsFrom {
     preset: Preset,
-    /// A/λ; `None` for a gap without one wave, and where nothing snaps.
+    /// A/λ; `None` for a gap that does not have exactly one wave, and where nothing snaps.
     pub amplitude_over_wavelength: Option<f64>,
 }
 
@@ -18,7 +19,7 @@ impl Background for SnapsFrom {
     type Key = Preset;
     const NAME: &'static str = "onset";
 
-    /// Behind the curve and what is admissible on it.
+    /// Computed after the curve and the check of its admissibility.
     fn wanted(model: &Model) -> Want<Preset> {
         let is_checked = model.curve.as_ref().is_some_and(|curve| curve.is_checked());
         if is_checked && !model.is_computing() { Want::Now(model.preset.clone()) } else { Want::Later }
@@ -33,14 +34,14 @@ impl Background for SnapsFrom {
     }
 
     fn compute(preset: &Preset, progress: Watcher<'_>, _: Tell<'_, Self>) -> Option<Self> {
-        // A start that some amplitude does not have is the curve's to tell.
+        // If the start does not exist at some amplitude, the curve reports it.
         let onset = Onset::of(preset, progress).ok().flatten();
         let amplitude_over_wavelength = onset.map(|onset| onset.amplitude_over_wavelength);
         (!progress.stop()).then(|| Self { preset: preset.clone(), amplitude_over_wavelength })
     }
 }
 
-/// Whether two presets differ in amplitude and basis at most.
+/// Whether two presets differ at most in amplitude and basis.
 fn is_alike(one: &Preset, other: &Preset) -> bool {
     let waves = match (&one.gap, &other.gap) {
         (
@@ -53,7 +54,7 @@ fn is_alike(one: &Preset, other: &Preset) -> bool {
 }
 
 impl Model {
-    /// The smallest A/λ at which the problem snaps, where it is known.
+    /// The smallest A/λ at which the problem snaps, if known.
     pub fn snaps_from(&self) -> Option<f64> {
         let found = self.results.found::<SnapsFrom>();
         found.filter(|found| is_alike(&found.preset, &self.preset))?.amplitude_over_wavelength

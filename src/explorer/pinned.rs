@@ -10,7 +10,7 @@ use super::progress::Staged;
 use pulloff_engine::preset::Preset;
 use std::sync::Arc;
 
-/// The curve of a pin, by its number, or `None` where there is none.
+/// The curve of the pin with this number, or `None` if there is none.
 #[derive(Debug, Clone)]
 pub struct PinCurve {
     pub number: usize,
@@ -27,7 +27,7 @@ impl Background for PinCurve {
     fn wanted(model: &Model) -> Want<Self::Key> {
         match model.pins.awaited().first().cloned() {
             None => Want::Not,
-            // In a session that is resumed it is still to come.
+            // In a resumed session the curve on the screen is still to come.
             Some(_) if model.curve.is_none() && model.is_computing() => Want::Later,
             Some((number, preset)) => Want::Now((number, preset, model.curve.clone())),
         }
@@ -45,7 +45,7 @@ impl Background for PinCurve {
         let curve = CurveData::compute(preset, &Staged::new(&|_| progress.stop())).ok().map(Arc::new);
         let elements =
             curve.as_ref().zip(beside.as_ref()).and_then(|(curve, other)| Elements::of(curve, other));
-        // Given up: another pin may have this number now.
+        // If it was given up, another pin may have this number now.
         (!progress.stop()).then(|| Self { number: *number, curve, elements })
     }
 

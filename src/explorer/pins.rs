@@ -1,6 +1,6 @@
-//! Curves kept on the screen to compare the next ones with.
+//! Curves kept on the screen for comparison with later ones.
 //!
-//! A pin is named by the values in which it differs from the preset as it is now, so its name changes with the preset.
+//! A pin is named by the values in which it differs from the current preset, so its name changes with the preset.
 
 use super::command::Id;
 use super::curve::CurveData;
@@ -14,36 +14,37 @@ use pulloff_engine::units::UnitSystem;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Most curves pinned: each has a digit and a colour of its own.
+/// The most curves that can be pinned: each has its own digit and colour.
 pub const MOST: usize = 6;
 
-/// Differences named; the others are counted.
+/// The number of differences that are named; the others are counted.
 const NAMED: usize = 3;
 
 /// A pinned curve.
 #[derive(Debug, Clone)]
 pub struct Pin {
-    /// Its number, from 1 to [`MOST`]; it keeps it while others are taken away.
+    /// Its number, from 1 to [`MOST`]; it keeps the number when others are removed.
     pub number: usize,
     /// The curve, with the preset it was computed from.
     pub curve: Arc<CurveData>,
-    /// Where it or the curve beside it is of ring elements and the other is exact: how good they are.
+    /// If either it or the curve beside it uses ring elements and the other is exact: how accurate the elements are.
     pub elements: Option<Elements>,
 }
 
-/// The ring elements of the paper beside the exact solution of the same problem.
+/// The accuracy of the paper's ring elements, compared with the exact solution of the same problem.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Elements {
     /// N.
     pub count: usize,
-    /// The largest pull over the exact one, less 1.
+    /// The largest pull over the exact one, minus 1.
     pub off: f64,
-    /// The iterations by which Newton and Raphson get from the exact contact radius of that state to theirs; `None` where they do not.
+    /// The Newton-Raphson iterations from the exact contact radius of that state to theirs; `None` if they do not
+    /// converge.
     pub iterations: Option<usize>,
 }
 
 impl Elements {
-    /// Those of two curves of one problem, in ring elements and exact in either order.
+    /// Compares two curves of one problem, one in ring elements and one exact, in either order.
     pub fn of(a: &CurveData, b: &CurveData) -> Option<Self> {
         let basis = |curve: &CurveData| curve.setting.preset.basis;
         let (rings, exact) = if basis(a) == BasisSpec::Exact { (b, a) } else { (a, b) };
@@ -60,7 +61,7 @@ impl Elements {
         Some(Self { count, off: own.force / at.force - 1.0, iterations })
     }
 
-    /// In words: `which` of the two, and how off and iterations are called.
+    /// In words: `which` of the two, and the labels for off and iterations.
     pub fn said(&self, which: &str, [off, iterations]: [&str; 2]) -> String {
         let found = self.iterations.map_or(String::new(), |count| format!(", {count} {iterations}"));
         format!("{which}: {off} {}{found}", difference(self.off))
@@ -73,7 +74,7 @@ impl Pin {
         &self.curve.setting.preset
     }
 
-    /// What differs from `now`, as labels and values; of ring elements how good they are.
+    /// The differences from `now`, as labels and values; for ring elements, their accuracy too.
     pub fn name(&self, now: &Preset) -> String {
         let elements = self.elements.filter(|_| self.preset().basis != now.basis);
         let same = || Preset { basis: now.basis, title: now.title.clone(), ..self.preset().clone() } == *now;
@@ -100,12 +101,12 @@ impl Pins {
         Self { shown: Vec::new(), awaited: presets.into_iter().take(MOST).collect() }
     }
 
-    /// Those whose curves are still to be computed.
+    /// The pins whose curves are still to be computed.
     pub fn awaited(&self) -> &[(usize, Preset)] {
         &self.awaited
     }
 
-    /// The curve of an awaited pin has come; without one it is given up. False where it is no longer awaited.
+    /// The curve of an awaited pin has arrived; `None` gives the pin up. False if it is no longer awaited.
     pub fn came(&mut self, number: usize, curve: Option<(Arc<CurveData>, Option<Elements>)>) -> bool {
         let Some(at) = self.awaited.iter().position(|(awaited, _)| *awaited == number) else { return false };
         self.awaited.remove(at);
@@ -116,22 +117,22 @@ impl Pins {
         true
     }
 
-    /// Those whose curves are still to be computed are given up.
+    /// Gives up the pins whose curves are still to be computed.
     pub fn give_up(&mut self) {
         self.awaited.clear();
     }
 
-    /// All.
+    /// All pinned curves.
     pub fn all(&self) -> &[Pin] {
         &self.shown
     }
 
-    /// Whether there is none.
+    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.shown.is_empty() && self.awaited.is_empty()
     }
 
-    /// Pins `curve` under the smallest free number, which is given back.
+    /// Pins `curve` under the smallest free number, which is returned.
     pub fn add(&mut self, curve: &Arc<CurveData>) -> Result<usize, String> {
         let same = |pin: &&Pin| {
             let title = curve.setting.preset.title.clone();
@@ -154,7 +155,7 @@ impl Pins {
         })
     }
 
-    /// Pins the curve of `preset` once it is computed, under the number that is given back.
+    /// Pins the curve of `preset` once it is computed, under the number that is returned.
     pub fn want(&mut self, preset: Preset) -> Result<usize, String> {
         let number = self.free()?;
         self.awaited.push((number, preset));
@@ -167,7 +168,7 @@ impl Pins {
         shown.or_else(|| self.awaited.iter().find(|(_, other)| other == preset).map(|(number, _)| *number))
     }
 
-    /// Takes away the pin of this number, or all; false when there is nothing to take away.
+    /// Removes the pin with this number, or all; false if there is nothing to remove.
     pub fn remove(&mut self, number: Option<usize>) -> bool {
         let before = self.numbers().count();
         let stays = |other: usize| number.is_some_and(|number| other != number);
@@ -181,29 +182,29 @@ impl Pins {
     }
 }
 
-/// The values of `pinned` that `now` has not, in the order of the table.
+/// The values of `pinned` that differ from those of `now`, in the order of the table.
 fn differences(pinned: &Preset, now: &Preset) -> Vec<(Row, Value)> {
     pinned
         .rows()
         .filter(|row| !matches!(&*row.key, "format" | "title"))
         .filter_map(|row| pinned.get(&row.key).map(|value| (row, value)))
         .filter(|(row, value)| now.get(&row.key).as_ref() != Some(value))
-        // The stiffness has a row of its own and says that the device is a spring.
+        // The stiffness has a row of its own, which already says that the device is a spring.
         .filter(|(row, _)| row.key != "path.control" || pinned.get("path.control.stiffness").is_none())
         .collect()
 }
 
-/// The label of a row and a value of it, short and in its unit.
+/// The label of a row and one of its values, short and in its unit.
 pub(super) fn labelled(row: &Row, value: &Value, units: &UnitSystem) -> String {
     labelled_with(row, value, units, " ")
 }
 
-/// The same with `between` the two.
+/// The same, with `between` separating the two.
 pub(super) fn labelled_with(row: &Row, value: &Value, units: &UnitSystem, between: &str) -> String {
     labelled_in(row, value, units, (between, 4))
 }
 
-/// The same with so many digits.
+/// The same with this many digits.
 fn labelled_in(row: &Row, value: &Value, units: &UnitSystem, (between, digits): (&str, usize)) -> String {
     let shown = match value {
         Value::Number(x) => {
@@ -215,19 +216,19 @@ fn labelled_in(row: &Row, value: &Value, units: &UnitSystem, (between, digits): 
     format!("{}{between}{shown}", row.label)
 }
 
-/// The values of `pinned` that `now` has not, as labels and values; the first few of them.
+/// The values of `pinned` that differ from those of `now`, as labels and values; only the first few.
 pub fn name(pinned: &Preset, now: &Preset) -> String {
     // A value that only the other preset has is not named.
     named(&differences(pinned, now), &now.units).unwrap_or_else(|| "as now".to_owned())
 }
 
-/// Each value that `after` has otherwise than `before`, as label and both values: `A 0.0025 → 0.0031`.
+/// Each value in which `after` differs from `before`, as label and both values: `A 0.0025 → 0.0031`.
 pub fn changes(before: &Preset, after: &Preset) -> Vec<String> {
     let told = differences(after, before).into_iter().map(|(row, value)| {
         let said =
             |value: &Value, preset: &Preset, digits| labelled_in(&row, value, &preset.units, (" ", digits));
         let Some(was) = before.get(&row.key) else { return said(&value, after, 4) };
-        // As many digits as tell them apart.
+        // As many digits as needed to tell them apart.
         let both = [4, 7, 10, 17].map(|digits| (said(&was, before, digits), said(&value, after, digits)));
         let (was, now) = both.iter().find(|(was, now)| was != now).unwrap_or(&both[0]);
         format!("{was} →{}", now.strip_prefix(&*row.label).unwrap_or(now))
@@ -235,17 +236,17 @@ pub fn changes(before: &Preset, after: &Preset) -> Vec<String> {
     told.collect()
 }
 
-/// The labels of the values that `after` has otherwise than `before`.
+/// The labels of the values in which `after` differs from `before`.
 pub fn changed_labels(before: &Preset, after: &Preset) -> Vec<String> {
     differences(after, before).into_iter().map(|(row, _)| row.label.to_string()).collect()
 }
 
-/// The values of `after` that `before` has not, as labels and values; `None` where there are none.
+/// The values of `after` that differ from those of `before`, as labels and values; `None` if there are none.
 pub fn changed(after: &Preset, before: &Preset) -> Option<String> {
     named(&differences(after, before), &after.units)
 }
 
-/// The name of `now` among the pins: its values that some of them have not; `None` without any.
+/// The name of `now` among the pins: its values that differ from those of some pin; `None` if there are none.
 pub fn name_among(now: &Preset, pins: &[Pin]) -> Option<String> {
     let keys: HashSet<String> = pins
         .iter()
@@ -257,7 +258,7 @@ pub fn name_among(now: &Preset, pins: &[Pin]) -> Option<String> {
     named(&own, &now.units)
 }
 
-/// The first few of them, as labels and values.
+/// The first few differences, as labels and values.
 fn named(differences: &[(Row, Value)], units: &UnitSystem) -> Option<String> {
     let named: Vec<String> =
         differences.iter().take(NAMED).map(|(row, value)| labelled(row, value, units)).collect();
@@ -305,7 +306,7 @@ mod tests {
         ] {
             assert_eq!(name(&preset(changes), &now), expected);
         }
-        // Named anew as the preset changes.
+        // The name changes as the preset does.
         assert_eq!(name(&now, &preset(&[("gap.amplitude", "0.002")])), "A 0.0025");
         assert!(name(&now, &preset(&[("gap.shape", "sphere")])).starts_with("gap wavy-sphere, A 0.0025"));
     }

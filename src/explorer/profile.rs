@@ -15,9 +15,9 @@ use pulloff_engine::zone::ZoneAt;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-/// Points of the exact pressure.
+/// Number of points of the exact pressure.
 const EXACT_POINTS: u32 = 200;
-/// Waves of the landscape inward and outward of the edge: the states next to it and what lies between.
+/// How many waves the landscape extends inward and outward of the edge: the neighbouring states and what lies between.
 const WAVES: [f64; 2] = [2.2, 1.2];
 /// Without waves, these shares of the radius.
 const SHARES: [f64; 2] = [0.95, 0.6];
@@ -28,18 +28,18 @@ pub struct Ask {
     /// The curve of the problem that the state solves, with the control whose potential is wanted.
     pub curve: Arc<CurveData>,
     pub state: State,
-    /// Its contacts, reduced, where there is more than a disc.
+    /// Its contacts, reduced, if there is more than a disc.
     pub rings: Option<Contacts>,
-    /// The outer edge of its zone (reduced), where adhesion has a range.
+    /// The outer edge of its zone (reduced), if adhesion has a range.
     pub zone: Option<f64>,
     /// Whether the exact pressure is wanted as well.
     pub exact: bool,
-    /// The way in which the barrier is wanted; none holds the edge at a limit point.
+    /// The direction in which the barrier is wanted; `None` at a limit point, where no barrier holds the edge.
     pub barrier: Option<EdgeDirection>,
 }
 
 impl Ask {
-    /// Whether the answer to the one is the answer to the other.
+    /// Whether both requests have the same answer.
     pub fn is_like(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.curve.setting, &other.curve.setting)
             && (self.state, self.exact, self.barrier) == (other.state, other.exact, other.barrier)
@@ -56,11 +56,11 @@ impl Ask {
 pub struct StateInside {
     /// Factors to the user's units.
     pub units: Units,
-    /// λ, where the gap has one wave alone.
+    /// λ, if the gap has a single wave.
     pub wave: Option<f64>,
     /// Pressure and gap across the radius.
     pub profile: Profile,
-    /// The exact (r, p), where it was asked for.
+    /// The exact (r, p), if requested.
     pub exact: Vec<(f64, f64)>,
     /// The potential over the contact radius; `None` off the curve.
     pub landscape: Option<Landscape>,
@@ -73,7 +73,7 @@ impl StateInside {
     pub fn of(ask: &Ask) -> Self {
         let case = &ask.curve.case;
         let State { contact_radius: s, approach, .. } = ask.state;
-        // A landscape is that of one disc under one law.
+        // A landscape applies to one disc under one law.
         let is_alone = ask.rings.is_none() && ask.curve.along.is_none();
         let landscape = if is_alone { landscape(ask) } else { None };
         let rings = ask.rings.as_ref();
@@ -105,7 +105,8 @@ impl Background for StateInside {
     type Key = Ask;
     const NAME: &'static str = "profile";
 
-    /// That of the walker's state, if a view shows it. An answer to an older question is taken too: a run shows the states it passes.
+    /// For the walker's state, if a view shows it. The answer to an older question is accepted too: a run shows the
+    /// states it passes.
     fn wanted(model: &Model) -> Want<Ask> {
         let is_shown = model.shown_views().into_iter().any(View::is_state);
         let node = model.walker().filter(|node| is_shown && !node.is_apart());
@@ -136,7 +137,7 @@ impl Background for StateInside {
 }
 
 impl Model {
-    /// The inside of the walker's state, or of the one before while that is computed.
+    /// The inside of the walker's state, or of the previous one while the new one is computed.
     pub fn shown_profile(&self) -> Option<&StateInside> {
         self.results.shown()
     }
@@ -151,7 +152,7 @@ fn landscape(ask: &Ask) -> Option<Landscape> {
     Landscape::of(curve, control, value, s, [s - inward, s + outward])
 }
 
-/// The exact (r, p) in the problem's own units, made reduced; dense towards the edge.
+/// The exact (r, p) in the problem's own units, made reduced; the points are denser towards the edge.
 fn exact_pressure(ask: &Ask) -> Vec<(f64, f64)> {
     let case = &ask.curve.case;
     let (exact, units) = (Exact::of(&case.problem), case.units());

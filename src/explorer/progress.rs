@@ -1,24 +1,24 @@
-//! How far a curve that is computed has come.
+//! How far the computation of a curve has come.
 
 use pulloff_engine::progress::Progress;
 use std::cell::Cell;
 use std::mem::discriminant;
 use std::time::{Duration, Instant};
 
-/// What a curve is at; it passes these in order, without those that are known.
+/// The stage that a curve has reached; the stages come in this order, without those whose results are known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CurveStage {
-    /// The basis is built: the share done, from 0 to 1.
+    /// The basis is being built: the share done, from 0 to 1.
     Basis(f64),
-    /// The equilibria are computed: the number of this one, from 1.
+    /// The equilibria are being computed: the number of the current one, from 1.
     Curve(usize),
     Limits,
-    /// Its unloading is followed: the events found.
+    /// The unloading is being followed: the number of events found.
     Events(usize),
 }
 
 impl CurveStage {
-    /// In words, short.
+    /// A short text for it.
     pub fn text(self) -> String {
         // Never 100 %: a part is complete only when the next has begun.
         match self {
@@ -30,19 +30,19 @@ impl CurveStage {
     }
 }
 
-/// Tells the stages of a curve, one for each question of the engine.
+/// Reports the stages of a curve, once for each question of the engine.
 pub struct Staged<'a> {
     stage: Cell<CurveStage>,
     stop: &'a dyn Fn(CurveStage) -> bool,
 }
 
 impl<'a> Staged<'a> {
-    /// Tells them to `stop`, which says whether to end the computation.
+    /// Reports them to `stop`, which says whether to end the computation.
     pub fn new(stop: &'a dyn Fn(CurveStage) -> bool) -> Self {
         Self { stage: Cell::new(CurveStage::Basis(0.0)), stop }
     }
 
-    /// Tells nobody, and goes on to the end.
+    /// Reports to nobody, and continues to the end.
     pub fn unwatched() -> Self {
         Self::new(&|_| false)
     }
@@ -71,7 +71,7 @@ impl Progress for Staged<'_> {
     }
 }
 
-/// What says stop from the first time on that `stop` does.
+/// Turns `stop` into a signal that stays on once it has been given.
 pub fn for_good(stop: impl Fn() -> bool) -> impl Fn() -> bool {
     let stopped = Cell::new(false);
     move || {
@@ -80,7 +80,7 @@ pub fn for_good(stop: impl Fn() -> bool) -> impl Fn() -> bool {
     }
 }
 
-/// When a computation is told of: not while it is short, and seldom enough to be read.
+/// When to report on a computation: not while it is short, and rarely enough to be readable.
 #[derive(Debug)]
 pub struct ProgressPace {
     begun: Instant,
@@ -89,16 +89,16 @@ pub struct ProgressPace {
 
 /// Shorter computations report nothing.
 const SHORT: Duration = Duration::from_millis(100);
-/// Least time between two reports.
+/// The least time between two reports.
 const BETWEEN: Duration = Duration::from_millis(250);
 
 impl ProgressPace {
-    /// For a computation that begins now.
+    /// The pace for a computation that begins now.
     pub fn begin() -> Self {
         Self { begun: Instant::now(), told: None }
     }
 
-    /// Whether `stage` is to be told now; another part of the computation may be a long one, so it is told at once.
+    /// Whether to report `stage` now; a new stage may take long, so it is reported at once.
     pub fn is_due(&mut self, stage: CurveStage) -> bool {
         let is_due = match self.told {
             None => self.begun.elapsed() >= SHORT,

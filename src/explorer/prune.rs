@@ -1,19 +1,20 @@
 //! Which states of a long walk may be forgotten.
 //!
-//! A walk of a million steps must not fill the memory. What tells the story stays: starts, limit points, jumps, changed
-//! problems, the states next to them, the places where branches part and their ends, and the newest states. Of the
-//! plain steps between, every second one goes, the oldest first: so the further back, the sparser.
+//! A walk of a million steps must not fill the memory. The states that tell the story stay: starts, limit points,
+//! jumps, changed problems, the states next to them, the places where branches part and their ends, and the newest
+//! states. Of the plain steps in between, every second one is removed, oldest first, so the walk becomes sparser
+//! further back.
 
 use super::node::{Node, NodeKind};
 
-/// More states than this are pruned.
+/// Walks with more states than this are pruned.
 pub const MOST: usize = 5_000;
-/// Pruning leaves so many.
+/// Pruning leaves this many.
 const LEFT: usize = 3_750;
-/// So many of the newest are never pruned.
+/// This many of the newest are never pruned.
 const NEWEST: usize = 2_000;
 
-/// Which of `nodes` stay; those that are held do.
+/// Which of `nodes` stay; those that are held always do.
 pub(super) fn staying(nodes: &[&Node], is_held: impl Fn(usize) -> bool) -> Vec<bool> {
     let count = nodes.len();
     let old = count.saturating_sub(NEWEST);
@@ -21,7 +22,7 @@ pub(super) fn staying(nodes: &[&Node], is_held: impl Fn(usize) -> bool) -> Vec<b
     let mut surplus = count.saturating_sub(LEFT);
     let children = children(nodes);
     let is_plain = |at: usize| {
-        // Its one child is a step like itself: neither an end, nor a fork, nor the state before something.
+        // Its only child is a step like itself, so it is neither an end, nor a fork, nor the state before an event.
         let single = matches!(children[at][..], [child] if nodes[child].kind == NodeKind::Step);
         nodes[at].kind == NodeKind::Step && single && !is_held(at) && nodes[at].parent.is_some()
     };
@@ -56,7 +57,7 @@ pub(super) fn children(nodes: &[&Node]) -> Vec<Vec<usize>> {
     children
 }
 
-/// Whether a later sibling replaces this end: the same change made further, or the same state made again after undo.
+/// Whether a later sibling replaces this end: the same change continued, or the same state made again after undo.
 pub(super) fn is_repeated(nodes: &[&Node], children: &[Vec<usize>], at: usize) -> bool {
     let is_change = |kind: &NodeKind| matches!(kind, NodeKind::Solved | NodeKind::Stale(_));
     let Some(siblings) = nodes[at].parent.map(|parent| &children[parent]) else { return false };

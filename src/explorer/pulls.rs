@@ -1,4 +1,4 @@
-//! The pull at the rate of the preset, computed in the background where its edge has a law.
+//! The pull at the rate of the preset, computed in the background if its edge has a law.
 
 use super::background::{Background, Tell, Want, Watcher};
 use super::model::Model;
@@ -20,7 +20,8 @@ use std::time::Duration;
 pub struct PullData {
     pub preset: Preset,
     pub report: Result<PullReport, WordedFault>,
-    /// The least force on the smooth sphere of the same R, pulled from the same contact radius; none without R, and on that sphere itself.
+    /// The least force on the smooth sphere of the same R, pulled from the same contact radius; `None` without R, and
+    /// for that sphere itself.
     pub smooth: Option<f64>,
 }
 
@@ -29,7 +30,7 @@ impl Background for PullData {
     const NAME: &'static str = "pull";
     const PATIENCE: Duration = Duration::from_millis(50);
 
-    /// That of the values as they are, once their curve is there, which makes the table that a pull reads.
+    /// The pull of the present values, once their curve is there, since computing it makes the table that a pull reads.
     fn wanted(model: &Model) -> Want<Preset> {
         if missing(&model.preset).is_some() {
             Want::Not
@@ -55,7 +56,7 @@ impl Background for PullData {
 }
 
 impl PullData {
-    /// Pulls as the preset says; `None` where that was stopped.
+    /// Pulls as the preset says; `None` if it was stopped.
     pub fn of(preset: &Preset, progress: &dyn Progress) -> Option<Self> {
         let pulled = |preset: &Preset| PullReport::compute(preset, &AskedPulls::default(), progress);
         let report = match pulled(preset) {
@@ -78,15 +79,15 @@ impl PullData {
         self.report.as_ref().ok()?.runs.first()
     }
 
-    /// Its numbers as a sentence, the largest pull first, which is to fit into 80 columns; `jumps` are those of the quasi-static
-    /// path, the last contact among them.
+    /// Its numbers as a sentence that fits into 80 columns, the largest pull first; `jumps` is the number of jumps on
+    /// the quasi-static path, including the last contact.
     fn sentence(&self, jumps: usize) -> Option<String> {
         let (run, report) = (self.run()?, self.report.as_ref().ok()?);
         let units = &self.preset.units;
         let three = |x: f64| short(x, 3);
         let of_force = self.preset.path.control == Control::Force;
         let quantity = if of_force { Quantity::ForceRate } else { Quantity::Speed };
-        // The law is given, else there is no report.
+        // The law is given; otherwise there is no report.
         let speed = self.preset.edge.reference_speed.unwrap_or(1.0);
         let over = |x: f64| format!("{} v₀", three(x / speed));
         let shown = |rate: f64| with_unit(units, quantity, rate, false, three);
@@ -115,12 +116,13 @@ impl PullData {
 }
 
 impl Model {
-    /// The pull at the rate of the preset, where there is one; it can be that of values before.
+    /// The pull at the rate of the preset, if there is one; it can be that of earlier values.
     pub fn pull(&self) -> Option<&PullData> {
         self.results.shown()
     }
 
-    /// What comes of the pull: where the law ends first, then its numbers; `None` without a pull of the values as they are.
+    /// The outcome of the pull: first where the law ends, then its numbers; `None` if there is no pull of the present
+    /// values.
     pub(super) fn pull_said(&self) -> Option<String> {
         let pull = self.pull().filter(|pull| pull.is_of(&self.preset))?;
         let report = match &pull.report {

@@ -1,4 +1,4 @@
-//! Which views have something to show now, why the others have not, and the way from one to the next.
+//! Which views have something to show now, why the others do not, and how to go from one to the next.
 
 use super::command::Id;
 use super::fitting::NO_POINTS;
@@ -15,7 +15,7 @@ use pulloff_engine::report::pull::missing;
 pub const OF_SHORT_RANGE: &str = "with a range of the adhesion one radius does not say which state it is: this is drawn of short-range \
                                   adhesion alone";
 
-/// Why a view has nothing to show now; `None` where it has, or will have once it is computed.
+/// Why a view has nothing to show now; `None` if it has, or will have once it is computed.
 pub fn why_not(model: &Model, view: View) -> Option<String> {
     let node = model.history.current();
     match view {
@@ -54,7 +54,7 @@ pub fn why_not(model: &Model, view: View) -> Option<String> {
     }
 }
 
-/// Why there is no way of a device beside the approach; `None` where there is a spring.
+/// Why the far end of the device has no displacement of its own beside the approach; `None` if there is a spring.
 pub fn no_spring(preset: &Preset) -> Option<String> {
     let is_spring = matches!(preset.path.control, Control::Stiffness(_));
     (!is_spring).then(|| {
@@ -63,7 +63,7 @@ pub fn no_spring(preset: &Preset) -> Option<String> {
     })
 }
 
-/// Whether any other curve is drawn with that of the preset.
+/// Whether any other curve is drawn along with that of the preset.
 fn has_others(model: &Model) -> bool {
     let theory = model.curve.as_ref().map(|curve| &curve.base.theory);
     let overlays = model.overlays;
@@ -75,13 +75,13 @@ fn has_others(model: &Model) -> bool {
 
 /// The next view, or the one before, that has something to show.
 pub fn next(model: &Model, forward: bool) -> View {
-    // What stands beside it already is none.
+    // A view already shown beside it does not count.
     let is_beside = |view: View| model.views > 1 && model.view.is_of_force() && view == View::ForceRadius;
     let mut others = model.view.others(forward).filter(|view| !is_beside(*view));
     others.find(|view| why_not(model, *view).is_none()).unwrap_or(model.view)
 }
 
-/// Shows a view, and says so where there is nothing on it.
+/// Shows a view, and says so if there is nothing on it.
 pub(super) fn show(model: &mut Model, view: View) {
     model.look_at(view);
     if let Some(why) = why_not(model, view) {
@@ -89,7 +89,7 @@ pub(super) fn show(model: &mut Model, view: View) {
     }
 }
 
-/// Goes to a place: to the view last looked at there, or one that has something to show.
+/// Goes to a place: to the view last looked at there, or to one that has something to show.
 pub(super) fn go(model: &mut Model, home: Home) {
     let last = model.homes[home as usize];
     let has = |view: &View| why_not(model, *view).is_none();
@@ -97,7 +97,7 @@ pub(super) fn go(model: &mut Model, home: Home) {
     show(model, view.unwrap_or(last));
 }
 
-/// The line of the table of states that is selected, from 0: the walker's, where none was chosen.
+/// The selected line of the table of states, from 0: the walker's if none was chosen.
 pub fn walk_line(model: &Model) -> usize {
     let last = model.history.path().len().saturating_sub(1);
     model.walk_line.map_or(last, |line| line.min(last))

@@ -1,4 +1,4 @@
-//! What the model asks of the worker on behalf of several commands: a curve, the end of a walk, work on files.
+//! Requests that the model makes to the worker for several commands: a curve, the end of a walk, work on files.
 
 use super::effect::{Effect, Wish};
 use super::job::Job;
@@ -17,18 +17,18 @@ impl Model {
     }
 }
 
-/// Asks for the curve of the preset as it is.
+/// Requests the curve of the present preset.
 pub(super) fn want_curve(model: &mut Model) -> Effect {
     let id = model.number();
     model.curve_wanted = id;
     (model.stage, model.curve_error) = (None, None);
-    // The curve does not depend on the control: under another one it is reused.
+    // The curve does not depend on the control, so it is reused under another one.
     let known = model.curve.as_ref().map(|curve| &curve.base).filter(|base| base.is_of(&model.preset));
     let base = known.map(Arc::clone);
     Effect::Curve(Box::new(Wish { id, preset: model.preset.clone(), base }))
 }
 
-/// Takes the parameters of the walker's state where the curve on the screen has others.
+/// Adopts the parameters of the walker's state if the curve on the screen has others.
 pub(super) fn adopt_parameters(model: &mut Model) -> Vec<Effect> {
     let Some(node) = model.history.current() else { return Vec::new() };
     if model.is_on_curve(node) || matches!(node.kind, NodeKind::Stale(_)) {
@@ -37,7 +37,7 @@ pub(super) fn adopt_parameters(model: &mut Model) -> Vec<Effect> {
     take_back(model)
 }
 
-/// Takes the parameters of the walker's state instead of those typed since.
+/// Adopts the parameters of the walker's state in place of those typed since.
 pub(super) fn take_back(model: &mut Model) -> Vec<Effect> {
     let Some(node) = model.history.current() else { return Vec::new() };
     let mut preset = node.setting.preset.clone();
@@ -47,7 +47,7 @@ pub(super) fn take_back(model: &mut Model) -> Vec<Effect> {
     change(model, preset)
 }
 
-/// Takes a changed preset and asks for its curve.
+/// Adopts a changed preset and requests its curve.
 pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
     if preset == model.preset {
         return Vec::new();
@@ -55,11 +55,11 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
     let same_problem = {
         let mut old = model.preset.clone();
         old.title.clone_from(&preset.title);
-        // Measured points lie behind the curve, and do not change it.
+        // Measured points lie behind the curve and do not change it.
         old.data.clone_from(&preset.data);
         old == preset
     };
-    // The last stiffness is remembered, to come back to it.
+    // The last stiffness is remembered so that one can return to it.
     for control in [model.preset.path.control, preset.path.control] {
         if let Control::Stiffness(k) = control {
             model.stiffness = Some(k);
@@ -71,7 +71,7 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
         return Vec::new();
     }
     model.is_tried = false;
-    // The list may have a key more or less now: the same value stays selected.
+    // The list may now have a key more or less: the same value stays selected.
     let knobs = model.knobs();
     let stays = knobs.iter().position(|(row, _)| selected.as_ref() == Some(&row.key));
     model.parameter = stays.unwrap_or(model.parameter.min(knobs.len().saturating_sub(1)));
@@ -87,7 +87,7 @@ pub(super) fn change(model: &mut Model, preset: Preset) -> Vec<Effect> {
     effects
 }
 
-/// Ends the walk that runs and forgets the commands that wait for it.
+/// Ends the walk under way and drops the commands that wait for it.
 pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
     model.queue.clear();
     model.awaits = Awaits::Nothing;
@@ -95,12 +95,12 @@ pub(super) fn stop(model: &mut Model) -> Vec<Effect> {
     stop_walk(model)
 }
 
-/// Ends the walk that runs.
+/// Ends the walk under way.
 pub(super) fn stop_walk(model: &Model) -> Vec<Effect> {
     model.walking.map(|walking| Effect::StopWalk(walking.id)).into_iter().collect()
 }
 
-/// The folder that the name of the preset's own file of this key is relative to.
+/// The folder that the name of the preset's own file for this key is relative to.
 fn own_folder(model: &Model, key: &str) -> Option<PathBuf> {
     match &model.preset.get(key)? {
         Value::Profile(rows) => rows.folder.clone(),

@@ -14,7 +14,7 @@ pub(super) type AnyResult = Arc<dyn Any + Send + Sync>;
 pub(super) struct AnswerSlot {
     pub asked: Option<(u64, AnyResult)>,
     pub found: Option<(u64, AnyResult)>,
-    /// The number of the last question that was answered whole, or given up.
+    /// The number of the last question that was answered completely, or given up.
     pub over: u64,
 }
 
@@ -31,7 +31,7 @@ impl Results {
         self.0.entry(TypeId::of::<R>()).or_default()
     }
 
-    /// The last answer, which can be that of values before.
+    /// The last answer, which can be that of earlier values.
     pub fn found<R: 'static>(&self) -> Option<&R> {
         self.slot::<R>()?.found.as_ref()?.1.downcast_ref()
     }
@@ -47,18 +47,18 @@ impl Results {
         self.found()
     }
 
-    /// What is done so far of what is under way.
+    /// What has been done so far of the computation under way.
     pub fn so_far<R: 'static>(&self) -> Option<&R> {
         let (id, found) = self.slot::<R>()?.found.as_ref()?;
         if self.under_way::<R>() == Some(*id) { found.downcast_ref() } else { None }
     }
 
-    /// The key of what was asked for last, and is still wanted.
+    /// The key of the last request, if it is still wanted.
     pub fn asked<R: 'static, K: 'static>(&self) -> Option<&K> {
         self.slot::<R>()?.asked.as_ref()?.1.downcast_ref()
     }
 
-    /// The number of what was asked for and is neither whole nor given up.
+    /// The number of the request that is neither complete nor given up.
     pub fn under_way<R: 'static>(&self) -> Option<u64> {
         let slot = self.slot::<R>()?;
         slot.asked.as_ref().map(|(id, _)| *id).filter(|id| *id > slot.over)
@@ -68,11 +68,11 @@ impl Results {
 /// Work for a thread.
 #[derive(Clone)]
 pub struct Task {
-    /// Which kind of result it is.
+    /// The kind of result.
     pub name: &'static str,
     pub id: u64,
     pub patience: Duration,
-    /// Whether it is done where nobody looks.
+    /// Whether it is done even where nobody looks, as in scripts.
     pub is_for_scripts: bool,
     pub(super) work: Arc<Computation>,
 }
@@ -86,7 +86,7 @@ impl fmt::Debug for Task {
     }
 }
 
-/// An answer, or as much of it as is done.
+/// An answer, or the part of it that is done.
 #[derive(Debug, Clone)]
 pub struct Found {
     pub name: &'static str,
@@ -96,7 +96,7 @@ pub struct Found {
 }
 
 impl Task {
-    /// Does it, and hands over what comes of it.
+    /// Does the work, and hands over its results.
     pub fn run(&self, progress: &(dyn Progress + Sync), reply: &mut dyn FnMut(Found)) {
         let found = |what, is_whole| Found { name: self.name, id: self.id, is_whole, what };
         if let Some(what) = (self.work)(progress, &mut |part| reply(found(part, false))) {

@@ -1,7 +1,8 @@
 //! Saves that follow each other faster than they are answered.
 //!
-//! A save asks that the file be as the session knows it, and the session learns from the answer how the save has left
-//! it. When the next save is asked for before that, the file is as our own last save left it: nobody else changed it.
+//! A save requires that the file be as the session knows it, and the session learns from the answer how the save has
+//! left it. When the next save is requested before that, the file is as our own last save left it: nobody else changed
+//! it.
 
 use super::files;
 use super::job::{Done, Job};
@@ -10,9 +11,9 @@ use crate::store::{Fingerprint, Overwrite, Source, Store};
 /// The last saves to one file.
 #[derive(Debug, Default)]
 pub(super) struct Saves {
-    /// The file, and how the last save has left it.
+    /// The file, and the state in which the last save left it.
     last: Option<(Source, Fingerprint)>,
-    /// How it was before each of the saves that the session may not know of yet.
+    /// The state before each of the saves that the session may not know of yet.
     before: Vec<Fingerprint>,
 }
 
@@ -31,7 +32,7 @@ impl Saves {
         done
     }
 
-    /// How the file must be, where the session has known it as `asked`.
+    /// The state the file must be in when the session knew it as `asked`.
     fn renewed(&mut self, source: &Source, asked: Fingerprint) -> Fingerprint {
         match &self.last {
             Some((saved, now)) if saved == source && self.before.contains(&asked) => *now,
@@ -62,14 +63,14 @@ mod tests {
             let (source, preset) = (source.clone(), Box::new(called(title)));
             saves.run(&store, Job::Save { source, preset, overwrite: Overwrite::IfUnchanged(known) })
         };
-        // Three that know only the first file; the answer to the last; one that knows it.
+        // Three saves that know only the first file, the answer to the last, and one save that knows it.
         let mut last = first;
         for title in ["one", "two", "three"] {
             let Done::Saved { fingerprint, .. } = save(title, first) else { panic!("{title} was refused") };
             last = fingerprint;
         }
         assert!(matches!(save("four", last), Done::Saved { .. }));
-        // What somebody else has written is found all the same, by whatever was known before.
+        // A change made by somebody else is still found, whatever was known before.
         let path = source.path().unwrap();
         fs::write(path, "theirs").unwrap();
         assert!(matches!(save("five", first), Done::Conflict));

@@ -1,4 +1,4 @@
-//! The energy release rate of measured rows and the speed of the edge there, computed in the background where they are looked at.
+//! The energy release rate of measured rows and the speed of the edge there, computed in the background when looked at.
 
 use super::background::{Background, Tell, Want, Watcher};
 use super::fitting::NO_POINTS;
@@ -16,7 +16,7 @@ pub struct SpeedsData {
 }
 
 impl SpeedsData {
-    /// Computes them; `None` where that was stopped.
+    /// Computes them; `None` if it was stopped.
     pub fn of(preset: &Preset, progress: &dyn Progress) -> Option<Self> {
         let report = SpeedsReport::compute(preset, None, progress).map_err(|error| error.to_string());
         (!progress.stop()).then(|| Self { preset: preset.clone(), report })
@@ -33,7 +33,7 @@ impl Background for SpeedsData {
     }
 
     fn is_same(asked: &Preset, wanted: &Preset) -> bool {
-        // No law of adhesion is in it.
+        // The law of adhesion does not enter.
         let Preset { material, edge, .. } = wanted;
         let mut asked = Preset { edge: edge.clone(), title: wanted.title.clone(), ..asked.clone() };
         asked.material.work_of_adhesion = material.work_of_adhesion;
@@ -49,7 +49,7 @@ impl Background for SpeedsData {
     }
 }
 
-/// Why the rows of a preset have no speeds; `None` where they have.
+/// Why the rows of a preset have no speeds; `None` if they have.
 pub fn untimed(preset: &Preset) -> Option<String> {
     let branches = match preset.branches() {
         None => return Some(NO_POINTS.to_owned()),

@@ -1,4 +1,4 @@
-//! The status line: what was last told, or else what the state is and which command comes next.
+//! The status line: the last message, or else the state and the command that comes next.
 
 use super::command::Id;
 use super::model::{Level, Model, Walking};
@@ -12,12 +12,12 @@ use pulloff_engine::report::number::{loss, short, significant, with_unit};
 use pulloff_engine::report::problem::control_name;
 use pulloff_engine::units::Quantity;
 
-/// The ways out of a state from which no walk goes on.
+/// The ways out of a state from which no walk can continue.
 pub(super) fn back_or_anew() -> String {
     format!("{} goes back, {} starts again", Id::Undo.named(), Id::Restart.named())
 }
 
-/// Why nothing is walked on a curve that stayed when another was given up.
+/// Why nothing can be walked on a curve that stayed when a newer one was given up.
 pub(super) fn of_before() -> String {
     format!(
         "the curve shown is of the values before; {} takes them back, {} computes it again",
@@ -32,7 +32,7 @@ fn progress(model: &Model) -> String {
 }
 
 impl Model {
-    /// The message, or a hint. It may name commands; whoever shows it [spells](super::command::spelled) them.
+    /// The message, or a hint. It may name commands; whatever shows it [spells](super::command::spelled) them.
     pub fn status(&self) -> (Level, String) {
         self.message.clone().unwrap_or_else(|| (Level::Info, hint(self)))
     }
@@ -61,7 +61,7 @@ fn energy(node: &Node, lost: f64) -> String {
     with_unit(&node.setting.preset.units, Quantity::Energy, lost, false, loss)
 }
 
-/// Why a state cannot be, in words: the crest that would touch, or where the disc would have to pull.
+/// Why a state is inadmissible, in words: the crest that would touch, or where the disc would have to pull.
 fn fault(model: &Model, node: &Node) -> Option<String> {
     let (radius, crest) = node.fault_radius()?;
     let radius = length(node, radius);
@@ -170,13 +170,13 @@ fn next(model: &Model) -> String {
     }
 }
 
-/// Whether the pull is what is looked at: its chart, or a value that it alone depends on.
+/// Whether the person is looking at the pull: at its chart, or at a value on which only the pull depends.
 fn asks_of_pull(model: &Model) -> bool {
     let is_of_edge = |key: &str| edge::KEYS.contains(&key);
     model.view == View::ForceTime || model.selected_knob().is_some_and(|(row, _)| is_of_edge(&row.key))
 }
 
-/// What a jump came to, or what is pending where a crest touches.
+/// What a jump led to, or what is pending where a crest touches.
 fn happened(model: &Model, node: &Node) -> Option<String> {
     if let NodeKind::Jump(event) = &node.kind {
         let lost = event.dissipated.map(|lost| format!(", lost {}", energy(node, lost)));
@@ -215,7 +215,7 @@ fn happened(model: &Model, node: &Node) -> Option<String> {
     None
 }
 
-/// The event of the path where the walker stands, by its number.
+/// The event of the path where the walker stands, named by its number.
 fn event_here(model: &Model) -> Option<String> {
     let number = model.log().here()?.number?;
     Some(format!("Event {number} of {}", model.path_events().len()))
@@ -236,13 +236,13 @@ fn limit_hint(model: &Model, node: &Node) -> String {
         (Some(after), None) => format!("lets the edge snap to s {}", length(node, after.contact_radius)),
     };
     let lost = ahead.dissipated.map(|lost| format!(" (loses {})", energy(node, lost)));
-    // The edge runs over the unstable part: walking the same way leads onto it.
+    // The edge runs over the unstable part: walking on in the same direction leads onto it.
     let runs_inward = ahead.after.is_none_or(|after| after.contact_radius < node.state.contact_radius);
     let part = if runs_inward == model.inward { "unstable" } else { "stable" };
     if model.curve.as_ref().is_some_and(|curve| curve.along.is_some()) {
         return format!("{name}: {next} or {jump} {lands}");
     }
-    // The log has the losses of its events.
+    // The losses of its events are in the log.
     match lost.filter(|_| model.log().here().is_none()) {
         Some(lost) => format!("{name}: {next} or {jump} {lands}{lost}"),
         None => format!("{name}: {next} or {jump} {lands}; {step} goes on, {part}"),

@@ -1,7 +1,7 @@
-//! A quantity of the sweep's list over the range of one value, computed in the background while it is looked at.
+//! A quantity of the sweep's list over the range of one value, computed in the background while it is being looked at.
 //!
-//! The value of the preset is one of those computed. Turning it within the range moves its mark and asks for nothing. Where the
-//! surface is one of many, drawn with a seed, others follow it one by one.
+//! The value of the preset is one of those computed. Turning it within the range moves its mark and requests nothing.
+//! If the surface is one of many, drawn with a seed, other surfaces are computed after it, one by one.
 
 use pulloff_engine::gap::shapes::split_mix::SplitMix64;
 use pulloff_engine::preset::edge::RATE;
@@ -18,18 +18,18 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Values on either side of the preset's.
+/// The number of values on either side of the preset's.
 const BESIDE: i32 = 50;
-/// How far the range goes up where a value is changed by factors, and down.
+/// The factor by which the range extends up, and down if the value is changed by factors.
 const FACTOR: f64 = 2.0;
-/// The same for the stiffness of the device, which means something over decades.
+/// The same for the stiffness of the device, which matters over decades.
 const STIFFNESS_FACTOR: f64 = 30.0;
-/// The same for the rate of a pull: the exponents of its law are small.
+/// The same for the rate of a pull, since the exponents of its law are small.
 const RATE_FACTOR: f64 = 1e3;
 
 /// The quantity whose law at low rates is known.
 const PEAK_FORCE: &str = "peak_force";
-/// How often it is told how far it has come.
+/// How often progress is reported.
 const PACE: Duration = Duration::from_millis(100);
 
 /// The key of the stiffness of the loading device.
@@ -41,13 +41,13 @@ const SEED: &str = "gap.seed";
 /// Surfaces computed beside the preset's own: the median is then known to a fifth of their standard deviation.
 const OTHERS: usize = 40;
 
-/// What became of one value.
+/// The outcome for one value.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StudyOutcome {
-    /// It is still to be computed.
+    /// Still to be computed.
     Waits,
     Found(Cell),
-    /// There is none; why.
+    /// There is none, for this reason.
     Missing(String),
 }
 
@@ -61,20 +61,20 @@ pub struct StudyWish {
     pub values: Vec<Value>,
 }
 
-/// A study, or as much of it as is done.
+/// A study, or the part of it that is done.
 #[derive(Debug, Clone)]
 pub struct StudyData {
-    /// What was asked for.
+    /// The request.
     pub wish: StudyWish,
-    /// What became of each value.
+    /// The outcome for each value.
     pub outcomes: Vec<StudyOutcome>,
-    /// What other surfaces give at each value, one after the other; no number where there is none.
+    /// What other surfaces give at each value, one after the other; NaN where there is no result.
     pub others: Vec<Vec<f64>>,
-    /// What the largest pull comes to at low rates, where it is studied over the rate.
+    /// What the largest pull tends to at low rates, if it is studied over the rate.
     pub slow: Option<SlowPulls>,
 }
 
-/// The key that is varied and its values, ascending, that of the preset among them.
+/// The key that is varied and its values in ascending order, including that of the preset.
 /// Errors: Why this value has no range, in words.
 pub fn range(preset: &Preset, row: &Row) -> Result<(Key, Vec<Value>), String> {
     let label = &row.label;
@@ -104,13 +104,13 @@ pub fn range(preset: &Preset, row: &Row) -> Result<(Key, Vec<Value>), String> {
     Ok((key, values))
 }
 
-/// From the factor below a value to the factor above it, in equal ratios.
+/// From the value over the factor to the value times the factor, in equal ratios.
 fn by_factors(x: f64, factor: f64) -> Vec<Value> {
     let at = |k: i32| x * factor.powf(f64::from(k) / f64::from(BESIDE));
     (-BESIDE..=BESIDE).map(|k| if k == 0 { x } else { tidy(at(k)) }.into()).collect()
 }
 
-/// From `lo` to `hi` over `x`, in equal steps on either side of it.
+/// From `lo` through `x` to `hi`, in equal steps on either side of `x`.
 fn between(lo: f64, x: f64, hi: f64) -> Vec<Value> {
     let at = |k: i32| {
         let end = if k < 0 { lo } else { hi };
@@ -121,7 +121,7 @@ fn between(lo: f64, x: f64, hi: f64) -> Vec<Value> {
     all.into_iter().map(Value::from).collect()
 }
 
-/// Whole numbers from half of one to its double, as many as there may be.
+/// Whole numbers from half of `n` to its double, as many as are allowed.
 fn whole(n: i64, min: i64, max: i64) -> Vec<Value> {
     let (lo, hi) = ((n / 2).max(min), n.saturating_mul(2).min(max));
     let step = hi.saturating_sub(lo) / (2 * i64::from(BESIDE)) + 1;
@@ -131,12 +131,12 @@ fn whole(n: i64, min: i64, max: i64) -> Vec<Value> {
     all.into_iter().map(Value::from).collect()
 }
 
-/// Six digits: a value taken from here stays readable.
+/// Six digits: a value adopted from here stays readable.
 fn tidy(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
 }
 
-/// The place of a number on an axis.
+/// The position of a value on an axis.
 pub fn number(value: &Value) -> Option<f64> {
     match value {
         Value::Number(x) => Some(*x),
@@ -147,32 +147,32 @@ pub fn number(value: &Value) -> Option<f64> {
     }
 }
 
-/// Threads for a study: one core stays for curve and screen.
+/// Threads for a study: one core is left for curve and screen.
 pub fn threads() -> usize {
     thread::available_parallelism().map_or(1, |cores| cores.get().saturating_sub(1).max(1))
 }
 
 impl StudyWish {
-    /// How many other surfaces there are to be.
+    /// How many other surfaces are to be computed.
     pub fn others(&self) -> usize {
         let is_one_of_many = self.key != SEED && self.preset.get(SEED).is_some();
         if is_one_of_many { OTHERS } else { 0 }
     }
 
-    /// The preset with the surface of this number, 0 that of its own.
+    /// The preset with the surface of this number; 0 is its own.
     fn with_surface(&self, number: usize) -> Preset {
         let mut preset = self.preset.clone();
         if let (1.., Some(Value::Integer(seed))) = (number, preset.get(SEED)) {
             let bits = SplitMix64::row(seed.unsigned_abs(), number as u64).bits();
-            // 53 bits: a seed that a table of numbers in double precision keeps.
+            // 53 bits: a table of numbers in double precision keeps such a seed.
             let drawn = i64::try_from(bits >> 11).unwrap_or_default();
-            // Any seed is one.
+            // Any number is a valid seed.
             let _ = preset.set(SEED, drawn.into());
         }
         preset
     }
 
-    /// What becomes of the value at `index` on the surface of this number; `None` when `progress` said stop.
+    /// The outcome for the value at `index` on the surface of this number; `None` if `progress` asked to stop.
     fn outcome(&self, surface: usize, index: usize, progress: &dyn Progress) -> Option<StudyOutcome> {
         let missing = |fault: Fault| StudyOutcome::Missing(fault.to_string());
         let mut preset = self.with_surface(surface);
@@ -191,7 +191,7 @@ impl StudyWish {
         })
     }
 
-    /// Computes it on so many threads, and tells what is done now and then; `None` when `progress` said
+    /// Computes it on this many threads, and reports from time to time what is done; `None` if `progress` asked to
     /// stop.
     #[must_use]
     pub fn run(
@@ -218,10 +218,10 @@ impl StudyWish {
                         if next >= all || progress.stop() {
                             break;
                         }
-                        // All values of a surface before the next one: they share its table.
+                        // All values of one surface before the next surface: they share its table.
                         let (surface, index) = (next / count, next % count);
                         let Some(outcome) = self.outcome(surface, index, progress) else { break };
-                        // Fails only when nobody waits for it any more.
+                        // Fails only if nobody is waiting for it any more.
                         let _ = send.send((surface, index, outcome));
                     }
                 });
@@ -245,7 +245,7 @@ impl StudyWish {
 }
 
 impl StudyData {
-    /// Takes what another surface gives at the value at `index`.
+    /// Adds what another surface gives for the value at `index`.
     fn came(&mut self, surface: usize, index: usize, outcome: &StudyOutcome) {
         let found = &mut self.others[index];
         if found.len() < surface {
@@ -265,7 +265,7 @@ impl StudyData {
         self.others.iter().map(Vec::len).min().unwrap_or(0)
     }
 
-    /// Whether nothing of it is still to be computed.
+    /// Whether everything has been computed.
     pub fn is_whole(&self) -> bool {
         self.done() == self.outcomes.len() && self.surfaces() == self.wish.others()
     }
@@ -275,7 +275,7 @@ impl StudyData {
         self.outcomes.iter().filter(|outcome| **outcome != StudyOutcome::Waits).count()
     }
 
-    /// The value computed that is nearest to `x`, and its place in the list.
+    /// The computed value nearest to `x`, and its index in the list.
     pub fn nearest(&self, x: f64) -> Option<(usize, f64)> {
         let places = self.wish.values.iter().enumerate().filter_map(|(i, value)| Some((i, number(value)?)));
         places.min_by(|a, b| (a.1 - x).abs().total_cmp(&(b.1 - x).abs()))
@@ -283,7 +283,7 @@ impl StudyData {
 }
 
 impl StudyWish {
-    /// Whether it is the one that is wanted, whose value may be another within the range.
+    /// Whether it is the one wanted, although the value may be another one within the range.
     pub(super) fn is_like(&self, wanted: &Self) -> bool {
         let (preset, key) = (&wanted.preset, &wanted.key);
         if self.key != *key || self.column != wanted.column {
@@ -364,7 +364,7 @@ mod tests {
         assert_eq!(one.outcomes[at], StudyOutcome::Found(own.cells[0].unwrap()));
         assert!(wish.run(2, &|| true, &mut |_| {}).is_none());
         assert_eq!((one.surfaces(), wish.others()), (0, 0));
-        // Its value may move within the range, and nothing else.
+        // Only its value may move within the range.
         let is_of = |preset: &Preset| one.wish.is_like(&StudyWish { preset: preset.clone(), ..wish.clone() });
         let mut moved = preset.clone();
         moved.set(&key, 0.003.into()).unwrap();
@@ -401,7 +401,7 @@ mod tests {
         assert!(figure.areas.iter().all(|area| {
             area.outline.iter().all(|(_, y)| (figure.bounds.y[0]..=figure.bounds.y[1]).contains(y))
         }));
-        // Of its own seed there is one surface for each value.
+        // For its own seed there is one surface per value.
         let of_seed = StudyWish { key: Key::Borrowed(SEED), ..wish };
         assert_eq!(of_seed.others(), 0);
     }

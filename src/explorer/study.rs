@@ -1,4 +1,4 @@
-//! The study of the selected value, computed while it is looked at.
+//! The study of the selected value, computed while it is being looked at.
 
 use super::background::{Background, Tell, Want, Watcher};
 use super::command::Id;
@@ -8,7 +8,7 @@ use super::view::View;
 use pulloff_engine::preset::{Key, Value};
 
 /// The key that a study varies, and the values it takes: those of the selected value.
-/// Errors: Why it has none, in words.
+/// Errors: Why it has no range, in words.
 pub fn study_range(model: &Model) -> Result<(Key, Vec<Value>), String> {
     let Some((row, _)) = model.selected_knob() else { return Err("no value is selected".to_owned()) };
     range(&model.preset, &row).map_err(|why| format!("{why}; select another in Problem"))
@@ -39,7 +39,7 @@ impl Background for StudyData {
         key.run(threads(), progress, told)
     }
 
-    /// Only of other surfaces: the values themselves are seen to come.
+    /// Only for other surfaces: the values themselves are seen to arrive.
     fn says(model: &Model) -> Option<String> {
         let study = model.results.so_far::<Self>()?;
         (study.done() == study.outcomes.len())

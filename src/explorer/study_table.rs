@@ -8,7 +8,7 @@ use pulloff_engine::sweep::axis::{AxisValues, SweepAxis, overrides};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// A row for each value: the key, the quantity, and why it has none, as in the results of a sweep.
+/// A row for each value: the key, the quantity, and why there is no result, as in the results of a sweep.
 pub(super) fn csv(study: &StudyData) -> Result<String, RowsError> {
     let (key, name) = (study.wish.key.to_string(), study.wish.column.name());
     let columns = [&*key, &*name, "fault"];
@@ -29,11 +29,11 @@ pub(super) fn csv(study: &StudyData) -> Result<String, RowsError> {
     written(&columns, &rows.collect::<Vec<_>>())
 }
 
-/// The spec of the sweep with the same values; its preset by name, and the values that differ from its file.
+/// The spec of a sweep over the same values; its preset is given by name, with the values that differ from its file.
 pub(super) fn spec(study: &StudyData, name: &str, over: &[Assignment]) -> String {
     let wish = &study.wish;
     let text = |text: &str| toml::Value::String(text.to_owned()).to_string();
-    // What the axis gives to every row cannot be given before.
+    // What the axis sets in every row cannot be given beforehand.
     let over = over.iter().filter(|(key, _)| !overrides(&wish.key, key));
     let over: Vec<String> = over.map(|(key, value)| text(&format!("{key}={value}"))).collect();
     let set = if over.is_empty() { String::new() } else { format!("set = [{}]\n", over.join(", ")) };

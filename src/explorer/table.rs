@@ -1,5 +1,5 @@
-//! The table of commands, made of the [list](super::command::list): footer, help, command line, completion, scripts, the manual
-//! page and the book's key table are read from it.
+//! The table of commands, made from the [list](super::command::list): the footer, the help, the command line,
+//! completion, scripts, the manual page and the book's key table are derived from it.
 
 use super::availability::{
     Available, always, branches, curve, jump, parameter, pins, redo, turns, undo, walker, walker_or_no_curve,
@@ -37,34 +37,34 @@ pub struct CommandRow {
     pub id: Id,
     pub name: &'static str,
     pub section: &'static str,
-    /// The usual keys, divided by blanks, that of the footer first; without one it is typed.
+    /// The usual keys, separated by spaces, the one for the footer first; a command without a key is typed.
     pub keys: &'static str,
     /// A word or two for the footer.
     pub short: &'static str,
     /// What it does.
     pub help: &'static str,
-    /// Other words that someone may look for it by.
+    /// Other words by which someone may look for it.
     pub words: &'static str,
-    /// What may be typed behind it.
+    /// What may be typed after it.
     pub takes: Takes,
-    /// What must be there before it can be done.
+    /// What it requires before it can be run.
     pub needs: fn(&Model) -> Available,
     pub waits: Waits,
     pub script: Script,
-    /// What it does to what is looked at, by itself.
+    /// What it does to what is displayed, by itself.
     pub look: fn(&mut Model),
-    /// What it does, by itself, and the work that it asks for.
+    /// What it does, by itself, and the work that it requests.
     pub run: fn(&mut Model) -> Vec<Effect>,
 }
 
 /// What a command waits for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Waits {
-    /// Nothing: it concerns only what is looked at.
+    /// Nothing: it concerns only what is displayed.
     Nothing,
-    /// Only for those before it, and the walk they began.
+    /// Only for the commands before it, and the walk they began.
     InOrder,
-    /// For the newest curve too, and the walker's state on it.
+    /// Also for the newest curve, and the walker's state on it.
     Curve,
 }
 
@@ -72,9 +72,9 @@ pub enum Waits {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Script {
     Yes,
-    /// With this behind it.
+    /// With this after it.
     Needs(&'static str),
-    /// It is about what is selected on the screen; a script says this.
+    /// It concerns what is selected on the screen; a script says this instead.
     Selected(&'static str),
     /// It only changes what a screen shows.
     Screen,
@@ -98,20 +98,20 @@ impl CommandRow {
         run: |_| Vec::new(),
     };
 
-    /// Does it, without anything behind it.
+    /// Runs it, with nothing after it.
     pub(super) fn does(&self, model: &mut Model) -> Vec<Effect> {
         (self.look)(model);
         (self.run)(model)
     }
 }
 
-/// Makes the table of the list.
+/// Makes the table from the list.
 macro_rules! rows {
     ($($section:literal { $(
         $id:ident $name:literal $keys:literal $short:literal $needs:ident $waits:ident $script:ident $(($what:literal))?
         $help:literal { $($field:ident: $value:expr),* }
     )* })*) => {
-        /// The rows in the order of the help, which is that of [`Id`].
+        /// The rows in the order of the help, which is the order of [`Id`].
         pub static ROWS: &[CommandRow] = &[$($(
             CommandRow {
                 id: Id::$id,
@@ -137,17 +137,17 @@ pub fn row_of(id: Id) -> &'static CommandRow {
     &ROWS[id as usize]
 }
 
-/// The row of a name.
+/// The row with this name.
 pub fn called(name: &str) -> Option<&'static CommandRow> {
     Id::called(name).map(row_of)
 }
 
-/// Whether a command can be done now.
+/// Whether a command can be run now.
 pub fn is_available(model: &Model, id: Id) -> bool {
     (row_of(id).needs)(model).is_ok()
 }
 
-/// Why a command cannot be done now; empty where it can.
+/// Why a command cannot be run now; empty if it can.
 pub(super) fn why_unavailable(model: &Model, id: Id) -> String {
     (row_of(id).needs)(model).err().unwrap_or_default()
 }

@@ -8,12 +8,12 @@ use pulloff_engine::theory::guduru::Guduru;
 use pulloff_engine::theory::kesari_lew::{EnvelopeSide, KesariLew};
 use pulloff_engine::theory::{Disc, Exact};
 
-/// Points of a smooth curve, so many that its difference from a wavy one shows the waves.
+/// The number of points of a smooth curve, enough for its difference from a wavy one to show the waves.
 const SMOOTH_POINTS: u32 = 1000;
-/// Theory goes on beyond both ends of the curve, as far as a chart shows it: outward to this many times the start,
+/// Theory extends beyond both ends of the curve, as far as a chart shows it: outward to this many times the start,
 /// inward to this share of the end.
 const BEYOND: [f64; 2] = [1.1, 0.1];
-/// The states of the exact solution beyond each end of the curve.
+/// The number of states of the exact solution beyond each end of the curve.
 const BEYOND_POINTS: u32 = 16;
 
 /// δ, P and s of one state, in the user's units.
@@ -24,12 +24,12 @@ pub type TheoryState = [f64; 3];
 pub struct Theory {
     /// The smooth sphere of the same curvature and adhesion; empty without a radius of curvature.
     pub smooth: Vec<TheoryState>,
-    /// Its name: Hertz or JKR; without a sphere what is missing.
+    /// Its name: Hertz or JKR; without a sphere, what is missing.
     pub smooth_name: &'static str,
-    /// The exact solution of the gap, as fine as the curve.
+    /// The exact solution of the gap, with as many points as the curve.
     pub exact: Vec<TheoryState>,
     pub exact_name: &'static str,
-    /// The envelope of small waves; none without adhesion, and for wavy spheres alone.
+    /// The envelope of small waves; only for wavy spheres with adhesion.
     pub envelope: Option<Envelope>,
 }
 
@@ -47,7 +47,7 @@ pub struct Envelope {
 }
 
 impl Theory {
-    /// The theory of `case` from beyond its start to beyond its end; `None` when `progress` said stop.
+    /// The theory of `case` from beyond its start to beyond its end; `None` if `progress` asked to stop.
     pub fn of(case: &Case, curve: &Curve, progress: &dyn Progress) -> Option<Self> {
         let units = case.units();
         let (start, end) = (case.start * units.length, case.end * units.length);
@@ -66,7 +66,7 @@ impl Theory {
         let inward = steps(0.0, end - to).map(|less| end - less).skip(1);
         let fine: Vec<f64> = steps(from, start).chain(own).chain(inward).chain([to]).collect();
         let (jkr, exact) = (case.smooth(), Exact::of(&case.problem));
-        // The exact solutions are those of adhesion without a range.
+        // The exact solutions hold for adhesion without a range.
         let (fine, envelope) =
             if case.cohesion.is_some() { (Vec::new(), None) } else { (fine, envelope(case, &smooth)) };
         Some(Self {
@@ -79,9 +79,9 @@ impl Theory {
     }
 }
 
-/// The states of these radii; `None` when `progress` said stop.
+/// The states at these radii; `None` if `progress` asked to stop.
 fn along(disc: &dyn Disc, radii: &[f64], progress: &dyn Progress) -> Option<Vec<TheoryState>> {
-    // Without its energy a state costs one transform of the gap.
+    // Without its energy, a state costs one transform of the gap.
     let place = |&s: &f64| {
         let state = disc.equilibrium(s, 0.0);
         (!progress.stop()).then_some([state.approach, state.force, s])

@@ -1,7 +1,8 @@
 //! What undo goes back to: where the session stood before each command that changed it.
 //!
-//! A place says all that a command of the walk or of the values can change. States are named by their number in the tree,
-//! which pruning keeps, so going back computes nothing but the curve. Views, pins and the zoom are not in it.
+//! A place records everything that a command of the walk or of the values can change. States are named by their number
+//! in the tree, which pruning keeps, so going back computes nothing but the curve. Views, pins and the zoom are not
+//! included.
 
 use super::history::History;
 use super::journal::Journal;
@@ -9,12 +10,12 @@ use crate::store::{Fingerprint, Source};
 use pulloff_engine::preset::{Key, Preset};
 use std::sync::Arc;
 
-/// So many commands can be taken back.
+/// The most commands that can be undone.
 pub const MOST: usize = 1000;
-/// So many of them may have opened another preset: each keeps a walk.
+/// The most of them that may have opened another preset: each keeps a walk.
 const MOST_OPENED: usize = 8;
 
-/// A session put aside when another preset was opened.
+/// A session set aside when another preset was opened.
 #[derive(Debug, Clone)]
 pub struct Shelved {
     pub source: Source,
@@ -28,20 +29,20 @@ pub struct Shelved {
 #[derive(Debug, Clone)]
 pub struct SessionPlace {
     pub preset: Preset,
-    /// The lasting number of the walker's state.
+    /// The permanent number of the walker's state.
     pub node: Option<u64>,
     pub inward: bool,
     pub length: f64,
     /// Whether the walker had been tried on these values.
     pub settled: bool,
-    /// Whether a single step led on from it, by which a key held down goes on.
+    /// Whether a single step led on from it, which a held key continues.
     pub is_step: bool,
-    /// The session it belongs to, where that is another than the one after it.
+    /// The session it belongs to, if that differs from the session of the next place.
     pub shelved: Option<Arc<Shelved>>,
 }
 
 impl SessionPlace {
-    /// Whether both are the same but for whether the state has been tried.
+    /// Whether both are the same, apart from whether the state has been tried.
     pub fn is_like(&self, other: &Self) -> bool {
         self.shelved.is_none()
             && self.node == other.node
@@ -50,19 +51,19 @@ impl SessionPlace {
     }
 }
 
-/// The places before the commands done, and those after the ones taken back; the newest last. A clone is cheap.
+/// The places before the commands done, and after the commands undone; the newest last. A clone is cheap.
 #[derive(Debug, Clone, Default)]
 pub struct Undo {
     past: Vec<Arc<SessionPlace>>,
     future: Vec<Arc<SessionPlace>>,
-    /// Before a walk that has made no state yet.
+    /// The place before a walk that has made no state yet.
     begun: Option<Arc<SessionPlace>>,
     /// The value that the last command turned.
     pub(super) gesture: Option<Key>,
 }
 
 impl Undo {
-    /// The undo of a session that goes on: the places before it, the newest last, and those taken back.
+    /// The undo of a resumed session: the places before it, the newest last, and those undone.
     pub fn of(past: Vec<SessionPlace>, future: Vec<SessionPlace>) -> Self {
         let [past, future] = [past, future].map(|places| places.into_iter().map(Arc::new).collect());
         Self { past, future, ..Self::default() }
@@ -73,7 +74,7 @@ impl Undo {
         &self.past
     }
 
-    /// The places of the commands taken back, the next one last.
+    /// The places of the commands undone, the next one last.
     pub fn future(&self) -> &[Arc<SessionPlace>] {
         &self.future
     }
@@ -85,7 +86,7 @@ impl Undo {
         self.add(Arc::new(before));
     }
 
-    /// The last command went on: what it began with is kept already.
+    /// The last command continues: the place where it began is already kept.
     pub(super) fn goes_on(&mut self) {
         self.future.clear();
     }
@@ -98,12 +99,12 @@ impl Undo {
         self.past.drain(..surplus);
     }
 
-    /// A walk begins: it is a command that changed something once it has made a state.
+    /// A walk begins: once it has made a state, it is a command that changed something.
     pub(super) fn begins(&mut self, before: SessionPlace) {
         self.begun = Some(Arc::new(before));
     }
 
-    /// A step goes on with so many before it, which become one; false where none was before.
+    /// A step continues this many steps before it, and they become one; false if there was none before.
     pub(super) fn holds(&mut self, count: usize) -> bool {
         let steps = self.past.iter().rev().take(count).take_while(|place| place.is_step).count();
         self.past.truncate(self.past.len() + 1 - steps.max(1));
@@ -121,8 +122,8 @@ impl Undo {
         }
     }
 
-    /// Takes the place before the last command (or after the next one), for which `swap` gives what is kept the other way.
-    /// Places like `here` are passed over: the command came to nothing.
+    /// Takes the place before the last command (or after the next one), for which `swap` gives what is kept the other
+    /// way. Places like `here` are skipped: their commands changed nothing.
     pub(super) fn take(&mut self, back: bool, here: &SessionPlace) -> Option<Arc<SessionPlace>> {
         (self.begun, self.gesture) = (None, None);
         let from = if back { &mut self.past } else { &mut self.future };
@@ -137,7 +138,7 @@ impl Undo {
         if back { self.future.push(place) } else { self.add(place) }
     }
 
-    /// The lasting numbers of the states of the session shown that it needs.
+    /// The permanent numbers of the states it needs in the session on the screen.
     pub(super) fn nodes(&self) -> Vec<u64> {
         let own = |places: &[Arc<SessionPlace>]| -> Vec<u64> {
             let own = places.iter().rev().take_while(|place| place.shelved.is_none());

@@ -7,7 +7,7 @@
 //! | `walk` | steps, runs, jumps |
 //! | `selection` | panels, and the line selected in each |
 //! | `turns` | what waits for what, and what undo can take back |
-//! | `places` | the walker sent to a radius, an event, the least force |
+//! | `places` | the walker sent to a radius, an event, the largest pull |
 //! | `travel` | undo, redo, branches |
 //! | `values` | parameters changed |
 //! | `files` | opening, saving and exporting |
@@ -41,20 +41,20 @@ use turns::{enqueue, gesture, is_blocked, recorded, waits};
 use values::{assign, set, try_out, turn, untry};
 use walk::{run, step, walk, walked};
 
-/// Begins a session on a preset: its curve is asked for.
+/// Begins a session on a preset: requests its curve.
 pub fn open(loaded: Loaded) -> (Model, Vec<Effect>) {
     let mut model = Model::new(loaded);
     let effect = want_curve(&mut model);
     (model, vec![effect])
 }
 
-/// What a command does to the model, and what it wants done.
+/// Applies a command to the model, and returns the work it requests.
 ///
-/// What changes the walk or the values is done in the order in which it came: it waits for the walk that runs, for the
-/// curve where it needs one, and for what waits already. So keys that come late and together over a slow line mean what
-/// they mean one by one.
+/// Commands that change the walk or the values are done in the order in which they came: each waits for the walk under
+/// way, for the curve if it needs one, and for those already waiting. So keys that arrive late and together over a slow
+/// line mean what they would mean one by one.
 pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
-    // The list shows the whole of what was told last.
+    // The list shows the whole of the last message.
     if command.id() != Id::CommandLine {
         model.message = None;
     }
@@ -66,9 +66,9 @@ pub fn update(model: &mut Model, command: Command) -> Vec<Effect> {
     effects
 }
 
-/// Does what is allowed now; what is not is refused with the reason. What it changed can be taken back.
+/// Does what is allowed now, and refuses the rest with the reason. What it changed can be undone.
 fn allowed(model: &mut Model, command: Command) -> Vec<Effect> {
-    // Which states there are says the tree, not undo.
+    // The tree decides which states there are, not undo.
     let by_states = matches!(
         command,
         Command::Travel { states: true, .. } | Command::GoToState(_) | Command::GoTo { .. }
@@ -85,7 +85,7 @@ fn allowed(model: &mut Model, command: Command) -> Vec<Effect> {
     recorded(model, gesture, |model| obey(model, command))
 }
 
-/// Takes what came of a file.
+/// Accepts the outcome of a job on files.
 fn file_came(model: &mut Model, done: Done) -> Vec<Effect> {
     if matches!(
         done,
@@ -93,14 +93,14 @@ fn file_came(model: &mut Model, done: Done) -> Vec<Effect> {
     ) {
         model.awaits = Awaits::Nothing;
     }
-    // What was saved is no change of the session.
+    // A save does not change the session.
     if matches!(done, Done::Saved { .. }) {
         return file_done(model, done);
     }
     recorded(model, None, |model| file_done(model, done))
 }
 
-/// Does the commands that waited, in order, until one of them has to wait again.
+/// Runs the waiting commands in order, until one of them has to wait again.
 fn go_on(model: &mut Model) -> Vec<Effect> {
     let mut effects = Vec::new();
     while model.queue.front().is_some_and(|command| !is_blocked(model, command)) {
@@ -158,7 +158,7 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
     Vec::new()
 }
 
-/// What a reply does to the model, and what follows from it.
+/// Applies a reply to the model, and returns what follows from it.
 pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
     let mut effects = match reply {
         Reply::Curve { id, result } => curve_came(model, id, result).unwrap_or_default(),
@@ -185,7 +185,7 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
 /// Enter on an event.
 fn select(model: &mut Model) -> Vec<Effect> {
     match model.panel {
-        // Chosen in the list of a curve that will have gone, or in the middle of a walk.
+        // It was chosen in the list of a curve that is about to go, or in the middle of a walk.
         ScreenPanel::Log if model.is_busy() => {
             let number = model.log().entries.get(model.event).and_then(|entry| entry.number);
             number.map_or_else(Vec::new, |number| update(model, Command::SelectEvent(number)))
@@ -201,6 +201,6 @@ fn go_to_line(model: &mut Model) -> Vec<Effect> {
     let line = reach::walk_line(model);
     let state = model.history.path().get(line).map(|(node, _)| *node);
     let numbering = model.history.numbering();
-    // As a command of its own: it waits for its turn, and can be taken back.
+    // As a command of its own, so that it waits for its turn and can be undone.
     state.map_or_else(Vec::new, |node| update(model, Command::GoTo { node, numbering }))
 }

@@ -1,7 +1,7 @@
 //! What of the curve and the walker is shown, and which part of it: pure data.
 //!
 //! A window is kept in shares of the whole chart, not in values: it stays on the edge of the contact while the walker
-//! moves, on a snap while a knob is turned, and means the same on reduced and raw axes.
+//! moves, stays on a snap while a knob is turned, and means the same on reduced and raw axes.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,14 +17,14 @@ pub enum ScreenPanel {
     Problem,
     /// The state on which the walker stands.
     Here,
-    /// What comes of the path.
+    /// The outcome of the path.
     Result,
     Charts,
     Log,
 }
 
 impl ScreenPanel {
-    /// All, in the order of the Tab key.
+    /// All panels, in the order of the Tab key.
     pub const ALL: [Self; 5] = [Self::Problem, Self::Here, Self::Result, Self::Charts, Self::Log];
 }
 
@@ -44,7 +44,7 @@ pub enum Axes {
 pub enum View {
     /// P over δ.
     ForceApproach,
-    /// P over Δ, the way of the device's far end.
+    /// P over Δ, the displacement of the device's far end.
     ForcePosition,
     /// P over s, on the same axis of P as [`View::ForceApproach`].
     ForceRadius,
@@ -56,21 +56,21 @@ pub enum View {
     Gap,
     /// The contact of the walker's state from above.
     Contact,
-    /// The potential of bodies and device over s, the control held at the walker's value.
+    /// The potential of bodies and device over s, with the control held at the walker's value.
     Energy,
     /// The quasi-static path with what its jumps dissipate, Fig. 10.
     Unloading,
     /// The whole loop of loading and unloading with its losses, P over δ.
     Cycle,
-    /// The contacts over the way of the control.
+    /// The contacts along the course of the control.
     ContactMap,
     /// The law of stability: the adhesion at which each state is a limit point, over the contact radius.
     Stability,
-    /// Lines in two numbers at which snaps begin or end.
+    /// Lines in the plane of two numbers at which snaps begin or end.
     Map,
     /// The distances of the measured points from the curve.
     Residuals,
-    /// P over the time, in the pull at the rate of the preset.
+    /// P over time, in the pull at the rate of the preset.
     ForceTime,
     /// G of the measured rows over the speed of the edge.
     Speeds,
@@ -83,7 +83,7 @@ pub enum View {
 }
 
 impl View {
-    /// All, in the order in which they follow each other.
+    /// All views, in their order.
     pub const ALL: [Self; 19] = [
         Self::ForceApproach,
         Self::ForcePosition,
@@ -156,12 +156,12 @@ impl View {
         }
     }
 
-    /// Whether it is a table of lines: it has no axes.
+    /// Whether it is a table of lines, which has no axes.
     pub fn is_table(self) -> bool {
         self == Self::Walk
     }
 
-    /// The view of a name.
+    /// The view with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|view| view.name() == name)
     }
@@ -171,12 +171,12 @@ impl View {
         matches!(self, Self::ForceApproach | Self::ForcePosition | Self::ForceRadius | Self::RadiusApproach)
     }
 
-    /// Whether it shows forces of a curve and no radius.
+    /// Whether it shows forces of a curve but no radius.
     pub fn is_without_radius(self) -> bool {
         matches!(self, Self::ForceApproach | Self::ForcePosition)
     }
 
-    /// Whether the force goes upward in it: such views stand side by side with one axis of it.
+    /// Whether the force is on its vertical axis: such views stand side by side and share that axis.
     pub fn is_of_force(self) -> bool {
         matches!(self, Self::ForceApproach | Self::ForcePosition | Self::ForceRadius)
     }
@@ -191,12 +191,12 @@ impl View {
         matches!(self, Self::Pressure | Self::Gap | Self::Contact | Self::Energy)
     }
 
-    /// The place where it is.
+    /// The place to which it belongs.
     pub fn home(self) -> Home {
         Home::ALL.into_iter().find(|home| home.views().contains(&self)).unwrap_or(Home::Curve)
     }
 
-    /// The views of its place after it, or before it, round and round.
+    /// The other views of its place, forward or backward from it, in a cycle.
     pub fn others(self, forward: bool) -> impl Iterator<Item = Self> {
         let views = self.home().views();
         let here = views.iter().position(|view| *view == self).unwrap_or(0);
@@ -204,7 +204,7 @@ impl View {
         (1..views.len()).map(move |by| views[(here + way(by)) % views.len()])
     }
 
-    /// What is shown beside it where there is room, the most telling first.
+    /// What is shown beside it if there is room, the most informative first.
     pub fn companions(self) -> [Self; 3] {
         match self {
             ForceApproach | ForcePosition => [ForceRadius, Contact, Energy],
@@ -227,7 +227,7 @@ impl View {
     }
 }
 
-/// A place: a question, and the views that answer it. Each view is in one.
+/// A place: a question, and the views that answer it. Each view belongs to one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Home {
     Curve,
@@ -237,7 +237,7 @@ pub enum Home {
 }
 
 impl Home {
-    /// All, in the order in which they are offered.
+    /// All places, in the order in which they are offered.
     pub const ALL: [Self; 4] = [Self::Curve, Self::Inside, Self::Map, Self::Data];
 
     /// Its name.
@@ -250,7 +250,7 @@ impl Home {
         }
     }
 
-    /// What it answers.
+    /// The question it answers.
     pub fn question(self) -> &'static str {
         match self {
             Self::Curve => "what happens",
@@ -279,7 +279,7 @@ impl Home {
         }
     }
 
-    /// The place of a name.
+    /// The place with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|home| home.name() == name)
     }
@@ -299,7 +299,7 @@ pub enum Overlay {
 }
 
 impl Overlay {
-    /// All, in the order in which they are offered.
+    /// All overlays, in the order in which they are offered.
     pub const ALL: [Self; 4] = [Self::Smooth, Self::Exact, Self::Envelope, Self::Device];
 
     /// Its name.
@@ -312,7 +312,7 @@ impl Overlay {
         }
     }
 
-    /// The one of a name.
+    /// The overlay with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|overlay| overlay.name() == name)
     }
@@ -335,16 +335,16 @@ impl Default for Overlays {
     }
 }
 
-/// The part of a chart that is shown: from and to along each axis, 0 and 1 the ends of the whole.
+/// The part of a chart that is shown: from and to along each axis, where 0 and 1 are the ends of the whole.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Window {
     pub x: [f64; 2],
     pub y: [f64; 2],
 }
 
-/// The smallest share that is shown: doubles tell about a million places apart in it.
+/// The smallest share that is shown: within it, doubles resolve about a million positions.
 const CLOSEST: f64 = 1e-9;
-/// The largest: further away there is only more of nothing, but a walk beyond the curve may be seen.
+/// The largest share: further away there is nothing more to see, but a walk beyond the curve may be visible.
 const WIDEST: f64 = 4.0;
 /// How far the middle of a window may leave the whole, in wholes.
 const AWAY: f64 = 0.5;
@@ -358,7 +358,7 @@ impl Window {
         *self == Self::WHOLE
     }
 
-    /// Whether it is a window at all: finite, ascending, neither too close nor too wide.
+    /// Whether it is a valid window: finite, ascending, neither too close nor too wide.
     pub fn is_possible(&self) -> bool {
         [self.x, self.y].iter().all(|[lo, hi]| lo.is_finite() && (CLOSEST..=WIDEST).contains(&(hi - lo)))
     }
@@ -368,7 +368,7 @@ impl Window {
         [self.x, self.y].iter().any(|[lo, hi]| !(0.0..=1.0).contains(&(0.5 * (lo + hi))))
     }
 
-    /// How many times closer than the whole.
+    /// The magnification compared with the whole.
     pub fn magnification(&self) -> f64 {
         1.0 / (self.x[1] - self.x[0])
     }
@@ -382,7 +382,7 @@ impl Window {
         };
         let window = Self { x: zoomed(self.x, about.0), y: zoomed(self.y, about.1) };
         let allowed = |[lo, hi]: [f64; 2]| (CLOSEST..=WIDEST).contains(&(hi - lo));
-        // The whole again, without the rounding of the way back.
+        // The whole again, without rounding errors from the way back.
         let near = |a: [f64; 2], b: [f64; 2]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
         if near(window.x, [0.0, 1.0]) && near(window.y, [0.0, 1.0]) {
             return Some(Self::WHOLE);
@@ -421,7 +421,7 @@ mod tests {
             let mut shown = HashSet::from(view.companions());
             assert!(shown.insert(view) && shown.len() == 4, "{view:?}");
             assert_eq!(View::named(view.name()), Some(view));
-            // Round its place, and back.
+            // All round its place, and back.
             let others: Vec<View> = view.others(true).collect();
             assert_eq!(others.len() + 1, view.home().views().len());
             assert!(others.iter().rev().copied().eq(view.others(false)));

@@ -1,6 +1,6 @@
 //! Steps, runs and jumps along the curve, made by hand.
 //!
-//! A request says where the walker stands and what it is to do; the answer is new states, never a change of old ones.
+//! A request says where the walker stands and what it should do; the answer is new states, never a change to old ones.
 
 use super::command::{Command, Id};
 use super::curve::CurveData;
@@ -21,25 +21,25 @@ use pulloff_engine::units::Quantity;
 use pulloff_engine::units::number::said;
 use std::sync::Arc;
 
-/// Most states of one request: a run that meets nothing ends.
+/// The most states of one request, after which a run that meets nothing ends.
 pub const RUN_POINTS: usize = 5000;
 
-/// What the walker is to do.
+/// What the walker should do.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
-    /// So many steps, stopping at a limit point of the control.
+    /// This many steps, stopping at a limit point of the control.
     Steps(usize),
     /// Steps to the next limit point of the control.
     ToLimit,
-    /// The same, outward no further than to the end of the path, where there is one (reduced).
+    /// The same, but outward no further than the end of the path, if there is one (reduced).
     ToEvent(Option<Turn>),
-    /// The same, and no further than so many states.
+    /// The same, but no further than this many states.
     Run(usize),
     /// The edge runs at constant control to the next stable state.
     Jump,
-    /// The state of this contact radius (reduced), on the explicit curve.
+    /// The state with this contact radius (reduced), on the explicit curve.
     MoveTo(f64),
-    /// The state of this number on the path along which the walker goes, and the command that leads there.
+    /// The state with this number on the path that the walker follows, and the command that leads there.
     MoveToState { at: usize, command: Command },
     /// The limit point of this event.
     MoveToEvent {
@@ -48,21 +48,21 @@ pub enum Action {
         /// The number of its limit point on the curve.
         limit: usize,
     },
-    /// The state of the problem as it is now, at the control value and near the radius of the old one.
+    /// The state of the current problem, at the control value and near the radius of the old state.
     Solve {
         /// The state before the change, in the user's units.
         state: State,
-        /// Its edges, where there are rings.
+        /// Its edges, if there are rings.
         rings: Option<Box<Before>>,
-        /// Whether it was stable, or at the end of what is: then a stable state is looked for.
+        /// Whether it was stable, or at the end of the stable part: then a stable state is sought.
         was_stable: bool,
     },
-    /// The first touch of bodies that were apart, and what it jumps to.
+    /// The first touch of bodies that were apart, and the state it jumps to.
     Begin,
 }
 
 impl Action {
-    /// Whether a walk of its own begins with it, wherever the walker stood.
+    /// Whether it begins a new walk, wherever the walker stood.
     pub fn begins(&self) -> bool {
         matches!(self, Self::MoveTo(_) | Self::MoveToState { .. } | Self::MoveToEvent { .. } | Self::Begin)
     }
@@ -84,17 +84,17 @@ pub struct Request {
     pub action: Action,
     /// The curve of the problem: its setting, and its limit points for jumps.
     pub curve: Arc<CurveData>,
-    /// Where the walker stands; none only for moves.
+    /// Where the walker stands; `None` only for moves.
     pub from: Option<StatePoint>,
-    /// The number of the state on the path, where it goes along one.
+    /// The number of the state on the path, if the walker follows one.
     pub on_path: Option<usize>,
-    /// What it stands on.
+    /// What the walker stands on.
     pub at: At,
     /// What is controlled (reduced).
     pub control: Control,
     pub inward: bool,
     pub length: f64,
-    /// States a second; without it they are made as fast as they can be. Without a screen nobody watches.
+    /// States per second; without it, they are made as fast as possible. Without a screen, nobody watches.
     pub pace: Option<f64>,
 }
 
@@ -102,7 +102,7 @@ pub struct Request {
 #[derive(Debug, Clone)]
 pub struct MadeState {
     pub kind: NodeKind,
-    /// The problem it solves, which may be no longer the one on the screen.
+    /// The problem it solves, which may no longer be the one on the screen.
     pub setting: Arc<Setting>,
     pub point: StatePoint,
     pub state: State,
@@ -123,7 +123,7 @@ pub enum WalkOutcome {
     /// A limit point of the control, or a touch, was reached.
     AtLimit,
     Paused,
-    /// The end of what can be walked was reached, in words.
+    /// The end of what can be walked was reached; the reason in words.
     Ended(String),
     Stopped(String),
 }
@@ -206,7 +206,7 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(MadeState) -> bool) -> WalkO
     }
 }
 
-/// The same where the states lie on no single curve: along the path of the device.
+/// The same if the states lie on no single curve: along the path of the device.
 fn along(request: &Request, arrive: &mut Emit<'_>) -> WalkEnd {
     let (curve, case) = (&request.curve, &request.curve.case);
     let path = match &curve.along {
@@ -238,10 +238,11 @@ fn along(request: &Request, arrive: &mut Emit<'_>) -> WalkEnd {
     }
 }
 
-/// The state at the value held; a walker that stood within the path and would be left far beyond it by other values, those of a fit, goes
-/// to where the path starts.
+/// The state at the held value. If the walker stood within the path and other values, such as those of a fit, would
+/// leave it far beyond the path, it goes to where the path starts.
 fn solve(walk: &Walk<'_>, value: f64, from: f64, was_stable: bool, arrive: &mut Emit<'_>) -> WalkEnd {
-    /// A state is far beyond the start at so many times its contact radius: a little further out it is still seen beside the curve.
+    /// A state is far beyond the start at this many times its contact radius; a little further out it is still seen
+    /// beside the curve.
     const BEYOND: f64 = 1.1;
     let [start, _] = walk.range;
     let mut solved = None;
@@ -261,7 +262,7 @@ fn solve(walk: &Walk<'_>, value: f64, from: f64, was_stable: bool, arrive: &mut 
     }
 }
 
-/// What the end of a path is measured by, in a state.
+/// The quantity that marks the end of a path, in a state.
 pub(super) fn measure(end: Turn, control: Control, state: &State) -> f64 {
     match end {
         Turn::Approach(_) => state.approach,
@@ -271,11 +272,11 @@ pub(super) fn measure(end: Turn, control: Control, state: &State) -> f64 {
     }
 }
 
-/// Steps to the next event, and no further than to `end`, which is found by halving the step that would pass it.
+/// Steps to the next event, but no further than `end`, which is found by halving the step that would pass it.
 fn to_end(walk: &Walk<'_>, end: Turn, arrive: &mut Emit<'_>) -> WalkEnd {
-    /// Each round gives a binary digit.
+    /// Each round gives one binary digit.
     const ROUNDS: usize = 60;
-    /// So near to the end the walker stands on it.
+    /// This close to the end, the walker counts as standing on it.
     const ON_IT: f64 = 1e-12;
     let over = |reached: &Reached| measure(end, walk.control, &reached.state) - end.value();
     let (mut last, mut passing): (Option<StatePoint>, Option<f64>) = (None, None);
@@ -346,7 +347,7 @@ fn made(request: &Request, reached: Reached) -> MadeState {
         Arrival::Moved => (NodeKind::Moved, None),
         Arrival::Solved => (NodeKind::Solved, None),
     };
-    // The exact solution is that of one disc, whose edge opens.
+    // The exact solution is that of one disc whose edge opens.
     let is_beside = on_path.is_some() || edges::has_rings(&point);
     let exact = if is_beside { f64::NAN } else { from_exact(&request.curve.case, &state) };
     MadeState {

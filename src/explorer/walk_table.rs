@@ -9,9 +9,9 @@ use pulloff_engine::report::walk::WalkRow;
 use serde_json::Value;
 use std::sync::Arc;
 
-/// The keys that changed during a walk, in that order; not the title and the display units.
+/// The keys that changed during a walk, in the order of their changes; without the title and the display units.
 pub(super) fn changed_keys(walk: &[Node]) -> Vec<Key> {
-    // States of one problem share it.
+    // States of one problem share its preset.
     let mut presets: Vec<&Preset> = Vec::new();
     for nodes in walk.chunk_by(|a, b| Arc::ptr_eq(&a.setting, &b.setting)) {
         presets.push(&nodes[0].setting.preset);
@@ -19,7 +19,7 @@ pub(super) fn changed_keys(walk: &[Node]) -> Vec<Key> {
     let Some((first, rest)) = presets.split_first() else { return Vec::new() };
     let mut keys: Vec<Key> = Vec::new();
     for preset in rest {
-        // A key may be of one of the two alone.
+        // A key may exist in only one of the two.
         let is_of_states =
             |row: &Row| !(row.is_part() || row.key == "title" || row.key.starts_with("display."));
         for row in first.rows().chain(preset.rows()).filter(is_of_states) {
@@ -70,7 +70,7 @@ pub(super) fn row(node: &Node, changed: &[Key]) -> WalkRow {
     }
 }
 
-/// The value of a key as it stands in a cell: numbers in SI or reduced units, a control as it is typed.
+/// The value of a key as written in a cell: numbers in SI or reduced units, a control as it is typed.
 fn value_of(preset: &Preset, key: &str) -> Value {
     match preset.get(key) {
         None => Value::Null,
@@ -80,7 +80,7 @@ fn value_of(preset: &Preset, key: &str) -> Value {
     }
 }
 
-/// The word for how a node came about.
+/// The word for the kind of a node.
 pub fn kind_name(kind: &NodeKind) -> &'static str {
     match kind {
         NodeKind::Start => "start",

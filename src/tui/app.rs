@@ -1,16 +1,16 @@
-//! Keys and pastes → commands; replies → model; what lies over the screen.
+//! Keys and pastes → commands; replies → model; and whatever lies over the screen.
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | `choose` | lists: what is typed filters them |
+//! | `choose` | lists, filtered by what is typed |
 //! | `columns` | the columns of a measured curve, chosen from lists |
-//! | `files` | names and paths asked for: saving, exporting, copying |
+//! | `files` | requests for names and paths: saving, exporting, copying |
 //! | `gap` | the shape, the formula and the profile of the gap |
-//! | `help` | the help, and looking for a word in it |
+//! | `help` | the help, and searching it for a word |
 //! | `line` | commands typed by name |
 //! | `mouse` | clicks and the wheel |
 //! | `state` | the app: keys, prompts, questions |
-//! | `typed` | the lines typed before |
+//! | `typed` | the lines typed earlier |
 //! | `session` | the offer of a session, the branches of the walk |
 
 mod choose;

@@ -1,4 +1,4 @@
-//! What the line carries: bytes per key, and frames per held key, counted by a terminal that is a counter.
+//! What the line has to carry: bytes per key, and frames per held key, counted by a stand-in for the terminal.
 
 use super::app::App;
 use super::converse;
@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
-/// A terminal that counts, and tells of each frame; with a gate it takes each only when let.
+/// A terminal that counts, and reports each frame; with a gate, it takes each frame only when let.
 struct Counter {
     size: (u16, u16),
     frames: Mutex<Vec<usize>>,
@@ -28,7 +28,7 @@ impl Counter {
         Box::leak(Box::new(Self { size, frames: Mutex::default(), told, gate: gate.map(Mutex::new) }))
     }
 
-    /// The bytes of each frame since the last look.
+    /// The bytes of each frame since the last call.
     fn take(&self) -> Vec<usize> {
         std::mem::take(&mut self.frames.lock().unwrap())
     }
@@ -56,7 +56,7 @@ impl FrameSink for Counter {
     }
 }
 
-/// The explorer on such a terminal, its effects done inline.
+/// The explorer on such a terminal, with its effects run inline.
 struct Session {
     app: App,
     driver: Inline,
@@ -91,7 +91,7 @@ impl Session {
         self.settle(effects);
     }
 
-    /// Drawn until the views have what they need.
+    /// Draws until the views have what they need.
     fn draw_all(&mut self, display: &mut Display<Counter>) {
         for _ in 0..3 {
             self.draw(display);
@@ -116,7 +116,7 @@ const THEMES: [Theme; 2] = [
 /// A walk over limit points and jumps: many steps, and each key that moves the walker.
 const WALK: &str = "      n x          n x       n x     b        b  u u L    ca        n x      ";
 
-/// The costliest step of a walk, shown first in the view that so many keys lead to.
+/// The costliest step of a walk that is first shown in the view reached by this many keys.
 fn costliest_step(preset: &str, size: (u16, u16), theme: Theme, views: usize) -> usize {
     let counter = Counter::leak(size, None, None);
     let mut display = Display::new(counter).unwrap();
@@ -131,13 +131,13 @@ fn costliest_step(preset: &str, size: (u16, u16), theme: Theme, views: usize) ->
     steps.max().unwrap()
 }
 
-/// A plain key costs so much in the median; where the list of parameters scrolls, a little more.
+/// The median cost of a plain key in bytes; where the list of parameters scrolls, it is a little more.
 const MEDIAN: [usize; 2] = [130, 150];
 
 #[test]
 fn a_value_turned_beside_a_pin_costs_three_kilobytes() {
-    // A turn goes over two to four per cent. Moved to λ, whose waves all move, the most of them: the whole curve is another then, and
-    // the pinned one over s/λ moves too.
+    // A turn changes the value by two to four per cent. The selection moved to λ costs most, since all its waves move:
+    // the whole curve is then another one, and so is the pinned one over s/λ.
     for (theme, way, most) in [(THEMES[0], "", 3000), (THEMES[1], "", 3000), (THEMES[0], "j", 4500)] {
         let counter = Counter::leak((120, 40), None, None);
         let mut display = Display::new(counter).unwrap();
@@ -154,7 +154,7 @@ fn a_value_turned_beside_a_pin_costs_three_kilobytes() {
 
 #[test]
 fn idle_costs_nothing_and_a_move_little() {
-    // Where panes are stacked the lines of values move when another line is reached, and the title is long.
+    // Where panes are stacked, the lines of values move when another line is reached, and the title is long.
     for (size, theme, most) in [
         ((80, 24), THEMES[0], 450),
         ((100, 30), THEMES[0], 450),
@@ -174,7 +174,7 @@ fn idle_costs_nothing_and_a_move_little() {
         assert!(costs.iter().all(|bytes| *bytes < most), "{costs:?} at {size:?}");
         let over = costs.iter().filter(|bytes| **bytes >= 300).count();
         assert!(over <= 2, "{costs:?} at {size:?}");
-        // Those at the end of the list, which change nothing, are not counted.
+        // Keys at the end of the list, which change nothing, are not counted.
         let mut costs: Vec<usize> = costs.into_iter().filter(|bytes| *bytes > 0).collect();
         costs.sort_unstable();
         assert!(costs[costs.len() / 2] <= MEDIAN[usize::from(size.1 < 40)], "{costs:?} at {size:?}");
@@ -220,7 +220,7 @@ fn keys_that_come_while_a_frame_is_written_make_one_frame() {
     let inbox = Inbox::<Reply>::empty();
     let typist = inbox.typist();
     let driving = std::thread::spawn(move || {
-        // The first frame is held by the terminal for as long as the keys come: none is in flight beside it.
+        // The terminal holds the first frame while the keys come, so no other frame is under way.
         frame_begun.recv().unwrap();
         for _ in 0..100 {
             typist(Incoming::Key(KeyCode::Char('j').into()));
@@ -244,13 +244,13 @@ fn keys_that_come_while_a_frame_is_written_make_one_frame() {
         &mut |_| {},
     );
     driving.join().unwrap();
-    // The first, the one for 201 keys, and the one after the key that quits if it is due.
+    // The first, the one for 201 keys, and, if it is due, the one after the key that quits.
     let frames = counter.take().len();
     assert!(frames == 2 || frames == 3, "{frames} frames for 202 keys");
     assert_ne!(session.app.model.selected_knob().map(|(row, _)| row.key.clone()), row, "the last key counts");
 }
 
-/// A pace that lets no frame follow another while a test runs.
+/// A pace at which no frame follows another while a test runs.
 const STANDSTILL: Pace = Pace {
     shortest: Duration::from_secs(3600),
     rate: 16_000.0,
@@ -259,7 +259,7 @@ const STANDSTILL: Pace = Pace {
     longest_for_write: Duration::ZERO,
 };
 
-/// What a frame may take to come on a loaded machine, when it need not wait for anything.
+/// How long a frame that need not wait for anything may take on a loaded machine.
 const SOON: Duration = Duration::from_secs(20);
 
 #[test]
@@ -273,14 +273,14 @@ fn the_first_curve_waits_for_no_pace_and_every_frame_after_it_does() {
     let inbox = Inbox::<Reply>::empty();
     let (typist, sender) = (inbox.typist(), inbox.sender());
     let driving = std::thread::spawn(move || {
-        // The empty screen is there before the curve.
+        // The empty screen appears before the curve.
         frame_begun.recv_timeout(SOON).unwrap();
         let driver = Inline::new(store);
         for reply in effects.into_iter().filter_map(|effect| driver.run(effect)) {
             assert!(sender.send(reply), "the inbox is gone");
         }
         let curve = frame_begun.recv_timeout(SOON);
-        // Drawn only when it is due, long after the test.
+        // Drawn only when due, long after the test.
         typist(Incoming::Key(KeyCode::Char('j').into()));
         typist(Incoming::Key(KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL)));
         curve.is_ok()
@@ -305,15 +305,15 @@ fn a_frame_drawn_early_leaves_its_wait_to_the_next() {
     assert_eq!(display.due(), due + STANDSTILL.shortest);
 }
 
-/// A line of 16 kB/s, its keys and its frames 75 ms on the way: frames take their time, and are told with the moment in
-/// which they were begun.
+/// A line of 16 kB/s with 75 ms each way for keys and frames: frames take their time, and are reported with the moment
+/// at which they were begun.
 struct SlowLine {
     frames: Mutex<Vec<(Instant, usize)>>,
-    /// Whether what is written now is a frame of a run: those alone are kept.
+    /// Whether a frame of a run is being written: only those are kept.
     runs: AtomicBool,
 }
 
-/// One way.
+/// The time one way.
 const WAY: Duration = Duration::from_millis(75);
 
 impl FrameSink for SlowLine {
@@ -343,7 +343,7 @@ fn a_run_leaves_the_line_to_the_keys_and_any_of_them_pauses_it() {
     let inbox = Inbox::<Reply>::empty();
     let sender = inbox.sender();
     let workers = Workers::start(store, move |reply| {
-        // Fails only when the screen is gone.
+        // Fails only if the screen is gone.
         let _ = sender.send(reply);
     })
     .unwrap();
@@ -364,7 +364,7 @@ fn a_run_leaves_the_line_to_the_keys_and_any_of_them_pauses_it() {
                 break found.0;
             }
         };
-        // Slowly, so that it runs for long; the keys of the pace pause nothing.
+        // Slowly, so that it runs for long; the keys of the pace do not pause it.
         until(&|(walked, _)| walked == 1);
         for c in "((r)".chars() {
             key(c);
@@ -372,18 +372,18 @@ fn a_run_leaves_the_line_to_the_keys_and_any_of_them_pauses_it() {
         until(&|(walked, runs)| runs && walked > 9);
         key('t');
         let paused = until(&|(_, runs)| !runs);
-        // What was on its way may still come; then no more.
+        // What was under way may still arrive, but nothing more.
         while let Ok((walked, runs)) = states.recv_timeout(Duration::from_millis(500)) {
             assert!(walked <= paused + 1 && !runs, "{walked} states, {paused} when it was paused");
         }
-        // Twice in one burst: begun and paused, and the next key does what it does.
+        // Twice in one burst: it begins and is paused, and the next key takes effect as usual.
         for c in "rrr".chars() {
             typist(Incoming::Key(KeyCode::Char(c).into()));
         }
         until(&|(walked, runs)| runs && walked > paused);
         key('q');
     });
-    // Whatever fails in the driver, the screen is left.
+    // Even if the driving thread fails, the screen is left.
     let quits = inbox.typist();
     let driving = std::thread::spawn(move || {
         let result = driving.join();
@@ -400,7 +400,7 @@ fn a_run_leaves_the_line_to_the_keys_and_any_of_them_pauses_it() {
     let frames: Vec<(Instant, usize)> = frames.into_iter().filter(|(_, bytes)| *bytes > 0).collect();
     assert!(frames.len() > 1, "{} frames", frames.len());
     for (at, _) in &frames {
-        // A little less than a second: between the decision and the write the machine may have been busy.
+        // A little less than a second: the machine may have been busy between the decision and the write.
         let within = frames.iter().filter(|(other, _)| other >= at && *other < *at + 4 * SECOND / 5);
         let bytes: Vec<usize> = within.map(|(_, bytes)| *bytes).collect();
         assert!(bytes.len() == 1 || bytes.len() <= 9 && bytes.iter().sum::<usize>() <= 4000, "{bytes:?}");

@@ -1,6 +1,6 @@
 //! One chart: axes with round ticks, curves, shaded areas, marks.
 //!
-//! No number that is not finite reaches a cell, and nothing outside the window is drawn.
+//! No non-finite number reaches a cell, and nothing outside the window is drawn.
 
 use super::marks::{letter, look, style};
 use super::raster::{self, Layer, Meets};
@@ -28,31 +28,32 @@ impl LegendRow {
     }
 }
 
-/// A figure on the cells of a screen.
+/// A figure drawn in the cells of a screen.
 #[derive(Debug)]
 pub struct Chart<'a> {
     pub figure: &'a Figure,
     pub theme: Theme,
-    /// What stands in its upper wall.
+    /// The title in its upper wall.
     pub title: String,
-    /// The part of the figure that is seen.
+    /// The visible part of the figure.
     pub bounds: Bounds,
     /// Whether its lines are curves to be compared: those share the cells in which they meet.
     pub compares: bool,
-    /// What lines and letters mean, the most important first.
+    /// The meaning of lines and letters, the most important first.
     pub legend: Vec<LegendRow>,
-    /// The mark that stands out, by its place among those of the figure.
+    /// The mark that stands out, by its index among the marks of the figure.
     pub selected: Option<usize>,
     pub cross: Option<(f64, f64)>,
-    /// The state next to the cross-hair.
+    /// The state nearest to the cross-hair.
     pub nearest: Option<(f64, f64)>,
-    /// Whether it stands beside another with the same axis upward: both have a row for the legend, so that equal values stand on one row.
+    /// Whether it stands beside another chart with the same vertical axis: both have a row for the legend, so that
+    /// equal values are on one row.
     pub is_paired: bool,
-    /// Whether parts of a contact in which the bodies pull look like the others.
+    /// Whether the parts of a contact under tension look like the others.
     pub hides_tension: bool,
 }
 
-/// How many entries of a legend there is room for, with an ellipsis where some are left out.
+/// How many entries of a legend fit, with an ellipsis if some are left out.
 fn legend_count(legend: &[LegendRow], room: usize) -> usize {
     let mut used = 0;
     let fits = |(at, entry): &(usize, &LegendRow)| {
@@ -111,7 +112,7 @@ impl Chart<'_> {
         self.draw_marks(buffer, plot, &taken);
     }
 
-    /// What else the figure says, at the right end of the title's line where it fits.
+    /// The notes of the figure, shown at the right end of the title's line if they fit.
     fn note(&self) -> String {
         self.theme.text(&self.figure.notes.join(", "))
     }
@@ -121,7 +122,7 @@ impl Chart<'_> {
         self.title.chars().count() + self.note().chars().count()
     }
 
-    /// The curves, each with all its parts, the curve of the problem last of those that share cells.
+    /// The curves, each with all its parts; the curve of the problem comes last of those that share cells.
     fn layers(&self, plot: Rect) -> Vec<Layer> {
         let mut all: Vec<(Role, Layer)> = Vec::new();
         // A chart draws its zero lines itself.
@@ -137,7 +138,7 @@ impl Chart<'_> {
         }
         all.sort_by_key(|(role, _)| (*role == Role::Stable, *role));
         for (role, layer) in &mut all {
-            // Curves of states are not compared: the computed one is seen where others agree with it.
+            // Curves of states are not compared: the computed one stays visible where others agree with it.
             let is_own = matches!(role, Role::Stable | Role::Body | Role::Edges);
             if !self.compares && !is_own && layer.stroke.meets == Meets::Shares {
                 layer.stroke.meets = Meets::Beneath;
@@ -146,13 +147,14 @@ impl Chart<'_> {
         all.into_iter().map(|(_, layer)| layer).collect()
     }
 
-    /// Whether the whole legend stands in the upper wall.
+    /// Whether the whole legend fits into the upper wall.
     fn legend_fits(&self, area: Rect) -> bool {
         let legend: usize = self.legend.iter().map(|entry| entry.width() + 2).sum();
         !self.is_paired && self.heading() + legend + 4 <= usize::from(area.width)
     }
 
-    /// Goes on with the legend of the chart beside it from where that has no more room; its own stays where that has shown all.
+    /// Continues the legend of the chart beside it from where that one ran out of room; keeps its own if that one was
+    /// complete.
     pub fn go_on_with_legend(&mut self, area: Rect, beside: Vec<LegendRow>) {
         let Some(plot) = self.plot(area) else { return };
         let is_new = |entry: &LegendRow| !beside.iter().any(|other| other.meaning == entry.meaning);
@@ -164,7 +166,7 @@ impl Chart<'_> {
         }
     }
 
-    /// As many entries as there is room for; an ellipsis where some are left out.
+    /// As many entries as fit; an ellipsis if some are left out.
     fn legend_spans(&self, room: usize) -> Vec<Span<'static>> {
         let theme = self.theme;
         let mut spans = Vec::new();
@@ -181,23 +183,24 @@ impl Chart<'_> {
         spans
     }
 
-    /// Whether a row inside is that of the legend.
+    /// Whether one of the rows inside is used for the legend.
     fn has_legend_row(&self, area: Rect, inner: Rect) -> bool {
         inner.height >= LEGEND_ROWS && !self.legend.is_empty() && !self.legend_fits(area)
     }
 
-    /// Whether a row inside is that of the note, which has no room in the wall; of a pair both plots are as high.
+    /// Whether one of the rows inside is used for the note, which does not fit into the wall; the plots of a pair have
+    /// equal heights.
     fn has_note_row(&self, area: Rect, inner: Rect) -> bool {
         let is_in_wall = self.heading() + 3 <= usize::from(area.width);
         inner.height > LEGEND_ROWS && !self.is_paired && !self.note().is_empty() && !is_in_wall
     }
 
-    /// The ticks of y in a frame of this inside.
+    /// The ticks of y in a frame with this interior.
     fn y_ticks(&self, inner: Rect) -> Vec<(f64, String)> {
         ticks(self.bounds.y, self.figure.y.run, usize::from(inner.height / 3).clamp(2, 8))
     }
 
-    /// Where the curves are drawn, with the frame in `area`; `None` where there is no room for them.
+    /// Where the curves are drawn, with the frame in `area`; `None` if there is no room for them.
     pub fn plot(&self, area: Rect) -> Option<Rect> {
         let inner = area.inner(Margin::new(1, 1));
         if inner.width < 12 || inner.height < 3 {
@@ -214,7 +217,7 @@ impl Chart<'_> {
         })
     }
 
-    /// Widens the axes so that a circle is round in a frame of this area: a cell is twice as high as wide.
+    /// Widens the axes so that a circle looks round in a frame of this area: a cell is twice as high as it is wide.
     pub fn make_even(&mut self, area: Rect) {
         let Some(plot) = self.plot(area) else { return };
         let [x, y] = [self.bounds.x, self.bounds.y].map(|[lo, hi]| hi - lo);
@@ -225,7 +228,7 @@ impl Chart<'_> {
         self.bounds.y[1] = self.bounds.y[0] + unit * upwards;
     }
 
-    /// The cells whose middle is inside of an outline, the `at`-th of the figure.
+    /// Fills the cells whose centre is inside an outline, which is the `at`-th of the figure.
     fn fill(&self, buffer: &mut Buffer, plot: Rect, at: usize, region: &Area) {
         let (theme, styles) = (self.theme, self.theme.styles());
         let (style, shade) = match region.meaning {
@@ -248,7 +251,7 @@ impl Chart<'_> {
             }
             for column in 0..plot.width {
                 let (x, _) = self.bounds.at(((f64::from(column) + 0.5) / f64::from(plot.width), 0.0));
-                // Inside when an odd number of sides lies to the left.
+                // Inside if an odd number of sides lies to the left.
                 if crossings.iter().filter(|crossing| **crossing < x).count() % 2 == 1 {
                     put(buffer, (plot.x + column, plot.y + row), shade, style);
                 }
@@ -256,7 +259,7 @@ impl Chart<'_> {
         }
     }
 
-    /// The axes through zero, in the empty cells.
+    /// Draws the axes through zero, in the empty cells.
     fn draw_zero(&self, buffer: &mut Buffer, plot: Rect) {
         let theme = self.theme;
         let column = cell(0.0, self.bounds.x, plot.width, false);
@@ -273,7 +276,7 @@ impl Chart<'_> {
         }
     }
 
-    /// Each label on its row or column with its tick, or not at all.
+    /// Draws each label on its row or column with its tick, or not at all.
     fn draw_labels(&self, buffer: &mut Buffer, inner: Rect, plot: Rect) {
         let theme = self.theme;
         let gutter = plot.x - inner.x;
@@ -307,7 +310,7 @@ impl Chart<'_> {
             });
             place.collect::<Vec<_>>()
         };
-        // Where the title takes the room of the second number, numbers stand closer.
+        // If the title takes the room of the second number, numbers stand closer together.
         let few = placed(most);
         for (column, x, label) in if few.len() < 2 { placed(2 * most) } else { few } {
             buffer.set_stringn(x, below, &label, label.len(), theme.dim());
@@ -320,7 +323,7 @@ impl Chart<'_> {
         buffer.set_stringn(x, below, title, usize::from(inner.width), theme.strong());
     }
 
-    /// The marks; one that stands beside its point takes a free cell there, where there is one.
+    /// Draws the marks; a mark that stands beside its point takes a free cell there, if there is one.
     fn draw_marks(&self, buffer: &mut Buffer, plot: Rect, taken: &[Option<usize>]) {
         let mut marked: Vec<Position> = Vec::new();
         for (number, mark) in self.figure.marks.iter().enumerate() {
@@ -333,7 +336,7 @@ impl Chart<'_> {
                 let at = Position::new(own.x.checked_add_signed(right)?, own.y.checked_add_signed(down)?);
                 plot.contains(at).then_some(at)
             });
-            // What it marks stays seen.
+            // What it marks stays visible.
             let is_beside = matches!(
                 mark.sign,
                 Sign::OtherLimit(_)
@@ -353,7 +356,7 @@ impl Chart<'_> {
             if self.selected == Some(number) {
                 style = style.add_modifier(Modifier::REVERSED);
             }
-            // One letter a cell; a longer label ends in the plot.
+            // One letter per cell; a longer label stays inside the plot.
             let label = letter(mark.sign, self.theme);
             let width = u16::try_from(label.chars().count()).unwrap_or(1);
             let first = at.x.min(plot.right().saturating_sub(width)).max(plot.x);
@@ -366,14 +369,14 @@ impl Chart<'_> {
         }
     }
 
-    /// The cell of a point, where it is seen.
+    /// The cell of a point, if visible.
     fn place(&self, (x, y): (f64, f64), plot: Rect) -> Option<Position> {
         let column = cell(x, self.bounds.x, plot.width, false)?;
         let row = cell(y, self.bounds.y, plot.height, true)?;
         Some(Position::new(plot.x + column, plot.y + row))
     }
 
-    /// The cross-hair: lines in the empty cells of its row and column.
+    /// Draws the cross-hair: lines in the empty cells of its row and column.
     fn draw_cross(&self, buffer: &mut Buffer, plot: Rect) {
         let theme = self.theme;
         let Some((x, y)) = self.cross else { return };
@@ -404,14 +407,14 @@ fn crossings(outline: &[(f64, f64)], y: f64) -> Vec<f64> {
         .collect()
 }
 
-/// A letter in place of what is drawn there: of a block its background would shine through.
+/// Puts a letter in place of what is drawn there: the background of a block would show through.
 fn put(buffer: &mut Buffer, at: (u16, u16), letter: &str, style: Style) {
     let cell = &mut buffer[at];
     cell.reset();
     cell.set_symbol(letter).set_style(style);
 }
 
-/// The cell of `count` in which `value` falls; from the far end where `flipped`.
+/// The cell, out of `count`, in which `value` falls; counted from the far end if `flipped`.
 fn cell(value: f64, [lo, hi]: [f64; 2], count: u16, flipped: bool) -> Option<u16> {
     let share = (value - lo) / (hi - lo);
     if count == 0 || !(0.0..=1.0).contains(&share) {

@@ -1,7 +1,7 @@
 //! The state, the events, a chart and the screen as text, for the clipboard of the person's own terminal (OSC 52).
 //!
-//! Whether a terminal takes it cannot be asked: xterm needs `allowWindowOps`, tmux `set-clipboard on`, GNU screen
-//! passes nothing. So the same text can be exported to a file.
+//! There is no way to ask whether a terminal accepts it: xterm needs `allowWindowOps`, tmux `set-clipboard on`, GNU
+//! screen passes nothing on. So the same text can be exported to a file.
 
 use super::app::App;
 use super::overlay::Excerpt;
@@ -19,26 +19,26 @@ use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// As many bytes as terminals take: 100 000 of a sequence, a third more in base64 than the text.
+/// The most bytes that terminals take: 100 000 in a sequence, where base64 is a third longer than the text.
 pub const LONGEST: usize = 74_994;
 
-/// A line longer than this is cut.
+/// A longer line is cut.
 const LINE: usize = 4096;
 
 /// Digits of a copied value.
 const DIGITS: usize = 10;
 
-/// The screen of a session that has none, as text: of 100 columns and 30 rows.
+/// The screen of a session without one, as text: 100 columns and 30 rows.
 pub fn screen(model: &Model) -> String {
     let app = App { screen: Rect::new(0, 0, 100, 30), ..App::on(model.clone(), Theme::default()) };
     text(&app, Excerpt::Screen)
 }
 
-/// Content as text in which nothing steers a terminal.
+/// The content as text that cannot control a terminal.
 pub fn text(app: &App, content: Excerpt) -> String {
     let text = match content {
         Excerpt::State => app.theme.text(&state(&app.model)),
-        // The columns are this program's, and a row always fits them.
+        // The columns come from this program, and a row always fits them.
         Excerpt::Events => {
             events_table(app.model.path_events()).and_then(|table| table.tsv()).unwrap_or_default()
         }
@@ -49,7 +49,7 @@ pub fn text(app: &App, content: Excerpt) -> String {
     text.lines().map(line).collect()
 }
 
-/// The state of the walker, a quantity a line.
+/// The state of the walker, one quantity per line.
 fn state(model: &Model) -> String {
     let name = format!("{}\n", model.source.shown());
     match model.history.current() {
@@ -86,7 +86,7 @@ fn quantities(node: &Node) -> String {
     lines.into_iter().map(|(name, value)| [name, "\t", &value, "\n"].concat()).collect()
 }
 
-/// The screen, or its first chart; what was asked with a list has closed it before.
+/// The screen, or its first chart; the list that asked for it is already closed.
 fn drawn(app: &App, content: Excerpt) -> String {
     let size = app.screen;
     let Ok(mut terminal) = Terminal::new(TestBackend::new(size.width, size.height));
@@ -95,7 +95,7 @@ fn drawn(app: &App, content: Excerpt) -> String {
     });
     let buffer = terminal.backend().buffer();
     let chart = view::places(app, size).and_then(|regions| regions.charts.first().map(|(_, area)| *area));
-    // Its lower wall is that of what stands below, with the heading of that.
+    // Its lower wall belongs to the pane below, and has the heading of that pane.
     let chart = chart.map(|area| Rect { height: area.height.saturating_sub(1), ..area });
     lines(buffer, if content == Excerpt::Chart { chart.unwrap_or(size) } else { size })
 }

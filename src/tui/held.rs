@@ -1,29 +1,29 @@
-//! Which presses come of a key held down: a terminal tells of no release, so it is told by how soon they follow.
+//! Which presses come from a key held down: a terminal reports no release, so the time between presses has to tell.
 
 use crossterm::event::KeyEvent;
 use std::time::{Duration, Instant};
 
-/// A key that is held comes again within this; a hand is slower.
+/// A held key repeats within this time; a hand is slower.
 const AGAIN: Duration = Duration::from_millis(110);
-/// The first time it does so within this: the longest that is usual.
+/// Its first repetition comes within this time: the longest usual delay.
 const FIRST: Duration = Duration::from_millis(700);
 
 /// The last key pressed.
 #[derive(Debug, Default)]
 pub(super) struct Held {
     last: Option<(KeyEvent, Instant)>,
-    /// How long after the same key it came.
+    /// How long after the previous press of the same key it came.
     gap: Option<Duration>,
 }
 
 impl Held {
-    /// How many presses before this one belong to the same holding of the key: none for one by hand.
+    /// How many presses before this one belong to the same hold of the key: 0 for a press by hand.
     pub(super) fn before(&mut self, key: KeyEvent, now: Instant) -> usize {
         let last = self.last.replace((key, now)).filter(|(last, _)| *last == key);
         let gap = last.map(|(_, at)| now.saturating_duration_since(at));
         let before = std::mem::replace(&mut self.gap, gap);
         match (before, gap) {
-            // Only now is it known that the one before was no second press by hand.
+            // Only now is it certain that the previous press was not a second one by hand.
             (Some(before), Some(gap)) if gap <= AGAIN && before > AGAIN && before <= FIRST => 2,
             (_, Some(gap)) if gap <= AGAIN => 1,
             _ => 0,
@@ -43,7 +43,7 @@ mod tests {
             now += Duration::from_millis(after);
             held.before(KeyCode::Char(c).into(), now)
         };
-        // By hand, then held, then another key, and held from its first press on.
+        // By hand, then held, then another key, held from its first press on.
         let presses =
             [(0, ' '), (300, ' '), (300, ' '), (500, ' '), (33, ' '), (33, ' '), (33, 'n'), (33, 'n')];
         assert_eq!(presses.map(|(after, c)| press(after, c)), [0, 0, 0, 0, 2, 1, 0, 1]);

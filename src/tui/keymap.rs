@@ -1,6 +1,6 @@
-//! Command id → keys: those of the table of commands, or the person's own.
+//! Command id → keys: those from the table of commands, or the person's own.
 //!
-//! Never Ctrl-S or Ctrl-Q (flow control) or Ctrl-Z (suspend); by default never a function or Alt key as the only way.
+//! Never Ctrl-S or Ctrl-Q (flow control) or Ctrl-Z (suspend); by default, a function or Alt key is never the only way.
 //! A command without a key is reached through the command line.
 
 use crate::config::{Config, ConfigError, ConfigMistake};
@@ -18,7 +18,7 @@ pub enum Keystroke {
     Named(KeyCode),
 }
 
-/// The names of keys that are no character.
+/// The names of keys that are not characters.
 const NAMES: [(&str, Keystroke); 25] = [
     ("Space", Keystroke::Char(' ')),
     ("Enter", Keystroke::Named(KeyCode::Enter)),
@@ -70,7 +70,7 @@ impl Keystroke {
         }
     }
 
-    /// The key of a label.
+    /// The key with this label.
     pub fn parse(label: &str) -> Result<Self, String> {
         let named = NAMES.iter().find(|(name, _)| name.eq_ignore_ascii_case(label)).map(|(_, key)| *key);
         let ctrl = label
@@ -108,13 +108,13 @@ impl Keystroke {
     }
 }
 
-/// The only character of a text.
+/// The only character of a text, if it has just one.
 fn single(text: &str) -> Option<char> {
     let mut chars = text.chars();
     chars.next().filter(|_| chars.next().is_none())
 }
 
-/// The keys a command has unless the person says otherwise, the one shown in the footer first.
+/// The keys a command has unless the person chooses others; the one shown in the footer comes first.
 fn usual(row: &CommandRow) -> Vec<Keystroke> {
     row.keys.split_whitespace().filter_map(|label| Keystroke::parse(label).ok()).collect()
 }
@@ -130,8 +130,8 @@ impl Default for Keymap {
 }
 
 impl Keymap {
-    /// The usual keys with those of `config` instead, where it has some.
-    /// Errors: A key that is none or is reserved, one that two commands would have, or no key for the command line.
+    /// The usual keys, replaced by those of `config` where it has some.
+    /// Errors: A key that does not exist or is reserved, one shared by two commands, or no key for the command line.
     pub fn of(config: &Config) -> Result<Self, ConfigError> {
         let (mut map, mut mistakes) = (Self::default(), Vec::new());
         for binding in &config.keys {
@@ -185,7 +185,7 @@ impl Keymap {
             .collect()
     }
 
-    /// The keys of a command, the one shown in the footer first.
+    /// The keys of a command; the one shown in the footer comes first.
     pub fn keys(&self, id: Id) -> &[Keystroke] {
         self.0.iter().find(|(known, _)| *known == id).map_or(&[], |(_, keys)| keys)
     }
@@ -195,13 +195,13 @@ impl Keymap {
         self.0.iter().find(|(_, keys)| keys.iter().any(|k| k.matches(key))).map(|(id, _)| *id)
     }
 
-    /// The command of a key that is written out, as in the help.
+    /// The command of a key given by its label, as in the help.
     pub fn called(&self, label: &str) -> Option<Id> {
         let key = Keystroke::parse(label).ok()?;
         self.0.iter().find(|(_, keys)| keys.contains(&key)).map(|(id, _)| *id)
     }
 
-    /// The command of a key in a list: arrows, Enter and Esc do there what they do everywhere.
+    /// The command of a key in a list: arrows, Enter and Esc do the same there as everywhere.
     pub fn in_list(&self, key: KeyEvent) -> Option<Id> {
         match key.code {
             KeyCode::Up => Some(Id::Up),
@@ -212,35 +212,35 @@ impl Keymap {
         }
     }
 
-    /// The first key of a command, or how it is typed.
+    /// The first key of a command, or else how to type it.
     pub fn first(&self, id: Id) -> String {
         self.keys(id).first().map_or_else(|| self.typed(id), |key| key.label())
     }
 
-    /// A sentence with the first key of each command in it.
+    /// A sentence with each command in it replaced by its first key.
     pub fn spelled(&self, sentence: &str) -> String {
         spelled(sentence, |id| self.first(id))
     }
 
-    /// How a command without a key is typed.
+    /// How to type a command without a key.
     fn typed(&self, id: Id) -> String {
         let line = self.keys(Id::CommandLine).first().map_or_else(String::new, |key| key.label());
         format!("{line}{}", id.name())
     }
 
-    /// The keys of a command as text; empty where it is typed.
+    /// The keys of a command as text; empty if it has none.
     pub fn keys_of(&self, id: Id) -> String {
         self.keys(id).iter().map(|key| key.label()).collect::<Vec<_>>().join(" ")
     }
 
-    /// The keys of a command as text, or how it is typed.
+    /// The keys of a command as text, or else how to type it.
     pub fn label(&self, id: Id) -> String {
         let keys = self.keys_of(id);
         if keys.is_empty() { self.typed(id) } else { keys }
     }
 }
 
-/// Whether a key asks to stop the program for a while.
+/// Whether a key asks to suspend the program.
 pub fn is_suspend(key: KeyEvent) -> bool {
     Keystroke::Ctrl('z').matches(key)
 }

@@ -1,4 +1,4 @@
-//! Which pane goes where at which size. Neighbours share a wall.
+//! Which pane goes where at each size. Neighbours share a wall.
 //!
 //! | from | panes |
 //! |---|---|
@@ -8,7 +8,8 @@
 //! | 120x36 | Problem, Here and Result in a column of 27; both charts; the log below, whole |
 //! | 160x45 | the same with a third chart |
 //!
-//! Charts of the force have one axis of it: an event stands on the same row in both. The pane that `z` chose has the whole screen.
+//! Charts of the force share its axis: an event stands on the same row in both. The pane chosen with `z` fills the
+//! screen.
 
 use crate::explorer::{ScreenPanel, View};
 use ratatui::layout::Rect;
@@ -16,18 +17,18 @@ use ratatui::layout::Rect;
 /// The smallest screen on which anything is shown.
 pub const SMALLEST: (u16, u16) = (40, 10);
 
-/// How the panes stand.
+/// How the panes are arranged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum PaneLayout {
-    /// The selected one alone.
+    /// Only the selected one.
     Alone,
     /// One above the other over the whole width.
     Stacked,
-    /// A column of what is read, the charts beside it.
+    /// A column of text panes, with the charts beside it.
     Column,
 }
 
-/// The panes of a size.
+/// The panes at one size.
 #[derive(Debug, Clone, Copy)]
 struct Arrangement {
     /// The smallest width and height.
@@ -36,7 +37,7 @@ struct Arrangement {
     charts: usize,
 }
 
-/// The panes of every size, the largest first: the first that fits is taken.
+/// The panes at every size, the largest first: the first that fits is used.
 const ARRANGEMENTS: [Arrangement; 5] = [
     Arrangement { from: (160, 45), shape: PaneLayout::Column, charts: 3 },
     Arrangement { from: (120, 36), shape: PaneLayout::Column, charts: 2 },
@@ -45,37 +46,37 @@ const ARRANGEMENTS: [Arrangement; 5] = [
     Arrangement { from: SMALLEST, shape: PaneLayout::Alone, charts: 1 },
 ];
 
-/// The inside of the column.
+/// The width inside the column.
 pub const COLUMN: u16 = 27;
-/// Lines of values where panes are stacked; the state has one more.
+/// Lines of values where panes are stacked; the state has one more line.
 pub const VALUE_LINES: u16 = 2;
-/// The rows of the log with its walls, up to so many rows of the screen.
+/// The rows of the log with its walls, for screens up to this many rows.
 const LOG_ROWS: [(u16, u16); 6] = [(19, 4), (24, 5), (29, 6), (35, 8), (44, 11), (u16::MAX, 16)];
 /// Lines of Result.
 const RESULT_LINES: u16 = 9;
-/// Lines of Here that stepping needs, and those of the slopes.
+/// Lines of Here that stepping needs, and lines including the slopes.
 const HERE_LINES: [u16; 2] = [6, 12];
-/// Lines of values that are worth more than the slopes.
+/// The number of lines of values that matter more than the slopes.
 const LEAST_VALUES: u16 = 8;
 
-/// Where the panes are; those that do not fit are left out.
+/// Where the panes are; panes that do not fit are left out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Regions {
     pub header: Rect,
     pub problem: Option<Rect>,
     pub here: Option<Rect>,
     pub result: Option<Rect>,
-    /// The views with their place, the first one first.
+    /// The views with their areas, the first view first.
     pub charts: Vec<(View, Rect)>,
     pub log: Option<Rect>,
     pub status: Rect,
     pub footer: Rect,
-    /// Whether Problem is lines of cells, with the state below.
+    /// Whether Problem consists of lines of cells, with the state below.
     pub is_stacked: bool,
 }
 
 impl Regions {
-    /// The panes that are drawn, in the order of the Tab key; alone, each is drawn when it is selected.
+    /// The panes that are drawn, in the order of the Tab key; if only one is shown, each is drawn when it is selected.
     pub fn panels(&self, is_alone: bool) -> Vec<ScreenPanel> {
         let is_drawn = |panel: &ScreenPanel| match panel {
             ScreenPanel::Problem => self.problem.is_some(),
@@ -88,17 +89,17 @@ impl Regions {
     }
 }
 
-/// What the panes want.
+/// What the panes need.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Wants {
     /// The first view.
     pub view: View,
     /// Lines of the log.
     pub log: usize,
-    /// Lines of the problem, one a value.
+    /// Lines of the problem, one per value.
     pub problem: usize,
     pub panel: ScreenPanel,
-    /// Whether the selected pane has the whole screen.
+    /// Whether the selected pane fills the screen.
     pub is_whole: bool,
 }
 
@@ -140,7 +141,7 @@ pub fn regions(area: Rect, wants: Wants) -> Option<Regions> {
     }
     let most = LOG_ROWS.iter().find(|(height, _)| area.height <= *height).map_or(0, |(_, rows)| *rows);
     let wanted = u16::try_from(wants.log.max(1) + 2).unwrap_or(u16::MAX);
-    // Where panes are stacked the log keeps its rows: charts that grow and shrink with it would send all of it.
+    // Where panes are stacked, the log keeps its rows: charts that grow and shrink with it would be sent as a whole.
     let rows = if found.shape == PaneLayout::Stacked { most } else { wanted.clamp(3, most) };
     let (main, log) = split_top(body, body.height + 1 - rows);
     regions.log = Some(log);
@@ -159,7 +160,8 @@ pub fn regions(area: Rect, wants: Wants) -> Option<Regions> {
     Some(regions)
 }
 
-/// Problem, Here and Result; what has no room gives way in this order: values of Problem, the slopes of Here, half of Result.
+/// Problem, Here and Result; space is taken in this order: from the values of Problem, the slopes of Here, half of
+/// Result.
 fn column(regions: &mut Regions, side: Rect, wants: Wants) {
     let values = u16::try_from(wants.problem).unwrap_or(u16::MAX);
     // Four walls, two of them shared.
@@ -174,14 +176,14 @@ fn column(regions: &mut Regions, side: Rect, wants: Wants) {
     (regions.problem, regions.here, regions.result) = (Some(top), Some(middle), Some(bottom));
 }
 
-/// The first `count` columns, and the rest from the wall that both share.
+/// The first `count` columns, and the rest starting from the wall that both share.
 fn split_left(area: Rect, count: u16) -> (Rect, Rect) {
     let first = Rect { width: count, ..area };
     let shared = count.saturating_sub(1);
     (first, Rect { x: area.x + shared, width: area.width - shared, ..area })
 }
 
-/// The first `count` rows, and the rest from the wall that both share.
+/// The first `count` rows, and the rest starting from the wall that both share.
 fn split_top(area: Rect, count: u16) -> (Rect, Rect) {
     let count = count.min(area.height);
     let first = Rect { height: count, ..area };
@@ -189,7 +191,7 @@ fn split_top(area: Rect, count: u16) -> (Rect, Rect) {
     (first, Rect { y: area.y + shared, height: area.height - shared, ..area })
 }
 
-/// So many charts side by side, the first ones a column wider where it does not come out even.
+/// This many charts side by side; the first ones are a column wider if the width does not divide evenly.
 fn beside(area: Rect, count: usize) -> Vec<Rect> {
     let mut rest = area;
     let mut places = Vec::new();
@@ -230,7 +232,7 @@ mod tests {
                     assert_eq!(a.intersection(area), *a);
                     assert!(a.width > 2 && a.height > 0, "{width}x{height} {a:?}");
                     for b in &all[i + 1..] {
-                        // At most a wall, which is one cell wide.
+                        // They share at most a wall, which is one cell wide.
                         let shared = a.intersection(*b);
                         assert!(
                             shared.is_empty() || shared.width.min(shared.height) == 1,
@@ -245,7 +247,7 @@ mod tests {
         }
     }
 
-    /// Sizes and the panes on them: charts with the cells of each, lines of Problem, Here, Result and the log.
+    /// Sizes and their panes: charts with the cells of each, and the lines of Problem, Here, Result and the log.
     #[test]
     fn every_size_has_its_panes() {
         use View::{Contact, ForceApproach, ForceRadius};
@@ -272,7 +274,7 @@ mod tests {
             // However many events there are.
             let many = super::regions(Rect::new(0, 0, width, height), wants(99)).unwrap();
             assert!(many.log.is_none_or(|log| log.height * 2 < height), "{size}");
-            // Tab goes to what is drawn, and where only one is, to each.
+            // Tab goes to the panes that are drawn, or to each pane if only one is shown.
             let alone = is_alone(Rect::new(0, 0, width, height), false);
             let panels = regions.panels(alone);
             let drawn = if alone { 5 } else { 1 + inside.iter().flatten().count() };

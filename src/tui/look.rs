@@ -1,6 +1,8 @@
-//! How the screen looks and is reached, from the command line, the configuration and the environment: one function.
+//! The look of the screen and the use of the mouse, from the command line, the configuration and the environment: one
+//! function.
 //!
-//! The command line wins over `NO_COLOR`, that over the configuration, that over what the terminal is known to lack:
+//! The command line overrides `NO_COLOR`, which overrides the configuration, which overrides what the terminal is known
+//! to lack:
 //!
 //! | terminal | theme | charts | ascii |
 //! |---|---|---|---|
@@ -10,14 +12,14 @@
 //! | TERM `linux`: its font has half blocks and no braille | | `block` | |
 //! | any other | `any` | `braille` | |
 //!
-//! Where neither TERM nor `COLORTERM` tells of 256 colours, a theme uses the six normal ones and letters.
+//! If neither TERM nor `COLORTERM` indicates 256 colours, a theme uses the six normal ones and letters.
 
 use super::terminal::utf8_locale;
 use super::theme::{Charts, Palette, Theme};
 use crate::config::Config;
 use clap::ValueEnum;
 
-/// What the command line or the table `[look]` of a configuration asks for; nothing where it says nothing.
+/// What the command line or the table `[look]` of a configuration asks for; `None` where it says nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LookFile {
     pub theme: Option<Palette>,
@@ -70,7 +72,7 @@ const VIDEO: [&str; 6] = ["vt100", "vt102", "vt220", "vt320", "vt420", "vt520"];
 const CODE_PAGE: [&str; 3] = ["ansi", "cygwin", "ms"];
 
 impl Environment {
-    /// That of this process.
+    /// The environment of this process.
     pub fn of_process() -> Self {
         Self {
             no_color: std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty()),
@@ -91,7 +93,7 @@ impl Environment {
 }
 
 impl Look {
-    /// What `flags` say, else the environment's `NO_COLOR`, else `from_file`, else what the terminal can show.
+    /// What `flags` say, or else the environment's `NO_COLOR`, or else `from_file`, or else what the terminal can show.
     pub fn resolve(flags: LookFile, from_file: Option<LookFile>, environment: &Environment) -> Self {
         let file = from_file.unwrap_or_default();
         let family = environment.term.split(['-', '.', '+']).next().unwrap_or_default().to_ascii_lowercase();
@@ -121,7 +123,7 @@ impl Look {
         }
     }
 
-    /// What is drawn with.
+    /// The theme for drawing.
     pub fn theme(&self) -> Theme {
         Theme::new(self.theme, self.charts, self.ascii)
     }
@@ -163,7 +165,7 @@ mod tests {
         let flags = LookFile { theme: Some(Palette::Dark), mouse: Some(false), ..none };
         let look = Look::resolve(flags, file, &no_color);
         assert_eq!((look.theme, look.mouse), (Palette::Dark, false));
-        // ASCII holds for the charts too, whatever else is asked for.
+        // ASCII applies to the charts too, whatever else is requested.
         let ascii = LookFile { ascii: Some(true), charts: Some(Charts::Braille), ..none };
         assert_eq!(Look::resolve(ascii, None, &on("xterm")).charts, Charts::Ascii);
         let charts = LookFile { charts: Some(Charts::Ascii), ..none };
@@ -182,7 +184,7 @@ mod tests {
             mouse: Some(true),
         };
         assert_eq!(look, wanted);
-        // Every word of the file is a word of ours.
+        // Every word allowed in the file is known here.
         for (row, words) in crate::config::LOOK {
             for word in words {
                 let config = crate::config::Config { look: vec![(row, *word)], ..Default::default() };

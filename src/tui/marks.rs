@@ -8,7 +8,7 @@ use ratatui::style::Style;
 /// The digits of the pinned curves, by number.
 const DIGITS: [char; 6] = ['1', '2', '3', '4', '5', '6'];
 
-/// Numbers of snaps; from ten on there is a sign for many.
+/// Numbers of snaps; from ten on, a single sign stands for many.
 const COUNTS: [&str; 11] = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "*"];
 
 /// The stroke of a line. Solid is stable, broken is not; the colour says which curve it is.
@@ -50,7 +50,7 @@ pub fn look(role: Role, theme: Theme) -> RasterStroke {
         Role::Landings => of(styles.exact, Shares, true, 'n'),
         Role::Unchanged | Role::Twin => of(styles.smooth, Beneath, true, '.'),
     };
-    // Where colours are few a letter along the curve tells it.
+    // Where colours are few, a letter along the curve identifies it.
     let is_lettered = matches!(
         role,
         Role::Smooth
@@ -68,7 +68,7 @@ pub fn look(role: Role, theme: Theme) -> RasterStroke {
     RasterStroke { letter, ..stroke }
 }
 
-/// How a legend shows a line; with its style, or without colour alone, no two that meet are the same.
+/// How a legend shows a line; together with its style, or even without colour, no two that meet are the same.
 pub fn glyph(role: Role, theme: Theme) -> String {
     let stroke = look(role, theme);
     let is_pin = matches!(role, Role::Pin(_));
@@ -94,7 +94,7 @@ pub fn glyph(role: Role, theme: Theme) -> String {
     if theme.charts == Charts::Block { of("▄▄", "▄ ▄") } else { of("━", "╌") }
 }
 
-/// The letter of a sign; `\u{b7}` is a mark of no event.
+/// The letter of a sign; `\u{b7}` is a mark that is not an event.
 pub fn letter(sign: Sign, theme: Theme) -> String {
     let one = |unicode: &str, ascii: &str| theme.glyph(unicode, ascii).to_owned();
     match sign {

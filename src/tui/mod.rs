@@ -5,16 +5,16 @@
 //! | [`terminal`] | taking and giving back the terminal, signals, hang-ups, pacing |
 //! | [`keymap`] | command id → keys |
 //! | [`app`] | keys and pastes → commands; replies → model; what lies over the screen |
-//! | `held` | which presses come of a key held down |
+//! | `held` | which presses come from a key held down |
 //! | `slow_notice` | notices for slow jobs |
 //! | [`overlay`] | prompts, choices, questions and the help, as data |
-//! | [`layout`] | which region goes where at which size |
+//! | [`layout`] | which pane goes where at each size |
 //! | [`look`] | theme, charts and mouse from flags, configuration and environment |
 //! | [`theme`] | styles and glyphs, by palette, Unicode or ASCII |
 //! | [`chart`] | a figure on cells: axes, curves, marks, the cross-hair |
 //! | `marks` | how each line and sign of a figure is drawn |
 //! | `ticks` | round numbers beside an axis |
-//! | [`raster`] | curves as dots in cells, and whose colour each cell has |
+//! | [`raster`] | curves as dots in cells, and the colour of each cell |
 //! | [`copy`] | the state, the events, a chart and the screen as text, for the clipboard |
 //! | [`view`] | one file per screen region |
 
@@ -58,19 +58,19 @@ use std::time::{Duration, Instant};
 use terminal::{Display, FrameSink, Inbox, Incoming};
 use theme::Theme;
 
-/// What a person has set, ready to be used.
+/// What a person has set, ready to use.
 #[derive(Debug, Clone, Default)]
 pub struct UserSettings {
     pub keymap: Keymap,
     pub look: look::LookFile,
-    /// A message for when the screen comes up.
+    /// A message to show when the screen comes up.
     pub notice: Option<String>,
 }
 
 /// What the explorer begins with.
 #[derive(Debug)]
 pub enum Opening {
-    /// A preset, and what is to be said about sessions, if anything.
+    /// A preset, and a message about sessions, if there is one.
     Preset(Box<Loaded>, Option<String>),
     /// A preset, with the offer to resume a session that was cut off.
     Offer(Box<Loaded>, Box<HeldSession>),
@@ -80,7 +80,7 @@ pub enum Opening {
 /// How long the last write of a session may take when the person quits, and when something else ends the program.
 const PATIENCE: [Duration; 2] = [Duration::from_secs(5), Duration::from_millis(800)];
 
-/// How long quitting waits for a file that is being written: the shell waits too.
+/// How long quitting waits for a file being written: the shell is waiting too.
 const SAVE_PATIENCE: Duration = Duration::from_secs(10);
 
 /// A session in words: its preset, and how much was walked.
@@ -90,7 +90,7 @@ fn describe(held: &HeldSession) -> String {
     format!("{}, {steps}", sanitize(&held.summary.preset_name, 24))
 }
 
-/// The explorer as it begins, and the session that it may resume.
+/// The explorer at its beginning, and the session that it may resume.
 fn begin(start: Opening, theme: Theme, autosave: &Autosave) -> (App, Vec<Effect>, Option<Box<HeldSession>>) {
     match start {
         Opening::Preset(loaded, notice) => {
@@ -127,17 +127,17 @@ pub fn run(
 ) -> io::Result<ExitCode> {
     let autosave = Autosave::new(archive);
     let last = autosave.clone();
-    // Whoever else ends the program does not wait for the loop below, which may be stuck in a write.
+    // Anything else that ends the program does not wait for the loop below, which may be stuck in a write.
     terminal::set_last_words(Box::new(move || drop(last.finish(Ended::Dropped, PATIENCE[1]))));
     let (guard, mut display, inbox) = terminal::enter::<Reply>()?;
     let teller = inbox.sender();
     autosave.start(move |text| {
-        // Fails only when the screen is gone.
+        // Fails only if the screen is gone.
         let _ = teller.send(Reply::Notice(text));
     })?;
     let sender = inbox.sender();
     let workers = Workers::start(store, move |reply| {
-        // Fails only when the screen is gone.
+        // Fails only if the screen is gone.
         let _ = sender.send(reply);
     })?;
     let (mut app, effects, mut offered) = begin(start, look.theme(), &autosave);
@@ -149,7 +149,7 @@ pub fn run(
     workers.submit_all(effects);
     converse(&mut app, &mut display, &inbox, &|effects| workers.submit_all(effects), &mut |app| {
         if let Some(held) = offered.take_if(|_| !app.is_offering()) {
-            // Answered: if not wanted, another program may have the session.
+            // The offer is answered: if it was declined, another program may have the session.
             if app.model.session > 0 {
                 autosave.adopt(&Snapshot::of(&app.model), held.claim, held.summary.ended);
             }
@@ -158,15 +158,15 @@ pub fn run(
     });
     drop(guard);
     if let Err(reason) = autosave.finish(Ended::Quit, PATIENCE[0]) {
-        // The terminal is given back: a message stays on it. There is nothing to do where nobody reads it.
+        // The terminal has been given back, so a message stays on it. If nobody reads it, there is nothing to do.
         let _ = writeln!(io::stderr(), "pulloff: the session was not saved: {reason}");
     }
-    // A file still being written would be cut off; nothing is written after this.
+    // Otherwise a file still being written would be cut off; nothing is written after this.
     temporary::finish(SAVE_PATIENCE);
     Ok(ExitCode::SUCCESS)
 }
 
-/// Most curves and steps are done sooner: the frame waits so long for the result.
+/// Most curves and steps are done sooner: the frame waits this long for the result.
 const GRACE: Duration = Duration::from_millis(30);
 
 /// Whether `effects` begin a walk that has no states yet.
@@ -177,8 +177,8 @@ fn is_walk_begun(model: &Model, effects: &[Effect]) -> bool {
 
 /// Keys and replies in, frames out, until the person quits.
 ///
-/// All that has happened is taken in before a frame, and a frame is written before the next thing is looked at: a held
-/// key on a slow line makes one frame for many keys. `keep` is shown what it came to before each.
+/// Everything that has happened is taken in before a frame, and a frame is written before looking at what comes next: a
+/// held key on a slow line makes one frame for many keys. Before each frame, `keep` is shown the state reached.
 fn converse<S: FrameSink>(
     app: &mut App,
     display: &mut Display<S>,
@@ -190,10 +190,11 @@ fn converse<S: FrameSink>(
     let mut dirty = true;
     // Whether the first curve is still to come; its frame does not wait for the pace of a slow line.
     let mut awaits_curve = true;
-    // Until when the first frame may wait for the curve, and the first change since the last one for the step that it began.
+    // Until when the first frame may wait for the curve, and the first change since the last frame for the step that it
+    // began.
     let mut grace = Some(Instant::now() + GRACE);
     while !app.model.quit {
-        // Unchanged: wait until something is late. Changed: only until the next frame is due.
+        // Unchanged: wait until something is late. Changed: wait only until the next frame is due.
         let runs = app.model.is_running();
         let due = if runs { display.due_running() } else { display.due() };
         let due = [Some(due), grace].into_iter().flatten().max();
@@ -231,7 +232,7 @@ fn converse<S: FrameSink>(
         if let Some(text) = app.clipboard.take() {
             display.copy(&text);
         }
-        // A run is watched: its frames leave the line to the keys. The one after its last state is as any other.
+        // A run is watched: its frames leave the line free for keys. The frame after its last state is like any other.
         let runs = app.model.is_running();
         let due = if runs { display.due_running() } else { display.due() };
         let is_due = due <= Instant::now() || (awaits_curve && app.model.curve.is_some());
@@ -248,7 +249,7 @@ fn converse<S: FrameSink>(
                 true
             };
             if !is_drawn {
-                // Too large for what the line has had: the next state may be smaller, or there is more time.
+                // Too large for what the line has carried: the next state may be smaller, or there will be more time.
                 continue;
             }
             (dirty, grace) = (false, None);

@@ -29,26 +29,26 @@ impl Dialog {
     }
 }
 
-/// Longest line typed or pasted, in characters.
+/// The longest line that can be typed or pasted, in characters.
 pub const LONGEST_LINE: usize = 4096;
 
-/// A line to type.
+/// A line to be typed.
 #[derive(Debug, Clone)]
 pub struct Prompt {
     pub title: String,
     pub note: String,
     pub input: Input,
-    /// Whether the text is still the old value: the first character typed replaces it.
+    /// Whether the text is still the old value, which the first character typed replaces.
     pub fresh: bool,
     pub purpose: Purpose,
     pub error: Option<String>,
-    /// Whether its line was taken and waits for the file it needs: no key changes it until that is read or written.
+    /// Whether its line was taken and waits for the file it needs: no key changes it until the file is read or written.
     pub waits: bool,
-    /// The column of what is wrong in the text, from 1, where it has one.
+    /// The column of the error in the text, from 1, if it has one.
     pub fault: Option<usize>,
     /// What the line of a command could become.
     pub entries: Vec<PaletteEntry>,
-    /// The entry that Enter runs; none where that is the line itself.
+    /// The entry that Enter runs; `None` if it runs the line itself.
     pub selected: Option<usize>,
 }
 
@@ -65,14 +65,14 @@ pub enum Purpose {
     File(ExportKind),
     Page(Page),
     Path,
-    /// A command, out of the list of all.
+    /// A command, from the list of all.
     Line {
         /// Whether it was opened to see what can be done.
         is_help: bool,
     },
 }
 
-/// The help, and what is looked for in it.
+/// The help, and the text being searched for in it.
 #[derive(Debug, Clone, Default)]
 pub struct Help {
     pub page: usize,
@@ -87,14 +87,14 @@ pub struct Help {
 pub struct Occurrence {
     pub page: usize,
     pub line: usize,
-    /// The number of that place, from 1, over all pages.
+    /// The number of this occurrence, from 1, over all pages.
     pub number: usize,
-    /// How many there are.
+    /// How many there are in all.
     pub of: usize,
 }
 
 impl Prompt {
-    /// Asks for a line that begins as `text`; a value and the name of a file are replaced by the first character typed.
+    /// A prompt that starts with `text`; the first character typed replaces a value or the name of a file.
     pub fn new(title: impl Into<String>, note: &str, text: String, purpose: Purpose) -> Self {
         Self {
             title: title.into(),
@@ -113,13 +113,13 @@ impl Prompt {
         }
     }
 
-    /// What is said below the text and its list.
+    /// The message below the text and its list.
     pub fn said(&self) -> &str {
         let selected = self.selected.and_then(|at| self.entries.get(at));
         selected.map_or(&self.note, |entry| &entry.says)
     }
 
-    /// What is wrong with the text, if it is a formula.
+    /// The error in the text, if it is a formula.
     pub fn formula_error(&self) -> Option<FormulaError> {
         match self.purpose {
             Purpose::Formula(_) => Formula::parse(self.input.value()).err(),
@@ -127,7 +127,7 @@ impl Prompt {
         }
     }
 
-    /// What is wrong with the text, and where.
+    /// Shows what is wrong with the text, and where.
     pub fn refuse(&mut self, fault: &FormulaError) {
         self.error = Some(fault.to_string());
         self.fault = Some(fault.place.column);
@@ -135,7 +135,7 @@ impl Prompt {
 }
 
 impl Purpose {
-    /// The command for a typed line; a line of its own grammar is read elsewhere.
+    /// The command for a typed line; a line with a grammar of its own is read elsewhere.
     pub fn command(self, text: String) -> Option<Command> {
         Some(match self {
             Self::Value(key) | Self::Formula(key) => Command::Set { key, text },
@@ -153,20 +153,20 @@ impl Purpose {
 pub struct Choose {
     pub title: String,
     pub items: Vec<Item>,
-    /// What was typed: only lines with it are shown.
+    /// The typed text: only lines that contain it are shown.
     pub filter: String,
     pub selected: usize,
     pub picture: Option<Figure>,
 }
 
 impl Choose {
-    /// The lines with what was typed, and their place among all.
+    /// The lines that contain the typed text, with their index among all lines.
     pub fn shown(&self) -> Vec<(usize, &Item)> {
         let wanted = self.filter.to_lowercase();
         let items = self.items.iter().enumerate();
         let mut found: Vec<_> =
             items.filter(|(_, item)| item.text.to_lowercase().contains(&wanted)).collect();
-        // What is called so before what only speaks of it.
+        // Lines that begin with the text come before those that only contain it.
         found.sort_by_key(|(_, item)| !item.text.to_lowercase().starts_with(&wanted));
         found
     }
@@ -176,7 +176,7 @@ impl Choose {
         self.items.iter().any(|item| !item.note.is_empty())
     }
 
-    /// The selected line, and its place among all; `None` where no line has what was typed.
+    /// The selected line, and its index among all; `None` if no line contains the typed text.
     pub fn current(&self) -> Option<(usize, &Item)> {
         self.shown().get(self.selected).copied()
     }
@@ -186,10 +186,10 @@ impl Choose {
 #[derive(Debug, Clone)]
 pub struct Item {
     pub text: String,
-    /// What is said below the list while it is selected; may be empty.
+    /// The message below the list while the line is selected; may be empty.
     pub note: String,
     pub action: Choice,
-    /// What is asked before it is deleted, and what does it; nothing where it cannot be.
+    /// The question before it is deleted, and what deletes it; `None` if it cannot be deleted.
     pub delete: Option<Box<Confirm>>,
 }
 
@@ -206,11 +206,11 @@ pub enum Choice {
     Command(Command),
     Prompt(Box<Prompt>),
     Copy(Excerpt),
-    /// Go on naming the columns of a measured curve.
+    /// Continue naming the columns of a measured curve.
     Columns(Box<Choosing>),
 }
 
-/// What is asked one after the other.
+/// The questions, asked one after the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ColumnQuestion {
     X,
@@ -222,7 +222,7 @@ impl ColumnQuestion {
     /// How many questions there are.
     pub const COUNT: usize = 3;
 
-    /// What may be chosen, the likeliest first.
+    /// What may be chosen, the most likely first.
     pub fn roles(self) -> &'static [ColumnRole] {
         match self {
             Self::X => &[
@@ -243,16 +243,16 @@ impl ColumnQuestion {
 pub struct Choosing {
     pub foreign: Arc<Foreign>,
     pub step: ColumnQuestion,
-    /// What was chosen, as `data.columns` says it.
+    /// What was chosen, in the form used by `data.columns`.
     pub said: Vec<String>,
-    /// The column whose unit is asked for: its role and its number.
+    /// The column whose unit is being asked for: its role and its number.
     pub unit: Option<(ColumnRole, usize)>,
     /// The columns that were chosen.
     pub taken: Vec<usize>,
 }
 
 impl Choosing {
-    /// Adds what a column is, and goes to the next question.
+    /// Records what a column is, and goes to the next question.
     pub fn says(&mut self, role: ColumnRole, number: usize, unit: Option<&str>) {
         let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}]"));
         self.said.push(format!("{}={number}{unit}", role.word()));
@@ -263,7 +263,7 @@ impl Choosing {
         };
     }
 
-    /// Whether nothing more is asked.
+    /// Whether there are no more questions.
     pub fn is_done(&self) -> bool {
         self.unit.is_none() && self.said.len() == ColumnQuestion::COUNT
     }
@@ -276,7 +276,7 @@ impl Choosing {
     }
 }
 
-/// A session that may be resumed. Any key but those that take it goes on without it, and does what it always does.
+/// A session that may be resumed. Any key but those that accept it goes on without it, and does what it always does.
 #[derive(Debug, Clone)]
 pub struct ResumeOffer {
     pub question: String,
@@ -286,7 +286,7 @@ pub struct ResumeOffer {
 /// A question.
 #[derive(Debug, Clone)]
 pub struct Confirm {
-    /// The question, ending in what `y` does.
+    /// The question; it ends with what `y` does.
     pub question: String,
     pub yes: Command,
 }
@@ -294,7 +294,7 @@ pub struct Confirm {
 /// What can be copied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Excerpt {
-    /// The state of the walker, a quantity a line.
+    /// The state of the walker, one quantity per line.
     State,
     Events,
     Chart,

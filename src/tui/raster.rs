@@ -1,11 +1,12 @@
-//! Curves as dots in the cells of a plot, and whose colour each cell has.
+//! Curves as dots in the cells of a plot, and the colour of each cell.
 //!
-//! A solid line is stable, a broken one is not; which curve it is, its colour says, and where colours are few a letter
-//! along it. A cell that one curve crosses shows that curve. Curves that are compared share the cells in which they meet:
-//! these take their colours in turn, in runs of two or a few, so that none hides another. Lines beneath them show where they are alone.
+//! A solid line is stable, a broken one is not; the colour says which curve it is, or, where colours are few, a letter
+//! along it does. A cell that one curve crosses shows that curve. Curves that are compared share the cells in which
+//! they meet: these take their colours in turn, in runs of two or a few, so that none hides another. Lines beneath them
+//! are visible where they are alone.
 //!
-//! Distances are counted along the curve in character widths, a row counting twice, from its first point, so that the
-//! pattern does not depend on where its points lie. What is outside the window is passed over, however long.
+//! Distances are measured along the curve in character widths from its first point, a row counting as two, so that the
+//! pattern does not depend on where its points lie. The part outside the window is skipped, however long.
 
 use super::theme::Charts;
 use crate::figure::Bounds;
@@ -14,30 +15,31 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
-/// What a curve is in cells of one character, and its broken parts; a bit says that a cell has more than those.
+/// The symbols of a curve and of its broken parts where a cell is one character; a bit says that a cell has solid
+/// parts.
 pub const STABLE: char = 'o';
 pub const UNSTABLE: char = '.';
 const SOLID: u8 = 0x80;
 
 /// The distance between the dots of a line.
 const DENSE: f64 = 0.25;
-/// A broken line: of so many widths so many are drawn. No cell of it stays empty.
+/// A broken line: the length of its period, and the part of it that is drawn. None of its cells stays empty.
 const BROKEN: [f64; 2] = [1.5, 0.75];
-/// The first letter along a curve is so far from its beginning, and each further one from the one before.
+/// The distance of the first letter from the beginning of a curve, and of each further letter from the previous one.
 const LETTERS: [f64; 2] = [6.0, 17.0];
-/// The same of what tints: it may be short.
+/// The same for a line that tints, which may be short.
 const TINT_LETTERS: [f64; 2] = [0.5, 10.0];
-/// Beyond so many widths from the window lengths mean nothing.
+/// At more than this many widths from the window, lengths have no meaning.
 const FAR: f64 = 1e12;
 
 /// How a line meets the others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Meets {
-    /// It shares the cells in which it meets others that do.
+    /// It shares the cells in which it meets other lines that share.
     Shares,
-    /// It is seen where no other is.
+    /// It is visible only where no other line is.
     Beneath,
-    /// It colours the cells of what it lies on.
+    /// It colours the cells of the line on which it lies.
     Tints,
 }
 
@@ -46,15 +48,15 @@ pub enum Meets {
 pub struct RasterStroke {
     pub style: Style,
     pub meets: Meets,
-    /// Broken: not stable, or no state.
+    /// Broken: not stable, or not a state.
     pub is_broken: bool,
-    /// What it is in a cell of its own where a cell is one character.
+    /// Its symbol in a cell of its own where a cell is one character.
     pub symbol: char,
-    /// What stands along it where its colour does not tell it.
+    /// The letter along it if its colour does not identify it.
     pub letter: Option<char>,
 }
 
-/// A curve on the cells of a plot; bits count from the upper left, rows first.
+/// A curve in the cells of a plot; bits count from the upper left, rows first.
 #[derive(Debug, Clone)]
 pub struct Layer {
     pub stroke: RasterStroke,
@@ -63,7 +65,7 @@ pub struct Layer {
     letters: Vec<usize>,
 }
 
-/// Dots of a cell, across and down.
+/// The dots in a cell, across and down.
 fn dots(charts: Charts) -> (u16, u16) {
     match charts {
         Charts::Braille => (2, 4),
@@ -73,7 +75,7 @@ fn dots(charts: Charts) -> (u16, u16) {
 }
 
 impl Layer {
-    /// A layer without a dot.
+    /// A layer without dots.
     pub fn new(stroke: RasterStroke, plot: Rect) -> Self {
         let cells = usize::from(plot.width) * usize::from(plot.height);
         Self { stroke, bits: vec![0; cells], letters: Vec::new() }
@@ -118,7 +120,7 @@ fn owners(layers: &[Layer], cell: usize) -> impl Iterator<Item = usize> + '_ {
     layers.iter().enumerate().filter(move |(_, layer)| layer.bits[cell] != 0).map(|(at, _)| at)
 }
 
-/// Draws the layers, the later over the earlier; says of each cell which layer it shows.
+/// Draws the layers, later ones over earlier ones; returns for each cell which layer it shows.
 pub fn draw(layers: &[Layer], buffer: &mut Buffer, plot: Rect, charts: Charts) -> Vec<Option<usize>> {
     let (width, height) = (usize::from(plot.width), usize::from(plot.height));
     let mut all = vec![None; width * height];
@@ -134,14 +136,14 @@ pub fn draw(layers: &[Layer], buffer: &mut Buffer, plot: Rect, charts: Charts) -
             continue;
         };
         *shown = Some(at);
-        // Both shapes are seen where two meet.
+        // Both shapes are visible where two meet.
         let bits = if sharing.is_empty() {
             layers[at].bits[cell]
         } else {
             sharing.iter().fold(0, |bits, other| bits | layers[*other].bits[cell])
         };
         let stroke = layers[at].stroke;
-        // The last of those that share is the curve, and what tints lies on it.
+        // The last of those that share is the curve of the problem, and a line that tints lies on it.
         let is_own = sharing.is_empty() || sharing.last() == Some(&at);
         let over = tints.last().filter(|_| is_own).map_or(stroke, |tint| layers[*tint].stroke);
         let symbol = match charts {
@@ -157,10 +159,11 @@ pub fn draw(layers: &[Layer], buffer: &mut Buffer, plot: Rect, charts: Charts) -
     all
 }
 
-/// Which of so many curves has a cell that all of them cross.
+/// Which of `count` curves gets a cell that all of them cross.
 ///
-/// By the place of the cell alone: a curve that moves a little leaves the colours elsewhere as they are. Along any line
-/// all have it equally often, in runs of two or a few: the shares of the steps have no common multiple.
+/// It depends only on the position of the cell: a curve that moves a little leaves the colours elsewhere unchanged.
+/// Along any line all curves get cells equally often, in runs of two or a few: the shares of the steps have no common
+/// multiple.
 fn turn(column: usize, row: usize, count: usize) -> usize {
     /// What a step of two columns, and one of a row, adds to the turn, in whole turns.
     const STEPS: [f64; 2] = [0.381_966, 0.276_393];
@@ -171,7 +174,7 @@ fn turn(column: usize, row: usize, count: usize) -> usize {
     at.min(count.saturating_sub(1))
 }
 
-/// Letters stand where their curve is alone.
+/// Puts letters where their curve is alone.
 fn letters(layers: &[Layer], all: &[Option<usize>], buffer: &mut Buffer, plot: Rect) {
     for (at, layer) in layers.iter().enumerate() {
         let Some(letter) = layer.stroke.letter else { continue };
@@ -191,13 +194,14 @@ fn cell_at(at: usize) -> u16 {
     u16::try_from(at).unwrap_or(u16::MAX)
 }
 
-/// The dots of a cell, rows first, as Unicode numbers those of braille.
+/// The dots of a cell, rows first, in the numbering of Unicode for braille.
 fn braille(bits: u8) -> u32 {
     const PLACES: [u32; 8] = [0x01, 0x08, 0x02, 0x10, 0x04, 0x20, 0x40, 0x80];
     PLACES.iter().enumerate().filter(|(bit, _)| bits & (1 << bit) != 0).map(|(_, dot)| dot).sum()
 }
 
-/// Places along a curve, `apart` from each other, inside the window: the distance from its first point, and where.
+/// Points along a curve, `apart` from each other, inside the window: the distance from its first point, and the
+/// position.
 fn along(points: &[(f64, f64)], bounds: &Bounds, plot: Rect, apart: f64) -> Vec<(f64, f64, f64)> {
     let (width, height) = (f64::from(plot.width), f64::from(plot.height));
     let window = Window::new(0.0, width, 0.0, height);
@@ -206,7 +210,7 @@ fn along(points: &[(f64, f64)], bounds: &Bounds, plot: Rect, apart: f64) -> Vec<
         let share = |value: f64, [lo, hi]: [f64; 2]| (value - lo) / (hi - lo);
         Point::new(share(x, bounds.x) * width, share(y, bounds.y) * height)
     };
-    // A cell is twice as high as wide.
+    // A cell is twice as high as it is wide.
     let distance = |a: Point, b: Point| (b.x - a.x).hypot(2.0 * (b.y - a.y));
     let mut places = Vec::new();
     let mut before = 0.0;
@@ -260,7 +264,7 @@ mod tests {
         (0..=400).map(|i| f64::from(i) / 400.0).map(|x| (x, f(x))).collect()
     }
 
-    /// The cells that a curve passes, from its points alone.
+    /// The cells that a curve passes through, from its points alone.
     fn passed(points: &[(f64, f64)]) -> Vec<(u16, u16)> {
         let mut cells: Vec<(u16, u16)> = Vec::new();
         for pair in points.windows(2) {
@@ -284,7 +288,7 @@ mod tests {
     #[test]
     fn a_curve_shows_where_it_is_alone_and_two_share_where_they_meet() {
         let first = lattice(|x| 0.2 + 0.5 * x);
-        // On the same cells over the first half, then away.
+        // In the same cells over the first half, then away.
         let second = lattice(|x| 0.2 + 0.5 * x + 1.2 * (x - 0.5).max(0.0).powi(2));
         for charts in [Charts::Braille, Charts::Block, Charts::Ascii] {
             for is_broken in [false, true] {
@@ -307,7 +311,7 @@ mod tests {
                     let seen = shared.iter().filter(|at| shows(at) == Some(color)).count() as f64;
                     let share = seen / shared.len() as f64;
                     assert!(shared.len() > 20 && (0.4..=0.6).contains(&share), "{charts:?} {color} {share}");
-                    // Without colours a letter tells it, more than once.
+                    // Without colours a letter identifies it, more than once.
                     let letter = color_letter(color).to_string();
                     let letters =
                         alone.iter().filter(|at| buffer[(PLOT.x + at.0, PLOT.y + at.1)].symbol() == letter);

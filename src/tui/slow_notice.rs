@@ -1,4 +1,4 @@
-//! What takes so long that it is told of: telling of everything would make two frames more of every step.
+//! Reports what takes long: reporting everything would add two frames to every step.
 
 use super::app::App;
 use crate::explorer::backgrounds::under_way;
@@ -15,7 +15,7 @@ pub(super) struct SlowNotice {
 }
 
 impl SlowNotice {
-    /// Updates the notice in `app`; whether it changed.
+    /// Updates the notice in `app`; returns whether it changed.
     pub(super) fn look(&mut self, app: &mut App) -> bool {
         let now = Instant::now();
         let under_way = under_way(&app.model);
@@ -31,7 +31,7 @@ impl SlowNotice {
         is_changed
     }
 
-    /// When to look again if nothing happens before.
+    /// When to look again if nothing happens before then.
     pub(super) fn due(&self) -> Option<Instant> {
         self.since.filter(|_| !self.is_told).map(|(_, begun)| begun + SHORT)
     }
@@ -58,7 +58,7 @@ mod tests {
         }
         let says = |app: &App, text: &str| app.late.as_ref().is_some_and(|late| late.contains(text));
         assert!(says(&app, "computing 2 pinned curves") && late.due().is_none());
-        // The next of the same kind is late as well.
+        // The next one of the same kind is late as well.
         app.model.pins.came(1, None);
         assert!(late.look(&mut app));
         assert!(says(&app, "computing a pinned curve"));

@@ -84,7 +84,7 @@ pub struct Styles {
     pub lost: Style,
     /// Lines that are no curve: the device, a barrier.
     pub aid: Style,
-    /// States that cannot be.
+    /// Inadmissible states.
     pub warning: Style,
     /// Events and other marks.
     pub mark: Style,
@@ -121,8 +121,8 @@ const REVERSED: Style = Style::new().add_modifier(Modifier::REVERSED);
 const REVERSED_BOLD: Style = REVERSED.add_modifier(Modifier::BOLD);
 const UNDERLINED: Style = Style::new().add_modifier(Modifier::UNDERLINED);
 
-/// On black and on white every colour has a contrast of at least 3 : 1, so that nothing needs to know the background. What
-/// was walked has the terminal's own colour of text.
+/// Every colour has a contrast of at least 3 : 1 on black and on white, so that nothing needs to know the background.
+/// The walk has the terminal's own text colour.
 static ANY: Styles = Styles {
     frame: hue(244),
     selected_frame: hue(33).add_modifier(Modifier::BOLD),
@@ -151,8 +151,8 @@ static ANY: Styles = Styles {
     pins: [hue(202), hue(169), hue(100), hue(29), hue(160), hue(99)],
 };
 
-/// On black and on dark blue-green every colour has a contrast of at least 3 : 1. The hues are those of the figures on
-/// paper: no two that are compared are a red and a green.
+/// Every colour has a contrast of at least 3 : 1 on black and on dark blue-green. The hues are those of the figures on
+/// paper: no two that are compared are red and green.
 static DARK: Styles = Styles {
     frame: hue(244),
     selected_frame: hue(81).add_modifier(Modifier::BOLD),
@@ -210,7 +210,7 @@ static LIGHT: Styles = Styles {
     pins: [hue(166), hue(126), hue(58), hue(29), hue(88), hue(30)],
 };
 
-/// With the normal colours of any terminal; what they look like is the terminal's business, so letters tell curves too.
+/// With the normal colours of any terminal; their appearance is up to the terminal, so letters identify curves too.
 static FEW_DARK: Styles = Styles {
     frame: PLAIN,
     selected_frame: ink(Cyan).add_modifier(Modifier::BOLD),
@@ -298,7 +298,7 @@ const ASCII_BORDER: border::Set<'static> = border::Set {
 };
 
 impl Theme {
-    /// A look; in ASCII the charts are too.
+    /// A theme; in ASCII its charts are ASCII too.
     pub fn new(palette: Palette, charts: Charts, ascii: bool) -> Self {
         Self { palette, charts: if ascii { Charts::Ascii } else { charts }, ascii }
     }
@@ -320,7 +320,7 @@ impl Theme {
         if self.ascii { ascii } else { unicode }
     }
 
-    /// Text that may hold Unicode, as the terminal can show it.
+    /// Text that may contain Unicode, in the form the terminal can show.
     pub fn text(self, text: &str) -> String {
         if !self.ascii {
             return text.to_owned();
@@ -346,19 +346,19 @@ impl Theme {
             .merge_borders(MergeStrategy::Exact)
     }
 
-    /// As much of a line as there is room for, no word and no number cut: an ellipsis stands for the rest.
+    /// As much of a line as fits without cutting a word or a number; an ellipsis stands for the rest.
     pub fn whole_words(self, line: &str, room: usize) -> String {
         if line.chars().count() <= room {
             return line.to_owned();
         }
         let kept: String = line.chars().take(room.saturating_sub(1)).collect();
-        // What was cut in its middle goes.
+        // A word that was cut in the middle is removed.
         let is_whole = line.chars().nth(kept.chars().count()).is_none_or(char::is_whitespace);
         let end = if is_whole { kept.len() } else { kept.rfind(' ').unwrap_or(0) };
         format!("{}{}", kept[..end].trim_end(), self.glyph("…", "."))
     }
 
-    /// A label of the parameter table with its Greek letters, or in ASCII with the letters that stand for them everywhere.
+    /// A label of the parameter table with its Greek letters, or in ASCII with their usual substitutes.
     pub fn symbols(self, label: &str) -> String {
         self.text(&greek(label))
     }
@@ -457,7 +457,7 @@ mod tests {
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
     }
 
-    /// The styles that have a colour, with what they are.
+    /// The styles that have a colour, with their names.
     fn coloured(styles: &Styles) -> Vec<(Color, &'static str)> {
         let Styles { frame, selected_frame, dim, error, key, curve, smooth, walk, jump, .. } = *styles;
         let Styles { landing, lost, aid, warning, mark, walker, stray, nearest, .. } = *styles;
@@ -524,7 +524,7 @@ mod tests {
                 assert!(!all[at + 1..].contains(color), "{color:?}");
             }
         }
-        // With fewer colours only the six normal ones, and none of the bright ones.
+        // With fewer colours, only the six normal ones and none of the bright ones.
         for styles in [&FEW_DARK, &FEW_LIGHT] {
             for (color, name) in coloured(styles) {
                 assert!([Red, Green, Yellow, Blue, Magenta, Cyan].contains(&color), "{name}: {color:?}");

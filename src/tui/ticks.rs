@@ -3,16 +3,16 @@
 use crate::figure::AxisScale;
 use pulloff_engine::report::number::{fixed, short};
 
-/// Round ticks inside `bounds`, about `most` and at least two, with labels of one precision; of an axis of counts whole numbers
-/// alone, and no more than there are.
+/// Round ticks inside `bounds`, about `most` and at least two, with labels of equal precision; on an axis of counts,
+/// only whole numbers, and no more ticks than there are of these.
 pub fn ticks(bounds: [f64; 2], run: AxisScale, most: usize) -> Vec<(f64, String)> {
-    // One number alone gives no scale: then steps are halved, or nearly.
+    // A single number gives no scale: then the steps are halved, or nearly.
     const FINER: usize = 4;
     let found = (0..FINER).map(|halvings| spaced(bounds, run, most << halvings));
     found.reduce(|coarse, fine| if coarse.len() < 2 { fine } else { coarse }).unwrap_or_default()
 }
 
-/// The same, at most `most`, of which there may be none.
+/// The same, but at most `most` ticks, and possibly none.
 fn spaced([lo, hi]: [f64; 2], run: AxisScale, most: usize) -> Vec<(f64, String)> {
     let range = hi - lo;
     if most == 0 || !range.is_finite() || range <= 0.0 {
@@ -23,7 +23,7 @@ fn spaced([lo, hi]: [f64; 2], run: AxisScale, most: usize) -> Vec<(f64, String)>
     let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * decade).find(|step| *step >= raw).unwrap_or(raw);
     let step = if run == AxisScale::Counted { step.max(1.0) } else { step };
     let first = (lo / step).ceil();
-    // Decimals that tell neighbouring ticks apart; very small or large values get an exponent.
+    // Enough decimals to distinguish neighbouring ticks; very small or large values get an exponent.
     let decimals = (-step.log10().floor()).max(0.0);
     let size = lo.abs().max(hi.abs());
     let plain = decimals <= 5.0 && size < 1e6;
@@ -55,7 +55,7 @@ mod tests {
         assert_eq!(labels([-1.5, 0.4], 5), ["-1.5", "-1.0", "-0.5", "0.0"]);
         assert_eq!(labels([0.0, 3e-9], 3), ["0", "1e-9", "2e-9", "3e-9"]);
         assert_eq!(labels([0.3, 1.7], 1), ["0.5", "1.0", "1.5"]);
-        // Far into a curve neighbouring ticks still differ.
+        // Far into a curve, neighbouring ticks still differ.
         let deep = labels([0.123_456_78, 0.123_456_82], 4);
         assert_eq!(deep, ["0.12345678", "0.12345679", "0.1234568", "0.12345681", "0.12345682"]);
         assert!(ticks([1.0, 1.0], AxisScale::Linear, 4).is_empty());

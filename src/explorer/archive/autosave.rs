@@ -1,7 +1,7 @@
 //! Writes the newest state of a session every few seconds, and at its end.
 //!
-//! Whoever changes the session leaves a snapshot here, which takes no time; a thread of its own writes it. Whoever ends
-//! the program, from whatever thread, asks for the last write and waits for it no longer than it can.
+//! Whatever changes the session leaves a snapshot here, which takes no time; a separate thread writes it. Whatever ends
+//! the program, from any thread, asks for the last write and waits for it only as long as it can afford.
 
 use super::{Archive, ArchiveError, Claim};
 use crate::explorer::session::{Document, Ended, Snapshot};
@@ -9,9 +9,9 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-/// Between two writes there is at least this time,
+/// The least time between two writes,
 const PAUSE: Duration = Duration::from_secs(3);
-/// and so many times what the last one took: a large session on a slow disk is written less often.
+/// and the least multiple of the time the last one took: a large session on a slow disk is written less often.
 const SHARE: u32 = 20;
 
 /// Keeps the session of a program on disk.
@@ -23,30 +23,30 @@ struct Shared {
     archive: Archive,
     desk: Mutex<Desk>,
     filled: Condvar,
-    /// Held while a session is written, and never together with the desk for longer than a look.
+    /// Held while a session is written; together with the desk only for a moment.
     writer: Mutex<SessionWriter>,
 }
 
-/// What is to be written.
+/// What is waiting to be written.
 #[derive(Debug, Default)]
 struct Desk {
     newest: Option<Arc<Snapshot>>,
     count: u64,
-    /// The last snapshots of sessions that the person has left for another.
+    /// The last snapshots of the sessions that the person has left for another.
     left: Vec<Arc<Snapshot>>,
-    /// A resumed session as it is in its file, the right to write it, and how it had ended.
+    /// A resumed session as its file has it, the right to write it, and how it had ended.
     resumed: Option<(Snapshot, Claim, Ended)>,
     is_over: bool,
 }
 
-/// The session that is being written.
+/// The session being written.
 #[derive(Debug, Default)]
 struct SessionWriter {
     session: u64,
     claim: Option<Claim>,
-    /// What is in the file, without the walk, and how it is said to have ended.
+    /// What is in the file, without the walk, and the ending recorded there.
     written: Option<(Snapshot, Ended)>,
-    /// How a resumed one, not written since, had ended.
+    /// How a resumed session had ended, until it is written again.
     before: Option<Ended>,
 }
 
@@ -57,19 +57,19 @@ impl Autosave {
         Self(Arc::new(Shared { archive, desk, filled: Condvar::new(), writer }))
     }
 
-    /// Starts the thread that writes; what a person should know is told to `tell`.
+    /// Starts the thread that writes; what the person should know goes to `tell`.
     pub fn start(&self, tell: impl Fn(String) + Send + 'static) -> std::io::Result<()> {
         let keeper = self.clone();
         thread::Builder::new().name("session".to_owned()).spawn(move || keeper.work(&tell))?;
         Ok(())
     }
 
-    /// The session of `snapshot` is resumed: it is in the file of `claim`, and had ended as `before`.
+    /// The session of `snapshot` is resumed: it is in the file of `claim` and had ended as `before`.
     pub fn adopt(&self, snapshot: &Snapshot, claim: Claim, before: Ended) {
         self.desk().resumed = Some((snapshot.mark(), claim, before));
     }
 
-    /// Leaves the newest state of a session to be written.
+    /// Leaves the newest state of a session here to be written.
     pub fn offer(&self, snapshot: Snapshot) {
         let mut desk = self.desk();
         if desk.newest.as_ref().is_some_and(|newest| newest.is_like(&snapshot)) {
@@ -82,9 +82,9 @@ impl Autosave {
         self.0.filled.notify_one();
     }
 
-    /// Writes the newest state for the last time, from any thread, and gives the session up; waits no longer than
+    /// Writes the newest state for the last time, from any thread, and gives up the session; waits at most
     /// `patience` for a write that is under way.
-    /// Errors: Why it was not written. The file is as it was.
+    /// Errors: Why it was not written. The file is unchanged.
     pub fn finish(&self, ended: Ended, patience: Duration) -> Result<(), String> {
         let until = Instant::now() + patience;
         let busy = || "the one before is still being written".to_owned();
@@ -106,7 +106,7 @@ impl Autosave {
         self.0.desk.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Writes what comes, until the session is over.
+    /// Writes what arrives, until the session is over.
     fn work(&self, tell: &dyn Fn(String)) {
         let mut told = None;
         let mut seen = 0;
@@ -115,7 +115,7 @@ impl Autosave {
             let begun = Instant::now();
             let result = {
                 let mut writer = self.0.writer.lock().unwrap_or_else(PoisonError::into_inner);
-                // Over since: the last write was another's.
+                // The session ended meanwhile: another thread made the last write.
                 if self.desk().is_over {
                     return;
                 }
@@ -151,7 +151,7 @@ impl Autosave {
         }
     }
 
-    /// Writes a snapshot, if there is something in it that is not in the file.
+    /// Writes a snapshot if it holds anything that is not in the file.
     fn write(
         &self,
         writer: &mut SessionWriter,
@@ -167,7 +167,7 @@ impl Autosave {
             writer.written = Some((resumed, before));
         }
         let known = writer.written.as_ref().is_some_and(|(written, how)| {
-            // A session marked as running that no program holds was cut off.
+            // A session marked as running, but held by no program, was cut off.
             let is_said = *how == ended
                 || (*how == Ended::Running && ended == Ended::Dropped)
                 || (ended == Ended::Running && writer.before == Some(*how));
@@ -191,7 +191,7 @@ impl Autosave {
     }
 }
 
-/// Waits for a lock until `until`: its holder may be stuck.
+/// Waits for a lock until `until`, since its holder may be stuck.
 fn patiently<T>(mutex: &Mutex<T>, until: Instant) -> Option<MutexGuard<'_, T>> {
     loop {
         match mutex.try_lock() {

@@ -37,7 +37,7 @@ impl Claim {
         &self.name
     }
 
-    /// Writes `document` whole or not at all, and first the rows of its profiles where they are in no file yet.
+    /// Writes `document` whole or not at all; first writes the rows of its profiles that are in no file yet.
     pub fn save(&mut self, mut document: Document) -> Result<(), ArchiveError> {
         let mut held = None;
         document.lay_aside(|rows| {

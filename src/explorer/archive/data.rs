@@ -1,9 +1,9 @@
 //! The rows of measured profiles, and measured curves, in files beside the sessions that use them.
 //!
-//! A session is written every few seconds, and the rows of its profile stay the same: they are written once, to
-//! `data/HASH.csv` in the folder of sessions, where HASH is the SHA-256 of that file. Sessions with the same rows share it. A
-//! measured curve is kept as its own file is.
-//! The lock of the folder `data` is held from the look at the file until the session that refers to it is written, and
+//! A session is written every few seconds, but the rows of its profile stay the same, so they are written once, to
+//! `data/HASH.csv` in the folder of sessions, where HASH is the SHA-256 of that file. Sessions with the same rows share
+//! it. A measured curve is kept exactly as its own file is.
+//! The lock of the folder `data` is held from the check of the file until the session that refers to it is written, and
 //! whenever files that no session refers to are removed.
 
 use super::error::{ArchiveError, LARGEST, failed};
@@ -23,18 +23,18 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The folder of data, in that of the sessions.
+/// The folder of the data, inside the folder of sessions.
 const FOLDER: &str = "data";
-/// The ending of a file of data.
+/// The extension of a data file.
 const ENDING: &str = "csv";
 /// Its first line.
 const HEADER: &str = "r,h";
 
-/// The data of one session, or of all.
+/// The data of one session, or of all sessions.
 #[derive(Debug)]
 pub(super) struct Data {
     folder: PathBuf,
-    /// What is in files already, with its hash: rows are written out and hashed once, not with every write.
+    /// What is already in files, with its hash: rows are written out and hashed once, not at every write.
     known: Vec<(Aside, String)>,
 }
 
@@ -48,14 +48,14 @@ impl Data {
         self.folder.join(format!("{hash}.{ENDING}"))
     }
 
-    /// Keeps anybody from removing data, until it is dropped.
+    /// Keeps anyone from removing data, until it is dropped.
     pub(super) fn hold(&self) -> Result<Option<FolderLock>, ArchiveError> {
         make_folder(&self.folder).map_err(failed(&self.folder, "make the folder"))?;
-        // Who waits in vain goes on: better a session whose data may be removed than none at all.
+        // If the wait is in vain, go on: better a session whose data may be removed than none at all.
         FolderLock::acquire(&self.folder, PATIENCE).map_err(failed(&self.folder, "lock it"))
     }
 
-    /// Sees to it that `kept` is in a file, and says the hash that names it.
+    /// Makes sure that `kept` is in a file, and returns the hash that names it.
     pub(super) fn keep(&mut self, kept: &Aside) -> Result<String, ArchiveError> {
         let known = self.known.iter().find(|(known, _)| is_same(known, kept));
         let known = known.map(|(_, hash)| hash.clone());
@@ -74,7 +74,7 @@ impl Data {
             hash
         });
         let path = self.path(&hash);
-        // One that was altered is put right.
+        // A file that was altered is restored.
         if !read_bytes(&path, LARGEST).is_ok_and(|(there, _)| *there == *bytes) {
             write_atomically(&path, &bytes, Overwrite::Always)?;
         }
@@ -116,7 +116,7 @@ impl Data {
         Ok(bytes)
     }
 
-    /// The bytes of each file of data, by its hash.
+    /// The size of each data file in bytes, by its hash.
     pub(super) fn sizes(&self) -> HashMap<String, u64> {
         let files = fs::read_dir(&self.folder).into_iter().flatten().filter_map(Result::ok);
         let sizes = files.filter_map(|file| {
@@ -128,8 +128,8 @@ impl Data {
         sizes.collect()
     }
 
-    /// Removes the data that no file of the folder `sessions` names. As long as a session is being written, or one
-    /// cannot be read, all stay.
+    /// Removes the data that no file of the folder `sessions` names. While a session is being written, or when one
+    /// cannot be read, all data stay.
     pub(super) fn sweep(&self, sessions: &Path) {
         if self.sizes().is_empty() {
             return;
@@ -138,7 +138,7 @@ impl Data {
         let Ok(files) = fs::read_dir(sessions) else { return };
         let mut named = HashSet::new();
         for file in files {
-            // Those kept aside as damaged count too, and whatever else a person has put there.
+            // Sessions kept aside as damaged count too, and so does anything else a person has put there.
             let Ok(file) = file else { return };
             if file.file_type().is_ok_and(|kind| kind.is_file()) {
                 match read_bytes(&file.path(), LARGEST) {
@@ -154,13 +154,13 @@ impl Data {
     }
 }
 
-/// The hashes in the bytes of a session, whatever else of it can be read.
+/// The hashes in the bytes of a session, even if the rest of it cannot be read.
 pub(super) fn named_in(bytes: &[u8]) -> impl Iterator<Item = &str> {
     let words = bytes.split(|byte| !byte.is_ascii_alphanumeric());
     words.filter_map(|word| std::str::from_utf8(word).ok().filter(|word| is_hash(word)))
 }
 
-/// Whether both are the very same, which needs no look at them.
+/// Whether both are the very same object, which is known without comparing contents.
 fn is_same(a: &Aside, b: &Aside) -> bool {
     match (a, b) {
         (Aside::Profile(a), Aside::Profile(b)) => Arc::ptr_eq(a, b),
@@ -173,7 +173,7 @@ fn is_hash(text: &str) -> bool {
     text.len() == DIGITS && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
 }
 
-/// The columns of a profile as text, every digit of them.
+/// The columns of a profile as text, with every digit.
 fn text(rows: &ProfileRows) -> String {
     let mut text = format!("{HEADER}\n");
     for (r, h) in rows.radii.iter().zip(&rows.gaps) {
@@ -183,7 +183,7 @@ fn text(rows: &ProfileRows) -> String {
     text
 }
 
-/// The way back.
+/// The inverse: the columns from their text.
 fn columns(bytes: &[u8]) -> Option<[Vec<f64>; 2]> {
     let mut lines = std::str::from_utf8(bytes).ok()?.lines();
     lines.next().filter(|line| *line == HEADER)?;

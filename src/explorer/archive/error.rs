@@ -1,4 +1,4 @@
-//! Why a session is not found, read or written.
+//! Why a session cannot be found, read or written.
 
 use crate::explorer::session::Unreadable;
 use crate::mend::Mend;
@@ -9,10 +9,10 @@ use std::io;
 use std::path::Path;
 use thiserror::Error;
 
-/// The largest session that is read, in bytes.
+/// The size of the largest session that is read, in bytes.
 pub(super) const LARGEST: u64 = 256 << 20;
 
-/// Why a session is not found, read or written, in one line. Names and paths in it are safe to show.
+/// Why a session cannot be found, read or written, in one line. Names and paths in it are safe to show.
 #[derive(Debug, Error)]
 pub enum ArchiveError {
     /// Neither a state folder nor a home folder is known.
@@ -57,7 +57,7 @@ impl Mend for ArchiveError {
 }
 
 impl ArchiveError {
-    /// Why, without the path: for a line that is cut where the screen ends.
+    /// The reason without the path, for a line that is cut off at the edge of the screen.
     pub(super) fn brief(&self) -> String {
         match self {
             Self::Write(WriteError::Io { doing, cause, .. }) | Self::Io { doing, cause, .. } => {

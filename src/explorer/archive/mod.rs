@@ -1,14 +1,14 @@
 //! The sessions kept on disk: one file each, in `pulloff/sessions` below the XDG state folder.
 //!
-//! A session belongs to one program at a time. Its lock is held as long as the program lives, and the kernel drops
-//! it with the process; a second program makes a session of its own. The folder is made by the first session that is
-//! worth keeping and by nothing else, and no file is ever replaced but by the program that holds its lock.
+//! A session belongs to one program at a time. Its lock is held as long as the program lives, and the kernel releases
+//! it with the process; a second program starts a session of its own. Only the first session worth keeping creates
+//! the folder, and only the program that holds a file's lock ever replaces that file.
 //!
 //! | file | what lives there |
 //! |---|---|
 //! | `mod.rs` | the folder: list, load, delete, and room for new ones |
 //! | `data` | the rows of measured profiles, beside the sessions that use them |
-//! | `error` | why a session is not found, read or written |
+//! | `error` | why a session cannot be found, read or written |
 //! | [`claim`] | the right to write one session |
 //! | [`autosave`] | writes the newest state of a session every few seconds and at its end |
 
@@ -36,15 +36,15 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// So many sessions are kept,
+/// The most sessions kept,
 const MOST: usize = 50;
-/// of so many bytes together; older ones make room for newer.
+/// and the most bytes they take together; older sessions make room for newer ones.
 const MOST_BYTES: u64 = 256 << 20;
-/// What a write has left behind that was killed is removed when it is so old.
+/// The age at which the remains of a killed write are removed.
 const STALE: Duration = Duration::from_secs(3600);
-/// The ending of a session's file.
+/// The extension of a session's file.
 const ENDING: &str = "json";
-/// The ending of one that could not be read, kept aside.
+/// The extension of a session that could not be read and was kept aside.
 const ASIDE: &str = "damaged";
 
 /// One line of the list of sessions.
@@ -55,7 +55,7 @@ pub struct SessionFile {
     pub bytes: u64,
 }
 
-/// A session read, and held until it is written or dropped.
+/// A session that was read, and is held until it is written or dropped.
 #[derive(Debug)]
 pub struct HeldSession {
     pub claim: Claim,
@@ -111,7 +111,7 @@ impl Archive {
                 Some(SessionFile { name, written: metadata.modified().ok()?, bytes: metadata.len() })
             })
             .collect();
-        // Of two of one moment the later number is the newer.
+        // Of two sessions of the same moment, the one with the higher number is newer.
         entries.sort_by_key(|entry| Reverse((entry.written, number(&entry.name))));
         Ok(entries)
     }
@@ -138,26 +138,26 @@ impl Archive {
         let mut found = summary(&self.bytes(name)?).map_err(unreadable)?;
         found.ended = match (found.ended, self.is_running(name)) {
             (_, true) => Ended::Running,
-            // Its program was killed, and could not say so.
+            // Its program was killed and could not record how it ended.
             (Ended::Running, false) => Ended::Dropped,
             (ended, false) => ended,
         };
         Ok(found)
     }
 
-    /// Whether a program writes this session.
+    /// Whether a program is writing this session.
     #[must_use]
     pub fn is_running(&self, name: &str) -> bool {
         self.folder.as_deref().is_some_and(|folder| FileLock::is_held(&lock_of(folder, name)))
     }
 
-    /// The newest session that no program writes; with its name.
+    /// The name of the newest session that no program is writing.
     pub fn newest(&self) -> Result<Option<String>, ArchiveError> {
         Ok(self.list()?.into_iter().map(|entry| entry.name).find(|name| !self.is_running(name)))
     }
 
-    /// Reads a session and holds it: nobody else can.
-    /// Errors: It is not there, another program holds it, or it cannot be read; its file is as it was.
+    /// Reads a session and holds it: nobody else can hold it meanwhile.
+    /// Errors: It is not there, another program holds it, or it cannot be read; its file is unchanged.
     pub fn load(&self, name: &str) -> Result<HeldSession, ArchiveError> {
         let path = self.path(name)?;
         let claim = Claim::of(self.folder_or()?, name)?;
@@ -174,10 +174,10 @@ impl Archive {
         Ok(HeldSession { claim, summary, snapshot })
     }
 
-    /// The newest session, if it was cut off: its program did not end as its person wanted. One that is damaged is
+    /// The newest session, if it was cut off: its program did not end as its person wanted. A damaged session is
     /// kept aside under another name.
     pub fn cut_off(&self) -> Result<Option<HeldSession>, String> {
-        // A folder that cannot be read will be a notice once there is something to write.
+        // A folder that cannot be read is reported once there is something to write.
         let Ok(Some(name)) = self.newest() else { return Ok(None) };
         let damaged = |cause: &Unreadable| {
             let (Ok(path), Ok(folder)) = (self.path(&name), self.folder_or()) else { return String::new() };
@@ -206,7 +206,7 @@ impl Archive {
         }
     }
 
-    /// Removes a session, and the data that no other uses.
+    /// Removes a session, and the data that no other session uses.
     pub fn delete(&self, name: &str) -> Result<(), ArchiveError> {
         self.remove(name)?;
         let folder = self.folder_or()?;
@@ -220,7 +220,7 @@ impl Archive {
         fs::remove_file(&path).map_err(failed(&path, "remove it"))
     }
 
-    /// The bytes of the data that a session uses and none before it did, which are taken out of `sizes`.
+    /// The size of the data that this session uses and none before it did; they are taken out of `sizes`.
     fn bytes_of_data(&self, name: &str, sizes: &mut HashMap<String, u64>) -> u64 {
         if sizes.is_empty() {
             return 0;
@@ -229,13 +229,13 @@ impl Archive {
         named_in(&bytes).filter_map(|hash| sizes.remove(hash)).sum()
     }
 
-    /// The right to write a new session, called after `base` and the next number.
+    /// The right to write a new session, named after `base` and the next number.
     pub fn begin(&self, base: &str) -> Result<Claim, ArchiveError> {
         let folder = self.folder_or()?;
         crate::store::make_folder(folder).map_err(failed(folder, "make the folder"))?;
         let base = base_name(base);
         let taken = fs::read_dir(folder).map_err(failed(folder, "list the sessions"))?;
-        // Damaged ones and those of a moment ago count too: no name is used again while anything is called so.
+        // Damaged sessions and those with only a lock left count too: a name is not reused while any file carries it.
         let last = taken.filter_map(Result::ok).filter_map(|file| {
             let name = PathBuf::from(file.file_name());
             let (stem, number) = name.file_stem()?.to_str()?.trim_start_matches('.').rsplit_once('-')?;
@@ -245,15 +245,15 @@ impl Archive {
         loop {
             next = next.saturating_add(1);
             match Claim::of(folder, &format!("{base}-{next}")) {
-                // Somebody begins at the same moment.
+                // Another program begins a session at the same moment.
                 Err(ArchiveError::Running { .. }) if next < u32::MAX => {}
                 claim => return claim,
             }
         }
     }
 
-    /// Makes room: removes the oldest sessions beyond what is kept, data that none uses, and what killed programs have
-    /// left behind.
+    /// Makes room: removes the oldest sessions beyond the limits, the data that no session uses, and what killed
+    /// programs have left behind.
     pub fn make_room(&self, keep: &str) {
         let (Some(folder), Ok(entries)) = (&self.folder, self.list()) else { return };
         let data = Data::beside(folder);
@@ -262,7 +262,7 @@ impl Archive {
         for entry in entries {
             (count, bytes) = (count + 1, bytes + entry.bytes + self.bytes_of_data(&entry.name, &mut sizes));
             if (count > MOST || bytes > MOST_BYTES) && entry.name != keep {
-                // A running one stays, and one that cannot be removed as well.
+                // A running session stays, and so does one that cannot be removed.
                 let _ = self.remove(&entry.name);
             }
         }
@@ -278,7 +278,7 @@ impl Archive {
     }
 }
 
-/// Whether a file is the lock of no session. What a killed write has left is swept by the next one.
+/// Whether a file is a lock without a session. What a killed write leaves is swept by the next write.
 fn is_left_behind(folder: &Path, name: &str) -> bool {
     let lock = name.strip_prefix('.').and_then(|name| name.strip_suffix(".lock"));
     let session = lock.map(|name| folder.join(format!("{name}.{ENDING}")));
@@ -293,7 +293,7 @@ fn number(name: &str) -> u32 {
     name.rsplit_once('-').and_then(|(_, number)| number.parse().ok()).unwrap_or(0)
 }
 
-/// What sessions of a preset are called, before their number.
+/// The name of a preset's sessions, before the number.
 fn base_name(preset: &str) -> String {
     let stem =
         Path::new(preset).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().to_lowercase());

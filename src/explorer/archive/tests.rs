@@ -40,7 +40,7 @@ impl Bench {
         listed.into_iter().map(|entry| entry.name).collect()
     }
 
-    /// All files of the folder.
+    /// All files in the folder.
     fn files(&self) -> Vec<String> {
         let Ok(files) = fs::read_dir(self.archive().folder().unwrap()) else { return Vec::new() };
         let mut names: Vec<String> =
@@ -52,7 +52,7 @@ impl Bench {
 
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// A session of a measured profile, saved twice with a step between; what it was at the end.
+/// A session with a measured profile, saved twice with a step in between; returns its last snapshot.
 fn with_profile(bench: &mut Bench, curvature: f64) -> Snapshot {
     let path = bench.folder.path().join("scan.csv");
     let rows: Vec<String> = (0..200)
@@ -71,7 +71,7 @@ fn with_profile(bench: &mut Bench, curvature: f64) -> Snapshot {
     last
 }
 
-/// The files of the data of [`with_profile`]; the profile that comes with the program was walked in too, on the way.
+/// The data files of [`with_profile`]; the walk had also passed through the profile that comes with the program.
 fn data(bench: &Bench) -> Vec<PathBuf> {
     let files = fs::read_dir(bench.archive().folder().unwrap().join("data"));
     let files = files.into_iter().flatten().map(|file| file.unwrap().path());
@@ -89,15 +89,15 @@ fn the_rows_of_a_profile_are_written_once_beside_the_session_and_come_back_bit_f
     let [file] = &files[..] else { panic!("{files:?}") };
     assert_eq!(file.file_stem().unwrap().to_str().unwrap(), sha256(&fs::read(file).unwrap()));
     assert_eq!((mode(&folder.join("data")), mode(file)), (mode(&folder), mode(&session)));
-    // The session names them and has no row itself.
+    // The session names them and contains no rows itself.
     let text = fs::read_to_string(&session).unwrap();
     assert!(text.contains(file.file_stem().unwrap().to_str().unwrap()) && !text.contains("\"radii\""));
-    // What is read back is written as it was.
+    // What is read back is written unchanged.
     let within = |snapshot: &Snapshot| Document::new(snapshot, Ended::Quit, 0).json().unwrap();
     let mut held = bench.archive().load("scan-1").unwrap();
     assert_eq!(held.snapshot.preset, snapshot.preset);
     assert_eq!(String::from_utf8(within(&held.snapshot)), String::from_utf8(within(&snapshot)));
-    // Neither the session taken up nor another one with the same rows writes them again.
+    // Neither the resumed session nor another one with the same rows writes them again.
     let then = SystemTime::now() - Duration::from_secs(5000);
     File::options().write(true).open(file).unwrap().set_modified(then).unwrap();
     let before = (file.metadata().unwrap().modified().unwrap(), fs::read(file).unwrap());
@@ -105,14 +105,14 @@ fn the_rows_of_a_profile_are_written_once_beside_the_session_and_come_back_bit_f
     with_profile(&mut bench, 0.5);
     assert_eq!((file.metadata().unwrap().modified().unwrap(), fs::read(file).unwrap()), before);
     assert_eq!(data(&bench), files);
-    // A session of before has its rows within.
+    // A session of an earlier version contains its rows.
     let old = bench.archive().begin("old").unwrap();
     old.write(&within(&snapshot)).unwrap();
     drop(old);
     assert!(fs::read_to_string(folder.join("old-1.json")).unwrap().contains("\"radii\":["));
     fs::remove_file(file).unwrap();
     assert_eq!(bench.archive().load("old-1").unwrap().snapshot.preset, snapshot.preset);
-    // Data that are gone while the program runs are written again.
+    // Data that disappear while the program runs are written again.
     held.claim.save(Document::new(&held.snapshot, Ended::Quit, 0)).unwrap();
     drop(held);
     assert_eq!((data(&bench), fs::read(file).unwrap()), (files, before.1));
@@ -135,9 +135,9 @@ fn data_that_are_gone_or_altered_are_named() {
     );
     fs::remove_file(&file).unwrap();
     assert!(error().ends_with(".csv is gone"), "{}", error());
-    // The session stays where it is, for the data may come back; what it holds besides is still told.
+    // The session stays where it is, since the data may come back; the rest of it can still be read.
     assert_eq!(bench.archive().summary("scan-1").unwrap().steps, 4);
-    // A name that leads elsewhere is none.
+    // A name that leads elsewhere is not accepted.
     let session = bench.archive().folder().unwrap().join("scan-1.json");
     let text = fs::read_to_string(&session).unwrap();
     let hash = file.file_stem().unwrap().to_str().unwrap();
@@ -154,7 +154,7 @@ fn data_go_with_the_last_session_that_uses_them() {
     with_profile(&mut bench, 0.5);
     with_profile(&mut bench, 0.5);
     with_profile(&mut bench, 0.25);
-    // The third walked in the first profile too.
+    // The third session walked in the first profile too.
     let names = |bench: &Bench| data(bench).len();
     assert_eq!(names(&bench), 2);
     bench.archive().delete("scan-1").unwrap();
@@ -166,7 +166,7 @@ fn data_go_with_the_last_session_that_uses_them() {
     bench.archive().delete("scan-3").unwrap();
     assert_eq!(names(&bench), 2, "one kept aside counts");
     fs::remove_file(damaged).unwrap();
-    // As long as somebody is between data and session all stay.
+    // While anyone is between writing the data and writing the session, all data stay.
     let held = Data::beside(&folder).hold().unwrap();
     bench.archive().make_room("");
     assert_eq!(names(&bench), 2);
@@ -197,12 +197,12 @@ fn a_session_is_kept_under_a_name_of_its_own_and_taken_up_again() {
     assert_eq!(bench.files(), ["fig-3-jkr-1.json", "fig-3-jkr-2.json"], "no lock and no other file is left");
     let held = bench.archive().cut_off().unwrap().unwrap();
     assert_eq!((held.claim.name(), held.summary.steps), ("fig-3-jkr-2", 2));
-    // It belongs to whoever took it up.
+    // It belongs to whoever resumed it.
     assert!(bench.archive().is_running("fig-3-jkr-2"));
     assert!(matches!(bench.archive().load("fig-3-jkr-2"), Err(ArchiveError::Running { .. })));
     assert!(matches!(bench.archive().delete("fig-3-jkr-2"), Err(ArchiveError::Running { .. })));
     assert_eq!(bench.archive().newest().unwrap().as_deref(), Some("fig-3-jkr-1"));
-    // Left at once: that it was left well is all that is written.
+    // Left at once: only the fact that it ended well is written.
     let (model, _) = held.snapshot.resume(None);
     let autosave = Autosave::new(bench.archive());
     autosave.adopt(&Snapshot::of(&model), held.claim, held.summary.ended);
@@ -210,7 +210,7 @@ fn a_session_is_kept_under_a_name_of_its_own_and_taken_up_again() {
     autosave.finish(Ended::Quit, PATIENCE).unwrap();
     assert_eq!(bench.archive().summary("fig-3-jkr-2").unwrap().ended, Ended::Quit);
     assert_eq!(bench.names().len(), 2);
-    // The newest was left well: nothing is offered.
+    // The newest session ended well: nothing is offered.
     assert!(bench.archive().cut_off().unwrap().is_none());
     bench.archive().delete("fig-3-jkr-2").unwrap();
     assert!(bench.archive().cut_off().unwrap().is_some_and(|held| held.claim.name() == "fig-3-jkr-1"));
@@ -231,7 +231,7 @@ fn the_thread_writes_what_is_left_with_it_and_a_killed_program_is_seen() {
         std::thread::sleep(Duration::from_millis(5));
     }
     assert_eq!(bench.archive().summary("fig-3-jkr-1").unwrap().ended, Ended::Running);
-    // A copy without its lock is what a killed program leaves.
+    // A copy without its lock is what a killed program leaves behind.
     let folder = bench.archive().folder().unwrap().to_owned();
     fs::copy(folder.join("fig-3-jkr-1.json"), folder.join("fig-3-jkr-7.json")).unwrap();
     assert_eq!(bench.archive().summary("fig-3-jkr-7").unwrap().ended, Ended::Dropped);
@@ -257,7 +257,7 @@ fn another_preset_is_another_session_and_the_one_before_is_whole() {
 #[test]
 fn a_folder_that_cannot_be_written_is_a_notice() {
     let mut bench = Bench::new();
-    // Whoever may write everywhere needs something that is no folder.
+    // For a user who may write everywhere, the path must not be a folder at all.
     fs::write(bench.folder.path().join("state"), "").unwrap();
     let autosave = Autosave::new(bench.archive());
     let (sender, notices) = channel();
@@ -313,7 +313,7 @@ fn a_damaged_session_is_kept_aside_and_said_once() {
     autosave.finish(Ended::Quit, PATIENCE).unwrap();
     assert_eq!(bench.files(), ["fig-3-jkr-1.damaged", "fig-3-jkr-2.json"]);
     assert_eq!(fs::read(folder.join("fig-3-jkr-1.damaged")).unwrap(), half);
-    // One of a later program is left where it is.
+    // A session of a later version is left where it is.
     let text = String::from_utf8(whole).unwrap().replacen("\"format\":4", "\"format\":7", 1);
     fs::write(folder.join("fig-3-jkr-8.json"), &text).unwrap();
     assert!(bench.archive().cut_off().unwrap_err().contains("has format 7"));
@@ -341,7 +341,7 @@ fn old_sessions_make_room() {
         let file = File::create(folder.join(left)).unwrap();
         file.set_modified(SystemTime::now() - 2 * STALE).unwrap();
     }
-    // One that runs stays, however old.
+    // A running session stays, however old.
     let running = bench.archive().load("a-1").unwrap();
     let autosave = Autosave::new(bench.archive());
     autosave.offer(snapshot);

@@ -1,9 +1,9 @@
-//! The list of commands, a row each: identity, name, usual keys, a word or two for the footer, what it needs
-//! ([`availability`](crate::explorer::availability)), what it waits for, whether a script may say it, what it does in words; and
-//! then what it takes, and what it does.
+//! The list of commands, one row each: identity, name, usual keys, a word or two for the footer, what it needs
+//! ([`availability`](crate::explorer::availability)), what it waits for, whether a script may say it, a description;
+//! and then what it takes, and what it does.
 //!
-//! Who needs a part of the rows makes it of them: [`command`](super) the identities and their names,
-//! [`table`](crate::explorer::table) the rest, with the names that are known there. A field that is not there is that of
+//! Each user of the list derives what it needs from the rows: [`command`](super) the identities and their names,
+//! [`table`](crate::explorer::table) the rest, with the names that are known there. A missing field has the value in
 //! [`CommandRow::PLAIN`](crate::explorer::table::CommandRow::PLAIN).
 
 /// Hands the rows to a macro.

@@ -1,11 +1,11 @@
-//! Commands named in sentences, which are written here, where nobody knows the keys.
+//! Commands named in sentences, which are written where the keys are not known.
 //!
-//! A sentence holds the command itself ([`Id::named`]). Who shows it knows what the command is called there: the terminal
-//! its key, a script its name.
+//! A sentence holds the command itself ([`Id::named`]). Whatever shows it knows what the command is called there: the
+//! terminal its key, a script its name.
 
 use super::Id;
 
-/// Encloses the name of a command. No text from outside holds it: it is a control character, and those are replaced.
+/// Encloses the name of a command. No text from outside contains it: it is a control character, and those are replaced.
 const MARK: char = '\u{1}';
 
 impl Id {
@@ -15,11 +15,11 @@ impl Id {
     }
 }
 
-/// A sentence as it is read, with what each of its commands is called.
+/// The sentence as shown, with what each of its commands is called.
 pub fn spelled(sentence: &str, called: impl Fn(Id) -> String) -> String {
     let mut parts = sentence.split(MARK);
     let mut text = parts.next().unwrap_or_default().to_owned();
-    // A name and what follows it, in turn.
+    // A name and the text after it, in turn.
     while let Some(name) = parts.next() {
         match Id::called(name) {
             Some(id) => text.push_str(&called(id)),
@@ -30,7 +30,7 @@ pub fn spelled(sentence: &str, called: impl Fn(Id) -> String) -> String {
     text
 }
 
-/// A sentence with the names of its commands, for where there are no keys.
+/// A sentence with the names of its commands, for places without keys.
 pub fn by_name(sentence: &str) -> String {
     spelled(sentence, |id| id.name().to_owned())
 }
@@ -49,7 +49,7 @@ mod tests {
         for plain in ["", "no command", "{undo} is a file's name"] {
             assert_eq!(spelled(plain, key), plain);
         }
-        // What comes from outside names none.
+        // Text from outside names no command.
         assert_eq!(spelled(&sanitize("a\u{1}undo\u{1}b", 40), key), "a\u{fffd}undo\u{fffd}b");
     }
 }

@@ -1,4 +1,4 @@
-//! What stands behind the name of a command: what a command takes, and how it is read.
+//! What follows the name of a command: what a command takes, and how it is read.
 
 use super::fault::ScriptFault;
 use super::keys::{known, short};
@@ -18,54 +18,54 @@ use pulloff_engine::text::{closest, quote};
 #[derive(Debug, Clone, Copy)]
 #[must_use]
 pub struct Takes {
-    /// In a word or two, what is typed as it stands in capitals; empty where it takes nothing.
+    /// In a word or two; what is typed literally is in capitals; empty if it takes nothing.
     pub what: &'static str,
     /// Reads it.
     pub read: fn(&mut Rest<'_>) -> Result<Command, ScriptFault>,
-    /// What can be typed there, as its first word.
+    /// What can be typed as its first word.
     pub offers: fn(&Typing<'_>) -> Vec<Offer>,
-    /// Whether more is offered behind the first word.
+    /// Whether more is offered after the first word.
     pub goes_on: bool,
-    /// Whether the command means nothing without it.
+    /// Whether the command is meaningless without it.
     pub is_needed: bool,
-    /// Whether the screen lists what is offered where it is missing.
+    /// Whether the screen lists what is offered when it is missing.
     pub is_listed: bool,
 }
 
-/// A command takes this.
+/// What a command takes, and how it is read.
 pub const fn takes(what: &'static str, read: fn(&mut Rest<'_>) -> Result<Command, ScriptFault>) -> Takes {
     Takes { what, read, offers: |_| Vec::new(), goes_on: false, is_needed: false, is_listed: false }
 }
 
 impl Takes {
-    /// Nothing.
+    /// A command takes nothing.
     pub const NOTHING: Self = takes("", |rest| Err(ScriptFault::new(rest.end, "nothing stands here")));
 
-    /// The same with what can be typed there.
+    /// The same, with what can be typed there.
     pub const fn offering(self, offers: fn(&Typing<'_>) -> Vec<Offer>) -> Self {
         Self { offers, ..self }
     }
 
-    /// The same with what can be typed there, listed on the screen where it is missing.
+    /// The same, with what can be typed there, listed on the screen when it is missing.
     pub const fn listing(self, offers: fn(&Typing<'_>) -> Vec<Offer>) -> Self {
         Self { offers, is_listed: true, ..self }
     }
 
-    /// The same with what can be typed there, word for word.
+    /// The same, with what can be typed there, word by word.
     pub const fn going_on(self, offers: fn(&Typing<'_>) -> Vec<Offer>) -> Self {
         Self { offers, goes_on: true, ..self }
     }
 
-    /// The same, without which the command means nothing.
+    /// The same, for a command that is meaningless without it.
     pub const fn always(self) -> Self {
         Self { is_needed: true, ..self }
     }
 }
 
-/// The words behind the name of a command.
+/// The words after the name of a command.
 pub struct Rest<'a> {
     pub(super) words: &'a [Word],
-    /// The column where a missing word would stand.
+    /// The column in which a missing word would be.
     pub(super) end: usize,
 }
 
@@ -90,7 +90,7 @@ impl<'a> Rest<'a> {
         is_next
     }
 
-    /// Nothing more may stand there.
+    /// No more words may follow.
     pub(super) fn done(&self, command: Command) -> Result<Command, ScriptFault> {
         match self.words.first() {
             None => Ok(command),
@@ -117,12 +117,12 @@ impl<'a> Rest<'a> {
         number(self.need("a length")?, &allowed, |length| LENGTHS.contains(length))
     }
 
-    /// A value of a key that is known.
+    /// A value for a known key.
     pub fn assigned(&mut self, what: &str, key: &'static str) -> Result<Command, ScriptFault> {
         Ok(Command::Assign(vec![(key.into(), self.need(what)?.text.clone())]))
     }
 
-    /// One of some by its name.
+    /// One of several, by its name.
     fn one<T>(
         &mut self,
         what: &str,
@@ -159,7 +159,7 @@ pub(super) fn unknown(word: &Word, what: &str, known: &[&str]) -> ScriptFault {
     ScriptFault::new(word.column, format!("no {what} is called \"{}\"{allowed}{hint}", quote(&word.text)))
 }
 
-/// So many commands, or single states as scripts count them.
+/// A number of commands, or of single states as scripts count them.
 pub(in crate::explorer) fn travelled(rest: &mut Rest<'_>, id: Id) -> Result<Command, ScriptFault> {
     let count = rest.count("a number", MOST_STEPS)?;
     Ok(Command::Travel { id, count, states: rest.takes("states") })
@@ -279,7 +279,7 @@ fn assignment(word: &Word, read: ReadKey) -> Result<Assignment, ScriptFault> {
     Ok((read(key, word.column)?, text.to_owned()))
 }
 
-/// What stands on an axis of a map: a key, a group, the compliance, or one of these words.
+/// What an axis of a map shows: a key, a group, the compliance, or one of these words.
 fn axis(word: &Word, words: &[&str]) -> Result<Key, ScriptFault> {
     if word.text == COMPLIANCE || words.contains(&&*word.text) {
         return Ok(word.text.clone().into());

@@ -9,7 +9,7 @@ pub const LONGEST: usize = 16_384;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{what}")]
 pub struct ScriptFault {
-    /// The column, in characters from 1.
+    /// The column, counted in characters from 1.
     pub column: usize,
     pub what: String,
 }

@@ -1,4 +1,4 @@
-//! Keys as they are typed: whole, the last part of one, or the symbol on the screen.
+//! Keys as typed: the whole key, its last part, or the symbol on the screen.
 
 use super::fault::ScriptFault;
 use pulloff_engine::preset::family::parameter_key;
@@ -7,20 +7,20 @@ use pulloff_engine::preset::{Key, PARAMETERS, Parameter, Preset, parameter};
 use pulloff_engine::text::{closest_key, greek, quote};
 use std::borrow::Cow;
 
-/// A key, a group, or a short name of one: the preset says of which.
+/// A key, a group, or a short name for one: the preset decides for which.
 pub(super) fn short(key: &str, column: usize) -> Result<Key, ScriptFault> {
     let is_short = PARAMETERS.iter().chain(&GROUPS).any(|row| is_called(row, key));
-    // A formula has letters of its own; to one or two of them too much is alike.
+    // A formula has letters of its own; with one or two letters, too many keys are similar.
     let is_letter = || parameter(&parameter_key(key)).is_some() && (key.len() <= 2 || meant(key).is_none());
     if is_short || is_letter() { Ok(key.to_owned().into()) } else { known(key, column) }
 }
 
-/// The key that is most like an unknown one.
+/// The key most similar to an unknown one.
 fn meant(key: &str) -> Option<&'static str> {
     closest_key(key, PARAMETERS.iter().chain(&GROUPS).map(|row| (&*row.key, &*row.label)))
 }
 
-/// Whether a row is called so: by its key, the last part of it, or the symbol that the screen has.
+/// Whether a row has this name: its key, the last part of the key, or the symbol on the screen.
 fn is_called(row: &Parameter, name: &str) -> bool {
     let last = row.key.rsplit('.').next().unwrap_or_default();
     [&*row.key, last, &*row.label, &*greek(&row.label)].contains(&name)
@@ -31,14 +31,14 @@ pub(super) fn settable(preset: &Preset) -> impl Iterator<Item = Parameter> {
     preset.rows().map(Cow::into_owned).chain(GROUPS.iter().cloned())
 }
 
-/// Those that are called so: where some have a value in this preset, these.
+/// The rows with this name: if some have a value in this preset, only those.
 pub(super) fn rows_called(preset: &Preset, name: &str) -> Vec<Parameter> {
     let rows = settable(preset).filter(|row| is_called(row, name));
     let (own, others): (Vec<_>, Vec<_>) = rows.partition(|row| preset.get(&row.key).is_some());
     if own.is_empty() { others } else { own }
 }
 
-/// The key of a preset that is called so, or why it is none or several.
+/// The key of a preset with this name, or why there is none or more than one.
 pub(in crate::explorer) fn key_called(preset: &Preset, name: &str) -> Result<Key, String> {
     if parameter(name).is_some() || groups::row(name).is_some() {
         return Ok(name.to_owned().into());

@@ -7,11 +7,11 @@ use pulloff_engine::text::is_unsafe;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Word {
     pub text: String,
-    /// Where it begins, in characters from 1.
+    /// Where it begins, counted in characters from 1.
     pub column: usize,
 }
 
-/// The words of a line, its comment left out.
+/// The words of a line, without its comment.
 pub(super) fn split(line: &str) -> Result<Vec<Word>, ScriptFault> {
     if line.chars().nth(LONGEST).is_some() {
         return Err(ScriptFault::new(LONGEST + 1, format!("a line has at most {LONGEST} characters")));
@@ -53,7 +53,7 @@ pub(super) fn split(line: &str) -> Result<Vec<Word>, ScriptFault> {
     Ok(words)
 }
 
-/// `text` as a word, or the rest of one; `None` where no line can hold it.
+/// `text` as a word, or as the rest of one; `None` if no line can contain it.
 pub(super) fn quoted(text: &str) -> Option<String> {
     if text.chars().any(is_unsafe) {
         return None;

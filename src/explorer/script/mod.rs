@@ -1,27 +1,28 @@
 //! Commands as text: scripts, the line typed on the screen, and the journal share one grammar.
 //!
-//! A line is a command's name from the [table](super::table::ROWS) and what it takes, in words divided by spaces.
-//! A word with spaces, quotes or nothing in it stands in double quotes, in which `\"` and `\\` mean a quote and a backslash;
-//! a quote may begin inside a word (`gap.wavelength="3 um"`). A word that begins with `#` begins a comment.
+//! A line is the name of a command from the [table](super::table::ROWS), followed by what it takes, as words separated
+//! by spaces. A word that is empty or contains spaces or quotes is put in double quotes, in which `\"` and `\\` mean a
+//! quote and a backslash; a quote may begin inside a word (`gap.wavelength="3 um"`). A word that begins with `#` begins
+//! a comment.
 //!
 //! | line | does |
 //! |---|---|
 //! | `open PRESET [KEY=VALUE ...]` | opens a preset, by name or path, with other values |
 //! | `set KEY=VALUE ...` | other values, as one change; a bare number is SI in an SI preset |
 //! | `control displacement`, `force`, `stiffness=K`, or nothing | what is controlled, or the next of them |
-//! | `step [N]`, `step-length X`, `halve-step`, `double-step`, `reverse` | steps, their length, their way |
-//! | `next-event`, `run [N]`, `jump`, `restart` | as the keys of these names |
-//! | `undo [N]`, `redo [N]` | so many commands taken back, done again |
-//! | `undo N states`, `redo N states` | so many single states along the walk, with their values |
+//! | `step [N]`, `step-length X`, `halve-step`, `double-step`, `reverse` | steps, their length, their direction |
+//! | `next-event`, `run [N]`, `jump`, `restart` | as the keys with these names |
+//! | `undo [N]`, `redo [N]` | N commands undone or redone |
+//! | `undo N states`, `redo N states` | N single states along the walk, with their values |
 //! | `move-to A`, `move-to event N`, `move-to S` | to the largest pull, an event of the path, a contact radius |
-//! | `events`, `pin`, `pins N`, `pins all` | whose events are listed; curves kept and taken away |
+//! | `events`, `pin`, `pins N`, `pins all` | whose events are listed; curves pinned and removed |
 //! | `export WHAT FILE [replace]` | writes `curve`, `walk`, `events`, `script` or `study` |
 //! | `export figure FILE [VIEW] [replace]`, `export screen FILE [replace]` | draws a view, the screen |
 //! | `save [replace]`, `save-as NAME [with-data] [replace]` | saves the preset |
 //! | `quit` | ends the script |
 //!
-//! A script refuses what only changes what a screen shows (panels, views, the cross-hair, the help), and what depends on
-//! a selection there (`more`, `edit`). A line that begins with `try` may fail without ending the script.
+//! A script refuses commands that change only what a screen shows (panels, views, the cross-hair, the help), and those
+//! that depend on a selection there (`more`, `edit`). A line that begins with `try` may fail without ending the script.
 //!
 //! | file | what lives there |
 //! |---|---|

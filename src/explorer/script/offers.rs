@@ -1,4 +1,4 @@
-//! What can be typed behind the name of a command, as the screen lists it.
+//! What can be typed after the name of a command, as the screen lists it.
 
 use super::keys::settable;
 use super::lexer::quoted;
@@ -24,31 +24,32 @@ pub(super) const PICTURES: [Picture; 2] = [Picture::Figure(None), Picture::Scree
 
 /// What a device can prescribe.
 const CONTROLS: [&str; 3] = ["displacement", "force", "stiffness="];
-/// And what each is.
+/// What the device does under each of these controls.
 pub const DEVICES: [&str; 3] = ["fixed grips hold δ", "a dead load holds P", "a spring holds its far end"];
 
-/// The names of what is in a folder, which is named with its last `/`, as a line names them; folders end with `/`.
+/// The names of what is in a folder, which is given with its final `/`, as a line would name them; folders end with
+/// `/`.
 pub type FolderNames<'a> = &'a dyn Fn(&str) -> Vec<String>;
 
-/// A line that is being typed.
+/// A line being typed.
 pub struct Typing<'a> {
     pub model: &'a Model,
     /// The words between the name of the command and the last one.
     pub words: &'a [&'a str],
-    /// The last one, so far.
+    /// The last word, as far as it is typed.
     pub word: &'a str,
     pub files: FolderNames<'a>,
 }
 
-/// What can be typed.
+/// Something that can be typed.
 #[derive(Debug, Clone)]
 pub struct Offer {
     pub word: String,
-    /// What it is, where a list has room to say it.
+    /// What it is, if a list has room to say it.
     pub says: String,
-    /// Whether it is so already.
+    /// Whether it is already so.
     pub is_here: bool,
-    /// What it does, where its word does not say it.
+    /// What it does, if its word does not say so.
     pub does: Option<Command>,
 }
 
@@ -58,7 +59,7 @@ impl Offer {
     }
 }
 
-/// Words that say what they are.
+/// Words that explain themselves.
 pub fn words<'a>(words: impl IntoIterator<Item = &'a str>) -> Vec<Offer> {
     words.into_iter().map(|word| Offer::new(word, "")).collect()
 }
@@ -71,7 +72,7 @@ pub(in crate::explorer) fn places(_: &Typing<'_>) -> Vec<Offer> {
     Home::ALL.map(|home| Offer::new(home.name(), home.question())).to_vec()
 }
 
-/// All views; of those that have nothing to show, why.
+/// All views; those with nothing to show say why.
 pub(in crate::explorer) fn views(typing: &Typing<'_>) -> Vec<Offer> {
     let offer = |view: View| {
         let why = reach::why_not(typing.model, view);
@@ -92,7 +93,7 @@ pub(in crate::explorer) fn quantities(typing: &Typing<'_>) -> Vec<Offer> {
     .collect()
 }
 
-/// What is drawn over the curve.
+/// What can be drawn over the curve.
 pub(in crate::explorer) fn theories(typing: &Typing<'_>) -> Vec<Offer> {
     let theory = typing.model.curve.as_ref().map(|curve| &curve.base.theory);
     let offer = |overlay: Overlay| {
@@ -128,7 +129,7 @@ pub(in crate::explorer) fn pins_of(typing: &Typing<'_>) -> Vec<Offer> {
     numbered.chain(words(["all"])).collect()
 }
 
-/// The branches of the walk: how many steps, where each ended, and in which values it differs from those of now.
+/// The branches of the walk: how many steps, where each ended, and in which values it differs from the current ones.
 pub(in crate::explorer) fn branches_of(typing: &Typing<'_>) -> Vec<Offer> {
     let history = &typing.model.history;
     let all = branches::branches(history).into_iter().filter_map(|branch| {
@@ -159,7 +160,7 @@ pub(in crate::explorer) fn curves(typing: &Typing<'_>) -> Vec<Offer> {
     let folder = &typing.word[..typing.word.rfind('/').map_or(0, |at| at + 1)];
     let own = shipped::CURVES.iter().map(|shipped| Offer::new(format!("{SHIPPED_DATA}{}", shipped.name), ""));
     let files = (typing.files)(folder);
-    // A name with a blank is typed in quotes.
+    // A name with a space must be typed in quotes.
     let files = files.into_iter().filter(|name| !name.contains(' ')).map(|name| Offer::new(name, ""));
     own.chain(words([NONE])).chain(files).collect()
 }
@@ -174,14 +175,14 @@ pub(in crate::explorer) fn presets(typing: &Typing<'_>) -> Vec<Offer> {
     }
 }
 
-/// What is exported, and for a figure which view.
+/// What can be exported, and for a figure which view.
 pub(in crate::explorer) fn documents(typing: &Typing<'_>) -> Vec<Offer> {
     let documents = ExportKind::ALL.map(|what| (what.name(), what.meaning(), what.endings()));
     let pictures = PICTURES.map(|what| (what.name(), what.meaning(), what.endings()));
     let all = documents.into_iter().chain(pictures);
     match typing.words {
         [] => all.map(|(name, meaning, _)| Offer::new(name, meaning)).collect(),
-        // Any name will do; these are there to be taken.
+        // Any name will do; these are suggestions.
         [document] => {
             let named = |endings: &[&str]| {
                 let shown = if *document == "figure" { typing.model.view.name() } else { document };
@@ -200,7 +201,7 @@ pub(in crate::explorer) fn names(typing: &Typing<'_>) -> Vec<Offer> {
     if typing.words.is_empty() { Vec::new() } else { words(["with-data", "replace"]) }
 }
 
-/// What can stand on an axis of a map.
+/// What an axis of a map can show.
 pub(in crate::explorer) fn axes_of(typing: &Typing<'_>) -> Vec<Offer> {
     let preset = &typing.model.preset;
     if typing.words.len() > 1 {
@@ -213,11 +214,11 @@ pub(in crate::explorer) fn axes_of(typing: &Typing<'_>) -> Vec<Offer> {
     keys.chain(groups).chain(words([COMPLIANCE])).chain(curves).collect()
 }
 
-/// The keys of the preset, or the words that the key begun takes.
+/// The keys of the preset, or the words that the key being typed takes.
 pub(in crate::explorer) fn assignments_of(typing: &Typing<'_>) -> Vec<Offer> {
     let preset = &typing.model.preset;
     let Some((key, _)) = typing.word.split_once('=') else {
-        // Those that have or could have a value here.
+        // Those that have, or could have, a value here.
         let rows = settable(preset).filter(|row| row.key != "format");
         return rows.map(|row| Offer::new(format!("{}=", row.key), &*row.meaning)).collect();
     };

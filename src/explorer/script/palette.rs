@@ -1,4 +1,4 @@
-//! The one list behind a typed line: commands, charts, quantities, presets, files and keys, of which the text keeps those that have it.
+//! The single list behind a typed line: commands, charts, quantities, presets, files and keys, filtered by the text.
 
 use super::keys::rows_called;
 use super::offers::{FolderNames, Offer, Typing};
@@ -11,13 +11,13 @@ use pulloff_engine::preset::Parameter;
 /// One line of the list.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PaletteEntry {
-    /// What would be typed for it.
+    /// What one would type for it.
     pub line: String,
     /// What it does, or why it cannot be done now.
     pub says: String,
-    /// The command, where it is one alone.
+    /// The command, if it is a single one.
     pub id: Option<Id>,
-    /// Whether nothing more need be typed.
+    /// Whether nothing more needs to be typed.
     pub is_whole: bool,
 }
 
@@ -37,8 +37,9 @@ impl PaletteEntry {
     }
 }
 
-/// What `line` could become: below no text all commands, those of `first` before the others; behind the name of a command what it takes;
-/// else the command `keyed`, whose key the text is, and whatever has all words of the text, the best match first.
+/// What `line` could become. With no text: all commands, those of `first` before the others. After the name of a
+/// command: what it takes. Otherwise the command `keyed`, whose key the text is, and then everything that has all words
+/// of the text, the best match first.
 pub fn palette(
     line: &str,
     first: &[Id],
@@ -57,7 +58,7 @@ pub fn palette(
         return if word.is_empty() { commands(first, model) } else { anything(word, keyed, model, files) };
     };
     let Some(row) = called(name) else { return anything(line.trim(), keyed, model, files) };
-    // Behind a word that is all there is nothing more.
+    // After a word that is complete, nothing more follows.
     if !words.is_empty() && !row.takes.goes_on {
         return Vec::new();
     }
@@ -73,7 +74,7 @@ fn commands(first: &[Id], model: &Model) -> Vec<PaletteEntry> {
     of_pane.chain(others).map(|row| PaletteEntry::command(row, model)).collect()
 }
 
-/// Whatever has all words of `text`, or else most of them.
+/// Everything that has all words of `text`, or else as many as possible.
 fn anything(text: &str, keyed: Option<Id>, model: &Model, files: FolderNames<'_>) -> Vec<PaletteEntry> {
     let wanted: Vec<&str> = text.split_whitespace().collect();
     let known =
@@ -89,7 +90,7 @@ fn anything(text: &str, keyed: Option<Id>, model: &Model, files: FolderNames<'_>
         keyed.chain(of_key(&wanted, model)).chain(of_event(&wanted, model)).collect();
     let all = ROWS.iter().map(|row| PaletteEntry::command(row, model)).chain(offered);
     let all: Vec<PaletteEntry> = all.filter(|entry| found.iter().all(|key| key.line != entry.line)).collect();
-    // Where nothing has all words, whatever has most of them.
+    // If nothing has all words, take what has most of them.
     let most = if found.is_empty() { wanted.len() } else { 1 };
     let rest = (0..most).map(|missing| {
         ranked(all.clone(), |entry| {
@@ -102,7 +103,7 @@ fn anything(text: &str, keyed: Option<Id>, model: &Model, files: FolderNames<'_>
     found
 }
 
-/// A value for a key that is called by its symbol or the end of its name: `A 0.003`, `amplitude=0.003`.
+/// A value for a key given by its symbol or the end of its name: `A 0.003`, `amplitude=0.003`.
 fn of_key(wanted: &[&str], model: &Model) -> Vec<PaletteEntry> {
     let (symbol, value) = match wanted {
         [symbol, value] => (*symbol, *value),
@@ -123,7 +124,7 @@ fn of_event(wanted: &[&str], model: &Model) -> Option<PaletteEntry> {
     is_meant.then(|| PaletteEntry::new(format!("move-to event {number}"), format!("the {kind}")))
 }
 
-/// Those that have a rank, the best first, equals in their order.
+/// The entries that have a rank, the best first; equal ranks keep their order.
 fn ranked(entries: Vec<PaletteEntry>, rank: impl Fn(&PaletteEntry) -> Option<u8>) -> Vec<PaletteEntry> {
     let mut found: Vec<_> =
         entries.into_iter().filter_map(|entry| rank(&entry).map(|rank| (rank, entry))).collect();
@@ -131,7 +132,7 @@ fn ranked(entries: Vec<PaletteEntry>, rank: impl Fn(&PaletteEntry) -> Option<u8>
     found.into_iter().map(|(_, entry)| entry).collect()
 }
 
-/// How well a line and what it says match a word: 0 is best; `None` where they do not have it. `words` are others for the same.
+/// How well a line and its description match a word: 0 is best; `None` if they do not contain it. `words` are synonyms.
 fn rank(line: &str, says: &str, words: &str, word: &str) -> Option<u8> {
     let [line, says, words, word] = [line, says, words, word].map(str::to_lowercase);
     let has =

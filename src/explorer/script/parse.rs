@@ -9,7 +9,7 @@ use crate::explorer::table::{ROWS, Script, called, row_of};
 /// The word before a command that may fail.
 const TRY: &str = "try";
 
-/// The command of a line; `None` where there is none.
+/// The command of a line; `None` if there is none.
 pub fn parse(line: &str) -> Result<Option<Command>, ScriptFault> {
     let words = split(line)?;
     let Some((name, rest)) = words.split_first() else { return Ok(None) };
@@ -30,7 +30,7 @@ pub(super) fn script_line(line: &str) -> Result<Option<(bool, Command)>, ScriptF
     }
 }
 
-/// Whether a command means something without a screen.
+/// Whether a command is meaningful without a screen.
 pub fn for_script(command: &Command) -> Result<(), String> {
     let row = row_of(command.id());
     let is_plain = matches!(command, Command::Plain(_));

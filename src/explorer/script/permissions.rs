@@ -32,7 +32,7 @@ pub(super) fn allowed(model: &Model, command: Command, permission: Permission) -
             within(&target(&path))?;
             Command::Picture { picture, path, replace: may_replace(replace)? }
         }
-        // By its name it goes to the folder of the presets and nowhere else.
+        // A plain name goes to the folder of presets and nowhere else.
         Command::SaveAs { name, replace, with_data } => {
             Command::SaveAs { name, with_data, replace: may_replace(replace)? }
         }
@@ -47,7 +47,7 @@ pub(super) fn allowed(model: &Model, command: Command, permission: Permission) -
     })
 }
 
-/// Links and `..` are followed to where the file would be.
+/// Links and `..` are resolved to where the file would be.
 fn below_current_folder(path: &Path) -> Result<(), String> {
     let refused = |cause: &dyn std::fmt::Display| format!("{}: {cause}", show_path(path));
     let target = follow(path).map_err(|error| error.to_string())?;

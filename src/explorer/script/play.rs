@@ -1,4 +1,4 @@
-//! A script driven through a model, without a terminal: each line is over before the next begins.
+//! A script run on a model, without a terminal: each line is over before the next begins.
 
 use super::line;
 use super::permissions::{Permission, allowed};
@@ -22,13 +22,14 @@ pub struct Failed {
     pub reason: WordedFault,
 }
 
-/// Draws what is seen of a session, or says why it cannot.
+/// Draws what a session shows, or says why it cannot.
 pub type Painter<'a> = &'a dyn Fn(&Model, Picture) -> Result<Page, String>;
 
-/// Does `effects`, and then the lines one after another; `told` hears of each that was done, `draws` what is to be drawn.
+/// Runs `effects` and then the lines one after another; `told` receives each line that was done, `draws` what is to be
+/// drawn.
 ///
-/// What ends a run (a limit point, the end of the path) is no failure.
-/// Errors: The first line that fails; those behind it are not done.
+/// What ends a run (a limit point, the end of the path) is not a failure.
+/// Errors: The first line that fails; the lines after it are not run.
 pub fn play(
     model: &mut Model,
     driver: &Inline,
@@ -38,7 +39,7 @@ pub fn play(
     draws: Painter<'_>,
     told: &mut dyn FnMut(&ScriptLine, &Model),
 ) -> Result<(), Failed> {
-    // A script that opens a preset of its own needs no curve of the one before.
+    // A script that opens its own preset does not need the curve of the previous one.
     if !lines.first().is_some_and(|line| opens(&line.command) && !line.may_fail) {
         driver.settle(model, effects);
         if let Some(reason) = refusal(model) {
@@ -79,12 +80,12 @@ fn obey(
     }
     let effects = update(model, command);
     driver.settle(model, effects);
-    // What a screen would ask now, nobody answers.
+    // There is nobody to answer what a screen would ask now.
     model.question = None;
     refusal(model).map_or(Ok(()), Err)
 }
 
-/// What is seen, drawn; a view that is not on the screen is shown for as long.
+/// Draws what is seen; a view that is not on the screen is shown for that moment.
 fn drawn(model: &mut Model, driver: &Inline, picture: Picture, draws: Painter<'_>) -> Result<Page, String> {
     let before = model.view;
     if let Picture::Figure(Some(view)) = picture {
@@ -98,7 +99,7 @@ fn drawn(model: &mut Model, driver: &Inline, picture: Picture, draws: Painter<'_
 
 fn refusal(model: &Model) -> Option<WordedFault> {
     let (level, text) = model.message.as_ref().filter(|(level, _)| level.is_bad())?;
-    // Nothing is computed any more: where there is no curve, it could not be.
+    // Nothing is being computed any more: if there is no curve, it could not be computed.
     let cause = model.curve_error.as_ref().filter(|_| model.curve.is_none());
     let text = by_name(cause.map_or(text, CurveError::text));
     Some(WordedFault { text, can_be_mended: *level == Level::Error })

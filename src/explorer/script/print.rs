@@ -60,7 +60,7 @@ fn replacing(replace: bool) -> &'static str {
     if replace { " replace" } else { "" }
 }
 
-/// ` KEY=VALUE` for each.
+/// ` KEY=VALUE` for each assignment.
 fn assignments(all: &[Assignment]) -> Option<String> {
     all.iter().map(|(key, text)| Some(format!(" {key}={}", quoted(text)?))).collect()
 }

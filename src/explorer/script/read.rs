@@ -10,10 +10,10 @@ use thiserror::Error;
 /// The largest script, in bytes.
 pub const LARGEST: u64 = 1 << 20;
 
-/// The most lines of a script.
+/// The most lines in a script.
 pub const MOST_LINES: usize = 20_000;
 
-/// So many faults are listed.
+/// At most this many faults are listed.
 pub(super) const FAULTS: usize = 20;
 
 /// One line of a script.
@@ -21,12 +21,12 @@ pub(super) const FAULTS: usize = 20;
 pub struct ScriptLine {
     /// Its number, from 1.
     pub number: usize,
-    /// Whether the script goes on when it fails.
+    /// Whether the script continues if it fails.
     pub may_fail: bool,
     pub command: Command,
 }
 
-/// All that is wrong with a script, in the order of its lines.
+/// Everything that is wrong with a script, in the order of its lines.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub struct ScriptError {
     /// The script's name, safe to show.
@@ -45,7 +45,7 @@ impl fmt::Display for ScriptError {
     }
 }
 
-/// Reads a script; `name` names it in messages. Nothing of it is done.
+/// Reads a script; `name` is its name in messages. Nothing of it is run.
 pub fn read(name: &str, text: &str) -> Result<Vec<ScriptLine>, ScriptError> {
     let (mut lines, mut faults) = (Vec::new(), Vec::new());
     for (i, text) in text.lines().enumerate() {

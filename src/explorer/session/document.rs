@@ -1,6 +1,6 @@
 //! A session as JSON.
 //!
-//! What a list of sessions shows stands first; it is read without the rest being understood.
+//! What a list of sessions shows comes first, so it can be read without understanding the rest.
 
 use super::number::{Real, floats, reals};
 use super::places::SavedPlaces;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ended {
-    /// It has not, or its program was killed.
+    /// Still running, or its program was killed.
     Running,
     Quit,
     /// The connection dropped, or a signal or a fault ended the program.
@@ -26,7 +26,7 @@ pub enum Ended {
 }
 
 impl Ended {
-    /// Its word.
+    /// The word for it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Running => "running",
@@ -47,14 +47,14 @@ pub struct SessionSummary {
     pub preset_name: String,
     pub title: String,
     pub steps: usize,
-    /// Whether its preset has changes that are in no file.
+    /// Whether its preset has changes that are saved in no file.
     pub unsaved: bool,
 }
 
 /// A session.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Document {
-    // The fields of the summary stand first in the file.
+    // The fields of the summary come first in the file.
     format: u32,
     program_version: String,
     ended: Ended,
@@ -63,11 +63,11 @@ pub struct Document {
     title: String,
     steps: usize,
     unsaved: bool,
-    /// δ, P and s of the walker in the user's units, for whoever reads the file.
+    /// δ, P and s of the walker in the user's units, for people who read the file.
     walker: Option<[Real; 3]>,
     source: PresetOrigin,
     fingerprint: Option<Fingerprint>,
-    /// The number of the preset as it is, and as saved.
+    /// The numbers of the current preset and of the saved one.
     preset: usize,
     saved: usize,
     look: SessionLook,
@@ -87,7 +87,7 @@ struct SavedScript {
     lines: Vec<String>,
     /// Where the walk began: the source of its preset, and the number of the preset.
     start: Option<(PresetOrigin, usize)>,
-    /// What a replay has at the end: the number of the preset, the direction, the step length.
+    /// What a replay has set at the end: the number of the preset, the direction, the step length.
     replay: Option<(usize, bool, Real)>,
     steps: Option<usize>,
     broken: Option<String>,
@@ -143,7 +143,7 @@ impl PresetOrigin {
 
     fn back(self) -> Result<Source, Unreadable> {
         Ok(match self {
-            // Of a preset that no longer comes with the program only the name is missing.
+            // If a preset no longer comes with the program, only its name is missing.
             Self::Shipped(name) => {
                 let known = shipped::find(&name).or_else(|| shipped::find(shipped::DEFAULT));
                 Source::Shipped(known.ok_or_else(|| Unreadable::Damaged(format!("no preset {name}")))?)
@@ -156,7 +156,7 @@ impl PresetOrigin {
 }
 
 impl Document {
-    /// The document of a snapshot, made `saved_at` seconds after 1970. The rows of profiles are within.
+    /// The document of a snapshot, made `saved_at` seconds after 1970. It contains the rows of the profiles.
     pub fn new(snapshot: &Snapshot, ended: Ended, saved_at: u64) -> Self {
         let mut problems = Collector::default();
         let preset = problems.preset(&snapshot.preset);
@@ -191,16 +191,16 @@ impl Document {
         }
     }
 
-    /// Gives the data of each profile and each measured curve to `keep`, which says the hash of the file they are in. The
-    /// document then refers to them by it.
-    /// Errors: That of `keep`.
+    /// Gives the data of each profile and each measured curve to `keep`, which returns the hash of the file they are
+    /// in. The document then refers to them by that hash.
+    /// Errors: Those of `keep`.
     pub fn lay_aside<E>(&mut self, keep: impl FnMut(&Aside) -> Result<String, E>) -> Result<(), E> {
         self.problems.lay_aside(keep)
     }
 
-    /// Takes the data back within: `columns` gives r and h of the file with a hash, `bytes` all of it; both are told the name
-    /// of the profile or the curve too.
-    /// Errors: Theirs.
+    /// Takes the data back into the document: `columns` gives r and h of the file with a hash, `bytes` its whole
+    /// content; both also receive the name of the profile or the curve.
+    /// Errors: Those of `columns` and `bytes`.
     pub fn take_back<E>(
         &mut self,
         columns: impl FnMut(&str, &str) -> Result<[Vec<f64>; 2], E>,
@@ -232,8 +232,8 @@ impl Document {
         self.walker.map(floats)
     }
 
-    /// The snapshot of it; no problem is made ready and no file is read.
-    /// Errors: Something in it does not fit, or the rows of a profile were not taken back.
+    /// Its snapshot; no problem is prepared and no file is read.
+    /// Errors: Something in it is inconsistent, or the rows of a profile were not taken back.
     pub fn snapshot(self) -> Result<Snapshot, Unreadable> {
         let Restored { presets, settings } = self.problems.back()?;
         let preset = |number: usize| {
@@ -270,9 +270,9 @@ pub fn summary(bytes: &[u8]) -> Result<SessionSummary, Unreadable> {
     serde_json::from_slice(bytes).map_err(|error| damaged(&error))
 }
 
-/// Refuses what has another format, before anything else in it is looked at.
+/// Rejects a document of another format before reading anything else of it.
 fn check_format(bytes: &[u8]) -> Result<(), Unreadable> {
-    /// What every version has: known before anything else is looked at.
+    /// What every version has.
     #[derive(Deserialize)]
     struct Format {
         format: u32,

@@ -1,20 +1,20 @@
-//! A session as a document: what is kept so that nothing is lost when a connection drops.
+//! A session as a document: what is kept so that nothing is lost if a connection drops.
 //!
 //! ```text
 //! Model ──► Snapshot ──► document ──► Snapshot ──► Model
 //! ```
 //!
-//! A [`Snapshot`] is what a person made: the preset as it is and as saved, the walk with all its branches, the pins,
-//! and how all of it is looked at. What follows from that (curves, profiles) is not in it and is computed again. It is
-//! made in no time however long the walk, so that whoever ends the program always finds the newest one.
+//! A [`Snapshot`] is what a person made: the current and the saved preset, the walk with all its branches, the pins,
+//! and how all of it is displayed. What follows from that (curves, profiles) is not kept and is computed again. Making
+//! one takes no time however long the walk, so whatever ends the program always finds the newest one.
 //!
-//! Everything comes back bit for bit, and a walk goes on as if it had never been interrupted.
+//! Everything comes back bit for bit, and a walk continues as if it had never been interrupted.
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`snapshot`] | what is kept of a model, and the model of it |
+//! | [`snapshot`] | what is kept of a model, and the model restored from it |
 //! | [`document`] | the same as JSON |
-//! | `problems` | the presets and settings of a document, each once |
+//! | `problems` | the presets and settings of a document, each stored once |
 //! | `tree` | the nodes of the walk |
 //! | `places` | what undo goes back to |
 //! | `number` | numbers bit for bit |

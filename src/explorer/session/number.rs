@@ -1,17 +1,17 @@
-//! Numbers that come back bit for bit, those that JSON cannot write among them.
+//! Numbers that come back bit for bit, including those that JSON cannot write.
 
 use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 
-/// A number of a session: JSON's own where it is finite, else a word.
+/// A number of a session: written as a JSON number if finite, otherwise as a word.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Real(pub f64);
 
 /// The words for numbers that are not finite.
 const INFINITY: &str = "inf";
 const NEGATIVE_INFINITY: &str = "-inf";
-/// Followed by the bits, since there is more than one.
+/// Followed by the bits, since there is more than one NaN.
 const NAN: &str = "nan:";
 
 impl Serialize for Real {

@@ -1,6 +1,6 @@
 //! What undo goes back to, in a session.
 //!
-//! Commands before another preset was opened are left out: its session is a document of its own.
+//! Commands from before another preset was opened are left out: that session is a document of its own.
 
 use super::number::Real;
 use super::unreadable::Unreadable;
@@ -10,17 +10,17 @@ use pulloff_engine::preset::{Key, Preset};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The places before the commands done, and of those taken back; the newest last.
+/// The places before the commands done, and those of the commands undone; the newest last.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(super) struct SavedPlaces {
     past: Vec<SavedPlace>,
     future: Vec<SavedPlace>,
-    /// The value that the last command turned: the next turn of it goes on with that command.
+    /// The value that the last command turned: turning it again continues that command.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     gesture: Option<String>,
 }
 
-/// A place, its preset and its state by their numbers in the document.
+/// A place, with its preset and its state given by their numbers in the document.
 #[derive(Debug, Serialize, Deserialize)]
 struct SavedPlace {
     preset: usize,
@@ -31,7 +31,7 @@ struct SavedPlace {
 }
 
 impl SavedPlaces {
-    /// Those of `undo`; `preset` numbers their presets.
+    /// The places of `undo`; `preset` numbers their presets.
     pub(super) fn of(undo: &Undo, history: &History, mut preset: impl FnMut(&Preset) -> usize) -> Self {
         let mut own = |places: &[Arc<SessionPlace>]| -> Vec<SavedPlace> {
             let first = places.iter().rposition(|place| place.shelved.is_some()).map_or(0, |at| at + 1);
@@ -48,7 +48,7 @@ impl SavedPlaces {
         Self { past: own(undo.past()), future: own(undo.future()), gesture }
     }
 
-    /// The undo of them.
+    /// The undo made from these places.
     pub(super) fn back(
         self,
         preset: impl Fn(usize) -> Result<Preset, Unreadable>,
@@ -56,7 +56,7 @@ impl SavedPlaces {
         let place = |saved: SavedPlace| {
             Ok(SessionPlace {
                 preset: preset(saved.preset)?,
-                // A tree that is read numbers its nodes anew, from 0.
+                // A tree that is read numbers its nodes afresh, from 0.
                 node: saved.node.map(|at| at as u64),
                 inward: saved.inward,
                 length: saved.length.0,

@@ -1,4 +1,4 @@
-//! The presets and settings of a document, each once, however many nodes share them.
+//! The presets and settings of a document, each stored once however many nodes share them.
 
 use super::number::{Real, floats, reals};
 use super::unreadable::Unreadable;
@@ -29,7 +29,7 @@ pub(super) struct Problems {
     curves: Vec<SavedCurve>,
 }
 
-/// A preset as its file.
+/// A preset as the text of its file.
 #[derive(Debug, PartialEq, Eq, Hash, Clone, Serialize, Deserialize)]
 struct SavedPreset {
     text: String,
@@ -39,7 +39,7 @@ struct SavedPreset {
     curve: Option<usize>,
 }
 
-/// The file of a measured curve, as it was.
+/// The file of a measured curve, byte for byte.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(from = "WrittenCurve", into = "WrittenCurve")]
 enum SavedCurve {
@@ -49,7 +49,7 @@ enum SavedCurve {
     Beside { data: String, name: String, folder: Option<PathBuf> },
 }
 
-/// A measured curve as it is written.
+/// A measured curve in its written form.
 #[derive(Serialize, Deserialize)]
 struct WrittenCurve {
     name: String,
@@ -67,7 +67,7 @@ impl From<SavedCurve> for WrittenCurve {
                 name: source.name.clone(),
                 folder: source.folder.as_deref().map(SavedPath::of),
                 data: None,
-                // It was taken apart, and so is text.
+                // It has been parsed, so it is text.
                 text: Some(String::from_utf8_lossy(&source.bytes).into_owned()),
             },
             SavedCurve::Beside { data, name, folder } => {
@@ -95,17 +95,17 @@ struct SavedSetting {
     scales: [Real; 3],
 }
 
-/// The rows of a profile, as they were: its file may change.
+/// The rows of a profile as they were, since its file may change.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(from = "WrittenProfile", into = "WrittenProfile")]
 enum SavedProfile {
-    /// In the document itself, as in all sessions of before.
+    /// In the document itself, as in all sessions of earlier versions.
     Within(Arc<ProfileRows>),
-    /// In a file of their own, named by its hash; `rows` has all but the two columns.
+    /// In a file of their own, named by its hash; `rows` has everything but the two columns.
     Beside { data: String, rows: ProfileRows },
 }
 
-/// A profile as it is written.
+/// A profile in its written form.
 #[derive(Serialize, Deserialize)]
 struct WrittenProfile {
     name: String,
@@ -120,7 +120,7 @@ struct WrittenProfile {
     notes: Vec<String>,
 }
 
-/// A path: its text, or its bytes where it is none.
+/// A path: its text, or its bytes if they are not text.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(untagged)]
 pub(super) enum SavedPath {
@@ -151,12 +151,12 @@ pub enum Aside {
     Curve(Arc<PointsFile>),
 }
 
-/// Numbers presets and settings while a document is made.
+/// Assigns numbers to presets and settings while a document is made.
 #[derive(Default)]
 pub(super) struct Collector {
     problems: Problems,
     texts: HashMap<SavedPreset, usize>,
-    /// The settings seen, by where they are: nodes share them.
+    /// The settings seen, by their addresses: nodes share them.
     settings: HashMap<*const Setting, usize>,
     rows: Vec<Arc<ProfileRows>>,
     sources: Vec<Arc<PointsFile>>,
@@ -265,7 +265,7 @@ pub(super) struct Restored {
 }
 
 impl Problems {
-    /// Gives the data within to `keep`, which says the hash of the file they are in, and holds no more than that.
+    /// Gives the data it contains to `keep`, which returns the hash of the file they are in, and keeps only that hash.
     pub(super) fn lay_aside<E>(
         &mut self,
         mut keep: impl FnMut(&Aside) -> Result<String, E>,
@@ -289,7 +289,8 @@ impl Problems {
         Ok(())
     }
 
-    /// The way back: `columns` gives those in the file of a hash, `bytes` all of it; both are told what a person calls it.
+    /// The inverse: `columns` gives the columns in the file with a hash, `bytes` all of it; both also receive the
+    /// person's name for it.
     pub(super) fn take_back<E>(
         &mut self,
         mut columns: impl FnMut(&str, &str) -> Result<[Vec<f64>; 2], E>,
@@ -312,7 +313,7 @@ impl Problems {
         Ok(())
     }
 
-    /// The presets and settings, none of them made ready.
+    /// The presets and settings, none of them prepared.
     pub(super) fn back(self) -> Result<Restored, Unreadable> {
         let missing = |what: &str| Unreadable::Damaged(format!("a {what} is missing"));
         let within = |profile| match profile {

@@ -1,4 +1,4 @@
-//! What is kept of a model, and the model of it.
+//! What is kept of a model, and the model restored from it.
 
 use crate::explorer::backgrounds::want_all;
 use crate::explorer::command::{FIRST_LENGTH, LENGTHS};
@@ -16,25 +16,25 @@ use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
 use serde::{Deserialize, Serialize};
 
-/// What a person made of a session. A clone, and a snapshot of a model, share the walk with it.
+/// What a person made in a session. A clone shares the walk with it, as a snapshot does with its model.
 #[derive(Debug, Clone)]
 pub struct Snapshot {
     pub session: u64,
-    /// The preset as it is, without a value that is still being typed.
+    /// The current preset, without a value that is still being typed.
     pub preset: Preset,
     pub saved: Preset,
     pub source: Source,
     pub fingerprint: Option<Fingerprint>,
     pub history: History,
     pub undo: Undo,
-    /// Whether the walker has been tried on the preset as it is.
+    /// Whether the walker has been tried on the current preset.
     pub settled: bool,
     pub pins: Vec<(usize, Preset)>,
     pub look: SessionLook,
     pub journal: KeptJournal,
 }
 
-/// How a session is looked at and walked; the fields are as in [`Model`].
+/// How a session is displayed and walked; the fields are as in [`Model`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SessionLook {
     pub panel: ScreenPanel,
@@ -73,7 +73,7 @@ impl SessionLook {
         }
     }
 
-    /// Gives `model` this look; what cannot be looked at so is left as in a new session.
+    /// Gives `model` this look; anything that cannot be shown so stays as in a new session.
     fn lay_over(self, model: &mut Model) {
         (model.panel, model.axes) = (self.panel, self.axes);
         model.look_at(self.view);
@@ -92,7 +92,7 @@ impl SessionLook {
 }
 
 impl Snapshot {
-    /// What there is to keep of `model`.
+    /// Takes the snapshot of `model`.
     pub fn of(model: &Model) -> Self {
         let shown = model.pins.all().iter().map(|pin| (pin.number, pin.preset().clone()));
         Self {
@@ -116,7 +116,7 @@ impl Snapshot {
         Self { history: self.history.stamp(), ..self.clone() }
     }
 
-    /// Whether both say the same.
+    /// Whether both contain the same.
     pub fn is_like(&self, other: &Self) -> bool {
         self.session == other.session
             && self.history.revision() == other.history.revision()
@@ -126,7 +126,7 @@ impl Snapshot {
             && self.journal == other.journal
     }
 
-    /// Whether there is anything to lose: a state walked, a value changed, a curve pinned. Looking alone is not.
+    /// Whether there is anything to lose: a state walked, a value changed, a curve pinned. Looking does not count.
     pub fn is_worth_keeping(&self) -> bool {
         self.history.len() > 1 || self.preset != self.saved || !self.pins.is_empty()
     }
@@ -136,7 +136,8 @@ impl Snapshot {
         self.history.len().saturating_sub(1)
     }
 
-    /// The session of it, and the curves it needs. It takes the place of `before`, whose late replies are recognised.
+    /// The session restored from it, and the curves it needs. It takes the place of `before`, whose late replies are
+    /// recognised.
     pub fn resume(self, before: Option<&Model>) -> (Model, Vec<Effect>) {
         let loaded = Loaded {
             source: self.source,

@@ -1,6 +1,6 @@
-//! The walk of a session: every node, in the order in which they came.
+//! The walk of a session: every node, in the order in which they were made.
 //!
-//! A node holds what cannot be had again without its curve: its unknowns, the frame of the curve there, its energy and
+//! A node holds what cannot be recovered without its curve: its unknowns, the frame of the curve there, its energy and
 //! what the basis said of it. The state follows from the unknowns and their scales, which are powers of two.
 
 use super::number::{Real, floats, reals};
@@ -18,7 +18,7 @@ use pulloff_engine::quasistatic::{
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The unknowns of a disc, and of the most contacts.
+/// The number of unknowns of a disc, and of the most contacts.
 const FEWEST: usize = 3;
 const MOST: usize = 2 + 2 * MOST_CONTACTS;
 
@@ -42,7 +42,7 @@ pub(super) struct SavedNode {
     rounds: usize,
     energy: Real,
     stiffness: [Real; 3],
-    /// With rings, the slopes that decide the stability; those of one disc follow from its tangent.
+    /// With rings, the slopes that decide the stability; for one disc they follow from its tangent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     slopes: Option<[Real; 2]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -259,7 +259,7 @@ impl SavedNode {
         let scales = &setting.scales;
         let [approach, force] = edges::device(scales, &point);
         let contacts = edges::contacts(scales, &point);
-        // In a zone alone there is no contact.
+        // If there is only a zone, there is no contact.
         if self.on_path.is_none() || contacts.outermost() > 0.0 {
             contacts.check().ok()?;
         }
@@ -309,7 +309,7 @@ pub(super) fn nodes(history: &History, mut setting: impl FnMut(&Arc<Setting>) ->
     nodes.map(|(at, node)| SavedNode::of(node, setting(&node.setting), history.forward(at))).collect()
 }
 
-/// The tree of nodes; `None` where they make none.
+/// The tree of these nodes; `None` if they do not form one.
 pub(super) fn history(
     nodes: Vec<SavedNode>,
     cursor: Option<usize>,

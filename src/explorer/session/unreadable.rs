@@ -2,15 +2,15 @@
 
 use thiserror::Error;
 
-/// The version of the format; what is added without a new version has a default.
+/// The version of the format; anything added without a new version has a default.
 pub const FORMAT: u32 = 4;
 
-/// Why a document is no session of this program.
+/// Why a document is not a session of this program.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Unreadable {
     #[error("the session is damaged: {0}")]
     Damaged(String),
-    /// Of another version of the program.
+    /// Written by another version of the program.
     #[error(
         "the session has format {format} (it was written by pulloff {program}); this one reads format {FORMAT}"
     )]

@@ -1,4 +1,4 @@
-//! A curve came, failed or was given up.
+//! A curve arrived, failed or was given up.
 
 use super::walk::{begin_walk, walk};
 use crate::explorer::command::Id;
@@ -39,7 +39,7 @@ pub(super) fn give_up(model: &mut Model) -> Vec<Effect> {
     vec![Effect::StopCurve(model.curve_wanted)]
 }
 
-/// What follows from a curve, or from why there is none. `None`: the commands that wait may go on.
+/// What follows from a curve, or from the reason why there is none. `None`: the waiting commands may go on.
 pub(super) fn curve_came(
     model: &mut Model,
     id: u64,
@@ -65,12 +65,12 @@ pub(super) fn curve_came(
                 return begin_walk(model, &curve);
             }
             if model.is_computing() {
-                // Solved again on the newer curve.
+                // It will be solved again on the newer curve.
                 return Some(Vec::new());
             }
             let is_tried = std::mem::take(&mut model.is_tried);
             if model.walking.is_some() {
-                // Solved again once that is over.
+                // It will be solved again once that is over.
                 return Some(Vec::new());
             }
             let is_stale =
@@ -80,7 +80,7 @@ pub(super) fn curve_came(
     }
 }
 
-/// The walker's state solved for the values of the curve, where it is not on it.
+/// Solves the walker's state for the values of the curve, if it does not lie on it.
 pub(super) fn solve_again(model: &mut Model) -> Option<Vec<Effect>> {
     let node = model.history.current().filter(|node| !model.is_on_curve(node) && !node.is_apart())?;
     let again = Action::solve(node);

@@ -1,4 +1,4 @@
-//! Opening, saving and exporting: what is asked, and what becomes of the answers.
+//! Opening, saving and exporting: the requests, and what becomes of the answers.
 
 use super::travel::shelve;
 use super::values::{assigned, rows_came};
@@ -99,7 +99,7 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         Done::Read(rows) => return rows_came(model, rows),
         Done::Opened(loaded) => {
             let mut opened = Model::new(*loaded);
-            // What was not walked on is nothing to come back to.
+            // A session without a walk is nothing to come back to.
             let place = (!model.history.is_empty())
                 .then(|| SessionPlace { shelved: Some(Arc::new(shelve(model))), ..model.place() });
             opened.replace(model);
@@ -138,7 +138,8 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
     Vec::new()
 }
 
-/// `preset` with the rows of the profile where they were copied to, if `saved` names another file with the same rows.
+/// `preset` with the rows of the profile at the place they were copied to, if `saved` names another file with the same
+/// rows.
 fn with_copied_data(preset: &Preset, saved: &Preset) -> Option<Preset> {
     let mut copied = preset.clone();
     if let (Shape::Profile(now), Shape::Profile(then)) = (&preset.gap, &saved.gap)

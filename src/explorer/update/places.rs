@@ -15,10 +15,10 @@ use pulloff_engine::units::Quantity;
 /// Why the walker does not go to some events.
 const WITH_RINGS: &str = "that state has rings of contact, and the walker is on the curve of one disc";
 
-/// Radii of one limit point, found in two ways, are as near as this.
+/// Radii of one limit point that were found in two ways agree to this accuracy.
 const SAME: f64 = 1e-6;
 
-/// The walker goes to the state of this contact radius, in the user's units.
+/// The walker goes to the state with this contact radius, in the user's units.
 pub(super) fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
     let Some(curve) = &model.curve else { return Vec::new() };
     let reduced = radius / curve.case.units().length;
@@ -55,7 +55,7 @@ pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
     }
     let Some(pull) = &path.totals.largest_pull else { return Vec::new() };
     let radius = pull.contact_radius;
-    // Under a dead load it is where an event begins, and is reached as that.
+    // Under a dead load an event begins there, and it is reached as that event.
     let begins = |event: &EventReport| {
         event.before.as_ref().is_some_and(|before| (before.contact_radius - radius).abs() <= SAME * radius)
     };
@@ -74,7 +74,7 @@ pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
     walk(model, Action::MoveTo(reduced))
 }
 
-/// The event of a number of the path.
+/// Selects the event with this number on the path.
 pub(super) fn select_event(model: &mut Model, number: usize) -> Vec<Effect> {
     let count = model.path_events().len();
     let Some(line) = model.log().place(number) else {

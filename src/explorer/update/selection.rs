@@ -11,7 +11,7 @@ use crate::explorer::{look, reach};
 use pulloff_engine::preset::{Row, Value, groups};
 use pulloff_engine::text::{greek, show_name};
 
-/// An arrow key: in Charts it moves what is shown, elsewhere the selection.
+/// An arrow key: in Charts it moves what is shown, elsewhere it moves the selection.
 pub(in crate::explorer) fn arrow(model: &mut Model, (right, up): (f64, f64), down: bool) {
     if model.panel == ScreenPanel::Charts { look::go(model, right, up) } else { move_selection(model, down) }
 }
@@ -59,15 +59,15 @@ fn move_selection(model: &mut Model, down: bool) {
     }
 }
 
-/// What a group changes, if this is one; in few words, since the list may scroll at the same time.
+/// What a group changes, if this is one; kept short, since the list may scroll at the same time.
 fn group_effect(row: &Row) -> Option<String> {
     let [changed, held] = groups::effect(&row.key)?;
     Some(greek(&format!("turning it changes {changed}, {held} held")))
 }
 
-/// A text that is longer than its place beside the label may be, whole.
+/// The whole text of a value that is too long for its place beside the label.
 fn long_text(row: &Row, value: Option<&Value>) -> Option<String> {
-    /// Characters that fit on every screen.
+    /// The number of characters that fit on every screen.
     const FITTING: usize = 11;
     match value? {
         Value::Text(text) if text.chars().count() > FITTING => Some(format!("{}: {text}", row.label)),
@@ -76,7 +76,7 @@ fn long_text(row: &Row, value: Option<&Value>) -> Option<String> {
     }
 }
 
-/// A panel is selected, and a line of it, the last at most.
+/// Selects a panel and a line of it, at most its last.
 pub(super) fn pick(model: &mut Model, panel: ScreenPanel, line: Option<usize>) {
     model.panel = panel;
     let lines = match panel {

@@ -1,4 +1,4 @@
-//! Undo and redo, and going to states of the walk made before.
+//! Undo and redo, and going to states made earlier in the walk.
 
 use super::curve::solve_again;
 use super::walk::abandon;
@@ -15,7 +15,7 @@ use pulloff_engine::quasistatic::State;
 use std::mem;
 use std::sync::Arc;
 
-/// So many commands taken back or done again, as far as there are any.
+/// Undoes or redoes this many commands, as far as there are any.
 pub(in crate::explorer) fn travel(model: &mut Model, id: Id, count: usize) -> Vec<Effect> {
     let mut effects = Vec::new();
     for _ in 0..count {
@@ -51,7 +51,7 @@ fn once(model: &mut Model, back: bool) -> Option<Vec<Effect>> {
     Some(effects)
 }
 
-/// The session put aside for another preset.
+/// The session set aside for another preset.
 pub(super) fn shelve(model: &Model) -> Shelved {
     Shelved {
         source: model.source.clone(),
@@ -62,7 +62,7 @@ pub(super) fn shelve(model: &Model) -> Shelved {
     }
 }
 
-/// Another session takes the place of this one; how it is looked at, the pins and the undo stay.
+/// Another session takes the place of this one; the display, the pins and the undo stay.
 fn swap(model: &mut Model, shelved: Shelved) {
     let Shelved { source, saved, fingerprint, history, journal } = shelved;
     let mut other = Model::new(Loaded { source, preset: saved, text: String::new(), fingerprint });
@@ -73,7 +73,7 @@ fn swap(model: &mut Model, shelved: Shelved) {
 }
 
 impl Model {
-    /// Takes the place of `before` when another preset is shown: what waits, and undo, go on.
+    /// Takes the place of `before` when another preset is shown: what waits, and undo, continue.
     pub(super) fn replace(&mut self, before: &mut Self) {
         self.follow(before);
         self.undo = mem::take(&mut before.undo);
@@ -82,7 +82,7 @@ impl Model {
     }
 }
 
-/// The walker, its way and its step length are those of `place`.
+/// Gives the walker, its direction and its step length the values of `place`.
 fn go_to_node(model: &mut Model, place: &SessionPlace) {
     (model.inward, model.length) = (place.inward, place.length);
     let (Some(from), Some(to)) = (model.history.cursor(), place.node.and_then(|id| model.history.find(id)))
@@ -94,7 +94,7 @@ fn go_to_node(model: &mut Model, place: &SessionPlace) {
         std::iter::successors(Some(from), |at| next(*at)).take(model.history.len()).position(|at| at == to)
     };
     let (up, down) = (steps(&parent), steps(&|at| model.history.forward(at)));
-    // As steps of the tree where that is possible: a replay numbers its states otherwise.
+    // As steps of the tree if possible, since a replay numbers its states differently.
     match (up, down) {
         (Some(0), _) => {}
         (Some(count), _) => along(model, Id::Undo, count),
@@ -103,7 +103,7 @@ fn go_to_node(model: &mut Model, place: &SessionPlace) {
     }
 }
 
-/// Along the tree by so many states, without their values.
+/// Moves along the tree by this many states, without their values.
 fn along(model: &mut Model, id: Id, count: usize) {
     let gone = (0..count).take_while(|_| one_state(model, id)).count();
     if gone > 0 {
@@ -116,7 +116,7 @@ fn one_state(model: &mut Model, id: Id) -> bool {
     if id == Id::Redo { model.history.redo() } else { model.history.undo() }
 }
 
-/// So many single states back or forward along the walk, their values with them.
+/// Moves back or forward along the walk by this many single states, with their values.
 pub(super) fn by_states(model: &mut Model, id: Id, count: usize) -> Vec<Effect> {
     let mut effects = Vec::new();
     let is_there = if id == Id::Undo {
@@ -144,7 +144,7 @@ pub(super) fn by_states(model: &mut Model, id: Id, count: usize) -> Vec<Effect> 
     effects
 }
 
-/// Back to the node of this number, which is one before the walker's.
+/// Back to the node with this number, which comes before the walker's.
 pub(super) fn travel_to(model: &mut Model, node: usize) -> Vec<Effect> {
     let mut effects = abandon(model);
     while model.history.cursor() != Some(node) && model.history.parent().is_some() {
@@ -158,14 +158,14 @@ fn to_node(model: &mut Model, node: usize) {
     if model.history.go(node) {
         let state = model.history.current().map(|node| node.state);
         if let Some(State { approach, force, contact_radius, .. }) = state {
-            // By its numbers: a replay numbers its states otherwise.
+            // By its values, since a replay numbers its states differently.
             let command = Command::GoToState([approach, force, contact_radius]);
             model.journal.travelled(&command, model.history.current());
         }
     }
 }
 
-/// To the end of a branch, its parameters with it.
+/// To the end of a branch, with its parameters.
 pub(super) fn go_to(model: &mut Model, node: usize, numbering: u64) -> Vec<Effect> {
     if model.history.numbering() != numbering || model.history.node(node).is_none() {
         return model.refuse("the walk has changed meanwhile: ask for its branches again");

@@ -8,17 +8,17 @@ use crate::explorer::table::{Waits, is_available, row_of, why_unavailable};
 use crate::explorer::undo::SessionPlace;
 use pulloff_engine::preset::Key;
 
-/// Commands that may wait; more key presses than these are a held key.
+/// The most commands that may wait; more key presses than that come from a held key.
 const QUEUE: usize = 1000;
 
-/// What turns the selected value.
+/// The commands that turn the selected value.
 const TURNS: [Id; 6] = [Id::FineLess, Id::FineMore, Id::Less, Id::More, Id::MuchLess, Id::MuchMore];
 
 /// What a command waits for.
 pub(super) fn waits(command: &Command) -> Waits {
     let is_control = |key: &str| matches!(key, "path.control" | "control");
     match command {
-        // Another control holds the force or approach that the values before it led to.
+        // Another control holds the force or approach to which the previous values led.
         Command::Set { key, .. } | Command::Turn { key, .. } if is_control(key) => Waits::Curve,
         Command::Assign(all) if all.iter().any(|(key, _)| is_control(key)) => Waits::Curve,
         Command::Set { .. } | Command::Try { .. } | Command::Open(_) | Command::OpenWith { .. } => {
@@ -30,7 +30,7 @@ pub(super) fn waits(command: &Command) -> Waits {
 
 /// Whether a command has to wait for what is under way.
 pub(super) fn is_blocked(model: &Model, command: &Command) -> bool {
-    // Pressed again it ends a run; once more, it begins the next.
+    // Pressed again, it ends a run; pressed once more, it begins the next.
     if *command == Id::Run.into() && model.walking.is_some_and(|walking| !walking.solves && !walking.stops) {
         return false;
     }
@@ -42,7 +42,7 @@ pub(super) fn is_blocked(model: &Model, command: &Command) -> bool {
 /// Lets a command wait for its turn.
 pub(super) fn enqueue(model: &mut Model, command: Command) -> Vec<Effect> {
     let command = match command {
-        // A value is turned when its key is pressed: another may be selected when its turn comes.
+        // The value to turn is fixed when the key is pressed: another may be selected by the time its turn comes.
         Command::Plain(id) if TURNS.contains(&id) => {
             if !is_available(model, id) {
                 return model.refuse(why_unavailable(model, id));
@@ -50,7 +50,7 @@ pub(super) fn enqueue(model: &mut Model, command: Command) -> Vec<Effect> {
             let Some((row, _)) = model.selected_knob() else { return Vec::new() };
             Command::Turn { id, key: row.key.clone() }
         }
-        // What is typed is shown when there is time.
+        // What is being typed is shown when there is time.
         Command::Try { .. } => return Vec::new(),
         command => command,
     };
@@ -60,11 +60,11 @@ pub(super) fn enqueue(model: &mut Model, command: Command) -> Vec<Effect> {
     Vec::new()
 }
 
-/// What is taken back together with the same before it.
+/// What undo takes back together with its like before it.
 pub(super) enum Gesture {
     /// The value that is turned.
     Turn(Key),
-    /// A step, which goes on with so many before it.
+    /// A step that continues this many steps before it.
     Step(usize),
 }
 
@@ -81,7 +81,7 @@ pub(super) fn gesture(model: &Model, command: &Command) -> Option<Gesture> {
     }
 }
 
-/// Does something that undo can take back, with those of `gesture` before it.
+/// Does something that undo can take back, together with the earlier parts of `gesture`.
 pub(super) fn recorded(
     model: &mut Model,
     gesture: Option<Gesture>,
@@ -117,7 +117,7 @@ pub(super) fn recorded(
     effects
 }
 
-/// Whether the answer to an effect is another problem.
+/// Whether an effect is answered by another problem.
 fn changes_problem(effect: &Effect) -> bool {
     let Effect::File(job) = effect else { return false };
     matches!(**job, Job::Open { .. } | Job::Read { .. } | Job::Assign { .. })

@@ -1,4 +1,4 @@
-//! Values changed, and the curve that follows from them.
+//! Changed values, and the curve that follows from them.
 
 use crate::explorer::command::{Assignment, Id};
 use crate::explorer::effect::Effect;
@@ -21,7 +21,7 @@ use pulloff_engine::units::{Quantity, UnitSystem};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The stiffness of the contact at the start in the user's units; before there is a curve, the unit of stiffness.
+/// The stiffness of the contact at the start in the user's units; while there is no curve, the unit of stiffness.
 fn contact_stiffness(model: &Model) -> f64 {
     let known = model.curve.as_ref().and_then(|curve| {
         let base = &curve.base;
@@ -30,7 +30,7 @@ fn contact_stiffness(model: &Model) -> f64 {
     known.unwrap_or_else(|| model.preset.problem().reduced().units.stiffness)
 }
 
-/// The selected value, or that of `key`, turned by one of the commands that turn.
+/// Turns the selected value, or that of `key`, by one of the turning commands.
 pub(in crate::explorer) fn turn(model: &mut Model, id: Id, key: Option<&str>) -> Vec<Effect> {
     let (up, amount) = match id {
         Id::FineLess => (false, Amount::Third),
@@ -55,7 +55,7 @@ pub(in crate::explorer) fn turn(model: &mut Model, id: Id, key: Option<&str>) ->
     }
 }
 
-/// A group is not stored: what it changed instead is said, with the new values.
+/// A group is not stored, so the message says what changed instead, with the new values.
 fn tell_effect(model: &mut Model, key: &str, changed: &Preset) {
     let Some([_, held]) = groups::effect(key) else { return };
     let moved = changed.rows().filter(|row| model.preset.get(&row.key) != changed.get(&row.key));
@@ -66,7 +66,7 @@ fn tell_effect(model: &mut Model, key: &str, changed: &Preset) {
     }
 }
 
-/// Tells of a value that has no effect yet.
+/// Says that a value has no effect yet.
 fn tell_idle(model: &mut Model, key: &str, changed: &Preset) {
     let is_given = changed.get(key).is_some();
     if matches!(key, "path.rate" | "path.steps") && is_given && changed.edge.exponent.is_none() {
@@ -78,7 +78,7 @@ fn tell_idle(model: &mut Model, key: &str, changed: &Preset) {
     }
 }
 
-/// What a formula's parameters that the one before had not begin with; a like name that is gone may be what was meant.
+/// The initial values of a formula's new parameters; a former parameter with a similar name may be what was meant.
 fn tell_new_parameters(model: &mut Model, before: &Preset, changed: &Preset) {
     let names = |preset: &Preset| -> Vec<Row> {
         preset.rows().filter(|row| is_parameter(&row.key)).map(|row| Row::Owned(row.into_owned())).collect()
@@ -103,12 +103,12 @@ fn tell_new_parameters(model: &mut Model, before: &Preset, changed: &Preset) {
     }
 }
 
-/// Another value for a key, in place of those tried for it.
+/// Sets a key to another value, in place of those tried for it.
 pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     let mut preset = before_tried(model).clone();
     let Some(row) = preset.row(key) else { return Vec::new() };
     let result = match preset.typed(&row, text) {
-        // A file is read by those who may wait for it.
+        // A file is read by a worker, which may wait for it.
         Ok(Value::Text(name)) if row.kind == Kind::File => return vec![read(model, key, name)],
         Ok(Value::Text(name)) if row.kind == Kind::Points => {
             let assignments = vec![(row.key.clone(), name)];
@@ -135,25 +135,25 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     }
 }
 
-/// Whether another gap comes with another value of this key.
+/// Whether another value of this key brings another gap.
 fn is_gap(key: &str) -> bool {
     matches!(key, "gap.shape" | "gap.file")
 }
 
-/// Gives `preset` another value; what is to be known of it beside the value is returned in words.
+/// Gives `preset` another value; returns in words what else there is to know about it.
 fn put(preset: &mut Preset, key: &str, value: Value) -> Result<Option<String>, Invalid> {
     let before = preset.clone();
     let moved = set_in_range(preset, key, value)?;
-    // A value of the gap that is turned makes no other gap.
+    // Turning a value of the gap does not replace the gap.
     let lengths = if is_gap(key) { other_lengths(&before, preset) } else { None };
     let said: Vec<String> = moved.into_iter().chain(lengths).collect();
     Ok((!said.is_empty()).then(|| said.join("; ")))
 }
 
-/// What is to be known when a gap is put in place of one of another size, where lengths have no unit: the numbers that stay
-/// mean something else then.
+/// What to know when a gap is replaced by one of another size and lengths have no unit: the numbers that stay then mean
+/// something else.
 fn other_lengths(before: &Preset, changed: &Preset) -> Option<String> {
-    /// Between gaps of one size the numbers may well be meant alike.
+    /// Between gaps of similar size, the numbers may well be meant the same way.
     const LIKE: f64 = 3.0;
     let [was, is] = [before, changed].map(|preset| preset.gap.length());
     let (was, is) = was.zip(is)?;
@@ -167,11 +167,11 @@ fn other_lengths(before: &Preset, changed: &Preset) -> Option<String> {
     })
 }
 
-/// Gives `preset` another value; a start that is not on the profile it gets moves onto it, which is returned in words.
+/// Gives `preset` another value; a start that is not on its new profile moves onto it, which is returned in words.
 fn set_in_range(preset: &mut Preset, key: &str, value: Value) -> Result<Option<String>, Invalid> {
-    /// The start on a profile that the start before does not fit, over the last radius.
+    /// The start on a profile that the previous start does not fit, over the last radius.
     const START: f64 = 0.8;
-    /// A start below this share of the last radius is of another size than the profile.
+    /// A start below this share of the last radius is on another scale than the profile.
     const FITTING: f64 = 0.05;
     let Start::ContactRadius(start) = preset.path.start else { return preset.set(key, value).map(|()| None) };
     if !is_gap(key) {
@@ -180,7 +180,7 @@ fn set_in_range(preset: &mut Preset, key: &str, value: Value) -> Result<Option<S
     let mut changed = preset.clone();
     let result = changed.set(key, value.clone());
     if result.is_err() {
-        // Perhaps for the range alone: once more with nothing of the path in the way.
+        // Perhaps only because of the range: try once more with nothing of the path in the way.
         changed.reset("path.end_contact_radius")?;
         changed.set(START_KEYS[0], Value::Number(1e-6 * start))?;
         if changed.set(key, value).is_err() {
@@ -214,7 +214,8 @@ fn set_in_range(preset: &mut Preset, key: &str, value: Value) -> Result<Option<S
     Ok(Some(told))
 }
 
-/// Another value for a key while it is typed, always from the preset before: what the texts between lacked is not lost.
+/// Tries another value for a key while it is being typed, always from the preset before, so that nothing that an
+/// intermediate text lacked is lost.
 pub(super) fn try_out(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     let before = model.untried.clone().unwrap_or_else(|| {
         let (place, mark, journal) = (model.place(), model.history.mark(), model.journal.clone());
@@ -225,7 +226,7 @@ pub(super) fn try_out(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
     effects
 }
 
-/// The values and the walker's state before those tried.
+/// Restores the values and the walker's state from before the ones tried.
 pub(super) fn untry(model: &mut Model) -> Vec<Effect> {
     let Some(before) = model.untried.take() else { return Vec::new() };
     let mut effects = stop(model);
@@ -242,7 +243,7 @@ fn before_tried(model: &Model) -> &Preset {
     model.untried.as_deref().map_or(&model.preset, |before| &before.place.preset)
 }
 
-/// Other values for some keys, as one change; those of a file wait for who may read it.
+/// Sets other values for some keys, as one change; a file among them waits for a worker to read it.
 pub(super) fn assign(model: &mut Model, assignments: Vec<Assignment>) -> Vec<Effect> {
     let mut preset = before_tried(model).clone();
     let whole = |(key, text): Assignment| Ok((key_called(&preset, &key)?, text));
@@ -267,9 +268,9 @@ pub(super) fn assign(model: &mut Model, assignments: Vec<Assignment>) -> Vec<Eff
     }
 }
 
-/// The rows of a profile were read: they are the gap now.
+/// The rows of a profile have been read: they become the gap.
 pub(super) fn rows_came(model: &mut Model, rows: Arc<ProfileRows>) -> Vec<Effect> {
-    // Each note begins with the path, which is said once and short.
+    // Each note begins with the path, which is given once, in short form.
     let path = Path::new(&rows.name);
     let whole =
         show_path(&rows.folder.as_deref().map_or_else(|| path.to_owned(), |folder| folder.join(path)));
@@ -289,14 +290,14 @@ pub(super) fn rows_came(model: &mut Model, rows: Arc<ProfileRows>) -> Vec<Effect
     }
 }
 
-/// What came of assignments, after a file was read or at once: a measured curve is told of, with what was found in it.
+/// The outcome of assignments, after a file was read or at once: reports a measured curve and what was found in it.
 pub(super) fn assigned(model: &mut Model, preset: Preset) -> Vec<Effect> {
     model.untried = None;
     tell_points(model, &preset);
     change(model, preset)
 }
 
-/// Tells how many points `preset` has by branch and part, where they are others than before or taken otherwise.
+/// Reports how many points `preset` has by branch and part, if they differ from before or are read differently.
 fn tell_points(model: &mut Model, preset: &Preset) {
     let taken = |preset: &Preset| (preset.data.columns.clone(), preset.reading().asked);
     if model.preset.data.source == preset.data.source && taken(&model.preset) == taken(preset) {
@@ -314,7 +315,7 @@ fn tell_points(model: &mut Model, preset: &Preset) {
                 format!("{}: {contact} in contact, {apart} apart{jump}", branch.segment.name())
             });
             let read = format!("{name}: {}", parts.collect::<Vec<_>>().join("; "));
-            // What was assumed of the columns, and how many rows were left out.
+            // What was assumed about the columns, and how many rows were left out.
             let of_file = preset.notes_of_reading().unwrap_or_default();
             let said: Vec<String> =
                 std::iter::once(read).chain(of_file).chain(branches.notes.iter().cloned()).collect();

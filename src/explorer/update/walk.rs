@@ -1,4 +1,4 @@
-//! Steps, runs, jumps and undo: what is asked of the walk, and what becomes of its answers.
+//! Steps, runs, jumps and undo: what is requested of the walk, and what becomes of its answers.
 
 use crate::explorer::command::{Id, LENGTHS, PACES};
 use crate::explorer::curve::CurveData;
@@ -15,14 +15,14 @@ use pulloff_engine::report::number::{short, significant, with_unit};
 use pulloff_engine::units::Quantity;
 use std::sync::Arc;
 
-/// Asks for a walk on the curve on the screen, or says why there is none.
+/// Requests a walk on the curve on the screen, or says why there is none.
 pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect> {
     if model.is_computing() {
         model.tell(Level::Info, "the curve is being computed");
         return Vec::new();
     }
     let Some(curve) = model.curve.clone() else {
-        // Given up before: asked for again.
+        // It was given up before, so it is requested again.
         model.tell(Level::Info, "the curve is being computed");
         return vec![want_curve(model)];
     };
@@ -55,7 +55,7 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
     let wanted = if let Action::Steps(count) = action { Some(count) } else { None };
     let solves = matches!(action, Action::Solve { .. });
     model.walking = Some(Walking { id, made: 0, wanted, solves, paced: false, stops: false });
-    // From an unstable start the edge runs outward, as at the beginning of an unloading.
+    // From an unstable start, the edge runs outward, as at the beginning of an unloading.
     let inward = model.inward && !(begins && action == Action::Jump);
     let length = model.length;
     model.journal.walks(action.clone(), Arc::clone(&curve), model.inward, length);
@@ -73,14 +73,14 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
     }))]
 }
 
-/// A step by a key, held since so many; at a limit point or a touch it has to be pressed again.
+/// A step by a key that has been held for this many steps; at a limit point or a touch it must be pressed again.
 pub(super) fn step(model: &mut Model, held: usize) -> Vec<Effect> {
     let at = model.walker().zip(model.control()).map(|(node, control)| node.at(control));
     let stays = held > 0 && at.is_some_and(|at| at != At::Nothing);
     if stays { Vec::new() } else { walk(model, Action::Steps(1)) }
 }
 
-/// On to the next event of the path: what is pending happens, and where the path ends outward it turns round.
+/// Goes on to the next event of the path: what is pending happens, and where the path ends outward, it turns round.
 pub(in crate::explorer) fn next_event(model: &mut Model) -> Vec<Effect> {
     if model.can_jump() {
         return walk(model, Action::Jump);
@@ -115,7 +115,7 @@ pub(super) fn run(model: &mut Model, action: Action) -> Vec<Effect> {
     effects
 }
 
-/// A run to the next limit point; while one goes on, its end.
+/// A run to the next limit point; if a run is under way, ends it.
 pub(in crate::explorer) fn run_or_stop(model: &mut Model) -> Vec<Effect> {
     if model.walking.is_some() { stop(model) } else { run(model, Action::ToLimit) }
 }
@@ -127,7 +127,7 @@ fn stood_stable(model: &Model) -> Option<f64> {
     is_within.then(|| node.state.contact_radius * node.setting.units().length)
 }
 
-/// Says so when a walker that was stable at `before` stands on another stable part of the curve, for other values.
+/// Reports when a walker that was stable at `before` now stands, for other values, on another stable part of the curve.
 fn tell_of_fold(model: &mut Model, before: f64) {
     let (Some(curve), Some(after)) = (&model.curve, stood_stable(model)) else { return };
     let between = |s: f64| (s - before) * (s - after) < 0.0;
@@ -141,7 +141,7 @@ fn tell_of_fold(model: &mut Model, before: f64) {
         length(after),
         length(before)
     );
-    // What was said of the values stands before it; what went wrong meanwhile stays.
+    // What was said about the values comes first; an error that occurred meanwhile stays.
     let said = match &model.message {
         Some((level, _)) if level.is_bad() => return,
         said => said.as_ref().map(|(_, said)| said.clone()),
@@ -149,7 +149,7 @@ fn tell_of_fold(model: &mut Model, before: f64) {
     model.tell(Level::Info, said.into_iter().chain([text]).collect::<Vec<_>>().join("; "));
 }
 
-/// Another pace, of the run under way too.
+/// Sets another pace, also for the run under way.
 pub(in crate::explorer) fn scale_pace(model: &mut Model, by: f64) -> Vec<Effect> {
     let pace = (model.pace * by).clamp(*PACES.start(), *PACES.end());
     if pace.total_cmp(&model.pace).is_eq() {
@@ -162,7 +162,7 @@ pub(in crate::explorer) fn scale_pace(model: &mut Model, by: f64) -> Vec<Effect>
     vec![Effect::Pace(pace)]
 }
 
-/// Takes the states that a walk made, and its end. `None`: the commands that wait may go on.
+/// Accepts the states that a walk made, and its end. `None`: the waiting commands may go on.
 pub(super) fn walked(
     model: &mut Model,
     id: u64,
@@ -201,14 +201,14 @@ pub(super) fn walked(
     match outcome {
         WalkOutcome::Done => {}
         WalkOutcome::AtLimit => {
-            // A held key stops at the limit point; pressing it again goes on.
+            // A held key stops at the limit point; pressing it again continues.
             while stepped && model.queue.front().is_some_and(|command| command.id() == Id::Step) {
                 model.queue.pop_front();
             }
         }
-        // What waits was asked for after the pause: a pause empties the queue.
+        // What is waiting was requested after the pause, since a pause empties the queue.
         WalkOutcome::Paused => {
-            // Otherwise another value ended it, whose curve is to be told of.
+            // Otherwise another value ended it, and its curve will be reported.
             if !model.is_computing() {
                 let [step, run] = [Id::Step, Id::Run].map(Id::named);
                 model.tell(Level::Info, format!("paused; {step} steps, {run} runs on"));
@@ -253,7 +253,7 @@ fn append(model: &mut Model, request: u64, state: MadeState) {
     let current = model.history.current();
     let again = current.is_some_and(|node| matches!(node.kind, NodeKind::Solved | NodeKind::Stale(_)));
     let beside = state.kind == NodeKind::Solved && again;
-    // A change made further is no further step.
+    // Continuing the same change is not another step.
     let step = current.map_or(0, |node| node.step + usize::from(!beside));
     let step = if state.begins { 0 } else { step };
     let node = Node {
@@ -277,17 +277,17 @@ fn append(model: &mut Model, request: u64, state: MadeState) {
     if let Some(inward) = on_path_inward(model, node.on_path) {
         model.inward = inward;
     }
-    // A knob turned further is one change: the states in between are kept, but undo leads before them.
+    // Turning a knob further is one change: the states in between are kept, but undo goes back before all of them.
     if beside { model.history.push_beside(node) } else { model.history.push(node) }
 }
 
-/// Which way the path goes at a state of it.
+/// The direction of the path at one of its states.
 fn on_path_inward(model: &Model, at: Option<usize>) -> Option<bool> {
     let path = model.curve.as_ref()?.along.as_ref()?.as_ref().ok()?;
     Some(path.states.get(at?)?.direction == Direction::Unloading)
 }
 
-/// A state that could not be solved for the new values stays, marked, with the reason.
+/// A state that could not be solved for the new values stays, marked with the reason.
 fn mark_stale(model: &mut Model, request: u64, reason: &str) {
     let Some(node) = model.history.current().cloned() else { return };
     let again = matches!(node.kind, NodeKind::Stale(_) | NodeKind::Solved);
@@ -297,11 +297,11 @@ fn mark_stale(model: &mut Model, request: u64, reason: &str) {
     if again { model.history.push_beside(stale) } else { model.history.push(stale) }
 }
 
-/// Back to where the walk begins; without a curve, that is asked for again.
+/// Back to where the walk begins; without a curve, the curve is requested again.
 pub(in crate::explorer) fn restart(model: &mut Model) -> Vec<Effect> {
     model.inward = true;
     if !model.is_computing() && !model.shows_its_curve() {
-        // Given up or failed before: asked for again.
+        // It was given up or failed before, so it is requested again.
         return vec![want_curve(model)];
     }
     if model.preset.path.begin == Begin::Touch {
@@ -322,7 +322,7 @@ pub(in crate::explorer) fn scale_length(model: &mut Model, by: f64) {
     model.length = (model.length * by).clamp(*LENGTHS.start(), *LENGTHS.end());
 }
 
-/// Ends the walk that runs; what it might still make is not waited for.
+/// Ends the walk under way, without waiting for what it might still make.
 pub(super) fn abandon(model: &mut Model) -> Vec<Effect> {
     let effects = stop_walk(model);
     model.walking = None;
@@ -330,7 +330,8 @@ pub(super) fn abandon(model: &mut Model) -> Vec<Effect> {
     effects
 }
 
-/// The first state of the walk: the start of the curve, or the landing after the first touch. `None`: the commands that wait may go on.
+/// The first state of the walk: the start of the curve, or the landing after the first touch. `None`: the waiting
+/// commands may go on.
 pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) -> Option<Vec<Effect>> {
     let preset = &curve.setting.preset;
     let apart = preset.path.begin == Begin::Touch;

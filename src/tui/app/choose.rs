@@ -1,4 +1,4 @@
-//! A list to choose from: the arrows go through it, text typed keeps the lines that have it.
+//! A list to choose from: the arrows move through it, typed text keeps the lines that contain it.
 
 use super::state::App;
 use crate::explorer::script::offers::{DEVICES, Typing};
@@ -10,12 +10,12 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use pulloff_engine::preset::{Row, Value};
 use pulloff_engine::problem::Control;
 
-/// So many lines a page.
+/// Lines per page.
 const PAGE: usize = 10;
-/// Longest text a list is filtered by.
+/// The longest text a list is filtered by.
 const FILTER: usize = 40;
 
-/// The line that a key leads to from `line` of so many; `None` for another key.
+/// The line, out of `count`, to which a key leads from `line`; `None` for another key.
 fn turned(key: KeyEvent, line: usize, count: usize) -> Option<usize> {
     let last = count.saturating_sub(1);
     Some(match key.code {
@@ -28,7 +28,7 @@ fn turned(key: KeyEvent, line: usize, count: usize) -> Option<usize> {
 }
 
 impl App {
-    /// End and the page keys in the selected panel, where that has lines.
+    /// End and the page keys in the selected panel, if it has lines.
     pub(super) fn page_key(&mut self, key: KeyEvent) -> Option<Vec<Effect>> {
         let (panel, model) = (self.model.panel, &self.model);
         let (line, count) = match panel {
@@ -45,7 +45,7 @@ impl App {
 
     pub(super) fn choose_key(&mut self, mut choose: Choose, key: KeyEvent) -> Vec<Effect> {
         let count = choose.shown().len();
-        // Letters are text; only before the first one those that go through a list or leave it do what they always do.
+        // Letters are text, but before the first one, keys that move through a list or leave it do what they always do.
         let is_command = choose.filter.is_empty()
             && matches!(self.keymap.in_list(key), Some(Id::Up | Id::Down | Id::Cancel | Id::Quit | Id::Edit));
         let is_text = key.modifiers.difference(KeyModifiers::SHIFT).is_empty() && !is_command;
@@ -80,7 +80,7 @@ impl App {
         Vec::new()
     }
 
-    /// The words of a value that is one of some.
+    /// Asks for one of the words that a value can be.
     pub(super) fn ask_choice(&mut self, row: &Row, words: &[&str], value: Option<&Value>) -> Vec<Effect> {
         let set = |word: &str| Choice::Command(Command::Set { key: row.key.clone(), text: word.to_owned() });
         let items = words.iter().map(|word| Item::new(*word, set(word))).collect();
@@ -89,7 +89,7 @@ impl App {
         Vec::new()
     }
 
-    /// What the device prescribes; the stiffness of a spring is typed.
+    /// Asks what the device prescribes; the stiffness of a spring is typed.
     pub(super) fn ask_control(&mut self, row: &Row, value: Option<Value>) -> Vec<Effect> {
         let here = match value {
             Some(Value::Control(Control::Force)) => 1,
@@ -110,7 +110,7 @@ impl App {
         Vec::new()
     }
 
-    /// What a command can take, a line each.
+    /// Lists what a command can take, one line each.
     pub(super) fn ask_argument(&mut self, row: &'static CommandRow) -> Vec<Effect> {
         let files = |folder: &str| self.files(folder);
         let typing = Typing { model: &self.model, words: &[], word: "", files: &files };
@@ -132,7 +132,7 @@ impl App {
     fn take(&mut self, choose: &Choose) -> Vec<Effect> {
         let Some((at, item)) = choose.current() else { return Vec::new() };
         match item.action.clone() {
-            // Several may be wanted: the list stays until it is closed.
+            // The person may want several: the list stays until it is closed.
             Choice::Command(command @ Command::Overlay(_)) => {
                 let effects = self.run(command);
                 self.ask_argument(row_of(Id::Overlays));

@@ -1,5 +1,5 @@
-//! The columns of a measured curve whose header does not say what they are, chosen from lists: what is x, what is the force,
-//! which column names the branch, and the units where there are none.
+//! The columns of a measured curve whose header does not say what they are, chosen from lists: which is x, which is the
+//! force, which one names the branch, and the units where none are given.
 
 use super::state::App;
 use crate::explorer::Effect;
@@ -29,7 +29,7 @@ fn meaning(role: ColumnRole) -> &'static str {
     }
 }
 
-/// Whether a column can be this: one with a unit of something else cannot.
+/// Whether a column can have this role: one with a unit of another quantity cannot.
 fn may_be(seen: &SeenColumn, role: ColumnRole) -> bool {
     match &seen.unit {
         Some(unit) => Unit::parse(unit, 0).is_ok_and(|unit| role.dimension() == Some(unit.dimension())),
@@ -107,7 +107,7 @@ impl App {
         self.choose(&title, units.iter().map(item).collect(), 0);
     }
 
-    /// Goes on with what was chosen.
+    /// Continues with what was chosen.
     pub(super) fn columns_chosen(&mut self, choosing: &Choosing) -> Vec<Effect> {
         let has_more = |choosing: &Choosing| {
             let free = |seen: &SeenColumn| !choosing.taken.contains(&seen.number) && seen.unit.is_none();

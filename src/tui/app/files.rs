@@ -1,4 +1,4 @@
-//! Names and paths asked for: saving, exporting, copying.
+//! Requests for names and paths: saving, exporting, copying.
 
 use super::state::App;
 use crate::explorer::export::{ExportKind, Page, Picture, file_for};
@@ -58,7 +58,7 @@ impl App {
         Vec::new()
     }
 
-    /// What is seen, drawn, for the export of it.
+    /// Draws what is seen, for its export.
     pub(super) fn draw_page(&mut self, what: Picture, path: String, replace: bool) -> Option<Command> {
         let page = match what {
             Picture::Screen => Ok(Page::Screen(copy::text(self, Excerpt::Screen))),
@@ -81,7 +81,7 @@ impl App {
         Vec::new()
     }
 
-    /// Text for the clipboard, if it is not too long for it.
+    /// Puts text on the clipboard, if it is not too long.
     pub(super) fn copy(&mut self, content: Excerpt) {
         let text = copy::text(self, content);
         let (level, told) = if text.len() > copy::LONGEST {

@@ -1,4 +1,4 @@
-//! What is asked about the gap: its shape by pictures, its formula tried while it is typed, the file of its profile.
+//! Questions about the gap: its shape from pictures, its formula tried while it is typed, the file of its profile.
 
 use super::state::App;
 use crate::explorer::data::Folder;
@@ -92,7 +92,7 @@ impl App {
         names.map(|name| name.to_string()).any(|name| !name.starts_with(SHIPPED_DATA))
     }
 
-    /// What choosing a line would make of the gap, where it is a shape that is chosen.
+    /// What choosing a line would make of the gap, if the choice is a shape.
     pub(super) fn picture(&self, action: &Choice) -> Option<Figure> {
         match action {
             Choice::Command(Command::Set { key, text }) if key == "gap.shape" => {
@@ -104,7 +104,7 @@ impl App {
         }
     }
 
-    /// A formula whose text has changed is tried; one that is none leaves the curve as it is.
+    /// Tries a formula whose text has changed; an invalid one leaves the curve as it is.
     pub(super) fn check(&mut self, prompt: &mut Prompt) -> Vec<Effect> {
         prompt.error = None;
         prompt.fault = None;

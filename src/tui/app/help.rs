@@ -1,4 +1,4 @@
-//! The help: its pages by Tab, scrolled, and searched with `/`, `n` and `N`.
+//! The help: its pages are chosen by Tab, scrolled, and searched with `/`, `n` and `N`.
 
 use super::state::App;
 use crate::explorer::Id;
@@ -8,9 +8,9 @@ use crossterm::event::{Event, KeyCode, KeyEvent};
 use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
 
-/// Longest text looked for.
+/// The longest text that can be searched for.
 const PATTERN: usize = 60;
-/// So many lines a page.
+/// Lines per page.
 const PAGE: usize = 10;
 
 impl App {
@@ -61,7 +61,7 @@ impl App {
         }
     }
 
-    /// The next place of the pattern on any page, or the one before, round and round; the first one not above what is
+    /// The next or previous occurrence of the pattern on any page, in a cycle; the first one is not above what is
     /// shown.
     fn look(&self, help: &mut Help, down: bool) {
         let wanted = help.pattern.to_lowercase();

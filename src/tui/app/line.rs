@@ -12,13 +12,13 @@ use crossterm::event::{Event, KeyCode, KeyEvent};
 use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
 
-/// What stands below an empty line.
+/// The note below an empty line.
 const NOTE: &str = "type what you look for; Tab takes a line, Enter runs it, Up brings lines back";
-/// So many lines a page.
+/// Lines per page.
 const PAGE: usize = 8;
 
 impl App {
-    /// Opens the list, for a line or to see what can be done.
+    /// Opens the list, to type a line or to see what can be done.
     pub(super) fn ask_line(&mut self, is_help: bool) -> Vec<Effect> {
         let effects = self.run(Id::CommandLine.into());
         self.typed.at = self.typed.lines.len();
@@ -40,7 +40,7 @@ impl App {
                 return Vec::new();
             }
             KeyCode::Tab => self.take_entry(&mut prompt),
-            // Above the list are the lines typed before.
+            // The lines typed earlier lie above the list.
             KeyCode::Up if prompt.selected.is_none() || self.is_recalled() => self.recall(&mut prompt, true),
             KeyCode::Down if self.is_recalled() => self.recall(&mut prompt, false),
             KeyCode::Up => prompt.selected = prompt.selected.and_then(|at| at.checked_sub(1)),
@@ -56,7 +56,7 @@ impl App {
                     self.typed.at = self.typed.lines.len();
                     self.changed(&mut prompt, input);
                 } else {
-                    // The list is of what stands before the cursor.
+                    // The list depends on the text before the cursor.
                     prompt.input = input;
                     self.list(&mut prompt);
                 }
@@ -84,12 +84,12 @@ impl App {
         let asked = head.trim();
         let keyed = self.keymap.called(asked.strip_prefix("key ").unwrap_or(asked));
         prompt.entries = palette(&head, &first, keyed, &self.model, &files);
-        // A line that is a command is run as it stands.
+        // A line that is a complete command is run as it stands.
         let is_command = parse(prompt.input.value()).is_ok();
         prompt.selected = (!is_command && !prompt.entries.is_empty()).then_some(0);
     }
 
-    /// Another text: what was wrong with the last is forgotten.
+    /// The text has changed: the error of the previous one is forgotten.
     fn changed(&self, prompt: &mut Prompt, input: Input) {
         let is_help = prompt.purpose == Purpose::Line { is_help: true } && input.value().is_empty();
         prompt.note = if is_help { now(self).join("  ") } else { note(input.value()) };
@@ -99,7 +99,7 @@ impl App {
         self.list(prompt);
     }
 
-    /// The list of a line that stands there, when more is known: names of presets.
+    /// Renews the list of a line being typed when more is known, such as the names of presets.
     pub(super) fn list_again(&mut self) {
         let Some(Dialog::Prompt(mut prompt)) = self.overlay.take_if(|over| {
             matches!(
@@ -109,7 +109,7 @@ impl App {
         }) else {
             return;
         };
-        // The entry that is selected stays so, wherever it stands now.
+        // The selected entry stays selected, wherever it now is.
         let selected = prompt.selected.and_then(|at| prompt.entries.get(at)).map(|entry| entry.line.clone());
         self.list(&mut prompt);
         prompt.selected =
@@ -117,7 +117,7 @@ impl App {
         self.overlay = Some(Dialog::Prompt(prompt));
     }
 
-    /// Puts the selected entry, or the first, where the text before the cursor stands.
+    /// Puts the selected entry, or the first, in place of the text before the cursor.
     fn take_entry(&mut self, prompt: &mut Prompt) {
         let Some(entry) = prompt.entries.get(prompt.selected.unwrap_or(0)) else {
             "nothing has that".clone_into(&mut prompt.note);
@@ -146,7 +146,7 @@ impl App {
     fn obey_line(&mut self, mut prompt: Prompt) -> Vec<Effect> {
         let mut line = prompt.input.value().to_owned();
         if let Some(entry) = prompt.selected.and_then(|at| prompt.entries.get(at)) {
-            // What stands behind the cursor is not dropped.
+            // The text after the cursor is not dropped.
             if !entry.is_whole || prompt.input.cursor() < line.chars().count() {
                 self.take_entry(&mut prompt);
                 self.overlay = Some(Dialog::Prompt(prompt));
@@ -171,7 +171,7 @@ impl App {
                 }
             }
         };
-        // What was refused stays to be mended.
+        // A refused line stays so that it can be corrected.
         if self.overlay.is_none() { self.taken(prompt, effects) } else { effects }
     }
 }
@@ -186,7 +186,7 @@ fn note(line: &str) -> String {
     let Some(row) = called(name) else { return NOTE.to_owned() };
     match row.takes.what {
         "" => row.help.to_owned(),
-        // What is typed as it stands and what stands for something else look different.
+        // What is typed literally must look different from what stands for something else.
         what if what.chars().any(char::is_uppercase) => format!("{name} {what}: {}", row.help),
         what => format!("{name} {}: {}", what.to_uppercase(), row.help),
     }

@@ -1,15 +1,15 @@
-//! What the mouse does, each of which a key does too; nothing unless the mouse was taken.
+//! What the mouse does; a key does each of these too. Nothing unless the mouse was taken.
 //!
 //! | | click | wheel |
 //! |---|---|---|
 //! | Problem | selects the value | turns it finely |
 //! | Charts | the walker goes to the state of the curve there | zooms about the pointer |
-//! | Log | selects; once more goes to the event | selects the one above or below |
-//! | a list | selects; once more takes it | selects the one above or below |
-//! | header | a place is gone to | |
+//! | Log | selects; a second click goes to the event | selects the one above or below |
+//! | a list | selects; a second click takes it | selects the one above or below |
+//! | header | goes to a place | |
 //! | footer | does what the word says | |
 //!
-//! A place outside of the screen, or of what is drawn, does nothing. A question is answered by keys alone.
+//! A position outside the screen, or outside what is drawn, does nothing. A question is answered only by keys.
 
 use super::state::App;
 use crate::explorer::model::Level;
@@ -22,15 +22,15 @@ use crate::tui::view::status::{self, Does};
 use crate::tui::view::{cells, charts, header, log, overlays, places, problem, states};
 use ratatui::layout::{Position, Rect};
 
-/// A click goes to a state of the curve within so many character widths, a row counting twice.
+/// A click goes to a state of the curve within this many character widths; a row counts as two.
 const NEAR: f64 = 6.0;
 
-/// The table at this place of the screen.
+/// The table at this position of the screen.
 fn table(regions: &Regions, at: Position) -> Option<Rect> {
     regions.charts.iter().find(|(view, area)| view.is_table() && area.contains(at)).map(|(_, area)| *area)
 }
 
-/// A plot, and a place on it in shares of its window.
+/// A plot, and a position on it in shares of its window.
 type PlotPlace = (Rect, (f64, f64));
 
 impl App {
@@ -76,7 +76,7 @@ impl App {
                 }
                 None => Vec::new(),
             },
-            // Above the list are lines typed before, which no wheel brings back.
+            // Above the list are the lines typed earlier, which the wheel does not bring back.
             (Some(Dialog::Prompt(prompt)), Some(true)) if prompt.selected.is_none() => Vec::new(),
             (Some(Dialog::Choose(_) | Dialog::Help(_) | Dialog::Prompt(_)), Some(up)) => {
                 self.key(if up { KeyCode::Up } else { KeyCode::Down }.into())
@@ -93,7 +93,7 @@ impl App {
         }
     }
 
-    /// A word of the footer, or a place in the header.
+    /// A click on a word of the footer, or on a place in the header.
     fn click_word(&mut self, at: Position) -> Option<Vec<Effect>> {
         if at.y + 1 == self.screen.bottom() {
             return Some(match status::word_at(self, self.screen.width, at.x)? {
@@ -110,7 +110,7 @@ impl App {
         home.flatten().map(|home| self.run(Command::Go(home)))
     }
 
-    /// Another line of the list that lies over the screen.
+    /// Selects another line of the list that lies over the screen.
     fn select_item(&mut self, line: usize) {
         match self.overlay.take() {
             Some(Dialog::Choose(mut choose)) => {
@@ -133,7 +133,7 @@ impl App {
     fn click(&mut self, at: Position) -> Vec<Effect> {
         let Some(regions) = places(self, self.screen) else { return Vec::new() };
         let inside = |area: Option<Rect>| area.filter(|area| area.contains(at));
-        // An upper wall has the title of what is below it.
+        // A shared wall has the title of the pane below it.
         if let Some(area) = inside(regions.log) {
             let line = log::line_at(self, area, at.y);
             if line == Some(self.model.event) && self.model.panel == ScreenPanel::Log {
@@ -188,12 +188,12 @@ impl App {
         }
     }
 
-    /// The value at a place of Problem.
+    /// The value at a position in Problem.
     fn value_at(&self, regions: &Regions, area: Rect, at: Position) -> Option<usize> {
         if regions.is_stacked { cells::value_at(self, area, at) } else { problem::line_at(self, area, at.y) }
     }
 
-    /// The chart at a place of the screen, and if it is on the plot, the plot and the place in shares of the window.
+    /// The chart at a position of the screen, and, on its plot, the plot and the position in shares of the window.
     fn place(&self, regions: &Regions, at: Position) -> Option<(View, Option<PlotPlace>)> {
         let (view, area) = regions.charts.iter().find(|(_, area)| area.contains(at))?;
         let subject = Subject::of(&self.model);
@@ -216,7 +216,7 @@ impl App {
         }
     }
 
-    /// The walker goes to the state of the curve nearest to a place of a view, if it is near in the plot.
+    /// The walker goes to the state of the curve nearest to a position in a view, if that is near in the plot.
     fn go_to(&mut self, view: View, share: (f64, f64), plot: Option<Rect>) -> Vec<Effect> {
         let Some(subject) = Subject::of(&self.model) else { return Vec::new() };
         let bounds = subject.figure(view).bounds.part(&self.model.window(view));

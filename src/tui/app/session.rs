@@ -1,4 +1,4 @@
-//! Sessions that go on.
+//! Resumed sessions.
 
 use super::state::App;
 use crate::explorer::Effect;
@@ -8,19 +8,19 @@ use crate::tui::theme::Theme;
 use crossterm::event::{KeyCode, KeyEvent};
 
 impl App {
-    /// Goes on with a session.
+    /// Resumes a session.
     pub fn resumed(snapshot: Snapshot, theme: Theme) -> (Self, Vec<Effect>) {
         let (model, effects) = snapshot.resume(None);
         (Self::on(model, theme), effects)
     }
 
-    /// Offers a session.
+    /// Offers to resume a session.
     pub fn offer(&mut self, what: &str, snapshot: Snapshot) {
         let question = format!("{what} Enter goes on with it, Esc begins anew.");
         self.overlay = Some(Dialog::Offer(ResumeOffer { question, snapshot: Box::new(snapshot) }));
     }
 
-    /// Whether a session is offered and no answer given yet.
+    /// Whether a session is on offer and not yet answered.
     pub fn is_offering(&self) -> bool {
         matches!(self.overlay, Some(Dialog::Offer(_)))
     }
@@ -33,7 +33,7 @@ impl App {
                 effects
             }
             KeyCode::Esc | KeyCode::Char('n' | 'N') => Vec::new(),
-            // Whoever types on does not want it, and means the key; n says no.
+            // Someone who types on does not want it, and means the key; n says no.
             _ => self.command_key(key),
         }
     }

@@ -25,7 +25,7 @@ use pulloff_engine::units::Quantity;
 use ratatui::layout::Rect;
 use tui_input::backend::crossterm::EventHandler;
 
-/// The question before the deletion of a preset of one's own; what ships with the program stays.
+/// The question before the person's own preset is deleted; what ships with the program stays.
 fn deletion(source: &Source) -> Option<Box<Confirm>> {
     let Source::User { name, path } = source else { return None };
     let question = format!("Delete {} for good? y deletes it, Esc goes back.", show_path(path));
@@ -37,21 +37,21 @@ fn deletion(source: &Source) -> Option<Box<Confirm>> {
 pub struct App {
     pub model: Model,
     pub overlay: Option<Dialog>,
-    /// Whether the next key says to which place to go.
+    /// Whether the next key says which place to go to.
     pub going: bool,
     pub theme: Theme,
     pub keymap: Keymap,
     pub typed: Typed,
     /// Whether the mouse is taken from the terminal.
     pub mouse: bool,
-    /// Whether the selected panel has the whole screen.
+    /// Whether the selected panel fills the whole screen.
     pub enlarged: bool,
     pub clipboard: Option<String>,
     /// The screen as last drawn.
     pub screen: Rect,
-    /// What is said of a background job that takes long enough to be shown.
+    /// The message about a background job that takes long enough to be shown.
     pub late: Option<String>,
-    /// How many presses before the last key belong to the same holding of it.
+    /// How many presses before the last key belong to the same hold of that key.
     pub held: usize,
 }
 
@@ -62,7 +62,7 @@ impl App {
         (Self::on(model, theme), effects)
     }
 
-    /// A session on a screen.
+    /// Puts a session on a screen.
     pub fn on(model: Model, theme: Theme) -> Self {
         Self {
             model,
@@ -80,10 +80,10 @@ impl App {
         }
     }
 
-    /// A key was pressed.
+    /// Handles a key press.
     pub fn key(&mut self, key: KeyEvent) -> Vec<Effect> {
         if key.modifiers.contains(KeyModifiers::ALT) {
-            // No command has an Alt key; Escape and the next key arriving together look like one.
+            // No command has an Alt key; Escape followed at once by another key looks like one.
             let mut effects = self.key(KeyCode::Esc.into());
             effects.extend(self.key(KeyEvent { modifiers: key.modifiers - KeyModifiers::ALT, ..key }));
             return effects;
@@ -103,13 +103,13 @@ impl App {
         effects
     }
 
-    /// Ends a run, before the key does what it does; those of the pace, and those that end it themselves, do not.
+    /// Ends a run before the key takes effect; the keys of the pace, and those that end it themselves, do not.
     fn pause(&mut self, key: KeyEvent) -> Vec<Effect> {
         let ends = !matches!(self.keymap.command(key), Some(Id::Slower | Id::Faster | Id::Run | Id::Cancel));
         if ends && self.model.is_running() { self.run(Id::Cancel.into()) } else { Vec::new() }
     }
 
-    /// Text was pasted: it goes into a prompt and nowhere else, never taken as commands.
+    /// Handles pasted text: it goes into a prompt and nowhere else, and is never taken as commands.
     pub fn paste(&mut self, text: &str) -> Vec<Effect> {
         let Some(mut over) = self.overlay.take() else { return Vec::new() };
         let mut effects = Vec::new();
@@ -128,7 +128,7 @@ impl App {
         effects
     }
 
-    /// The screen is so large, and has room for so many views.
+    /// The size of the screen is known, and how many views it has room for.
     pub fn make_room(&mut self, screen: Rect, views: usize) -> Vec<Effect> {
         self.screen = screen;
         let drawn = places(self, screen).map(|regions| regions.panels(is_alone(screen, self.enlarged)));
@@ -138,7 +138,7 @@ impl App {
         make_room(&mut self.model, views)
     }
 
-    /// A worker has answered.
+    /// Handles the reply of a worker.
     pub fn reply(&mut self, reply: Reply) -> Vec<Effect> {
         let is_file = matches!(reply, Reply::File(_));
         let is_named = matches!(&reply, Reply::File(done) if matches!(**done, Done::Named(_)));
@@ -148,18 +148,18 @@ impl App {
         } else if is_file {
             self.file_answered();
         }
-        // A line being typed, or an offer, is not torn away: the question waits for its end.
+        // A line being typed, or an offer, is not interrupted: the question waits until it is over.
         if !matches!(self.overlay, Some(Dialog::Prompt(_) | Dialog::Offer(_))) {
             self.raise_questions();
         }
         effects
     }
 
-    /// A prompt that waited for a file closes, or stays with the reason why it was refused.
+    /// A prompt that waited for a file closes, or stays with the reason for the refusal.
     pub(super) fn file_answered(&mut self) {
         let model = &mut self.model;
         let Some(Dialog::Prompt(prompt)) = self.overlay.as_mut().filter(|over| over.waits()) else { return };
-        // What is asked instead says the reason itself.
+        // A question that replaces it states the reason itself.
         if model.question.is_none()
             && let Some((_, reason)) = model.message.take_if(|(level, _)| level.is_bad())
         {
@@ -169,7 +169,8 @@ impl App {
         }
     }
 
-    /// A prompt whose line was taken: it stays with the reason if that was refused, and while it waits for a file.
+    /// A prompt whose line was taken: it stays with the reason if the line was refused, and also while it waits for a
+    /// file.
     pub(super) fn taken(&mut self, mut prompt: Prompt, effects: Vec<Effect>) -> Vec<Effect> {
         let refused = self.model.message.take_if(|(level, _)| level.is_bad());
         prompt.error = refused.map(|(_, reason)| self.keymap.spelled(&reason));
@@ -181,7 +182,7 @@ impl App {
         effects
     }
 
-    /// Does a command, and notices when it leaves a question.
+    /// Runs a command, and notices if it leaves a question.
     pub(super) fn run(&mut self, mut command: Command) -> Vec<Effect> {
         if let Command::Picture { picture, path, replace } = command {
             let Some(page) = self.draw_page(picture, path, replace) else { return Vec::new() };
@@ -189,7 +190,7 @@ impl App {
         }
         let (view, goes) = (self.model.view, matches!(command, Command::Go(_) | Command::Show(_)));
         let effects = update(&mut self.model, command);
-        // Where one panel has the whole screen, the chart asked for would otherwise be out of sight.
+        // If one panel fills the screen, the requested chart would otherwise be out of sight.
         if (goes || self.model.view != view) && is_alone(self.screen, self.enlarged) {
             self.model.panel = ScreenPanel::Charts;
         }
@@ -197,7 +198,7 @@ impl App {
         effects
     }
 
-    /// What the model wants to be asked becomes an overlay.
+    /// Turns the questions of the model into overlays.
     pub(super) fn raise_questions(&mut self) {
         match self.model.question.take() {
             None => {}
@@ -228,7 +229,7 @@ impl App {
             Ok(title) => title.clone(),
             Err(error) => format!("cannot be read: {error}"),
         };
-        // A preset saved under another name keeps its title: which one it is must be told.
+        // A preset saved under another name keeps its title, so the list must say which one it is.
         let titles: Vec<_> = listing.presets.iter().filter_map(|entry| entry.title.as_ref().ok()).collect();
         let own = |entry: &Listed| {
             let same = titles.iter().filter(|title| Ok(**title) == entry.title.as_ref()).count();
@@ -281,7 +282,7 @@ impl App {
         self.act(id)
     }
 
-    /// Does a command, or asks for what it takes.
+    /// Runs a command, or asks for what it takes.
     pub(super) fn act(&mut self, id: Id) -> Vec<Effect> {
         match id {
             Id::Step => self.run(Command::HeldStep(self.held)),
@@ -352,7 +353,7 @@ impl App {
         panels.get(next).map_or_else(Vec::new, |panel| self.run(Command::Pick { panel: *panel, line: None }))
     }
 
-    /// The value a line further down or up in Problem.
+    /// Selects the value one line further down or up in Problem.
     fn value_beside(&mut self, down: bool) -> Vec<Effect> {
         let stacked = places(self, self.screen).filter(|regions| regions.is_stacked);
         let Some(area) = stacked.and_then(|regions| regions.problem) else {
@@ -362,7 +363,8 @@ impl App {
         self.run(Command::Pick { panel: ScreenPanel::Problem, line })
     }
 
-    /// The cross-hair, or where the walker stands in the window of the first view, or its middle.
+    /// The cross-hair, or else where the walker stands in the window of the first view, or else the middle of that
+    /// window.
     pub(super) fn walker_place(&self) -> (f64, f64) {
         let view = self.model.view;
         if let Some(cross) = self.model.cross {
@@ -399,7 +401,7 @@ impl App {
     pub(super) fn value_prompt(&self, row: &Row, value: Option<Value>) -> Prompt {
         let units = &self.model.preset.units;
         let text = value.map_or_else(String::new, |value| match value {
-            // With its unit, which holds for a bare number typed instead of it too.
+            // With its unit, which also applies to a bare number typed in its place.
             Value::Number(x) => {
                 let shown = row.shown(units, x);
                 shown.text(&format!("{:?}", shown.number), true)
@@ -424,7 +426,7 @@ impl App {
         Vec::new()
     }
 
-    /// Whether a key closes a prompt: one of those that quit, and is no text.
+    /// Whether a key closes a prompt: one of those that quit, unless it is text.
     pub(super) fn closes(&self, key: KeyEvent) -> bool {
         let is_text = matches!(key.code, KeyCode::Char(_)) && !key.modifiers.contains(KeyModifiers::CONTROL);
         self.keymap.command(key) == Some(Id::Quit) && !is_text
@@ -468,7 +470,7 @@ impl App {
         effects
     }
 
-    /// Opening another preset gives up unsaved changes: asked first.
+    /// Opening another preset gives up unsaved changes, so it asks first.
     pub(super) fn open_or_ask(&mut self, command: Command) -> Vec<Effect> {
         if self.model.is_unsaved() && matches!(command, Command::Open(_) | Command::OpenWith { .. }) {
             let question = "The preset has unsaved changes. y opens the other and loses them, Esc goes back.";

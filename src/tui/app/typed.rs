@@ -1,16 +1,16 @@
-//! The lines typed on the command line, to bring them back.
+//! The lines typed on the command line, kept so that they can be recalled.
 
-/// Most lines remembered.
+/// The most lines remembered.
 const MOST: usize = 100;
 
 /// The lines typed so far.
 #[derive(Debug, Clone, Default)]
 pub struct Typed {
-    /// The oldest first.
+    /// The lines, oldest first.
     pub(super) lines: Vec<String>,
-    /// The line shown; their number where it is a new one.
+    /// The index of the line shown; the number of lines for a new one.
     pub(super) at: usize,
-    /// The new one, while an old one is shown.
+    /// The new line, while an old one is shown.
     draft: String,
 }
 
@@ -23,7 +23,7 @@ impl Typed {
         }
     }
 
-    /// The line before `now`, or the one after it.
+    /// The line before the one shown, or the one after it; `now` is the present text.
     pub(super) fn recall(&mut self, older: bool, now: &str) -> Option<String> {
         if self.at == self.lines.len() {
             now.clone_into(&mut self.draft);

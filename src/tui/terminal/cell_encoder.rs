@@ -1,9 +1,9 @@
-//! Cells as bytes, few of them: every byte is waited for on a slow line.
+//! Cells encoded in few bytes: on a slow line, one waits for every byte.
 //!
-//! The usual backend names a place by row and column, a colour by its number among 256 and each attribute alone; with
-//! the many short changes of a chart that is two thirds of a frame. Here a place nearby is named by the way there, what
-//! changes in the look is one sequence, and a blank takes the look that is there. Where curves cross each other all
-//! cells of one look go first, then those of the next: that is done when it is shorter than going row by row.
+//! The usual backend gives a position by row and column, a colour by its number among 256 and each attribute
+//! separately; with the many short changes of a chart, that is two thirds of a frame. Here a nearby position is given
+//! by the way there, a change of look is a single sequence, and a blank takes the present look. Where curves cross each
+//! other, all cells of one look are sent first, then those of the next, if that is shorter than going row by row.
 
 use std::fmt::Write;
 use std::ops::Range;
@@ -14,7 +14,7 @@ use ratatui::{
     style::{Color, Modifier},
 };
 
-/// How characters look.
+/// The look of characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Ink {
     fg: Color,
@@ -22,7 +22,7 @@ struct Ink {
     modifier: Modifier,
 }
 
-/// As after a reset.
+/// The look after a reset.
 const PLAIN: Ink = Ink { fg: Color::Reset, bg: Color::Reset, modifier: Modifier::empty() };
 
 /// The attributes that show on a blank.
@@ -34,17 +34,19 @@ impl Ink {
     }
 }
 
-/// Cells beside each other in one row and of one look, by where they stand among all.
+/// Adjacent cells of one row with the same look, by their indices among all cells.
 #[derive(Debug, Clone)]
 struct CellRun {
     look: usize,
     cells: Range<usize>,
 }
 
-/// Above so many runs of one look the order among them is that of the rows: finding a better one takes their square.
+/// With more runs of one look than this, they are ordered by rows: the time to find a better order grows with their
+/// square.
 const MOST_RUNS: usize = 400;
 
-/// The bytes that put `cells`, given row by row, on a screen so many columns wide; the look is plain before and after.
+/// The bytes that put `cells`, given row by row, on a screen with this many columns; the look is plain before and
+/// after.
 pub(super) fn encode(cells: &[(Position, &Cell)], columns: u16) -> Vec<u8> {
     let runs = runs(cells);
     let in_rows = in_order(cells, columns, runs.clone().into_iter());
@@ -62,7 +64,7 @@ pub(super) fn encode(cells: &[(Position, &Cell)], columns: u16) -> Vec<u8> {
     if by_look.len() < in_rows.len() { by_look } else { in_rows }
 }
 
-/// The cells in runs; a blank has the look of the cell before it where that makes no difference.
+/// The cells in runs; a blank takes the look of the cell before it if that makes no difference.
 fn runs(cells: &[(Position, &Cell)]) -> Vec<CellRun> {
     let mut inks: Vec<Ink> = Vec::new();
     let mut runs: Vec<CellRun> = Vec::new();
@@ -86,7 +88,7 @@ fn runs(cells: &[(Position, &Cell)]) -> Vec<CellRun> {
     runs
 }
 
-/// The runs in an order in which each is near the one before it: steep curves are followed down, not crossed in rows.
+/// The runs in an order in which each is near the previous one: steep curves are followed down, not crossed in rows.
 fn nearest_first(
     cells: &[(Position, &Cell)],
     mut runs: Vec<CellRun>,
@@ -98,7 +100,7 @@ fn nearest_first(
     let mut ordered = Vec::with_capacity(runs.len());
     while !runs.is_empty() {
         let cost = |run: &CellRun| at.map_or(0, |at| bytes_of_way(at, cells[run.cells.start].0));
-        // The first of those that are equally near.
+        // The first of several that are equally near.
         let next = (0..runs.len()).min_by_key(|next| cost(&runs[*next])).unwrap_or(0);
         let run = runs.remove(next);
         let end = cells[run.cells.end - 1].0;
@@ -121,9 +123,9 @@ fn in_order(cells: &[(Position, &Cell)], columns: u16, runs: impl Iterator<Item 
 struct CellEncoder {
     frame: Vec<u8>,
     ink: Ink,
-    /// Where the next character goes, if that is known,
+    /// Where the next character goes, if known,
     at: Option<Position>,
-    /// and whether that holds on any terminal: some show Greek letters and frames twice as wide.
+    /// and whether that is true on every terminal: some show Greek letters and frames twice as wide.
     is_sure: bool,
     columns: u16,
 }
@@ -137,7 +139,7 @@ impl CellEncoder {
             self.dip(ink);
         }
         self.frame.extend_from_slice(symbol.as_bytes());
-        // Behind the last column terminals differ in where the cursor is.
+        // After the last column, terminals differ in where the cursor is.
         let next = Some(Position::new(at.x.saturating_add(1), at.y)).filter(|next| next.x < self.columns);
         (self.at, self.is_sure) = match width(symbol) {
             SymbolWidth::One => (next, self.is_sure),
@@ -163,7 +165,7 @@ impl CellEncoder {
         }
     }
 
-    /// Changes the look, in one sequence; what is to be switched off is so by a reset.
+    /// Changes the look in one sequence; a reset switches off what has to be switched off.
     fn dip(&mut self, ink: Ink) {
         if ink == self.ink {
             return;
@@ -193,8 +195,8 @@ impl CellEncoder {
     }
 }
 
-/// The steps from one place to another: how many, the byte that makes one, if there is, and the letter of the sequence
-/// that makes all. A line feed leaves the column as it is on a terminal in raw mode.
+/// The steps from one position to another: how many, the byte that makes one, if there is one, and the letter of the
+/// sequence that makes all of them. A line feed keeps the column on a terminal in raw mode.
 fn steps(from: Position, to: Position) -> [(u16, Option<char>, char); 4] {
     [
         (to.y.saturating_sub(from.y), Some('\n'), 'B'),
@@ -204,10 +206,10 @@ fn steps(from: Position, to: Position) -> [(u16, Option<char>, char); 4] {
     ]
 }
 
-/// Up to so many steps are shorter by a byte for each.
+/// Up to this many steps are shorter as one byte each.
 const BY_BYTES: u16 = 3;
 
-/// The way from one place to another.
+/// The way from one position to another.
 fn way(from: Position, to: Position) -> String {
     let mut way = String::new();
     for (count, byte, letter) in steps(from, to) {
@@ -223,7 +225,7 @@ fn way(from: Position, to: Position) -> String {
     way
 }
 
-/// The length of the way from one place to another.
+/// The length in bytes of the way from one position to another.
 fn bytes_of_way(from: Position, to: Position) -> u32 {
     let cost = |(count, byte, _): (u16, Option<char>, char)| match (count, byte) {
         (0, _) => 0,
@@ -252,7 +254,7 @@ fn looks_same_blank(a: Ink, b: Ink) -> bool {
     a.bg == b.bg && !marked(a) && !marked(b)
 }
 
-/// The code of a colour: of the sixteen that every terminal has the short one. A background's is `shift` larger.
+/// The code of a colour: the short one for the sixteen that every terminal has. For a background it is `shift` larger.
 fn color(codes: &mut String, color: Color, shift: u8) {
     let short = match color {
         Color::Reset => 39,
@@ -287,7 +289,7 @@ fn color(codes: &mut String, color: Color, shift: u8) {
 /// How many columns a symbol takes.
 enum SymbolWidth {
     One,
-    /// One, but two on some that are set up for East Asian text.
+    /// One, but two on some terminals that are set up for East Asian text.
     MostlyOne,
     Other,
 }
@@ -328,7 +330,7 @@ mod tests {
         encode(&cells, new.area.width)
     }
 
-    /// What a terminal shows of a colour.
+    /// What a terminal shows for a colour.
     fn shown(color: Color) -> vt100::Color {
         match color {
             Color::Reset => vt100::Color::Default,
@@ -385,7 +387,7 @@ mod tests {
             assert_shows(terminal.screen(), &new);
             old = new;
         }
-        // Nothing else is left set.
+        // No attribute stays set.
         terminal.process(b"\x1b[HZ");
         let cell = terminal.screen().cell(0, 0).unwrap();
         assert!(cell.fgcolor() == vt100::Color::Default && !cell.bold() && !cell.inverse());
@@ -395,7 +397,7 @@ mod tests {
     fn curves_that_cross_are_sent_one_after_the_other_and_steep_ones_downwards() {
         let area = Rect::new(0, 0, 30, 9);
         let (old, mut new) = (Buffer::empty(area), Buffer::empty(area));
-        // Two steep lines, which in rows would take turns.
+        // Two steep lines, which would take turns if sent in rows.
         for y in 0..8 {
             new[(4 + y / 3, y)].set_symbol("⠿").set_fg(Color::Red);
             new[(20 - y / 3, y)].set_symbol("⠿").set_fg(Color::Indexed(200));
@@ -430,7 +432,7 @@ mod tests {
         let text = String::from_utf8(frame(&old, &new)).unwrap();
         assert_eq!(text, "\x1b[2;4H\x1b[32ma\x1b[Cb\x1b[3C\x1b[mδ\x1b[2;13Hc");
         assert!(frame(&new, &new).is_empty());
-        // A wide character leaves the place to the terminal.
+        // A wide character leaves the next position to the terminal.
         new.set_string(0, 0, "字x", Style::new());
         let text = String::from_utf8(frame(&old, &new)).unwrap();
         assert!(text.starts_with("\x1b[1;1H字\x1b[1;3Hx"), "{text:?}");

@@ -1,8 +1,8 @@
 //! Frames, at a pace that the line can carry.
 //!
 //! A frame is written before the next one is begun, so at most one is on its way to the kernel. That alone is not
-//! enough: a network connection takes some hundred kilobytes before it lets anybody wait, which a slow line needs many
-//! seconds to show. So the pace also follows from the size of the frames.
+//! enough: a network connection accepts some hundred kilobytes before it makes anybody wait, and a slow line needs many
+//! seconds to show them. So the pace also depends on the size of the frames.
 
 use std::{
     collections::VecDeque,
@@ -29,7 +29,8 @@ pub struct Pace {
     pub rate: f64,
     /// Longest wait because of a frame's size: 150 ms, so that a change of the whole screen does not delay the next key.
     pub longest_for_size: Duration,
-    /// Times that the last write took, from 0: 2, so that the terminal has twice as long as it needed.
+    /// The multiple of the time that the last write took, from 0: 2, so that the terminal has twice as long as it
+    /// needed.
     pub write_factor: u32,
     /// Longest wait because of a slow write: 500 ms.
     pub longest_for_write: Duration,
@@ -59,19 +60,20 @@ impl Pace {
     }
 }
 
-/// Frames of a run follow each other no sooner: ten a second are seen as one motion.
+/// The shortest time between frames of a run: ten a second are seen as one motion.
 const BETWEEN: Duration = Duration::from_millis(100);
-/// Bytes that all frames of a run may have in any second: a quarter of a poor line, so that a key finds it free.
+/// The bytes that all frames of a run may have in any second: a quarter of a poor line, so that a key finds it free.
 const SHARE: usize = 4000;
 /// The time over which they are counted.
 const SECOND: Duration = Duration::from_secs(1);
 
-/// What the frames of a run had in the last second.
+/// The frames of a run during the last second.
 #[derive(Debug, Default)]
 struct Allowance(VecDeque<(Instant, usize)>);
 
 impl Allowance {
-    /// Whether a frame of so many bytes may be written now: one larger than the whole share only into a silent second.
+    /// Whether a frame of this many bytes may be written now: one larger than the whole share only after a silent
+    /// second.
     fn allows(&mut self, now: Instant, bytes: usize) -> bool {
         while self.0.front().is_some_and(|(at, _)| now.duration_since(*at) >= SECOND) {
             self.0.pop_front();
@@ -94,7 +96,7 @@ pub struct Display<S: FrameSink + 'static> {
     line: &'static S,
     pace: Pace,
     due: Instant,
-    /// What the frames of a run have taken of the line.
+    /// What the frames of a run have used of the line.
     spent: Allowance,
     /// When the next frame of a run may be tried.
     due_running: Instant,
@@ -118,9 +120,9 @@ impl<S: FrameSink> Display<S> {
 
     /// Draws a frame and writes what has changed, in one write; nothing if nothing has.
     ///
-    /// Inside `render` only the frame's own area counts: the window may have another size by then. Returns once
+    /// Inside `render`, only the frame's own area counts: the window may have another size by then. Returns once
     /// the terminal has taken the bytes; if it has gone away, the program ends here. A frame drawn before it is due
-    /// leaves the next one what was left of the wait: the line has both to carry.
+    /// adds the rest of its wait to that of the next one: the line has to carry both.
     pub fn draw(&mut self, render: impl FnOnce(&mut Frame<'_>)) {
         if self.terminal.draw(render).is_err() {
             end(HUNG_UP);
@@ -133,7 +135,8 @@ impl<S: FrameSink> Display<S> {
         self.due = self.due.max(Instant::now()) + self.pace.gap(last);
     }
 
-    /// Draws a frame of a run, as [`draw`](Self::draw) does, if the line has not had its share yet; else nothing, and false.
+    /// Draws a frame of a run, as [`draw`](Self::draw) does, if the line's share is not used up; otherwise draws
+    /// nothing and returns false.
     pub fn draw_running(&mut self, render: impl FnOnce(&mut Frame<'_>)) -> bool {
         self.due_running = Instant::now() + BETWEEN;
         let encoded = self.terminal.autoresize().and_then(|()| {
@@ -145,7 +148,7 @@ impl<S: FrameSink> Display<S> {
         }
         if !self.spent.allows(Instant::now(), self.terminal.backend().pending()) {
             self.terminal.backend_mut().forget();
-            // The next frame begins with an empty one, and is compared with what the terminal shows.
+            // The next frame starts from an empty one, and is compared with what the terminal shows.
             self.terminal.current_buffer_mut().reset();
             return false;
         }
@@ -177,7 +180,7 @@ impl<S: FrameSink> Display<S> {
         }
     }
 
-    /// Puts text into the clipboard of the person's terminal, if it takes it (OSC 52).
+    /// Puts text into the clipboard of the person's terminal, if it accepts it (OSC 52).
     pub fn copy(&mut self, text: &str) {
         let mut sequence = String::new();
         // Writing to a string cannot fail.
@@ -187,16 +190,16 @@ impl<S: FrameSink> Display<S> {
         }
     }
 
-    /// Has the next frame draw everything, whatever the terminal shows now.
+    /// Makes the next frame draw everything, whatever the terminal shows now.
     ///
     /// Needed after a stop and after any resize: a window that shrank and grew back between two frames has its old size
-    /// and has lost what it showed.
+    /// but has lost what it showed.
     pub fn repaint(&mut self) {
         // Not the terminal's own `clear`, which asks for the cursor's position.
         if self.terminal.backend_mut().clear_region(ClearType::All).is_err() {
             end(HUNG_UP);
         }
-        // Blanks the buffer that the next frame is compared with.
+        // Blanks the buffer with which the next frame is compared.
         self.terminal.swap_buffers();
     }
 }
@@ -222,7 +225,7 @@ mod tests {
         let mut allowance = Allowance::default();
         let begun = Instant::now();
         let mut written: Vec<(u128, usize)> = Vec::new();
-        // Ten tries a second for a minute, of sizes that come again after a while.
+        // Ten attempts per second for a minute, with sizes that recur after a while.
         for k in 0..600_u32 {
             let (now, bytes) = (begun + k * BETWEEN, 150 + (k as usize * 977) % 3700);
             if allowance.allows(now, bytes) {
@@ -235,7 +238,7 @@ mod tests {
             assert!(within.map(|(_, bytes)| bytes).sum::<usize>() <= SHARE);
         }
         assert!(written.len() > 60, "{} frames", written.len());
-        // One that no second has room for is written once nothing else was.
+        // A frame too large for any second is written once nothing else has been.
         let later = begun + Duration::from_secs(100);
         assert!(allowance.allows(later, 9000));
         allowance.take(later, 9000);

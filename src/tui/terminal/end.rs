@@ -1,7 +1,7 @@
 //! The one way out for everything that ends the program from outside its main loop.
 //!
 //! The first thread to arrive ends the process; the others wait for it. From then on a timer runs that ends the
-//! process whatever the rest of it is stuck in.
+//! process even if the rest of it is stuck.
 
 use std::{
     backtrace::{Backtrace, BacktraceStatus},
@@ -47,7 +47,7 @@ static WORDS: Mutex<Option<LastWords>> = Mutex::new(None);
 ///
 /// It runs on a thread of its own while the other threads still run, or are stuck, or hold their locks: take what it
 /// needs with `try_lock`, and be done within a second, after which the process ends anyway. It is not called
-/// when the main loop ends by itself. The terminal may be anybody's by then: print nothing.
+/// when the main loop ends by itself. The terminal may belong to anybody by then: print nothing.
 pub fn set_last_words(words: Box<dyn Fn() + Send + Sync>) {
     *WORDS.lock().unwrap_or_else(PoisonError::into_inner) = Some(words.into());
 }
@@ -55,7 +55,7 @@ pub fn set_last_words(words: Box<dyn Fn() + Send + Sync>) {
 /// Gives the terminal back, speaks the last words and ends the process with `status`.
 pub(super) fn end(status: i32) -> ! {
     claim(status);
-    // First: the last words may take long.
+    // This comes first, since the last words may take long.
     restore();
     speak();
     temporary::finish(SAVE_PATIENCE);
@@ -64,7 +64,7 @@ pub(super) fn end(status: i32) -> ! {
 
 /// From now on a panic in any thread gives the terminal back, says what happened and ends the process.
 ///
-/// A panicking worker would otherwise leave a screen that waits for it for ever.
+/// Otherwise a panicking worker would leave a screen that waits for it for ever.
 pub(super) fn install_panic_hook() {
     panic::set_hook(Box::new(|info| {
         if thread::current().name() == Some(LAST_WORDS) {
@@ -76,7 +76,7 @@ pub(super) fn install_panic_hook() {
         claim(PANICKED);
         restore();
         say(&what);
-        // At the same time, since the work must not wait for the report, and both have one second.
+        // At the same time, since the work must not wait for the report, and both together have one second.
         let words = start_to_speak();
         match report::write(&what, &trace) {
             Ok(path) => say(&format!("A report is in {path}\n")),
@@ -105,11 +105,11 @@ fn claim(status: i32) {
             thread::park();
         }
     }
-    // Without a timer the end is still near: only the last words could hold it up.
+    // Even without a timer the end is near: only the last words could delay it.
     let _ = thread::Builder::new().name("end".to_owned()).spawn(move || {
         thread::sleep(LIMIT);
         restore();
-        // At once: the usual exit would wait for the one that is stuck.
+        // At once: the usual exit would wait for the thread that is stuck.
         signal_hook::low_level::exit(status)
     });
 }
@@ -147,7 +147,7 @@ fn describe(info: &PanicHookInfo<'_>) -> String {
     ))
 }
 
-/// Standard error, without being held up by a terminal that nobody reads.
+/// Writes to standard error without being held up by a terminal that nobody reads.
 fn say(text: &str) {
     match Tty::get() {
         Some(tty) if io::stderr().is_terminal() => drop(tty.send(text.as_bytes(), MESSAGE_PATIENCE)),

@@ -26,11 +26,11 @@ impl Drop for Guard {
 /// From here on SIGTERM, SIGINT, SIGHUP and SIGQUIT end the process with 128 plus their number, the loss of the
 /// terminal with 129 and a panic in any thread with 101, each after the last words
 /// ([`set_last_words`](super::set_last_words)) and with the terminal given back.
-/// Errors: If there is no terminal (ask [`refuse_reason`](super::refuse_reason) first), if it was taken before, or if a thread
-/// cannot be started. The terminal is then as it was.
+/// Errors: If there is no terminal (ask [`refuse_reason`](super::refuse_reason) first), if it was taken before, or if a
+/// thread cannot be started. The terminal is then unchanged.
 pub fn enter<T: Send + 'static>() -> io::Result<(Guard, Display<impl FrameSink>, Inbox<T>)> {
     let tty = Tty::open()?;
-    // Before the first mode is set, so that no moment is without them.
+    // Before the first mode is set, so that they are never missing.
     install_panic_hook();
     let signals = signals::catch()?;
     let guard = Guard(());

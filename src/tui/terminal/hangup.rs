@@ -1,6 +1,6 @@
-//! Notices that the terminal has gone away, also where no SIGHUP tells (sudo, nohup, some task runners).
+//! Notices that the terminal has gone away, even where no SIGHUP says so (sudo, nohup, some task runners).
 //!
-//! Needed because the event reader does not take end-of-file for an end: it would read it again and again at full
+//! Needed because the event reader does not treat end-of-file as an end: it would read it again and again at full
 //! speed, and never return.
 
 use std::{io, thread};

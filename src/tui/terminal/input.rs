@@ -17,20 +17,21 @@ use super::end::{HUNG_UP, end};
 use super::tty::Tty;
 use crate::fault;
 
-/// Messages that may wait. More keys than this wait in the terminal, more replies in the worker.
+/// Messages that may wait. Beyond that, keys wait in the terminal and replies in the worker.
 const CAPACITY: usize = 256;
 
-/// Something that happened; `T` is the program's own message, a worker's reply for instance.
+/// Something that happened; `T` is the program's own message, for instance a worker's reply.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Incoming<T> {
     Key(KeyEvent),
-    /// The first button was pressed, or the wheel turned; the place may be outside of the screen.
+    /// The first button was pressed, or the wheel turned; the position may be outside the screen.
     Mouse(MouseEvent),
     /// Text was pasted. It is text, never a command.
     Paste(String),
-    /// The window has another size: call [`Display::repaint`](super::Display::repaint) and draw; the frame has the size.
+    /// The window has another size: call [`Display::repaint`](super::Display::repaint) and draw; the frame has the new
+    /// size.
     Resized,
-    /// The program was stopped and goes on: call [`Display::repaint`](super::Display::repaint) and draw.
+    /// The program was stopped and continues: call [`Display::repaint`](super::Display::repaint) and draw.
     Resumed,
     App(T),
 }
@@ -41,8 +42,8 @@ enum Post<T> {
     Notice,
 }
 
-/// What happened to the window. Flags, since any number of resizes is one, and a full queue must not stop the
-/// thread that answers signals.
+/// What happened to the window. These are flags, since any number of resizes counts as one, and a full queue must not
+/// block the thread that answers signals.
 #[derive(Default)]
 struct Notices {
     resized: AtomicBool,
@@ -52,7 +53,7 @@ struct Notices {
 /// The receiving end, for the main loop.
 pub struct Inbox<T> {
     receiver: Receiver<Post<T>>,
-    /// Kept, so that the queue never counts as closed.
+    /// Kept so that the queue never counts as closed.
     sender: SyncSender<Post<T>>,
     notices: Arc<Notices>,
 }
@@ -64,7 +65,7 @@ impl<T: Send + 'static> Inbox<T> {
         Self { receiver, sender, notices: Arc::default() }
     }
 
-    /// The next thing that happened. Sleeps until there is one, or until `deadline`, and is then `None`.
+    /// The next thing that happened. Sleeps until there is one, or until `deadline`, when it returns `None`.
     #[must_use]
     pub fn next(&self, deadline: Option<Instant>) -> Option<Incoming<T>> {
         loop {
@@ -100,16 +101,16 @@ impl<T: Send + 'static> Inbox<T> {
 
     /// A sending end for a worker.
     ///
-    /// Not for the thread that receives: in a full queue it would wait for itself.
+    /// Not for the thread that receives: with a full queue it would wait for itself.
     #[must_use]
     pub fn sender(&self) -> Sender<T> {
         Sender(self.sender.clone())
     }
 
-    /// What stands for the thread that reads the terminal in a test.
+    /// A stand-in, in tests, for the thread that reads the terminal.
     ///
     /// # Panics
-    /// Where nobody reads any more.
+    /// If nobody reads any more.
     #[cfg(test)]
     pub fn typist(&self) -> impl Fn(Incoming<T>) + Send + 'static {
         let sender = self.sender.clone();
@@ -119,7 +120,7 @@ impl<T: Send + 'static> Inbox<T> {
     /// A sending end for the thread that answers signals.
     pub(super) fn notifier(&self) -> Notifier {
         let sender = self.sender.clone();
-        // A full queue needs no waking up, and a closed one has nobody to wake.
+        // With a full queue nobody needs waking up, and with a closed one there is nobody to wake.
         Notifier {
             notices: Arc::clone(&self.notices),
             wake: Box::new(move || drop(sender.try_send(Post::Notice))),
@@ -137,7 +138,7 @@ impl<T: Send + 'static> Inbox<T> {
                     Ok(Event::Key(key)) if key.kind != KeyEventKind::Release => Incoming::Key(key),
                     Ok(Event::Paste(text)) => Incoming::Paste(text),
                     Ok(Event::Mouse(mouse)) if is_wanted(mouse.kind) => Incoming::Mouse(mouse),
-                    // Sizes come from the signal itself: this reader misses one while within a sequence.
+                    // Sizes come from the signal itself: this reader misses a resize that arrives within a sequence.
                     Ok(_) => continue,
                     Err(_) => end(HUNG_UP),
                 };
@@ -151,7 +152,7 @@ impl<T: Send + 'static> Inbox<T> {
     }
 
     fn notice(&self) -> Option<Incoming<T>> {
-        // Resumed first: it draws everything, at the new size too.
+        // A resume comes first: it draws everything, at the new size too.
         if self.notices.resumed.swap(false, Ordering::SeqCst) {
             Some(Incoming::Resumed)
         } else if self.notices.resized.swap(false, Ordering::SeqCst) {

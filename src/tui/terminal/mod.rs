@@ -1,4 +1,4 @@
-//! The terminal floor: taking the terminal, giving it back, and one queue of everything that happens.
+//! The terminal layer: taking the terminal, giving it back, and one queue of everything that happens.
 //!
 //! | file | what it holds |
 //! |---|---|
@@ -12,13 +12,13 @@
 //! | `hangup` | notices that the terminal has gone away |
 //! | `input` | the [`Inbox`]: keys, pastes, sizes and the program's own messages in one queue |
 //! | `screen` | the ratatui backend: a frame is one write, nothing is asked of the terminal |
-//! | `cell_encoder` | cells as bytes, as few as a terminal needs |
+//! | `cell_encoder` | cells encoded in as few bytes as a terminal needs |
 //! | `display` | [`Display`]: frames at a pace the line can carry |
 //!
 //! # Threads
 //!
 //! The caller's thread draws. Beside it: `input` (the only reader of the terminal), `signals`, `hang-up`; all three
-//! sleep in the kernel until something happens. Whoever learns that the program must end calls `end`; it never
+//! sleep in the kernel until something happens. Any thread that learns that the program must end calls `end`; it never
 //! asks the drawing thread, which may be waiting for a terminal that nobody reads.
 //!
 //! # A main loop

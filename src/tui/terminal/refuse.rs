@@ -54,7 +54,7 @@ const FAMILIES: &[&str] = &[
     "zellij",
 ];
 
-/// Names that stand for "nothing is known", whatever the machine's descriptions say.
+/// Names that mean "nothing is known", whatever the machine's descriptions say.
 const NAMELESS: &[&str] = &["", "dumb", "unknown", "network", "dialup", "emacs", "lpr", "printer"];
 
 /// Why the program cannot run on this terminal, as one line for standard error; `None` if it can.
@@ -87,7 +87,7 @@ pub fn utf8_locale() -> bool {
     locale.contains("utf-8") || locale.contains("utf8")
 }
 
-/// Why a TERM is of no use, if it is not.
+/// Why a TERM cannot be used; `None` if it can.
 fn unfit(term: Option<&OsStr>, described: impl Fn(&str) -> bool) -> Option<String> {
     let Some(term) = term else {
         return Some("TERM is not set".to_owned());
@@ -95,7 +95,7 @@ fn unfit(term: Option<&OsStr>, described: impl Fn(&str) -> bool) -> Option<Strin
     let term = term.to_string_lossy();
     let family = term.split(['-', '.', '+']).next().unwrap_or_default().to_ascii_lowercase();
     if NAMELESS.contains(&family.as_str()) || !(FAMILIES.contains(&family.as_str()) || described(&term)) {
-        // The value is somebody else's text: shown escaped and short.
+        // The value is foreign text: shown escaped and shortened.
         let shown: String = term.chars().take(40).flat_map(char::escape_default).collect();
         return Some(format!("TERM is \"{shown}\", which it does not know how to draw on"));
     }
@@ -114,7 +114,7 @@ fn described(term: &str) -> bool {
     let home = env::var_os("HOME").map(|home| Path::new(&home).join(".terminfo"));
     let common = ["/etc/terminfo", "/lib/terminfo", "/usr/share/terminfo", "/usr/local/share/terminfo"];
     own.into_iter().chain(home).chain(common.map(PathBuf::from)).any(|root| {
-        // Some systems name the directory by the letter, some by its code.
+        // Some systems name the directory by the letter, others by its code.
         [first.to_string(), format!("{:x}", u32::from(first))]
             .iter()
             .any(|directory| root.join(directory).join(term).is_file())

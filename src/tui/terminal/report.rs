@@ -1,4 +1,4 @@
-//! What is left of a panic: a file in the person's state folder, and a bounded number of them.
+//! What a panic leaves behind: a file in the person's state folder, and a limited number of them.
 
 use std::{
     backtrace::Backtrace,
@@ -14,7 +14,7 @@ use etcetera::BaseStrategy;
 use crate::store::atomic::{Overwrite, write_atomically};
 use pulloff_engine::text::{sanitize, show_path};
 
-/// Reports that are kept.
+/// The number of reports kept.
 const KEPT: usize = 10;
 /// Longest line of a report.
 const LINE: usize = 1000;
@@ -28,7 +28,7 @@ pub(super) fn write(what: &str, trace: &Backtrace) -> Result<String, String> {
     write_in(&folder, &text(what, trace)).map(|path| show_path(&path))
 }
 
-/// A report whole, without anything that a terminal showing it would obey.
+/// The whole report, without anything that a terminal showing it would obey.
 fn text(what: &str, trace: &Backtrace) -> String {
     let command: Vec<String> = env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
     let all = format!(
@@ -68,7 +68,7 @@ fn make_room(folder: &Path) {
         .collect();
     names.sort_unstable();
     for name in names.iter().rev().skip(KEPT - 1) {
-        // One too many is no reason to lose the new one.
+        // One report too many is no reason to lose the new one.
         let _ = fs::remove_file(folder.join(name));
     }
 }
@@ -92,7 +92,7 @@ mod tests {
         let mut last = write_in(&folder, "first").unwrap();
         fs::write(folder.join("notes.txt"), "mine").unwrap();
         for _ in 0..2 * KEPT {
-            // Two within a millisecond would have one name; a program panics once.
+            // Two within a millisecond would have the same name; a program panics only once.
             while let Err(error) = write_in(&folder, "again").map(|path| last = path) {
                 assert!(error.contains("exists"), "{error}");
             }

@@ -29,7 +29,7 @@ pub struct Screen<S: FrameSink + 'static> {
     line: &'static S,
     frame: Vec<u8>,
     cursor_shown: Option<bool>,
-    /// Where the cursor was put, if nothing was drawn since.
+    /// Where the cursor was put, if nothing has been drawn since.
     cursor_at: Option<Position>,
     last: FrameCost,
 }
@@ -55,7 +55,7 @@ impl<S: FrameSink> Screen<S> {
         self.frame.len()
     }
 
-    /// Forgets what was collected: the terminal shows what it showed.
+    /// Forgets what was collected: the terminal still shows what it showed before.
     pub(super) fn forget(&mut self) {
         self.frame.clear();
     }
@@ -118,7 +118,7 @@ impl<S: FrameSink> Backend for Screen<S> {
     }
 
     fn clear_region(&mut self, clear_type: ClearType) -> io::Result<()> {
-        // After a stop the modes were taken anew, and nothing is known of the cursor.
+        // After a stop the modes were set anew, and nothing is known about the cursor.
         self.cursor_shown = None;
         self.collect(Clear(match clear_type {
             ClearType::All => terminal::ClearType::All,

@@ -20,7 +20,7 @@ use super::input::Notifier;
 use super::tty::Tty;
 use crate::fault;
 
-/// Those that end the program.
+/// The signals that end the program.
 const ENDING: [i32; 4] = [SIGTERM, SIGINT, SIGHUP, SIGQUIT];
 
 /// How long to wait for the terminal after being continued: some shells continue a job before handing it over.
@@ -28,7 +28,7 @@ const FOREGROUND_PATIENCE: Duration = Duration::from_millis(500);
 
 /// Stops the program as the shell's stop key would, for the key that raw mode delivers instead (Ctrl-Z).
 ///
-/// Returns at once; the stop follows. Ignored where there is no shell to return to.
+/// Returns at once; the stop follows. Ignored if there is no shell to return to.
 pub fn suspend() {
     // Only an unknown signal can fail.
     let _ = raise(SIGTSTP);
@@ -42,7 +42,8 @@ pub(super) fn catch() -> io::Result<Signals> {
 pub(super) fn serve(mut signals: Signals, tty: &'static Tty, notifier: Notifier) -> io::Result<()> {
     thread::Builder::new().name("signals".to_owned()).spawn(move || {
         loop {
-            // Together, since what arrived while stopped arrives at once: an end before all, and a continue undoes a stop.
+            // Together, since signals that arrived while stopped are delivered at once: an end comes first, and a
+            // continue undoes a stop.
             let batch: Vec<i32> = signals.wait().collect();
             fault::point(fault::SIGNAL);
             if let Some(signal) = batch.iter().find(|signal| ENDING.contains(signal)) {
@@ -70,12 +71,12 @@ fn stop(tty: &Tty) {
     }
 }
 
-/// Takes the terminal again and has everything drawn anew.
+/// Takes the terminal again and has everything redrawn.
 fn go_on(tty: &Tty, notifier: &Notifier) {
     let until = Instant::now() + FOREGROUND_PATIENCE;
     while !tty.in_foreground() {
         if Instant::now() > until {
-            // Continued in the background (`bg`): nothing can be shown there, wait for `fg`.
+            // Continued in the background (`bg`): nothing can be shown there, so wait for `fg`.
             if !tty.is_taken() {
                 let _ = kill_current_process_group(Signal::STOP);
             }
@@ -89,8 +90,8 @@ fn go_on(tty: &Tty, notifier: &Notifier) {
     notifier.resumed();
 }
 
-/// Whether somebody could continue us. A shell puts each job into a group of its own, so that a group with the
-/// session's leader in it has no shell above it.
+/// Whether somebody could continue us. A shell puts each job into a group of its own, so a group that contains the
+/// session's leader has no shell above it.
 fn has_shell() -> bool {
     getsid(None).is_ok_and(|session| session != getpgrp())
 }

@@ -1,8 +1,8 @@
-//! The terminal itself: the modes switched on, the string that undoes them, and writing that cannot be stuck.
+//! The terminal itself: the modes switched on, the string that undoes them, and writing that cannot get stuck.
 //!
-//! The terminal is opened a second time, non-blocking. Setting the flag on standard output would set it for the
-//! shell too, since they share one open file. A write then never waits inside the kernel: the drawing thread waits for room with
-//! `poll`, holding no lock, so that any other thread can give the terminal back meanwhile.
+//! The terminal is opened a second time, non-blocking. Setting the flag on standard output would set it for the shell
+//! too, since they share one open file. A write then never waits inside the kernel: the drawing thread waits for room
+//! with `poll`, holding no lock, so any other thread can give the terminal back meanwhile.
 
 use std::{
     io,
@@ -29,13 +29,14 @@ use rustix::{
 
 use super::sink::FrameSink;
 
-/// Switches to the alternate screen, cleared, without cursor, and lets pastes be told from keys.
+/// Switches to the alternate screen, cleared, without cursor, and makes pastes distinguishable from keys.
 const TAKE: &[u8] = b"\x1b[?1049h\x1b[?25l\x1b[?2004h\x1b[0m\x1b[2J\x1b[H";
 
-/// Presses and the wheel are reported, with coordinates of any size; not every movement, which a slow line would feel.
+/// Presses and the wheel are reported, with coordinates of any size; movements are not, since a slow line would feel
+/// them.
 const MOUSE_ON: &[u8] = b"\x1b[?1000h\x1b[?1006h";
 
-/// Undoes it.
+/// Switches these reports off again.
 const MOUSE_OFF: &[u8] = b"\x1b[?1006l\x1b[?1000l";
 
 /// Undoes everything that [`TAKE`], [`MOUSE_ON`] and a frame can leave on.
@@ -49,7 +50,7 @@ const PATIENCE: Duration = Duration::from_millis(80);
 /// How long taking the terminal may wait for room.
 const TAKE_PATIENCE: Duration = Duration::from_secs(1);
 
-/// A size of nothing means that nobody knows it (serial lines); then it is taken to be this, as elsewhere.
+/// A size of zero means that nobody knows it (serial lines); then this is assumed, as elsewhere.
 const USUAL_SIZE: (u16, u16) = (80, 24);
 
 static LINE: OnceLock<Tty> = OnceLock::new();
@@ -59,10 +60,10 @@ pub(super) struct Tty {
     fd: OwnedFd,
     /// The modes before the terminal was taken.
     before: Mutex<Termios>,
-    /// How often the terminal changed hands. Odd: ours. A frame begun under another number is not continued.
+    /// How often the terminal has changed hands. Odd: it is ours. A frame begun under another number is not continued.
     hands: AtomicU32,
     mouse: AtomicBool,
-    /// Held for the length of one write.
+    /// Held during one write.
     turn: Mutex<()>,
 }
 
@@ -89,13 +90,13 @@ impl Tty {
         LINE.get()
     }
 
-    /// Raw mode, alternate screen, no cursor, marked pastes. Taking it again sets all of them anew.
+    /// Sets raw mode, alternate screen, no cursor, marked pastes. Taking it again sets all of them anew.
     pub(super) fn take(&self) -> io::Result<()> {
         let _turn = self.my_turn();
         let mut before = self.before.lock().unwrap_or_else(PoisonError::into_inner);
         let ours = self.is_taken();
         if !ours {
-            // A shell may have changed them since.
+            // A shell may have changed the modes since.
             *before = retry_on_intr(|| tcgetattr(&self.fd))?;
         }
         let mut raw = before.clone();
@@ -108,7 +109,7 @@ impl Tty {
         if self.mouse.load(Ordering::SeqCst) { self.send(MOUSE_ON, TAKE_PATIENCE) } else { Ok(()) }
     }
 
-    /// Gives the terminal back as it was. From any thread, any number of times, in less than 200 ms.
+    /// Gives the terminal back as it was. Works from any thread, any number of times, in less than 200 ms.
     ///
     /// There is nobody to report a failure to: a terminal that cannot be restored is gone.
     pub(super) fn give_back(&self) {
@@ -122,14 +123,15 @@ impl Tty {
             return;
         }
         let _turn = self.my_turn();
-        // What nobody has read would come before the string that undoes the modes, if there were room for it at all.
+        // Output that nobody has read would come before the string that undoes the modes, if there were room for it at
+        // all.
         let _ = tcflush(&self.fd, QueueSelector::OFlush);
         let before = self.before.lock().unwrap_or_else(PoisonError::into_inner);
         let _ = retry_on_intr(|| tcsetattr(&self.fd, OptionalActions::Now, &before));
         let _ = self.send(GIVE_BACK, PATIENCE);
     }
 
-    /// Writes outside of a frame, for at most `patience`; what does not fit by then is dropped.
+    /// Writes outside a frame, for at most `patience`; what does not fit by then is dropped.
     pub(super) fn send(&self, bytes: &[u8], patience: Duration) -> io::Result<()> {
         let until = Instant::now() + patience;
         let mut rest = bytes;
@@ -148,23 +150,23 @@ impl Tty {
     }
 
     pub(super) fn wait_for_hang_up(&self) -> io::Result<()> {
-        // Hang-up and error are reported without being asked for.
+        // Hang-up and error are reported without being requested.
         while !self.wait(PollFlags::empty(), None)? {}
         Ok(())
     }
 
-    /// Has the event reader look at input that it has overlooked, if there is any.
+    /// Makes the event reader look at input that it has overlooked, if there is any.
     ///
-    /// It is told of input only when some arrives, and forgets what it was told when the window is resized at the same
-    /// moment or when it has read one buffer full of many: those keys would wait for the next one. Setting the modes, here
-    /// to what they are, makes the kernel tell it again.
+    /// It is notified of input only when some arrives, and forgets the notification if the window is resized at the
+    /// same moment, or if it has read one full buffer out of several: those keys would wait for the next one. Setting
+    /// the modes, here to what they already are, makes the kernel notify it again.
     pub(super) fn remind_of_input(&self) {
         let waiting = poll(&mut [PollFd::new(&stdin(), PollFlags::IN)], Some(&Timespec::default()));
         if !matches!(waiting, Ok(1..)) {
             return;
         }
         let _turn = self.my_turn();
-        // In the background it would stop us.
+        // In the background this would stop us.
         if self.is_taken()
             && self.in_foreground()
             && let Ok(modes) = tcgetattr(stdin())
@@ -177,7 +179,7 @@ impl Tty {
         is_ours(self.hands.load(Ordering::SeqCst))
     }
 
-    /// Whether the terminal listens to our process group. Also true where there is no job control to ask.
+    /// Whether the terminal listens to our process group. Also true without job control.
     pub(super) fn in_foreground(&self) -> bool {
         tcgetpgrp(&self.fd).map_or(true, |foreground| foreground == getpgrp())
     }
@@ -192,9 +194,9 @@ impl Tty {
         }
     }
 
-    /// The turn to write; after [`PATIENCE`] without it.
+    /// The turn to write; `None` after waiting [`PATIENCE`] for it.
     ///
-    /// Holding it never takes longer than one write that cannot wait, unless the terminal could not be opened again.
+    /// It is never held longer than one non-blocking write takes, unless the terminal could not be reopened.
     fn my_turn(&self) -> Option<MutexGuard<'_, ()>> {
         let until = Instant::now() + PATIENCE;
         loop {
@@ -211,7 +213,7 @@ impl Tty {
 }
 
 impl FrameSink for Tty {
-    // If the terminal is given back meanwhile the rest is dropped: it belongs to a screen that is no longer shown.
+    // If the terminal is given back meanwhile, the rest is dropped: it belongs to a screen that is no longer shown.
     fn write_frame(&self, frame: &[u8]) -> io::Result<()> {
         let hands = self.hands.load(Ordering::SeqCst);
         let mut rest = frame;
@@ -260,7 +262,7 @@ fn reopen() -> io::Result<OwnedFd> {
     {
         return Ok(fd);
     }
-    // After `su` the terminal still belongs to somebody else; one's own controlling terminal may always be opened.
+    // After `su` the terminal still belongs to somebody else; a process may always open its own controlling terminal.
     let controlling = matches!((tcgetsid(stdout()), getsid(None)), (Ok(theirs), Ok(ours)) if theirs == ours);
     if controlling && let Ok(fd) = open("/dev/tty", flags, Mode::empty()) {
         return Ok(fd);

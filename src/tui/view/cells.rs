@@ -1,4 +1,5 @@
-//! Problem where panes are stacked: lines of values in cells, then the groups that can be set, and the state in a line below.
+//! Problem where panes are stacked: lines of values in cells, then the groups that can be set, and the state in a line
+//! below.
 
 use super::here;
 use super::parts::{is_selected, panel};
@@ -11,7 +12,7 @@ use ratatui::layout::{Margin, Position, Rect};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Paragraph;
 
-/// Where a value stands: its line and the cells of it.
+/// Where a value stands: its line, and its cells in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct ValueSeat {
     line: usize,
@@ -19,7 +20,7 @@ struct ValueSeat {
     cells: usize,
 }
 
-/// The seats of so wide values, in lines of `count` cells; none is broken.
+/// The seats of values of these widths, in lines of `count` cells; none is broken across lines.
 fn seats(values: &[ShownValue], count: usize) -> Vec<ValueSeat> {
     let (mut line, mut first) = (0, 0);
     let mut seats = Vec::new();
@@ -34,7 +35,7 @@ fn seats(values: &[ShownValue], count: usize) -> Vec<ValueSeat> {
     seats
 }
 
-/// The lines shown, from the first one on: the selected one is the last of them, as soon as there are lines above.
+/// The first line shown: the selected line is the last one shown, once there are lines above.
 fn first_line(seats: &[ValueSeat], selected: usize) -> usize {
     let last = seats.last().map_or(0, |seat| seat.line);
     let lines = usize::from(VALUE_LINES);
@@ -79,7 +80,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(Paragraph::new(rows), inner);
 }
 
-/// The value at this place of the screen, in the pane `area`.
+/// The value at this position of the screen, in the pane `area`.
 pub fn value_at(app: &App, area: Rect, at: Position) -> Option<usize> {
     let inner = area.inner(Margin::new(1, 1));
     let seats = seats(&shown(app), count(inner.width));
@@ -92,7 +93,7 @@ pub fn value_at(app: &App, area: Rect, at: Position) -> Option<usize> {
     seats.iter().position(is_it).filter(|at| *at < app.model.knobs().len())
 }
 
-/// The value above or below the selected one in a pane so wide.
+/// The value above or below the selected one in a pane of this width.
 pub fn value_beside(app: &App, width: u16, down: bool) -> usize {
     let seats = seats(&shown(app), count(width));
     let selected = app.model.parameter;

@@ -15,12 +15,12 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
-/// Where a view stands among those on the screen.
+/// The role of a view among those on the screen.
 #[derive(Debug, Clone, Copy)]
 pub struct Seat {
-    /// Whether it is the first one, which has the cross-hair and the keys.
+    /// Whether it is the first one, to which the cross-hair and the keys belong.
     pub first: bool,
-    /// The view beside it that has the same axis of the force.
+    /// The view beside it that shares its force axis.
     pub beside: Option<View>,
 }
 
@@ -63,7 +63,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, seat: Seat
     chart.draw(frame, area, selected);
 }
 
-/// What stands there while there is no curve: on its way, or given up or failed, which the status line explains.
+/// What is shown while there is no curve: it is on its way, or was given up or failed, which the status line explains.
 fn without_curve(app: &App) -> Figure {
     let missing = if app.model.is_computing() {
         "computing".to_owned()
@@ -75,9 +75,9 @@ fn without_curve(app: &App) -> Figure {
     Figure { missing: Some(missing), ..Figure::empty("Curve".to_owned(), axis(), axis()) }
 }
 
-/// The part of a figure of `view` in a window, on the screen.
+/// The part of a figure of `view` in a window, as a chart.
 pub fn chart<'a>(figure: &'a Figure, view: View, window: &Window, theme: Theme) -> Chart<'a> {
-    // A chart that is seen closer upward alone has the part of the axis of its neighbour, whose heading says so.
+    // A chart zoomed only vertically shares that part of the axis with its neighbour, whose heading says so.
     let zoom = if window.x == Window::WHOLE.x {
         String::new()
     } else {
@@ -99,10 +99,10 @@ pub fn chart<'a>(figure: &'a Figure, view: View, window: &Window, theme: Theme) 
     }
 }
 
-/// Half a wave of fewer cells than these would make compression and tension a moiré of two shades.
+/// With fewer cells than this for half a wave, compression and tension would form a moiré of two shades.
 const THIN: f64 = 3.0;
 
-/// Whether half a wave (of a gap without waves, a ring where the bodies pull) is too thin to be told apart on a screen.
+/// Whether half a wave (or, for a gap without waves, a ring under tension) is too thin to be told apart on a screen.
 fn is_thin(subject: &Subject<'_>, area: Rect, chart: &Chart<'_>) -> bool {
     let Some(plot) = chart.plot(area) else { return false };
     let cell = (chart.bounds.x[1] - chart.bounds.x[0]) / f64::from(plot.width);
@@ -110,14 +110,14 @@ fn is_thin(subject: &Subject<'_>, area: Rect, chart: &Chart<'_>) -> bool {
     let half_wave = wave.map(|wave| 0.5 * subject.scale().radius(wave));
     let width = |area: &Area| {
         let radius = |at: Option<&(f64, f64)>| at.map_or(0.0, |(x, y)| x.hypot(*y));
-        // From the outer half circle to the inner one.
+        // From the outer semicircle to the inner one.
         radius(area.outline.first()) - radius(area.outline.last())
     };
     let tensions = chart.figure.areas.iter().filter(|area| area.meaning == Meaning::Tension);
     tensions.map(width).any(|width| half_wave.unwrap_or(width) < THIN * cell)
 }
 
-/// The mark of the selected event stands out, and has its number in the legend where the letter has none.
+/// Makes the mark of the selected event stand out, with its number in the legend if the letter does not show it.
 fn select_event(model: &Model, chart: &mut Chart<'_>) {
     let log = model.log();
     let Some(number) = log.entries.get(model.event).and_then(|entry| entry.number) else { return };

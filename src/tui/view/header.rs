@@ -21,7 +21,7 @@ fn stiffness_share(model: &Model) -> Option<f64> {
     Some(k / node.stiffness.in_units(node.setting.units()).contact)
 }
 
-/// What there is, what is held, what is under way.
+/// What there is, what is held, and what is under way.
 fn heading(app: &App, warnings: &[String]) -> Vec<Span<'static>> {
     let (model, theme) = (&app.model, app.theme);
     let name = match &model.source {
@@ -53,7 +53,7 @@ fn heading(app: &App, warnings: &[String]) -> Vec<Span<'static>> {
             theme.dim(),
         ));
     }
-    // What is under way and a warning need the room more than what the Problem panel says as well.
+    // A job under way and a warning need the room more than what the Problem panel says anyway.
     if let (Some(count), true) = (model.preset.get("basis.rings"), warnings.is_empty() && app.late.is_none())
     {
         spans.push(Span::raw(format!("  rings {count}")));
@@ -81,7 +81,7 @@ fn warnings(app: &App) -> Vec<String> {
     warnings.map(|text| app.theme.text(text)).collect()
 }
 
-/// Whether there is room for the places: what is under way, and a warning, need it more.
+/// Whether there is room for the places: a job under way, and a warning, need it more.
 fn has_places(app: &App, room: u16) -> bool {
     let warnings = warnings(app);
     let warning = warnings.first().map_or(0, |first| first.chars().count() + "  !  +9 ?: all".len());
@@ -109,9 +109,9 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     }
 }
 
-/// The place whose name stands at this column of the header.
+/// The place whose name is at this column of the header.
 pub fn place_at(app: &App, area: Rect, column: u16) -> Option<Home> {
-    // The key stands behind them.
+    // The key comes after them.
     let key = places(app).last()?.width();
     let mut right = usize::from(area.width).checked_sub(key).filter(|_| has_places(app, area.width))?;
     Home::ALL.into_iter().rev().find(|home| {
@@ -122,7 +122,7 @@ pub fn place_at(app: &App, area: Rect, column: u16) -> Option<Home> {
     })
 }
 
-/// The four places, the one that is looked at in capitals, and the key that goes to another.
+/// The four places, the current one in capitals, and the key that goes to another.
 fn places(app: &App) -> Vec<Span<'static>> {
     let theme = app.theme;
     let here = app.model.view.home();
@@ -137,15 +137,16 @@ fn places(app: &App) -> Vec<Span<'static>> {
     Home::ALL.into_iter().map(name).chain([key]).collect()
 }
 
-/// Columns in which nothing of a title can be read.
+/// With no more columns than this, nothing of a title can be read.
 const FEW: usize = 8;
 
-/// What there is to read of the preset in `room` columns, the first that there is: what was changed since it was read, what it says, its title.
+/// What to say of the preset in `room` columns, the first of these that there is: what was changed since it was read,
+/// its comment, its title.
 fn said(model: &Model, room: usize) -> String {
     let changes = changes(&model.saved, &model.preset);
     if !changes.is_empty() {
         let labels = changed_labels(&model.saved, &model.preset).join(", ");
-        // Cut, a value that was would look like the one that is.
+        // If cut, an old value would look like the new one.
         let texts = [changes.join(", "), format!("changed: {labels}"), format!("{} changed", changes.len())];
         let texts = texts.map(|text| greek(&text));
         return texts.into_iter().find(|text| text.chars().count() <= room).unwrap_or_default();
@@ -155,7 +156,7 @@ fn said(model: &Model, room: usize) -> String {
     if room < FEW { String::new() } else { text.to_owned() }
 }
 
-/// The first warning, as much of it as `room` holds, and the key that tells the rest.
+/// The first warning, as much of it as fits into `room`, and the key that shows the rest.
 fn warned(keymap: &Keymap, warnings: &[String], room: usize) -> Option<String> {
     let (first, others) = warnings.split_first()?;
     let more = if others.is_empty() { String::new() } else { format!("+{}", others.len()) };

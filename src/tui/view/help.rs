@@ -1,4 +1,5 @@
-//! The glossary in pages: how to read the screen, first steps, and what the preset says. Every key is in the list of commands.
+//! The glossary in pages: how to read the screen, first steps, and what the preset says. Every key is in the list of
+//! commands.
 
 use super::parts::panel;
 use crate::explorer::pins::changes;
@@ -12,7 +13,7 @@ use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Clear, Paragraph};
 
-/// Commands in it are named as [`Id::named`](crate::explorer::Id::named) does.
+/// Commands in it are named in the form of [`Id::named`](crate::explorer::Id::named).
 const FIRST_STEPS: &[&str] = &[
     "The walker @ stands at the start of the path. \u{1}next-event\u{1} runs to the first event: there the edge lets go.",
     "\u{1}next-event\u{1} again lets it happen, and the energy lost is said; so on, down to the last contact. \u{1}step\u{1} follows the equilibrium instead, past limit points too. \u{1}undo\u{1} takes the last command back, whatever it was.",
@@ -40,7 +41,7 @@ const READING: &[&str] = &[
     "The digits are an estimate of how far force and contact radius can be trusted; in the basis of rings, more rings give more.",
 ];
 
-/// What the screen writes short, a line each.
+/// The abbreviations on the screen, one per line.
 const SHORT: &[(&str, &str)] = &[
     ("δ  P  s", "approach, force (a pull is negative), contact radius: the outermost edge"),
     ("E*  γ  R", "effective modulus, work of adhesion, radius of the sphere"),
@@ -80,18 +81,18 @@ const SHORT: &[(&str, &str)] = &[
     ("modified", "the title was given to other values than those shown; * unsaved: they are in no file"),
 ];
 
-/// The pages by their names, in their order.
+/// The names of the pages, in order.
 pub const PAGES: [&str; 3] = ["how to read it", "first steps", "this preset"];
 
-/// The page of what the preset says.
+/// The page on what the preset says.
 pub const ABOUT: usize = 2;
 
-/// Where what a key does begins.
+/// The column where the meaning of a key begins.
 const MEANING: usize = 20;
 
-/// A line as long as it may be: broken between words where it is shown, each row under the first.
+/// A line of any length, broken between words when shown; its further rows are indented like the first.
 struct HelpLine {
-    /// What stands before it, as wide as its indent.
+    /// What precedes it; as wide as its indent.
     label: String,
     text: String,
     style: Style,
@@ -116,7 +117,7 @@ impl HelpLine {
     }
 }
 
-/// What narrow screens cut elsewhere, whole: the status, warnings, notes.
+/// The full text of what narrow screens cut elsewhere: the status, warnings, notes.
 pub fn now(app: &App) -> Vec<String> {
     let base = app.model.curve.as_ref().map(|curve| &curve.base);
     let warnings = base.iter().flat_map(|base| base.warnings.iter().map(|text| format!("! {text}")));
@@ -141,7 +142,7 @@ fn section(entries: &mut Vec<HelpLine>, theme: Theme, title: &str) {
     entries.push(HelpLine::new("", title, theme.strong()));
 }
 
-/// What is said now, what is written short, and what the chart shows.
+/// What is reported now, what is abbreviated, and what the chart shows.
 fn reading(app: &App) -> Vec<HelpLine> {
     let (theme, keymap) = (app.theme, &app.keymap);
     let mut entries = Vec::new();
@@ -182,7 +183,7 @@ fn steps(app: &App) -> Vec<HelpLine> {
     entries
 }
 
-/// What the preset says of itself, and what was changed since it was read.
+/// What the preset says about itself, and what was changed since it was read.
 fn about(app: &App) -> Vec<HelpLine> {
     let (theme, model) = (app.theme, &app.model);
     let mut entries = Vec::new();
@@ -200,7 +201,7 @@ fn about(app: &App) -> Vec<HelpLine> {
     entries
 }
 
-/// The lines of a page as they are searched.
+/// The lines of a page in the form in which they are searched.
 pub fn plain(app: &App, page: usize) -> Vec<String> {
     entries(app, page).iter().map(|entry| format!("{}{}", entry.label, entry.text)).collect()
 }
@@ -219,12 +220,12 @@ fn title(help: &Help) -> String {
     }
 }
 
-/// The rows of these lines.
+/// The number of rows of these lines.
 fn count(lines: &[Vec<Line<'_>>]) -> usize {
     lines.iter().map(Vec::len).sum()
 }
 
-/// Draws the help over the screen, from its first line shown on.
+/// Draws the help over the screen, starting from the first line shown.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, help: &Help) {
     let theme = app.theme;
     let area = area.inner(Margin::new(area.width.saturating_sub(110) / 2, 0));
@@ -238,7 +239,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, help: &Help) {
             *row = Line::styled(row.to_string(), theme.selection());
         }
     }
-    // No further than where the last rows fill the screen.
+    // No further than to where the last rows fill the screen.
     let mut room = usize::from(inner.height);
     let mut last = lines.len();
     while last > 0 && room >= lines[last - 1].len() {

@@ -45,7 +45,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-/// The state in one line: as many of its parts as there is room for, in the units of the charts.
+/// The state in one line: as many of its parts as fit, in the units of the charts.
 pub fn line(app: &App, room: usize) -> Line<'static> {
     let (model, theme) = (&app.model, app.theme);
     let (Some(node), Some(curve)) = (model.history.current(), model.curve.as_deref()) else {
@@ -88,7 +88,7 @@ pub fn line(app: &App, room: usize) -> Line<'static> {
     let mut used = 1;
     for part in parts {
         let width: usize = part.iter().map(Span::width).sum();
-        // A part that ends in a blank needs one less.
+        // A part that ends in a space needs one column less.
         let ends = spans.last().is_some_and(|span| span.content.ends_with(' '));
         let between = if used > 1 { 2 - usize::from(ends) } else { 0 };
         if used + between + width > room {
@@ -101,7 +101,7 @@ pub fn line(app: &App, room: usize) -> Line<'static> {
     Line::from(spans)
 }
 
-/// Each control, and whether the state stays with it held.
+/// Each control, and whether the state is stable with it held.
 fn stable(model: &Model, node: &Node) -> Vec<[&'static str; 2]> {
     let spring = model.control().filter(|control| matches!(control, Control::Stiffness(_)));
     let word = |control| {
@@ -115,7 +115,7 @@ fn stable(model: &Model, node: &Node) -> Vec<[&'static str; 2]> {
     [Control::Displacement, Control::Force].into_iter().chain(spring).map(word).collect()
 }
 
-/// A line that fits, or as many of its pairs as do.
+/// A line that fits, or as many of its pairs as fit.
 fn fitting(theme: Theme, line: Line<'static>, room: usize) -> Option<Line<'static>> {
     if line.width() <= room {
         return Some(line);
@@ -186,7 +186,7 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
     }));
     lines.extend(inadmissible(theme, node));
     lines.extend(contacts(theme, node));
-    // A share of the range of every quantity, said where there is room.
+    // A share of the range of every quantity, spelled out if there is room.
     let step = short(model.length, 3);
     let said = format!("{step} of range");
     let room = width.saturating_sub(" step   ".len() + way.chars().count());
@@ -207,7 +207,7 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
     lines
 }
 
-/// The contacts of a state with rings, from the axis outward, in λ where there is one wave.
+/// The contacts of a state with rings, from the axis outward, in λ if there is a single wave.
 fn contacts(theme: Theme, node: &Node) -> Vec<Line<'static>> {
     if !node.has_rings() {
         return Vec::new();
@@ -230,27 +230,27 @@ fn contacts(theme: Theme, node: &Node) -> Vec<Line<'static>> {
     all.collect()
 }
 
-/// Said of a state that cannot be: r of the crest that would touch, or where the disc would have to pull.
+/// The message for an inadmissible state: r of the crest that would touch, or where the disc would have to pull.
 fn inadmissible(theme: Theme, node: &Node) -> Option<Line<'static>> {
     let (radius, _) = node.fault_radius()?;
     let radius = shown(theme, node, Quantity::Length, radius * node.setting.units().length, 4);
     Some(Line::styled(format!(" inadmissible: r {radius}"), theme.error()))
 }
 
-/// Said of a possible state whose gap is not known, or not looked at, beyond a radius.
+/// The message for an admissible state whose gap is not known, or not checked, beyond a radius.
 fn known_to(theme: Theme, node: &Node) -> Option<Line<'static>> {
     let radius = node.admissibility.known_to.filter(|_| node.admissibility.holds)?;
     let radius = shown(theme, node, Quantity::Length, radius * node.setting.units().length, 4);
     Some(Line::from(pair(theme, " admissible up to r ", &radius).to_vec()))
 }
 
-/// dP/dδ, `P_δ` and dA/dδ; and the iterations, which nobody needs where there is no room.
+/// dP/dδ, `P_δ` and dA/dδ; and the iterations, which are dispensable if there is no room.
 fn stiffness(theme: Theme, node: &Node) -> [Line<'static>; 3] {
     let stiffness = node.stiffness.in_units(node.setting.units());
-    // At a limit point of the approach the slopes have no bound.
+    // At a limit point of the approach, the slopes are infinite.
     let slope = |quantity, x: f64| {
         if x.is_nan() {
-            // At a corner they differ from side to side.
+            // At a corner, the slopes on the two sides differ.
             "none".to_owned()
         } else if x.is_infinite() {
             "infinite".to_owned()

@@ -31,17 +31,17 @@ pub fn legend(figure: &Figure, bounds: &Bounds, theme: Theme) -> Vec<LegendRow> 
             add(rank, LegendRow { glyph, style: style(mark.sign, theme), meaning: word.to_owned() });
         }
     }
-    // Of one rank in the order of the figure; pins by number.
+    // Entries of equal rank keep the order of the figure; pins are ordered by number.
     words.sort_by_key(|(rank, _)| *rank);
     words.into_iter().map(|(_, entry)| entry).collect()
 }
 
-/// The place of a line in the legend, the most important first.
+/// The rank of a line in the legend, the most important first.
 fn rank(role: Role) -> u8 {
     match role {
         Role::Stable | Role::Body | Role::Edges | Role::Law | Role::Cusps => 0,
         Role::Unstable | Role::Landings => 1,
-        // Asked for, and often with numbers.
+        // Requested by the person, and often with numbers.
         Role::Pin(_) => 2,
         Role::Inadmissible | Role::Level | Role::Pull | Role::Zone | Role::Walk | Role::Chosen => 3,
         Role::Smooth | Role::Exact | Role::Envelope => 6,
@@ -50,7 +50,7 @@ fn rank(role: Role) -> u8 {
     }
 }
 
-/// What a sign means, and its place in the legend.
+/// What a sign means, and its rank in the legend.
 fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
     Some(match sign {
         Sign::Stray | Sign::Value | Sign::Letter(_) => return None,
@@ -80,7 +80,7 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
     })
 }
 
-/// The cross-hair in words: on a curve the state near to it, then both coordinates.
+/// The cross-hair in words: on a curve the nearest state, then both coordinates.
 pub fn reading(model: &Model) -> Option<String> {
     let (share, view) = (model.cross?, model.view);
     if view.is_table() {
@@ -95,7 +95,7 @@ pub fn reading(model: &Model) -> Option<String> {
         return study::reading(data, subject.preset, at.0);
     }
     Some(match nearest(&subject, view, &bounds, at) {
-        // What it is first: that is new, and narrow screens cut the end.
+        // The state comes first: it is new information, and narrow screens cut off the end.
         Some(nearest) => format!("* {}; + {here}", nearest.text(&subject.curve.setting.preset.units)),
         None => format!("+ {here}"),
     })

@@ -1,4 +1,5 @@
-//! The log: what happens on the path, done, here and ahead, a line each; behind it the inadmissible parts of the curve.
+//! The log: what happens on the path, done, here and ahead, one line each; after it the inadmissible parts of the
+//! curve.
 
 use super::parts::{is_selected, panel};
 use crate::explorer::log::{EventMark, Log, LogEntry};
@@ -18,9 +19,9 @@ use ratatui::style::Style;
 use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
 
-/// From this width on columns name their units.
+/// From this width on, columns name their units.
 const UNITS: usize = 96;
-/// With so many lines inside there is room for the way of the control.
+/// With this many lines inside, there is room for the course of the control.
 const BAR_ROWS: u16 = 4;
 
 /// Draws the log.
@@ -79,12 +80,12 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-/// The lines shown: those about the selected one, and in any case the one where the walker stands, or that is next.
+/// The lines shown: those around the selected one, and always the one where the walker stands, or the next one.
 fn shown(log: &Log, model: &Model, count: usize, rows: usize) -> Vec<usize> {
     let next =
         || log.entries.iter().rposition(|entry| entry.mark == EventMark::Done).map_or(0, |done| done + 1);
     let here = log.entries.iter().position(|entry| entry.mark == EventMark::Here).unwrap_or_else(next);
-    // What is done just before stays in sight.
+    // The last event done stays in sight.
     let above = if model.panel == ScreenPanel::Log { model.event + 1 } else { here + 2 };
     let about = |rows: usize| {
         let first = above.saturating_sub(rows).min(count.saturating_sub(rows));
@@ -109,13 +110,13 @@ pub fn line_at(app: &App, area: Rect, row: u16) -> Option<usize> {
     shown(&log, model, count, rows).get(below).copied()
 }
 
-/// An inadmissible part of the curve: no event, so it has no number.
+/// An inadmissible part of the curve: it is not an event, so it has no number.
 fn part(part: &Inadmissible, units: &UnitSystem, ascii: bool) -> String {
     let wave = part.report.crest_wave.map_or_else(String::new, |wave| format!(" ({wave})"));
     format!("! inadmissible {}{wave}", part.report.text(units, ascii))
 }
 
-/// What the marks mean, and whether all of it is of values before.
+/// The meaning of the marks, and whether all of it belongs to earlier values.
 fn title(model: &Model, log: &Log, theme: Theme, width: usize) -> String {
     let is_old = model.preset.path.begin == Begin::Touch
         && model.cycle().is_some_and(|cycle| !cycle.is_of_preset(&model.preset));
@@ -141,7 +142,7 @@ fn mark(theme: Theme, mark: EventMark) -> &'static str {
     }
 }
 
-/// The largest pull, what was lost so far and what the path loses, as much of it as there is room for.
+/// The largest pull, the energy lost so far and the loss over the whole path, as much of it as fits.
 fn sums(model: &Model, log: &Log, room: usize) -> String {
     let Some(path) = model.path() else { return String::new() };
     let units = &model.preset.units;
@@ -193,7 +194,8 @@ fn empty(model: &Model, keymap: &Keymap) -> String {
     keymap.spelled(&why)
 }
 
-/// The way of the control, its turn in the middle, with events and walker on it; nothing where a path does not turn, and in few rows.
+/// The course of the control, with its turn in the middle, and events and walker on it; `None` if the path does not
+/// turn, or if there are few rows.
 fn bar(model: &Model, theme: Theme, area: Rect) -> Option<Line<'static>> {
     let path = model.path().filter(|path| path.turn.is_some())?;
     let room = usize::from(area.width.checked_sub(4).filter(|_| area.height >= BAR_ROWS + 2)?);
@@ -223,9 +225,9 @@ fn bar(model: &Model, theme: Theme, area: Rect) -> Option<Line<'static>> {
     Some(Line::styled(format!(" {} ", cells.into_iter().collect::<String>()), theme.dim()))
 }
 
-/// A column: how soon it is left out, and whether its cells begin at its left.
+/// A column: how soon it is left out, and whether its cells are left-aligned.
 const COLUMNS: [(u8, bool); 10] = [
-    // EventMark and number.
+    // Mark and number.
     (0, true),
     // What happened.
     (3, true),
@@ -244,7 +246,7 @@ const COLUMNS: [(u8, bool); 10] = [
     (0, true),
 ];
 
-/// The lines of the entries, with as many columns as there is room for; the first line shown names what they are.
+/// The lines of the entries, with as many columns as fit; the first line shown contains the column names.
 fn table(model: &Model, theme: Theme, entries: &[LogEntry], named: usize, room: usize) -> Vec<String> {
     let Some(curve) = model.curve.as_deref() else { return Vec::new() };
     let scale = Scale::of(curve, model.axes);
@@ -252,7 +254,7 @@ fn table(model: &Model, theme: Theme, entries: &[LogEntry], named: usize, room: 
     let is_held = model.control().is_some_and(|control| control == Control::Force);
     let rows: Vec<[String; 10]> =
         entries.iter().map(|entry| cells(entry, scale, &model.preset.units, theme, is_held)).collect();
-    // The charts say over what they are: a column has the letter alone, and where there is room its unit.
+    // The charts say over what they are scaled: a column has only the letter, and its unit if there is room.
     let letter = |axis: &Axis| {
         let letter = axis.symbol.split('/').next().unwrap_or_default().to_owned();
         let has_unit = room >= UNITS && !axis.shown.is_empty();

@@ -24,12 +24,12 @@ use ratatui::text::Line;
 
 use parts::is_selected;
 
-/// Lines of inadmissible parts that get room of their own: they come late, and more would move the charts far.
+/// Lines of inadmissible parts that get their own room: they come late, and more of them would move the charts far.
 const PARTS: usize = 3;
 
-/// Draws the whole screen, and says for how many views it has room.
+/// Draws the whole screen, and returns how many views it has room for.
 pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
-    // The frame's own area only: the terminal may have changed its size meanwhile.
+    // Only the frame's own area: the terminal may have changed its size meanwhile.
     let area = frame.area();
     let Some(regions) = places(app, area) else {
         let (width, height) = SMALLEST;
@@ -38,7 +38,7 @@ pub fn draw(frame: &mut Frame<'_>, app: &App) -> usize {
         return 1;
     };
     header::draw(frame, regions.header, app);
-    // The selected panel last: shared walls take its style.
+    // The selected panel is drawn last, since shared walls take its style.
     for selected in [false, true] {
         draw_panels(frame, app, &regions, selected);
     }
@@ -72,7 +72,7 @@ fn draw_panels(frame: &mut Frame<'_>, app: &App, regions: &Regions, selected: bo
         _ => None,
     };
     for (i, (view, area)) in regions.charts.iter().enumerate() {
-        // The keys are those of the first.
+        // The keys act on the first one.
         if (i == 0 && is_selected(app, ScreenPanel::Charts)) == selected {
             let beside = pair.filter(|_| i < 2).map(|[a, b]| if i == 0 { b } else { a });
             let seat = charts::Seat { first: i == 0, beside };

@@ -15,11 +15,11 @@ use ratatui::widgets::{Block, Clear, Paragraph, Wrap};
 
 /// The widest prompt or list.
 const WIDEST: u16 = 160;
-/// A list beside a picture is so wide,
+/// The width of a list beside a picture,
 const LIST: u16 = 46;
-/// the picture at least so wide,
+/// the least width of the picture,
 const NARROWEST: u16 = 20;
-/// and both so high, where there is room.
+/// and the height of both, if there is room.
 const PICTURE: u16 = 16;
 
 /// Draws what lies over the screen, except the help.
@@ -33,7 +33,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, overlay: &Dialog) {
     }
 }
 
-/// Draws a box over what is there; gives back its inside.
+/// Draws a box over what is there; returns its interior.
 fn over(frame: &mut Frame<'_>, area: Rect, block: &Block<'_>) -> Rect {
     frame.render_widget(Clear, area);
     frame.render_widget(block, area);
@@ -47,15 +47,15 @@ fn middle(area: Rect, width: u16, height: u16) -> Rect {
     Rect { x: area.x + (area.width - width) / 2, y: area.y + (area.height - height) / 2, width, height }
 }
 
-/// The same at the lower end, above the status: values and curve stay in sight.
+/// The same at the lower end, above the status, so that values and curve stay visible.
 fn lower(area: Rect, width: u16, height: u16) -> Rect {
     let middle = middle(area, width, height);
     Rect { y: area.bottom().saturating_sub(middle.height + 2).max(area.y), ..middle }
 }
 
-/// Where a prompt stands, with so many rows of its list.
+/// Where a prompt goes, and how many rows its list gets.
 fn place_of_prompt(prompt: &Prompt, area: Rect) -> (Rect, u16) {
-    // The list is as high as it may be, whatever is typed: what it leaves in sight stays.
+    // The list always has its full height, whatever is typed, so that what it leaves visible does not change.
     let is_line = matches!(prompt.purpose, Purpose::Line { .. });
     let rows = if is_line { area.height * 2 / 5 } else { 0 };
     let place = if is_line || matches!(prompt.purpose, Purpose::Formula(_)) { lower } else { middle };
@@ -68,7 +68,7 @@ fn place_of_prompt(prompt: &Prompt, area: Rect) -> (Rect, u16) {
     (place(area, WIDEST, more.saturating_add(4 + rows)), rows)
 }
 
-/// The entry of a prompt at this place of the screen.
+/// The entry of a prompt at this position of the screen.
 pub fn entry_at(prompt: &Prompt, area: Rect, at: Position) -> Option<usize> {
     let (area, rows) = place_of_prompt(prompt, area);
     let inner = area.inner(Margin::new(1, 1));
@@ -77,9 +77,9 @@ pub fn entry_at(prompt: &Prompt, area: Rect, at: Position) -> Option<usize> {
     (line < prompt.entries.len()).then_some(line)
 }
 
-/// The entries of a line, in so many rows.
+/// The entries of a line, in this many rows.
 fn entries(app: &App, prompt: &Prompt, rows: usize, width: usize) -> Vec<Line<'static>> {
-    /// Columns of the keys and of the lines.
+    /// The columns of the keys and of the lines.
     const KEYS: usize = 11;
     const LINES: usize = 28;
     let theme = app.theme;
@@ -120,7 +120,7 @@ fn draw_prompt(frame: &mut Frame<'_>, area: Rect, app: &App, prompt: &Prompt) {
     let width = usize::from(inner.width.saturating_sub(3)).max(1);
     let scroll = prompt.input.visual_scroll(width);
     let shown: String = prompt.input.value().chars().skip(scroll).take(width).collect();
-    // Below what is wrong, where that is in sight.
+    // Below the error, if that is visible.
     let fault = prompt
         .fault
         .and_then(|column| (column + 1).checked_sub(scroll))
@@ -143,7 +143,7 @@ fn draw_prompt(frame: &mut Frame<'_>, area: Rect, app: &App, prompt: &Prompt) {
 
 fn place_of(choose: &Choose, area: Rect) -> Rect {
     let height = u16::try_from(choose.items.len() + 2 + usize::from(choose.has_notes())).unwrap_or(u16::MAX);
-    // As wide as its longest line and its title, where the screen is.
+    // As wide as its longest line and its title, if the screen allows.
     let longest = choose.items.iter().map(|item| item.text.chars().count()).max().unwrap_or(0);
     let longest = u16::try_from(longest + 4).unwrap_or(WIDEST).clamp(76, WIDEST);
     let (width, height) =
@@ -151,12 +151,12 @@ fn place_of(choose: &Choose, area: Rect) -> Rect {
     middle(area, width, height)
 }
 
-/// The first line of a list shown in so many rows.
+/// The first line of a list shown in this many rows.
 fn first(selected: usize, rows: usize) -> usize {
     (selected + 1).saturating_sub(rows)
 }
 
-/// The line of a list at this place of the screen.
+/// The line of a list at this position of the screen.
 pub fn line_at(choose: &Choose, area: Rect, at: Position) -> Option<usize> {
     let mut inner = place_of(choose, area).inner(Margin::new(1, 1));
     inner.height = inner.height.saturating_sub(u16::from(choose.has_notes()));
@@ -212,7 +212,7 @@ fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose)
 }
 
 fn draw_question(frame: &mut Frame<'_>, area: Rect, theme: Theme, title: &str, question: &str) {
-    // A long path takes more lines.
+    // A long path takes several lines.
     let lines = u16::try_from(question.chars().count() / 60).unwrap_or(u16::MAX);
     let area = middle(area, 70, 5u16.max(lines.saturating_add(3)));
     let block = panel(theme, title, true);

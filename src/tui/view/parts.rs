@@ -1,4 +1,4 @@
-//! Parts that several regions draw with: frames of panels, cut texts, pairs of key and value.
+//! Parts that several regions use: frames of panels, shortened texts, pairs of key and value.
 
 use crate::explorer::{Id, ScreenPanel};
 use crate::tui::app::App;
@@ -12,12 +12,13 @@ pub(super) fn panel<'a>(theme: Theme, title: &str, selected: bool) -> Block<'a> 
     theme.block(selected).title(Span::styled(theme.text(title), theme.title(selected)))
 }
 
-/// Whether a panel is the selected one, and nothing lies over it.
+/// Whether a panel is the selected one and nothing lies over it.
 pub(super) fn is_selected(app: &App, panel: ScreenPanel) -> bool {
     app.model.panel == panel && app.overlay.is_none()
 }
 
-/// `text` as far as its words have room; where it is cut, or more is to be told, the key of the help, which has all.
+/// As many words of `text` as fit; if it is cut, or there is more to tell, followed by the key of the help, which shows
+/// everything.
 pub(super) fn fitted(keymap: &Keymap, text: &str, more: &str, room: usize) -> String {
     if more.is_empty() && text.chars().count() <= room {
         return text.to_owned();

@@ -16,16 +16,16 @@ use ratatui::layout::{Margin, Rect};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Paragraph;
 
-/// Parameters that are seen above the groups, unless one of these is selected.
+/// Parameters that stay visible above the groups, unless a group is selected.
 const ABOVE: usize = 5;
 
 /// How the panel is filled.
 struct Arranged {
     /// Inside the frame.
     inner: Rect,
-    /// How many parameters there are, the groups behind them not counted.
+    /// The number of parameters, without the groups after them.
     parameters: usize,
-    /// The first one shown: the list scrolls so that the selected line is seen.
+    /// The first one shown: the list scrolls so that the selected line is visible.
     first: usize,
     rows: usize,
     groups: Vec<Line<'static>>,
@@ -35,16 +35,16 @@ fn arrange(app: &App, area: Rect, all: &[(Row, Option<Value>)]) -> Arranged {
     let model = &app.model;
     let selected = is_selected(app, ScreenPanel::Problem);
     let inner = area.inner(Margin::new(1, 1));
-    // The groups that can be set stand behind the parameters, among those that cannot.
+    // The groups that can be set come after the parameters, among those that cannot.
     let parameters = all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count();
     let chosen = all.get(model.parameter).filter(|_| selected).map(|(row, _)| row.key.clone());
     let in_groups = model.parameter >= parameters && selected;
     let mut groups = group_lines(app, &all[parameters..], chosen.as_deref(), inner.width);
     let height = usize::from(inner.height);
-    // Both are seen in part where they have no room; what is selected, whole.
+    // If there is too little room, both are shown in part, and the selected one in full.
     let above = if in_groups { 2 } else { ABOVE };
     groups.truncate(height.saturating_sub(parameters.min(above)));
-    // Where there is room for it whatever is selected.
+    // Only if there is room for it whatever is selected.
     let onset = onset(app.theme, model).filter(|_| parameters.min(ABOVE) + groups.len() < height);
     groups.extend(onset);
     let rows = height - groups.len();
@@ -83,7 +83,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-/// The rows that show everything in a panel so wide.
+/// The number of rows that show everything in a panel of this width.
 pub fn rows(app: &App, width: u16) -> usize {
     let all = app.model.knobs();
     let parameters = all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count();
@@ -99,7 +99,7 @@ pub fn line_at(app: &App, area: Rect, row: u16) -> Option<usize> {
     (below < rows && line < parameters).then_some(line)
 }
 
-/// Columns of a cell; a long word or an error takes two.
+/// The columns of a cell; a long word or an error takes two cells.
 pub(super) const CELL: usize = 13;
 
 /// A value as cells show it.
@@ -111,9 +111,9 @@ pub(super) struct ShownValue {
 }
 
 impl ShownValue {
-    /// A value of so many characters, written as `text` says for the room there is.
+    /// A value of this many characters; `text` writes it for the room there is.
     fn new(label: String, width: usize, text: impl FnOnce(usize) -> String) -> Self {
-        // The mark before the label, and a blank behind it.
+        // The mark before the label, and a space after it.
         let taken = label.chars().count() + 2;
         let cells = (taken + width).div_ceil(CELL).max(1);
         Self { text: text(cells * CELL - taken), label, cells }
@@ -123,7 +123,7 @@ impl ShownValue {
         Self::new(label, text.chars().count(), |_| text)
     }
 
-    /// Its cells, of which there is room for so many.
+    /// Its spans, if there is room for this many cells.
     pub(super) fn spans(&self, theme: Theme, cells: usize, is_chosen: bool) -> Vec<Span<'static>> {
         let room = (cells * CELL).saturating_sub(2 + self.label.chars().count());
         let text = theme.whole_words(&self.text, room);
@@ -136,9 +136,9 @@ impl ShownValue {
     }
 }
 
-/// The values, the groups that can be set, then those that cannot, as cells show them.
+/// The values, the groups that can be set, then those that cannot, in the form shown in cells.
 pub(super) fn shown(app: &App) -> Vec<ShownValue> {
-    /// A turned number keeps its cell: room for this many characters, whatever it is now.
+    /// A number keeps its cells while it is turned: room for this many characters, whatever its present length.
     const NUMBER: usize = 5;
     let (model, theme) = (&app.model, app.theme);
     let units = &model.preset.units;
@@ -168,31 +168,32 @@ pub(super) fn shown(app: &App) -> Vec<ShownValue> {
     values.chain(others).collect()
 }
 
-/// From which amplitude on the problem snaps, or by what wave it is resolved, in a few words.
+/// The amplitude from which the problem snaps, or the wave that sets its resolution, in a few words.
 pub(super) fn standing(app: &App) -> Option<String> {
     let lines = [onset(app.theme, &app.model), shortest_wave(app.theme, &app.model)];
     lines.into_iter().flatten().next().map(|line| line.to_string().trim().to_owned())
 }
 
-/// The keys that turn the selected value, behind it, where they are as short as the usual ones.
+/// The keys that turn the selected value, shown after it if they are as short as the usual ones.
 fn turning(keymap: &Keymap) -> String {
     let keys = [Id::Less, Id::More].map(|id| keymap.first(id));
     let is_short = keys.iter().all(|key| key.chars().count() == 1);
     if is_short { format!(" {}", keys.join(" ")) } else { String::new() }
 }
 
-/// The ways to write a standard error behind its value, the longest first; nothing without one. With one digit it is rounded up.
+/// The ways to write a standard error after its value, the longest first; empty without one. With one digit it is
+/// rounded up.
 fn errors(theme: Theme, error: Option<f64>) -> Vec<String> {
     let Some(error) = error else { return vec![String::new()] };
     let up = |error: f64| {
         let place = 10.0_f64.powf(error.log10().floor());
-        // What is one digit already stays what it is.
+        // An error that has only one digit stays as it is.
         place * (error / place - 1e-6).ceil()
     };
     [short(error, 2), short(up(error), 1)].map(|text| theme.text(&format!(" ±{text}"))).to_vec()
 }
 
-/// A number with its unit and its error, as many digits as there is room for, so that neither is cut.
+/// A number with its unit and its error, with as many digits as fit, so that neither is cut.
 fn fitted(
     theme: Theme,
     units: &UnitSystem,
@@ -219,7 +220,7 @@ fn knob_line(
     width: u16,
 ) -> Line<'static> {
     let (mark, ends) = turning.map_or((" ", ""), |keys| (">", keys));
-    // A standard error is worth more than the signs that the value can be turned.
+    // A standard error matters more than the signs that the value can be turned.
     let ends = if error.is_some() { "" } else { ends };
     let error = error.map(|error| row.shown(units, error).number.abs());
     let name = theme.symbols(&row.label);
@@ -234,7 +235,7 @@ fn knob_line(
         }
         Some(value) => theme.text(&value.to_string()),
     };
-    // A word is worth more than the sign that it can be turned.
+    // A word matters more than the sign that it can be turned.
     let (ends, room) =
         if text.chars().count() > room { ("", room + ends.chars().count()) } else { (ends, room) };
     let text: String = text.chars().take(room).collect();
@@ -242,7 +243,7 @@ fn knob_line(
     Line::styled(format!("{label}{text}{ends}"), style)
 }
 
-/// The groups, as many on a line as fit; the one with the key `chosen` is selected.
+/// The groups, as many per line as fit; the one with the key `chosen` is selected.
 fn group_lines(
     app: &App,
     settable: &[(Row, Option<Value>)],
@@ -266,14 +267,14 @@ fn group_lines(
     let mut used = usize::MAX;
     for (name, value, is_chosen) in items {
         let spans = if is_chosen {
-            // As wide as the others: else the lines would break elsewhere, and the list above scroll.
+            // As wide as the others; otherwise the lines would break elsewhere and the list above would scroll.
             vec![Span::styled(format!(">{name} {}", short(value, 4)), theme.selection()), Span::raw(" ")]
         } else {
             let [name, value] = pair(theme, &format!(" {name} "), &format!("{} ", short(value, 4)));
             vec![name, value]
         };
         let length: usize = spans.iter().map(Span::width).sum();
-        // The blank behind the last one may be cut.
+        // The space after the last one may be cut.
         if used.saturating_add(length) > usize::from(width) + 1 {
             lines.push(Line::default());
             used = 0;
@@ -287,14 +288,14 @@ fn group_lines(
     lines
 }
 
-/// From which amplitude on the problem snaps, under its control.
+/// The amplitude from which the problem snaps, under its control.
 fn onset(theme: Theme, model: &Model) -> Option<Line<'static>> {
     let text = format!("{} ({})", short(model.snaps_from()?, 3), symbol(model.preset.path.control));
     Some(Line::from(pair(theme, " snaps from A/λ ", &text).to_vec()))
 }
 
-/// By what mesh and steps are measured, where that is no λ among the parameters: the waves of a formula or of measured
-/// rows are found, not given.
+/// The wave by which mesh and steps are measured, if it is not a λ among the parameters: the waves of a formula or of
+/// measured rows are found, not given.
 fn shortest_wave(theme: Theme, model: &Model) -> Option<Line<'static>> {
     let gap = &model.preset.gap;
     let length = gap.feature_length().filter(|_| gap.wavelength().is_none())?;

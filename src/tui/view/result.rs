@@ -1,4 +1,4 @@
-//! What comes of the path: A, B, the last contact, the snaps and what they lose; with a pin, its numbers beside them.
+//! The outcome of the path: A, B, the last contact, the snaps and their losses; with a pin, its numbers beside them.
 
 use super::log::snaps;
 use super::parts::{is_selected, pair, panel};
@@ -16,7 +16,7 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Paragraph;
 
-/// Draws what comes of the path.
+/// Draws the outcome of the path.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
     let block = panel(theme, "Result", is_selected(app, ScreenPanel::Result));
@@ -65,12 +65,12 @@ fn lines(theme: Theme, model: &Model, path: &PathReport) -> Vec<Line<'static>> {
     lines
 }
 
-/// The cells of a name.
+/// The width of a name.
 const NAME: usize = 4;
-/// The columns beside it: now, the pin, and the change from the pin in per cent.
+/// The widths of the columns beside it: now, the pin, and the change from the pin in per cent.
 const COLUMNS: [usize; 3] = [8, 8, 7];
 
-/// The same numbers as columns, beside those of the newest pin.
+/// The same numbers in columns, beside those of the newest pin.
 fn beside(
     theme: Theme,
     model: &Model,
@@ -127,14 +127,15 @@ fn beside(
     lines
 }
 
-/// Three digits of a number, with an exponent where they do not fit a column.
+/// Three digits of a number, with an exponent if they do not fit into a column.
 fn cell(x: f64) -> String {
     let plain = if x.fract() == 0.0 && x.abs() < 1e6 { format!("{x}") } else { significant(x, 3) };
     let [width, ..] = COLUMNS;
     if plain.chars().count() < width { plain } else { format!("{x:.2e}") }
 }
 
-/// By how much of the former value it has changed, in per cent: a larger pull is more, though its force is more negative.
+/// The change relative to the former value, in per cent: a larger pull is an increase, though its force is more
+/// negative.
 fn change(now: f64, was: f64) -> String {
     let percent = 100.0 * (now - was) / was;
     match percent.abs() {

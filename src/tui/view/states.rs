@@ -1,4 +1,4 @@
-//! The table of the states walked: what was done, a line each.
+//! The table of the states walked: what was done, one line each.
 
 use super::parts::panel;
 use crate::explorer::node::{Node, NodeKind};
@@ -47,14 +47,14 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, selected: bool) {
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-/// The first line shown, so that the chosen one is in the middle as far as there are lines.
+/// The first line shown, chosen so that the selected one is in the middle as far as there are lines.
 fn first(count: usize, chosen: usize, rows: usize) -> usize {
     chosen.saturating_sub(rows / 2).min(count.saturating_sub(rows))
 }
 
 /// The line in this row of the screen, in the chart `area`.
 pub fn line_at(model: &Model, area: Rect, row: u16) -> Option<usize> {
-    // Three lines are the frame and the column heads.
+    // The frame and the column heads take three lines.
     let rows = usize::from(area.height.saturating_sub(3));
     let count = model.history.path().len();
     let below = usize::from(row.checked_sub(area.y + 2)?);
@@ -77,12 +77,12 @@ fn head(model: &Model) -> String {
     )
 }
 
-/// Whether forces are over `P_c`.
+/// Whether forces are divided by `P_c`.
 fn is_divided(model: &Model) -> bool {
     model.curve.as_ref().is_some_and(|curve| curve.base.critical_force > 0.0)
 }
 
-/// A state in one line; `before` is the one before it.
+/// A state in one line; `before` is the previous state.
 fn row(model: &Model, node: &Node, before: Option<&Node>) -> String {
     let setting = &node.setting;
     let state = node.state.in_units(setting.units());

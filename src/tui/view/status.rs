@@ -1,4 +1,4 @@
-//! What the state is and which key is next; and the keys.
+//! What the state is and which key comes next; and the keys.
 
 use super::legend::reading;
 use super::parts::fitted;
@@ -12,7 +12,8 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
-/// What the footer offers, the most wanted first, as many as fit: what goes on everywhere, what the selected panel has, the rest.
+/// The commands that the footer offers, as many as fit: those available everywhere come first, then those of the
+/// selected panel, then the rest.
 pub fn offered(app: &App) -> Vec<(Id, &'static str)> {
     let word = |id: Id| (id, row_of(id).short);
     let walk = [Id::Step, Id::NextEvent, Id::Jump, Id::Reverse, Id::Undo].map(word);
@@ -87,14 +88,14 @@ fn between(width: u16) -> usize {
 /// Draws the status line and the footer.
 pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
     let theme = app.theme;
-    // The cross-hair is read while nothing else is to be told.
+    // The cross-hair is reported while there is nothing else to say.
     let reading = if app.model.message.is_none() { reading(&app.model) } else { None };
     let is_reading = reading.is_some();
     let (level, text) = reading.map_or_else(|| app.model.status(), |text| (Level::Info, text));
     let text = app.keymap.spelled(&text);
     let style = if level.is_bad() { theme.error() } else { ratatui::style::Style::new() };
     let room = usize::from(status.width).saturating_sub(1);
-    // The help has the status whole, and can be opened while nothing else is open.
+    // The help has the full status, and can be opened while nothing else is open.
     let text = match theme.text(&text) {
         text if app.overlay.is_some() || is_reading => theme.whole_words(&text, room),
         text => fitted(&app.keymap, &text, "", room),
@@ -115,11 +116,11 @@ pub fn draw(frame: &mut Frame<'_>, status: Rect, footer: Rect, app: &App) {
 pub enum Does {
     Command(Id),
     Place(Home),
-    /// What a key does in what lies over the screen.
+    /// What a key does in the overlay on the screen.
     Key(KeyCode),
 }
 
-/// A key of the footer and what it does in a word.
+/// A key of the footer and its effect in a word.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FooterWord {
     pub key: String,

@@ -20,7 +20,7 @@ mod reach;
 /// Dark, and in ASCII.
 const PLAIN: Theme = Theme { palette: Palette::Dark, charts: Charts::Ascii, ascii: true };
 
-/// The explorer with its effects done inline.
+/// The explorer with its effects run inline.
 struct Screen {
     app: App,
     driver: Inline,
@@ -157,14 +157,14 @@ fn whole_screens_as_text() {
     insta::assert_snapshot!("refused_value_80x24", screen.text(80, 24));
 }
 
-/// The sizes that are drawn on purpose, with one curve pinned and one limit point passed.
+/// The sizes designed for, with one curve pinned and one limit point passed.
 #[test]
 fn screens_of_every_layout_as_text() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("p}nxn");
     for (width, height) in [(80, 24), (100, 30), (120, 40), (160, 45), (200, 60), (300, 20)] {
         for _ in 0..2 {
-            // Views that there is room for are computed first.
+            // The views that fit are computed first.
             let mut views = 0;
             let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
             terminal.draw(|frame| views = super::draw(frame, &screen.app)).unwrap();
@@ -175,14 +175,14 @@ fn screens_of_every_layout_as_text() {
     }
 }
 
-/// Whether a number ends where a wall or an ellipsis begins, as if it had been cut.
+/// Whether a number ends where a wall or an ellipsis begins, as if it had been cut off.
 fn has_cut_number(text: &str) -> Option<String> {
     let is_number = |c: char| c.is_ascii_digit() || c == 'e' || c == '-' || c == '.';
     text.lines().find_map(|line| {
         let chars: Vec<char> = line.chars().collect();
         let cut = chars.windows(3).position(|three| {
             let [before, last, end] = [three[0], three[1], three[2]];
-            // Half an exponent, or digits that run into a wall without the blank behind a value.
+            // Half an exponent, or digits that run into a wall without the space that follows a value.
             end == '\u{2502}' && (last == 'e' || last == '-' || last == '.') && is_number(before)
         });
         cut.map(|_| line.to_owned())
@@ -199,14 +199,14 @@ fn nothing_is_cut_inside_a_number() {
             for (width, height) in [(60, 60), (80, 50), (40, 12), (80, 24), (100, 30), (120, 40), (45, 30)] {
                 let text = screen.text(width, height);
                 assert_eq!(has_cut_number(&text), None, "{width}x{height} {text}");
-                // The crests before and after stand together.
+                // The crests before and after are written together.
                 for line in text.lines().filter(|line| line.contains("snap")) {
                     assert!(!line.contains("> ") || line.contains(">-"), "{line}");
                 }
             }
         }
     }
-    // Under a dead load the approach is told before and after, and the load once.
+    // Under a dead load, the approach is given before and after, and the load once.
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("c");
     let text = screen.text(80, 24);
@@ -289,7 +289,7 @@ fn views_follow_each_other_and_three_fit_on_a_wide_screen() {
             assert!(text.contains(title), "{title}: {text}");
             screen.keys("t");
         }
-        // Round the place, and no further.
+        // Once round the place, and no further.
         assert!(screen.text(80, 24).contains(titles[0]), "{}", screen.text(80, 24));
     }
     screen.keys("gcTTT");
@@ -300,7 +300,7 @@ fn views_follow_each_other_and_three_fit_on_a_wide_screen() {
         assert!(text.contains(title), "{title}: {text}");
     }
     assert_eq!(text.matches("(t: force-radius)").count(), 1);
-    // A jump's loss is hatched, in ASCII as well.
+    // The loss of a jump is hatched, in ASCII as well.
     screen.app.theme = PLAIN;
     let strokes = |screen: &Screen| screen.text(120, 40).matches('/').count();
     let before = strokes(&screen);
@@ -337,7 +337,7 @@ fn zooming_keeps_the_walker_in_place_and_fit_shows_all_again() {
     assert!(close.contains("zoom 4x") && close.contains('@'), "{close}");
     let place = |text: &str| text.lines().find_map(|line| Some((line.len(), line.find('@')?)));
     assert!(place(&whole).is_some() && place(&close).is_some());
-    // In Charts the arrows move the window, elsewhere they select.
+    // In Charts the arrows move the window; elsewhere they select.
     screen.app.model.panel = ScreenPanel::Charts;
     screen.press(KeyCode::Right);
     assert_ne!(screen.text(80, 24), close);
@@ -364,7 +364,7 @@ fn the_cross_hair_reads_the_chart_and_the_curve() {
         assert!(find(&buffer, "+").modifier.contains(Modifier::BOLD) || screen.app.theme.ascii);
     };
     find_cross(&screen);
-    // On a view of the state only its own coordinates.
+    // On a view of the state, only its own coordinates.
     screen.keys("gi");
     let text = screen.text(120, 40);
     assert!(text.contains("+ r/λ ") && !text.contains("* δ "), "{text}");
@@ -406,7 +406,7 @@ fn the_ring_elements_lie_over_the_exact_curve_and_go_again() {
     assert!(text.contains(said) && text.contains(" Newton iterations"), "{text}");
     let told = screen.text(80, 24);
     assert!(told.contains(said) && told.contains(" Newton iterations"), "{told}");
-    // On the chart where there is no Result, whatever is told meanwhile.
+    // On the chart if there is no Result, whatever the message is meanwhile.
     screen.keys("]");
     let small = screen.text(80, 24);
     assert!(
@@ -416,14 +416,14 @@ fn the_ring_elements_lie_over_the_exact_curve_and_go_again() {
     let pin = &screen.app.model.pins.all()[0];
     let [rings, exact] = [&pin.curve, screen.app.model.curve.as_ref().unwrap()]
         .map(|curve| curve.report.as_ref().unwrap().totals.largest_pull.as_ref().unwrap().force);
-    // The method of the paper comes near to the exact solution, and is another one.
+    // The method of the paper comes near the exact solution, but differs from it.
     assert!(rings.total_cmp(&exact).is_ne() && (rings / exact - 1.0).abs() < 0.01, "{rings} {exact}");
     screen.keys("#");
     assert!(screen.app.model.pins.is_empty());
-    // Beside the rings it is the exact solution.
+    // Beside the rings, the pin is the exact solution.
     screen.keys(":set basis.kind=rings\r#");
     assert!(screen.text(120, 40).contains("1 exact: A "), "{}", screen.text(120, 40));
-    // Of other values it is another problem.
+    // With other values it is another problem.
     screen.keys("\u{1b}>");
     assert!(!screen.text(120, 40).contains("1 exact: A "), "{}", screen.text(120, 40));
 }
@@ -443,7 +443,7 @@ fn a_log_of_many_events_says_how_many_are_left_out_and_keeps_the_current_one() {
     let lines = log(&screen);
     let here = lines.iter().position(|line| line.contains('@')).unwrap_or(0);
     assert!(lines[0].contains('+') && here > 0, "{}", screen.text(120, 40));
-    // From the other end of the list too.
+    // From the other end of the list as well.
     for key in [KeyCode::PageUp, KeyCode::PageUp, KeyCode::End] {
         screen.app.model.panel = ScreenPanel::Log;
         screen.press(key);
@@ -483,7 +483,7 @@ fn what_lies_behind_a_turned_value_is_passed_by_and_did_not_happen_at_it() {
     screen.keys("nn>");
     let text = screen.text(160, 45);
     assert!(text.contains("-1 ") && text.contains("-2 ") && !text.contains("-3 "), "{text}");
-    // At the start nothing lies behind.
+    // At the start, nothing lies behind.
     let mut screen = Screen::new("wavy-sphere");
     screen.keys(">");
     assert!(!screen.text(160, 45).contains("-1 "));
@@ -532,7 +532,7 @@ fn inadmissible_parts_need_no_colour() {
     let weak = Command::Set { key: "material.work_of_adhesion".into(), text: "1e-4".to_owned() };
     let effects = crate::explorer::update(&mut screen.app.model, weak);
     screen.settle(effects);
-    // With colours enough the curve keeps its shape and takes the colour of a warning.
+    // With enough colours, the curve keeps its shape and takes the colour of a warning.
     let warning = screen.app.theme.styles().warning.fg.unwrap();
     let buffer = screen.draw(160, 50);
     let warned = buffer.content().iter().filter(|cell| cell.fg == warning && is_braille(cell.symbol()));
@@ -577,7 +577,7 @@ fn a_digit_goes_to_the_event_of_its_number_and_home_starts_again() {
     assert!(screen.app.model.can_jump());
     screen.keys("9");
     assert!(screen.text(80, 24).contains("there is no event 9: the path has 6"));
-    // At a place of its own each time, and g takes no digit.
+    // At a different place each time, and g takes no digit.
     screen.keys("1");
     assert!(screen.text(80, 24).contains("Event 1 of 6"));
     let mut screen = Screen::new("fig-3-jkr");
@@ -585,7 +585,7 @@ fn a_digit_goes_to_the_event_of_its_number_and_home_starts_again() {
     assert_eq!(screen.app.model.history.current().unwrap().step, 12);
     screen.press(KeyCode::Home);
     assert!(screen.text(80, 24).contains("@ 0 "));
-    // Solved again at the same radius: equal but for the rounding of another order of sums.
+    // Solved again at the same radius: equal up to the rounding of sums taken in another order.
     let [start, here] = [screen.app.model.history.node(0), screen.app.model.history.current()]
         .map(|node| node.unwrap().state);
     assert_eq!(here.contact_radius.to_bits(), start.contact_radius.to_bits());
@@ -698,7 +698,7 @@ fn a_formula_shows_where_it_is_wrong() {
     let column = |line: &str, what: &str| line.split(what).next().unwrap().chars().count();
     assert_eq!(column(lines[at + 1], "^"), column(lines[at], "* B"), "{text}");
     assert!(text.contains("column 13: expected a number, a name or '('"), "{text}");
-    // The knobs and the curve are those of the last text that was a formula, R^2/(2*R), and stay in sight.
+    // The knobs and the curve are those of the last text that was a formula, R^2/(2*R), and stay visible.
     assert!(screen.app.model.preset.get("gap.parameters.A").is_none() && text.contains("Problem"), "{text}");
     let tried = screen.app.model.curve.clone().unwrap();
     assert!(!std::sync::Arc::ptr_eq(&curve, &tried));

@@ -1,18 +1,18 @@
-//! What a person wants to do, from a fresh start, with keys that the screen has offered: counted, so that they do not become
-//! more. A name or a number typed counts as one.
+//! What a person wants to do, from a fresh start, with keys that the screen has offered. The keys are counted so that
+//! their number does not grow. A typed name or number counts as one.
 
 use super::Screen;
 use crate::explorer::ScreenPanel;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-/// The size of the screens; more would be offered on none.
+/// The size of the screens; no other size offers more.
 const SIZE: (u16, u16) = (160, 45);
-/// No job takes more keys,
+/// No job takes more keys than this,
 const MOST: usize = 12;
-/// nor all together on average.
+/// and on average a job takes no more than this.
 const AVERAGE: usize = 6;
 
-/// A job, its keys or words typed, and what the screen says then.
+/// A job, its keys or typed words, and what the screen says then.
 type Job = (&'static str, &'static [&'static str], &'static [&'static str]);
 
 /// `FOLDER` stands for a folder of the test, in which `own.csv` is a walk.
@@ -55,7 +55,8 @@ const JOBS: &[Job] = &[
     ("everything undone", &["n", "n", ">", ">", "u", "u", "u"], &["Here, step 0", "Start, stable"]),
 ];
 
-/// Whether the screen offers a key: in the footer, in the header, in the status line; in a list or a prompt those of lists and prompts.
+/// Whether the screen offers a key: in the footer, in the header or in the status line; in a list or a prompt, also the
+/// usual keys there.
 fn is_offered(screen: &Screen, stroke: &str) -> bool {
     let text = screen.text(SIZE.0, SIZE.1);
     let lines: Vec<&str> = text.lines().collect();
@@ -63,10 +64,10 @@ fn is_offered(screen: &Screen, stroke: &str) -> bool {
         return true;
     }
     let says = |line: &str| line.split([' ', '(', ',', ':', ';']).any(|word| word == stroke);
-    // A title with a number of lines has lines to go through.
+    // A title with a number of lines means that there are lines to move through.
     let goes_through = matches!(stroke, "Up" | "Down") && screen.app.model.panel == ScreenPanel::Problem;
     let footer = lines.last().unwrap();
-    // `:` parts words, and is one here.
+    // `:` separates words, but here it is one.
     goes_through && text.contains("Problem ")
         || [lines[0], lines[lines.len() - 2], *footer].iter().any(|line| says(line))
         || footer.contains(&format!(" {stroke} "))
@@ -89,7 +90,7 @@ fn do_job(screen: &mut Screen, (job, strokes, said): &Job) {
             }
             typed => {
                 assert!(screen.app.overlay.is_some(), "{job}: nothing asks for {typed}");
-                // What stands there goes first.
+                // The present text is removed first.
                 let clear = KeyEvent::new(KeyCode::Char('u'), KeyModifiers::CONTROL);
                 let effects = screen.app.key(clear);
                 screen.settle(effects);

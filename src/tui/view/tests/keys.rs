@@ -1,4 +1,4 @@
-//! Sentences name the keys that the person has.
+//! Sentences name the keys that the person has set.
 
 use super::Screen;
 use crate::config::read;
@@ -77,7 +77,7 @@ fn turns_of_one_value_are_taken_back_together() {
     for (keys, value) in [
         (">>>", "0.0028"),
         (">>>u", "0.0025"),
-        // What lies between parts them: a step, another value.
+        // Something in between separates them: a step, another value.
         (">> >u", "0.0027"),
         (">>l>hu", "0.0027"),
         (">>l>h>u", "0.0027"),
@@ -107,7 +107,7 @@ fn the_footer_offers_what_the_selected_panel_has_and_g_the_places() {
         "{}",
         footer(&screen)
     );
-    // Any other key does what it does, and Escape nothing.
+    // Any other key has its usual effect, and Escape has none.
     screen.keys("n");
     assert!(footer(&screen).contains("x jump"));
     screen.keys("g\x1b");
@@ -163,13 +163,13 @@ fn values_that_would_leave_the_walker_far_beyond_the_path_set_it_to_its_start() 
     };
     screen.keys("  ");
     let before = radius(&screen);
-    // Those that a fit finds: the far end of the spring is held, where the contact would be 130 µm wide.
+    // The values that a fit finds: the far end of the spring is held, where the contact would be 130 µm wide.
     screen.keys(":set material.effective_modulus=\"1 MPa\" material.work_of_adhesion=\"50 mJ/m^2\"\r");
     assert!((radius(&screen) - 100e-6).abs() < 1e-12, "{}", radius(&screen));
     assert!(screen.text(120, 40).contains("lies beyond the path"), "{}", screen.text(120, 40));
     screen.keys("u");
     assert!((radius(&screen) - before).abs() < 1e-15);
-    // A little beyond the start it is left where it is, and nothing else is said of it.
+    // A little beyond the start it is left where it is, and nothing more is said about it.
     let mut screen = Screen::new("lens");
     screen.keys(":set material.effective_modulus=\"2.9 MPa\"\r");
     assert!(radius(&screen) > 100.01e-6 && radius(&screen) < 110e-6, "{}", radius(&screen));

@@ -27,7 +27,7 @@ fn a_typed_command_does_what_its_key_does() {
     assert_eq!(model.preset.path.control, Control::Force);
     assert_eq!(model.preset.title, "two  words");
     assert!(model.history.current().unwrap().is_limit(Control::Force));
-    // What a screen only shows is a command here too; what it asks for, it asks for.
+    // Commands that only affect the screen work here too, and ask for what they need.
     screen.keys(":help\r\t");
     assert!(matches!(screen.app.overlay, Some(Dialog::Help(_))));
     screen.keys("\x1b:export\r");
@@ -50,7 +50,7 @@ fn what_is_wrong_is_said_with_its_column_and_stays_to_be_mended() {
     let caret = text.lines().nth(row + 1).unwrap();
     let at = |line: &str, c: char| line.chars().position(|found| found == c).unwrap();
     assert_eq!(at(caret, '^'), at(text.lines().nth(row).unwrap(), 'x'));
-    // Mended, it is done; refused by the model, it stays as well.
+    // Once corrected, it is run; a line refused by the model stays as well.
     screen.press(KeyCode::Backspace);
     screen.keys("\r:jump\r");
     assert!(prompt(&screen).1.unwrap().contains("the state is stable"));
@@ -72,12 +72,12 @@ fn tab_takes_an_entry_and_up_brings_lines_back() {
     screen.press(KeyCode::Down);
     screen.press(KeyCode::Down);
     assert_eq!(line(&screen), "set gap.shape=exp");
-    // Before the cursor is taken, behind it nothing is lost.
+    // The text before the cursor is replaced; after the cursor nothing is lost.
     screen.keys("\x1b: 5");
     screen.press(KeyCode::Home);
     screen.keys("step\t");
     assert_eq!(line(&screen), "step 5");
-    // Nor does Enter run an entry without it.
+    // Enter does not run an entry without that text either.
     screen.keys("\x1b: 5");
     screen.press(KeyCode::Home);
     let states = screen.app.model.history.nodes().len();
@@ -93,7 +93,7 @@ fn what_is_typed_keeps_what_has_it_and_enter_runs_what_is_selected() {
     screen.keys(":");
     let shown = screen.text(80, 24);
     assert!(shown.contains("Space") && shown.contains("one step along"), "{shown}");
-    // What cannot be done now says why.
+    // A command that cannot be run now says why.
     screen.keys("jump");
     assert!(screen.text(120, 40).contains("- the state is stable"), "{}", screen.text(120, 40));
     screen.keys("\x1b:A 0.003\r");
@@ -102,7 +102,7 @@ fn what_is_typed_keeps_what_has_it_and_enter_runs_what_is_selected() {
     assert_eq!(prompt(&screen).0, "set gap.amplitude=");
     screen.keys("0.002\r");
     assert_eq!(screen.app.model.preset.gap.wave(), Some((0.002, 0.05)));
-    // The arrows go through the list; more names stand below.
+    // The arrows move through the list; more names are below.
     screen.keys(":fig-");
     screen.press(KeyCode::Down);
     let shown = screen.text(80, 24);
@@ -138,7 +138,7 @@ fn the_header_says_what_the_preset_says_and_what_was_changed_and_a_chart_when_it
     assert!(header(&mut screen).trim_end().ends_with("  A 0.0025 → 0.003"), "{}", header(&mut screen));
     screen.keys(":set gap.amplitude=0.0025000001\r");
     assert!(header(&mut screen).trim_end().ends_with("  A 0.0025 → 0.0025000001"), "{}", header(&mut screen));
-    // All that it says, and what was changed.
+    // Everything it says, and what was changed.
     screen.keys("I");
     let text = screen.text(120, 40);
     assert!(
@@ -182,7 +182,7 @@ fn the_help_is_searched() {
     assert_eq!(found(&screen), Some(first));
     screen.keys("/qqq\r");
     assert!(found(&screen).is_none() && screen.text(80, 24).contains("/qqq: not found"));
-    // Typed text is no command, and Esc leaves the text first.
+    // Typed text is not a command, and Esc first leaves the text.
     screen.keys("/nx\x1b");
     assert!(matches!(screen.app.overlay, Some(Dialog::Help(_))));
     screen.keys("\x1b");
@@ -202,7 +202,7 @@ fn a_persons_keys_work_and_are_shown_in_footer_and_help() {
     screen.keys("?");
     let help = screen.text(100, 150);
     assert!(help.contains("F4 ") && help.contains("w Ctrl-U") && help.contains("jump"), "{help}");
-    // A list is chosen from with Enter all the same.
+    // In a list, Enter still chooses.
     screen.keys("\x1be\r");
     assert!(matches!(screen.app.overlay, Some(Dialog::Prompt(_))));
     assert_eq!(screen.app.keymap.first(Id::Edit), "Z");
@@ -216,7 +216,7 @@ fn a_name_that_is_refused_stays_to_be_mended_and_keys_meanwhile_are_no_commands(
     screen.keys("my waves/2");
     let effects = screen.app.key(KeyCode::Enter.into());
     assert!(prompt(&screen).1.is_none());
-    // Until the answer comes nothing typed is a command, nor text.
+    // Until the answer arrives, typed keys are neither commands nor text.
     screen.keys("nq");
     screen.settle(effects);
     let (line, error, _) = prompt(&screen);
@@ -289,7 +289,7 @@ fn figures_and_the_screen_are_exported_by_a_line() {
     assert!(read("a.svg").starts_with("<svg") && read("b.svg").contains("log"));
     assert_ne!(read("a.svg"), read("b.svg"));
     assert!(read("c.txt").contains("lost so far 0 of"));
-    // Over what is there only when told.
+    // An existing file is replaced only when told.
     screen.keys(&format!(":export screen {}\r", path("c.txt")));
     assert!(screen.text(100, 30).contains("y replaces it"), "{}", screen.text(100, 30));
     screen.keys("n").keys(&format!(":export figure {} walk\r", path("d.svg")));

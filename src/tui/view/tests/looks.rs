@@ -1,4 +1,4 @@
-//! Every theme and every marker: nothing is lost without colour, without braille, without Unicode.
+//! Every theme and every marker: nothing is lost without colour, without braille, or without Unicode.
 
 use super::Screen;
 use crate::explorer::{View, Window};
@@ -20,14 +20,14 @@ fn themes() -> Vec<Theme> {
     PALETTES.into_iter().flat_map(of).collect()
 }
 
-/// A walk with a jump, two pins, all the theory, the device's line.
+/// A walk with a jump, two pins, all theory, and the line of the device.
 fn full(preset: &str) -> Screen {
     let mut screen = Screen::new(preset);
     screen.keys("nxnp}py\rj\rj\rj\r\x1b");
     screen
 }
 
-/// The cells of a plot that a line of a figure passes, from its points alone.
+/// The cells of a plot that a line of a figure passes through, from its points alone.
 fn passed(points: &[(f64, f64)], bounds: &Bounds, plot: Rect) -> HashSet<(u16, u16)> {
     let cells = |(x, y): (f64, f64)| {
         let share = |value: f64, [lo, hi]: [f64; 2]| (value - lo) / (hi - lo);
@@ -76,7 +76,7 @@ fn the_curve_a_pin_and_theory_are_all_seen() {
         (look(Role::Pin(1), screen.app.theme), lines(&|role| role == Role::Pin(1))),
         (look(Role::Smooth, screen.app.theme), lines(&|role| role == Role::Smooth)),
     ];
-    // The states walked stand over the curves, and so do the marks.
+    // The states walked are drawn over the curves, and so are the marks.
     let over = lines(&|role| role == Role::Walk);
     let buffer = screen.draw(120, 40);
     let is_dots =
@@ -117,7 +117,7 @@ fn every_theme_draws_every_view_and_mono_has_no_colour() {
                     if theme.palette == Palette::Mono {
                         assert_eq!(colours, [Color::Reset; 2], "{theme:?} {}", cell.symbol());
                     }
-                    // Where colours are few only those with a name.
+                    // Where colours are few, only those with a name.
                     assert!(!colours.iter().any(|c| matches!(c, Color::Rgb(..))));
                     let is_one_of_many = colours.iter().any(|c| matches!(c, Color::Indexed(_)));
                     assert!(!theme.has_few_colours() || !is_one_of_many, "{theme:?}");
@@ -187,7 +187,7 @@ fn every_screen_is_ascii_in_an_ascii_terminal() {
     for preset in presets {
         let mut screen = Screen::new(preset);
         screen.app.theme = plain;
-        // Walks take long: one is enough.
+        // Walks take long, so one is enough.
         let walk: &[&str] = if preset == "wavy-sphere" { &["n", "x", "c", "i"] } else { &[] };
         let all = ["", "?", "\x1bP\x1be\x1b\r", "\x1ba", "\t\r\x1b"];
         for keys in all.iter().chain(walk) {

@@ -72,7 +72,7 @@ fn a_turned_rate_is_pulled_anew_over_the_same_curve() {
     // So does any other value.
     screen.keys(":set gap.amplitude=0.001\r");
     assert!(least(&figure(&screen, View::ForceApproach)) > after);
-    // Under a dead load a rate is a force in a time.
+    // Under a dead load, a rate is a force per time.
     screen.keys(":set path.control=force\r");
     assert!(pull(&screen).unwrap().report.is_ok());
     let figure = figure(&screen, View::ForceTime);
@@ -89,7 +89,7 @@ fn where_the_law_ends_is_said_before_the_numbers() {
 #[test]
 fn without_a_rate_nothing_is_pulled() {
     let mut screen = Screen::new("wavy-sphere");
-    // The last takes a rate back.
+    // The last one undoes a rate.
     for keys in ["", ":set edge.exponent=0.5\r", ":set path.rate=1\ru"] {
         screen.keys(keys);
         assert!(pull(&screen).is_none(), "{keys}");
@@ -108,7 +108,7 @@ fn measured_rows_lie_on_the_law_of_their_edge() {
     let mut screen = Screen::new("fig-3-jkr");
     screen.keys(":set edge.exponent=0.5\r:set path.rate=0.1\r");
     let run = pull(&screen).unwrap().run().unwrap();
-    // As an instrument has them, whose clock goes on between two rows.
+    // As from an instrument whose clock runs on between two rows.
     let mut next = 0.0;
     let rows = run.moments.iter().filter(|at| {
         let is_due = at.contact_radius > 0.0 && at.time >= next;
@@ -135,7 +135,7 @@ fn measured_rows_lie_on_the_law_of_their_edge() {
         let on_line = a.1 + (b.1 - a.1) * (mark.at.0 - a.0) / (b.0 - a.0);
         assert!((mark.at.1 - on_line).abs() < 0.03, "{mark:?} {on_line}");
     }
-    // What the law is does not matter to what is measured.
+    // The law does not affect what is measured.
     screen.keys(":set edge.exponent=0.6\r");
     assert_eq!(figure(&screen, View::Speeds).marks, shown.marks);
 }

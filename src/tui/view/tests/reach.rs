@@ -1,4 +1,4 @@
-//! The mouse, the clipboard, and presets deleted.
+//! The mouse, the clipboard, and the deletion of presets.
 
 use super::{PLAIN, Screen};
 use crate::explorer::studies::StudyData;
@@ -21,7 +21,7 @@ fn screen(preset: &str) -> Screen {
     screen
 }
 
-/// Where `text` stands on the screen.
+/// The position of `text` on the screen.
 fn place(screen: &Screen, text: &str) -> Position {
     let drawn = screen.text(SIZE.width, SIZE.height);
     let found = drawn.lines().enumerate().find_map(|(y, line)| Some((line.find(text)?, y, line)));
@@ -57,7 +57,7 @@ fn a_click_selects_and_once_more_goes_there() {
     let node = screen.app.model.history.current().unwrap();
     let s = node.state.in_units(node.setting.units()).contact_radius;
     assert!((s - event.before.as_ref().unwrap().contact_radius).abs() < 1e-6 * s, "{s}");
-    // In a list too.
+    // In a list as well.
     screen.keys("o");
     let at = place(&screen, "fig-3-jkr");
     click(&mut screen, at);
@@ -71,7 +71,7 @@ fn a_click_selects_and_once_more_goes_there() {
 fn a_click_on_the_curve_takes_the_walker_there_and_so_does_the_cross_hair() {
     let mut screen = screen("wavy-sphere");
     screen.app.theme = PLAIN;
-    // The number of the last contact stands beside the curve.
+    // The number of the last contact is beside the curve.
     let drawn = screen.draw(SIZE.width, SIZE.height);
     let marks = screen.app.theme.styles().mark.fg.unwrap();
     let is_it = |at: &Position| drawn[*at].symbol() == "6" && drawn[*at].fg == marks;
@@ -83,7 +83,7 @@ fn a_click_on_the_curve_takes_the_walker_there_and_so_does_the_cross_hair() {
     let units = *limits.setting.units();
     assert!((at_pull_off * units.length - last).abs() < 0.1 * last, "{at_pull_off} {last}");
     assert_eq!(screen.app.model.panel, ScreenPanel::Charts);
-    // Far from the curve nothing moves.
+    // Far from the curve, nothing moves.
     let (before, title) = (at_pull_off, place(&screen, "P/Pc over"));
     click(&mut screen, Position::new(title.x + 12, title.y + 2));
     let now = screen.app.model.history.current().unwrap().state.contact_radius;
@@ -107,7 +107,7 @@ fn places_and_words_of_the_footer_can_be_clicked() {
     let at = place(&screen, "n next event");
     click(&mut screen, Position::new(at.x + 4, at.y));
     assert!(screen.app.model.can_jump());
-    // A list and a prompt have their words too, and what lies between two words does nothing.
+    // A list and a prompt have their words too, and a click between two words does nothing.
     let at = place(&screen, "? keys");
     click(&mut screen, Position::new(at.x - 1, at.y));
     assert!(screen.app.overlay.is_none());
@@ -139,7 +139,7 @@ fn the_wheel_turns_zooms_and_scrolls() {
         mouse(&mut screen, MouseEventKind::ScrollDown, events);
     }
     assert_eq!(screen.app.model.event, 5);
-    // The chart zooms about the pointer: what lies under it stays.
+    // The chart zooms about the pointer: the point under it stays.
     let title = place(&screen, "P/Pc over δ");
     let at = Position::new(title.x + 30, title.y + 3);
     mouse(&mut screen, MouseEventKind::ScrollUp, at);
@@ -204,14 +204,14 @@ fn what_is_copied_is_text_that_steers_nothing() {
     assert_eq!(whole, screen.text(120, 40));
     let chart = text(&screen.app, Excerpt::Chart);
     assert!(chart.starts_with("┬P/Pc over δ") && chart.trim_end().ends_with('│'), "{chart}");
-    // Through the list: what was chosen goes out.
+    // Through the list: what was chosen is sent.
     screen.keys("Yj\r");
     assert_eq!(screen.app.clipboard.take().unwrap(), events);
     assert!(screen.app.model.status().1.starts_with("events of "), "{}", screen.app.model.status().1);
     screen.keys("Yjjj\r");
     let copied = screen.app.clipboard.take().unwrap();
     assert!(copied.contains("Problem") && !copied.contains("Copy:"), "{copied}");
-    // A title of somebody else's.
+    // A title from somebody else.
     let title =
         crate::explorer::Command::Set { key: "title".into(), text: "a\u{1b}]52;c;eA==\u{7}b".to_owned() };
     let effects = crate::explorer::update(&mut screen.app.model, title);
@@ -220,7 +220,7 @@ fn what_is_copied_is_text_that_steers_nothing() {
         let copied = text(&screen.app, content);
         assert!(!copied.chars().any(|c| c.is_control() && c != '\n' && c != '\t'), "{copied:?}");
     }
-    // Too long for a terminal: nothing is sent, and it is said.
+    // Too long for a terminal: nothing is sent, and a message says so.
     screen.app.screen = Rect::new(0, 0, 400, 300);
     screen.keys("Yjjj\r");
     assert!(screen.app.clipboard.is_none());
@@ -242,7 +242,7 @@ fn the_screen_is_exported_as_text() {
     };
     typed(&mut screen, path.to_str().unwrap());
     assert_eq!(std::fs::read_to_string(&path).unwrap(), wanted);
-    // Not over what is there without a question; and only under a name that says what it is.
+    // An existing file is not replaced without a question; and only under a name that says what it is.
     screen.keys("n");
     typed(&mut screen, path.to_str().unwrap());
     assert_eq!(std::fs::read_to_string(&path).unwrap(), wanted);
@@ -276,7 +276,7 @@ fn the_first_view_is_exported_as_a_figure_with_its_zoom() {
     assert!(whole.starts_with("<svg ") && whole.contains("P/P<tspan") && whole.contains("JKR 1971"));
     screen.keys("++");
     assert_ne!(figure(&mut screen, "b.svg"), drawn);
-    // The ending chooses the format; one that this build lacks is refused by its name, and the prompt stays.
+    // The extension chooses the format; one that this build lacks is refused by name, and the prompt stays.
     for (name, begins, is_there) in
         [("PNG", &b"\x89PNG"[..], cfg!(feature = "png")), ("PDF", b"%PDF-", cfg!(feature = "pdf"))]
     {
@@ -325,14 +325,14 @@ fn the_states_walked_are_a_table_that_scrolls_and_leads_back() {
     screen.keys(":view\r");
     let text = screen.text(80, 24);
     assert!(text.contains("walk            - nothing is walked yet: n runs"), "{text}");
-    // What was walked, with what it cost and what was changed on the way.
+    // What was walked, with its losses and the changes on the way.
     screen.keys("\x1bnx>nx  :view walk\r");
     let text = screen.text(100, 70);
     for said in ["jumps 2", "limit", "A 0.0026", " @"] {
         assert!(text.contains(said), "{said}: {text}");
     }
     let path = screen.app.model.history.path().len();
-    // To Charts, to the first line, two further, and there; then back.
+    // To Charts, to the first line, two further on, and there; then back.
     screen.keys("\t\t\t");
     for _ in 0..20 {
         screen.press(KeyCode::PageUp);
@@ -370,7 +370,7 @@ fn a_study_is_looked_at_read_taken_over_and_exported() {
     for said in ["largest pull over A", "now"] {
         assert!(text.contains(said), "{said}: {text}");
     }
-    // The cross-hair reads a value that was computed, and Enter sets it.
+    // The cross-hair reads a computed value, and Enter sets it.
     screen.keys("illll");
     let text = screen.text(120, 30);
     assert!(text.contains("A 0.00") && text.contains(": largest pull -0."), "{text}");
@@ -378,13 +378,13 @@ fn a_study_is_looked_at_read_taken_over_and_exported() {
     screen.keys("\r");
     let after = screen.app.model.preset.get("gap.amplitude");
     assert_ne!(before, after);
-    // The same study, the mark moved.
+    // The same study, with the mark moved.
     let study = screen.app.model.results.share::<StudyData>().unwrap();
     assert!(study.wish.values.contains(&after.clone().unwrap()));
     screen.keys("u");
     assert_eq!(screen.app.model.preset.get("gap.amplitude"), before);
     assert!(Arc::ptr_eq(&screen.app.model.results.share::<StudyData>().unwrap(), &study));
-    // As values, and as a sweep that has them again.
+    // As values, and as a sweep that computes them again.
     let (csv, toml) = (screen.folder.path().join("a.csv"), screen.folder.path().join("a.toml"));
     screen.keys(&format!(":export study {}\r", csv.display()));
     screen.keys(&format!(":export study {}\r", toml.display()));
@@ -413,7 +413,7 @@ fn a_study_is_looked_at_read_taken_over_and_exported() {
 #[test]
 fn what_cannot_be_studied_says_why_at_the_view_and_at_the_value() {
     let mut screen = Screen::new("wavy-sphere");
-    // Far out of range nothing starts: the reason stands at the cross-hair.
+    // Far out of range, nothing starts: the reason is shown at the cross-hair.
     screen.keys(":set path.start_approach=0.01\r").keys(":study snaps\r");
     let name = |screen: &Screen| screen.app.model.selected_knob().unwrap().0.key.to_string();
     assert_eq!(name(&screen), "gap.amplitude");
