@@ -1,6 +1,6 @@
-//! What the engine costs, over a fixed table of ring numbers and in the exact basis.
+//! The cost of the engine, over a fixed table of ring numbers and in the exact basis.
 //!
-//! `cargo bench`; the numbers are for comparing two versions on one machine.
+//! `cargo bench`; the numbers serve to compare two versions on one machine.
 
 #![allow(clippy::unwrap_used, reason = "a bench that cannot be set up must stop")]
 
@@ -24,9 +24,9 @@ use std::sync::Arc;
 
 /// The ring numbers.
 const SIZES: [usize; 3] = [50, 200, 800];
-/// Those whose construction is timed: up to the most allowed.
+/// The ring numbers whose construction is timed, up to the largest allowed.
 const BUILT: [usize; 5] = [50, 200, 800, 1000, 2000];
-/// The arc-length trace at the largest takes too long to repeat.
+/// The arc-length trace at the largest size takes too long to repeat.
 const TRACED: [usize; 2] = [50, 200];
 
 fn main() {
@@ -44,7 +44,7 @@ fn fig_9_exact() -> Case {
 }
 
 fn fig_9_in(basis: BasisSpec) -> Case {
-    // A folder that need not exist: the preset is a shipped one.
+    // The folder need not exist: the preset is a shipped one.
     let store = Store::at("presets", &[]);
     let mut preset = store.load(&store.resolve("fig-9").unwrap(), &[] as &[&str]).unwrap().preset;
     preset.basis = basis;
@@ -100,7 +100,7 @@ fn unload_by_spring(bencher: Bencher, rings: usize) {
     unload(bencher, &fig_9(rings), Control::Stiffness(0.15));
 }
 
-/// Radii of the dense curve.
+/// The number of radii of the dense curve.
 const DENSE: usize = 2000;
 
 fn dense_radii() -> Vec<f64> {
@@ -118,7 +118,7 @@ fn dense_curve(bencher: Bencher, rings: usize) {
     bencher.bench_local(|| dense(&case, black_box(&radii)));
 }
 
-/// The same in the exact basis, the table made anew.
+/// The same in the exact basis, with a new table each time.
 #[divan::bench]
 fn exact_dense_curve(bencher: Bencher) {
     let (problem, radii) = (problem(), dense_radii());
@@ -128,7 +128,7 @@ fn exact_dense_curve(bencher: Bencher) {
     });
 }
 
-/// The table alone.
+/// Only the table.
 #[divan::bench]
 fn exact_table(bencher: Bencher) {
     let problem = problem();
@@ -142,8 +142,8 @@ fn problem() -> pulloff_engine::problem::Reduced {
     Problem { effective_modulus: 1.0, work_of_adhesion, shape }.reduced()
 }
 
-/// The limit points under displacement, force and a spring, and every jump and both losses of the three unloadings, on a
-/// curve that is there.
+/// The limit points under displacement, force and a spring, and every jump and both losses of the three unloadings, on
+/// an existing curve.
 fn events(bencher: Bencher, case: &Case) {
     let curve = case.curve(&Unwatched).unwrap();
     let controls = [Control::Displacement, Control::Force, Control::Stiffness(0.15)];
@@ -205,7 +205,7 @@ fn ground() -> Ground {
     Ground::of(problem().gap, 0.6).unwrap()
 }
 
-/// A disc and the rings on the next crests, with all derivatives by the edges.
+/// A disc and the rings on the next crests, with all derivatives with respect to the edges.
 #[divan::bench(args = [1, 3])]
 fn state_with_rings(bencher: Bencher, rings: u32) {
     let ground = ground();
@@ -217,7 +217,7 @@ fn state_with_rings(bencher: Bencher, rings: u32) {
     });
 }
 
-/// The loop on the waves of Fig. 9 up to this approach, its table made anew, losses by energy alone.
+/// The loop on the waves of Fig. 9 up to this approach, with a new table each time and losses from energy only.
 fn whole_loop(bencher: Bencher, work_of_adhesion: f64, turn: f64) {
     let gap = problem().gap;
     let turn = Turn::Approach(turn);
@@ -248,7 +248,7 @@ fn cohesion() -> Cohesion {
     Cohesion { strength: 1.0, range: problem().work_of_adhesion }
 }
 
-/// The state of one zone of adhesion with a range, in contact, from the one beside it.
+/// The state in contact with one zone of adhesion with a range, starting from the neighbouring state.
 #[divan::bench]
 fn state_with_a_range(bencher: Bencher) {
     let ground = ground();
@@ -257,7 +257,7 @@ fn state_with_a_range(bencher: Bencher) {
     bencher.bench_local(|| zone.state(black_box(0.16), near).unwrap());
 }
 
-/// The loop on the waves of Fig. 9 to δ = 0.02 with a range, its table made anew, losses twice.
+/// The loop on the waves of Fig. 9 to δ = 0.02 with a range, with a new table each time and losses computed in both ways.
 #[divan::bench(max_time = 5)]
 fn loop_with_a_range(bencher: Bencher) {
     let gap = problem().gap;
@@ -268,7 +268,7 @@ fn loop_with_a_range(bencher: Bencher) {
     });
 }
 
-/// The adhesion at which each of 2000 states is a limit point, from a table that is there.
+/// The adhesion at which each of 2000 states is a limit point, from an existing table.
 #[divan::bench]
 fn critical_adhesion(bencher: Bencher) {
     let case = fig_9_exact();
@@ -277,7 +277,7 @@ fn critical_adhesion(bencher: Bencher) {
     bencher.bench_local(|| law.over(black_box(&radii)));
 }
 
-/// All lines of a map of the waves of Fig. 9, where they follow from the radius, and of a pair for which they are traced.
+/// All lines of a map of the waves of Fig. 9, for one pair where they follow from the radius, and one for which they are traced.
 #[divan::bench(args = ["groups.amplitude_over_wavelength", "groups.wavelength_over_radius"], max_time = 10)]
 fn map_lines(bencher: Bencher, key: &str) {
     let store = Store::at("presets", &[]);

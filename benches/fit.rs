@@ -1,7 +1,7 @@
-//! What measured curves cost: reading a million rows, fits of 2000 points on a sphere and through the snaps of a wavy one, and
-//! 200 fits of a bootstrap.
+//! The cost of measured curves: reading a million rows, fits of 2000 points on a sphere and through the snaps of a wavy
+//! one, and 200 fits of a bootstrap.
 //!
-//! `cargo bench --bench fit`; the numbers are for comparing two versions on one machine.
+//! `cargo bench --bench fit`; the numbers serve to compare two versions on one machine.
 
 #![allow(clippy::unwrap_used, reason = "a bench that cannot be set up must stop")]
 
@@ -16,9 +16,9 @@ use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::path::PathSetting;
 use std::fmt::Write;
 
-/// Points of a fit.
+/// The points of a fit.
 const POINTS: usize = 2000;
-/// Rows that are read.
+/// The rows to read.
 const ROWS: usize = 1_000_000;
 
 fn main() {
@@ -40,7 +40,7 @@ fn preset(gap: &str) -> Preset {
     read("bench", &text).unwrap()
 }
 
-/// The unloading of a preset under fixed grips with a free part, evenly by the approach, with noise.
+/// The unloading of a preset under fixed grips with a free part, evenly spaced in the approach, with noise.
 fn unloaded(preset: &Preset) -> Points {
     let case = Case::new(preset).unwrap();
     let curve = case.curve(&Unwatched).unwrap();

@@ -1,6 +1,6 @@
-//! What a typed formula costs against the closed form of the same gap, and what reading one costs.
+//! The cost of a typed formula against the closed form of the same gap, and the cost of reading one.
 //!
-//! `cargo bench --bench formula`; the numbers are for comparing two versions on one machine.
+//! `cargo bench --bench formula`; the numbers serve to compare two versions on one machine.
 
 #![allow(clippy::unwrap_used, reason = "a bench that cannot be set up must stop")]
 
@@ -11,7 +11,7 @@ use pulloff_engine::gap::{formula::Bound, formula::Formula};
 use pulloff_engine::units::parse_quantity;
 
 const WAVY: &str = "r^2/(2*R) + A*(1 - cos(2*pi*r/lambda))";
-/// Radii of a batch.
+/// The number of radii in a batch.
 const RADII: usize = 1600;
 
 fn main() {
@@ -100,7 +100,7 @@ fn formula_derivatives(bencher: Bencher) {
     derivatives(bencher, &wavy());
 }
 
-/// Forms other than sine and cosine.
+/// Functions other than sine and cosine.
 #[divan::bench(args = ["r^2/2", "exp(-r^2)", "(1 + r^2)^0.5 - 1", "sqrt(1 + r^2) - 1", "max(r - 0.1, 0)^1.5", "tanh(r/A)"])]
 fn other_derivatives(bencher: Bencher, text: &str) {
     derivatives(bencher, &bind(text));
@@ -111,7 +111,7 @@ fn parse_and_bind() -> Bound {
     wavy()
 }
 
-/// Where it is finite, its breaks and its wavelength.
+/// Finds where the formula is finite, its breaks and its wavelength.
 #[divan::bench(args = [WAVY, "sqrt(4 - r^2)", "max(0.0008 - abs(r - 0.3), 0)", "abs(sin(100*r))", "r^1.5"])]
 fn survey(bencher: Bencher, text: &str) {
     let bound = bind(text);

@@ -1,4 +1,4 @@
-//! What a frame costs: a whole screen drawn from a session that stands on its curve. `cargo bench --bench frame`.
+//! The cost of a frame: a whole screen drawn from a session that stands on its curve. `cargo bench --bench frame`.
 
 // A benchmark has nobody to report an error to.
 #![allow(clippy::unwrap_used)]
@@ -16,9 +16,9 @@ fn main() {
     divan::main();
 }
 
-/// A session on the wavy sphere with the inside of its start state.
+/// A session on the wavy sphere with the interior of its start state.
 fn session(view: View, views: usize) -> App {
-    // A folder that need not exist: the preset is a shipped one.
+    // The folder need not exist: the preset is a shipped one.
     let store = Store::at("presets", &[]);
     let loaded = store.load(&store.resolve("wavy-sphere").unwrap(), &[] as &[&str]).unwrap();
     let (mut app, effects) = App::new(loaded, Theme::default());

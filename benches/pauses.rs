@@ -1,7 +1,7 @@
-//! How long a long computation goes on without asking whether it is still wanted: at most 50 ms is promised.
+//! How long a long computation runs without asking whether it is still wanted: at most 50 ms is promised.
 //!
-//! `cargo bench --bench pauses` prints the longest pause of every call on every shipped preset that makes it, and on some that
-//! are heavier, the longest first.
+//! `cargo bench --bench pauses` prints the longest pause of every call on every shipped preset that makes it, and on
+//! some heavier ones, the longest first.
 
 #![allow(clippy::unwrap_used, reason = "a bench that cannot be set up must stop")]
 
@@ -18,7 +18,7 @@ use pulloff_engine::sweep::{QuantityColumn, measure::measure as row};
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-/// Remembers the longest time between two questions.
+/// Records the longest time between two questions.
 struct Longest {
     asked: Cell<Instant>,
     longest: Cell<Duration>,
@@ -32,7 +32,7 @@ impl Progress for Longest {
     }
 }
 
-/// The longest pause of one computation, in milliseconds; from its begin and to its end count, too.
+/// The longest pause of one computation, in milliseconds, including those after its start and before its end.
 fn longest(compute: impl FnOnce(&dyn Progress)) -> f64 {
     let watch = Longest { asked: Cell::new(Instant::now()), longest: Cell::default() };
     compute(&watch);
@@ -40,7 +40,7 @@ fn longest(compute: impl FnOnce(&dyn Progress)) -> f64 {
     watch.longest.get().as_secs_f64() * 1e3
 }
 
-/// The shipped presets, and what takes longer than they do.
+/// The shipped presets, and some that take longer.
 fn presets() -> Vec<(String, Preset)> {
     let shipped = |name: &str| {
         let preset = SHIPPED.iter().find(|preset| preset.name == name).unwrap();

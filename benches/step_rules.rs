@@ -1,7 +1,7 @@
-//! What the step control costs and finds, rule by rule, on the sixty random wavy spheres of the tests.
+//! The cost and the findings of the step control, rule by rule, on the sixty random wavy spheres of the tests.
 //!
-//! `cargo bench --bench step_rules` prints a table: points and evaluations a trace, limit points found of those of
-//! the explicit curve, traces that found all, traces that reached their end. The defaults of
+//! `cargo bench --bench step_rules` prints a table: points and evaluations per trace, limit points found out of those
+//! of the explicit curve, traces that found all of them, and traces that reached their end. The defaults of
 //! `continuation::settings` were chosen from it.
 
 use pulloff_engine::continuation::{Settings, Tracer};
@@ -31,7 +31,7 @@ fn problems() -> Vec<Reduced> {
     (0..60).map(|_| draw()).collect()
 }
 
-/// A rule: its name, the turning wanted in degrees, the share of a wave the edge may move per step, whether
+/// A rule: its name, the desired turning in degrees, the share of a wave by which the edge may move per step, whether
 /// grazing pairs are looked for, and the longest step.
 struct Rule(&'static str, f64, f64, bool, f64);
 

@@ -1,13 +1,14 @@
-//! Makes a force curve that looks measured: a soft ball on a flat, as an instrument hands it over.
+//! Makes a force curve that looks measured: a soft ball on a flat, in the form in which an instrument delivers it.
 //!
 //! ```sh
 //! cargo run --example make_curve > presets/data/lens.csv
 //! ```
 //!
-//! The truth is JKR's sphere (Proc. R. Soc. A 324, 301 (1971)) of R = 1 mm, E* = 1 `MPa` and γ = 50 mJ/m² behind a load cell of
-//! 500 N/m, so that the way of the stage is Δ = δ + P/k. It is driven evenly, jumps into contact at Δ = 0, is pressed to 1 mN and
-//! pulled off. The instrument has a zero of its own (12.3 µm and 4 µN), a noise of 10 nm and 2 µN, and rounds to 1 nm and 0.1 µN;
-//! one sample in two hundred is off by 30 µN. All random numbers come from one seed, so the file is the same whoever makes it.
+//! The truth is a JKR sphere (Proc. R. Soc. A 324, 301 (1971)) with R = 1 mm, E* = 1 `MPa` and γ = 50 mJ/m² behind a
+//! load cell of 500 N/m, so that the position of the stage is Δ = δ + P/k. The stage moves evenly, jumps into contact
+//! at Δ = 0, presses to 1 mN and pulls off. The instrument has its own zero (12.3 µm and 4 µN), a noise of 10 nm and 2
+//! µN, and rounds to 1 nm and 0.1 µN; one sample in two hundred is off by 30 µN. All random numbers come from one seed,
+//! so everyone gets the same file.
 
 use pulloff_engine::gap::shapes::split_mix::SplitMix64;
 use pulloff_engine::report::number::fixed;
@@ -24,7 +25,7 @@ const PRELOAD: f64 = 1e-3;
 const ROWS: u32 = 350;
 const SEED: u64 = 20_261_122;
 
-/// The way of the stage and the force at the contact radius `s`.
+/// The position of the stage and the force at the contact radius `s`.
 fn state(s: f64) -> (f64, f64) {
     let approach = s * s / RADIUS - (TAU * ADHESION * s / MODULUS).sqrt();
     let force =
@@ -43,7 +44,7 @@ fn bisect(mut lo: f64, mut hi: f64, is_beyond: impl Fn(f64) -> bool) -> f64 {
 
 /// The text of the file.
 fn curve() -> String {
-    // The way is smallest where it begins to rise again.
+    // The position is smallest where it begins to rise again.
     let fold = bisect(1e-7, 1e-4, |s| state(s * (1.0 + 1e-6)).0 > state(s).0);
     let most = bisect(fold, 1e-3, |s| state(s).1 > PRELOAD);
     let (top, bottom) = (state(most).0, state(fold).0);
@@ -61,7 +62,7 @@ fn curve() -> String {
             let way = from + share * (top - from);
             let touches = if segment == "approach" { way >= 0.0 } else { way >= bottom };
             let force = if touches { state(bisect(fold, most, |s| state(s).0 > way)).1 } else { 0.0 };
-            // Box and Muller.
+            // The Box-Muller transform.
             let (u, v) = (1.0 - random.unit(), random.unit());
             let size = (-2.0 * u.ln()).sqrt();
             let kick = if random.unit() < 0.005 { 30.0 } else { 0.0 };
@@ -97,7 +98,7 @@ mod tests {
         let read = |text: &str| parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
         let (shipped, made) = (read(SHIPPED), read(&curve()));
         assert_eq!(shipped.segments, made.segments);
-        // The last digit may fall otherwise where the sine of the machine does.
+        // The last digit may differ where the machine's sine does.
         for (a, b) in shipped.columns.iter().zip(&made.columns) {
             assert!(a.values.iter().zip(&b.values).all(|(x, y)| (x - y).abs() < 1.1 * a.step));
         }

@@ -1,13 +1,13 @@
-//! Makes a profile that looks measured: a rough sphere as an instrument would hand it over.
+//! Makes a profile that looks measured: a rough sphere, in the form in which an instrument would deliver it.
 //!
 //! ```sh
 //! cargo run --example make_profile > presets/data/rough-sphere.csv
 //! ```
 //!
 //! The true gap is a paraboloid of R = 1 mm with 60 waves between 150 µm and 6 µm, rms 60 nm and Hurst exponent 0.8,
-//! sampled every 0.2 µm out to 240 µm. To it the instrument adds noise of 2 nm, a height of its own, and rounds: radii to
-//! 0.01 µm, heights to 0.1 nm, which is finer than its noise. All random numbers come from one seed, so the file is the
-//! same whoever makes it.
+//! sampled every 0.2 µm out to 240 µm. The instrument adds a noise of 2 nm and a height of its own, and rounds: radii
+//! to 0.01 µm, heights to 0.1 nm, which is finer than its noise. All random numbers come from one seed, so everyone
+//! gets the same file.
 
 use pulloff_engine::gap::Gap;
 use pulloff_engine::gap::shapes::random_waves::RandomWavesError;
@@ -18,14 +18,14 @@ use std::io::Write;
 
 /// Rows of the file.
 const ROWS: u32 = 1201;
-/// The distance of the rows, in µm.
+/// The spacing of the rows, in µm.
 const SPACING: f64 = 0.2;
 /// Standard deviation of the noise, in nm.
 const NOISE: f64 = 2.0;
-/// The height at which the instrument calls the apex, in nm.
+/// The height that the instrument gives the apex, in nm.
 const HEIGHT: f64 = 37.0;
 
-/// The gap under the noise, in µm.
+/// The gap without the noise, in µm.
 fn truth() -> Result<Harmonics, RandomWavesError> {
     RandomWaves {
         radius_of_curvature: 1000.0,
@@ -76,7 +76,7 @@ mod tests {
         let (shipped, made) =
             (parse(SHIPPED.as_bytes()).unwrap(), parse(profile().unwrap().as_bytes()).unwrap());
         assert_eq!((&shipped.radii, &shipped.units), (&made.radii, &made.units));
-        // The last digit may fall otherwise where the sine of the machine does.
+        // The last digit may differ where the machine's sine does.
         assert!(shipped.gaps.iter().zip(&made.gaps).all(|(a, b)| (a - b).abs() < 0.11));
         assert!(SHIPPED.len() < 60_000);
     }
@@ -87,7 +87,7 @@ mod tests {
         let profile = ProfileGap::new(&columns.radii, &columns.gaps, Smoothing::Auto).unwrap();
         assert!((profile.removed() / 2e-3 - 1.0).abs() < 0.1, "{}", profile.removed());
         let truth = truth().unwrap();
-        // Up to the height of the apex: the phases of the waves give the true tip a slope, and the even curve rounds it.
+        // Up to the height of the apex: the phases of the waves give the true tip a slope, which the even curve rounds off.
         let errors: Vec<f64> = (0..2400)
             .map(|i| 0.1 * f64::from(i))
             .map(|r| profile.jet(r).value - truth.jet(r).value)

@@ -1,4 +1,4 @@
-//! The person's settings: `pulloff/config.toml` below the XDG configuration folder. Read and never written.
+//! The user's settings: `pulloff/config.toml` below the XDG configuration folder. It is read and never written.
 //!
 //! ```toml
 //! [keys]
@@ -9,8 +9,8 @@
 //! theme = "light"
 //! ```
 //!
-//! The names are those of the [command table](crate::explorer::table::ROWS); what is not named keeps its keys. A table
-//! of settings is a row of `TABLES` and a reader of its own.
+//! The names are those of the [command table](crate::explorer::table::ROWS); a command that is not named keeps its
+//! keys. A table of settings is a row of `TABLES` with its own reader.
 
 use crate::explorer::Id;
 use crate::explorer::table::ROWS;
@@ -24,23 +24,23 @@ use thiserror::Error;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The largest file, in bytes.
+/// The largest size of the file, in bytes.
 pub const LARGEST: u64 = 1 << 16;
-/// The most keys of one command.
+/// The largest number of keys for one command.
 pub const MOST_KEYS: usize = 8;
 
-/// What a person has set.
+/// The user's settings.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Config {
     /// The file, safe to show; empty where there is none.
     pub name: String,
     /// Keys of commands, in the order of the file.
     pub keys: Vec<Binding>,
-    /// How the screen is to look: rows of [`LOOK`] with one of their words, in the order of the file.
+    /// The look of the screen: rows of [`LOOK`] with one of their words, in the order of the file.
     pub look: Vec<(&'static str, &'static str)>,
 }
 
-/// The rows of `[look]` with the words each takes; `true` and `false` stand there without quotes.
+/// The rows of `[look]` with the words that each takes; `true` and `false` are written without quotes.
 pub const LOOK: [(&str, &[&str]); 4] = [
     ("theme", &["any", "dark", "light", "mono"]),
     ("charts", &["braille", "block", "ascii"]),
@@ -52,7 +52,7 @@ pub const LOOK: [(&str, &[&str]); 4] = [
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Binding {
     pub id: Id,
-    /// Its keys as written; none takes away those it has.
+    /// Its keys as written; an empty list removes its keys.
     pub keys: Vec<String>,
     /// The line, from 1.
     pub line: usize,
@@ -67,17 +67,17 @@ pub struct ConfigMistake {
     pub what: String,
 }
 
-/// Why there are no settings. Names and paths in it are safe to show.
+/// Why there are no settings. Names and paths in the error are safe to show.
 #[derive(Debug, Error)]
 pub enum ConfigError {
     #[error(transparent)]
     File(#[from] FileError),
-    /// Lines of it are wrong; at least one.
+    /// Some lines are wrong, at least one.
     #[error("{name}:{}", ListedMistakes(.mistakes))]
     Mistakes { name: String, mistakes: Vec<ConfigMistake> },
 }
 
-/// The first mistake, and how many more there are.
+/// Shows the first mistake, and how many more there are.
 struct ListedMistakes<'a>(&'a [ConfigMistake]);
 
 impl fmt::Display for ListedMistakes<'_> {
@@ -93,7 +93,7 @@ impl fmt::Display for ListedMistakes<'_> {
     }
 }
 
-/// As many names as a message lists.
+/// The largest number of names in a message.
 const FEW: usize = 8;
 
 /// Reads a table into the settings.
@@ -102,7 +102,7 @@ type TableReader = fn(&mut Config, &DeTable<'_>, &mut ConfigSheet<'_>);
 /// The tables of the file.
 const TABLES: [(&str, TableReader); 2] = [("keys", keys), ("look", look)];
 
-/// The file of this person, which need not exist; `None` where there is no home.
+/// The user's settings file, which need not exist; `None` where there is no home.
 #[must_use]
 pub fn path() -> Option<PathBuf> {
     let folder = etcetera::base_strategy::Xdg::new().ok()?.config_dir();
@@ -115,7 +115,7 @@ pub fn load(path: &Path) -> Result<Config, ConfigError> {
     read(&show_path(path), &text)
 }
 
-/// The same, where a file that is not there has none.
+/// The same, where a missing file gives no settings.
 pub fn load_if_there(path: &Path) -> Result<Config, ConfigError> {
     match load(path) {
         Err(ConfigError::File(FileError::Io { cause, .. }))
@@ -127,7 +127,7 @@ pub fn load_if_there(path: &Path) -> Result<Config, ConfigError> {
     }
 }
 
-/// The settings of a text; `name` names it in messages.
+/// The settings in a text, which messages call `name`.
 pub fn read(name: &str, text: &str) -> Result<Config, ConfigError> {
     let mut config = Config { name: name.to_owned(), ..Config::default() };
     let mut sheet = ConfigSheet { text, mistakes: Vec::new() };
@@ -159,7 +159,7 @@ pub fn read(name: &str, text: &str) -> Result<Config, ConfigError> {
     Err(ConfigError::Mistakes { name: config.name, mistakes: sheet.mistakes })
 }
 
-/// The text, and what is wrong with it so far.
+/// The text, and its mistakes so far.
 struct ConfigSheet<'a> {
     text: &'a str,
     mistakes: Vec<ConfigMistake>,
@@ -213,7 +213,7 @@ fn keys(config: &mut Config, table: &DeTable<'_>, sheet: &mut ConfigSheet<'_>) {
     }
 }
 
-/// `[look]`: how the screen looks.
+/// `[look]`: the appearance of the screen.
 fn look(config: &mut Config, table: &DeTable<'_>, sheet: &mut ConfigSheet<'_>) {
     for (name, value) in table {
         let at = name.span().start;

@@ -1,14 +1,14 @@
 //! Faults on demand: places where a build with the feature `fault-injection` panics if `PULLOFF_PANIC` names them.
 //!
-//! So the tests can show what a panic in each thread leaves behind. Without the feature nothing is compiled in.
+//! With them, the tests can show what a panic in each thread leaves behind. Without the feature nothing is compiled in.
 
-/// The thread that draws, at a key.
+/// The drawing thread, at a key.
 pub const UI: &str = "ui";
-/// The lane of the curves, at a curve.
+/// The lane that computes the curves, at a curve.
 pub const WORKER: &str = "worker";
 /// The thread that reads the terminal, at a key.
 pub const INPUT: &str = "input";
-/// The thread that answers signals, at a signal.
+/// The thread that handles signals, at a signal.
 pub const SIGNAL: &str = "signal";
 
 /// Panics if `PULLOFF_PANIC` is `place`.

@@ -1,8 +1,8 @@
 //! pulloff: a terminal explorer for adhesive contact.
 //!
-//! This is the program. What computes is the package `pulloff-engine`; use that from code. The modules here are reached by
-//! the program's own tests, benches and fuzz targets and by the Python package alone, and change freely. `ARCHITECTURE.md` draws
-//! the house.
+//! This is the program. The computing part is the package `pulloff-engine`; use that from code. The modules here are
+//! for the program's own tests, benches and fuzz targets and for the Python package only, and may change at any time.
+//! `ARCHITECTURE.md` describes the structure.
 
 #![allow(
     missing_docs,

@@ -1,4 +1,4 @@
-//! The program: everything it does is in the library's [`pulloff::cli`].
+//! The program; all it does is in the library's [`pulloff::cli`].
 
 use std::process::ExitCode;
 

@@ -1,15 +1,15 @@
-//! Whether the person can mend an error: exit status 2, else 1.
+//! Whether the user can mend an error: exit status 2, otherwise 1.
 //!
-//! The person can mend a bad value, a bad option, a path that leads nowhere or must not be written, a file that is there
-//! already; but not a full disk, a computation that ends early, or a fault of the program. Each error type says which it
-//! is, so that it has the same status in every command and in scripts.
+//! The user can mend a bad value, a bad option, a path that leads nowhere or must not be written, or a file that
+//! already exists, but not a full disk, a computation that ends early, or a fault in the program. Each error type says
+//! which it is, so that it has the same status in every command and in scripts.
 
 use pulloff_engine::case::CaseError;
 use rustix::io::Errno;
 use std::fmt;
 use std::io::{self, ErrorKind};
 
-/// A fault that somebody may be able to mend.
+/// A fault that the user may be able to mend.
 pub trait Mend {
     /// Whether other values, options, paths or permissions mend it.
     fn can_be_mended(&self) -> bool;
@@ -25,12 +25,12 @@ pub struct WordedFault {
 }
 
 impl WordedFault {
-    /// What the person can mend.
+    /// A fault that the user can mend.
     pub fn mendable(text: impl Into<String>) -> Self {
         Self { text: text.into(), can_be_mended: true }
     }
 
-    /// The words of `error` behind those of `before`.
+    /// The text of `error`, preceded by `before`.
     pub fn of(before: &str, error: &(impl Mend + fmt::Display)) -> Self {
         Self { text: format!("{before}{error}"), can_be_mended: error.can_be_mended() }
     }
@@ -49,7 +49,7 @@ impl Mend for WordedFault {
 }
 
 impl Mend for io::Error {
-    /// A path can be chosen otherwise, and what it forbids allowed.
+    /// The user can choose another path, or grant the permission that it lacks.
     fn can_be_mended(&self) -> bool {
         let is_of_path = matches!(
             self.kind(),
@@ -68,7 +68,7 @@ impl Mend for io::Error {
 }
 
 impl Mend for CaseError {
-    /// A start or an end that cannot be is a value; what is computed from them may fail.
+    /// An impossible start or end is a bad value; computing from good ones may still fail.
     fn can_be_mended(&self) -> bool {
         match self {
             Self::Stopped(_) => false,

@@ -1,4 +1,4 @@
-//! Killed at any moment of a save, the program leaves the old preset or the new one, whole.
+//! Killed at any moment of a save, the program leaves the complete old or the complete new preset.
 
 mod support;
 
@@ -13,12 +13,12 @@ use pulloff_engine::preset::{Preset, write};
 use rustix::process::Signal;
 use support::pty::{LIMIT, Pty};
 
-/// How often the program is killed, unless `PULLOFF_KILLS` says otherwise.
+/// The number of times that the program is killed, unless `PULLOFF_KILLS` says otherwise.
 const KILLS: usize = 100;
-/// Longest time from the first save of a round to its kill: a dozen saves.
+/// The longest time from the first save of a round to its kill: a dozen saves.
 const WINDOW: Duration = Duration::from_millis(60);
 
-/// The one preset of the folder, which must be whole: reading and writing it again gives every byte.
+/// The only preset in the folder, which must be complete: reading and writing it again gives the same bytes.
 fn whole(path: &Path) -> Preset {
     let text = fs::read_to_string(path).expect("a preset");
     let preset =
@@ -49,7 +49,7 @@ fn a_kill_at_any_moment_leaves_a_whole_preset() {
         let before = fs::read(&path).expect("a preset");
         let mut pty = Pty::spawn(Path::new(env!("CARGO_BIN_EXE_pulloff")), &["mine"], &env, 80, 24);
         pty.wait_for(|screen| screen.contains("mine"), "the first frame");
-        // One value up and down, saved each time: there is always a save under way.
+        // One value up and down, saved each time, so that a save is always under way.
         let keys = if kill % 2 == 0 { "}s{s" } else { "{s}s" };
         pty.keys(&keys.repeat(50));
         let start = Instant::now();
@@ -61,7 +61,7 @@ fn a_kill_at_any_moment_leaves_a_whole_preset() {
         pty.exit_code();
         let now = whole(&path);
         assert_eq!((&now.title, &now.basis), (&preset.title, &preset.basis), "another preset");
-        // What is left is never taken for a preset, and the next round's saves remove it.
+        // Leftovers are never taken for presets, and the saves of the next round remove them.
         let left = leftovers(folder);
         assert!(left.len() <= 1, "{left:?}");
         let own =

@@ -1,6 +1,6 @@
-//! What must hold for any text from outside: no panic, and what is accepted can be written and read again.
+//! What must hold for any external text: no panic, and what is accepted can be written and read again.
 //!
-//! A new target is a function here and a file of five lines in `src/bin`.
+//! To add a target, write a function here and a five-line file in `src/bin`.
 
 use pulloff::config;
 use pulloff_engine::gap::formula::Formula;
@@ -14,7 +14,7 @@ use pulloff_engine::preset::write;
 use pulloff_engine::units::value::parse_quantity;
 use std::fmt::Display;
 
-/// An error is shown to people: it must not steer their terminal. Its lines may end.
+/// Users see errors, so an error must not steer their terminal. Line ends are allowed.
 fn assert_shown_safely(error: &dyn Display) {
     let text = error.to_string();
     assert!(!text.chars().any(|c| c != '\n' && is_unsafe(c)), "unsafe message {text:?}");
@@ -33,7 +33,7 @@ pub fn preset(bytes: &[u8]) {
     }
 }
 
-/// A formula that is read can be evaluated anywhere; the result is a number or none, never an end.
+/// A formula that is read can be evaluated anywhere; the result is a number or `None`, never a panic.
 pub fn formula(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     match Formula::parse(text) {
@@ -54,7 +54,7 @@ pub fn formula(bytes: &[u8]) {
     }
 }
 
-/// A profile that is read is in order, and within its bounds.
+/// A profile that is read is in order and within its bounds.
 pub fn csv(bytes: &[u8]) {
     match profile::parse(bytes) {
         Err(error) => assert_shown_safely(&error),
@@ -66,7 +66,7 @@ pub fn csv(bytes: &[u8]) {
     }
 }
 
-/// A measured curve that is read has numbers alone, as many in each column.
+/// A measured curve that is read contains only numbers, equally many in each column.
 pub fn measured(bytes: &[u8]) {
     for columns in ["", "x=1,force=2"] {
         match measured::parse(bytes, &ColumnSpec::parse(columns).expect("a form of ours")) {
@@ -95,7 +95,7 @@ pub fn value(bytes: &[u8]) {
     }
 }
 
-/// A script's line that is read prints as a line that reads back.
+/// A script line that is read prints as a line that reads back.
 pub fn script(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     if let Err(error) = script::read("fuzz", text) {
@@ -113,7 +113,7 @@ pub fn script(bytes: &[u8]) {
     }
 }
 
-/// The settings of a person: keys and looks.
+/// A user's settings: keys and appearance.
 pub fn settings(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     if let Err(error) = config::read("fuzz", text) {
@@ -121,7 +121,7 @@ pub fn settings(bytes: &[u8]) {
     }
 }
 
-/// A session that is read is written and read again with the same walk.
+/// A session that is read can be written and read again with the same walk.
 pub fn session(bytes: &[u8]) {
     match Document::read(bytes).and_then(Document::snapshot) {
         Err(error) => assert_shown_safely(&error),

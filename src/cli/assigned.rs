@@ -1,4 +1,4 @@
-//! What assignments on the command line did that their text does not show, on standard error: the values that a group
+//! Reports on standard error what assignments on the command line did beyond their text: the values that a group
 //! changed, and bare numbers of an SI preset that may have been meant in another unit.
 
 use super::console::Console;
@@ -7,10 +7,10 @@ use pulloff_engine::preset::{Preset, Value, groups};
 use pulloff_engine::units::number::short;
 use pulloff_engine::units::parse_quantity;
 
-/// A bare number further than this factor from the preset's own value is worth a word.
+/// A bare number further than this factor from the preset's own value is reported.
 const FAR: f64 = 1e3;
 
-/// Reports what the assignments made of the preset from `source`, which is now `after`.
+/// Reports what the assignments changed in the preset from `source`, which is now `after`.
 pub(super) fn report(
     console: &Console,
     store: &Store,
@@ -39,7 +39,7 @@ pub(super) fn report(
     }
 }
 
-/// The values of `after` that `before` has otherwise.
+/// The values in which `after` differs from `before`.
 fn changed(before: &Preset, after: &Preset) -> String {
     let moved = after.rows().filter(|row| before.get(&row.key) != after.get(&row.key));
     let named: Vec<String> =
@@ -54,7 +54,7 @@ fn describe(preset: &Preset, key: &str) -> Option<String> {
     Some(shown.text(&short(shown.number, 6), true))
 }
 
-/// What was understood by a bare number in SI that is far from the preset's own value.
+/// How a bare number in SI was read, where it is far from the preset's own value.
 fn far(own: &Preset, after: &Preset, key: &str) -> Option<String> {
     let row = after.row(key)?;
     row.unit_in(&after.units)?;

@@ -1,7 +1,7 @@
 //! `pulloff completions`: what a shell needs to complete the command line.
 //!
-//! A shell that has run the text asks the program itself at every Tab, with `COMPLETE` in its environment, so that presets, keys
-//! and sessions are those that are there.
+//! A shell that has run this text asks the program itself at every Tab, with `COMPLETE` in its environment, so that it
+//! offers the presets, keys and sessions that exist now.
 
 mod shells;
 mod words;
@@ -13,9 +13,9 @@ use clap_complete::env::Shells;
 use std::env;
 use std::process::ExitCode;
 
-/// The variable with the name of the shell that asks.
+/// The environment variable that holds the name of the asking shell.
 const ASKED: &str = "COMPLETE";
-/// The name under which a shell finds the program, to complete it and to ask it.
+/// The name by which a shell finds the program, to complete it and to ask it.
 const PROGRAM: &str = "pulloff";
 
 /// The arguments of `pulloff completions`.
@@ -34,7 +34,7 @@ enum Shell {
     Zsh,
 }
 
-/// Writes the text that a shell runs to complete the command line.
+/// Writes the text that a shell runs to set up completion.
 pub fn run(arguments: &CompletionsArguments) -> Result<ExitCode, Failure> {
     let name = arguments.shell.to_possible_value();
     let shell = name.and_then(|name| Shells(shells::ALL).completer(name.get_name()));
@@ -47,9 +47,9 @@ pub fn run(arguments: &CompletionsArguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Answers a shell that asks, and says whether one did.
+/// Answers a shell that asks, and reports whether one did.
 pub fn answered(command: impl Fn() -> Command) -> Result<bool, Failure> {
-    // The variable may be somebody else's.
+    // The variable may belong to another program.
     let is_known = |name: String| Shells(shells::ALL).completer(&name).is_some();
     if !env::var(ASKED).is_ok_and(is_known) {
         return Ok(false);

@@ -1,4 +1,4 @@
-//! What the commands have in common that compute one document of one preset.
+//! What the commands that compute one document from one preset have in common.
 
 use super::Failure;
 use super::console::{Console, Messages};
@@ -8,7 +8,7 @@ use super::problem::ProblemArguments;
 use clap::Args;
 use pulloff_engine::preset::Preset;
 
-/// The problem, and where and how the document goes.
+/// The problem, and where and in which format the document is written.
 #[derive(Debug, Args)]
 pub struct Computed {
     #[command(flatten)]
@@ -21,7 +21,7 @@ pub struct Computed {
     messages: Messages,
 }
 
-/// The same, read and opened.
+/// The same, with the preset read and the output opened.
 pub struct Opened {
     pub console: Console,
     pub format: Format,
@@ -30,7 +30,7 @@ pub struct Opened {
 }
 
 impl Computed {
-    /// Reads the preset, and makes sure that the document can be written; in the form `usual` where none is asked for.
+    /// Reads the preset and makes sure that the document can be written, in the `usual` format where none is asked for.
     pub fn open(&self, usual: Format) -> Result<Opened, Failure> {
         let console = self.messages.open();
         let format = self.format.of(self.destination.path(), usual)?;

@@ -1,4 +1,4 @@
-//! What goes to standard error: warnings, notes, questions, how far a command is; and what `--quiet` and `--strict` make of it.
+//! What goes to standard error (warnings, notes, questions, progress), and how `--quiet` and `--strict` affect it.
 
 use super::Failure;
 use super::watch::{Bar, Lines, StopSignal};
@@ -7,10 +7,10 @@ use std::cell::Cell;
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 
-/// What is said on standard error, and what a warning means.
+/// What is written to standard error, and what a warning means.
 #[derive(Debug, Clone, Copy, Default, Args)]
 pub struct Messages {
-    /// Say nothing on standard error but why the command failed: no warnings, no notes, no progress
+    /// Write nothing to standard error except why the command failed: no warnings, no notes, no progress
     #[arg(long, short)]
     quiet: bool,
     /// Exit with status 3 after a warning; the result is written all the same
@@ -18,7 +18,7 @@ pub struct Messages {
     strict: bool,
 }
 
-/// Standard error, as a command uses it.
+/// Standard error, as used by a command.
 #[derive(Debug, Default)]
 pub struct Console {
     messages: Messages,
@@ -26,26 +26,26 @@ pub struct Console {
 }
 
 impl Messages {
-    /// The share that is done.
+    /// The progress bar.
     pub fn bar(self, stop: Option<&StopSignal>) -> Bar<'_> {
         Bar::begin(stop, self.quiet)
     }
 
-    /// For a command that begins now.
+    /// The console of a command that begins now.
     pub fn open(self) -> Console {
         Console { messages: self, warned: Cell::new(0) }
     }
 }
 
 impl Console {
-    /// Writes a line; nobody may be listening.
+    /// Writes a line; an error is ignored, since nobody may be listening.
     pub fn say(&self, text: &str) {
         if !self.messages.quiet {
             let _ = writeln!(std::io::stderr(), "pulloff: {text}");
         }
     }
 
-    /// Warnings, one line each, which `--strict` counts.
+    /// Writes warnings, one per line; `--strict` counts them.
     pub fn warn(&self, warnings: &[String]) {
         self.warned.set(self.warned.get() + warnings.len());
         for warning in warnings {
@@ -53,19 +53,19 @@ impl Console {
         }
     }
 
-    /// What is worth knowing, where the result has no place for it.
+    /// Writes a remark that has no place in the result.
     pub fn note(&self, text: Option<&str>) {
         if let Some(text) = text {
             self.say(&format!("note: {text}"));
         }
     }
 
-    /// The share that is done.
+    /// The progress bar.
     pub fn bar<'a>(&self, stop: Option<&'a StopSignal>) -> Bar<'a> {
         self.messages.bar(stop)
     }
 
-    /// The line at which a script of so many is.
+    /// The progress of a script of `count` lines.
     pub fn lines(&self, count: usize) -> Lines {
         Lines::begin(count, self.messages.quiet)
     }
@@ -74,7 +74,7 @@ impl Console {
         self.messages.quiet
     }
 
-    /// The end of a command that succeeded and has written its result: with `--strict` a failure after a warning.
+    /// Ends a command that succeeded and has written its result: a failure under `--strict` if there was a warning.
     pub fn end(&self) -> Result<ExitCode, Failure> {
         if !self.messages.strict || self.warned.get() == 0 {
             return Ok(ExitCode::SUCCESS);

@@ -24,7 +24,7 @@ pub struct Flags {
     mouse: Option<bool>,
 }
 
-/// Runs the explorer on a preset, or on the session `resume`: the newest where that is empty.
+/// Runs the explorer on a preset, or on the session `resume`: the newest one where that is empty.
 pub fn run(
     problem: &ProblemArguments,
     resume: Option<&str>,
@@ -34,7 +34,7 @@ pub fn run(
     use crate::explorer::archive::Archive;
     use crate::tui::look::{Environment, Look, LookFile};
     let archive = Archive::open();
-    // What is wrong with the preset, the session, or settings asked for, is wrong on any terminal.
+    // A fault in the preset, the session or the requested settings is an error on any terminal.
     let start = match resume {
         Some(name) => resumed(&archive, name)?,
         None => fresh(&archive, problem)?,
@@ -54,7 +54,7 @@ pub fn run(
         .map_err(|error| Failure::Terminal(error.to_string()))
 }
 
-/// The settings of a file asked for, or of the usual one, whose faults leave the defaults and a notice.
+/// The settings from the requested file, or from the usual one; faults in the latter leave the defaults and a notice.
 pub(super) fn settings(asked: Option<&Path>) -> Result<crate::tui::UserSettings, Failure> {
     use crate::config::{self, ConfigError};
     use crate::tui::{UserSettings, keymap::Keymap, look::LookFile};
@@ -80,7 +80,7 @@ fn resumed(archive: &crate::explorer::archive::Archive, name: &str) -> Result<cr
     Ok(crate::tui::Opening::Resume(Box::new(archive.load(&name)?)))
 }
 
-/// A preset; a session that was cut off is offered where no preset was asked for, and else only mentioned.
+/// Starts from a preset. A session that was cut off is offered if no preset was asked for, and otherwise only mentioned.
 fn fresh(
     archive: &crate::explorer::archive::Archive,
     problem: &ProblemArguments,

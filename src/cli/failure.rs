@@ -1,4 +1,4 @@
-//! The exit statuses of the program, and what a command can fail with.
+//! The exit statuses of the program, and the ways in which a command can fail.
 
 use crate::explorer::archive::ArchiveError;
 use crate::mend::{Mend, WordedFault};
@@ -18,18 +18,18 @@ use pulloff_engine::report::rows::RowsError;
 use std::io;
 use std::process::ExitCode;
 
-/// How the program ended: the table of exit statuses, from the best end to the worst.
+/// How the program ended: the table of exit statuses, from best to worst.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Status {
-    /// All is done.
+    /// Everything was done.
     Done,
-    /// The result is there, but is in doubt: a warning under `--strict`, or values that are not determined.
+    /// There is a result, but it is in doubt: a warning under `--strict`, or values that are not determined.
     Doubtful,
-    /// The result is there, but the model does not describe the data.
+    /// There is a result, but the model does not describe the data.
     NotDescribed,
-    /// Another call or another file mends it.
+    /// Another call or another file can mend it.
     Mendable,
-    /// Something failed that another call does not mend.
+    /// Something failed that another call cannot mend.
     Failed,
     /// The explorer lost its terminal.
     HungUp,
@@ -37,7 +37,7 @@ pub enum Status {
     Cancelled,
     /// SIGTERM.
     Terminated,
-    /// A fault of the program.
+    /// A fault in the program.
     Fault,
 }
 
@@ -55,8 +55,8 @@ impl Status {
         Self::Terminated,
     ];
 
-    /// The number that the shell sees. Those of signals are 128 and the signal's own, as a shell says it of a program that
-    /// a signal ended.
+    /// The number that the shell sees. For a signal it is 128 plus the signal's number, as a shell reports a program
+    /// ended by a signal.
     pub const fn code(self) -> u8 {
         match self {
             Self::Done => 0,
@@ -92,7 +92,7 @@ impl Status {
         }
     }
 
-    /// The status of a program that this signal stopped.
+    /// The status of a program stopped by this signal.
     pub const fn of_signal(signal: u8) -> Self {
         if signal == 2 { Self::Cancelled } else { Self::Terminated }
     }
@@ -162,27 +162,28 @@ pub enum Failure {
     /// The result could not be written as JSON.
     #[error(transparent)]
     Json(#[from] serde_json::Error),
-    /// The system says no.
+    /// The operating system refused.
     #[error("{what}: {cause}")]
     System {
-        /// What was being done, or where, safe to show.
+        /// What was being done, or where; safe to show.
         what: String,
-        /// What it says.
+        /// The system's message.
         cause: io::Error,
     },
-    /// The reader of standard output went away: a quiet end.
+    /// The reader of standard output went away; the program ends quietly.
     #[error("standard output was closed")]
     Closed,
-    /// Bad usage, in words.
+    /// Bad usage, with the message.
     #[error("{0}")]
     Usage(String),
-    /// A computation that stopped before its end; what it has was written.
+    /// A computation that stopped before its end; its partial result was written.
     #[error("{0}")]
     Incomplete(String),
-    /// Numbers that are not what theory says; the comparison was written.
+    /// Numbers that differ from theory; the comparison was written.
     #[error("{0}")]
     Disagreement(String),
-    /// A result in doubt: inadmissible states where none are allowed, values that are not determined; it was written.
+    /// A result in doubt, because of inadmissible states where none are allowed or values that are not determined; it
+    /// was written.
     #[error("{0}")]
     Doubtful(String),
     /// Points that the model does not describe; the result was written.
@@ -199,7 +200,7 @@ pub enum Failure {
     /// The spec of a sweep is bad, or cannot be read.
     #[error(transparent)]
     Spec(#[from] LoadError),
-    /// The results of a sweep cannot be begun, gone on with or written.
+    /// The results of a sweep cannot be started, continued or written.
     #[error(transparent)]
     Sweep(OutputError),
     /// The parts of a sweep cannot be joined.
@@ -210,7 +211,7 @@ pub enum Failure {
     Interrupted {
         /// The signal's number.
         signal: u8,
-        /// How to go on.
+        /// How to continue.
         text: String,
     },
     /// The terminal failed.
@@ -227,7 +228,7 @@ impl From<rayon::ThreadPoolBuildError> for Failure {
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
         match error {
-            // Only a reader that went away breaks a pipe.
+            // A pipe breaks only when its reader goes away.
             OutputError::Io { cause, .. } if cause.kind() == io::ErrorKind::BrokenPipe => Self::Closed,
             error => Self::Sweep(error),
         }
@@ -244,7 +245,7 @@ impl From<MergeError> for Failure {
 }
 
 impl Failure {
-    /// What to say on standard error: every line names the program.
+    /// The text for standard error; every line names the program.
     pub fn text(&self) -> Option<String> {
         if matches!(self, Self::Closed) {
             return None;
@@ -265,7 +266,7 @@ impl Failure {
         }
     }
 
-    /// The same failure, or the word that `signal` stopped the command where the computation ended for it.
+    /// The same failure, or a report that `signal` stopped the command where the computation ended because of it.
     #[must_use]
     pub fn or_stopped(self, signal: Option<u8>) -> Self {
         match (signal, &self) {

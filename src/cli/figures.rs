@@ -1,4 +1,4 @@
-//! `pulloff figures`: every figure of the paper, computed again, and what the range of adhesion changes.
+//! `pulloff figures`: computes every figure of the paper again, and the effect of the range of adhesion.
 
 use super::Failure;
 use super::console::Messages;
@@ -17,7 +17,7 @@ use std::process::ExitCode;
 /// The arguments of `pulloff figures`.
 #[derive(Debug, Args)]
 pub struct FiguresArguments {
-    /// The folder they are written to: for each figure its numbers as CSV and its picture as SVG, and captions.md
+    /// The folder to write to: for each figure its numbers as CSV and its picture as SVG, and captions.md
     #[arg(short, long, value_name = "DIR", default_value = "figures")]
     output: PathBuf,
     #[command(flatten)]
@@ -34,7 +34,7 @@ pub struct FiguresArguments {
     messages: Messages,
 }
 
-/// The captions, in this file.
+/// The file for the captions.
 const CAPTIONS: &str = "captions.md";
 
 /// Where the files of a figure go.
@@ -83,7 +83,7 @@ pub fn run(arguments: &FiguresArguments) -> Result<ExitCode, Failure> {
         }
         Ok(())
     };
-    // The figures of the paper are written first: the others take longer.
+    // The figures of the paper come first, since the others take longer.
     write(&paper::sheets(|name| console.say(name))?)?;
     console.say("Adhesion with a range");
     write(&adhesion::sheets()?)?;

@@ -1,4 +1,4 @@
-//! `pulloff fit`: the values of a problem that a measured curve gives, with their errors.
+//! `pulloff fit`: the values of a problem that fit a measured curve, with their errors.
 
 mod done;
 mod files;
@@ -33,41 +33,42 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Fits that may wait for an earlier one.
+/// How many fits may wait for an earlier one.
 const WINDOW: u64 = 256;
 
 /// The arguments of `pulloff fit`.
 #[derive(Debug, Args)]
 pub struct FitArguments {
-    /// Files with measured curves, and behind them a preset's name or file (ending in .toml), the wavy sphere when left out; or
-    /// a preset alone that names its curve in data.file
+    /// Files with measured curves, followed by a preset's name or file (ending in .toml), the wavy sphere when left
+    /// out; or only a preset that names its curve in data.file
     #[arg(required = true, value_name = "FILE... [PRESET]")]
     paths: Vec<OsString>,
-    /// The keys to fit, dotted or by their letters: `material.effective_modulus,material.work_of_adhesion` or E*,gamma; also
-    /// data.offset (where x is zero), data.baseline (where P is; fitted anyway where there is a free part) and data.tilt; those
-    /// of the preset's data.free when left out. What --set gives data.offset, data.baseline and data.tilt is held unless it is
-    /// free
+    /// The keys to fit, dotted or by their letters: `material.effective_modulus,material.work_of_adhesion` or E*,gamma;
+    /// also data.offset (where x is zero), data.baseline (where P is; always fitted where there is a free part) and
+    /// data.tilt; those of the preset's data.free when left out. Values that --set gives to data.offset, data.baseline
+    /// and data.tilt are held unless the key is free
     #[arg(long, value_name = "KEY,...", value_delimiter = ',')]
     free: Option<Vec<String>>,
     #[command(flatten)]
     changes: Changes,
-    /// Values that are known with an error, and change as far as it lets them: path.control.stiffness=10%,R=1um; those of the
+    /// Values that are known with an error and may change within it: path.control.stiffness=10%,R=1um; those of the
     /// preset's data.uncertain when left out
     #[arg(long, value_name = "KEY=ERROR,...", value_delimiter = ',', allow_hyphen_values = true)]
     uncertain: Option<Vec<String>>,
-    /// Fit this key for approach and retraction apart: between them the edge is pinned
+    /// Fit this key separately for approach and retraction; between them the edge is pinned
     #[arg(long, value_name = "KEY", value_parser = ["material.work_of_adhesion", "work_of_adhesion", "gamma"])]
     separate: Option<String>,
-    /// Fit this model instead of material.adhesion: short-range, at the edge of contact alone; or dugdale, with a range, whose
-    /// `material.cohesive_strength` is then free; or rate, by which adhesion grows with the speed of the edge, the keys of edge
-    /// free. Of several, on one file of points, it is said which the points speak for
+    /// Fit this model instead of material.adhesion: short-range, at the edge of contact only; dugdale, with a range,
+    /// where `material.cohesive_strength` is free; or rate, by which adhesion grows with the speed of the edge, where
+    /// the keys of edge are free. Given several models and one file of points, the report says which one the points
+    /// favour
     #[arg(long, value_name = "MODEL,...", value_delimiter = ',', value_parser = models())]
     model: Vec<Model>,
     #[command(flatten)]
     several: Several,
     #[command(flatten)]
     reading: ReadingArguments,
-    /// Use rows in this range alone, as they are in the file: x=LO..HI or force=LO..HI (repeatable)
+    /// Use only rows in this range, in the numbers of the file: x=LO..HI or force=LO..HI (repeatable)
     #[arg(long, value_name = "x=LO..HI", allow_hyphen_values = true)]
     range: Vec<String>,
     /// Standard deviation of x; that of the free part, or the last digit, when left out
@@ -76,23 +77,23 @@ pub struct FitArguments {
     /// Standard deviation of the force; that of the free part when left out
     #[arg(long, value_name = "FORCE")]
     sigma_force: Option<String>,
-    /// How far points count: huber lets those beyond 1.5 deviations count linearly, none squares all
+    /// How much points count: huber lets those beyond 1.5 deviations count linearly, none squares all of them
     #[arg(long, value_enum, default_value = "huber")]
     robust: Robust,
-    /// Start from the preset's values alone
+    /// Start only from the preset's values
     #[arg(long)]
     no_scan: bool,
-    /// Poisson's ratio of the soft body: tells its E beside E*
+    /// Poisson's ratio of the soft body; the report then gives its E beside E*
     #[arg(long, value_name = "NU", allow_hyphen_values = true)]
     poisson: Option<f64>,
     /// Find 95 % intervals by the profile of chi squared
     #[arg(long)]
     profile: bool,
-    /// Fit so many sets of blocks of rows drawn at random, 10 to 100000; 200 below 40 degrees of freedom and none else, when left
-    /// out
+    /// Fit this many resampled sets, drawn at random by blocks of rows, 10 to 100000; when left out, 200 below 40
+    /// degrees of freedom and none otherwise
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(10..=100_000))]
     bootstrap: Option<u32>,
-    /// Which random numbers the bootstrap draws
+    /// The seed of the bootstrap's random numbers
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
     /// Exit with 0, not 4, where the model does not describe the points; the verdict stays
@@ -100,10 +101,10 @@ pub struct FitArguments {
     accept: bool,
     #[command(flatten)]
     jobs: Jobs,
-    /// Write the points with their residuals to this file; of one file of points alone
+    /// Write the points with their residuals to this file; for one file of points only
     #[arg(long, value_name = "FILE")]
     residuals: Option<PathBuf>,
-    /// Write one row for each file to this table; a rerun goes on where it ended, with --overwrite it begins anew
+    /// Write one row per file to this table; a rerun continues where it ended, and starts again with --overwrite
     #[arg(long, value_name = "RESULTS.csv")]
     table: Option<PathBuf>,
     #[command(flatten)]
@@ -114,7 +115,7 @@ pub struct FitArguments {
     messages: Messages,
 }
 
-/// Where all goes that is written.
+/// The outputs of the command.
 struct FitSinks {
     report: OutputSink,
     format: Format,
@@ -129,7 +130,7 @@ enum Robust {
     None,
 }
 
-/// The words of models.
+/// The names of the models.
 fn models() -> impl TypedValueParser<Value = Model> {
     PossibleValuesParser::new(Model::ALL.map(Model::name)).try_map(|word| Model::of(&word).ok_or("no model"))
 }
@@ -157,7 +158,7 @@ pub fn run(arguments: &FitArguments) -> Result<ExitCode, Failure> {
     let many = files.len() > 1;
     let compute = |index: u64| {
         let path = usize::try_from(index).ok().and_then(|index| left.get(index))?;
-        // Of many files each is a share of the whole, which is soon done.
+        // Each of many files is a small share of the whole and soon done.
         let bar = (!many).then(|| messages.bar(Some(&stop)));
         let progress = bar.as_ref().map_or(&stop as &dyn Progress, |bar| bar);
         let said = of_file(&said, files.iter().position(|file| file == path), &rates);
@@ -172,7 +173,7 @@ pub fn run(arguments: &FitArguments) -> Result<ExitCode, Failure> {
         }
         match found {
             Ok(found) => done.keep(path, &found, &stop),
-            // What was stopped before there was anything.
+            // It was stopped before there was any result.
             Err(_) if stop.signal().is_some() => Ok(()),
             Err(failure) if many => done.refuse(path, &failure),
             Err(failure) => Err(failure),
@@ -192,7 +193,7 @@ fn of_file(
     said.iter().cloned().chain(rate.map(|rate| (RATE, Value::Number(*rate)))).collect()
 }
 
-/// The preset with the points of a file, or with its own.
+/// The preset with the points of a file, or with its own points.
 fn with_points(path: &Path, loaded: &Loaded, said: &[(&'static str, Value)]) -> Result<Preset, Failure> {
     let mut preset = loaded.preset.clone();
     let other = Some(path).filter(|path| own(&preset).as_deref() != Some(path));
@@ -222,7 +223,7 @@ fn one(
 }
 
 impl FitArguments {
-    /// The files, the preset and what is asked for.
+    /// Reads the files, the preset and the options.
     fn read(&self, console: &Console) -> Result<(Vec<PathBuf>, Loaded, Options), Failure> {
         let (preset, mut files) = measured::apart(&self.paths);
         let loaded = problem::ProblemArguments { preset, changes: self.changes.clone() }.load(console)?;
@@ -256,13 +257,14 @@ impl FitArguments {
         Ok((files, loaded, options))
     }
 
-    /// What is said of the files, with its keys.
+    /// What the command line says of the files, with the keys.
     fn said(&self) -> Result<Vec<(&'static str, Value)>, Failure> {
         let uncertain = self.uncertain.as_ref().map(|given| (data::UNCERTAIN, Value::Text(given.join(","))));
         Ok(self.reading.said()?.into_iter().chain(uncertain).collect())
     }
 
-    /// Looks at all outputs. What ends in .toml is the preset with the fitted values, and the report goes to standard output.
+    /// Checks all outputs. An output ending in .toml is the preset with the fitted values; the report then goes to
+    /// standard output.
     fn sinks(&self, files: &[PathBuf], loaded: &Loaded) -> Result<FitSinks, Failure> {
         let preset = self.paths.last().map(Path::new);
         let inputs = Inputs::default().with_problem(preset, loaded);
@@ -306,7 +308,7 @@ impl FitArguments {
     }
 
     fn options(&self, preset: &Preset) -> Result<Options, Failure> {
-        // Lengths and forces are typed as those of a start are.
+        // Lengths and forces are typed in the same way as those of a start.
         let number = |what: &str, key: &str, text: &str| typed(preset, what, key, text);
         let (length, force) = ("path.start_approach", "path.start_force");
         let mut asked = Asked::default();
@@ -360,7 +362,7 @@ impl FitArguments {
         Ok(options)
     }
 
-    /// What decides the rows of a table, but for the files themselves.
+    /// What the rows of a table depend on, apart from the files themselves.
     fn fingerprint(&self, preset: &Preset) -> String {
         let Self { free, uncertain, changes, separate, model, reading, range, sigma_x, sigma_force, .. } =
             self;

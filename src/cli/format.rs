@@ -1,4 +1,4 @@
-//! The format of a result: the one asked for, or the one that the ending of its file names.
+//! The format of a result: the one requested, or the one named by the file's extension.
 
 use super::Failure;
 use super::output::{OUTPUT, shown};
@@ -28,20 +28,20 @@ impl Format {
     }
 }
 
-/// The ending of any text, which says nothing of its format.
+/// The extension of any text file, which says nothing about the format.
 const TEXT: &str = "txt";
 
 /// The format of a command's result.
 #[derive(Debug, Clone, Copy, Default, Args)]
 pub struct FormatArgument {
-    /// How the result is written [default: as its file ends, else csv for points and lines, table otherwise]
+    /// How the result is written [default: by the file's extension, else csv for points and lines, table otherwise]
     #[arg(long, value_enum)]
     pub format: Option<Format>,
 }
 
 impl FormatArgument {
-    /// The format to write to `file`, with the one that is `usual` where nothing says it.
-    /// Errors: The ending is not one of a result, or contradicts what is asked for.
+    /// The format to write to `file`; the `usual` one where nothing else decides.
+    /// Errors: The extension is not that of a result, or contradicts the requested format.
     pub fn of(self, file: &Path, usual: Format) -> Result<Format, Failure> {
         self.among(file, usual, " (`pulloff plot` draws figures)")
     }
@@ -67,13 +67,13 @@ impl FormatArgument {
         }
     }
 
-    /// As [`of`](Self::of), of a command that draws figures too.
+    /// As [`of`](Self::of), for a command that also draws figures.
     pub fn beside_figures(self, file: &Path, usual: Format) -> Result<Format, Failure> {
         self.among(file, usual, "; a figure's in .svg, .png or .pdf")
     }
 
-    /// The format of the figure that the ending of `file` names; `None` where it names none.
-    /// Errors: As [`of`](Self::of); the build cannot write it.
+    /// The format of the figure that the extension of `file` names; `None` where it names none.
+    /// Errors: As [`of`](Self::of), or this build cannot write the format.
     pub fn of_figure(self, file: &Path) -> Result<Option<PictureFormat>, Failure> {
         let is_figure = ending(file).is_some_and(|ending| ["svg", "png", "pdf"].contains(&&*ending));
         match self.format {
@@ -90,7 +90,7 @@ impl FormatArgument {
     }
 }
 
-/// Refuses a file of another format for what `option` writes, which is always `format`.
+/// Refuses a file of another format for the output of `option`, which is always `format`.
 pub fn only(option: &str, file: &Path, format: Format) -> Result<(), Failure> {
     let name = format.name();
     match ending(file).as_deref() {
@@ -104,7 +104,7 @@ pub fn only(option: &str, file: &Path, format: Format) -> Result<(), Failure> {
     }
 }
 
-/// The ending of a file in small letters.
+/// The extension of a file in lower case.
 pub fn ending(file: &Path) -> Option<String> {
     file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase())
 }

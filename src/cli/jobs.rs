@@ -1,4 +1,4 @@
-//! On how many threads a command works.
+//! The number of threads that a command works on.
 
 use clap::Args;
 use std::num::NonZeroUsize;
@@ -13,7 +13,7 @@ pub struct Jobs {
 }
 
 impl Jobs {
-    /// How many there are.
+    /// The number of threads.
     pub fn count(self) -> usize {
         let cores = || available_parallelism().map_or(1, NonZeroUsize::get);
         self.jobs.map_or_else(cores, usize::from)

@@ -28,7 +28,7 @@ fn page(mut command: Command) -> io::Result<Vec<u8>> {
     Ok(page)
 }
 
-/// The sections of a subcommand, one level lower than those of the page.
+/// Writes the sections of a subcommand, one level below those of the page.
 fn write_subcommand(subcommand: &Command, page: &mut Vec<u8>) -> io::Result<()> {
     let name = subcommand.get_bin_name().unwrap_or(subcommand.get_name()).to_uppercase();
     Roff::new().control("SH", [&*name]).to_writer(page)?;
@@ -43,7 +43,7 @@ fn write_subcommand(subcommand: &Command, page: &mut Vec<u8>) -> io::Result<()> 
         man.render_subcommands_section(&mut sections)?;
     }
     let text = String::from_utf8_lossy(&sections).into_owned();
-    // Each section repeats the preamble of a page, which it needs once.
+    // Each section repeats the preamble, which the page needs only once.
     for line in text.lines().filter(|line| !line.starts_with(".ie ") && !line.starts_with(".el ")) {
         let line = line.strip_prefix(".SH ").map_or_else(|| line.to_owned(), |title| format!(".SS {title}"));
         page.extend(line.bytes());
@@ -64,7 +64,7 @@ fn statuses() -> Roff {
     roff
 }
 
-/// The commands of the explorer and of scripts, with the keys that the person has for them.
+/// The commands of the explorer and of scripts, with the user's key bindings.
 fn commands() -> Roff {
     let (mut roff, keys) = (Roff::new(), keys());
     roff.control("SH", ["COMMANDS OF THE EXPLORER"]);
@@ -79,7 +79,7 @@ fn commands() -> Roff {
     roff
 }
 
-/// The keys of a command in brackets.
+/// The keys of a command, in brackets.
 fn keys() -> impl Fn(crate::explorer::Id) -> String {
     let keymap = super::explore::settings(None).unwrap_or_default().keymap;
     move |id| match keymap.keys(id) {

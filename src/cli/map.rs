@@ -1,4 +1,4 @@
-//! `pulloff map`: where snaps begin, as lines in two numbers, or the limit points over one.
+//! `pulloff map`: where snaps begin, as lines over two parameters, or the limit points over one.
 
 use super::Failure;
 use super::console::Messages;
@@ -25,20 +25,20 @@ use std::process::ExitCode;
 pub struct MapArguments {
     #[command(flatten)]
     problem: ProblemArguments,
-    /// The number on the x axis and its range: a key of the preset, a group, or compliance, which is 1/k from 0 (displacement)
-    /// to inf (a dead load); log:FROM..TO for an axis of equal factors
+    /// The parameter on the x axis and its range: a key of the preset, a group, or compliance, which is 1/k from 0
+    /// (displacement) to inf (a dead load); log:FROM..TO for a logarithmic axis
     #[arg(long, value_name = "KEY=FROM..TO", allow_hyphen_values = true)]
     x_key: String,
-    /// Another number on the y axis: lines of cusps and landings, and the number of snaps in every cell
+    /// A second parameter on the y axis: draw the lines of cusps and landings, and count the snaps in every cell
     #[arg(long, value_name = "KEY=FROM..TO", allow_hyphen_values = true)]
     y_key: Option<String>,
-    /// Instead of a number, the limit points over the x axis: their control, approach or force
+    /// Instead of a second parameter, plot the limit points over the x axis: their control, approach or force
     #[arg(long, value_enum, conflicts_with = "y_key")]
     y: Option<MapOrdinate>,
     /// Draw the lines over the map of a sweep over the same two keys
     #[arg(long, value_name = "RESULTS.csv", requires = "y_key")]
     over: Option<PathBuf>,
-    /// The column of these results that is drawn
+    /// The column of these results to draw
     #[arg(long, value_name = "COLUMN", default_value = "snaps", requires = "over")]
     quantity: String,
     /// The width of a figure on paper in millimetres, or one or two columns of a journal (86 and 178 mm)
@@ -52,7 +52,7 @@ pub struct MapArguments {
     messages: Messages,
 }
 
-/// What stands over a number.
+/// The quantity plotted over a single parameter.
 #[derive(Debug, Clone, Copy, PartialEq, clap::ValueEnum)]
 enum MapOrdinate {
     Control,
@@ -60,10 +60,10 @@ enum MapOrdinate {
     Force,
 }
 
-/// Columns and rows in which snaps are counted.
+/// The columns and rows of cells in which snaps are counted.
 const CELLS: [u32; 2] = [48, 36];
 
-/// What is written.
+/// The kind of output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum MapOutput {
     Rows(Format),
@@ -118,7 +118,7 @@ pub fn run(arguments: &MapArguments) -> Result<ExitCode, Failure> {
 }
 
 impl MapArguments {
-    /// By the ending of the file; a figure where results are drawn under it.
+    /// Chosen by the extension of the file; a figure where results are drawn under the lines.
     fn written(&self) -> Result<MapOutput, Failure> {
         let file = self.destination.path();
         let figure = self.format.of_figure(file)?;
@@ -138,7 +138,7 @@ impl MapArguments {
     fn over(&self, preset: &Preset, x: &MapAxis, y: &Ordinate) -> Result<Option<MapChart>, Failure> {
         let Some(path) = &self.over else { return Ok(None) };
         let mut results = SweepResults::open(path).map_err(MapChartError::from)?;
-        // The lines are in the units of this preset; the sweep's may be shown in others.
+        // The lines are in the units of this preset; the sweep may be shown in others.
         for column in &mut results.columns {
             let row = preset.row(&column.name);
             column.shown = row
@@ -172,7 +172,7 @@ fn axis(flag: &str, text: &str, preset: &Preset) -> Result<MapAxis, Failure> {
     let unit = preset.gap.length().unwrap_or(1.0) * preset.material.effective_modulus;
     let number = |text: &str| -> Result<f64, Failure> {
         if key == COMPLIANCE {
-            // In SI in metres per newton.
+            // In SI, the compliance is in metres per newton.
             return text
                 .trim()
                 .parse()

@@ -1,4 +1,4 @@
-//! What commands share that read measured curves.
+//! What the commands that read measured curves share.
 
 use super::{Failure, problem};
 use crate::store::data::read_points;
@@ -12,8 +12,9 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Gives the preset the measured curve in the file `path`, or leaves it its own where that is `None`; the spring that it states
-/// where the preset has none; and what is `said` of it. All at once, for what is said is not about the curve before.
+/// Gives the preset the measured curve in the file `path` (`None` keeps its own curve), the spring that the curve
+/// states where the preset has none, and the values in `said`. All are set at once, because `said` does not describe
+/// the previous curve.
 pub(super) fn attach(
     preset: &mut Preset,
     path: Option<&Path>,
@@ -30,22 +31,22 @@ pub(super) fn attach(
     })
 }
 
-/// What a person says of the columns and rows of a measured curve.
+/// What the user says about the columns and rows of a measured curve.
 #[derive(Debug, Clone, Args)]
 pub(super) struct ReadingArguments {
-    /// What its columns are, by number or name, where the header does not say it: x=1,force=2 or position=Z [nm],force=F [nN]
+    /// What the columns are, by number or name, where the header does not say it: x=1,force=2 or position=Z [nm],force=F [nN]
     #[arg(long, value_name = "ROLE=COLUMN,...")]
     columns: Option<String>,
-    /// Use one branch of it alone
+    /// Use only one branch of the curve
     #[arg(long, value_enum)]
     segment: Option<BranchChoice>,
-    /// Which of its rows are apart, by x as it is in the file: x=LO..HI, or none where all are in contact
+    /// Which rows are out of contact, as a range of x in the numbers of the file: x=LO..HI, or none where all are in contact
     #[arg(long, value_name = "x=LO..HI", allow_hyphen_values = true)]
     free_part: Option<String>,
-    /// Which way its columns run, where the points do not show it: x=-,force=+ turns the sign of x alone
+    /// The direction of the columns, where the points do not show it: x=-,force=+ turns the sign of x alone
     #[arg(long, value_name = "x=-,force=+", allow_hyphen_values = true)]
     signs: Option<String>,
-    /// Leave out so many of its first rows
+    /// Leave out this many rows at the start
     #[arg(long, value_name = "N")]
     skip: Option<u32>,
 }
@@ -57,7 +58,7 @@ enum BranchChoice {
 }
 
 impl BranchChoice {
-    /// The word of `data.segment`.
+    /// The value of `data.segment`.
     fn word(self) -> &'static str {
         match self {
             Self::Approach => data::SEGMENTS[0],
@@ -67,7 +68,7 @@ impl BranchChoice {
 }
 
 impl ReadingArguments {
-    /// What is said, with its keys, if it can be said of any file.
+    /// What the options say, with the keys, if it can apply to any file.
     pub(super) fn said(&self) -> Result<Vec<(&'static str, Value)>, Failure> {
         if let Some(text) = &self.columns {
             ColumnSpec::parse(text).map_err(|error| Failure::Usage(format!("--columns: {error}")))?;
@@ -84,16 +85,16 @@ impl ReadingArguments {
     }
 }
 
-/// The option that says what `key` does, as messages name it.
+/// The option that sets `key`, as messages name it.
 fn option(key: &str) -> String {
     format!("--{}", key.trim_start_matches("data.").replace('_', "-"))
 }
 
-/// A number as typed behind `flag`, in SI or reduced units, of what the key `key` measures.
+/// Parses the number given to `flag`, in SI or reduced units, as a value of the quantity that `key` measures.
 pub(super) fn typed(preset: &Preset, flag: &str, key: &str, text: &str) -> Result<f64, Failure> {
     let wrong = |cause: &dyn std::fmt::Display| Failure::Usage(format!("{flag}: {cause}"));
     let row = preset.row(key).ok_or_else(|| wrong(&format!("expected {}", Quantity::Length.name())))?;
-    // The row is that of another key, which the message must not blame.
+    // The row belongs to another key, which the message must not name.
     let words = |invalid: pulloff_engine::preset::Invalid| {
         let text = invalid.to_string();
         wrong(&text.strip_prefix(&*row.key).map_or(&*text, |rest| rest.trim_start_matches([':', ' '])))
@@ -101,12 +102,12 @@ pub(super) fn typed(preset: &Preset, flag: &str, key: &str, text: &str) -> Resul
     preset.number(&row, text).map_err(words)
 }
 
-/// The file of the preset's own curve; one that comes with the program by its name.
+/// The file of the preset's own curve; the name of one that comes with the program.
 pub(super) fn own(preset: &Preset) -> Option<PathBuf> {
     preset.data.source.as_ref().map(|source| source.path())
 }
 
-/// Files with points, and the preset behind them where the last argument names one.
+/// Separates files with points from the preset, where the last argument names one.
 pub(super) fn apart(paths: &[OsString]) -> (Option<OsString>, Vec<PathBuf>) {
     let (preset, files) = match paths.split_last() {
         Some((last, files)) if is_preset(last) => (Some(last.clone()), files),
@@ -115,7 +116,7 @@ pub(super) fn apart(paths: &[OsString]) -> (Option<OsString>, Vec<PathBuf>) {
     (preset, files.iter().map(PathBuf::from).collect())
 }
 
-/// Whether the last argument names a preset and no points.
+/// Whether the argument names a preset and not a file of points.
 fn is_preset(path: &OsString) -> bool {
     let shown = Path::new(path);
     let is_file = shown.is_file() && shown.extension().is_none_or(|ending| ending != "toml");

@@ -1,7 +1,7 @@
-//! The command line: one file per subcommand, exit codes, what goes to which stream.
+//! The command line: one file per subcommand, the exit statuses, and what goes to which stream.
 //!
-//! The exit statuses are [`Status`]. Results go to standard output, everything else to standard error. A reader that goes away early
-//! (`| head`) is a quiet end.
+//! The exit statuses are [`Status`]. Results go to standard output, everything else to standard error. A reader that
+//! goes away early (`| head`) ends the program quietly.
 
 mod assigned;
 mod completions;
@@ -99,9 +99,9 @@ enum ProgramCommand {
     Man,
 }
 
-/// Makes the limit on the size of files an error of the write that meets it, as a full disk is, and not a signal that kills.
+/// Turns the file-size limit into an error of the write that meets it, as with a full disk, instead of a signal that kills.
 fn outlive_the_limit() {
-    // A signal that is caught lets the write return. Should it not be caught, it kills as ever.
+    // A caught signal lets the write return. If it cannot be caught, it kills as usual.
     let _ = flag::register(SIGXFSZ, Arc::default());
 }
 
@@ -117,7 +117,7 @@ pub fn run() -> ExitCode {
     let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => {
-            // Help and version are no errors; clap knows which stream and status each has.
+            // Help and version are not errors; clap knows the stream and status of each.
             let _ = error.print();
             return if error.use_stderr() { Status::Mendable } else { Status::Done }.into();
         }
@@ -147,7 +147,7 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// Says why it failed.
+/// Reports the failure and returns its exit status.
 fn ended(failure: &Failure) -> ExitCode {
     if let Some(text) = failure.text() {
         let _ = writeln!(std::io::stderr(), "{text}");
@@ -155,12 +155,12 @@ fn ended(failure: &Failure) -> ExitCode {
     failure.status().into()
 }
 
-/// What options that take numbers call their values.
+/// The value names of options that take numbers.
 const NUMBERS: [&str; 8] = ["FORCE", "I/N", "LENGTH", "N", "RADIUS", "SEED", "TIME", "WIDTH"];
 
-/// The whole command line, as its help, its completions and the book have it.
+/// The whole command line, as the help, the completions and the book use it.
 pub fn command() -> clap::Command {
-    /// Behind an option that takes a number stands its value, with a sign too: what is wrong with it is said.
+    /// An option that takes a number is followed by its value, which may have a sign, so that a bad value gets its own message.
     fn with_signs(command: clap::Command) -> clap::Command {
         let names = |arg: &clap::Arg| arg.get_value_names().unwrap_or_default().to_vec();
         let signed = |arg: clap::Arg| {

@@ -1,10 +1,11 @@
 //! Where a result goes, and the one rule for every file that a command writes.
 //!
-//! What exists is replaced only with `--overwrite`. No command writes over what it reads, and two outputs of a command are two
-//! files, whatever links lead to them, with `--overwrite` too. All this is asked before anything is computed: the inputs are
-//! gathered in [`Inputs`], each output is announced to [`Outputs`], which gives back the [`OutputSink`] to write to.
+//! An existing file is replaced only with `--overwrite`. Even then, no command overwrites what it reads, and two
+//! outputs of a command are two distinct files, whatever links lead to them. All this is checked before anything is
+//! computed: the inputs are gathered in [`Inputs`], and each output is announced to [`Outputs`], which returns the
+//! [`OutputSink`] to write to.
 //!
-//! A file is written whole or not at all; standard output, a pipe or a device straight.
+//! A file is written as a whole or not at all; standard output, a pipe or a device is written to directly.
 
 use super::Failure;
 use crate::store::atomic::{check, explained};
@@ -18,10 +19,10 @@ use pulloff_engine::text::sanitize;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// Whether files that are there are replaced.
+/// Whether existing files are replaced.
 #[derive(Debug, Clone, Copy, Default, Args)]
 pub struct Replacing {
-    /// Replace files that are there; never one that the command reads
+    /// Replace existing files; never one that the command reads
     #[arg(long)]
     pub overwrite: bool,
 }
@@ -29,7 +30,7 @@ pub struct Replacing {
 /// Where a result goes.
 #[derive(Debug, Clone, Default, Args)]
 pub struct Destination {
-    /// Write to this file, in the format that its ending names, instead of standard output, which is -
+    /// Write to this file, in the format of its extension, instead of to standard output, which is -
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
@@ -37,33 +38,33 @@ pub struct Destination {
 }
 
 impl Destination {
-    /// The file that is named; standard output where there is none.
+    /// The named file, or standard output where there is none.
     pub fn path(&self) -> &Path {
         self.output.as_deref().unwrap_or(Path::new(stream::STANDARD))
     }
 
-    /// The one output of a command that reads `inputs`.
+    /// The only output of a command that reads `inputs`.
     pub fn sink(&self, inputs: Inputs) -> Result<OutputSink, Failure> {
         Outputs::beside(inputs, self.replacing).file(OUTPUT, self.path())
     }
 }
 
-/// How messages call the option of the usual output.
+/// How messages name the option for the usual output.
 pub const OUTPUT: &str = "-o";
 
-/// The files that a command reads, each with what it is.
+/// The files that a command reads, each with a description.
 #[derive(Debug, Clone, Default)]
 pub struct Inputs(Vec<(String, PathBuf)>);
 
 impl Inputs {
-    /// A file that is read; `-` is standard input.
+    /// Adds a file that is read; `-` is standard input.
     #[must_use]
     pub fn with(mut self, what: &str, path: &Path) -> Self {
         self.0.push((what.to_owned(), path.to_owned()));
         self
     }
 
-    /// The file of a preset and those that it names; `argument` is what the person typed.
+    /// Adds the file of a preset and the files that it names; `argument` is what the user typed.
     #[must_use]
     pub fn with_problem(self, argument: Option<&Path>, loaded: &Loaded) -> Self {
         let file = match &loaded.source {
@@ -75,7 +76,7 @@ impl Inputs {
         all.with_data(&loaded.preset)
     }
 
-    /// The data that a preset names.
+    /// Adds the data files that a preset names.
     #[must_use]
     pub fn with_data(mut self, preset: &Preset) -> Self {
         if let Shape::Profile(measured) = &preset.gap {
@@ -87,24 +88,24 @@ impl Inputs {
         }
     }
 
-    /// Results of a sweep, with the file beside them.
+    /// Adds the results of a sweep, with the file beside them.
     #[must_use]
     pub fn with_results(self, path: &Path) -> Self {
         self.with("the results", path).with("the description of the results", &sidecar::path(path))
     }
 }
 
-/// The outputs of a command, each looked at when it is announced.
+/// The outputs of a command, each checked when it is announced.
 #[derive(Debug)]
 pub struct Outputs {
     inputs: Vec<(String, FilePlace)>,
-    /// The option, and the place.
+    /// The option and the place.
     announced: Vec<(String, FilePlace)>,
     overwrite: Overwrite,
 }
 
 impl Outputs {
-    /// None yet, of a command that reads `inputs`.
+    /// No outputs yet, for a command that reads `inputs`.
     pub fn beside(inputs: Inputs, replacing: Replacing) -> Self {
         let place = |(what, path): (String, PathBuf)| FilePlace::read(&path).map(|place| (what, place));
         Self {
@@ -114,19 +115,19 @@ impl Outputs {
         }
     }
 
-    /// An output named by `option`.
-    /// Errors: It is there already, without `--overwrite`; it is what [`kept`](Self::kept) refuses.
+    /// Announces the output named by `option`.
+    /// Errors: The file exists and `--overwrite` is not given, or [`kept`](Self::kept) refuses it.
     pub fn file(&mut self, option: &str, path: &Path) -> Result<OutputSink, Failure> {
         self.announce(option, path, self.overwrite)?.checked()
     }
 
-    /// An output that goes on with what is there, once its owner has looked at it.
-    /// Errors: It is a file that is read, or another output; it cannot be written.
+    /// Announces an output that continues an existing file, once its owner has checked it.
+    /// Errors: It is a file that is read, or another output, or it cannot be written.
     pub fn kept(&mut self, option: &str, path: &Path) -> Result<OutputSink, Failure> {
         self.announce(option, path, Overwrite::Always)?.checked()
     }
 
-    /// An output that may fail.
+    /// Announces an output whose writing may fail.
     /// Errors: It is a file that is read, or another output.
     pub fn tried(&mut self, option: &str, path: &Path) -> Result<(), Failure> {
         self.announce(option, path, Overwrite::Never).map(drop)
@@ -139,7 +140,7 @@ impl Outputs {
             if let Some((what, _)) = self.inputs.iter().find(|(_, input)| *input == place) {
                 return Err(refused(&format!("is the file of {what} that is read; write to another")));
             }
-            // What is thrown away may be thrown away twice.
+            // What is discarded may be discarded twice.
             let is_null = FilePlace::written(Path::new("/dev/null")).as_ref() == Some(&place);
             match self.announced.iter().find(|(_, other)| *other == place && !is_null) {
                 Some((other, _)) if other == option => {
@@ -164,7 +165,7 @@ pub struct OutputSink {
 }
 
 impl OutputSink {
-    /// The same, once it was looked at.
+    /// The same sink, after the check.
     fn checked(self) -> Result<Self, Failure> {
         if !stream::is_stream(&self.path) {
             check(&self.path, self.overwrite).map_err(|error| self.failure(error))?;
@@ -187,7 +188,7 @@ impl OutputSink {
         })
     }
 
-    /// The option with its file, as messages begin.
+    /// The option and its file, as messages begin.
     fn name(&self) -> String {
         format!("{} {}:", self.option, shown(&self.path))
     }
@@ -202,13 +203,13 @@ impl OutputSink {
     }
 }
 
-/// Writes `text`, which no option can send elsewhere, to standard output.
+/// Writes `text`, which no option can redirect, to standard output.
 pub fn print(text: impl AsRef<[u8]>) -> Result<(), Failure> {
     let path = PathBuf::from(stream::STANDARD);
     OutputSink { option: OUTPUT.to_owned(), path, overwrite: Overwrite::Never }.write(text)
 }
 
-/// A path as it can be shown.
+/// A path made safe to show.
 pub fn shown(path: &Path) -> String {
     sanitize(&path.to_string_lossy(), 200)
 }

@@ -1,4 +1,4 @@
-//! `pulloff unload` and `pulloff cycle`: what happens on the way of the device, event by event.
+//! `pulloff unload` and `pulloff cycle`: what happens on the path of the device, event by event.
 
 use super::Failure;
 use super::computed::{Computed, Opened};
@@ -31,13 +31,13 @@ pub struct CycleArguments {
     path: PathArguments,
 }
 
-/// What both are asked for.
+/// The arguments that both commands share.
 #[derive(Debug, Args)]
 struct PathArguments {
-    /// Follow one disc of contact alone, as path.contact=one-disc does; states in which the bodies would overlap are marked
+    /// Follow only one disc of contact, as path.contact=one-disc does; states in which the bodies would overlap are marked
     #[arg(long)]
     one_disc: bool,
-    /// Compute losses by energy alone: faster, and without the balance of energy and areas
+    /// Compute losses from energy only: faster, but without the balance of energy and areas
     #[arg(long)]
     no_area: bool,
     /// What the rows of a table or of CSV are; JSON has both
@@ -47,16 +47,16 @@ struct PathArguments {
     computed: Computed,
 }
 
-/// What a row is.
+/// What one row describes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum PathRows {
-    /// What happens, in order
+    /// The events, in order
     Events,
-    /// The stable states, a row for each contact
+    /// The stable states, one row per contact
     States,
 }
 
-/// Where the loop turns round; instead of what the preset says.
+/// Where the loop turns round, instead of where the preset says.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 #[expect(clippy::struct_field_names, reason = "clap makes the flags of these names")]
@@ -70,13 +70,13 @@ struct TurnArguments {
     /// Turn round at the first stable state whose outermost edge is at least this far out
     #[arg(long, value_name = "RADIUS")]
     to_radius: Option<String>,
-    /// Turn round at this value of what is controlled: an approach, a force, or the way of the spring's other end
+    /// Turn round at this value of what is controlled: an approach, a force, or the position of the spring's far end
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     to_control: Option<String>,
 }
 
 impl TurnArguments {
-    /// Gives the preset the turn, where one is given; a control value is none of its keys.
+    /// Sets the turn in the preset, where one is given; the preset has no key for a control value.
     fn lay(&self, preset: &mut Preset) -> Result<Option<Turn>, Failure> {
         let given = [
             ("--to-approach", TURN_KEYS[0], &self.to_approach),
@@ -89,7 +89,7 @@ impl TurnArguments {
             }
         }
         let Some(text) = &self.to_control else { return Ok(None) };
-        // It is typed as an approach or a force is.
+        // It is typed in the same way as an approach or a force.
         let key = TURN_KEYS[usize::from(preset.path.control == Control::Force)];
         let value = preset.row(key).map(|row| preset.number(&row, text)).transpose();
         let value = value.map_err(|invalid| Failure::Usage(format!("--to-control: {invalid}")))?;
@@ -111,7 +111,7 @@ pub fn cycle(arguments: &CycleArguments) -> Result<ExitCode, Failure> {
 type Compute<'a> = &'a dyn Fn(&Preset, Option<Turn>, Extent, &dyn Progress) -> Result<PathReport, CaseError>;
 
 impl PathArguments {
-    /// Computes a path, once it is sure where it goes, and writes it.
+    /// Checks that the path can be written, then computes and writes it.
     fn run(
         &self,
         turn: impl FnOnce(&mut Preset) -> Result<Option<Turn>, Failure>,

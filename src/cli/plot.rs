@@ -42,31 +42,32 @@ use std::sync::{Arc, LazyLock};
 pub struct PlotArguments {
     #[command(flatten)]
     problem: ProblemArguments,
-    /// Draw the results of a sweep instead of a view of a preset: a curve over its axis, or a map over its two
+    /// Draw the results of a sweep instead of a view of a preset: a curve over its one axis, or a map over its two
     #[arg(long, value_name = "RESULTS.csv", conflicts_with_all = ["preset", "assignments", "control", "view", "theory", "raw", "contact_radius", "columns", "segment", "free_part", "signs", "skip"])]
     sweep: Option<PathBuf>,
-    /// The column of the results that is drawn [default: enhancement]
+    /// The column of the results to draw [default: enhancement]
     #[arg(long, value_name = "COLUMN")]
     quantity: Option<String>,
-    /// What is drawn
+    /// What to draw
     #[arg(long, value_enum, default_value = "force-approach")]
     view: ViewName,
-    /// Draw the exact solution and the envelope of Kesari and Lew as well, where they exist
+    /// Also draw the exact solution and the envelope of Kesari and Lew, where they exist
     #[arg(long)]
     theory: bool,
     /// Axes in the preset's own units instead of P/Pc and s/lambda
     #[arg(long)]
     raw: bool,
-    /// The state whose pressure, gap or energy is drawn, by its contact radius: a number, in an SI preset in metres or with its unit, as 1.2mm; the start when left out
+    /// The state whose pressure, gap or energy is drawn, by its contact radius: a number, in metres in an SI preset, or
+    /// with a unit, such as 1.2mm; the start when left out
     #[arg(long, value_name = "RADIUS")]
     contact_radius: Option<String>,
-    /// The part of the x axis that is shown, in its units as drawn; one end may be left out: --x ..0.1
+    /// The part of the x axis to show, in its units as drawn; one end may be left out: --x ..0.1
     #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
     x: Option<Range>,
-    /// The part of the y axis that is shown, in its units as drawn; one end may be left out: --y -1..
+    /// The part of the y axis to show, in its units as drawn; one end may be left out: --y -1..
     #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
     y: Option<Range>,
-    /// Lay the points of a measured curve behind it
+    /// Draw the points of a measured curve behind the view
     #[arg(long, value_name = "FILE", conflicts_with = "sweep")]
     measured: Option<PathBuf>,
     #[command(flatten)]
@@ -74,13 +75,13 @@ pub struct PlotArguments {
     /// The x of the measured curve at which the approach is zero
     #[arg(long, value_name = "LENGTH", conflicts_with = "sweep", allow_hyphen_values = true)]
     offset: Option<String>,
-    /// The force of the measured curve that is none [default: the median of its free part]
+    /// The reading of the measured curve at zero force [default: the median of its free part]
     #[arg(long, value_name = "FORCE", conflicts_with = "sweep", allow_hyphen_values = true)]
     baseline: Option<String>,
-    /// Its width on paper in millimetres, or one or two columns of a journal (86 and 178 mm)
+    /// The width of the figure on paper in millimetres, or one or two columns of a journal (86 and 178 mm)
     #[arg(long, value_name = "WIDTH", default_value = "one-column", value_parser = width)]
     width: Width,
-    /// Write the data beside the figure too, to FILE.csv
+    /// Also write the data, to FILE.csv
     #[arg(long, requires = "output")]
     data: bool,
     #[command(flatten)]
@@ -95,16 +96,16 @@ struct PlotSinks {
     data: Option<OutputSink>,
 }
 
-/// The column of the results that is drawn when none is named.
+/// The column of the results that is drawn by default.
 const QUANTITY: &str = "enhancement";
 
-/// A view by the name the explorer gives it.
+/// A view by its name in the explorer.
 #[derive(Debug, Clone, Copy)]
 struct ViewName(View);
 
 impl ValueEnum for ViewName {
     fn value_variants<'a>() -> &'a [Self] {
-        // Without a walk and a selection there is neither its table nor a study, which sweeps are for.
+        // The walk and study views need a walk or a selection, which do not exist here; sweeps serve instead.
         static ALL: LazyLock<Vec<ViewName>> = LazyLock::new(|| {
             let all = View::ALL.into_iter().filter(|view| !matches!(view, View::Walk | View::Study));
             all.map(ViewName).collect()
@@ -220,7 +221,7 @@ pub fn run(arguments: &PlotArguments) -> Result<ExitCode, Failure> {
 }
 
 impl PlotArguments {
-    /// Gives the preset the measured curve that is asked for, and says what was found in its own.
+    /// Gives the preset the requested measured curve, and reports what was found in its own.
     fn lay_points(&self, console: &Console, preset: &mut Preset) -> Result<(), Failure> {
         attach(preset, self.measured.as_deref(), &self.reading.said()?)?;
         for (flag, key, text) in
@@ -240,7 +241,7 @@ impl PlotArguments {
         Ok(())
     }
 
-    /// The picture of the results of a sweep, and its data where they are wanted.
+    /// The picture of the results of a sweep, with its data where they are wanted.
     fn of_sweep(&self, path: &Path) -> Result<(String, Option<String>), Failure> {
         let results = SweepResults::open(path).map_err(MapChartError::from)?;
         let quantity = self.quantity.as_deref().unwrap_or(QUANTITY);
@@ -250,7 +251,7 @@ impl PlotArguments {
                 return Err(Failure::Usage(what.to_owned()));
             }
             [axis] => axis,
-            // Drawn at random they make no grid.
+            // Values drawn at random form no grid.
             [axis, ..] if results.is_random => axis,
             axes => {
                 let refused = [("--x", self.x.is_some()), ("--y", self.y.is_some()), ("--data", self.data)];
@@ -269,7 +270,7 @@ impl PlotArguments {
         Ok((svg::svg(&figure, self.width), data))
     }
 
-    /// The part of the figure that is asked for.
+    /// The requested part of the figure.
     fn part(&self, mut figure: Figure) -> Result<Figure, Failure> {
         let refused = |axis: &'static str, range: Range| {
             move |error: RangeError| Failure::Usage(format!("--{axis} {range}: {error}"))
@@ -283,7 +284,7 @@ impl PlotArguments {
         Ok(figure)
     }
 
-    /// Refuses a view that this preset has nothing for.
+    /// Refuses a view for which this preset has no data.
     fn fits(&self, preset: &Preset) -> Result<(), Failure> {
         let view = self.view.0;
         let why = match view {
@@ -299,7 +300,7 @@ impl PlotArguments {
         why.map_or(Ok(()), |why| Err(Failure::Usage(format!("--view {}: {why}", view.name()))))
     }
 
-    /// Where all goes that is written.
+    /// The outputs of the command.
     fn sinks(&self, inputs: Inputs) -> Result<PlotSinks, Failure> {
         let mut outputs = Outputs::beside(inputs, self.destination.replacing);
         let path = self.destination.path();
@@ -313,7 +314,7 @@ impl PlotArguments {
     }
 }
 
-/// The inside of the state of this contact radius, or of the start.
+/// The interior of the state with this contact radius, or of the start.
 fn inside(curve: &Arc<CurveData>, radius: Option<&str>, exact: bool) -> Result<StateInside, Failure> {
     let (case, equilibrium) = (&curve.case, &curve.base.curve.equilibrium);
     let unit = case.units().length;
@@ -355,7 +356,7 @@ fn length(preset: &Preset, text: &str) -> Result<f64, Failure> {
     typed(preset, "--contact-radius", "path.start_contact_radius", text)
 }
 
-/// The format that is asked for; standard output and descriptors have no ending.
+/// The requested format; standard output and descriptors have no extension.
 fn format(path: &Path) -> Result<PictureFormat, Failure> {
     match PictureFormat::of(path) {
         Err(FormatError::Ending(_)) if stream::is_stream(path) => Ok(PictureFormat::Svg),

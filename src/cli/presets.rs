@@ -21,7 +21,7 @@ pub enum PresetsCommand {
         /// Its name, or a preset file; - is standard input
         name: OsString,
     },
-    /// Delete a preset of your own, after a question
+    /// Delete a preset of your own, after asking
     Delete {
         /// Its name
         name: String,
@@ -33,7 +33,7 @@ pub enum PresetsCommand {
     Path,
 }
 
-/// Longest title in a list.
+/// The longest title in a list.
 const TITLE: usize = 100;
 
 pub fn run(command: &PresetsCommand) -> Result<ExitCode, Failure> {
@@ -59,7 +59,7 @@ pub fn run(command: &PresetsCommand) -> Result<ExitCode, Failure> {
         }
         PresetsCommand::Show { name } => {
             let source = super::problem::source(&store, name)?;
-            // Loaded first: a file that is no preset is an error, not text to print.
+            // Loaded first, because a file that is not a preset is an error and must not be printed.
             let loaded = store.load(&source, &[] as &[&str])?;
             output::print(loaded.text)?;
         }

@@ -1,4 +1,4 @@
-//! The problem that a command line names: a preset, and other values for some of its keys.
+//! The problem that a command line names: a preset, with new values for some of its keys.
 
 use super::console::Console;
 use super::output::Inputs;
@@ -10,7 +10,7 @@ use clap::Args;
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
-/// The names of the subcommands, which no preset can have.
+/// The names of the subcommands, which no preset may have.
 pub(super) const SUBCOMMANDS: [&str; 17] = [
     "trace",
     "unload",
@@ -31,7 +31,7 @@ pub(super) const SUBCOMMANDS: [&str; 17] = [
     "help",
 ];
 
-/// Which problem, as the explorer and every computing command take it.
+/// Which problem to solve, as the explorer and every computing command take it.
 #[derive(Debug, Args)]
 pub struct ProblemArguments {
     /// A preset's name, or a preset file (with a '/' or ending in .toml; - is standard input); the wavy sphere when left out
@@ -46,12 +46,13 @@ pub struct ProblemArguments {
 pub struct Changes {
     /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable; the last of one key holds)
     ///
-    /// In an SI preset a bare number is SI, and a value may have its unit: "gap.amplitude=2 um". A dimensionless group
-    /// changes what it follows from: `groups.amplitude_over_wavelength`, `groups.wavelength_over_radius`, `groups.adhesion`.
-    /// An SI preset is shown in the units of its display keys: display.force=mN.
+    /// In an SI preset a bare number is SI, and a value may have a unit: "gap.amplitude=2 um". A dimensionless group
+    /// changes the values that it is made of: `groups.amplitude_over_wavelength`, `groups.wavelength_over_radius`,
+    /// `groups.adhesion`. An SI preset is shown in the units of its display keys: display.force=mN.
     #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
     pub assignments: Vec<String>,
-    /// What the loading device prescribes: displacement, force or stiffness=K, in an SI preset also as stiffness=5N/m (instead of the preset's)
+    /// What the loading device prescribes: displacement, force or stiffness=K, in an SI preset also as stiffness=5N/m
+    /// (instead of the preset's)
     #[arg(long, value_name = "CONTROL")]
     pub control: Option<String>,
 }
@@ -60,12 +61,12 @@ pub struct Changes {
 const CONTROL: &str = "path.control";
 
 impl Changes {
-    /// Whether there is none.
+    /// Whether there are no changes.
     pub fn is_empty(&self) -> bool {
         self.assignments.is_empty() && self.control.is_none()
     }
 
-    /// All as assignments.
+    /// All changes as assignments.
     pub fn all(&self) -> Vec<String> {
         let control = self.control.as_ref().map(|control| format!("{CONTROL}={control}"));
         self.assignments.iter().cloned().chain(control).collect()
@@ -73,7 +74,7 @@ impl Changes {
 }
 
 impl ProblemArguments {
-    /// The preset with the changes; what they did that their text does not show is told.
+    /// Loads the preset with the changes, and reports what they did beyond their text.
     pub fn load(&self, console: &Console) -> Result<Loaded, Failure> {
         let store = store();
         let source = match &self.preset {
@@ -90,18 +91,18 @@ impl ProblemArguments {
         Ok(loaded)
     }
 
-    /// The files that it is read from.
+    /// The files that the problem is read from.
     pub fn inputs(&self, loaded: &Loaded) -> Inputs {
         Inputs::default().with_problem(self.preset.as_deref().map(Path::new), loaded)
     }
 }
 
-/// The store of presets; a preset cannot have the name of a subcommand.
+/// The store of presets; no preset may have the name of a subcommand.
 pub(super) fn store() -> Store {
     Store::open(&SUBCOMMANDS)
 }
 
-/// What the argument `preset` names: the text itself where it comes through a pipe, which can be read but once.
+/// What the argument `preset` names: the text itself where it comes through a pipe, which can be read only once.
 pub(super) fn source(store: &Store, preset: &OsStr) -> Result<Source, Failure> {
     let path = Path::new(preset);
     if preset != STANDARD {

@@ -12,20 +12,20 @@ use pulloff_engine::report::{PullReport, columns, json, table};
 use pulloff_engine::text::quote;
 use std::process::ExitCode;
 
-/// The key whose number a dead load is read as.
+/// The key as whose value a dead load is read.
 const FORCE: &str = "path.start_force";
 
-/// Rates in one range at most.
+/// The largest number of rates in one range.
 const RATES: usize = 10_000;
 
 /// The arguments of `pulloff pull`.
 #[derive(Debug, Args)]
 pub struct PullArguments {
-    /// Pull at this rate of what is controlled until the bodies are apart (repeatable; instead of path.rate and path.steps);
-    /// log:FROM..TO:COUNT for rates of equal factors
+    /// Pull at this rate of what is controlled until the bodies are apart (repeatable; instead of path.rate and
+    /// path.steps); log:FROM..TO:COUNT for logarithmically spaced rates
     #[arg(long, value_name = "RATE")]
     rate: Vec<String>,
-    /// How long this dead load is borne, a negative force for a pull (repeatable)
+    /// Find how long this dead load is borne, a negative force for a pull (repeatable)
     #[arg(long, value_name = "FORCE", allow_hyphen_values = true)]
     hold_force: Vec<String>,
     /// What the rows of a table or of CSV are; JSON has the runs
@@ -35,7 +35,7 @@ pub struct PullArguments {
     computed: Computed,
 }
 
-/// What a row is.
+/// What one row describes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum PullRows {
     /// The pulls, or the dead loads where nothing is pulled
@@ -78,7 +78,7 @@ pub fn run(arguments: &PullArguments) -> Result<ExitCode, Failure> {
     console.end()
 }
 
-/// The rates of one `--rate`.
+/// The rates given by one `--rate`.
 fn rates(preset: &Preset, text: &str) -> Result<Vec<f64>, Failure> {
     let one = |text: &str| {
         let rate = number(preset, "--rate", RATE, text)?;
@@ -101,7 +101,7 @@ fn rates(preset: &Preset, text: &str) -> Result<Vec<f64>, Failure> {
         .collect())
 }
 
-/// A number as the key `key` takes it.
+/// Parses a number as a value of `key`.
 fn number(preset: &Preset, option: &str, key: &str, text: &str) -> Result<f64, Failure> {
     let row = preset.row(key).ok_or_else(|| wrong(text, "the preset has no such number"))?;
     preset.number(&row, text).map_err(|invalid| Failure::Usage(format!("{option}: {invalid}")))

@@ -26,7 +26,7 @@ use std::process::ExitCode;
 pub struct RunArguments {
     /// The script, one command a line; - reads standard input
     script: PathBuf,
-    /// The preset it begins with, by name or file; - reads standard input; the wavy sphere when left out
+    /// The preset to start with, by name or file; - reads standard input; the wavy sphere when left out
     #[arg(long, value_name = "PRESET|FILE.toml")]
     preset: Option<OsString>,
     #[command(flatten)]
@@ -36,14 +36,14 @@ pub struct RunArguments {
     /// Let the script write files outside the current folder
     #[arg(long)]
     anywhere: bool,
-    /// Say on standard error what became of each line
+    /// Report on standard error what became of each line
     #[arg(long, short, conflicts_with = "quiet")]
     verbose: bool,
     #[command(flatten)]
     messages: Messages,
 }
 
-/// Longest account of a line.
+/// The longest report on a line.
 const ACCOUNT: usize = 200;
 
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
@@ -82,7 +82,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     console.end()
 }
 
-/// Looks at all files that the lines of a script name, before any is done.
+/// Checks all files that the lines of a script name, before any line is run.
 fn look(name: &str, lines: &[ScriptLine], inputs: Inputs, replacing: Replacing) -> Result<(), Failure> {
     let store = store();
     let opened = lines.iter().filter_map(|line| opened(&store, &line.command));
@@ -96,7 +96,7 @@ fn look(name: &str, lines: &[ScriptLine], inputs: Inputs, replacing: Replacing) 
         };
         let option = format!("{name}:{}: {}", line.number, line.command.id().name());
         let path = target(path);
-        // What a line of the same script wrote, another replaces where it says so.
+        // A line may replace what an earlier line of the script wrote, where it says so.
         let place = FilePlace::written(&path);
         if *replace && written.contains(&place) {
             continue;
@@ -111,13 +111,13 @@ fn look(name: &str, lines: &[ScriptLine], inputs: Inputs, replacing: Replacing) 
     Ok(())
 }
 
-/// The preset that a line of a script opens, where it can be opened now.
+/// The preset that a line of a script opens, if it can be opened now.
 fn opened(store: &Store, command: &Command) -> Option<Loaded> {
     let (Command::Open(name) | Command::OpenWith { name, .. }) = command else { return None };
     store.load(&store.resolve(name).ok()?, &[] as &[&str]).ok()
 }
 
-/// What a screen would show, drawn.
+/// Draws what a screen would show.
 fn drawn(model: &Model, what: Picture) -> Result<Page, String> {
     match what {
         Picture::Screen => Ok(Page::Screen(screen(model))),
@@ -125,7 +125,7 @@ fn drawn(model: &Model, what: Picture) -> Result<Page, String> {
     }
 }
 
-/// What became of a line, in one line.
+/// Reports what became of a line, in one line.
 fn account(line: &ScriptLine, model: &Model) {
     let command = script::line(&line.command).unwrap_or_default();
     let text = format!("{}: {command}: {}", line.number, by_name(&model.status().1));

@@ -1,4 +1,4 @@
-//! `pulloff sessions`: list, show and delete what the explorer keeps of a session.
+//! `pulloff sessions`: list, show and delete the sessions that the explorer keeps.
 
 use super::Failure;
 use super::console::ask;
@@ -18,7 +18,7 @@ use std::time::UNIX_EPOCH;
 pub enum SessionsCommand {
     /// List the sessions, the newest first
     List,
-    /// Say what a session holds
+    /// Say what a session contains
     Show {
         /// Its name
         name: String,
@@ -30,7 +30,7 @@ pub enum SessionsCommand {
         /// Their names
         #[arg(required = true, value_name = "NAME")]
         names: Vec<String>,
-        /// Do not ask
+        /// Delete them without asking
         #[arg(long)]
         yes: bool,
     },
@@ -38,7 +38,7 @@ pub enum SessionsCommand {
     Path,
 }
 
-/// Longest name of a preset, and longest reason, in a list.
+/// The longest preset name and the longest reason in a list.
 const NAME: usize = 24;
 const REASON: usize = 90;
 
@@ -49,7 +49,7 @@ pub fn run(command: &SessionsCommand) -> Result<ExitCode, Failure> {
         SessionsCommand::Show { name, format } => output::print(match format.format {
             Some(Format::Json) => {
                 let bytes = archive.bytes(name)?;
-                // Read first: a file that is no session is an error, not text to print.
+                // Read first, because a file that is not a session is an error and must not be printed.
                 archive.summary(name)?;
                 bytes
             }

@@ -18,11 +18,11 @@ use std::process::ExitCode;
 /// The arguments of `pulloff speeds`.
 #[derive(Debug, Args)]
 pub struct SpeedsArguments {
-    /// A file with a measured curve, and behind it a preset's name or file (ending in .toml), the wavy sphere when left out; or a
-    /// preset alone that names its curve in data.file
+    /// A file with a measured curve, followed by a preset's name or file (ending in .toml), the wavy sphere when left
+    /// out; or only a preset that names its curve in data.file
     #[arg(required = true, num_args = 1..=2, value_name = "FILE [PRESET]")]
     paths: Vec<OsString>,
-    /// What G is computed from: force and radius when left out, or force and approach of a file without contact radii
+    /// What G is computed from: force and radius when left out, or force and approach for a file without contact radii
     #[arg(long, value_name = "COLUMNS", value_parser = MeasuredPair::ALL.map(MeasuredPair::name))]
     from: Option<String>,
     #[command(flatten)]

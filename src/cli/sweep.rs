@@ -1,4 +1,4 @@
-//! `pulloff sweep`: many problems into one file, and shards of it joined.
+//! `pulloff sweep`: computes many problems into one file, and joins shards.
 
 use super::Failure;
 use super::console::{Console, Messages};
@@ -49,9 +49,9 @@ enum SweepCommand {
         #[command(flatten)]
         messages: Messages,
     },
-    /// Look at results without computing: whether they are whole and of the sweep beside them
+    /// Check results without computing: whether they are complete and belong to the sweep beside them
     Check {
-        /// The results, of a sweep or of a shard
+        /// The results of a sweep or of a shard
         #[arg(value_name = "RESULTS.csv")]
         results: PathBuf,
         #[command(flatten)]
@@ -64,7 +64,7 @@ enum SweepCommand {
 /// Where the rows go.
 #[derive(Debug, Args)]
 struct ResultsArguments {
-    /// Write to this file; where it holds a part of the same rows, a sweep goes on with it; - is standard output
+    /// Write to this file; if it already holds some of the same rows, continue it; - is standard output
     #[arg(short, long, value_name = "RESULTS.csv")]
     output: PathBuf,
     #[command(flatten)]
@@ -72,7 +72,7 @@ struct ResultsArguments {
 }
 
 /// What is swept, and where to.
-// Of a struct with groups in it clap knows no arguments; this one is always there.
+// clap does not know the arguments of a struct with groups in it; this argument is always there.
 #[derive(Debug, Args)]
 #[group(args = ["spec"])]
 struct Sweep {
@@ -85,13 +85,13 @@ struct Sweep {
     results: ResultsArguments,
     #[command(flatten)]
     jobs: Jobs,
-    /// Compute the part i of n alone, such as 3/8
+    /// Compute only part I of N, such as 3/8
     #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
     shard: Shard,
-    /// Give a row up after this time, such as 10s or 2min; its error says so
+    /// Give up a row after this time, such as 10s or 2min; its error says so
     #[arg(long, value_name = "TIME", value_parser = time)]
     row_limit: Option<Duration>,
-    /// Say in this file how far it is: JSON, replaced as a whole about every second
+    /// Report the progress in this file: JSON, replaced as a whole about every second
     #[arg(long, value_name = "FILE")]
     status: Option<PathBuf>,
     /// Wait while another pulloff writes the results, instead of giving up
@@ -101,7 +101,7 @@ struct Sweep {
     messages: Messages,
 }
 
-/// How often a sweep that waits for another looks whether it has ended.
+/// How often a sweep that waits for another checks whether that one has ended.
 const PAUSE: Duration = Duration::from_millis(200);
 
 pub fn run(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
@@ -115,7 +115,7 @@ pub fn run(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
         }
         (Some(SweepCommand::Check { results, messages }), _) => checked(results, &messages.open()),
         (None, Some(sweep)) => sweep.run(),
-        // clap asks for the arguments first.
+        // clap reports missing arguments first.
         (None, None) => Err(Failure::Usage("sweep needs SPEC.toml and -o RESULTS.csv".to_owned())),
     }
 }
@@ -136,7 +136,7 @@ fn time(text: &str) -> Result<Duration, String> {
     Duration::try_from_secs_f64(seconds).ok().filter(|time| !time.is_zero()).ok_or_else(wrong)
 }
 
-/// Joins parts.
+/// Joins shards.
 fn merged(parts: &[PathBuf], results: &ResultsArguments, console: &Console) -> Result<ExitCode, Failure> {
     let ResultsArguments { output, .. } = results;
     let parts: Vec<PathBuf> = parts.iter().map(|part| ensemble::found_rows(part)).collect();
@@ -167,7 +167,7 @@ fn with_an_error(faults: &FaultCounts, console: &Console) {
     }
 }
 
-/// Success where some row has a quantity.
+/// Success if some row has a quantity.
 fn fruitful(is_fruitful: bool, console: &Console) -> Result<ExitCode, Failure> {
     if is_fruitful {
         return console.end();
@@ -175,7 +175,7 @@ fn fruitful(is_fruitful: bool, console: &Console) -> Result<ExitCode, Failure> {
     Err(Failure::Incomplete("every row failed; the column error says why".to_owned()))
 }
 
-/// Says what results are.
+/// Reports the state of results.
 fn checked(results: &Path, console: &Console) -> Result<ExitCode, Failure> {
     let results = &ensemble::found_rows(results);
     let found = check(results)?;
@@ -209,7 +209,7 @@ impl ResultsArguments {
         if self.replacing.overwrite { Existing::Overwrite } else { Existing::GoOn }
     }
 
-    /// Refuses what cannot hold the two files of an ensemble.
+    /// Refuses an output that cannot hold the two files of an ensemble.
     fn two_files(&self) -> Result<(), Failure> {
         if stream::is_stream(&self.output) {
             let what = "an ensemble has two files, the members and what they say together: name one";
@@ -283,7 +283,7 @@ impl Sweep {
         }
         self.tell(&spec, &summary, jobs, took, &console);
         match stop.signal().filter(|_| !summary.is_complete()) {
-            // A shard of failures alone may be a part of a good sweep.
+            // A shard in which every row fails may still be part of a good sweep.
             None => fruitful(self.shard != Shard::WHOLE || !summary.is_failure(), &console),
             Some(signal) => {
                 let rows = summary.before + summary.now;
@@ -298,7 +298,7 @@ impl Sweep {
         }
     }
 
-    /// Looks at all outputs; the status where there is one.
+    /// Checks all outputs; returns the status file where there is one.
     fn look(
         &self,
         loaded: &spec::LoadedSpec,
@@ -308,7 +308,7 @@ impl Sweep {
         let inputs = Inputs::default().with("the spec", &self.spec);
         let inputs = loaded.preset.iter().fold(inputs, |inputs, file| inputs.with("the preset", file));
         let inputs = spec::presets(&loaded.spec).fold(inputs, |inputs, preset| inputs.with_data(&preset));
-        // The axis would win, without a word.
+        // The axis would silently win.
         let changes = self.changes.all();
         let keys = changes.iter().filter_map(|change| change.split_once('=')).map(|(key, _)| key.trim());
         if let Some(key) = keys.into_iter().find(|key| loaded.spec.axes.iter().any(|axis| axis.key == **key))
@@ -328,7 +328,7 @@ impl Sweep {
         self.status.as_ref().map(|file| subject.sink(file, &mut outputs, *replacing)).transpose()
     }
 
-    /// The results, once nobody else writes them.
+    /// Opens the results, once no other process writes them.
     fn open(&self, rows_in: &Path, spec: &Spec, console: &Console) -> Result<Output, Failure> {
         let mut has_told = false;
         loop {
@@ -371,7 +371,7 @@ impl Sweep {
     }
 }
 
-/// How to draw it, where it is a curve or a map.
+/// How to draw the results, if they form a curve or a map.
 fn how_to_plot(spec: &Spec, results: &Path) -> Option<String> {
     let own = spec.axes.iter().filter(|axis| !spec.is_ensemble() || axis.count().is_some());
     let axes: Vec<&SweepAxis> = own.collect();
@@ -388,14 +388,14 @@ fn how_to_plot(spec: &Spec, results: &Path) -> Option<String> {
     Some(format!("to plot it: pulloff plot --sweep '{file}' --quantity {quantity} -o {picture}.svg"))
 }
 
-/// The progress on standard error; none where that is no terminal.
+/// The progress bar on standard error; hidden where that is not a terminal.
 fn bar(rows: u64, before: u64, hidden: bool) -> ProgressBar {
     let target = if hidden { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr_with_hz(5) };
     let bar = ProgressBar::with_draw_target(Some(rows), target);
     let style = "{wide_bar} {pos}/{len} rows  {per_sec}  {eta} left  {msg}";
     let style = ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
     bar.set_style(style.progress_chars("=> "));
-    // What was there before says nothing of the rate.
+    // The rows that were there before say nothing about the rate.
     bar.set_position(before);
     bar.reset_eta();
     bar

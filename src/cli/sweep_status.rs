@@ -1,4 +1,4 @@
-//! How far a sweep is, as a small file that another program may read at any time.
+//! The progress of a sweep, as a small file that another program may read at any time.
 
 use super::Failure;
 use super::format::{self, Format};
@@ -10,50 +10,50 @@ use serde::Serialize;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// The file is replaced so often at most.
+/// The shortest time between two replacements of the file.
 const PAUSE: Duration = Duration::from_secs(1);
 
-/// What the file says.
+/// The contents of the file.
 #[derive(Debug, Serialize)]
 struct StatusFile<'a> {
     schema: u32,
     /// `running`, `complete` or `stopped`.
     state: &'a str,
     results: &'a str,
-    /// The hash of all that the numbers follow from.
+    /// The hash of everything that determines the numbers.
     identity: &'a str,
     shard: String,
-    /// The rows that are there, of all of the shard.
+    /// The number of rows that exist, of all rows of the shard.
     rows: u64,
     of: u64,
-    /// Those among them that were there when this run began, and those with an error.
+    /// How many of them existed when this run began, and how many have an error.
     before: u64,
     with_error: u64,
-    /// Since this run began.
+    /// The time since this run began.
     seconds: f64,
     rows_per_second: Option<f64>,
     process: u32,
 }
 
-/// Of what a status file tells.
+/// What a status file reports on.
 #[derive(Debug, Clone)]
 pub struct StatusSubject {
-    /// How messages call the results.
+    /// How messages name the results.
     pub results: String,
     pub identity: String,
     pub shard: Shard,
 }
 
 impl StatusSubject {
-    /// Whether `text` is a status of this very part of this very sweep, whatever its rows.
+    /// Whether `text` is a status of this very shard of this very sweep, whatever its rows.
     fn is_of(&self, text: &str) -> bool {
         let Ok(status) = serde_json::from_str::<serde_json::Value>(text) else { return false };
         let has = |name: &str, value: &str| status.get(name).and_then(|found| found.as_str()) == Some(value);
         has("identity", &self.identity) && has("shard", &self.shard.to_string())
     }
 
-    /// Looks at the file of the status before anything is computed.
-    /// Errors: There is another file, and it is not to be replaced.
+    /// Checks the status file before anything is computed.
+    /// Errors: A different file exists and must not be replaced.
     pub fn sink(
         &self,
         file: &Path,
@@ -76,7 +76,7 @@ impl StatusSubject {
     }
 }
 
-/// The file, while a sweep runs.
+/// The status file, while a sweep runs.
 #[derive(Debug)]
 pub struct Reporter {
     sink: Option<OutputSink>,
@@ -85,12 +85,12 @@ pub struct Reporter {
     before: u64,
     begun: Instant,
     written: Instant,
-    /// Why it could not be replaced, once.
+    /// Why it could not be replaced, reported once.
     pub trouble: Option<String>,
 }
 
 impl Reporter {
-    /// Begins the file, where one is wanted.
+    /// Writes the first status, where a file is wanted.
     /// Errors: It cannot be written.
     pub fn begin(
         sink: Option<OutputSink>,
@@ -125,14 +125,14 @@ impl Reporter {
         serde_json::to_string_pretty(&status).unwrap_or_default() + "\n"
     }
 
-    /// So many rows are there, so many of them with an error.
+    /// Reports that `rows` rows exist, `with_error` of them with an error.
     pub fn tell(&mut self, rows: u64, with_error: u64) {
         if self.sink.is_some() && self.written.elapsed() >= PAUSE {
             self.replace("running", rows, with_error);
         }
     }
 
-    /// The run is over.
+    /// Reports that the run is over.
     pub fn end(&mut self, summary: &RunSummary) {
         let state = if summary.is_complete() { "complete" } else { "stopped" };
         self.replace(state, summary.before + summary.now, summary.faults.total());
@@ -140,7 +140,7 @@ impl Reporter {
 
     fn replace(&mut self, state: &str, rows: u64, with_error: u64) {
         let Some(sink) = &self.sink else { return };
-        // The rows matter more than this: a full disk ends the sweep by itself.
+        // The rows matter more than this file: a full disk ends the sweep anyway.
         let done = sink.write(self.text(state, rows, with_error));
         self.trouble = done.err().map(|error| error.to_string());
         self.written = Instant::now();

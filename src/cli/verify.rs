@@ -1,4 +1,4 @@
-//! `pulloff verify`: our numbers against theory.
+//! `pulloff verify`: compares our numbers with theory.
 
 use super::Failure;
 use super::format::{Format, FormatArgument};

@@ -13,13 +13,13 @@ use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Shorter commands show no bar.
+/// A command that takes less than this shows no bar.
 const MOMENT: Duration = Duration::from_millis(500);
 
-/// The number of the signal that has come, once they are caught.
+/// Holds the number of the received signal, once signals are caught.
 static CAUGHT: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
 
-/// The signal that has come, where a command catches them.
+/// The received signal, where a command catches signals.
 pub(super) fn signal() -> Option<u8> {
     number(CAUGHT.get()?)
 }
@@ -34,12 +34,12 @@ pub struct StopSignal {
 }
 
 impl StopSignal {
-    /// Catches them from now on.
+    /// Catches the signals from now on.
     pub fn catch() -> Result<Self, Failure> {
         let signal = Arc::clone(CAUGHT.get_or_init(Arc::default));
         let again = Arc::new(AtomicBool::new(false));
         let catch = |number: i32, value: usize| -> io::Result<()> {
-            // Before the flag is set, so that it acts on the next one.
+            // Registered before the flag is set, so that it acts on the next signal.
             flag::register_conditional_shutdown(number, 128 + number, Arc::clone(&again))?;
             flag::register(number, Arc::clone(&again))?;
             flag::register_usize(number, Arc::clone(&signal), value).map(drop)
@@ -50,7 +50,7 @@ impl StopSignal {
         Ok(Self { signal })
     }
 
-    /// The signal that has come.
+    /// The received signal.
     pub fn signal(&self) -> Option<u8> {
         number(&self.signal)
     }
@@ -62,7 +62,7 @@ impl Progress for StopSignal {
     }
 }
 
-/// The share that is done, shown on a terminal once the command takes longer than a moment.
+/// The completed fraction, shown on a terminal once the command takes longer than a moment.
 pub struct Bar<'a> {
     begun: Instant,
     shown: OnceCell<ProgressBar>,
@@ -71,21 +71,22 @@ pub struct Bar<'a> {
 }
 
 impl<'a> Bar<'a> {
-    /// For a command that begins now. Without `stop` a signal ends the program, as ever.
+    /// Starts the bar of a command that begins now. Without `stop`, a signal ends the program as usual.
     pub fn begin(stop: Option<&'a StopSignal>, hidden: bool) -> Self {
         Self { begun: Instant::now(), shown: OnceCell::new(), stop, hidden }
     }
 }
 
-/// The line at which a script is, shown on a terminal once the script takes longer than a moment: its first line may take all of it.
+/// The current line of a script, shown on a terminal once the script takes longer than a moment, since its first line
+/// may take all of that time.
 pub struct Lines {
     bar: ProgressBar,
-    /// Dropped at the end: nothing is shown of a script that was over before.
+    /// Dropped at the end, so that nothing is shown for a script that is already over.
     _ends: Sender<()>,
 }
 
 impl Lines {
-    /// For a script of so many lines that begins now.
+    /// Starts the bar of a script of `count` lines.
     pub fn begin(count: usize, hidden: bool) -> Self {
         let bar = ProgressBar::with_draw_target(Some(count as u64), ProgressDrawTarget::hidden());
         if let Ok(style) = ProgressStyle::with_template("{wide_bar} line {msg} of {len}, {elapsed}") {
@@ -105,7 +106,7 @@ impl Lines {
         Self { bar, _ends: ends }
     }
 
-    /// So many lines are done; `says` writes to standard error meanwhile.
+    /// Reports that `lines` lines are done; `says` writes to standard error meanwhile.
     pub fn done(&self, lines: usize, says: impl FnOnce()) {
         self.bar.suspend(says);
         self.bar.set_position(lines as u64);
@@ -133,7 +134,7 @@ impl Progress for Bar<'_> {
         if self.hidden || self.begun.elapsed() < MOMENT {
             return;
         }
-        // A share of a hundred.
+        // In per cent.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         self.shown.get_or_init(drawn).set_position((share.clamp(0.0, 1.0) * 100.0) as u64);
     }

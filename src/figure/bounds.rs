@@ -9,14 +9,14 @@ pub struct Bounds {
     pub y: [f64; 2],
 }
 
-/// Room left around the points, as a share of their range.
+/// The margin around the points, as a share of their range.
 const ROOM: f64 = 0.04;
 
-/// Doubles told apart across a range at least: closer than that there is nothing to see.
+/// At least this many doubles must be distinguishable across a range; on a narrower one there is nothing to see.
 const PLACES: f64 = 1e3;
 
 impl Bounds {
-    /// The range of `points` with a little room; finite and ascending whatever the points are.
+    /// The range of `points` with a small margin; finite and ascending whatever the points are.
     pub fn of(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let empty = [f64::INFINITY, f64::NEG_INFINITY];
         let (mut x, mut y) = (empty, empty);
@@ -29,7 +29,7 @@ impl Bounds {
         Self { x: roomy(x), y: roomy(y) }
     }
 
-    /// The part of these bounds in `window`.
+    /// The part of these bounds inside `window`.
     #[must_use]
     pub fn part(&self, window: &Window) -> Self {
         if window.is_whole() {
@@ -46,7 +46,7 @@ impl Bounds {
         Self { x: part(self.x, window.x), y: part(self.y, window.y) }
     }
 
-    /// The place of a point in shares of the range, 0 and 1 at the ends; `None` outside.
+    /// The position of a point as shares of the range, 0 and 1 at the ends; `None` outside.
     pub fn share(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {
         let share = |[lo, hi]: [f64; 2], value: f64| {
             let share = (value - lo) / (hi - lo);
@@ -55,7 +55,7 @@ impl Bounds {
         Some((share(self.x, x)?, share(self.y, y)?))
     }
 
-    /// The point at a place in shares of the range.
+    /// The point at a position given as shares of the range.
     pub fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let at = |[lo, hi]: [f64; 2], share: f64| lo + (hi - lo) * share;
         (at(self.x, x), at(self.y, y))

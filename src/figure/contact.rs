@@ -4,11 +4,11 @@ use super::bounds::Bounds;
 use super::parts::{Area, Figure, Line, Meaning, Role};
 use std::f64::consts::PI;
 
-/// Corners of half a circle.
+/// The number of corners of half a circle.
 const CORNERS: u32 = 180;
 
-/// Lays the contacts, as [inner, outer] on the axis of radii, where in them the bodies pull, and the crests on a figure
-/// that shows radii up to `reach`.
+/// Draws the contacts (as [inner, outer] on the axis of radii), the parts of them in which the bodies pull, and the
+/// crests, on a figure that shows radii up to `reach`.
 pub fn lay(
     figure: &mut Figure,
     contacts: &[[f64; 2]],
@@ -25,7 +25,7 @@ pub fn lay(
         figure.areas.push(Area { meaning, outline, lost: None });
     }
     figure.lines.extend(crests.map(|r| Line::new(Role::Undeformed, "crest", half(r))));
-    // The axis is no edge.
+    // The axis is not an edge.
     let edges = contacts.iter().flatten().filter(|r| **r > 0.0);
     figure.lines.extend(edges.map(|r| Line::new(Role::Edges, "edge", half(*r))));
 }

@@ -1,7 +1,7 @@
-//! The contacts over the way of the control: bands between their edges, loading first, unloading behind it.
+//! The contacts over the travel of the control: bands between their edges, first for loading, then for unloading.
 //!
-//! To the right goes the way that the control has gone since the first touch, up to the turn and back; so loading and
-//! unloading stand side by side, and nothing covers anything.
+//! The abscissa is how far the control has moved since the first touch, up to the turn and back, so that
+//! loading and unloading stand side by side and nothing covers anything.
 
 use super::bounds::Bounds;
 use super::loops::NO_LOOP;
@@ -30,7 +30,7 @@ fn blank(control: Control, scale: Scale<'_>) -> Figure {
     Figure::empty(format!("contacts over the {}", x.symbol), x, scale.radius_axis("r"))
 }
 
-/// The contacts of the loop of `report` over these divisors.
+/// The contacts in the loop of `report`, with the divisors of `scale`.
 pub fn contact_map(report: &PathReport, scale: Scale<'_>) -> Figure {
     let mut figure = blank(report.control, scale);
     let way = ControlWay::of(report, scale);
@@ -48,14 +48,14 @@ pub fn contact_map(report: &PathReport, scale: Scale<'_>) -> Figure {
             let (inner, outer) = (edge(0), edge(1));
             let outline = outer.iter().chain(inner.iter().rev()).copied().collect();
             figure.areas.push(Area { meaning: Meaning::Contact, outline, lost: None });
-            // The axis is no edge of a disc.
+            // The axis is not an edge of a disc.
             let inner = Some(inner).filter(|inner| inner.iter().any(|(_, r)| *r > 0.0));
             let edges = inner.into_iter().chain([outer]);
             figure.lines.extend(edges.map(|edge| Line::new(Role::Edges, "edge", edge)));
         }
     }
     let bounds = Bounds::of(figure.areas.iter().flat_map(|area| area.outline.iter().copied()));
-    // No room below the axis of the bodies.
+    // Leaves no room below the axis of the bodies.
     figure.bounds = Bounds { y: [0.0, bounds.y[1]], ..bounds };
     let jumps = report.events.iter().filter(|event| event.before != event.after);
     figure.lines.extend(jumps.map(|event| jump(event, way, scale)));
@@ -67,7 +67,7 @@ pub fn contact_map(report: &PathReport, scale: Scale<'_>) -> Figure {
     figure
 }
 
-/// Where the control stands on the way that it has gone.
+/// Converts a value of the control into how far it has moved.
 #[derive(Clone, Copy)]
 struct ControlWay<'a> {
     scale: Scale<'a>,
@@ -94,7 +94,7 @@ impl<'a> ControlWay<'a> {
     }
 }
 
-/// The outermost edge on a jump, upright: the control is held.
+/// The outermost edge during a jump: a vertical line, because the control is held.
 fn jump(event: &EventReport, way: ControlWay<'_>, scale: Scale<'_>) -> Line {
     let x = way.at(event.direction, event.control);
     let edge = |state: &Option<StateReport>| {
@@ -103,7 +103,7 @@ fn jump(event: &EventReport, way: ControlWay<'_>, scale: Scale<'_>) -> Line {
     Line::new(Role::Jump, "jump", vec![edge(&event.before), edge(&event.after)])
 }
 
-/// Where a crest touches, contacts merge or split, and the bodies come apart.
+/// The mark where a crest touches, contacts merge or split, or the bodies come apart.
 fn mark(event: &EventReport, way: ControlWay<'_>, scale: Scale<'_>) -> Option<Mark> {
     let (sign, radius) = match event.kind {
         "last-contact" => {

@@ -21,7 +21,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
         subject.curve.points.iter().map(|point| scale.place(view, place(point))).collect();
     theory(subject, scale, view, &mut figure);
     let rested = cycle(subject, scale, view, &mut figure);
-    // Below the curve: what lies on it is known.
+    // Drawn below the curve: where a branch lies on it, the curve already shows it.
     branches(subject, scale, view, &mut figure);
     let pinned = pins(subject, view, &mut figure);
     figure.lines.extend(pieces(&subject.curve.points, &points));
@@ -31,14 +31,14 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     limit_marks(subject, scale, view, &mut figure);
     device(subject, scale, view, &mut figure);
     walk(subject, scale, view, &mut figure);
-    // The walker may have left the range of the curve: the figure follows it there.
+    // The walker may have left the range of the curve; the figure follows it.
     let walker = figure.marks.last().filter(|mark| mark.sign == Sign::Walker).map(|mark| mark.at);
     figure.bounds = Bounds::of(points.into_iter().chain(walker).chain(pinned).chain(pulled).chain(rested));
     figure
 }
 
-/// The loop, loading and unloading apart: of each contact its edges, where radii are shown. Gives the places of an edge that rests for the
-/// bounds: they lie off the curve.
+/// Draws the loop, with loading and unloading separate, and the edges of each contact where radii are shown. Returns
+/// the points of a resting edge for the bounds, because they lie off the curve.
 fn cycle(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) -> Vec<(f64, f64)> {
     let rests = subject.curve.case.closing.is_some();
     let Some(report) = subject.cycle.or(subject.path.filter(|_| rests)) else { return Vec::new() };
@@ -52,7 +52,7 @@ fn cycle(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figur
             (Role::Unloading, "unloading")
         };
         let place = |at: &PathStateReport, r: f64| scale.place(view, [at.state.approach, at.state.force, r]);
-        // Without a radius on the axes there is one line, however many contacts.
+        // Without a radius on the axes there is only one line, however many contacts there are.
         let contacts = if view.is_without_radius() { 1 } else { piece[0].state.contacts.len() };
         for contact in 0..contacts {
             for edge in [1, 0] {
@@ -75,13 +75,13 @@ pub fn place(point: &CurvePoint) -> [f64; 3] {
     [point.approach, point.force, point.contact_radius]
 }
 
-/// The curve cut where its stability changes, the stable parts last: they are drawn over the others.
+/// The curve cut where its stability changes, with the stable parts last, so that they are drawn over the others.
 pub fn pieces(points: &[CurvePoint], places: &[(f64, f64)]) -> Vec<Line> {
     let mut pieces: Vec<Line> = Vec::new();
     let mut last = None;
     for (point, at) in points.iter().zip(places) {
         if last != Some(point.stable) {
-            // The piece before reaches to here, so that no gap is left.
+            // Extend the previous piece to here, so that no gap is left.
             if let Some(piece) = pieces.last_mut() {
                 piece.points.push(*at);
             }
@@ -98,7 +98,7 @@ pub fn pieces(points: &[CurvePoint], places: &[(f64, f64)]) -> Vec<Line> {
     pieces
 }
 
-/// The inadmissible parts, over the curve: whether they are stable is still seen beneath.
+/// Draws the inadmissible parts over the curve, so that their stability still shows beneath.
 pub fn inadmissible(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
     let lines = subject.curve.base.inadmissible.iter().flatten().map(|part| {
         let points = part.places.iter().map(|at| scale.place(view, *at));
@@ -107,7 +107,7 @@ pub fn inadmissible(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure:
     figure.lines.extend(lines);
 }
 
-/// The line of the loading device, where it is shown; it has no radius.
+/// Draws the line of the loading device, where it is shown; it has no radius.
 fn device(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
     if let (true, Some(ends)) = (view.is_without_radius(), subject.device) {
         let points = ends.map(|(approach, force)| scale.place(view, [approach, force, 0.0]));
@@ -115,7 +115,7 @@ fn device(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figu
     }
 }
 
-/// The overlays that are on and exist, and what the envelope says.
+/// Draws the overlays that are on and exist, and notes what the envelope says.
 fn theory(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
     let theory = &subject.curve.base.theory;
     let line = |role, name: &str, places: &[[f64; 3]]| {
@@ -128,7 +128,7 @@ fn theory(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figu
         for side in [&envelope.unloading, &envelope.loading] {
             figure.lines.push(line(Role::Envelope, "envelope", side));
         }
-        // The estimate is of the force under a dead load, over P_c; the path's own least force stands beside it.
+        // The estimate is the force under a dead load, over P_c; the smallest force of the path itself is given beside it.
         let critical = subject.curve.base.critical_force;
         let ours = subject.curve.report.as_ref().and_then(|report| report.totals.largest_pull.as_ref());
         let ours = ours.map(|state| -state.force / critical);
@@ -144,12 +144,12 @@ fn theory(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figu
     }
 }
 
-/// The divisors of a pinned curve: those of the one that is not pinned.
+/// The divisors of a pinned curve: the same as those of the current curve.
 pub fn pinned_scale<'a>(subject: &Subject<'a>, pin: &Pin) -> Scale<'a> {
     subject.scale().of_other(&pin.curve, subject.axes)
 }
 
-/// The pinned curves; their points are given back for the bounds.
+/// Draws the pinned curves; returns their points for the bounds.
 fn pins(subject: &Subject<'_>, view: View, figure: &mut Figure) -> Vec<(f64, f64)> {
     let mut all = Vec::new();
     for pin in subject.pins {
@@ -166,7 +166,7 @@ fn pins(subject: &Subject<'_>, view: View, figure: &mut Figure) -> Vec<(f64, f64
     all
 }
 
-/// The events of the path, A and B, and the limit points off it: those behind, for they are the least.
+/// Marks the events of the path, A and B, and the limit points off the path; these come last, as the least important.
 fn limit_marks(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
     let curve = subject.curve;
     let events: Vec<Mark> = events_before(subject, scale, view).collect();

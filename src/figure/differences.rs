@@ -1,7 +1,7 @@
-//! P minus that of the pinned curves and of theory, over the contact radius: for curves closer than a dot.
+//! P minus that of the pinned curves and of theory, over the contact radius: for curves less than a dot apart.
 //!
-//! A solid line is taken at equal s, a broken one at equal δ. The others are taken at their own states, and ours from its
-//! solution there, so that nothing is interpolated between drawn points.
+//! A solid line compares at equal s, a broken one at equal δ. The other curve is taken at its own states, and ours is
+//! solved there, so that nothing is interpolated between drawn points.
 
 use super::bounds::Bounds;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
@@ -14,7 +14,7 @@ use pulloff_engine::report::number::significant;
 use pulloff_engine::theory::Exact;
 use std::mem::discriminant;
 
-/// Halvings of a stretch of the curve: far below what is drawn, and below rounding.
+/// Bisection steps on a stretch of the curve: enough to go far below what is drawn, and below rounding.
 const HALVINGS: usize = 50;
 
 /// Another curve: δ, P and s of its states in the user's units, from the outermost inward.
@@ -51,7 +51,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     for other in &others {
         let by_radius: Vec<(f64, f64)> = ours.at_equal_radius(&other.states).into_iter().map(place).collect();
         let by_approach = ours.at_equal_approach(&other.states).into_iter().map(place).collect();
-        // At the state itself, not between two that are drawn.
+        // At the state itself, not between two drawn points.
         if let Some((state, force)) =
             walker.and_then(|state| Some((state, (other.force)(state.contact_radius)?)))
         {
@@ -70,7 +70,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     figure
 }
 
-/// The curves to compare with; a pin whose numbers have other units is left out, and said.
+/// The curves to compare with. A pin whose numbers have other units is left out, with a note.
 fn others<'a>(subject: &Subject<'a>, notes: &mut Vec<String>) -> Vec<OtherCurve<'a>> {
     let theory = &subject.curve.base.theory;
     let overlays = subject.overlays;
@@ -78,7 +78,7 @@ fn others<'a>(subject: &Subject<'a>, notes: &mut Vec<String>) -> Vec<OtherCurve<
     let ours = curve.innermost() * unit..=curve.outermost() * unit;
     let mut all = Vec::new();
     let mut add = |role, name: &str, states: &'a [[f64; 3]], force: Box<dyn Fn(f64) -> Option<f64> + 'a>| {
-        // Theory goes on beyond our curve, where other branches have the same δ.
+        // Theory continues beyond our curve, where other branches have the same δ.
         let states: Vec<_> = states.iter().copied().filter(|at| ours.contains(&at[2])).collect();
         if !states.is_empty() {
             all.push(OtherCurve { role, name: name.to_owned(), states, force });
@@ -122,16 +122,16 @@ struct Ours<'a> {
     solution: &'a dyn Solution,
     /// The units of length and force.
     units: [f64; 2],
-    /// From and to in s (reduced), between which the curve is drawn.
+    /// The range of s (reduced) over which the curve is drawn.
     range: [f64; 2],
-    /// Stretches on which δ rises or falls with s: s and δ of their ends and what lies between, from outside inward.
+    /// Stretches on which δ rises or falls monotonically with s, from outside inward: s and δ of the ends and the states between.
     stretches: Vec<Vec<[f64; 2]>>,
 }
 
 impl<'a> Ours<'a> {
     fn of(subject: &Subject<'a>) -> Self {
         let (curve, units) = (&subject.curve.base.curve, subject.curve.case.units());
-        // With the limit points themselves: beyond one, the same δ is another branch.
+        // Include the limit points themselves: beyond one, the same δ is on another branch.
         let mut states: Vec<[f64; 2]> =
             curve.samples.iter().map(|at| [at.contact_radius, at.approach]).collect();
         let limits = curve.limit_points(Control::Displacement).into_iter();
@@ -151,7 +151,7 @@ impl<'a> Ours<'a> {
         Some([local.approach, local.force])
     }
 
-    /// s and our P minus theirs, in the user's units, at each of their radii; not a number where we have none.
+    /// s and our P minus theirs, in the user's units, at each of their radii; NaN where we have none.
     fn at_equal_radius(&self, states: &[[f64; 3]]) -> Vec<[f64; 2]> {
         let [length, force] = self.units;
         let difference = |&[_, p, s]: &[f64; 3]| {
@@ -162,17 +162,17 @@ impl<'a> Ours<'a> {
         states.iter().map(difference).collect()
     }
 
-    /// The same at each of their approaches, on the nearest stretch of ours on which δ runs the same way, if it has that
-    /// approach. The line is broken where either branch ends.
+    /// The same at each of their approaches, on the nearest stretch of ours on which δ runs the same way, if that
+    /// stretch has the approach. The line is broken where either branch ends.
     fn at_equal_approach(&self, states: &[[f64; 3]]) -> Vec<[f64; 2]> {
         let [length, force] = self.units;
         let mut found = Vec::new();
         let branches = monotone(states.iter().copied(), |at| at[0]);
         for (i, branch) in branches.iter().enumerate() {
-            // A state next to a limit point may be on either side of it: its branch is not known.
+            // A state next to a limit point may be on either side of it, so its branch is not known.
             let (first, last) = (usize::from(i > 0), usize::from(i + 1 < branches.len()));
             let branch = &branch[first..branch.len() - last];
-            // Both run inward.
+            // Both are listed from outside inward.
             let way = rises(branch, |at| at[0]);
             let alike: Vec<_> = self.stretches.iter().filter(|own| rises(own, |at| at[1]) == way).collect();
             let mut last = None;
@@ -192,7 +192,7 @@ impl<'a> Ours<'a> {
         found
     }
 
-    /// The radius on a stretch at which δ has this value; `None` where it has not.
+    /// The radius at which δ has this value on a stretch; `None` where there is none.
     fn radius_on(&self, stretch: &[[f64; 2]], delta: f64) -> Option<f64> {
         let (first, last) = (stretch.first()?, stretch.last()?);
         let rises = last[1] > first[1];
@@ -230,7 +230,7 @@ fn monotone<T: Copy>(states: impl Iterator<Item = T>, of: impl Fn(&T) -> f64) ->
     stretches
 }
 
-/// How far a radius is from those of a stretch.
+/// The distance of a radius from those of a stretch.
 fn away(stretch: &[[f64; 2]], s: f64) -> f64 {
     let Some((outer, inner)) = stretch.first().zip(stretch.last()) else { return f64::INFINITY };
     (s - outer[0]).max(inner[0] - s).max(0.0)
@@ -241,7 +241,7 @@ fn rises<T>(stretch: &[T], of: impl Fn(&T) -> f64) -> bool {
     stretch.first().zip(stretch.last()).is_some_and(|(first, last)| of(last) > of(first))
 }
 
-/// P at the radius `s`, between neighbours of smooth states.
+/// P at the radius `s`, interpolated between neighbouring smooth states.
 fn between(states: &[[f64; 3]], s: f64) -> Option<f64> {
     states.windows(2).find_map(|pair| {
         let [[_, p, a], [_, q, b]] = [pair[0], pair[1]];

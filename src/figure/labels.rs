@@ -1,4 +1,4 @@
-//! Where the labels of a map stand: numbers of snaps in their regions, crests on their lines.
+//! The placement of the labels of a map: snap counts in their regions, crests on their lines.
 
 use super::bounds::Bounds;
 use super::parts::{Mark, Sign};
@@ -7,20 +7,20 @@ use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::RowReport;
 use std::collections::VecDeque;
 
-/// A line shorter than this, in shares of the map, has no room for its crest.
+/// A line shorter than this, as a share of the map, has no room for its crest.
 const SHORTEST: f64 = 0.08;
 
-/// Labels are farther apart than this, in shares of the map.
+/// The smallest distance between labels, as a share of the map.
 const APART: f64 = 0.045;
 
-/// Where along a line its label may stand, the best first.
+/// Where along a line its label may be placed, the best position first.
 const ALONG: [f64; 7] = [0.5, 0.35, 0.65, 0.2, 0.8, 0.1, 0.9];
 
-/// The number of snaps in each region of the map, where it is widest.
+/// The number of snaps in each region of the map, placed where the region is widest.
 ///
-/// A region is cells next to each other with one count; its label stands on the cell that is farthest from all others.
+/// A region is a set of adjacent cells with the same count; its label is on the cell farthest from all other counts.
 pub fn counts(report: &MapReport, x: &Places, y: &Places) -> Vec<Mark> {
-    /// Nearer to its border than so many cells a region has no room for a number.
+    /// A region whose deepest cell is fewer cells than this from its border has no room for a number.
     const ROOM: usize = 2;
     let Some(counts) = &report.counts else { return Vec::new() };
     let cells = &counts.snaps;
@@ -30,7 +30,7 @@ pub fn counts(report: &MapReport, x: &Places, y: &Places) -> Vec<Mark> {
         near.into_iter().filter(move |(i, j)| *i < width && *j < height)
     };
     let places = || (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
-    // How many steps it is from each cell to another count, or out of the map.
+    // For each cell, the number of steps to another count or out of the map.
     let mut depth = vec![vec![0_usize; width]; height];
     let on_border = |(i, j): (usize, usize)| {
         next((i, j)).count() < 4 || next((i, j)).any(|(a, b)| cells[b][a] != cells[j][i])
@@ -73,7 +73,8 @@ pub fn counts(report: &MapReport, x: &Places, y: &Places) -> Vec<Mark> {
     marks
 }
 
-/// Adds the crest of each line, where there is room beside the other `marks`; lines that change no count have none.
+/// Adds the crest of each line, where there is room beside the other `marks`; lines across which the count does not
+/// change have none.
 pub fn crests(report: &MapReport, x: &Places, y: &Places, bounds: &Bounds, marks: &mut Vec<Mark>) {
     let is_line =
         |row: &&RowReport| matches!(row.kind, "fold" | "cusp" | "landing") && row.changes != Some(false);
@@ -107,7 +108,7 @@ fn length(points: &[(f64, f64)]) -> f64 {
     points.windows(2).map(step).sum()
 }
 
-/// The first point of a line after so much of its length.
+/// The first point of a line beyond this distance along it.
 fn along(points: &[(f64, f64)], mut rest: f64) -> Option<(f64, f64)> {
     for pair in points.windows(2) {
         rest -= step(pair);

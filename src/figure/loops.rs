@@ -1,9 +1,10 @@
-//! The whole loop of loading and unloading: the stable stretches, the jumps between them, and what is lost, as areas.
+//! The whole loop of loading and unloading: the stable stretches, the jumps between them, and the losses, as areas.
 //!
-//! A jump from one disc to one disc, or from and to bodies apart, loses the area between its line and the curve of one
-//! disc, along which its edge runs. Where every bounded loss has such an area, each is drawn. Rings jump along no curve:
-//! then what loading and unloading enclose is drawn, which is the sum of all losses where the approach or a spring is
-//! controlled. The area under a dead load is that of each jump of a disc alone, for the loop encloses none.
+//! A jump from one disc to one disc, or from or to bodies that are apart, loses the area between its line and the curve
+//! of one disc, along which its edge runs. Where every bounded loss has such an area, each is drawn. Jumps between
+//! rings follow no curve; the area that loading and unloading enclose is then drawn instead, which is the sum of all
+//! losses where the approach or a spring is controlled. Under a dead load the loop encloses no area, and only each jump
+//! of a disc has one.
 
 use super::bounds::Bounds;
 use super::curves::place;
@@ -19,10 +20,10 @@ use pulloff_engine::units::Quantity;
 
 const VIEW: View = View::Cycle;
 
-/// What is said where no loop has been computed.
+/// The message where no loop has been computed.
 pub const NO_LOOP: &str = "no loop yet";
 
-/// The share of a loss by which its outline may differ from it: the points of a curve are dense enough to look at.
+/// The largest relative error of an outline's area against its loss; the points of a curve are dense enough to look at.
 const FAITHFUL: f64 = 0.02;
 
 /// Builds the view.
@@ -39,8 +40,8 @@ fn blank(scale: Scale<'_>) -> Figure {
     Figure::empty(format!("cycle: {} over {}", y.title(), x.symbol), x, y)
 }
 
-/// The loop of `report` over these divisors; `curve` is the equilibrium curve of one disc, whose points bound the losses of
-/// discs.
+/// The loop of `report` with these divisors; `curve` is the equilibrium curve of one disc, whose points bound the
+/// losses of discs.
 pub fn cycle_figure(report: &PathReport, curve: &[CurvePoint], scale: Scale<'_>) -> Figure {
     let mut figure = blank(scale);
     figure.lines = lines(report, scale, VIEW);
@@ -72,7 +73,7 @@ pub fn lines(report: &PathReport, scale: Scale<'_>, view: View) -> Vec<Line> {
             Line::new(role(&stretch[0]), stretch[0].direction, points)
         })
         .collect();
-    // Unloading runs back over what loading went along: the broken line lies on top.
+    // Unloading runs back over the states of loading, so the broken line is drawn on top.
     lines.sort_by_key(|line| line.role);
     lines.extend(report.events.iter().filter(|event| event.before != event.after).filter_map(|event| {
         let [before, after] = ends(report.control, event)?;
@@ -86,13 +87,13 @@ fn role(at: &PathStateReport) -> Role {
     if at.direction == "unloading" { Role::Unloading } else { Role::Loading }
 }
 
-/// δ, P and s before and after; bodies that are apart are where the device holds them.
+/// δ, P and s before and after; bodies that are apart are placed where the device holds them.
 fn ends(control: Control, event: &EventReport) -> Option<[[f64; 3]; 2]> {
-    /// Under a dead load the bodies fall apart for ever: a line to the left, out of the figure.
+    /// Under a dead load the bodies separate without limit: a line to the left, out of the figure.
     const FAR: f64 = -1e3;
     let held = event.before.as_ref().or(event.after.as_ref())?;
     let apart = match control {
-        // A load brings them together from the first touch on.
+        // A load brings the bodies together from the first touch.
         Control::Force if event.before.is_none() => [0.0, held.force, 0.0],
         Control::Force => [FAR * held.approach.abs(), held.force, 0.0],
         Control::Displacement | Control::Stiffness(_) => [event.control, 0.0, 0.0],
@@ -100,7 +101,7 @@ fn ends(control: Control, event: &EventReport) -> Option<[[f64; 3]; 2]> {
     Some([&event.before, &event.after].map(|state| state.as_ref().map_or(apart, quantities)))
 }
 
-/// The signs of an event in a view of the curve: where it begins, and where it lands.
+/// The marks of an event in a view of the curve: where it begins, and where it lands.
 fn marks(event: &EventReport, scale: Scale<'_>, view: View) -> Vec<Mark> {
     let sign = match event.kind {
         "first-touch" | "touch" | "merge" | "split" | "vanish" => Sign::Touch,
@@ -129,14 +130,14 @@ fn areas(report: &PathReport, curve: &[CurvePoint], scale: Scale<'_>) -> Vec<Are
     }
     let held = report.events.iter().filter_map(|event| ends(report.control, event));
     let around = report.states.iter().map(|at| [at.state.approach, at.state.force]);
-    // From the first touch round and along P = 0 back.
+    // From the first touch round the loop, and back along P = 0.
     let [first, last] = [held.clone().next(), held.clone().next_back()];
     let first = first.map(|[before, _]| [before[0], before[1]]);
     let last = last.map(|[_, after]| [after[0], after[1]]);
     vec![shown(first.into_iter().chain(around).chain(last).collect(), report.totals.dissipated)]
 }
 
-/// The outline δ, P of what the jump of one disc loses; `None` where the curve of one disc does not go along it.
+/// The outline δ, P of the loss in the jump of one disc; `None` where the curve of one disc does not follow it.
 fn of_disc(control: Control, event: &EventReport, curve: &[CurvePoint]) -> Option<Vec<[f64; 2]>> {
     let is_disc = |state: &Option<StateReport>| {
         state.as_ref().is_none_or(|state| matches!(state.contacts[..], [[0.0, _]]))
@@ -152,7 +153,7 @@ fn of_disc(control: Control, event: &EventReport, curve: &[CurvePoint]) -> Optio
     let (large, small) = if before[2] > after[2] { (before, after) } else { (after, before) };
     outline.insert(0, [large[0], large[1]]);
     if inner == 0.0 {
-        // The curve goes on to a disc of no size.
+        // The curve continues to a disc of zero size.
         outline.push([0.0; 2]);
     }
     outline.push([small[0], small[1]]);

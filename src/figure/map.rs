@@ -1,7 +1,7 @@
-//! Lines of a map of two numbers, and limit points over one.
+//! Lines of a map of two parameters, and limit points over one.
 //!
-//! On a screen, whose axes are even, the places on a logarithmic axis are decimal logarithms; a compliance that goes on to
-//! infinity stands at c/(c + c₀).
+//! On a screen, whose axes are linear, positions on a logarithmic axis are decimal logarithms; a compliance that
+//! extends to infinity is placed at c/(c + c₀).
 
 use super::bounds::Bounds;
 use super::labels;
@@ -15,7 +15,7 @@ use pulloff_engine::report::map::{AxisReport, RowReport};
 use pulloff_engine::report::path::EventReport;
 use pulloff_engine::stability::COMPLIANCE;
 
-/// What a row is drawn as.
+/// How a row is drawn.
 fn role(row: &RowReport) -> (Role, &'static str) {
     match (row.kind, row.stable) {
         ("fold", Some("inward")) => (Role::Unstable, "maximum, stable inward"),
@@ -28,7 +28,7 @@ fn role(row: &RowReport) -> (Role, &'static str) {
     }
 }
 
-/// The lines and marks of `report` at these places.
+/// The lines and marks of `report` at these positions.
 fn drawn(report: &MapReport, x: &Places, y: &Places) -> (Vec<Line>, Vec<Mark>) {
     let place = |row: &RowReport| (x.at(row.x), y.at(row.y));
     let is_map = report.counts.is_some();
@@ -45,7 +45,7 @@ fn drawn(report: &MapReport, x: &Places, y: &Places) -> (Vec<Line>, Vec<Mark>) {
             marks.extend(rows.iter().map(|row| Mark { sign, at: place(row) }));
             continue;
         }
-        // Each stretch of one role, joined to the one before.
+        // Each stretch of one role, joined to the previous one.
         let mut from = 0;
         for stretch in rows.chunk_by(|a, b| role(a) == role(b)) {
             let (role, name) = role(&stretch[0]);
@@ -55,12 +55,12 @@ fn drawn(report: &MapReport, x: &Places, y: &Places) -> (Vec<Line>, Vec<Mark>) {
             from += stretch.len();
         }
     }
-    // What counts above what does not.
+    // Lines that matter are drawn above those that do not.
     lines.sort_by_key(|line| line.role);
     (lines, marks)
 }
 
-/// All that is drawn of `report` over these axes, with `preset` at its place.
+/// Everything drawn of `report` over these axes, with `preset` at its position.
 pub fn laid(report: &MapReport, preset: &Preset, x: &Places, y: &Places) -> (Vec<Line>, Vec<Mark>, Bounds) {
     let (lines, mut marks) = drawn(report, x, y);
     marks.extend(labels::counts(report, x, y));
@@ -72,13 +72,13 @@ pub fn laid(report: &MapReport, preset: &Preset, x: &Places, y: &Places) -> (Vec
     (lines, marks, bounds)
 }
 
-/// Bounds of the axes, or of what is drawn where an axis follows from it.
+/// The bounds of the axes, or of the drawn lines where an axis follows from them.
 fn bounds(x: &Places, y: &Places, lines: &[Line]) -> Bounds {
     let found = Bounds::of(lines.iter().flat_map(|line| line.points.iter().copied()));
     Bounds { x: x.ends.unwrap_or(found.x), y: y.ends.unwrap_or(found.y) }
 }
 
-/// Where a preset stands on an axis.
+/// The position of a preset on an axis.
 fn standing(preset: &Preset, axis: &AxisReport, places: &Places) -> Option<f64> {
     if axis.key != COMPLIANCE {
         return Some(places.at(Some(preset.get(&axis.key)?.as_number()?)));
@@ -106,7 +106,7 @@ fn events(report: &MapReport, subject: &Subject<'_>, x: &Places, y: &Places) -> 
     events.zip(1..).map(|(event, n)| Mark { sign: sign(event, n), at: (x, y.at(place(event))) }).collect()
 }
 
-/// Of the curves of limit points the one that passes the mark of an event.
+/// The curve of limit points that passes through the mark of an event.
 fn through(lines: &[Line], bounds: &Bounds, (x, y): (f64, f64)) -> Option<Vec<(f64, f64)>> {
     /// As a share of the axis.
     const NEAR: f64 = 0.01;
@@ -115,7 +115,7 @@ fn through(lines: &[Line], bounds: &Bounds, (x, y): (f64, f64)) -> Option<Vec<(f
         let pairs = line.points.windows(2).filter(|pair| (pair[0].0 - x) * (pair[1].0 - x) <= 0.0);
         let at = |pair: &[(f64, f64)]| {
             let [(a, from), (b, to)] = [pair[0], pair[1]];
-            // Of a piece that goes straight up neither end is nearer.
+            // On a vertical piece neither end is nearer.
             let share = ((x - a) / (b - a)).clamp(0.0, 1.0);
             let share = if share.is_nan() { 0.5 } else { share };
             (from + (to - from) * share - y).abs() / height
@@ -128,7 +128,7 @@ fn through(lines: &[Line], bounds: &Bounds, (x, y): (f64, f64)) -> Option<Vec<(f
     (off <= NEAR).then(|| line.points.clone())
 }
 
-/// The figure of `report` on a screen, with the preset at its place.
+/// The figure of `report` on a screen, with the preset at its position.
 pub fn figure(report: &MapReport, subject: &Subject<'_>) -> Figure {
     let preset = subject.preset;
     let places = |axis| Places::of(axis, preset, report.control, true);
@@ -155,15 +155,15 @@ pub fn figure(report: &MapReport, subject: &Subject<'_>) -> Figure {
     figure
 }
 
-/// What a preset becomes at a point of the figure, as assignments of its keys.
+/// The assignments of keys that take a preset to a point of the figure.
 pub fn taken(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Vec<(Key, String)> {
     let assignment = |axis: &AxisReport, place: f64| {
-        // What limit points have is no number of the preset.
+        // A value of limit points is not a parameter of the preset.
         if axis.key != COMPLIANCE && preset.row(&axis.key).is_none() {
             return None;
         }
         let value = Places::of(axis, preset, report.control, true).value(place);
-        // Of the number alone no more is meant than a few digits.
+        // Only a few digits of the number are meaningful.
         let text = value.map(|value| format!("{:e}", rounded(value)));
         if axis.key != COMPLIANCE {
             return Some((Key::Owned(axis.key.clone()), text?));
@@ -178,7 +178,7 @@ pub fn taken(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Vec<(Ke
     assignment(&report.x, x).into_iter().chain(assignment(&report.y, y)).collect()
 }
 
-/// A number to four digits.
+/// A number rounded to four digits.
 fn rounded(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
 }

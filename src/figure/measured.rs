@@ -7,10 +7,10 @@ use crate::explorer::View;
 use pulloff_engine::measured::{Abscissa, Branches, Segment};
 use pulloff_engine::preset::Preset;
 
-/// The most points that are drawn; a fit takes all.
+/// The largest number of points drawn; a fit uses all of them.
 pub const DRAWN: usize = 3000;
 
-/// Measured points as δ, P and s in base units, not a number where one is not measured.
+/// Measured points as δ, P and s in base units, NaN where one is not measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredMarks(Vec<(Sign, [f64; 3])>);
 
@@ -46,7 +46,7 @@ impl MeasuredMarks {
         Self(all.collect())
     }
 
-    /// Lays them behind the signs of `figure`, as far as its view has their columns.
+    /// Draws them behind the marks of `figure`, if its view has their columns.
     pub fn lay(&self, view: View, figure: &mut Figure, scale: Scale<'_>) {
         if !(view.is_curve() || matches!(view, View::Unloading | View::Cycle)) {
             return;
@@ -55,7 +55,7 @@ impl MeasuredMarks {
             let at = scale.place(view, *place);
             (at.0.is_finite() && at.1.is_finite()).then_some(Mark { sign: *sign, at })
         };
-        // Sorted by branch and part: each is drawn as one.
+        // Sorted by branch and part, because each is drawn as one.
         let marks: Vec<Mark> = self.0.iter().filter_map(mark).collect();
         if marks.is_empty() {
             return;

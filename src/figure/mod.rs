@@ -1,33 +1,33 @@
 //! Figures of a curve, a walk and a state, for any renderer.
 //!
-//! A [`Figure`] is lines, marks and areas in axis values, each with a role; strokes, letters and colours are the
-//! renderer's. Every figure is built by a pure function from a [`Subject`]; nothing is solved here.
+//! A [`Figure`] is lines, marks and areas in axis values, each with a role; the renderer chooses strokes, letters and
+//! colours. Every figure is built by a pure function from a [`Subject`]; nothing is solved here.
 //!
 //! | file | what lives there |
 //! |---|---|
 //! | [`parts`] | lines, marks, areas, axes and their roles |
 //! | [`bounds`] | the range of both axes, always finite and ascending |
-//! | [`range`] | the part of an axis that is asked for |
+//! | [`range`] | the part of an axis to show |
 //! | [`scale`] | what the axes are divided by |
 //! | [`curves`] | P over δ and Δ, P over s, s over δ |
 //! | [`walk`] | the states walked, the jumps, the walker |
 //! | [`unloading`] | the quasi-static path with what it dissipates, Fig. 10 |
 //! | [`loops`] | the whole loop of loading and unloading, with what it dissipates |
-//! | [`pull`] | the pull at a rate over the curve, and P over the time |
-//! | [`contact_map`] | the contacts over the way of the control |
-//! | [`differences`] | P minus that of the others |
+//! | [`pull`] | the pull at a rate over the curve, and P over time |
+//! | [`contact_map`] | the contacts over the travel of the control |
+//! | [`differences`] | P minus that of the other curves |
 //! | [`stability`] | the law of stability over the contact radius |
-//! | `labels` | where the labels of a map stand |
-//! | [`places`] | where the numbers of an axis of a map stand |
-//! | [`map`] | lines of a map of two numbers, limit points over one |
+//! | `labels` | the placement of the labels of a map |
+//! | [`places`] | the positions of numbers on an axis of a map |
+//! | [`map`] | lines of a map of two parameters, limit points over one |
 //! | [`study`] | a quantity over the range of one value |
 //! | [`state`] | pressure, gap and potential of the walker's state |
-//! | `contact` | its contact from above |
+//! | `contact` | the contact of that state from above |
 //! | [`measured`] | measured points behind a curve |
-//! | [`residuals`] | how far those points are from it |
+//! | [`residuals`] | the distances of those points from it |
 //! | [`speeds`] | their energy release rate over the speed of the edge |
-//! | [`shape`] | the undeformed gap of a preset, to choose a shape by |
-//! | [`reading`] | what a point of a figure means: the cross-hair's coordinates, the state near to it |
+//! | [`shape`] | the undeformed gap of a preset, for choosing a shape |
+//! | [`reading`] | what a point of a figure means: the cross-hair's coordinates, the nearest state |
 
 pub mod bounds;
 mod contact;

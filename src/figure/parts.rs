@@ -1,4 +1,4 @@
-//! What a figure is made of: axes, lines, marks and areas, each with a role and no look.
+//! The parts of a figure: axes, lines, marks and areas, each with a role but no appearance.
 
 use super::bounds::Bounds;
 use crate::explorer::Window;
@@ -20,7 +20,7 @@ pub enum Role {
     /// The whole loop while the control goes down, and while it goes up.
     Unloading,
     Loading,
-    /// Equilibrium that cannot be: the next crest would already touch.
+    /// An equilibrium that cannot exist: the next crest would already touch.
     Inadmissible,
     /// A computed profile or landscape: pressure, deformed gap, potential.
     Body,
@@ -36,10 +36,10 @@ pub enum Role {
     /// A pull at a rate.
     Pull,
     Walk,
-    /// The curve of the selected event, over its line.
+    /// The curve of the selected event, drawn over its line.
     Chosen,
     Jump,
-    /// A line of a map across which the number of snaps stays.
+    /// A line of a map across which the number of snaps does not change.
     Unchanged,
     /// Where a limit point passes the start of the path.
     Starts,
@@ -51,7 +51,7 @@ pub enum Role {
     Twin,
     /// The work of adhesion of the preset.
     Level,
-    /// The law of stability, of the adhesion at which a state is a limit point.
+    /// The law of stability: the adhesion at which a state is a limit point.
     Law,
 }
 
@@ -61,26 +61,26 @@ pub struct Line {
     pub role: Role,
     /// Its name in a legend; empty where it needs none.
     pub name: String,
-    /// Its points; a number that is not finite is a break.
+    /// Its points; one that is not finite breaks the line.
     pub points: Vec<(f64, f64)>,
-    /// Whether it is drawn broken although its role is not: an unstable part of a curve kept for comparison.
+    /// Whether it is drawn broken even though its role is not: an unstable part of a curve kept for comparison.
     pub is_broken: bool,
 }
 
-/// What stands at a point. A renderer gives each a letter of its own.
+/// What a mark stands for. A renderer gives each sign a letter of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sign {
     /// A limit point of another control.
     OtherLimit(Control),
-    /// A limit point of the control, on no path.
+    /// A limit point of the control that is on no path.
     Limit,
     /// The state in which an event of the path begins, by its number from 1.
     Event(usize),
     /// The event that ends a path, by its number: the bodies come apart.
     LastContact(usize),
-    /// A of the paper: where a dead load lets go.
+    /// A of the paper: where the bodies pull off under a dead load.
     LargestPull,
-    /// B of the paper: where fixed grips let go.
+    /// B of the paper: where the bodies pull off under fixed grips.
     Farthest,
     Landing,
     /// A crest touches.
@@ -93,7 +93,7 @@ pub enum Sign {
     Maximum,
     /// The barrier next to the walker's state.
     Barrier,
-    /// The walker, in a state of other values than the curve's.
+    /// The walker, in a state with other values than those of the curve.
     Stray,
     Walker,
     /// A pair of limit points is born.
@@ -102,15 +102,15 @@ pub enum Sign {
     Swallowtail,
     /// Where the preset stands on a map.
     Preset,
-    /// The crest that a line of a map is of, by its number from the axis.
+    /// The crest that a line of a map belongs to, by its number from the axis.
     OfCrest(u32),
-    /// The number of snaps in the region of a map around it; the last stands for more.
+    /// The number of snaps in the surrounding region of a map; the last number stands for that or more.
     Snaps(usize),
-    /// A point that a text calls by this letter.
+    /// A point that a text refers to by this letter.
     Letter(char),
     /// A computed value, on a line through all of them.
     Value,
-    /// A measured point, of an approach or of a retraction, in contact or apart: behind everything.
+    /// A measured point, from an approach or a retraction, in contact or apart: drawn behind everything.
     Measured {
         loading: bool,
         apart: bool,
@@ -124,16 +124,16 @@ pub struct Mark {
     pub at: (f64, f64),
 }
 
-/// What an area is. A renderer gives each a filling of its own.
+/// What an area shows. A renderer gives each meaning a fill of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Meaning {
     /// Energy that is lost.
     Lost,
     /// The bodies are in contact there.
     Contact,
-    /// They pull at each other, within a contact.
+    /// The bodies pull at each other, within a contact.
     Tension,
-    /// Where 90 % of the members of an ensemble are, and where half of them.
+    /// The range of 90 % of the members of an ensemble, and that of half of them.
     Most,
     Half,
 }
@@ -157,7 +157,7 @@ pub struct Area {
     pub meaning: Meaning,
     /// Its corners; the last is joined to the first.
     pub outline: Vec<(f64, f64)>,
-    /// The energy it stands for, in the user's units.
+    /// The energy that it represents, in the user's units.
     pub lost: Option<f64>,
 }
 
@@ -168,24 +168,24 @@ pub struct Axis {
     pub symbol: String,
     /// Its dimension in words; empty for a pure number.
     pub unit: &'static str,
-    /// The unit of its values where the problem is in SI; empty elsewhere.
+    /// The unit of its values where the problem is in SI; empty otherwise.
     pub shown: String,
     pub run: AxisScale,
 }
 
-/// How an axis runs.
+/// How the values run along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AxisScale {
     #[default]
     Linear,
-    /// Equal factors; what is not positive is not drawn.
+    /// Equal factors are equally spaced; values that are not positive are not drawn.
     Logarithmic,
-    /// As [`AxisScale::Linear`], but between whole numbers there is nothing.
+    /// As [`AxisScale::Linear`], but only whole numbers mean anything.
     Counted,
 }
 
 impl AxisScale {
-    /// Where a value stands on the axis, in steps of it; no number where it has no place.
+    /// The position of a value on the axis, in steps of the axis; NaN where it has none.
     fn place(self, value: f64) -> f64 {
         match self {
             Self::Linear | Self::Counted => value,
@@ -207,39 +207,39 @@ impl Axis {
         Self { symbol, unit: "", shown: String::new(), run: AxisScale::Linear }
     }
 
-    /// The same axis, running so.
+    /// The same axis with this scale.
     #[must_use]
     pub fn running(self, run: AxisScale) -> Self {
         Self { run, ..self }
     }
 
-    /// What stands beside the axis: `δ (µm)`, `P/Pc`.
+    /// The title beside the axis: `δ (µm)`, `P/Pc`.
     pub fn title(&self) -> String {
         if self.shown.is_empty() { self.symbol.clone() } else { format!("{} ({})", self.symbol, self.shown) }
     }
 }
 
-/// A figure, on the screen and on paper: everything a renderer needs but strokes, letters and colours.
+/// A figure, on screen and on paper: everything a renderer needs except strokes, letters and colours.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     pub title: String,
     pub x: Axis,
     pub y: Axis,
-    /// The lines, in the order of drawing.
+    /// The lines, in drawing order.
     pub lines: Vec<Line>,
-    /// The signs, the last on top.
+    /// The marks, the last on top.
     pub marks: Vec<Mark>,
     pub areas: Vec<Area>,
-    /// The whole of it: what is shown at first.
+    /// The bounds of the whole figure, as shown at first.
     pub bounds: Bounds,
     pub notes: Vec<String>,
     pub missing: Option<String>,
-    /// Whether a circle is round on it: both axes have the same scale.
+    /// Whether a circle looks round: both axes have the same scale.
     pub is_even: bool,
 }
 
 impl Figure {
-    /// A figure without anything on it.
+    /// A figure with nothing on it.
     pub fn empty(title: String, x: Axis, y: Axis) -> Self {
         Self {
             title,
@@ -255,7 +255,7 @@ impl Figure {
         }
     }
 
-    /// A figure of `lines` over all their points; a logarithmic axis passes over what is not positive.
+    /// A figure of `lines` over all their points; a logarithmic axis skips values that are not positive.
     pub fn of(x: Axis, y: Axis, lines: Vec<Line>) -> Self {
         let place = |(px, py): &(f64, f64)| (x.run.place(*px), y.run.place(*py));
         let places = Bounds::of(lines.iter().flat_map(|line| &line.points).map(place));
@@ -263,13 +263,13 @@ impl Figure {
         Self { lines, bounds, ..Self::empty(String::new(), x, y) }
     }
 
-    /// The same figure in the part of it that `window` shows.
+    /// The part of the figure that `window` shows.
     #[must_use]
     pub fn in_window(self, window: &Window) -> Self {
         Self { bounds: self.bounds.part(window), ..self }
     }
 
-    /// Names the computed curve, which its stability alone does not tell from curves beside it.
+    /// Names the computed curve, whose stability alone does not distinguish it from the curves beside it.
     #[must_use]
     pub fn naming(mut self, curve: &str) -> Self {
         let own = self.lines.iter_mut().filter(|line| matches!(line.role, Role::Stable | Role::Unstable));
@@ -291,7 +291,7 @@ impl Figure {
         self
     }
 
-    /// Where the walker stands, if it is on the figure.
+    /// The position of the walker, if it is on the figure.
     pub fn walker(&self) -> Option<(f64, f64)> {
         self.marks
             .iter()
@@ -307,7 +307,7 @@ impl Line {
         Self { role, name: name.into(), points, is_broken: false }
     }
 
-    /// The same line broken, or not.
+    /// The same line, broken or not.
     #[must_use]
     pub fn broken(self, is_broken: bool) -> Self {
         Self { is_broken, ..self }

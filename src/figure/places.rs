@@ -1,4 +1,4 @@
-//! Where the numbers of an axis of a map stand on it.
+//! The positions of numbers on an axis of a map.
 
 use super::parts::Axis;
 use pulloff_engine::preset::Preset;
@@ -9,10 +9,10 @@ use pulloff_engine::stability::COMPLIANCE;
 use pulloff_engine::text::greek;
 use pulloff_engine::units::Quantity;
 
-/// Where the numbers of an axis stand on it.
+/// The positions of numbers on an axis.
 #[derive(Debug, Clone)]
 pub struct Places {
-    /// What stands beside it.
+    /// The axis itself, with its title.
     pub axis: Axis,
     factor: f64,
     logarithmic: bool,
@@ -21,7 +21,7 @@ pub struct Places {
 }
 
 impl Places {
-    /// The places of an axis of a map of `preset`; with `even` those of a logarithmic axis are logarithms.
+    /// The positions on an axis of a map of `preset`; with `even`, those of a logarithmic axis are logarithms.
     pub fn of(axis: &AxisReport, preset: &Preset, control: Control, even: bool) -> Self {
         let quantity = match axis.key.as_str() {
             "control" if control == Control::Force => Quantity::Force,
@@ -54,7 +54,7 @@ impl Places {
         places
     }
 
-    /// The place of a number, in SI or reduced units; `None` is infinity.
+    /// The position of a number, in SI or reduced units; `None` is infinity.
     pub fn at(&self, value: Option<f64>) -> f64 {
         match (self.middle, value) {
             (Some(_), None) => 1.0,
@@ -65,7 +65,7 @@ impl Places {
         }
     }
 
-    /// The number at a place; `None` is infinity.
+    /// The number at a position; `None` is infinity.
     pub fn value(&self, place: f64) -> Option<f64> {
         match self.middle {
             Some(_) if place >= 1.0 => None,

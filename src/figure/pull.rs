@@ -1,4 +1,4 @@
-//! The pull at the rate of the preset: over the curve that it leaves and comes back to, and P over the time.
+//! The pull at the rate of the preset: over the curve that it leaves and returns to, and P over time.
 
 use super::bounds::Bounds;
 use super::parts::{Figure, Line, Mark, Role, Sign};
@@ -10,15 +10,15 @@ use pulloff_engine::report::number::significant;
 use pulloff_engine::report::pull::{MomentReport, MomentRow, RunReport, missing};
 use pulloff_engine::units::Quantity;
 
-/// What is said where no pull has been computed.
+/// The message where no pull has been computed.
 const NO_PULL: &str = "no pull yet";
 
 fn line(run: &RunReport, place: impl Fn(&MomentRow) -> (f64, f64)) -> Line {
     Line::new(Role::Pull, "pull at a rate", run.moments.iter().map(place).collect())
 }
 
-/// Adds the pull to a view of the curve; its points are given back for the bounds. A dead load falls without end: of that no more is
-/// shown than once the width of the curve, from `lo` to `hi`.
+/// Adds the pull to a view of the curve; returns its points for the bounds. A dead load falls without end, so its
+/// points count only within one width of the curve, which runs from `lo` to `hi`.
 pub fn over_curve(
     subject: &Subject<'_>,
     scale: Scale<'_>,
@@ -35,7 +35,7 @@ pub fn over_curve(
     points
 }
 
-/// P over the time.
+/// P over time.
 pub fn figure(subject: &Subject<'_>) -> Figure {
     let scale = subject.scale();
     let time = |t: f64| scale.shown(Quantity::Time, t);

@@ -1,11 +1,11 @@
-//! The part of an axis that a figure is asked to show, in the units of that axis: `0..0.1`, `..0.1`, `-2..`.
+//! The requested part of an axis of a figure, in the units of that axis: `0..0.1`, `..0.1`, `-2..`.
 
 use super::{Bounds, Figure};
 use pulloff_engine::report::number::short;
 use std::fmt::{self, Display, Formatter};
 use std::str::FromStr;
 
-/// From one value of an axis to another; an end that is left out is that of the whole figure.
+/// From one value of an axis to another; a missing end is that of the whole figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     lo: Option<f64>,
@@ -15,33 +15,33 @@ pub struct Range {
 /// Why a figure cannot show a range.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RangeError {
-    /// The text is no range.
+    /// The text is not a range.
     #[error(
         "expected LO..HI, two numbers in the units of the axis, or one of them alone: 0..0.1, ..0.1, 0.1.."
     )]
     Text,
-    /// The ends are not one below the other, or infinitely far apart.
+    /// The ends do not ascend, or are infinitely far apart.
     #[error("the range must go from a number up to a larger one, not from {0} to {1}")]
     Order(String, String),
-    /// The ends are so near each other that the numbers beside the axis would be the same.
+    /// The ends are so close that the numbers beside the axis would be the same.
     #[error(
         "the range is too narrow to draw, the numbers beside the axis could not be told apart: it must be at least {0} wide"
     )]
     Narrow(String),
-    /// Nothing of the figure is in it.
+    /// No part of the figure is in it.
     #[error("shows nothing of the figure, where {title} goes from {from} to {to}")]
     Empty { title: String, from: String, to: String },
 }
 
-/// Digits of a number in a message, and beside an axis.
+/// The number of digits of a number in a message and beside an axis.
 const DIGITS: usize = 6;
-/// The most steps between numbers beside an axis.
+/// The largest number of steps between numbers beside an axis.
 const STEPS: f64 = 10.0;
-/// By how much the rounding of the ends may make a width smaller.
+/// How far the rounding of the ends may reduce the width.
 const ROUNDING: f64 = 1e-9;
 
 impl Range {
-    /// Its ends on an axis of this title that goes over `whole` when nothing is asked for, and whose lines over `drawn`.
+    /// Its ends on an axis with this title that shows `whole` by default and whose lines extend over `drawn`.
     /// Errors: [`RangeError`] when the ends do not ascend or nothing drawn lies between them.
     pub fn ends(self, title: &str, whole: [f64; 2], drawn: [f64; 2]) -> Result<[f64; 2], RangeError> {
         let empty = || RangeError::Empty {
@@ -64,23 +64,23 @@ fn ascending(ends: [f64; 2]) -> Result<[f64; 2], RangeError> {
         return Err(RangeError::Order(short(lo, DIGITS), short(hi, DIGITS)));
     }
     let least = narrowest(lo.abs().max(hi.abs()));
-    // The width of decimal ends is right to their rounding only.
+    // The width of decimal ends is exact only to their rounding.
     if apart < least * (1.0 - ROUNDING) {
         return Err(RangeError::Narrow(short(least, 1)));
     }
     Ok(ends)
 }
 
-/// The smallest width of a range whose numbers, the largest of them this, have so many digits and still differ.
+/// The smallest width of a range whose axis numbers, the largest being `largest`, still differ in `DIGITS` digits.
 fn narrowest(largest: f64) -> f64 {
     let digits = i32::try_from(DIGITS).unwrap_or(i32::MAX);
-    // An end of a width above zero is not zero.
+    // One end of a range of positive width is not zero.
     let decade = largest.log10().floor();
     STEPS * 10.0_f64.powf(decade + 1.0 - f64::from(digits))
 }
 
 impl Figure {
-    /// The part of its x axis in `range`; an empty figure stays as it is. Errors: those of [`Range::ends`].
+    /// The part of the figure with x in `range`; an empty figure is unchanged. Errors: those of [`Range::ends`].
     pub fn across(mut self, range: Range) -> Result<Self, RangeError> {
         if self.missing.is_none() {
             self.bounds.x = range.ends(&self.x.title(), self.bounds.x, self.drawn().x)?;
@@ -88,7 +88,7 @@ impl Figure {
         Ok(self)
     }
 
-    /// The part of its y axis in `range`; an empty figure stays as it is. Errors: those of [`Range::ends`].
+    /// The part of the figure with y in `range`; an empty figure is unchanged. Errors: those of [`Range::ends`].
     pub fn upwards(mut self, range: Range) -> Result<Self, RangeError> {
         if self.missing.is_none() {
             self.bounds.y = range.ends(&self.y.title(), self.bounds.y, self.drawn().y)?;
@@ -96,7 +96,7 @@ impl Figure {
         Ok(self)
     }
 
-    /// How far anything drawn reaches, and how far it is shown.
+    /// The extent of everything drawn, together with what is shown.
     fn drawn(&self) -> Bounds {
         let Bounds { x, y } = &self.bounds;
         let lines = self.lines.iter().flat_map(|line| line.points.iter().copied());
@@ -176,7 +176,7 @@ mod tests {
         assert_eq!(ends("..1"), Ok([-1.0, 1.0]));
         assert_eq!(ends("1.."), Ok([1.0, 2.0]));
         assert_eq!(ends("3..9"), Ok([3.0, 9.0]));
-        // What is drawn there is beyond the end that was left out.
+        // What is drawn there lies beyond the end that was left out.
         assert!(matches!(ends("3.."), Err(RangeError::Order(..))));
         for text in ["4..5", "..-3", "-3..0"] {
             let said = ends(text).unwrap_err().to_string();

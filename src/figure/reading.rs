@@ -1,4 +1,4 @@
-//! What a point of a figure means: its coordinates, and on a view of the curve the state near to it and what that is.
+//! What a point of a figure means: its coordinates, and on a view of the curve the nearest state and what it is.
 
 use super::bounds::Bounds;
 use super::curves::{pinned_scale, place};
@@ -12,10 +12,10 @@ use pulloff_engine::report::path::EventReport;
 use pulloff_engine::report::problem::control_name;
 use pulloff_engine::units::{Quantity, UnitSystem};
 
-/// Within this share of the window a mark is preferred to a nearer state of the curve.
+/// Within this share of the window, a mark is preferred to a nearer state of the curve.
 const NEAR: f64 = 0.025;
 
-/// Two radii that differ by less are the same.
+/// Two radii closer than this are the same.
 const SAME: f64 = 1e-6;
 
 /// What a state is.
@@ -36,7 +36,7 @@ pub enum What {
     Pin(usize),
 }
 
-/// A state near to a point of a view.
+/// The state nearest to a point of a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearestState {
     pub at: (f64, f64),
@@ -79,7 +79,7 @@ impl What {
     }
 }
 
-/// The state nearest to `at` in a window of these bounds, limit points and landings first; `None` if the view shows
+/// The state nearest to `at` in a window with these bounds, limit points and landings first; `None` if the view shows
 /// no states.
 pub fn nearest(subject: &Subject<'_>, view: View, bounds: &Bounds, at: (f64, f64)) -> Option<NearestState> {
     if !view.is_curve() {
@@ -141,9 +141,9 @@ fn marks(curve: &CurveData) -> Vec<([f64; 3], What)> {
     marks
 }
 
-/// Both coordinates of a point in words, with as many digits as a window of these bounds tells apart.
+/// Both coordinates of a point as text, with as many digits as a window with these bounds can distinguish.
 pub fn coordinates(bounds: &Bounds, [x, y]: [&Axis; 2], at: (f64, f64)) -> String {
-    /// Places told apart across a window.
+    /// The number of positions distinguished across a window.
     const PLACES: f64 = 1e3;
     let shown = |[lo, hi]: [f64; 2], value: f64| {
         let digits = (lo.abs().max(hi.abs()) / (hi - lo) * PLACES).log10().ceil().clamp(3.0, 16.0);

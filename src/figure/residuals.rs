@@ -1,7 +1,7 @@
-//! How far the measured points are from the curve, in standard deviations of their noise, over x.
+//! The distances of the measured points from the curve, in standard deviations of their noise, over x.
 //!
-//! The distance is that from the curve itself, along its normal, as a fit has it. Noise is scattered about zero; what keeps
-//! its sign for long is not described by the model.
+//! The distance is taken along the normal of the curve, as in a fit. Noise scatters about zero; a distance that keeps
+//! its sign for long is something that the model does not describe.
 
 use super::bounds::Bounds;
 use super::measured::DRAWN;
@@ -11,7 +11,7 @@ use crate::explorer::fitting::NO_POINTS;
 use pulloff_engine::fit::run::Residual;
 use pulloff_engine::measured::{Abscissa, Segment};
 
-/// Deviations between which nearly all of normal noise lies.
+/// Nearly all normal noise lies within this many deviations.
 const USUAL: f64 = 3.0;
 
 /// Builds the view.

@@ -20,7 +20,7 @@ pub struct Scale<'a> {
     pub force: Option<f64>,
     /// λ.
     pub wave: Option<f64>,
-    /// R, of a preset without units.
+    /// R, for a preset without units.
     pub curvature: Option<f64>,
     pub modulus: Option<f64>,
     /// 1/k of the device, in the user's units; 0 without a spring.
@@ -51,7 +51,7 @@ impl<'a> Scale<'a> {
         }
     }
 
-    /// The divisors for another curve on the same axes: those of this one, for an axis has one unit; the device is its own.
+    /// The divisors for another curve on the same axes: the same, because an axis has one unit; only the device is its own.
     #[must_use]
     pub fn of_other(self, curve: &CurveData, axes: Axes) -> Self {
         Self { compliance: Scale::of(curve, axes).compliance, ..self }
@@ -62,7 +62,7 @@ impl<'a> Scale<'a> {
         Self { force: None, wave: None, curvature: None, modulus: None, compliance: 0.0, units }
     }
 
-    /// The place of δ, P and s (in the user's units) in a view of the curve.
+    /// The position of δ, P and s (in the user's units) in a view of the curve.
     pub fn place(self, view: View, [approach, force, radius]: [f64; 3]) -> (f64, f64) {
         let position = self.length(approach + self.compliance * force);
         let approach = self.length(approach);
@@ -106,7 +106,7 @@ impl<'a> Scale<'a> {
         [self.length_axis("δ"), self.force_axis(), self.radius_axis("s")]
     }
 
-    /// The axis of a radius of this name.
+    /// The axis of a radius with this name.
     pub fn radius_axis(self, name: &str) -> Axis {
         match self.wave {
             Some(_) => Axis::pure(format!("{name}/λ")),
@@ -135,7 +135,7 @@ impl<'a> Scale<'a> {
         }
     }
 
-    /// The axis of another length of this name.
+    /// The axis of another length with this name.
     pub fn length_axis(self, name: &str) -> Axis {
         match self.curvature {
             Some(_) => Axis::pure(format!("{name}/R")),
@@ -143,13 +143,13 @@ impl<'a> Scale<'a> {
         }
     }
 
-    /// The axis of a quantity that is divided by nothing.
+    /// The axis of a quantity without a divisor.
     pub fn axis(self, symbol: &str, unit: &'static str, quantity: Quantity) -> Axis {
         let shown = self.units.unit(quantity).map_or_else(String::new, ToString::to_string);
         Axis { unit, shown, ..Axis::pure(symbol.to_owned()) }
     }
 
-    /// A value on an axis that is divided by nothing.
+    /// A value on an axis without a divisor.
     pub fn shown(self, quantity: Quantity, x: f64) -> f64 {
         self.units.shown(quantity, x).number
     }

@@ -1,6 +1,6 @@
-//! The undeformed gap of a preset, h over r, with the disc at the start: a small picture to choose a shape by.
+//! The undeformed gap of a preset, h over r, with the disc at the start: a small picture for choosing a shape.
 //!
-//! Where the start is not given as a contact radius, nothing says how large the disc is without solving: then the gap is
+//! Where the start is not given as a contact radius, the size of the disc is unknown without solving, and the gap is
 //! drawn over its own length.
 
 use super::{Bounds, Figure, Line, Mark, Role, Scale, Sign};
@@ -8,7 +8,7 @@ use pulloff_engine::gap::Gap;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Start;
 
-/// Places along the radius.
+/// The number of points along the radius.
 const POINTS: u32 = 400;
 /// The outermost radius, over that of the disc.
 const BEYOND: f64 = 1.5;

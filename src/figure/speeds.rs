@@ -1,4 +1,5 @@
-//! G of the measured rows over the speed of the edge, with the law of the preset, both as logarithms: a power is a straight line.
+//! G of the measured rows over the speed of the edge, with the law of the preset, both as logarithms: a power law is a
+//! straight line.
 
 use super::bounds::Bounds;
 use super::measured::DRAWN;
@@ -11,7 +12,7 @@ use pulloff_engine::report::pull::law;
 use pulloff_engine::report::speeds::SpeedRow;
 use pulloff_engine::units::Quantity;
 
-/// Points of the line of a law.
+/// The number of points on the line of a law.
 const POINTS: u32 = 100;
 
 /// Builds the view.
@@ -35,7 +36,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         let speed = scale.shown(Quantity::Speed, speed).log10();
         (speed, scale.shown(Quantity::EnergyPerArea, released).log10())
     };
-    // What is within its error of none has no logarithm to be told.
+    // A value no larger than its error has no meaningful logarithm.
     let known = |row: &&SpeedRow| {
         let speed = row.speed.zip(row.speed_error).is_some_and(|(speed, error)| speed.abs() > error);
         speed && row.energy_release_rate > row.error
@@ -46,7 +47,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         let sign = Sign::Measured { loading: speed < 0.0, apart: false };
         Some(Mark { sign, at: at(speed.abs(), row.energy_release_rate) })
     }));
-    // The approach first: each is drawn as one.
+    // The approach first, because each is drawn as one.
     figure.marks.sort_by_key(|mark| mark.sign != Sign::Measured { loading: true, apart: false });
     let speeds = rows.iter().filter_map(|row| row.speed.map(f64::abs));
     let [lo, hi] = speeds.fold([f64::INFINITY, 0.0_f64], |[lo, hi], v| [lo.min(v), hi.max(v)]);
@@ -69,7 +70,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     figure
 }
 
-/// G over the speed of an edge that moves so, by the law of a preset that has one.
+/// G over the speed of an edge in this motion, by the law of a preset that has one.
 fn of_law(preset: &Preset, motion: Motion) -> Option<impl Fn(f64) -> f64> {
     let (law, reference) = law(preset).ok()?;
     let opening = preset.material.work_of_adhesion;

@@ -1,7 +1,7 @@
 //! The law of stability over the contact radius: the work of adhesion at which each state is a limit point.
 //!
-//! Below the curve states are stable, above it they are not; the line of the preset's adhesion cuts it at the limit points.
-//! Turning the adhesion moves a line. The ordinate is logarithmic: its places are decimal logarithms.
+//! Below the curve states are stable, above it they are not; the line of the preset's adhesion crosses it at the limit
+//! points. Changing the adhesion moves that line. The ordinate is logarithmic: its positions are decimal logarithms.
 
 use super::bounds::Bounds;
 use super::map;
@@ -14,10 +14,11 @@ use pulloff_engine::stability::law::adhesion_of;
 use pulloff_engine::units::Quantity;
 use std::f64::consts::TAU;
 
-/// Radii at which the law is drawn.
+/// The number of radii at which the law is drawn.
 const RADII: usize = 1500;
 
-/// The decades drawn below the preset's adhesion where the law falls further: to the floor, where no adhesion is stable.
+/// The number of decades drawn below the preset's adhesion where the law falls further: to the floor, where no adhesion
+/// is stable.
 const DECADES: f64 = 3.0;
 
 /// Builds the view.
@@ -68,7 +69,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     let most = finite().chain(Some(level).filter(|y| y.is_finite())).fold(f64::NEG_INFINITY, f64::max);
     let least = finite().fold(f64::INFINITY, f64::min);
     let floor = if level.is_finite() { least.max(level - DECADES).min(level - 0.5) } else { least };
-    // Where no adhesion is stable the curve runs along the floor.
+    // Where no adhesion is stable, the curve runs along the floor.
     let down = |points: Vec<(f64, f64)>| -> Vec<(f64, f64)> {
         points.into_iter().map(|(x, y)| (x, if y.is_nan() { y } else { y.max(floor) })).collect()
     };
@@ -101,7 +102,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
                 .to_owned(),
         );
     }
-    // One disc of the exact equation is not the walker's rings, of either kind.
+    // The law is for one disc of the exact equation, not for a walker in rings of either kind.
     if let Some(node) = subject.walk.last().filter(|node| is_one_disc && subject.is_on_curve(node)) {
         let walker = (scale.radius(node.state.contact_radius), level);
         figure.marks.push(Mark { sign: Sign::Walker, at: walker });
@@ -109,7 +110,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     figure
 }
 
-/// The map of two numbers, where it is known.
+/// The map of two parameters, where it is known.
 pub fn map(subject: &Subject<'_>) -> Figure {
     match subject.map {
         Some(Ok(report)) => map::figure(report, subject),

@@ -1,5 +1,5 @@
-//! The inside of the walker's state: the contact pressure, the gap around the contacts, the contact from above, the potential over the
-//! radius.
+//! The interior of the walker's state: the contact pressure, the gap around the contacts, the contact from above, and
+//! the potential over the radius.
 
 use super::bounds::Bounds;
 use super::contact;
@@ -14,11 +14,11 @@ use pulloff_engine::quasistatic::profile::Outside;
 use pulloff_engine::report::number::{loss, significant, with_unit};
 use pulloff_engine::units::Quantity;
 
-/// The pressure is singular at an adhesive edge: axes are fitted to the disc up to this share of its radius.
+/// The pressure is singular at an adhesive edge, so the axes are fitted to the disc up to this share of its radius.
 const FITTED: f64 = 0.99;
-/// What is seen of the contact from above outside its edge, as a share of its radius.
+/// How much is shown outside the edge in the contact from above, as a share of the radius.
 const AROUND: f64 = 0.1;
-/// Of the contact this share of what is shown outside is seen in the gap.
+/// How much of the contact is shown in the gap, as a share of what is shown outside.
 const INSIDE: f64 = 0.3;
 
 /// Builds the view.
@@ -41,7 +41,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
         });
         return figure;
     };
-    // A walk is watched in one window: as wide as the largest contact of its curve.
+    // A walk is watched in one fixed window, as wide as the largest contact of its curve.
     let radii = subject.curve.points.iter().map(|at| scale.radius(at.contact_radius));
     let widest = if subject.walk.is_empty() { 0.0 } else { radii.fold(0.0, f64::max) };
     let radius = scale.radius(inside.profile.contact_radius * inside.units.length);
@@ -59,7 +59,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     figure
 }
 
-/// What is smallest at a stable state when the control is held.
+/// The axis of the quantity that is smallest at a stable state when the control is held.
 fn potential_axis(scale: Scale<'_>, control: Control) -> Axis {
     let symbol = match control {
         Control::Displacement => "U",
@@ -69,11 +69,11 @@ fn potential_axis(scale: Scale<'_>, control: Control) -> Axis {
     scale.axis(symbol, "energy", Quantity::Energy)
 }
 
-/// A state on its axes.
+/// A state on the axes of a figure.
 struct Drawing<'a> {
     scale: Scale<'a>,
     inside: &'a StateInside,
-    /// The largest contact radius to be seen, on its axis.
+    /// The largest contact radius to show, on its axis.
     widest: f64,
     /// Whether the states lie on no single curve.
     along: bool,
@@ -94,7 +94,7 @@ impl Drawing<'_> {
         self.radius(self.inside.profile.contact_radius)
     }
 
-    /// The contacts on their axis.
+    /// The contacts on the axis of radii.
     fn contacts(&self) -> Vec<[f64; 2]> {
         self.inside.profile.contacts.iter().map(|edges| edges.map(|r| self.radius(r))).collect()
     }
@@ -107,13 +107,13 @@ impl Drawing<'_> {
         contact::lay(figure, &self.contacts(), &self.tensions(), crests, reach);
     }
 
-    /// The zone outside the contact, on its axis.
+    /// The zone outside the contact, on the axis of radii.
     fn zone(&self) -> Option<[f64; 2]> {
         let profile = &self.inside.profile;
         Some([profile.contact_radius, profile.zone?].map(|r| self.radius(r)))
     }
 
-    /// Where in the contacts, and in the zone, the pressure is negative, on their axis: from and to.
+    /// Where the pressure in the contacts and the zone is negative, as ranges on the axis of radii.
     fn tensions(&self) -> Vec<[f64; 2]> {
         let inside = &self.inside.profile.inside;
         let mut all: Vec<[f64; 2]> = self
@@ -141,7 +141,7 @@ impl Drawing<'_> {
         all.into_iter().map(|edges: [f64; 2]| edges.map(|r| self.radius(r))).collect()
     }
 
-    /// The edges as marks; the axis is none.
+    /// Marks the edges; the axis is not one.
     fn edges(&self, figure: &mut Figure) {
         let edges = self.contacts().into_iter().flatten().filter(|r| *r > 0.0);
         figure.marks.extend(edges.map(|r| Mark { sign: Sign::Edge, at: (r, 0.0) }));
@@ -193,7 +193,7 @@ impl Drawing<'_> {
                 .collect()
         };
         let deformed = line(&|at| at.gap);
-        // As far above the other body as it would be undeformed, at the same approach.
+        // The distance above the other body if undeformed, at the same approach.
         let undeformed = line(&|at| at.undeformed - profile.approach);
         let end = profile.outside.last().map_or(profile.contact_radius, |at| at.radius);
         let last = self.radius(end);
@@ -201,7 +201,7 @@ impl Drawing<'_> {
         let first = contacts.first().map_or(edge, |contact| contact[1]);
         let from = (first - INSIDE * (last - edge)).max(0.0);
         figure.bounds = Bounds::of(deformed.iter().chain(&undeformed).copied().chain([(from, 0.0)]));
-        // The gaps between contacts, and what lies outside them.
+        // The gaps between contacts, and the regions outside them.
         let holes = profile.contacts.windows(2).map(|pair| [pair[0][1], pair[1][0]]);
         let axis = profile.contacts.first().filter(|first| first[0] > 0.0).map(|first| [0.0, first[0]]);
         let gaps = axis.into_iter().chain(holes).chain([[profile.contact_radius, end]]);
@@ -246,7 +246,7 @@ impl Drawing<'_> {
             figure.missing = Some(why.to_owned());
             return;
         };
-        // Counted from the present state.
+        // Relative to the present state.
         let place = |s: f64, potential: f64| {
             (self.radius(s), self.scale.shown(Quantity::Energy, potential * self.inside.units.energy))
         };
@@ -277,7 +277,7 @@ impl Drawing<'_> {
 
     /// The crests r = mλ between two reduced radii.
     fn crests(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
-        /// More crests than these are no marks but a band.
+        /// More crests than this would form a band, not marks.
         const MOST: f64 = 60.0;
         let wave = self.inside.wave.filter(|wave| (to - from) / wave <= MOST);
         let first = wave.map(|wave| ((from / wave).floor() + 1.0, wave));
@@ -289,7 +289,7 @@ impl Drawing<'_> {
     }
 }
 
-/// The value of a line of ascending radii at `r`.
+/// The value at `r` of a line with ascending radii.
 fn between(line: &[(f64, f64)], r: f64) -> Option<f64> {
     line.windows(2).find(|pair| pair[0].0 <= r && r <= pair[1].0).map(|pair| {
         let width = pair[1].0 - pair[0].0;

@@ -1,4 +1,4 @@
-//! A quantity over the range of one value, the value of the preset marked.
+//! A quantity over the range of one value, with the preset's value marked.
 
 use super::bounds::Bounds;
 use super::parts::{Area, Axis, AxisScale, Figure, Line, Mark, Meaning, Role, Sign};
@@ -11,10 +11,10 @@ use pulloff_engine::sweep::quantity::Under;
 use pulloff_engine::sweep::{Cell, QuantityColumn};
 use pulloff_engine::units::Quantity;
 
-/// Of fewer other surfaces there are no quantiles to be drawn.
+/// With fewer other surfaces than this, no quantiles are drawn.
 const FEWEST: usize = 5;
 
-/// The quantity in words: its name, and the control where it is not the preset's own.
+/// The quantity in words: its name, and the control where it differs from the preset's.
 fn words(column: QuantityColumn) -> String {
     let name = column.quantity.name.replace('_', " ");
     match column.under {
@@ -43,7 +43,7 @@ fn row(data: &StudyData, preset: &Preset) -> Option<Row> {
     preset.row(&data.wish.key).or_else(|| data.wish.preset.row(&data.wish.key))
 }
 
-/// The figure of a study, `preset` marked on it.
+/// The figure of a study, with `preset` marked on it.
 pub fn of(data: &StudyData, preset: &Preset) -> Figure {
     let (wish, units) = (&data.wish, &data.wish.preset.units);
     let quantity = wish.column.quantity.unit;
@@ -95,7 +95,7 @@ pub fn of(data: &StudyData, preset: &Preset) -> Figure {
     if let Some(x) = preset.get(&wish.key).and_then(|value| number(&value)).map(shown) {
         let ends = figure.bounds.y.map(|y| (x, y));
         figure.lines.insert(0, Line::new(Role::Level, "now", ends.to_vec()));
-        // On the line itself where the value was computed.
+        // On the line itself, where this value was computed.
         let at = found.iter().find(|(at, _)| (at - x).abs() <= 1e-12 * x.abs());
         figure.marks.extend(at.map(|at| Mark { sign: Sign::Preset, at: *at }));
     }
@@ -110,7 +110,7 @@ pub fn of(data: &StudyData, preset: &Preset) -> Figure {
     figure
 }
 
-/// What the largest pull comes to at low rates: the quasi-static one, and the first order as far as it is one.
+/// The limit of the largest pull at low rates: the quasi-static one, and the first order as far as it holds.
 fn slow_pulls(figure: &mut Figure, data: &StudyData, rate: impl Fn(f64) -> f64, force: impl Fn(f64) -> f64) {
     /// The first order is drawn up to this share of the quasi-static pull.
     const SHARE: f64 = 1.0;
@@ -125,10 +125,10 @@ fn slow_pulls(figure: &mut Figure, data: &StudyData, rate: impl Fn(f64) -> f64, 
     figure.lines.push(Line::new(Role::Exact, "first order", first.collect()));
 }
 
-/// Points cut where the value jumps: where it goes over much more from one to the next than on either side. Nothing was
-/// computed between, and a line there would be a slope that is none.
+/// Points cut where the value jumps: where one step is much larger than the steps on either side. Nothing was computed
+/// in between, and a line there would show a slope that does not exist.
 fn unbroken(points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
-    /// So many times what the neighbours go over, and at least this share of the whole range.
+    /// A jump is this many times a neighbouring step, and at least this share of the whole range.
     const TIMES: f64 = 6.0;
     const SHARE: f64 = 0.03;
     let [lo, hi] =
@@ -140,7 +140,7 @@ fn unbroken(points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
     let jumps = |at: usize| {
         let beside = [at.checked_sub(1).and_then(over), over(at + 1)].into_iter().flatten();
         let beside = beside.fold(f64::NEG_INFINITY, f64::max);
-        // Of two points alone nothing is known.
+        // Two points alone tell nothing.
         over(at).is_some_and(|own| beside >= 0.0 && own > SHARE * (hi - lo) && own > TIMES * beside)
     };
     let cuts: Vec<usize> = (0..points.len()).filter(|at| jumps(*at)).map(|at| at + 1).collect();
@@ -149,7 +149,8 @@ fn unbroken(points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
     starts.zip(ends).map(|(from, to)| points[from..to].to_vec()).collect()
 }
 
-/// Where the other surfaces are: areas in which nine tenths and half of them are, and their median. All corners of the areas.
+/// The spread of the other surfaces: areas that hold nine tenths and half of them, and their median. Returns all
+/// corners of the areas.
 fn bands(
     figure: &mut Figure,
     data: &StudyData,
@@ -163,7 +164,7 @@ fn bands(
     let all: Vec<(f64, Option<[f64; 5]>)> = places
         .iter()
         .zip(&data.others)
-        // Those that are whole: at every value the same ones.
+        // Only complete surfaces, so that they are the same at every value.
         .map(|((x, _), others)| (*x, quantiles(&others[..surfaces]).map(|all| all.map(&shown))))
         .collect();
     let mut corners = Vec::new();
@@ -186,7 +187,7 @@ fn bands(
     corners
 }
 
-/// Steps between counts, half way between the values: between them a count is no line.
+/// Steps between counts, half way between the values: a count has no sloping line between them.
 fn stairs(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut steps: Vec<(f64, f64)> = Vec::new();
     for (x, y) in points {
@@ -199,7 +200,7 @@ fn stairs(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     steps
 }
 
-/// A value alone is drawn as a line of no length.
+/// A single value is drawn as a line of zero length.
 fn drawn(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     if let [only] = points[..] {
         points.push(only);
@@ -207,7 +208,7 @@ fn drawn(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points
 }
 
-/// What the study says nearest to `x` of its axis: the value and the quantity, or why there is none.
+/// The study's result nearest to `x` on its axis: the value and the quantity, or why there is none.
 pub fn reading(data: &StudyData, preset: &Preset, x: f64) -> Option<String> {
     let units = &data.wish.preset.units;
     let row = row(data, preset)?;
@@ -226,7 +227,7 @@ pub fn reading(data: &StudyData, preset: &Preset, x: f64) -> Option<String> {
     Some(format!("{} {value}: {} {found}", row.label, words(data.wish.column)))
 }
 
-/// The value computed that is nearest to `x` of its axis, in the units of the preset, and its place in the list.
+/// The computed value nearest to `x` on its axis, in the units of the preset, and its index in the list.
 pub fn taken(data: &StudyData, preset: &Preset, x: f64) -> Option<(usize, f64)> {
     let row = row(data, preset)?;
     let units = &data.wish.preset.units;

@@ -22,20 +22,20 @@ use pulloff_engine::report::{MapReport, PathReport};
 #[derive(Debug, Clone)]
 pub struct Subject<'a> {
     pub curve: &'a CurveData,
-    /// The states that led to the walker, which is the last.
+    /// The states that led to the walker, which is the last of them.
     pub walk: Vec<&'a Node>,
     pub branches: Vec<WalkBranch<'a>>,
-    /// The inside of the walker's state, where it is known.
+    /// The interior of the walker's state, where it is known.
     pub inside: Option<&'a StateInside>,
     /// The ends (δ, P) of the line of the loading device through the walker, where it is shown.
     pub device: Option<[(f64, f64); 2]>,
-    /// The path of the device from where it begins, where there is one.
+    /// The path of the device from its start, where there is one.
     pub path: Option<&'a PathReport>,
     /// The loop of loading and unloading, where there is one.
     pub cycle: Option<&'a PathReport>,
     /// The pull at the rate of the preset, where there is one.
     pub pull: Option<&'a PullData>,
-    /// The map of two numbers, or why there is none, where it is known.
+    /// The map of two parameters, or why there is none, where it is known.
     pub map: Option<Result<&'a MapReport, &'a str>>,
     /// The number of the selected event on the path.
     pub event: Option<usize>,
@@ -56,7 +56,7 @@ pub struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    /// What is on the screen of a session; `None` before its first curve.
+    /// What the screen of a session shows; `None` before its first curve.
     pub fn of(model: &'a Model) -> Option<Self> {
         Some(Self {
             curve: model.curve.as_deref()?,
@@ -80,7 +80,7 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// A curve nobody walks on, with its theory.
+    /// A curve without a walk, with its theory.
     pub fn alone(curve: &'a CurveData, overlays: Overlays) -> Self {
         Self {
             curve,
@@ -109,24 +109,24 @@ impl<'a> Subject<'a> {
         Scale::of(self.curve, self.axes)
     }
 
-    /// Whether what is shown is one disc of the exact equation: neither the preset's elements are rings nor the walker's
-    /// contacts.
+    /// Whether the view shows one disc of the exact equation: the preset's elements are not rings, and neither are the
+    /// walker's contacts.
     pub fn is_one_disc(&self) -> bool {
         self.preset.basis == BasisSpec::Exact && !self.walk.last().is_some_and(|node| node.has_rings())
     }
 
-    /// What tells the curve from the pinned ones beside it, named as they are; `None` without any.
+    /// A name that distinguishes the curve from the pinned ones beside it, in their style; `None` without any.
     pub fn own_name(&self) -> Option<String> {
         name_among(&self.curve.setting.preset, self.pins)
     }
 
-    /// Whether a state solves the problem of the curve.
+    /// Whether a state solves the problem of this curve.
     pub fn is_on_curve(&self, node: &Node) -> bool {
         is_on_curve(self.curve, node)
     }
 }
 
-/// The study of the selected value, where the view is on the screen; of the values before while that is computed.
+/// The study of the selected value, where the view is on the screen; while it is being computed, that of the previous values.
 fn study(model: &Model) -> Option<Result<&StudyData, String>> {
     if !model.shown_views().contains(&View::Study) {
         return None;

@@ -1,4 +1,4 @@
-//! Every figure of every kind of problem: what is on it, and that its bounds are fit for any renderer.
+//! Every figure of every kind of problem: what is on it, and that its bounds suit any renderer.
 
 use super::reading::What;
 use super::*;
@@ -13,7 +13,7 @@ use pulloff_engine::report::PathReport;
 use pulloff_engine::report::path::Extent;
 use pulloff_engine::units::UnitSystem;
 
-/// A session with every effect done inline, and room for every view.
+/// A session in which every effect is done inline, with room for every view.
 struct Session {
     model: Model,
     driver: Inline,
@@ -69,7 +69,7 @@ fn the_curve_has_its_pieces_its_limit_points_and_the_walk() {
         let figure = session.figure(view);
         let changes = curve.points.windows(2).filter(|pair| pair[0].stable != pair[1].stable).count();
         assert_eq!(count(&figure, Role::Stable) + count(&figure, Role::Unstable), changes + 1);
-        // Those on the path have the number of their event, each once; the others none.
+        // Those on the path have the number of their event, each once; the others have none.
         let snaps = curve.report.as_ref().unwrap().events.len() - 1;
         assert!((1..=snaps).all(|number| signs(&figure, Sign::Event(number)) == 1));
         assert_eq!(signs(&figure, Sign::Limit) + snaps + 1, curve.limits.len());
@@ -136,7 +136,7 @@ fn overlays_are_drawn_where_they_exist() {
     let figure = session.figure(View::ForceApproach);
     assert_eq!((count(&figure, Role::Exact), count(&figure, Role::Envelope)), (1, 2));
     assert!(figure.notes[0].starts_with("Kesari-Lew peak 1.49"), "{:?}", figure.notes);
-    // Theory has every radius of the computed curve, and goes on over the edges of the chart.
+    // Theory has every radius of the computed curve, and continues past the edges of the chart.
     let computed = session.model.curve.as_ref().unwrap();
     let own = |s: f64| (0.999 * computed.case.end..1.001 * computed.case.start).contains(&s);
     let theory = &computed.base.theory;
@@ -166,7 +166,7 @@ fn pinned_curves_have_their_numbers_names_and_divisors() {
     let figure = session.figure(View::ForceApproach);
     let pin = figure.lines.iter().find(|line| line.role == Role::Pin(1)).unwrap();
     assert!(pin.name.starts_with("gamma 0.00397"), "{}", pin.name);
-    // Over the P_c of the present values: an axis has one unit.
+    // Over the P_c of the present values, because an axis has one unit.
     let old: Vec<(f64, f64)> =
         before.lines.iter().filter(|line| line.role == Role::Pin(1)).flat_map(|l| l.points.clone()).collect();
     let parts = figure.lines.iter().filter(|line| line.role == Role::Pin(1));
@@ -177,7 +177,7 @@ fn pinned_curves_have_their_numbers_names_and_divisors() {
         let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
         assert!(near(now.0, old.0) && near(now.1 * more, old.1), "{now:?} {old:?}");
     }
-    // Its stable and its unstable parts, as of the curve.
+    // Stable and unstable parts, as on the curve.
     assert!(parts.clone().any(|part| part.is_broken) && parts.clone().any(|part| !part.is_broken));
     assert!(count(&figure, Role::Pin(2)) > 1);
     let lowest = pin.points.iter().map(|at| at.1).fold(f64::INFINITY, f64::min);
@@ -199,7 +199,7 @@ fn the_unloading_has_an_area_for_every_loss_that_has_a_bound() {
         assert_eq!(last_contacts(&figure), 1);
         let scale = curve.base.critical_force;
         for (area, event) in figure.areas.iter().zip(&unloading.events) {
-            // The outline encloses what was lost: P/Pc over δ.
+            // The outline encloses the lost energy: P/Pc over δ.
             let next = area.outline.iter().cycle().skip(1);
             let enclosed: f64 =
                 area.outline.iter().zip(next).map(|(a, b)| 0.5 * (a.0 * b.1 - b.0 * a.1)).sum();
@@ -245,7 +245,7 @@ fn the_areas_of_a_loop_are_its_losses() {
         let lost: f64 = figure.areas.iter().filter_map(|area| area.lost).sum();
         (report, figure, lost)
     };
-    // Discs alone: every jump has its area, whatever is controlled.
+    // Only discs: every jump has its area, whatever is controlled.
     for (control, unbounded) in [("displacement", 0), ("stiffness=0.15", 0), ("force", 1)] {
         let control = format!("path.control={control}");
         let (report, figure, lost) = whole("fig-9-cycle", &[&control]);
@@ -255,7 +255,7 @@ fn the_areas_of_a_loop_are_its_losses() {
         let all = report.totals.dissipated.unwrap_or(report.totals.dissipated_before_last_contact);
         assert!((lost / all - 1.0).abs() < 1e-9, "{control}: {lost} {all}");
     }
-    // Rings jump along no curve: one area for all.
+    // Jumps between rings follow no curve: one area for all.
     for control in ["displacement", "stiffness=0.15"] {
         let control = format!("path.control={control}");
         let (report, figure, lost) = whole("fig-9-weak", &[&control]);
@@ -274,7 +274,7 @@ fn a_contact_map_shows_every_state_once() {
         let corners: usize = figure.areas.iter().map(|area| area.outline.len()).sum();
         let contacts: usize = report.states.iter().map(|at| at.state.contacts.len()).sum();
         assert_eq!(corners, 2 * contacts, "{preset}");
-        // Loading to the left of the turn, unloading to the right, and the first contact of the crater off the axis.
+        // Loading to the left of the turn, unloading to the right, and the first contact of the crater is off the axis.
         let turn = report.events.iter().find(|event| event.kind == "turn").unwrap();
         let turn = turn.control - report.events[0].control;
         let way: Vec<f64> = figure.areas.iter().map(|area| area.outline[0].0).collect();
@@ -366,7 +366,7 @@ fn near_a_limit_point_a_landing_or_a_pin_the_cross_hair_says_so() {
     let (control, other) = &subject.curve.other_limits[0];
     let quantities = [other.approach, other.force, other.contact_radius];
     assert!(matches!(at(quantities), What::Limit { control: found, number: 1, .. } if found == *control));
-    // The point of the pinned curve that is farthest from this one and from every mark.
+    // The point of the pinned curve farthest from this curve and from every mark.
     let pinned = &subject.pins[0].curve.points[30];
     let quantities = [pinned.approach, pinned.force, pinned.contact_radius];
     assert_eq!(at(quantities), What::Pin(1));
@@ -387,7 +387,7 @@ fn among_pins_the_curve_is_named_by_what_differs() {
     session.does(Id::Pin);
     session.does(Command::Set { key: "gap.wavelength".into(), text: "0.06".to_owned() });
     let subject = Subject::of(&session.model).unwrap();
-    // The amplitude is that of the second pin, but not of the first.
+    // The amplitude differs from that of the first pin but not from that of the second.
     assert_eq!(subject.own_name().unwrap(), "A 0.0035, lambda 0.06");
     let chart = subject.figure(View::ForceApproach);
     let names: Vec<String> = chart.naming("A 0.0035").lines.into_iter().map(|line| line.name).collect();
@@ -410,7 +410,7 @@ fn the_inside_of_a_state_is_drawn_with_its_edge_and_crests() {
     // Every crest r = mλ inside, and no other.
     let crests = signs(&pressure, Sign::Crest) as f64;
     assert!(crests <= radius && crests + 1.0 > radius && signs(&pressure, Sign::Edge) == 1);
-    // The edge pulls beyond what is shown at first.
+    // At the edge the pull goes beyond what is shown at first.
     let body = pressure.lines.iter().find(|line| line.role == Role::Body).unwrap();
     let least = body.points.iter().map(|at| at.1).fold(f64::INFINITY, f64::min);
     assert!(least < pressure.bounds.y[0] && is_fit(&pressure));
@@ -434,7 +434,7 @@ fn the_inside_of_a_state_is_drawn_with_its_edge_and_crests() {
     session.does(Id::Axes);
     assert_eq!(session.figure(View::Pressure).y.unit, "stress");
 
-    // Apart there is no inside, and no figure of the last one.
+    // When the bodies are apart there is no interior, and no figure of the previous one.
     for _ in 0..8 {
         session.does(Id::NextEvent).does(Id::Jump);
     }
@@ -476,7 +476,7 @@ fn differences_are_those_of_the_curves_at_equal_radius_and_at_equal_approach() {
         let mut lines = figure.lines.iter().filter(|line| line.role == role && line.is_broken == is_broken);
         lines.next().unwrap().points.clone()
     };
-    // The basis is exact: from the exact solution it differs by rounding, at equal s and at equal δ.
+    // The basis is exact: it differs from the exact solution only by rounding, at equal s and at equal δ.
     let largest = |points: &[(f64, f64)]| {
         let found = || points.iter().map(|(_, y)| y.abs()).filter(|y| y.is_finite());
         (found().count(), found().fold(0.0, f64::max))
@@ -485,7 +485,7 @@ fn differences_are_those_of_the_curves_at_equal_radius_and_at_equal_approach() {
         let (count, most) = largest(&of(Role::Exact, is_broken));
         assert!(count > 100 && most < 1e-6, "{is_broken}: {count} points, {most}");
     }
-    // From the pin by what the amplitude does to P at a radius.
+    // It differs from the pin by the effect of the amplitude on P at a radius.
     let pin = session.model.pins.all()[0].curve.clone();
     let ours = session.model.curve.clone().unwrap();
     let points = of(Role::Pin(1), false);
@@ -497,7 +497,7 @@ fn differences_are_those_of_the_curves_at_equal_radius_and_at_equal_approach() {
         assert!((y - scale.force(force - at.force)).abs() < 1e-9, "{x}: {y}");
     }
     assert!(is_fit(&figure) && figure.walker().is_some());
-    // What is said of the walker is of its own state: far from a limit point and on it, against a closed form.
+    // The value at the walker belongs to its own state, far from a limit point and on it; checked against a closed form.
     session.does(Id::NextEvent);
     let figure = session.figure(View::Differences);
     let jkr = session.model.curve.as_ref().unwrap().case.smooth().unwrap();

@@ -1,8 +1,9 @@
-//! The quasi-static path: the stable pieces followed, the jumps between them, and what each dissipates as the area
-//! between the curve and the control line (Fig. 10).
+//! The quasi-static path: the stable pieces, the jumps between them, and what each dissipates, as the area between the
+//! curve and the control line (Fig. 10).
 //!
 //! The area of a jump is closed by the curve that the edge runs past and by the line of the device; that of a pull-off
-//! goes on along the curve to s = 0 and back along P = 0. Under a dead load the last has no bound and is not drawn.
+//! continues along the curve to s = 0 and returns along P = 0. Under a dead load the latter has no bound and is not
+//! drawn.
 
 use super::bounds::Bounds;
 use super::curves::{inadmissible, place};
@@ -41,7 +42,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         let [Some(first), Some(last)] = [stretch.first(), stretch.last()] else { continue };
         let is_disc = stretch.iter().all(|state| state.rings() == 0);
         let points = if is_disc {
-            // A held edge moves along a straight line.
+            // A pinned edge moves along a straight line.
             let held = |state: &&PathState| state.contact_radius.to_bits() == first.contact_radius.to_bits();
             let free = stretch.iter().take_while(held).last().unwrap_or(first);
             let before = (free != first).then(|| path.shown(&first.state()));
@@ -56,7 +57,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
             path.jump(unloading.control, event, &mut figure);
         }
     }
-    // The path may begin or land beyond the curve; where the bodies come apart may be far away.
+    // The path may begin or land beyond the curve, and bodies that are apart may be far away.
     let kept = figure.lines.iter().filter(|line| line.role != Role::Jump);
     figure.bounds = Bounds::of(kept.flat_map(|line| line.points.iter().copied()));
     inadmissible(subject, scale, VIEW, &mut figure);
@@ -96,7 +97,7 @@ impl OnCurve<'_> {
         points
     }
 
-    /// Adds the line of a jump, what it loses and where it lands.
+    /// Adds the line of a jump, its loss and its landing.
     fn jump(&self, control: Control, event: &Event, figure: &mut Figure) {
         let Some(before) = event.before.as_ref().map(PathState::state) else { return };
         let after = event.after.as_ref().map(PathState::state);
@@ -110,7 +111,7 @@ impl OnCurve<'_> {
         }
     }
 
-    /// The area of a jump; none where it has no bound.
+    /// The area of a jump; `None` where it has no bound.
     fn area(&self, control: Control, event: &Event, before: &State, after: Option<&State>) -> Option<Area> {
         let mut outline = self.between(before, after);
         if after.is_none() {

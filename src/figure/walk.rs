@@ -8,9 +8,9 @@ use crate::explorer::node::{Node, NodeKind};
 use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::{PathState, State};
 
-/// Where the bodies are once they are apart: the device holds its approach, its load, or its slack spring.
+/// The position of bodies that are apart: the device holds its approach, its load, or its slack spring.
 pub fn apart(control: Control, before: &State, control_value: f64) -> State {
-    /// Under a dead load the bodies fall apart for ever: a line to the left, out of the figure.
+    /// Under a dead load the bodies separate without limit: a line to the left, out of the figure.
     const FAR: f64 = -1e3;
     let (approach, force) = match control {
         Control::Displacement => (before.approach, 0.0),
@@ -40,7 +40,7 @@ pub fn events_before<'a>(
     })
 }
 
-/// Adds the other branches of the walk to a view of the curve, whatever their problems: to compare them.
+/// Adds the other branches of the walk to a view of the curve, whatever their problems, for comparison.
 pub fn branches(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figure) {
     let place =
         |node: &Node, state: &State| scale.place(view, quantities(&state.in_units(node.setting.units())));
@@ -117,7 +117,7 @@ pub fn walk(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Fi
     }
 }
 
-/// The edges of the contacts walked but for the outermost, where radii are shown.
+/// The inner edges of the contacts along the walk, where radii are shown.
 fn inner_edges(subject: &Subject<'_>, scale: Scale<'_>, view: View) -> Vec<Line> {
     if view == View::ForceApproach {
         return Vec::new();
@@ -138,7 +138,7 @@ fn inner_edges(subject: &Subject<'_>, scale: Scale<'_>, view: View) -> Vec<Line>
             scale.place(view, [state.approach, state.force, radius * node.setting.units().length])
         };
         lines.extend((0..edges.saturating_sub(1)).map(|edge| {
-            // A state alone is drawn as a line of no length.
+            // A single state is drawn as a line of zero length.
             let mut points: Vec<(f64, f64)> = part.iter().map(|node| place(node, edge)).collect();
             if let [only] = points[..] {
                 points.push(only);
@@ -149,7 +149,7 @@ fn inner_edges(subject: &Subject<'_>, scale: Scale<'_>, view: View) -> Vec<Line>
     lines
 }
 
-/// The states walked have lines and no axes: who draws a figure says what has them.
+/// The states walked have lines but no axes; this figure tells whoever draws it where to find them.
 pub fn table() -> Figure {
     let none = || Axis::pure(String::new());
     let why = "the states walked are a table: export walk writes it";

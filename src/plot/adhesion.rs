@@ -1,6 +1,6 @@
-//! What the range of adhesion changes, over Maugis' `λ_M`: the loss of a loop and its largest pull, of the smooth sphere and of the
-//! waves of Fig. 9. K. L. Johnson and J. A. Greenwood, J. Colloid Interface Sci. 192, 326 (1997), doi:10.1006/jcis.1997.4984, map what
-//! holds where for the sphere.
+//! The effect of the range of adhesion, over Maugis' `λ_M`: the loss of a loop and its largest pull, for the smooth
+//! sphere and for the waves of Fig. 9. K. L. Johnson and J. A. Greenwood, J. Colloid Interface Sci. 192, 326 (1997),
+//! doi:10.1006/jcis.1997.4984, map the regimes for the sphere.
 
 use super::paper::{PaperError, PaperSheet, shipped};
 use crate::figure::{Axis, AxisScale, Figure, Line, Mark, Role, Sign};
@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 /// The names of the figures.
 pub const NAMES: [&str; 2] = ["range-loss", "range-pull"];
 
-/// `λ_M` from where the range is long to where it hardly counts, and how many there are.
+/// The range of `λ_M`, from where the range of adhesion is long to where it hardly matters, and the number of values.
 const FROM: f64 = 0.05;
 const TO: f64 = 50.0;
 const COUNT: i32 = 31;
@@ -25,11 +25,11 @@ const COUNT: i32 = 31;
 /// δ/R at which the loops turn.
 const TURN: f64 = 0.02;
 
-/// A loop over `λ_M`: `λ_M`, what is lost over that of adhesion without a range, −P/πγR of the largest pull.
+/// Loops over `λ_M`: `λ_M`, the loss over that of adhesion without a range, and −P/πγR of the largest pull.
 struct Over {
     name: &'static str,
     points: Vec<[f64; 3]>,
-    /// The largest `λ_M` at which a loop comes to more than one disc in one zone.
+    /// The largest `λ_M` at which a loop reaches states with more than one disc in one zone.
     ends: Option<f64>,
 }
 

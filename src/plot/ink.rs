@@ -1,7 +1,7 @@
-//! The look of the roles on paper.
+//! The appearance of the roles on paper.
 //!
-//! The colours are those of Okabe and Ito, told apart by people with any of the common colour vision deficiencies; no
-//! two roles that meet in one chart have the same dashes, so a grey print reads as well.
+//! The colours are those of Okabe and Ito, which people with any of the common colour vision deficiencies can tell
+//! apart. No two roles that meet in one chart have the same dashes, so a grey print is readable too.
 
 use crate::figure::{Role, Sign};
 use kuva::plot::scatter::MarkerShape;
@@ -25,7 +25,7 @@ pub struct Stamp {
     pub color: &'static str,
     /// Half its width in units of 1/96 inch.
     pub size: f64,
-    /// Its name; empty where it needs none.
+    /// Its name in a legend; empty where it needs none.
     pub name: &'static str,
 }
 
@@ -58,7 +58,7 @@ pub fn stroke(role: Role) -> Stroke {
         Role::Smooth => stroke(GREY, 1.0, "7 3"),
         Role::Envelope => stroke(GREEN, 1.0, "9 2 2 2"),
         Role::Pin(number) => NUMBERED[number.saturating_sub(1) % NUMBERED.len()],
-        // Over the curve: the dots stand on the line that they agree with.
+        // Over the curve: the dots lie on the line that they agree with.
         Role::Exact => stroke(BLACK, 1.0, "0.8 3.2"),
         Role::Unstable => stroke(VERMILLION, 1.0, "3 2"),
         Role::Stable => stroke(BLUE, 1.6, ""),
@@ -90,7 +90,7 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::OtherLimit(Control::Force) => stamp(MarkerShape::Square, ORANGE, 1.8, "limit of P"),
         Sign::OtherLimit(_) => stamp(MarkerShape::Diamond, ORANGE, 1.8, "limit of δ"),
         Sign::Limit | Sign::Event(_) => stamp(MarkerShape::TriangleDown, VERMILLION, 2.3, "limit point"),
-        // The name in the tables of the figures, which programs read.
+        // The name used in the tables of the figures, which programs read.
         Sign::LastContact(_) => stamp(MarkerShape::Cross, VERMILLION, 2.8, "last contact"),
         Sign::LargestPull => stamp(MarkerShape::Triangle, BLACK, 2.4, "A, largest pull"),
         Sign::Farthest => stamp(MarkerShape::Diamond, BLACK, 2.4, "B, farthest"),
@@ -106,7 +106,7 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::Cusp => stamp(MarkerShape::TriangleDown, BLUE, 2.3, "cusp"),
         Sign::Swallowtail => stamp(MarkerShape::Star, BLUE, 2.8, "swallowtail"),
         Sign::Preset => stamp(MarkerShape::Plus, BLACK, 3.2, "preset"),
-        // Written as numbers; a letter beside a point.
+        // Snap counts and crests are written as numbers; a letter is beside its point.
         Sign::Snaps(_) | Sign::OfCrest(_) => stamp(MarkerShape::Circle, BLACK, 0.0, ""),
         Sign::Letter(_) => stamp(MarkerShape::Circle, BLACK, 1.6, ""),
         Sign::Measured { loading: true, apart: false } => {
@@ -121,7 +121,7 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::Measured { loading: false, apart: true } => {
             stamp(MarkerShape::Cross, GREY, 1.3, "measured retraction, apart")
         }
-        // The axes say what it is.
+        // The axes say what this is.
         Sign::Value => stamp(MarkerShape::Circle, BLUE, 2.2, ""),
     }
 }

@@ -1,4 +1,4 @@
-//! Lines in two numbers at which snaps begin or end, and limit points over one, on paper.
+//! Lines over two parameters at which snaps begin or end, and limit points over one, on paper.
 
 use crate::figure::map::laid;
 use crate::figure::places::Places;
@@ -8,7 +8,7 @@ use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::AxisReport;
 use pulloff_engine::text::headline;
 
-/// The figure of `report`, with `preset` at its place.
+/// The figure of `report`, with `preset` at its position.
 pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
     let places = |axis: &AxisReport| Places::of(axis, preset, report.control, false);
     let (x, y) = (places(&report.x), places(&report.y));

@@ -1,4 +1,4 @@
-//! A quantity of a sweep over its two axes: filled contours and the line from which the edge snaps, or, of a count, flat
+//! A quantity of a sweep over its two axes: filled contours and the line at which snaps begin or, for a count, flat
 //! regions with their whole numbers.
 
 use super::Width;
@@ -18,34 +18,34 @@ use kuva::render::render::{Primitive, render_multiple};
 use pulloff_engine::text::quote;
 use std::collections::VecDeque;
 
-/// The column that tells where snaps begin.
+/// The column that shows where snaps begin.
 const SNAPS: &str = "snaps";
-/// Between no snap and one.
+/// The level between no snap and one.
 const ONE_SNAP: f64 = 0.5;
-/// Bands of colour.
+/// The number of colour bands.
 const BANDS: usize = 12;
-/// Colours of counts at most: more cannot be told apart.
+/// The largest number of colours for counts; more cannot be told apart.
 const COUNTS: f64 = 12.0;
-/// An axis of equal factors is logarithmic where it reaches over this factor at least.
+/// An axis with equal factors is logarithmic if it spans at least this factor.
 const DECADE: f64 = 10.0;
 
 /// A quantity over two axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapChart {
-    /// What stands beside the axes, x and y.
+    /// The titles of the axes, x and y.
     pub titles: [String; 2],
     pub quantity: String,
     /// The values of the axes, ascending.
     pub values: [Vec<f64>; 2],
-    /// The quantity, a row for each y; not finite where the sweep has none.
+    /// The quantity, one row for each y; NaN or infinite where the sweep has none.
     pub cells: Vec<Vec<f64>>,
-    /// The snaps in the same places, where the sweep counted them.
+    /// The snap counts in the same cells, where the sweep counted them.
     pub snaps: Option<Vec<Vec<f64>>>,
-    /// Lines drawn over it, in the values of its axes.
+    /// Lines drawn over the map, in the values of its axes.
     pub lines: Vec<Line>,
 }
 
-/// Why results are not drawn.
+/// Why results cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum MapChartError {
     #[error(transparent)]
@@ -72,8 +72,9 @@ impl MapChartError {
 }
 
 impl MapChart {
-    /// The map of `quantity` in `results`, whose first two columns behind the row are the axes.
-    /// Errors: [`MapChartError`] when there is no such column, or the rows make no whole grid of at least two by two.
+    /// The map of `quantity` in `results`, whose first two columns after the row number are the axes.
+    /// Errors: [`MapChartError`] when there is no such column, or the rows do not form a complete grid of at least two
+    /// by two.
     pub fn of(results: &SweepResults, axes: &[String], quantity: &str) -> Result<Self, MapChartError> {
         let [x, y] = axes else {
             let what =
@@ -133,7 +134,7 @@ impl MapChart {
         let colors = counts.is_none().then(|| self.range());
         let layout = frame(width, self.titles.clone(), ranges, logarithmic, colors, &legend);
         let mut plots = if counts.is_some() {
-            // Without anything to draw the library draws no axes either.
+            // With nothing to draw, the library draws no axes either.
             vec![LinePlot::new().into()]
         } else {
             self.contours()
@@ -151,7 +152,7 @@ impl MapChart {
                 .insert(begin.map_or(0, |begin| begin + 1), filled(area, Color::from(count.color.as_str())));
         }
         if !holes.is_empty() {
-            // One area, without seams.
+            // A single area, without seams.
             let area: String = holes.iter().map(|hole| outline(hole, &field)).collect();
             let paths = hatches(std::iter::once(area), "#ffffff", &mut scene);
             let end = scene.elements.iter().position(|element| matches!(element, Primitive::ClipEnd));
@@ -161,7 +162,7 @@ impl MapChart {
         finish(&scene, cropped(&legend))
     }
 
-    /// The filled contours, and the line from which the edge snaps.
+    /// The filled contours, and the line at which snaps begin.
     fn contours(&self) -> Vec<Plot> {
         let [x, y] = &self.values;
         let filled = ContourPlot::new()
@@ -180,14 +181,14 @@ impl MapChart {
         std::iter::once(filled).chain(line).map(Plot::from).collect()
     }
 
-    /// The least and the largest value.
+    /// The smallest and the largest value.
     fn range(&self) -> [f64; 2] {
         let known = || self.cells.iter().flatten().copied().filter(|cell| cell.is_finite());
         [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)]
     }
 
-    /// Of a quantity that is counted its counts with their colours, or ranges of them where there are many; `None` of any
-    /// other.
+    /// The counts of a counted quantity with their colours, or ranges of counts where there are many; `None` for any
+    /// other quantity.
     fn counts(&self) -> Option<Vec<Count>> {
         let is_count = |cell: &f64| !cell.is_finite() || (*cell >= 0.0 && cell.fract() == 0.0);
         if !self.cells.iter().flatten().all(is_count) {
@@ -203,7 +204,7 @@ impl MapChart {
         Some(all.collect())
     }
 
-    /// What is drawn besides the colours.
+    /// The legend of everything that is drawn besides the colours.
     fn legend(&self) -> Vec<LegendEntry> {
         let snaps =
             self.snaps.as_ref().map(|snaps| counts(snaps).into_iter().flatten().collect::<Vec<f64>>());
@@ -230,7 +231,7 @@ impl MapChart {
         entries
     }
 
-    /// The cells, with the value of one nearby where there is none: the contours run straight into the hatched places.
+    /// The cells, with a nearby value where there is none, so that the contours run straight into the hatched areas.
     fn filled(&self) -> Vec<Vec<f64>> {
         let mut cells = self.cells.clone();
         let [width, height] = [self.values[0].len(), self.values[1].len()];
@@ -248,12 +249,12 @@ impl MapChart {
         cells
     }
 
-    /// The outlines of the places where the sweep has no value.
+    /// The outlines of the areas where the sweep has no value.
     fn holes(&self) -> Vec<[(f64, f64); 4]> {
         self.places(|cell| !cell.is_finite())
     }
 
-    /// The outlines of the cells that are wanted: neighbours in a row are one.
+    /// The outlines of the wanted cells; neighbours in a row are joined.
     fn places(&self, is_wanted: impl Fn(f64) -> bool) -> Vec<[(f64, f64); 4]> {
         let [along, up] = [&self.values[0], &self.values[1]].map(|axis| borders(axis));
         let mut places = Vec::new();
@@ -271,7 +272,7 @@ impl MapChart {
     }
 }
 
-/// Neighbouring counts of one colour.
+/// Neighbouring counts that share a colour.
 struct Count {
     from: f64,
     to: f64,
@@ -289,7 +290,7 @@ impl Count {
     }
 }
 
-/// Counts of snaps, none where nothing is known.
+/// Snap counts, zero where nothing is known.
 fn counts(snaps: &[Vec<f64>]) -> Vec<Vec<f64>> {
     snaps.iter().map(|row| row.iter().map(|n| if n.is_finite() { *n } else { 0.0 }).collect()).collect()
 }
@@ -312,7 +313,7 @@ pub(super) fn distinct(column: &[Option<f64>]) -> Vec<f64> {
     values
 }
 
-/// Whether the factors between neighbours are more alike than the steps; of one value nothing can be said.
+/// Whether the factors between neighbours are more alike than the steps; a single value cannot tell.
 pub(super) fn is_logarithmic(axis: &[f64]) -> bool {
     let (first, last) = (axis[0], axis[axis.len() - 1]);
     let spread = |apart: fn(f64, f64) -> f64| {
@@ -332,7 +333,7 @@ mod tests {
         let factors: Vec<f64> = (0..9).map(|i| 10.0_f64.powf(0.25 * f64::from(i))).collect();
         let steps: Vec<f64> = (0..9).map(|i| 1.0 + 12.0 * f64::from(i)).collect();
         assert!(is_logarithmic(&factors) && !is_logarithmic(&steps) && !is_logarithmic(&[0.0, 1.0, 100.0]));
-        // Few values, and two, of which nothing can be said.
+        // Few values, and two, which cannot tell.
         assert!(is_logarithmic(&[0.01, 0.1, 1.0]) && !is_logarithmic(&[0.01, 0.5, 1.0]));
         assert!(!is_logarithmic(&[0.01, 1.0]));
     }
@@ -351,7 +352,7 @@ mod tests {
         let document = roxmltree::Document::parse(&text).unwrap();
         assert!(document.descendants().any(|node| node.has_tag_name("path")), "{text}");
         assert!(!text.contains("NaN"));
-        // The place without a value is told from the least one, and both it and the line are named.
+        // The cell without a value differs from the smallest one, and both it and the line are named.
         assert!(text.contains("url(#") && text.contains("no value") && text.contains("snaps begin"));
         assert_eq!(map.holes().len(), 1);
         assert_eq!(map.filled()[1], [2.0, 2.0, 4.0]);
@@ -374,7 +375,7 @@ mod tests {
         assert_eq!(names(&few), ["snaps 0", "1", "2", "3", "4", "no value"]);
         let colors: Vec<String> = few.legend().into_iter().map(|entry| entry.color).collect();
         let text = few.svg(Width::ONE_COLUMN);
-        // What is drawn has the colours of the legend, and nothing lies between two counts: 3 is in no cell.
+        // The drawing has the colours of the legend, and nothing lies between two counts: 3 is in no cell.
         let drawn = |color: &String| text.matches(color.as_str()).count();
         assert!(drawn(&colors[0]) >= 2 && drawn(&colors[4]) >= 2 && drawn(&colors[3]) <= drawn(&colors[0]));
         assert_eq!(few.places(|cell| few.counts().unwrap()[0].holds(cell)).len(), 2);

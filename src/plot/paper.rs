@@ -1,5 +1,5 @@
-//! The figures of the paper, computed again: each with our numbers, the exact theory, and a caption that says how well
-//! they agree. Fig. 6 is a sketch of the problem and has no numbers.
+//! The figures of the paper, computed again: each with our numbers, the exact theory, and a caption that states how
+//! well they agree. Fig. 6 is a sketch of the problem and has no numbers.
 //!
 //! | figure | what it shows |
 //! |---|---|
@@ -41,7 +41,7 @@ pub struct PaperSheet {
     pub name: &'static str,
     /// What is drawn.
     pub figure: Figure,
-    /// What it shows, and how well we and the theory agree.
+    /// What it shows, and how well our numbers agree with theory.
     pub caption: String,
 }
 
@@ -61,13 +61,13 @@ pub enum PaperError {
     NoState(f64),
 }
 
-/// The rings of the pressures: few enough to see each.
+/// The rings of the pressures: few enough to see each one.
 const FEW_RINGS: &str = "basis.rings=20";
 /// δ/R of the errors of Fig. 5.
 const APPROACH: f64 = 0.1;
 /// The numbers of rings of Fig. 5.
 const RINGS: [usize; 8] = [10, 20, 40, 80, 160, 320, 640, 1280];
-/// Of the contact this share counts in the differences of pressures: at an adhesive edge they have no bound.
+/// The share of the contact in which pressures are compared; at an adhesive edge their differences have no bound.
 const COMPARED: f64 = 0.9;
 
 /// The names of all figures, in the order of the paper.
@@ -76,7 +76,7 @@ pub const NAMES: [&str; 16] = [
     "fig-8b", "fig-9a", "fig-9b", "fig-10a", "fig-10b", "rate",
 ];
 
-/// All figures, in the order of the paper; `begin` is told the name of each before it is computed.
+/// All figures, in the order of the paper; `begin` is called with the name of each before it is computed.
 pub fn sheets(mut begin: impl FnMut(&str)) -> Result<Vec<PaperSheet>, PaperError> {
     let mut sheets = Vec::new();
     begin("Fig. 1");
@@ -110,7 +110,7 @@ fn curves(
     preset: &'static str,
     title: &str,
 ) -> Result<[PaperSheet; 2], PaperError> {
-    // The paper marks where the bodies come apart in this one.
+    // In this figure the paper marks where the bodies come apart.
     let has_ends = preset == "fig-8";
     let preset = shipped(preset, &[])?;
     let data = checked(&preset)?;
@@ -125,7 +125,7 @@ fn curves(
             case.basis.size(),
             significant(furthest(&figure), 2)
         );
-        // The paper has the contact radius upward.
+        // The paper plots the contact radius upward.
         let figure = if view == View::ForceRadius { figure.transposed() } else { figure };
         PaperSheet { name, figure, caption }
     };
@@ -135,7 +135,8 @@ fn curves(
     ])
 }
 
-/// Marks A, where the bodies come apart under a dead load, and B, where they do under displacement, and says where they are.
+/// Marks A, where the bodies come apart under a dead load, and B, where they do under displacement, and returns their
+/// coordinates as text.
 fn ends(data: &CurveData, view: View, figure: &mut Figure) -> String {
     let least = |of: fn(&CurvePoint) -> f64| data.points.iter().min_by(|a, b| of(a).total_cmp(&of(b)));
     let scale = Scale::of(data, Axes::Reduced);
@@ -153,7 +154,7 @@ fn ends(data: &CurveData, view: View, figure: &mut Figure) -> String {
     said
 }
 
-/// The largest distance of the computed curve from the exact one, in shares of the picture.
+/// The largest distance of the computed curve from the exact one, as a share of the picture.
 fn furthest(figure: &Figure) -> f64 {
     let share = |(x, y): &(f64, f64)| {
         let share = |[lo, hi]: [f64; 2], value: f64| (value - lo) / (hi - lo);
@@ -190,7 +191,7 @@ fn figure(data: &CurveData, view: View) -> Figure {
     subject.figure(view)
 }
 
-/// The quasi-static path of Fig. 9 and what it dissipates, in the exact basis, whose energies are good to rounding.
+/// The quasi-static path of Fig. 9 and its losses, in the exact basis, whose energies are accurate to rounding.
 fn losses(name: &'static str, control: Control) -> Result<PaperSheet, PaperError> {
     let word = if control == Control::Force { "force" } else { "displacement" };
     let set = [format!("path.control={word}"), "basis.kind=exact".to_owned()];
@@ -213,10 +214,10 @@ fn losses(name: &'static str, control: Control) -> Result<PaperSheet, PaperError
     Ok(PaperSheet { name, figure: figure(&data, View::Unloading), caption })
 }
 
-/// The largest pull of Fig. 9 over the rate of the pull, with what it comes to at low rates.
+/// The largest pull of Fig. 9 over the rate of the pull, with its limit at low rates.
 fn rates() -> Result<PaperSheet, PaperError> {
     const EXPONENT: f64 = 0.5;
-    // Twenty to a decade.
+    // Twenty per decade.
     let rates: Vec<f64> = (-160..=40).map(|k| pow(10.0, f64::from(k) / 20.0)).collect();
     let exponent = format!("edge.exponent={EXPONENT}");
     let preset = shipped("fig-9", &["basis.kind=exact", &exponent, "path.rate=1"])?;
@@ -225,7 +226,7 @@ fn rates() -> Result<PaperSheet, PaperError> {
     let wish = StudyWish { preset: preset.clone(), key: Key::Borrowed(RATE), column, values };
     let data = wish.run(threads(), &Unwatched, &mut |_| {}).ok_or(PaperError::Missing("the study"))?;
     let mut figure = study::of(&data, &preset);
-    // No preset is turned here.
+    // No preset is being varied here.
     figure.lines.retain(|line| line.role != Role::Level);
     figure.marks.clear();
     let found = |rate: f64| {
@@ -316,12 +317,12 @@ struct Pressure {
     exact: Vec<(f64, f64)>,
     /// P.
     force: f64,
-    /// The largest difference within `COMPARED`, in the exact pressures on the axis.
+    /// The largest difference within `COMPARED`, in units of the exact pressure on the axis.
     apart: f64,
 }
 
 impl Pressure {
-    /// At the equilibrium of contact radius `s`, in the problem's own units, which are reduced ones here.
+    /// At the equilibrium of contact radius `s`, in the problem's own units, which here are reduced ones.
     fn at(case: &Case, s: f64) -> Result<Self, PaperError> {
         let state = case.basis.equilibrium(&case.reduced, s).ok_or(PaperError::NoState(s))?;
         let judge = Judge::new(&case.reduced, &case.table);
@@ -335,14 +336,14 @@ impl Pressure {
             .filter(|(r, _)| *r <= COMPARED)
             .map(|(r, p)| (p - exact.pressure(s, r * s)).abs() / axis)
             .fold(0.0, f64::max);
-        // Up to the last radius of ours: beyond it the exact one falls without bound.
+        // Up to our last radius, beyond which the exact pressure falls without bound.
         let last = ours.last().map_or(0.0, |(r, _)| *r);
         let fine = (0..=400).map(|i| last * f64::from(i) / 400.0);
         let exact = fine.map(|r| (r, exact.pressure(s, r * s))).collect();
         Ok(Self { ours, exact, force: state.force, apart })
     }
 
-    /// The pressure of uniform rings as the steps it is.
+    /// The pressure of uniform rings, as the step function that it is.
     fn steps(&self, rings: usize) -> Vec<(f64, f64)> {
         let half = 0.5 / rings as f64;
         self.ours.iter().flat_map(|(r, p)| [(r - half, *p), (r + half, *p)]).collect()
@@ -379,7 +380,7 @@ fn errors() -> Result<PaperSheet, PaperError> {
             lines.push(Line::new(Role::Pin(2 * i + k + 1), format!("{title}, {quantity}"), points));
         }
     }
-    // Half-way on paper between the two lowest curves at the fewest rings, clear of all of them.
+    // Half-way on paper between the two lowest curves at the smallest number of rings, clear of all curves.
     let [fewest, most] = [RINGS[0], RINGS[RINGS.len() - 1]].map(|rings| rings as f64);
     let ends =
         |line: &Line| line.points.first().zip(line.points.last()).map(|(first, last)| [first.1, last.1]);
@@ -390,7 +391,7 @@ fn errors() -> Result<PaperSheet, PaperError> {
         let error = (lowest * next).sqrt();
         lines.push(Line::new(Role::Zero, "1/N", vec![(fewest, error), (most, error * fewest / most)]));
     }
-    // Those of JKR are the last two: contact radius, force.
+    // The last two curves are those of JKR: contact radius, force.
     let behind = match ends[..] {
         [.., radius, force] if force[1] > radius[1] => format!(
             " With adhesion our force converges slower than the contact radius here: its error is {} times as large in {fewest} \

@@ -1,4 +1,4 @@
-//! A view of a session as a figure for print: zoom, pins and theory with it.
+//! A view of a session as a figure for print, including zoom, pins and theory.
 
 use super::{Width, svg};
 use crate::explorer::{Model, View};

@@ -1,15 +1,15 @@
-//! A quantity of a sweep over its one axis: a mark for every row, joined where neighbours have a value; of an ensemble the median,
-//! and where half and nine tenths of the members are.
+//! A quantity of a sweep over its one axis: a mark for every row, joined where neighbours have a value. For an
+//! ensemble, the median and the ranges of half and of nine tenths of the members.
 
 use super::map::{MapChartError, distinct, is_logarithmic};
 use crate::figure::{Area, Axis, AxisScale, Figure, Line, Mark, Meaning, Role, Sign};
 use crate::sweep::SweepResults;
 use crate::sweep::record::statistic;
 
-/// The quantiles that bound the areas, the median between them.
+/// The quantiles that bound the areas, with the median between them.
 const QUANTILES: [&str; 5] = ["q05", "q25", "q50", "q75", "q95"];
 
-/// The figure of the statistics of `quantity`, which are in `results`, over the column `axis`.
+/// The figure of the statistics of `quantity` in `results` over the column `axis`.
 /// Errors: As [`figure`].
 fn bands(results: &SweepResults, axis: &str, quantity: &str) -> Result<Figure, MapChartError> {
     let names = QUANTILES.map(|of| statistic(quantity, of));
@@ -35,7 +35,7 @@ fn bands(results: &SweepResults, axis: &str, quantity: &str) -> Result<Figure, M
     let lines = (1..=5).map(|of| Line::new(Role::Body, "median", line(of))).collect();
     let mut figure = Figure::of(x, y, lines);
     figure.lines = figure.lines.drain(2..3).collect();
-    // A point without members parts the areas as it parts the line.
+    // A point without members splits the areas, as it splits the line.
     for part in points.split(|point| !point[3].is_finite()).filter(|part| part.len() > 1) {
         for (meaning, [lower, upper]) in [(Meaning::Most, [1, 5]), (Meaning::Half, [2, 4])] {
             let there = part.iter().map(|point| (point[0], point[lower]));
@@ -49,7 +49,7 @@ fn bands(results: &SweepResults, axis: &str, quantity: &str) -> Result<Figure, M
 }
 
 /// The figure of `quantity` in `results` over the column `axis`; a row without a value is a gap.
-/// Errors: [`MapChartError`] when there is no such column, one is not of numbers, or no row has a value.
+/// Errors: [`MapChartError`] when there is no such column, a column is not numeric, or no row has a value.
 pub fn figure(results: &SweepResults, axis: &str, quantity: &str) -> Result<Figure, MapChartError> {
     if results.has_statistics_of(quantity) {
         return bands(results, axis, quantity);
@@ -59,7 +59,7 @@ pub fn figure(results: &SweepResults, axis: &str, quantity: &str) -> Result<Figu
     let (along, found) = (next(), next());
     let mut points: Vec<(f64, f64)> =
         along.iter().zip(&found).filter_map(|(x, y)| Some(((*x)?, y.unwrap_or(f64::NAN)))).collect();
-    // A spec may name its values in any order, and drawn ones have none.
+    // A spec may list its values in any order, and drawn values have none.
     points.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let is_known = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
     if !points.iter().any(is_known) {
@@ -74,7 +74,7 @@ pub fn figure(results: &SweepResults, axis: &str, quantity: &str) -> Result<Figu
         [(axis, run), (quantity, counted)].map(|(name, run)| Axis::pure(results.title(name)).running(run));
     let mut figure = Figure { marks, ..Figure::of(x, y, vec![Line::new(Role::Body, "", points)]) };
     if results.is_random {
-        // Neighbours drawn at random differ in whatever else was drawn: no line joins them.
+        // Neighbours drawn at random also differ in whatever else was drawn, so no line joins them.
         figure.lines.clear();
     }
     Ok(figure)

@@ -1,4 +1,4 @@
-//! A figure as SVG. Axes, ticks, legend and the document itself are the library's; what the roles look like is ours.
+//! A figure as SVG. The library provides axes, ticks, legend and the document itself; the appearance of the roles is ours.
 
 use super::Width;
 use super::ink::{self, Stroke};
@@ -18,33 +18,33 @@ use std::sync::Arc;
 
 /// The library counts in units of 1/96 inch.
 const UNITS_PER_MM: f64 = 96.0 / 25.4;
-/// The library leaves more room below the axis and below the legend than paper has.
+/// The library leaves more room below the axis and below the legend than a figure on paper needs.
 const NEARER: f64 = 8.0;
 const CROPPED: f64 = 18.0;
-/// The height of the field of the axes over its width.
+/// The height of the plot area over its width.
 const ASPECT: f64 = 0.72;
-/// The same of a map, whose colours take of the width.
+/// The same for a map, whose colour scale takes some of the width.
 const MAP_ASPECT: f64 = 0.9;
-/// Letters of 8 and 7 points in the library's units.
+/// Font sizes of 8 and 7 points in the library's units.
 const LETTERS: u32 = 11;
 const SMALL_LETTERS: u32 = 9;
-/// The letters of a subscript.
+/// The font size of a subscript.
 const SUBSCRIPT: u32 = 8;
-/// Families with like widths, the first the one the library reckons with.
+/// Font families of similar width; the library's estimates assume the first.
 const FONT: &str = "DejaVu Sans, Verdana, Helvetica, Arial, sans-serif";
-/// How far a letter stands from its point, as a share of the field.
+/// The distance of a letter from its point, as a share of the plot area.
 const BESIDE: f64 = 0.035;
-/// The name of the field's outline in the document; the library's own would change from figure to figure.
+/// The name of the plot area's outline in the document; the library's own name would change from figure to figure.
 const FIELD: &str = "field";
 
-/// Axes whose largest number is in this range have plain numbers.
+/// An axis whose largest number is in this range has plain numbers.
 const PLAIN: (f64, f64) = (2e-3, 1e5);
 
-/// `figure` as an SVG document of this width; the height follows from what the legend needs.
+/// `figure` as an SVG document of this width; the height follows from the size of the legend.
 pub fn svg(figure: &Figure, width: Width) -> String {
     let wide = width.get() * UNITS_PER_MM;
     let legend = legend(figure);
-    // What surrounds the field does not depend on the height: one trial tells it.
+    // The surroundings of the plot area do not depend on the height, so one trial gives them.
     let trial = ComputedLayout::from_layout(&layout(figure, &legend, wide, wide));
     let high = (wide - trial.plot_height() + aspect(figure) * trial.plot_width()).round();
     let layout = layout(figure, &legend, wide, high);
@@ -54,18 +54,18 @@ pub fn svg(figure: &Figure, width: Width) -> String {
     finish(&scene, cropped(&legend))
 }
 
-/// The height of the field over its width: where both axes are the same length a circle is round.
+/// The height of the plot area over its width; where both axes have the same scale, a circle looks round.
 fn aspect(figure: &Figure) -> f64 {
     let [x, y] = [figure.bounds.x, figure.bounds.y].map(|[lo, hi]| hi - lo);
     if figure.is_even { (y / x).clamp(0.2, 2.0) } else { ASPECT }
 }
 
-/// What is taken off below the legend.
+/// The amount cropped below the legend.
 pub(super) fn cropped(legend: &[LegendEntry]) -> f64 {
     if legend.is_empty() { 0.0 } else { CROPPED }
 }
 
-/// The frame of a map over two ranges; the scale of its colours stands beside it, where it has one, over `values`.
+/// The frame of a map over two ranges, with the scale of its colours, where it has one, beside it over `values`.
 pub(super) fn frame(
     width: Width,
     titles: [String; 2],
@@ -92,7 +92,7 @@ pub(super) fn frame(
     beside_colors((wide - trial.plot_height() + MAP_ASPECT * trial.plot_width()).round())
 }
 
-/// A scene as a document in millimetres, `cropped` units off its lower end.
+/// A scene as a document in millimetres, with `cropped` units cut off at the bottom.
 pub(super) fn finish(scene: &Scene, cropped: f64) -> String {
     let own_name = scene.elements.iter().find_map(|element| match element {
         Primitive::ClipStart { id, .. } => Some(id.clone()),
@@ -103,12 +103,12 @@ pub(super) fn finish(scene: &Scene, cropped: f64) -> String {
         text = text.replace(&format!("\"{name}\""), &format!("\"{FIELD}\""));
         text = text.replace(&format!("#{name})"), &format!("#{FIELD})"));
     }
-    // The pull-off force of the smooth sphere, as formulas have it.
+    // The pull-off force of the smooth sphere, written as in formulas.
     text = subscripted(&text.replace("/Pc<", "/P_c<"));
     in_millimetres(&text, scene.width, scene.height - cropped)
 }
 
-/// The document with the indices of forces below the line: `P_min`, `P_c`.
+/// The document with the indices of forces as subscripts: `P_min`, `P_c`.
 fn subscripted(text: &str) -> String {
     const FORCE: &str = "P_";
     /// How far below the line, in the library's units.
@@ -122,7 +122,7 @@ fn subscripted(text: &str) -> String {
         let _ = write!(written, "P<tspan dy=\"{BELOW}\" font-size=\"{SUBSCRIPT}\">{index}</tspan>");
         let mut behind = rest.chars();
         if let Some(first) = behind.next().filter(|first| *first != '<') {
-            // Back to the line: the first letter takes all behind it along.
+            // Back to the baseline: the shift of the first letter applies to everything after it.
             let _ = write!(written, "<tspan dy=\"-{BELOW}\">{first}</tspan>{}", behind.as_str());
         } else {
             written.push_str(rest);
@@ -131,7 +131,7 @@ fn subscripted(text: &str) -> String {
     written
 }
 
-/// The document with its size on paper: the library knows only its own units.
+/// The document with its size on paper; the library knows only its own units.
 fn in_millimetres(text: &str, wide: f64, high: f64) -> String {
     let mm = |units: f64| (units / UNITS_PER_MM * 100.0).round() / 100.0;
     let (head, rest) = text.split_once('>').unwrap_or((text, ""));
@@ -192,7 +192,7 @@ fn layout(figure: &Figure, legend: &[LegendEntry], wide: f64, high: f64) -> Layo
     for mark in &figure.marks {
         let (x, y) = mark.at;
         if let Sign::Letter(letter) = mark.sign {
-            // To the right of its point, below it.
+            // To the right of its point and below it.
             let [right, down] = [bounds.x, bounds.y].map(|[lo, hi]| BESIDE * (hi - lo));
             let text = TextAnnotation::new(letter.to_string(), x + right, y - down);
             layout = layout.with_annotation(text.with_font_size(LETTERS));
@@ -212,10 +212,10 @@ fn layout(figure: &Figure, legend: &[LegendEntry], wide: f64, high: f64) -> Layo
     layout
 }
 
-/// One format for all numbers of an axis: plain, or with the power of ten of the largest.
+/// One format for all numbers of an axis: plain, or with the power of ten of the largest one.
 fn ticks([lo, hi]: [f64; 2]) -> TickFormat {
     let largest = lo.abs().max(hi.abs());
-    // What is left of a zero by rounding is one.
+    // A remainder of rounding is shown as zero.
     let clean = move |x: f64| if x.abs() < 1e-9 * largest { 0.0 } else { x };
     if largest == 0.0 || (PLAIN.0..PLAIN.1).contains(&largest) {
         return TickFormat::Custom(Arc::new(move |x| printed(&short(clean(x), 6))));
@@ -227,12 +227,12 @@ fn ticks([lo, hi]: [f64; 2]) -> TickFormat {
     }))
 }
 
-/// The same for an axis of counts: a tick between two whole numbers has no number.
+/// The same for an axis of counts: a tick between two whole numbers has no label.
 fn whole() -> TickFormat {
     TickFormat::Custom(Arc::new(|x| if (x - x.round()).abs() < 1e-6 { short(x, 6) } else { String::new() }))
 }
 
-/// The same for an axis of equal factors.
+/// The same for a logarithmic axis.
 fn factors([lo, hi]: [f64; 2]) -> TickFormat {
     if PLAIN.0 <= lo && hi < PLAIN.1 {
         return TickFormat::Custom(Arc::new(|x| short(x, 3)));
@@ -244,7 +244,7 @@ fn factors([lo, hi]: [f64; 2]) -> TickFormat {
     }))
 }
 
-/// A text as it stands: to the library a dollar sign begins a formula, and no document holds control characters.
+/// A text as it is: the library takes a dollar sign as the start of a formula, and no document may contain control characters.
 pub(super) fn plain(text: &str) -> String {
     text.chars().filter(|c| !c.is_control()).collect::<String>().replace('$', "\\$")
 }
@@ -254,7 +254,7 @@ pub(super) fn entry(name: &str, color: &str, shape: LegendShape, dashes: &str) -
     LegendEntry { label: plain(name), color: color.to_owned(), shape, dasharray }
 }
 
-/// Every name once, the lines before the signs; a sign that is out of sight needs none.
+/// Every name once, lines before marks; a mark out of sight needs none.
 fn legend(figure: &Figure) -> Vec<LegendEntry> {
     let mut named: Vec<&Line> = figure.lines.iter().filter(|line| !line.name.is_empty()).collect();
     // The computed curve first, as on the screen.
@@ -289,7 +289,7 @@ fn legend(figure: &Figure) -> Vec<LegendEntry> {
     entries
 }
 
-/// What a limit point of the control is called: by what is controlled, where the limit points of the other one tell it.
+/// The name of a limit point of the control: by what is controlled, where limit points of the other control make that necessary.
 fn own_limit(figure: &Figure) -> &'static str {
     let has = |wanted: Control| figure.marks.iter().any(|mark| mark.sign == Sign::OtherLimit(wanted));
     match (has(Control::Force), has(Control::Displacement)) {
@@ -299,19 +299,19 @@ fn own_limit(figure: &Figure) -> &'static str {
     }
 }
 
-/// The hatches of an area.
+/// The hatching of an area.
 const PATTERN: FillPattern = FillPattern::DiagonalForward;
-/// The tint under the hatches of an energy.
+/// The tint under the hatching of an energy.
 const LOST: &str = "#f3d9e6";
 /// The tint of contact, without hatches.
 const CONTACT: &str = "#b9d7ea";
 /// The tint of contact in which the bodies pull.
 const TENSION: &str = "#f6cfb5";
-/// Where 90 % of an ensemble are, and half of it: apart in a grey print.
+/// The ranges of 90 % and of half of an ensemble; distinguishable in a grey print.
 const MOST: &str = "#d9e8f3";
 const HALF: &str = "#93bedd";
 
-/// The filling of an area that is not hatched, and the ground of the hatches.
+/// The fill of an area without hatching, or the background of the hatching.
 fn tint(meaning: Meaning) -> &'static str {
     match meaning {
         Meaning::Lost => LOST,
@@ -327,15 +327,15 @@ pub(super) fn hatched(name: &str) -> LegendEntry {
 }
 
 fn plots(figure: &Figure) -> Vec<Plot> {
-    // The dots of the exact solution stand on the line that they agree with.
+    // The dots of the exact solution lie on the line that they agree with.
     let (exact, others): (Vec<&Line>, Vec<&Line>) =
         figure.lines.iter().partition(|line| line.role == Role::Exact);
-    // Measured points stand behind everything.
+    // Measured points are drawn behind everything.
     let is_measured = |mark: &&Mark| matches!(mark.sign, Sign::Measured { .. });
-    // Numbers of snaps are written, not stamped.
+    // Numbers of snaps are written, not drawn as marks.
     let stamped = figure.marks.iter().filter(|mark| !matches!(mark.sign, Sign::Snaps(_)));
     let (behind, above): (Vec<Mark>, Vec<Mark>) = stamped.partition(is_measured);
-    // The small signs of the other control over those of its own: both are seen where they meet.
+    // The small marks of the other control are drawn over those of the current one, so that both are visible where they meet.
     let (others_limits, above): (Vec<Mark>, Vec<Mark>) =
         above.into_iter().partition(|mark| matches!(mark.sign, Sign::OtherLimit(_)));
     let above: Vec<Mark> = above.into_iter().chain(others_limits).collect();
@@ -344,7 +344,7 @@ fn plots(figure: &Figure) -> Vec<Plot> {
     plots.extend(others.into_iter().chain(exact).flat_map(line));
     plots.extend(of(&above));
     if plots.is_empty() {
-        // Without anything to draw the library draws no axes either.
+        // With nothing to draw, the library draws no axes either.
         plots.push(LinePlot::new().into());
     }
     plots
@@ -384,7 +384,7 @@ pub(super) fn outline(points: &[(f64, f64)], field: &ComputedLayout) -> String {
     data
 }
 
-/// Areas of this path data, hatched on a tint.
+/// Areas with this path data, hatched over a tint.
 pub(super) fn hatches(areas: impl Iterator<Item = String>, tint: &str, scene: &mut Scene) -> Vec<Primitive> {
     scene.defs.push(PATTERN.svg_def().to_owned());
     let fills = [Color::from(tint), Color::from(format!("url(#{})", PATTERN.id()))];
@@ -402,12 +402,12 @@ pub(super) fn filled(d: String, fill: Color) -> Primitive {
     }))
 }
 
-/// Puts the areas below the lines.
+/// Inserts the areas below the lines.
 fn hatch(figure: &Figure, field: &ComputedLayout, scene: &mut Scene) {
     let begin = scene.elements.iter().position(|element| matches!(element, Primitive::ClipStart { .. }));
     let (Some(begin), false) = (begin, figure.areas.is_empty()) else { return };
     let of = |meaning| figure.areas.iter().filter(move |area| area.meaning == meaning);
-    // The last lies over those before it.
+    // A later area covers the earlier ones.
     let plain = [Meaning::Contact, Meaning::Tension, Meaning::Most, Meaning::Half].into_iter().flat_map(of);
     let mut paths: Vec<Primitive> =
         plain.map(|area| filled(outline(&area.outline, field), tint(area.meaning).into())).collect();
@@ -501,7 +501,7 @@ mod tests {
         let close = figure.across("0.5..".parse().unwrap()).unwrap();
         assert_eq!(names(&close), ["curve", "limit point"]);
         assert_eq!(names(&close.clone().naming("A 2")), ["A 2, curve", "limit point"]);
-        // Beside those of the force they are those of the approach.
+        // Beside those of the force, they are those of the approach.
         let force = Mark { sign: Sign::OtherLimit(Control::Force), at: (0.9, 0.9) };
         let both = Figure { marks: [vec![force], close.marks.clone()].concat(), ..close };
         assert_eq!(names(&both), ["curve", "limit of P", "limit of δ"]);

@@ -1,12 +1,12 @@
-//! The data of a figure as CSV: what a person needs to draw it again in another program.
+//! The data of a figure as CSV: what is needed to draw it again in another program.
 
 use super::ink;
 use crate::figure::Figure;
 
-/// The first columns of every table; behind them are x and y, named as the axes.
+/// The first columns of every table, followed by x and y, which are named as the axes.
 const FIRST: [&str; 2] = ["name", "curve"];
 
-/// One row a point: the curve's name, its number among the curves, x, y; an empty x and y break a curve.
+/// One row per point: the curve's name, its number among the curves, x, y; an empty x and y break a curve.
 pub fn csv(figure: &Figure) -> Result<String, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record([FIRST[0], FIRST[1], &figure.x.title(), &figure.y.title()])?;

@@ -2,12 +2,12 @@
 
 use crate::mend::Mend;
 
-/// Why a figure has no file of this name.
+/// Why no figure can be written to a file of this name.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FormatError {
     #[error("{0}: a figure's file ends in .svg, .png or .pdf")]
     Ending(String),
-    /// This build was made without it.
+    /// This build does not include the format.
     #[error("this build writes no {name} (feature `{feature}` is off); use .svg")]
     Missing { name: &'static str, feature: &'static str },
 }
@@ -23,7 +23,7 @@ impl Mend for FormatError {
 pub enum DrawError {
     #[error("the figure cannot be read back: {0}")]
     Document(String),
-    /// It has no area, or too large a one.
+    /// The figure has no area, or too large a one.
     #[error("a figure of {0} x {1} cannot be drawn")]
     Size(f32, f32),
     #[error("the figure cannot be written as {format}: {cause}")]

@@ -2,11 +2,11 @@
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | `tree` | the SVG read back, its letters in the bundled font (features `png`, `pdf`) |
-//! | `png` | its pixels (feature `png`) |
+//! | `tree` | the SVG parsed again, its letters in the bundled font (features `png`, `pdf`) |
+//! | `png` | the pixels (feature `png`) |
 //! | `pdf` | a page as large as the figure (feature `pdf`) |
 //!
-//! What a build lacks is refused by name: a figure is always there as SVG.
+//! A format that a build lacks is refused by name; SVG is always available.
 
 mod error;
 #[cfg(feature = "pdf")]
@@ -25,14 +25,14 @@ use std::path::Path;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PictureFormat {
     Svg,
-    /// Pixels, 384 an inch.
+    /// Pixels, 384 per inch.
     Png,
-    /// A page, its letters in a font of its own.
+    /// A page with its letters in an embedded font.
     Pdf,
 }
 
 impl PictureFormat {
-    /// The endings of the files that this build writes.
+    /// The extensions of the files that this build writes.
     pub const ENDINGS: &'static [&'static str] = if cfg!(feature = "pdf") {
         &["svg", "png", "pdf"]
     } else if cfg!(feature = "png") {
@@ -41,7 +41,7 @@ impl PictureFormat {
         &["svg"]
     };
 
-    /// The format that the ending of `path` names.
+    /// The format named by the extension of `path`.
     pub fn of(path: &Path) -> Result<Self, FormatError> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         let missing = |name, feature| Err(FormatError::Missing { name, feature });
@@ -55,7 +55,7 @@ impl PictureFormat {
         }
     }
 
-    /// The file of `svg`, a figure of this program.
+    /// The bytes of the file for `svg`, a figure of this program.
     pub fn bytes(self, svg: &str) -> Result<Vec<u8>, DrawError> {
         match self {
             Self::Svg => Ok(svg.as_bytes().to_vec()),

@@ -1,4 +1,4 @@
-//! A figure as a page of a PDF: its lines stay lines, its letters letters in an embedded font.
+//! A figure as a page of a PDF: lines stay lines, and letters stay letters, in an embedded font.
 
 use super::error::DrawError;
 use krilla::Document;
@@ -8,15 +8,15 @@ use krilla::page::PageSettings;
 use krilla_svg::{SurfaceExt, SvgSettings};
 use resvg::usvg;
 
-/// Points of a unit of 1/96 inch.
+/// Points per unit of 1/96 inch.
 const POINTS: f32 = 0.75;
 
-/// `tree` as a PDF of one page that is as large as the figure on paper.
+/// `tree` as a PDF with one page, as large as the figure on paper.
 pub(super) fn pdf(tree: &usvg::Tree) -> Result<Vec<u8>, DrawError> {
     let [width, height] = [tree.size().width(), tree.size().height()].map(|side| side * POINTS);
     let size = Size::from_wh(width, height).ok_or(DrawError::Size(width, height))?;
     let mut document = Document::new();
-    // No date: the same figure is the same file.
+    // No date, so that the same figure gives the same file.
     document.set_metadata(Metadata::new().creator(format!("pulloff {}", env!("CARGO_PKG_VERSION"))));
     let mut page = document.start_page_with(PageSettings::new(size));
     let mut surface = page.surface();

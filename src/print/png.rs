@@ -3,14 +3,14 @@
 use super::error::DrawError;
 use resvg::{tiny_skia, usvg};
 
-/// Pixels of a unit of 1/96 inch: 384 dots an inch, above the 300 that journals ask of figures with letters.
+/// Pixels per unit of 1/96 inch: 384 dots per inch, above the 300 that journals require for figures with letters.
 const SCALE: f32 = 4.0;
-/// The same as the file says it: pixels a metre, 384 / 0.0254.
+/// The same value as stored in the file: pixels per metre, 384 / 0.0254.
 const PER_METRE: u32 = 15_118;
-/// The most pixels a side: a figure of the widest paper stays below.
+/// The largest number of pixels per side; a figure on the widest paper stays below it.
 const MOST: f32 = 20_000.0;
 
-/// `tree` as PNG with 384 dots an inch.
+/// `tree` as PNG at 384 dots per inch.
 pub(super) fn png(tree: &usvg::Tree) -> Result<Vec<u8>, DrawError> {
     let [width, height] = [tree.size().width(), tree.size().height()].map(|side| (side * SCALE).ceil());
     let too_large = DrawError::Size(width, height);
@@ -27,7 +27,7 @@ pub(super) fn png(tree: &usvg::Tree) -> Result<Vec<u8>, DrawError> {
         .map_err(|error| DrawError::Refused { format: "PNG", cause: error.to_string() })
 }
 
-/// The pixels as a file that says how large they are on paper.
+/// The pixels as a file that states their size on paper.
 fn encoded(width: u32, height: u32, rgba: &[u8]) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);

@@ -1,9 +1,9 @@
-//! Writing a file whole or not at all.
+//! Writes a file as a whole or not at all.
 //!
-//! Links are followed; a temporary file is made beside the target with its permissions, written, synced and read
-//! back; the target is looked at once more; then the rename, and the folder is synced. At every moment the name
-//! holds the old content or the new, complete; after an error the temporary is gone and the old file untouched. A
-//! temporary left by a kill is removed by the next save in the folder.
+//! Links are followed. A temporary file is made beside the target with its permissions, written, synced and read back;
+//! then the target is checked once more, the file is renamed, and the folder is synced. At every moment the name holds
+//! the complete old content or the complete new content. After an error the temporary is gone and the old file
+//! untouched. A temporary left by a kill is removed by the next save in the folder.
 
 use super::file::{Fingerprint, kind_of, read_bytes};
 use super::temporary;
@@ -19,34 +19,34 @@ use std::sync::RwLockReadGuard;
 use tempfile::NamedTempFile;
 use thiserror::Error;
 
-/// How many links in a row are followed; the kernel's own limit.
+/// The largest number of successive links that are followed; the kernel's own limit.
 const LINKS: usize = 40;
 
-/// What to do about a file that is there already.
+/// What to do about an existing file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Overwrite {
     Never,
-    /// Replace it only if it is the file that was loaded.
+    /// Replace it only if it is still the file that was loaded.
     IfUnchanged(Fingerprint),
     Always,
 }
 
-/// Why a file was not written. Paths in it are already safe to show.
+/// Why a file was not written. Paths in the error are already safe to show.
 #[derive(Debug, Error)]
 pub enum WriteError {
-    /// There is a file, and it is not to be replaced.
+    /// The file exists and must not be replaced.
     #[error("{path}: exists already")]
     Exists { path: String },
-    /// The file is not the one that was loaded.
+    /// The file is no longer the one that was loaded.
     #[error("{path}: was changed by someone else since it was read")]
     Changed { path: String },
-    /// The file is read-only: its owner does not want it changed, or it is not ours to change.
+    /// The file is read-only: its owner does not want it changed, or we may not change it.
     #[error("{path}: is read-only, and is not replaced")]
     ReadOnly { path: String },
     /// A folder, a pipe, a device.
     #[error("{path}: is {what}, not a regular file")]
     NotRegular { path: String, what: &'static str },
-    /// What was read back is not what it should be.
+    /// The content read back differs from what was written.
     #[error("{path}: what was written does not read back: {why}")]
     NotReadBack { path: String, why: String },
     #[error("{path}: another pulloff is saving in this folder; try again")]
@@ -69,7 +69,7 @@ impl Mend for WriteError {
     }
 }
 
-/// What the system says of a write, where its own words are too few.
+/// The system's message about a failed write, completed where it is too brief.
 #[must_use]
 pub fn explained(cause: io::Error) -> io::Error {
     match cause.kind() {
@@ -80,14 +80,14 @@ pub fn explained(cause: io::Error) -> io::Error {
     }
 }
 
-/// Writes `bytes` to `path` whole or not at all, and says how to recognise the file written.
+/// Writes `bytes` to `path` as a whole or not at all, and returns the fingerprint of the written file.
 /// Errors: The file must not be replaced, or cannot be written; nothing has changed then. Only if the last step fails,
-/// syncing the folder, is the new file in its place, and may be gone after a power loss.
+/// syncing the folder, is the new file in its place, and it may be lost in a power failure.
 pub fn write_atomically(path: &Path, bytes: &[u8], overwrite: Overwrite) -> Result<Fingerprint, WriteError> {
     write_verified(path, bytes, overwrite, |_| Ok(()))
 }
 
-/// As [`write_atomically`], after `verify` approved what was read back from the disk.
+/// As [`write_atomically`], once `verify` has approved what was read back from the disk.
 pub fn write_verified(
     path: &Path,
     bytes: &[u8],
@@ -129,14 +129,14 @@ pub fn write_filled<E: From<WriteError>>(
     Ok(())
 }
 
-/// A temporary file beside the one whose place it will take.
+/// A temporary file beside the file that it will replace.
 struct Begun<'a> {
     path: &'a Path,
     target: PathBuf,
     overwrite: Overwrite,
     folder: File,
     temporary: NamedTempFile,
-    /// Given up last: the end of the process waits until the temporary is gone.
+    /// Dropped last: the end of the process waits until the temporary is gone.
     writing: RwLockReadGuard<'static, ()>,
 }
 
@@ -154,13 +154,13 @@ impl<'a> Begun<'a> {
     }
 
     fn put(self) -> Result<File, WriteError> {
-        // What is bound first is dropped last.
+        // The first binding is dropped last.
         let Self { writing: _writing, path, target, overwrite, folder, temporary } = self;
         let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
-        // Someone may have come in between; from here to the rename is as short as it can be.
+        // Another process may have written in between; from here to the rename, the time is as short as it can be.
         let old = guard(path, &target, overwrite)?;
         let file = if old.is_none() {
-            // Nothing was there: then nothing is replaced, even if something appears now.
+            // Nothing was there, so nothing is replaced, even if something appears now.
             temporary.persist_noclobber(&target)
         } else {
             temporary.persist(&target)
@@ -174,7 +174,7 @@ impl<'a> Begun<'a> {
     }
 }
 
-/// The file that a path names after all links, whether or not it exists.
+/// The file that a path names after following all links, whether or not it exists.
 pub fn follow(path: &Path) -> Result<PathBuf, WriteError> {
     let failed = |cause| WriteError::Io { path: show_path(path), doing: "follow its links", cause };
     let mut target = path.to_owned();
@@ -193,7 +193,7 @@ pub fn follow(path: &Path) -> Result<PathBuf, WriteError> {
     Err(failed(io::Error::from(io::ErrorKind::TooManyLinks)))
 }
 
-/// The folder a file is in.
+/// The folder that contains a file.
 #[must_use]
 pub fn folder_of(path: &Path) -> &Path {
     match path.parent() {
@@ -202,12 +202,12 @@ pub fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Looks at what is there, and refuses what must not be replaced.
+/// Checks what is there, and refuses what must not be replaced.
 fn guard(path: &Path, target: &Path, overwrite: Overwrite) -> Result<Option<Metadata>, WriteError> {
     let shown = || show_path(path);
     let metadata = match target.symlink_metadata() {
         Ok(metadata) => metadata,
-        // A file that is gone is not overwritten by writing it again.
+        // Writing a file that is gone again overwrites nothing.
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         Err(cause) => return Err(WriteError::Io { path: shown(), doing: "look at it", cause }),
     };
@@ -228,9 +228,9 @@ fn guard(path: &Path, target: &Path, overwrite: Overwrite) -> Result<Option<Meta
     Ok(Some(metadata))
 }
 
-/// Refuses a file that is read-only: a rename would go through all the same, against what its owner wants.
+/// Refuses a read-only file: a rename would succeed anyway, against its owner's wishes.
 fn writable(path: &Path, target: &Path, metadata: &Metadata) -> Result<(), WriteError> {
-    // Nothing is forbidden to root, and its owner may want it unchanged all the same.
+    // Nothing is forbidden to root, but the owner may still want the file unchanged.
     let is_marked = metadata.mode() & 0o222 == 0;
     if is_marked || access(target, Access::WRITE_OK) == Err(Errno::ACCESS) {
         return Err(WriteError::ReadOnly { path: show_path(path) });
@@ -238,8 +238,8 @@ fn writable(path: &Path, target: &Path, metadata: &Metadata) -> Result<(), Write
     Ok(())
 }
 
-/// Looks, before anything is computed, whether `path` could be written: nothing is there that must not be replaced, and its
-/// folder takes a file.
+/// Checks, before anything is computed, whether `path` could be written: that nothing is there that must not be
+/// replaced, and that its folder accepts a file.
 /// Errors: As [`write_atomically`], which may still fail for other reasons.
 pub fn check(path: &Path, overwrite: Overwrite) -> Result<(), WriteError> {
     let target = follow(path)?;
@@ -257,7 +257,7 @@ pub fn check(path: &Path, overwrite: Overwrite) -> Result<(), WriteError> {
     access(folder, Access::WRITE_OK | Access::EXEC_OK).map_err(|errno| failed(errno.into()))
 }
 
-/// Makes the rename last. File systems that cannot sync a folder have their own ways.
+/// Makes the rename durable. Not every file system can sync a folder; that is no error.
 fn sync_folder(folder: &File) -> io::Result<()> {
     match folder.sync_all() {
         Err(error) if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => {
@@ -335,7 +335,7 @@ mod tests {
         let first = write_atomically(&path, b"one", Overwrite::Never).unwrap();
         let never = write_atomically(&path, b"two", Overwrite::Never).unwrap_err();
         assert!(matches!(never, WriteError::Exists { .. }), "{never}");
-        // The fingerprint of a write is good for the next one.
+        // The fingerprint of a write is valid for the next one.
         let second = write_atomically(&path, b"two", Overwrite::IfUnchanged(first)).unwrap();
         let stale = write_atomically(&path, b"three", Overwrite::IfUnchanged(first)).unwrap_err();
         assert!(matches!(stale, WriteError::Changed { .. }), "{stale}");
@@ -344,7 +344,7 @@ mod tests {
         assert!(matches!(changed, WriteError::Changed { .. }), "{changed}");
         assert_eq!(fs::read(&path).unwrap(), b"someone else's longer text");
         write_atomically(&path, b"four", Overwrite::Always).unwrap();
-        // A file that is gone is written anew.
+        // A file that is gone is written again.
         fs::remove_file(&path).unwrap();
         write_atomically(&path, b"five", Overwrite::IfUnchanged(second)).unwrap();
         fs::set_permissions(&path, Permissions::from_mode(0o444)).unwrap();
@@ -378,7 +378,7 @@ mod tests {
         fs::write(&path, "old").unwrap();
         let refused = write_verified(&path, b"torn", Overwrite::Always, |_| Err("no preset".to_owned()));
         assert!(refused.unwrap_err().to_string().ends_with("does not read back: no preset"));
-        // Someone writes between our writing and our rename.
+        // Another process writes between our writing and our rename.
         let fingerprint = read_bytes(&path, 100).unwrap().1;
         let raced = write_verified(&path, b"ours", Overwrite::IfUnchanged(fingerprint), |_| {
             fs::write(&path, "theirs").map_err(|e| e.to_string())
@@ -402,7 +402,7 @@ mod tests {
     #[test]
     fn a_read_only_folder_leaves_the_old_file() {
         if rustix::process::geteuid().is_root() {
-            return; // Permissions do not bind root.
+            return; // Root ignores permissions.
         }
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a");

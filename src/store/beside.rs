@@ -1,4 +1,4 @@
-//! The data of a profile and a measured curve copied beside a preset, so that both can be handed on together.
+//! Copies the data of a profile and a measured curve beside a preset, so that they can be passed on together.
 
 use super::atomic::{Overwrite, WriteError, write_atomically};
 use super::data::load;
@@ -21,7 +21,7 @@ pub enum DataError {
     File(#[from] FileError),
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// They are gone or others than those in the preset, in words.
+    /// They are gone, or differ from those in the preset; the reason in words.
     #[error("{0}")]
     Other(String),
 }
@@ -42,9 +42,9 @@ impl From<String> for DataError {
     }
 }
 
-/// `preset` with its data in `folder`, where they are copied under their own names. Data there already stay if they are the
-/// same; another file is never replaced. Presets without a file of their own are as they were.
-/// Errors: They are gone, others than those in the preset, or another file has the name.
+/// `preset` with its data in `folder`, where they are copied under their own names. Data already there are kept if they
+/// are the same; another file is never replaced. Presets without a file of their own are unchanged.
+/// Errors: The data are gone, differ from those in the preset, or another file has their name.
 pub fn copy_beside(folder: &Path, preset: &Preset) -> Result<Preset, DataError> {
     let mut copy = preset.clone();
     if let Shape::Profile(measured) = &preset.gap
@@ -114,12 +114,12 @@ mod tests {
         let (source, _, saved) = store.save_with_data("mine", &preset, None, Overwrite::Never).unwrap();
         assert_eq!(fs::read_to_string(at("presets/scan.dat")).unwrap(), rows);
         assert_eq!(saved.get("gap.file").unwrap().to_string(), "scan.dat");
-        // Without the data it came from it is the same preset.
+        // It is the same preset without the data that it came from.
         fs::rename(at("data"), at("gone")).unwrap();
         assert_eq!(store.load(&source, &[] as &[&str]).unwrap().preset, saved);
         let error = store.save_with_data("other", &preset, None, Overwrite::Never).unwrap_err().to_string();
         assert!(error.contains("cannot read"), "{error}");
-        // The same data may be there already, others may not, nor may they have changed meanwhile.
+        // The same data may already be there; other data may not, and they must not have changed meanwhile.
         fs::rename(at("gone"), at("data")).unwrap();
         store.save_with_data("other", &preset, None, Overwrite::Never).unwrap();
         let taken = store.save_with_data("mine", &preset, None, Overwrite::Never).unwrap_err().to_string();
@@ -132,7 +132,7 @@ mod tests {
         fs::write(at("data/scan.dat"), rows.replace("8 0.032", "8 0.033")).unwrap();
         let error = store.save_with_data("third", &preset, None, Overwrite::Never).unwrap_err().to_string();
         assert!(error.contains("other rows"), "{error}");
-        // Data of the program need no copy.
+        // Data that come with the program need no copy.
         let (_, _, saved) = store.save_with_data("fourth", &shipped, None, Overwrite::Never).unwrap();
         assert_eq!(saved, shipped);
     }

@@ -1,4 +1,4 @@
-//! The files of profiles: the engine reads no disk, and asks here for the rows that a preset names.
+//! The files of profiles: the engine does not read the disk, and gets the rows that a preset names from here.
 
 use super::file::{FileError, read_bytes};
 use crate::mend::Mend;
@@ -13,10 +13,10 @@ use pulloff_engine::text::{is_unsafe, quote, show_path};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// The files of this program's presets: its own data, and the disk.
+/// The sources of the presets' files: the program's own data, and the disk.
 pub const FILES: Files = Files { rows: load, points };
 
-/// Why a file gives no profile. Names and paths in it are safe to show.
+/// Why a file yields no profile. Names and paths in the error are safe to show.
 #[derive(Debug, Error)]
 pub enum ProfileError {
     #[error(transparent)]
@@ -25,12 +25,12 @@ pub enum ProfileError {
     Text { path: String, cause: TextError },
 }
 
-/// Why there is no file of a measured curve. Names and paths in it are safe to show.
+/// Why there is no file with a measured curve. Names and paths in the error are safe to show.
 #[derive(Debug, Error)]
 pub enum PointsFileError {
     #[error(transparent)]
     File(#[from] FileError),
-    /// None that comes with the program, in words.
+    /// It is not among those that come with the program; the reason in words.
     #[error("{0}")]
     Shipped(String),
 }
@@ -50,7 +50,7 @@ pub fn read_profile(path: &Path) -> Result<ProfileColumns, ProfileError> {
     parse(&bytes).map_err(|cause| ProfileError::Text { path: show_path(path), cause })
 }
 
-/// The file `path` of a measured curve, or the one of that name that comes with the program; it is not taken apart yet.
+/// The file `path` with a measured curve, or the shipped one of that name; it is not parsed yet.
 pub fn read_points(path: &Path) -> Result<PointsFile, PointsFileError> {
     let bytes = match path.to_str().and_then(curve) {
         Some(text) => text.map_err(PointsFileError::Shipped)?.as_bytes().to_vec(),
@@ -68,7 +68,7 @@ fn points(folder: Option<&Path>, name: &str) -> Result<Vec<u8>, String> {
     Ok(read_bytes(&place(folder, name)?, LARGEST).map_err(|error| words(&error))?.0)
 }
 
-/// Where the file `name` lies.
+/// The path of the file `name`.
 fn place(folder: Option<&Path>, name: &str) -> Result<PathBuf, String> {
     if name.is_empty() || name.chars().any(is_unsafe) {
         return Err(format!("\"{}\" is no name of a file", quote(name)));
@@ -76,8 +76,8 @@ fn place(folder: Option<&Path>, name: &str) -> Result<PathBuf, String> {
     Ok(folder.map_or_else(|| PathBuf::from(name), |folder| folder.join(name)))
 }
 
-/// Reads the file `name`, relative to `folder` or to the current folder; data that come with the program by a name that
-/// begins with [`SHIPPED_DATA`].
+/// Reads the file `name`, relative to `folder` or to the current folder; a name that begins with [`SHIPPED_DATA`] means
+/// data that come with the program.
 /// Errors: Why there are no rows, in words that are safe to show.
 pub fn load(folder: Option<&Path>, name: &str) -> Result<ProfileRows, String> {
     if name.starts_with(SHIPPED_DATA) {
@@ -87,17 +87,17 @@ pub fn load(folder: Option<&Path>, name: &str) -> Result<ProfileRows, String> {
     rows(folder, name, columns)
 }
 
-/// Reads a preset, whose files are relative to the current folder; `name` names the text in messages.
+/// Reads a preset whose files are relative to the current folder; `name` is what messages call the text.
 pub fn read(name: &str, text: &str) -> Result<Preset, ReadError> {
     read_with(name, text, &[] as &[&str])
 }
 
-/// Reads a preset and lays `KEY=VALUE` assignments over it, in order.
+/// Reads a preset and applies `KEY=VALUE` assignments to it, in order.
 pub fn read_with<S: AsRef<str>>(name: &str, text: &str, assignments: &[S]) -> Result<Preset, ReadError> {
     read_in(None, name, text, assignments)
 }
 
-/// Reads a preset whose files are relative to `folder`; those of assignments, to the current folder.
+/// Reads a preset whose files are relative to `folder`; files named in assignments are relative to the current folder.
 pub fn read_in<S: AsRef<str>>(
     folder: Option<&Path>,
     name: &str,
@@ -142,7 +142,7 @@ mod tests {
             let message = read(&text.replace(old, new), &[]).unwrap_err().to_string();
             assert!(message.starts_with(expected), "{message}");
         }
-        // In reduced units the unit of the radii is that of all lengths, and that is said.
+        // In reduced units the unit of the radii is that of all lengths, and a message says so.
         let reduced = read(&text.replace("scan.csv", "units.csv"), &[]).unwrap();
         assert!((reduced.gap.radius_of_curvature().unwrap() - 5e5).abs() < 1.0);
         let notes = reduced.gap.notes(&reduced.units);

@@ -1,4 +1,4 @@
-//! Reading regular files of bounded size, and recognising them again.
+//! Reads regular files of bounded size, and recognises them later.
 
 use crate::mend::Mend;
 use pulloff_engine::text::show_path;
@@ -13,7 +13,7 @@ use thiserror::Error;
 /// The largest preset file, in bytes.
 pub const LARGEST: u64 = 1 << 20;
 
-/// A file as it was at one moment: size, time, inode, content. Equal only if nothing changed.
+/// A file as it was at one moment: size, time, inode, content. Equal only if nothing has changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fingerprint {
     length: u64,
@@ -25,11 +25,11 @@ pub struct Fingerprint {
 }
 
 impl Fingerprint {
-    /// Of a file with this metadata and content.
+    /// The fingerprint of a file with this metadata and content.
     #[must_use]
     pub fn new(metadata: &Metadata, content: &[u8]) -> Self {
-        // Saved with sessions: should another build of the program hash otherwise, the file counts as changed, and the
-        // person is asked before it is replaced.
+        // Saved with sessions: if another build of the program hashes differently, the file counts as changed, and the
+        // user is asked before it is replaced.
         let mut hasher = DefaultHasher::new();
         hasher.write(content);
         Self {
@@ -43,7 +43,7 @@ impl Fingerprint {
     }
 }
 
-/// Why a file cannot be read. Names and paths in it are safe to show.
+/// Why a file cannot be read. Names and paths in the error are safe to show.
 #[derive(Debug, Error)]
 pub enum FileError {
     #[error("{}: cannot read: {cause}", .path)]
@@ -52,13 +52,13 @@ pub enum FileError {
     NotRegular { path: String, what: &'static str },
     #[error("{path}: has {bytes} bytes, more than the {limit} that are read")]
     TooLarge { path: String, bytes: u64, limit: u64 },
-    /// A pipe or a device that gives more than a preset can be.
+    /// A pipe or device that yields more than any preset could.
     #[error("{path}: has more than the {limit} bytes that are read")]
     Endless { path: String, limit: u64 },
     #[error("{path}: is not UTF-8 text (byte {at} on)")]
     NotText {
         path: String,
-        /// The first bad byte, from 0.
+        /// The first invalid byte, counted from 0.
         at: usize,
     },
 }
@@ -74,7 +74,7 @@ impl Mend for FileError {
     }
 }
 
-/// What a file that is not regular is.
+/// The kind of a file that is not regular.
 #[must_use]
 pub fn kind_of(metadata: &Metadata) -> &'static str {
     let kind = metadata.file_type();
@@ -91,9 +91,9 @@ pub fn kind_of(metadata: &Metadata) -> &'static str {
     }
 }
 
-/// The first line of a regular file, or as much of it as a header can be.
+/// The first line of a regular file, up to the length that a header may have.
 pub fn first_line(path: &Path) -> io::Result<String> {
-    /// Far more than the header of a table.
+    /// Far longer than the header of a table.
     const LONGEST: u64 = 4096;
     let mut line = Vec::new();
     BufReader::new(File::open(path)?.take(LONGEST)).read_until(b'\n', &mut line)?;
@@ -106,7 +106,7 @@ pub fn read_text(path: &Path, limit: u64) -> Result<(String, Fingerprint), FileE
     Ok((text(&show_path(path), bytes)?, fingerprint))
 }
 
-/// The bytes of what messages call `name` as text.
+/// The bytes as text; messages call it `name`.
 pub(super) fn text(name: &str, bytes: Vec<u8>) -> Result<String, FileError> {
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
@@ -117,8 +117,8 @@ pub(super) fn text(name: &str, bytes: Vec<u8>) -> Result<String, FileError> {
 /// The content of a regular file of at most `limit` bytes.
 pub fn read_bytes(path: &Path, limit: u64) -> Result<(Vec<u8>, Fingerprint), FileError> {
     let io = |cause| FileError::Io { path: show_path(path), cause };
-    // Looked at before it is opened, since opening a device can have effects; and again after, since the
-    // name may have changed hands.
+    // Checked before opening, because opening a device can have effects, and again afterwards, because the name may
+    // meanwhile refer to another file.
     check_regular(path, &path.metadata().map_err(io)?)?;
     let file = open(path).map_err(io)?;
     let metadata = file.metadata().map_err(io)?;

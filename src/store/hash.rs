@@ -1,9 +1,9 @@
-//! Names that follow from a content.
+//! Names derived from content.
 
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
-/// The digits of a [`sha256`].
+/// The number of digits of a [`sha256`].
 pub const DIGITS: usize = 64;
 
 /// The SHA-256 of `bytes` in hexadecimal digits.
@@ -12,7 +12,7 @@ pub fn sha256(bytes: &[u8]) -> String {
     hex(Sha256::digest(bytes).as_slice())
 }
 
-/// Two digits for each byte.
+/// Two digits per byte.
 #[must_use]
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().fold(String::new(), |mut text, byte| {

@@ -1,8 +1,9 @@
-//! One saver at a time in a folder, and one program at a time with a file.
+//! One saver at a time per folder, and one program at a time per file.
 //!
-//! The locks are advisory ones, which the kernel drops with the process: they cannot be stale. That of a folder is on
-//! the folder itself and leaves no file behind. That of a file which is replaced whole needs a file of its own beside
-//! it, which goes with the lock; a killed process leaves it there, empty and unlocked.
+//! The locks are advisory, and the kernel releases them when the process ends, so they cannot be stale. The lock of a
+//! folder is on the folder itself and leaves no file behind. The lock of a file that is replaced as a whole needs a
+//! separate file beside it, which is removed with the lock; a killed process leaves that file behind, empty and
+//! unlocked.
 
 use rustix::fs::{FlockOperation, flock};
 use rustix::io::Errno;
@@ -14,7 +15,7 @@ use std::time::{Duration, Instant};
 
 /// How long a saver waits for another; a save takes milliseconds.
 pub const PATIENCE: Duration = Duration::from_secs(3);
-/// How often it looks.
+/// How often it checks.
 const PAUSE: Duration = Duration::from_millis(5);
 
 /// A held lock; dropping it lets the next saver in.
@@ -24,17 +25,18 @@ pub struct FolderLock {
 }
 
 impl FolderLock {
-    /// Waits up to `patience` for the lock; `None` if another still holds it.
-    /// Errors: The folder cannot be opened or locked. A file system that knows no locks is none: there the check of
-    /// the file itself, just before it is replaced, is all there is.
+    /// Waits up to `patience` for the lock; `None` if another process still holds it.
+    /// Errors: The folder cannot be opened or locked. It is no error if the file system does not support locks; then
+    /// the check of the file itself, just before it is replaced, is the only protection.
     pub fn acquire(folder: &Path, patience: Duration) -> io::Result<Option<Self>> {
         let file = File::open(folder)?;
         Ok(lock_file(&file, patience)?.then_some(Self { _folder: file }))
     }
 }
 
-/// Waits up to `patience` for the lock of an open file, which lasts until it is closed; whether it was given.
-/// Errors: The file cannot be locked. A file system that knows no locks gives every one.
+/// Waits up to `patience` for the lock of an open file, which lasts until the file is closed; returns whether it was
+/// granted.
+/// Errors: The file cannot be locked. A file system without locks grants every one.
 pub fn lock_file(file: &File, patience: Duration) -> io::Result<bool> {
     let deadline = Instant::now() + patience;
     while !lock(file)? {
@@ -46,7 +48,7 @@ pub fn lock_file(file: &File, patience: Duration) -> io::Result<bool> {
     Ok(true)
 }
 
-/// Locks a file or folder; false if another holds it. A file system that knows no locks grants every one.
+/// Locks a file or folder; false if another process holds the lock. A file system without locks grants every one.
 fn lock(file: &File) -> io::Result<bool> {
     match flock(file, FlockOperation::NonBlockingLockExclusive) {
         Ok(()) | Err(Errno::NOTSUP | Errno::NOLCK | Errno::INVAL | Errno::BADF | Errno::NOSYS) => Ok(true),
@@ -55,7 +57,7 @@ fn lock(file: &File) -> io::Result<bool> {
     }
 }
 
-/// A lock held by means of a file of its own, which is removed with it.
+/// A lock held through a separate file, which is removed with it.
 #[derive(Debug)]
 pub struct FileLock {
     path: PathBuf,
@@ -63,10 +65,10 @@ pub struct FileLock {
 }
 
 impl FileLock {
-    /// How long it waits for one that only looks whether the lock is held.
+    /// How long to wait for a process that only checks whether the lock is held.
     const PATIENCE: Duration = Duration::from_millis(50);
 
-    /// Takes the lock of the file `path`, which is made; `None` if another holds it.
+    /// Takes the lock of the file `path`, which is created; `None` if another process holds it.
     pub fn acquire(path: &Path) -> io::Result<Option<Self>> {
         let deadline = Instant::now() + Self::PATIENCE;
         loop {
@@ -76,7 +78,7 @@ impl FileLock {
             let file = options.custom_flags(flags.bits().cast_signed()).open(path)?;
             if lock(&file)? {
                 let ours = file.metadata()?;
-                // Whoever held it before removes the file: a lock on what has no name any more is none.
+                // The previous holder removes the file; a lock on a file that no longer has a name is worthless.
                 let named = path.symlink_metadata();
                 if named.is_ok_and(|named| (named.dev(), named.ino()) == (ours.dev(), ours.ino())) {
                     return Ok(Some(Self { path: path.to_owned(), _file: file }));
@@ -88,7 +90,7 @@ impl FileLock {
         }
     }
 
-    /// Whether somebody holds the lock of the file `path`.
+    /// Whether any process holds the lock of the file `path`.
     #[must_use]
     pub fn is_held(path: &Path) -> bool {
         File::open(path).is_ok_and(|file| matches!(lock(&file), Ok(false)))
@@ -97,7 +99,7 @@ impl FileLock {
 
 impl Drop for FileLock {
     fn drop(&mut self) {
-        // While it is still locked, so that nobody else's is removed.
+        // Removed while it is still locked, so that nobody else's file is removed.
         let _ = std::fs::remove_file(&self.path);
     }
 }
@@ -127,7 +129,7 @@ mod tests {
         assert!(FileLock::acquire(&path).unwrap().is_none());
         drop(first);
         assert!(!FileLock::is_held(&path) && !path.exists());
-        // What a killed process leaves is no lock.
+        // A file left by a killed process is not a lock.
         std::fs::write(&path, "").unwrap();
         assert!(!FileLock::is_held(&path) && FileLock::acquire(&path).unwrap().is_some());
     }

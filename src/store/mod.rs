@@ -1,17 +1,17 @@
-//! Disk: the presets of a person and those that come with the program, the data of profiles, saving.
+//! Disk: the user's presets and those that come with the program, the data of profiles, saving.
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`presets`] | the folder of a person's presets: resolve, load, list, save |
-//! | [`data`] | the files of profiles, which the engine is given as rows |
+//! | [`presets`] | the folder of the user's presets: resolve, load, list, save |
+//! | [`data`] | the files of profiles, which the engine receives as rows |
 //! | [`beside`] | the data of a profile copied beside a preset |
-//! | [`name`] | which names a person's preset may have |
+//! | [`name`] | which names a user's preset may have |
 //! | [`file`](mod@file) | reading regular files of bounded size; fingerprints |
-//! | [`hash`] | names that follow from a content |
+//! | [`hash`] | names derived from content |
 //! | [`place`] | which file a path leads to, whatever it is called |
-//! | [`stream`] | standard input and output, pipes and devices, which are read and written straight |
-//! | [`atomic`] | writing a file whole or not at all |
-//! | [`temporary`] | the temporary file of a save, and what a killed save has left |
+//! | [`stream`] | standard input and output, pipes and devices, which are read and written directly |
+//! | [`atomic`] | writing a file as a whole or not at all |
+//! | [`temporary`] | the temporary file of a save, and what a killed save left behind |
 //! | [`lock`] | one saver at a time in a folder |
 
 pub mod atomic;

@@ -1,4 +1,4 @@
-//! Which names a person's preset may have.
+//! Which names a user's preset may have.
 
 use super::shipped;
 use pulloff_engine::text::quote;
@@ -7,10 +7,10 @@ use thiserror::Error;
 /// The longest name.
 const LONGEST: usize = 64;
 
-/// Why a name cannot be a preset's. The name in it is already safe to show.
+/// Why a preset cannot have a name. The name in the error is already safe to show.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum NameError {
-    /// It has other characters, or too many.
+    /// It contains other characters, or too many.
     #[error(
         "\"{name}\" is no preset name: use a-z, 0-9, - and _, first a letter or digit, at most {LONGEST} \
          characters (a file's path has a / or ends in .toml)"
@@ -24,7 +24,7 @@ pub enum NameError {
     Shipped { name: String },
 }
 
-/// Whether a name has the form of a preset's: `[a-z0-9][a-z0-9_-]{0,63}`.
+/// Whether a name has the form of a preset name: `[a-z0-9][a-z0-9_-]{0,63}`.
 #[must_use]
 pub fn is_well_formed(name: &str) -> bool {
     let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit();
@@ -33,7 +33,7 @@ pub fn is_well_formed(name: &str) -> bool {
         && name.bytes().all(|b| plain(b) || b == b'-' || b == b'_')
 }
 
-/// Checks a name that a preset is to be saved under.
+/// Checks a name under which a preset is to be saved.
 pub fn check<S: AsRef<str>>(name: &str, commands: &[S]) -> Result<(), NameError> {
     let shown = quote(name);
     if !is_well_formed(name) {

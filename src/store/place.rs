@@ -1,4 +1,4 @@
-//! Which file a path leads to, whatever it is called: by symbolic links, hard links, descriptors.
+//! Which file a path leads to, whatever it is called: through symbolic links, hard links, descriptors.
 
 use super::atomic::{folder_of, follow};
 use super::stream::STANDARD;
@@ -10,14 +10,14 @@ use std::path::Path;
 /// Where a path leads.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum FilePlace {
-    /// What is there.
+    /// An existing file.
     Node { device: u64, inode: u64, is_file: bool },
     /// Nothing yet: a name in a folder.
     Name { device: u64, inode: u64, name: OsString },
 }
 
 impl FilePlace {
-    /// Of what is written to `path`, where `-` is standard output; `None` where it leads nowhere.
+    /// The place of what is written to `path`, where `-` is standard output; `None` where it leads nowhere.
     #[must_use]
     pub fn written(path: &Path) -> Option<Self> {
         if path == Path::new(STANDARD) {
@@ -32,7 +32,7 @@ impl FilePlace {
         Some(Self::Name { device: folder.dev(), inode: folder.ino(), name })
     }
 
-    /// Of what is read from `path`, where `-` is standard input; `None` where there is no regular file.
+    /// The place of what is read from `path`, where `-` is standard input; `None` where there is no regular file.
     #[must_use]
     pub fn read(path: &Path) -> Option<Self> {
         let node = if path == Path::new(STANDARD) {
@@ -48,9 +48,9 @@ impl FilePlace {
     }
 }
 
-/// What is behind an open descriptor.
+/// The file behind an open descriptor.
 fn behind(descriptor: rustix::fd::BorrowedFd<'_>) -> Option<FilePlace> {
-    // A descriptor of its own, which is closed again.
+    // A duplicate descriptor, which is closed again.
     let file = std::fs::File::from(rustix::io::dup(descriptor).ok()?);
     file.metadata().ok().map(|metadata| FilePlace::node(&metadata))
 }
@@ -77,14 +77,14 @@ mod tests {
             assert_eq!(FilePlace::written(&at(same)), file, "{same}");
         }
         assert_ne!(FilePlace::written(&at("twin")), file);
-        // What is not there yet is a name in its folder.
+        // What does not exist yet is a name in its folder.
         let later = FilePlace::written(&at("later"));
         assert!(matches!(later, Some(FilePlace::Name { .. })));
         assert_eq!(FilePlace::written(&at("dangling")), later);
         assert_eq!(FilePlace::written(&at("inner/../later")), later);
         assert_ne!(FilePlace::written(&at("inner/later")), later);
         assert_eq!(FilePlace::written(&at("none/later")), None);
-        // A folder or a device is nothing that is read.
+        // A folder or a device is not a file to be read.
         assert!(
             [folder.path(), Path::new("/dev/null"), &at("later")]
                 .map(FilePlace::read)

@@ -1,7 +1,7 @@
-//! The presets of a person: where they are, how a name on the command line finds one, loading and saving.
+//! The user's presets: where they are, how a name on the command line finds one, loading and saving.
 //!
-//! They live in `pulloff/presets` below the XDG configuration folder. The folder is made by the first save and
-//! never by anything else. Nothing here overwrites a file that the caller did not load or ask to replace.
+//! They are in `pulloff/presets` below the XDG configuration folder. Only the first save creates the folder. Nothing
+//! here overwrites a file that the caller did not load or ask to replace.
 
 use super::atomic::{Overwrite, WriteError, folder_of, follow, write_verified};
 use super::beside::{DataError, copy_beside};
@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use thiserror::Error;
 
-/// How many files of the folder are listed.
+/// The largest number of files in the folder that are listed.
 const LISTED: usize = 1000;
 
 /// Where a preset comes from.
@@ -40,14 +40,14 @@ pub enum Source {
     File(PathBuf),
     /// A text that came through a pipe and cannot be read again.
     Piped {
-        /// How messages call where it came from.
+        /// What messages call its source.
         name: String,
         text: Arc<str>,
     },
 }
 
 impl Source {
-    /// How messages call it: a name, or a path safe to show.
+    /// What messages call it: a name, or a path safe to show.
     #[must_use]
     pub fn shown(&self) -> String {
         match self {
@@ -57,7 +57,7 @@ impl Source {
         }
     }
 
-    /// Its file; a shipped preset has none, nor has one that came through a pipe.
+    /// Its file; `None` for a shipped preset and for one that came through a pipe.
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
         match self {
@@ -71,27 +71,27 @@ impl Source {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loaded {
     pub source: Source,
-    /// The preset, with the assignments laid over it.
+    /// The preset, with the assignments applied.
     pub preset: Preset,
     pub text: String,
-    /// How to recognise the file when saving, where there is one.
+    /// The fingerprint for recognising the file when saving, where there is a file.
     pub fingerprint: Option<Fingerprint>,
 }
 
 /// One line of the list of presets.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Listed {
-    /// What to type to open it: its name, or for a file without a good name its path (safe to show).
+    /// What to type to open it: its name, or its path (safe to show) if the file has no valid name.
     pub name: String,
     pub source: Source,
     /// Its title, or why it cannot be opened, in one line.
     pub title: Result<String, String>,
-    /// The first line of what it says of itself; may be empty.
+    /// The first line of its comment; may be empty.
     pub comment: String,
 }
 
 impl Loaded {
-    /// The comment with which its text begins, safe to show.
+    /// The comment at the start of its text, safe to show.
     #[must_use]
     pub fn comment(&self) -> String {
         let text = match &self.source {
@@ -107,13 +107,13 @@ impl Loaded {
 /// The list of presets.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Listing {
-    /// The shipped ones in their own order, then the person's by name.
+    /// The shipped ones in their own order, then the user's by name.
     pub presets: Vec<Listed>,
-    /// Why some of the person's presets may not be in it, in one line.
+    /// Why some of the user's presets may be missing, in one line.
     pub notice: Option<String>,
 }
 
-/// Why a preset was not found, loaded or saved, in one line. Names and paths in it are safe to show.
+/// Why a preset was not found, loaded or saved, in one line. Names and paths in the error are safe to show.
 #[derive(Debug, Error)]
 pub enum StoreError {
     #[error("no preset is called \"{name}\"{}", .meant.as_deref().map_or_else(String::new, |meant| format!("; did you mean {meant}?")))]
@@ -158,7 +158,7 @@ impl Mend for StoreError {
     }
 }
 
-/// The folder of a person's presets.
+/// The folder of the user's presets.
 #[derive(Debug, Clone)]
 pub struct Store {
     folder: Option<PathBuf>,
@@ -166,7 +166,7 @@ pub struct Store {
 }
 
 impl Store {
-    /// The store below the XDG configuration folder; `commands` are names no preset may have.
+    /// The store below the XDG configuration folder; `commands` are names that no preset may have.
     #[must_use]
     pub fn open(commands: &[&str]) -> Self {
         let folder =
@@ -180,13 +180,13 @@ impl Store {
         Self { folder: Some(folder.into()), commands: commands.iter().map(ToString::to_string).collect() }
     }
 
-    /// The folder, which need not exist; `None` if the person has no home.
+    /// The folder, which need not exist; `None` if the user has no home.
     #[must_use]
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
     }
 
-    /// The file of the preset `name`.
+    /// The path of the preset `name`.
     pub fn path_of(&self, name: &str) -> Result<PathBuf, StoreError> {
         name::check(name, &self.commands)?;
         Ok(self.folder.as_ref().ok_or(StoreError::NoFolder)?.join(format!("{name}.toml")))
@@ -205,11 +205,11 @@ impl Store {
         }
         name::check(&name, &self.commands)?;
         match self.path_of(&name) {
-            // A pipe or a dangling link by that name is there, and loading it says what is wrong.
+            // A pipe or a dangling link of that name exists, and loading it reports what is wrong.
             Ok(path) if path.symlink_metadata().is_ok() => Ok(Source::User { name: name.into_owned(), path }),
             _ => {
                 let known = self.known();
-                // A file of that name in the current folder is nearer than any other name.
+                // A file of that name in the current folder is a closer match than any other name.
                 let file = format!("./{name}.toml");
                 let meant = if Path::new(&file).is_file() {
                     Some(file)
@@ -221,14 +221,14 @@ impl Store {
         }
     }
 
-    /// The names of all presets, the shipped ones first; whether their files are good is not looked at.
+    /// The names of all presets, the shipped ones first, without checking that their files are valid.
     #[must_use]
     pub fn known(&self) -> Vec<String> {
         let (own, _) = self.names();
         SHIPPED.iter().map(|shipped| shipped.name.to_owned()).chain(own).collect()
     }
 
-    /// Loads a preset and lays `KEY=VALUE` assignments over it.
+    /// Loads a preset and applies `KEY=VALUE` assignments to it.
     pub fn load<S: AsRef<str>>(&self, source: &Source, assignments: &[S]) -> Result<Loaded, StoreError> {
         let (text, fingerprint) = match source {
             Source::Shipped(shipped) => (shipped.text.to_owned(), None),
@@ -275,12 +275,12 @@ impl Store {
         Listing { presets, notice }
     }
 
-    /// The names in the folder, sorted, and what kept some of them from being seen.
+    /// The names in the folder, sorted, and why some of them could not be seen.
     fn names(&self) -> (Vec<String>, Option<String>) {
         let Some(folder) = &self.folder else { return (Vec::new(), Some(StoreError::NoFolder.to_string())) };
         let entries = match fs::read_dir(folder) {
             Ok(entries) => entries,
-            // No preset saved yet: nothing to say.
+            // No preset has been saved yet: nothing to report.
             Err(error) if error.kind() == io::ErrorKind::NotFound => return (Vec::new(), None),
             Err(error) => {
                 return (
@@ -303,30 +303,31 @@ impl Store {
         (names, notice)
     }
 
-    /// Deletes the person's own preset of this name, for good, and says where its file was. Data copied beside it stay.
-    /// Errors: The person has no preset of this name, another saver holds the folder, or the system says no; nothing has
+    /// Deletes the user's own preset of this name permanently, and returns the path of its file. Data copied beside it
+    /// stay.
+    /// Errors: The user has no preset of this name, another saver holds the folder, or the system refuses; nothing has
     /// changed then.
     pub fn delete(&self, name: &str) -> Result<PathBuf, StoreError> {
         let path = self.own(name)?;
         let _lock = locked(folder_of(&path), &path)?;
-        // A link is deleted itself, not what it leads to.
+        // A link itself is deleted, not what it leads to.
         match fs::remove_file(&path) {
             Ok(()) => Ok(path),
             Err(cause) => Err(StoreError::Delete { path: show_path(&path), cause }),
         }
     }
 
-    /// The file of the person's own preset of this name, which can be deleted.
+    /// The path of the user's own preset of this name, which can be deleted.
     pub fn own(&self, name: &str) -> Result<PathBuf, StoreError> {
         match shipped::find(name) {
             Some(shipped) => Err(StoreError::Shipped(shipped.name)),
-            // First, since a path is no name.
+            // First, because a path is not a name.
             None => self.path_of(name).and_then(|path| self.resolve(name).map(|_| path)),
         }
     }
 
-    /// Saves a preset by name, and says where it is now and how to recognise the file. What the person has written around
-    /// the values in the text that it was read `from` stays.
+    /// Saves a preset by name, and returns its path and the fingerprint of the file. What the user has written around
+    /// the values in the text that it was read `from` is kept.
     /// Errors: The name or the preset is not valid, or the file must not be replaced or cannot be written; nothing has
     /// changed then.
     pub fn save(
@@ -342,7 +343,7 @@ impl Store {
         Ok((Source::User { name: name.to_owned(), path }, fingerprint))
     }
 
-    /// The same with the data of a profile copied beside it: the preset with them is what was saved.
+    /// The same with the data of a profile copied beside it; returns the preset as saved with them.
     /// Errors: As [`save`](Self::save), or the data cannot be copied; no preset has changed then.
     pub fn save_with_data(
         &self,
@@ -352,7 +353,7 @@ impl Store {
         overwrite: Overwrite,
     ) -> Result<(Source, Fingerprint, Preset), StoreError> {
         let path = self.path_of(name)?;
-        // Asked about before anything is copied; whether it is still so, the save itself makes sure.
+        // Asked before anything is copied; the save itself checks again.
         if matches!(overwrite, Overwrite::Never) && path.exists() {
             return Err(WriteError::Exists { path: show_path(&path) }.into());
         }
@@ -367,12 +368,12 @@ fn make_own_folder(folder: &Path) -> Result<(), StoreError> {
     make_folder(folder).map_err(|cause| StoreError::Folder { path: show_path(folder), cause })
 }
 
-/// Makes a folder of the person's own, and those above it.
+/// Creates a folder of the user's own, and those above it.
 pub fn make_folder(folder: &Path) -> io::Result<()> {
     fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)
 }
 
-/// The text of a preset as a person has written it; what comes with the program says in its comments what it is itself.
+/// The text of a preset as the user wrote it; the comments of a shipped preset describe only that preset.
 fn own_text(source: &Source) -> Option<String> {
     match source {
         Source::Shipped(_) => None,
@@ -383,15 +384,15 @@ fn own_text(source: &Source) -> Option<String> {
     }
 }
 
-/// The lock of a folder, for the sake of a file in it.
+/// The lock of a folder, taken for a file in it.
 fn locked(folder: &Path, path: &Path) -> Result<FolderLock, WriteError> {
     let lock = FolderLock::acquire(folder, PATIENCE);
     let failed = |cause| WriteError::Io { path: show_path(path), doing: "lock its folder", cause };
     lock.map_err(failed)?.ok_or_else(|| WriteError::Locked { path: show_path(path) })
 }
 
-/// Saves a preset to a file by its path, read back before it takes the file's place: with what the person has written
-/// around the values in the text that it was read `from`, or anew.
+/// Saves a preset to a file by its path, and reads it back before it takes the file's place. It keeps what the user has
+/// written around the values in the text that it was read `from`, or is written afresh.
 /// Errors: The preset is not valid, or the file must not be replaced or cannot be written; nothing has changed then.
 pub fn save_file(
     path: &Path,
@@ -401,7 +402,7 @@ pub fn save_file(
 ) -> Result<Fingerprint, StoreError> {
     preset.check().map_err(|mut all| StoreError::Invalid(all.swap_remove(0)))?;
     let preset = preset.placed_in(folder_of(path));
-    // The folder where the rename happens, so that two names for one file share a lock.
+    // The folder in which the rename happens, so that two names for one file share a lock.
     let target = follow(path)?;
     let shown = || show_path(path);
     let _lock = locked(folder_of(&target), path)?;
@@ -465,7 +466,7 @@ mod tests {
 
     #[test]
     fn the_folder_is_below_xdg_config_home() {
-        // The environment of this process is shared by all tests, so another process looks.
+        // All tests share the environment of this process, so another process does the check.
         let marker = "/nowhere/config";
         if std::env::var_os("XDG_CONFIG_HOME").is_some_and(|value| value == marker) {
             let folder = Store::open(COMMANDS).folder().map(Path::to_owned);
@@ -524,7 +525,7 @@ mod tests {
         store.delete("link").unwrap();
         assert!(outside.exists() && linked.symlink_metadata().is_err());
         assert_eq!(store.names().0, ["other"]);
-        // While another saves in the folder nothing is deleted.
+        // While another saver holds the folder, nothing is deleted.
         let lock = FolderLock::acquire(store.folder().unwrap(), PATIENCE).unwrap();
         let waiting = std::thread::spawn({
             let store = store.clone();
@@ -555,7 +556,7 @@ mod tests {
         // The comment stays in its column.
         let changed = mine.replace("0.0025 ", "0.003  ");
         let text = |source: &Source| fs::read_to_string(source.path().unwrap()).unwrap();
-        // Back to the file, under a name, and from there again.
+        // Back to the file, then under a name, and from there again.
         let known = Overwrite::IfUnchanged(loaded.fingerprint.unwrap());
         save_file(&path, &loaded.preset, Some(&file), known).unwrap();
         assert_eq!(text(&file), changed);
@@ -565,11 +566,11 @@ mod tests {
         turned.assign("material.effective_modulus", "2").unwrap();
         store.save("mine", &turned, Some(&named), Overwrite::IfUnchanged(print)).unwrap();
         assert_eq!(text(&named), changed.replace("= 1 # E*", "= 2.0 # E*"));
-        // Over another preset the text is that of the one saved; through a pipe it is the person's too.
+        // Over another preset, the text is that of the saved one; a text through a pipe is the user's too.
         let piped = Source::Piped { name: "standard input".to_owned(), text: mine.into() };
         store.save("mine", &loaded.preset, Some(&piped), Overwrite::Always).unwrap();
         assert_eq!(text(&named), changed);
-        // Of the program's own, of nothing, and where the file is gone, it is written anew.
+        // A shipped preset, one without a source, and one whose file is gone are written afresh.
         let shipped = store.resolve("wavy-sphere").unwrap();
         let gone = Source::File(home.path().join("gone.toml"));
         for from in [Some(&shipped), Some(&gone), None] {
@@ -605,7 +606,7 @@ mod tests {
         let taken = store.save("mine", &wavy(), None, Overwrite::Never).unwrap_err();
         assert!(matches!(taken, StoreError::Write(WriteError::Exists { .. })), "{taken}");
         let (_, second) = store.save("mine", &with_rings(10), None, Overwrite::IfUnchanged(first)).unwrap();
-        // Another person's editor.
+        // Another editor changes the file.
         let path = source.path().unwrap();
         fs::write(path, write(&with_rings(20))).unwrap();
         let error = store.save("mine", &with_rings(30), None, Overwrite::IfUnchanged(second)).unwrap_err();

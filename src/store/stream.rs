@@ -1,7 +1,7 @@
 //! What has no place in a folder: standard input and output, pipes, terminals, descriptors of this process.
 //!
-//! A file is replaced as a whole, by a rename. None of these can be: a rename would put a file in the place of the pipe or
-//! of the device, and whoever reads the other end would get nothing. They are read and written straight.
+//! A file is replaced as a whole, by a rename. None of these can be: a rename would put a file in the place of the pipe
+//! or device, and whoever reads the other end would get nothing. They are read and written directly.
 
 use super::atomic::folder_of;
 use super::file::{self, FileError};
@@ -12,14 +12,14 @@ use std::io::{self, Read, stdin};
 use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
 
-/// The name of standard input where something is read, of standard output where something is written.
+/// The name of standard input where something is read, and of standard output where something is written.
 pub const STANDARD: &str = "-";
-/// Where the descriptors of this process have their names.
+/// The folder in which the descriptors of this process have their names.
 const DESCRIPTORS: &str = "/dev/fd";
-/// How many links in a row are followed; the kernel's own limit.
+/// The largest number of successive links that are followed; the kernel's own limit.
 const LINKS: usize = 40;
 
-/// Whether a path names no regular file, nor one that could be made, but something that is read and written straight.
+/// Whether a path names neither a regular file nor one that could be created, but something that is read and written directly.
 #[must_use]
 pub fn is_stream(path: &Path) -> bool {
     let is_open_ended = |kind: std::fs::FileType| kind.is_fifo() || kind.is_char_device();
@@ -28,24 +28,24 @@ pub fn is_stream(path: &Path) -> bool {
         || descriptor(path).is_some()
 }
 
-/// How messages call what is written there.
+/// What messages call the destination of such a write.
 #[must_use]
 pub fn shown(path: &Path) -> String {
     if path == Path::new(STANDARD) { "standard output".to_owned() } else { show_path(path) }
 }
 
-/// Opens what [`is_stream`] finds, to be written.
+/// Opens for writing what [`is_stream`] finds.
 pub fn open(path: &Path) -> io::Result<File> {
     let descriptor = descriptor(path);
     if path == Path::new(STANDARD) || descriptor.as_deref().is_some_and(|name| name == "1") {
-        // Its own end, which knows how far it is; by its name a file behind it would be begun anew.
+        // A duplicate of the descriptor keeps its position; opening by name would start a file behind it from the beginning.
         return Ok(File::from(rustix::io::dup(rustix::stdio::stdout())?));
     }
-    // Behind a descriptor there may be a file that somebody else writes too.
+    // There may be a file behind a descriptor that others write too.
     OpenOptions::new().write(true).append(descriptor.is_some()).open(path)
 }
 
-/// The text of what [`is_stream`] finds, to its end, and how messages call it.
+/// Reads what [`is_stream`] finds to its end; returns the text and what messages call it.
 pub fn read_text(path: &Path, limit: u64) -> Result<(String, String), FileError> {
     let (name, bytes) = if path == Path::new(STANDARD) {
         let name = "standard input".to_owned();
@@ -62,7 +62,7 @@ pub fn read_text(path: &Path, limit: u64) -> Result<(String, String), FileError>
     Ok((name, text))
 }
 
-/// The text of a file that the person named, whether or not it is a stream, and how messages call it.
+/// Reads a file that the user named, whether or not it is a stream; returns the text and what messages call it.
 pub fn read_given(path: &Path, limit: u64) -> Result<(String, String), FileError> {
     if is_stream(path) {
         return read_text(path, limit);
@@ -127,7 +127,7 @@ mod tests {
             let (bytes, writer) = (bytes.to_vec(), pipe.clone());
             let writer = std::thread::spawn(move || open(&writer).and_then(|mut end| end.write_all(&bytes)));
             let read = read_text(&pipe, 100).map(|(_, text)| text);
-            // Larger than what is read, it may find nobody at the other end.
+            // If the text is larger than the limit, the writer may find nobody at the other end.
             let _ = writer.join().unwrap();
             read
         };

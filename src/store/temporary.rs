@@ -1,7 +1,7 @@
-//! The temporary file of a save: beside its target, locked while its writer lives, removed when it has died.
+//! The temporary file of a save: beside its target, locked while its writer lives, removed once the writer has died.
 //!
-//! A writer that is killed leaves its temporary behind. Nobody takes it for anything, since its name begins with a
-//! dot and ends in `.tmp`, and the next save in the folder removes it: the kernel has dropped the lock by then.
+//! A writer that is killed leaves its temporary behind. Nobody mistakes it for anything else, since its name begins
+//! with a dot and ends in `.tmp`, and the next save in the folder removes it: by then the kernel has released the lock.
 
 use rustix::fs::{FlockOperation, Gid, OFlags, Uid, fchown, flock};
 use rustix::io::Errno;
@@ -18,25 +18,25 @@ const PREFIX: &str = ".pulloff-";
 const SUFFIX: &str = ".tmp";
 /// The mode of a new file, before the umask.
 const NEW: u32 = 0o666;
-/// How often [`finish`] looks.
+/// How often [`finish`] checks.
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// Read while a temporary of this process exists.
+/// Held for reading while a temporary of this process exists.
 static WRITING: RwLock<()> = RwLock::new(());
 
-/// While it lives, [`finish`] waits.
+/// [`finish`] waits while the returned guard lives.
 pub(super) fn begin() -> RwLockReadGuard<'static, ()> {
     WRITING.read().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Waits until no file of this process is half written, for at most `patience`, and lets none be begun from then on.
+/// Waits at most `patience` until no file of this process is half written, and prevents any further write.
 ///
-/// For the end of the process: the thread that writes would be cut off, and its temporary left behind.
+/// Called at the end of the process, which would otherwise cut off the writing thread and leave its temporary behind.
 pub fn finish(patience: Duration) {
     let until = Instant::now() + patience;
     loop {
         if let Ok(nobody) = WRITING.try_write() {
-            // Never dropped: a write begun now would be the one that is cut off.
+            // Never dropped: a write that started now would be cut off.
             std::mem::forget(nobody);
             return;
         }
@@ -58,7 +58,7 @@ pub(super) fn beside(folder: &Path, old: Option<&Metadata>) -> io::Result<NamedT
             Some(_) => builder.tempfile_in(folder)?,
         };
         lock(temporary.as_file())?;
-        // Somebody's sweep may have come between the two steps.
+        // Another process's sweep may have run between the two steps.
         if temporary.as_file().metadata()?.nlink() > 0 {
             break temporary;
         }
@@ -75,8 +75,8 @@ fn give_to(file: &File, old: &Metadata) -> io::Result<()> {
     let mut mode = old.mode() & 0o777;
     if (new.uid(), new.gid()) != (old.uid(), old.gid()) {
         let owner = fchown(file, Some(Uid::from_raw(old.uid())), Some(Gid::from_raw(old.gid())));
-        // Only root gives files away. Then the file becomes ours, and a group that is not the old one gets no
-        // more than everybody.
+        // Only root can give files away. Otherwise the file becomes ours, and if its group is not the old one, that
+        // group gets no more rights than everybody.
         if owner.is_err() && fchown(file, None, Some(Gid::from_raw(old.gid()))).is_err() {
             mode = (mode & 0o707) | ((mode & 0o007) << 3 & mode);
         }
@@ -84,7 +84,7 @@ fn give_to(file: &File, old: &Metadata) -> io::Result<()> {
     file.set_permissions(Permissions::from_mode(mode))
 }
 
-/// A file system that knows no locks gives none; nobody can sweep there either.
+/// A file system without locks grants none; nobody can sweep there either.
 fn lock(file: &File) -> io::Result<()> {
     loop {
         match flock(file, FlockOperation::LockExclusive) {
@@ -97,7 +97,7 @@ fn lock(file: &File) -> io::Result<()> {
     }
 }
 
-/// Removes what writers that were killed have left in `folder`. What cannot be removed stays.
+/// Removes what killed writers left in `folder`. What cannot be removed stays.
 fn sweep(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.filter_map(Result::ok) {

@@ -1,4 +1,4 @@
-//! Results looked at without computing anything: whether they are of the sweep beside them, and how far they are.
+//! Checks results without computing anything: whether they belong to the sweep beside them, and how far they are.
 
 use super::output::{FaultCounts, OutputError};
 use super::record::{Layout, RowOutcome, Wrong};
@@ -10,32 +10,32 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-/// What results are.
+/// The state of results.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Checked {
-    /// The hash of all that the numbers follow from.
+    /// The hash of everything that determines the numbers.
     pub identity: String,
     pub shard: Shard,
-    /// The whole rows that are there, and those of the whole part.
+    /// The number of complete rows that exist, and of all rows of the shard.
     pub rows: u64,
     pub of: u64,
     /// The names of the columns.
     pub columns: Vec<String>,
     pub faults: FaultCounts,
-    /// Whether a line was torn at the end; a run goes on before it.
+    /// Whether the last line is torn; a run continues before it.
     pub is_torn: bool,
 }
 
 impl Checked {
-    /// Whether every row of a whole sweep is there, and none of them has a quantity.
+    /// Whether every row of a whole sweep exists and none of them has a quantity.
     #[must_use]
     pub fn is_failure(&self) -> bool {
         self.shard == Shard::WHOLE && self.rows == self.of && self.faults.failures == self.of
     }
 }
 
-/// Checks the results at `path`: the hash beside them, the header, and in each row its number, its axes and its cells.
-/// Errors: The first line that is not what belongs there, and [`OutputError::NotOurs`].
+/// Checks the results at `path`: the hash beside them, the header, and the number, axes and cells of each row.
+/// Errors: The first line that is not the expected one, and [`OutputError::NotOurs`].
 pub fn check(path: &Path) -> Result<Checked, OutputError> {
     let shown = || show_path(path);
     let not_ours = |cause| OutputError::NotOurs { path: shown(), cause };
@@ -81,12 +81,12 @@ pub fn check(path: &Path) -> Result<Checked, OutputError> {
     }
 }
 
-/// What became of a row.
+/// The outcome of a row.
 fn outcome(layout: &Layout, shard: Shard, index: u64, of: u64, line: &[u8]) -> Result<RowOutcome, Wrong> {
     if index < of { layout.outcome(shard.row(index), line) } else { Err(Wrong::behind_the_last()) }
 }
 
-/// The hash of the canonical form that stands in the file beside the results.
+/// The hash of the canonical form in the file beside the results.
 fn hash(text: &str) -> Option<String> {
     Some(sha256(sidecar::canonical_in(text)?.as_bytes()))
 }

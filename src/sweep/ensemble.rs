@@ -1,8 +1,8 @@
-//! The two files of an ensemble: `RESULTS.members.csv`, a row for each member at each point, and `RESULTS.csv`, what they say
-//! together.
+//! The two files of an ensemble: `RESULTS.members.csv`, with a row for each member at each point, and `RESULTS.csv`,
+//! with their statistics.
 //!
-//! The rows are those of any sweep: gone on with, computed in shards, joined. The other follows from them alone, and is written
-//! anew when a run or a merge ends; it tells of the members that are there.
+//! The rows of the first are those of any sweep: they can be continued, computed in shards and joined. The second
+//! follows from them alone. It is rewritten when a run or a merge ends, and covers the members that exist by then.
 
 use super::merge::{MergeError, Merged, merge};
 use super::output::{Existing, OutputError};
@@ -28,13 +28,13 @@ pub fn members(results: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// Where the rows of a sweep go whose results are these.
+/// The file for the rows of a sweep with these results.
 #[must_use]
 pub fn file_of_rows(results: &Path, spec: &Spec) -> PathBuf {
     if spec.is_ensemble() { members(results) } else { results.to_owned() }
 }
 
-/// The rows of a sweep that was told to write these results: they themselves, or the members beside them.
+/// The rows of a sweep that was told to write these results: the results themselves, or the members beside them.
 #[must_use]
 pub fn found_rows(results: &Path) -> PathBuf {
     let members = members(results);
@@ -42,17 +42,17 @@ pub fn found_rows(results: &Path) -> PathBuf {
     if !is_there(results) && is_there(&members) { members } else { results.to_owned() }
 }
 
-/// Where the rows of `parts` go when they are joined to `results`.
+/// The file for the rows of `parts` when they are joined to `results`.
 #[must_use]
 pub fn joined_rows(parts: &[PathBuf], results: &Path) -> PathBuf {
-    // What is wrong with it is told when it is joined.
+    // Faults in a part are reported when it is joined.
     let is_of_members =
         |part: &PathBuf| Sidecar::read(part).is_ok_and(|(sidecar, _)| sidecar.is_of_members());
     if parts.first().is_some_and(is_of_members) { members(results) } else { results.to_owned() }
 }
 
-/// Joins the parts of a sweep, named as the results that they were told to write or as the files they are, to `results`; those of an
-/// ensemble with their statistics.
+/// Joins the parts of a sweep to `results`, for an ensemble with their statistics. Parts are named by the results that
+/// they were told to write, or by the actual files.
 /// Errors: As [`merge`]; nothing has changed then.
 pub fn join(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<Merged, MergeError> {
     let parts: Vec<PathBuf> = parts.iter().map(|part| found_rows(part)).collect();
@@ -68,7 +68,7 @@ pub fn join(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<Mer
     Ok(merged)
 }
 
-/// Refuses results in the place of the statistics that are none of this sweep.
+/// Refuses to replace existing results with statistics unless they belong to this sweep.
 pub fn may_write(results: &Path, spec: &Spec, existing: Existing) -> Result<(), OutputError> {
     if !spec.is_ensemble() || existing == Existing::Overwrite {
         return Ok(());
@@ -87,26 +87,26 @@ pub fn may_write(results: &Path, spec: &Spec, existing: Existing) -> Result<(), 
 /// The members at a point.
 #[derive(Debug, Clone, Default)]
 pub struct AtPoint {
-    /// How many are there.
+    /// How many exist.
     pub there: u64,
     refused: BTreeMap<&'static str, u64>,
 }
 
 impl AtPoint {
-    /// The members with an error.
+    /// The number of members with an error.
     #[must_use]
     pub fn refused(&self) -> u64 {
         self.refused.values().sum()
     }
 
-    /// What is wrong with a point that is to have `of` members.
+    /// The fault of a point that should have `of` members.
     #[must_use]
     pub fn fault(&self, of: u64) -> Option<Fault> {
         Fault::of_members([self.there, of], &self.refused)
     }
 }
 
-/// The members at each of `points`, from what their rows say of errors, in the order of the rows.
+/// The members at each of `points`, from the errors in their rows, in the order of the rows.
 pub fn members_at<'a>(points: usize, errors: impl IntoIterator<Item = &'a str>) -> Vec<AtPoint> {
     let mut all = vec![AtPoint::default(); points];
     for (row, error) in errors.into_iter().enumerate() {
@@ -119,7 +119,7 @@ pub fn members_at<'a>(points: usize, errors: impl IntoIterator<Item = &'a str>) 
     all
 }
 
-/// Writes the statistics of the members that are there to `results`.
+/// Writes the statistics of the existing members to `results`.
 pub fn summarize(results: &Path) -> Result<(), OutputError> {
     let members = members(results);
     let rows = SweepResults::open(&members)?;
@@ -130,7 +130,7 @@ pub fn summarize(results: &Path) -> Result<(), OutputError> {
     let at = usize::try_from(count).unwrap_or(usize::MAX);
     let errors = rows.cells(ERROR, |cell| Some(cell.to_owned()))?;
     let all = members_at(at, errors.iter().map(String::as_str));
-    // A column at a time: memory is that of one.
+    // One column at a time, so that only one is in memory.
     let number = |cell: &str| if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok() };
     let mut found: Vec<Vec<Option<Statistics>>> = Vec::new();
     for name in quantities(&layout) {

@@ -1,7 +1,8 @@
-//! Many computations on every core, their results in order.
+//! Many computations on every core, with their results in order.
 //!
-//! Threads take the next one each; finished ones wait for those before them in a window of bounded size, beyond which none
-//! is begun. So a file grows in order whatever the threads do, and memory does not grow with the number of rows.
+//! Each thread takes the next computation; finished ones wait for earlier ones in a window of bounded size, and none is
+//! started beyond it. So a file grows in order whatever the threads do, and memory does not grow with the number of
+//! rows.
 
 use pulloff_engine::progress::Progress;
 use rayon::ThreadPoolBuildError;
@@ -12,10 +13,10 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
-/// How long the writer waits before it says so.
+/// How long the writer waits before it calls `write` with nothing.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Which rows may be begun.
+/// Which rows may be started.
 struct RowWindow {
     state: Mutex<WindowState>,
     moved: Condvar,
@@ -33,7 +34,7 @@ impl RowWindow {
         self.moved.notify_all();
     }
 
-    /// Waits until `index` may be begun; false when it never may.
+    /// Waits until `index` may be started; false if it never may.
     fn admits(&self, index: u64) -> bool {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         while !state.closed && index >= state.written + self.size {
@@ -43,11 +44,12 @@ impl RowWindow {
     }
 }
 
-/// Computes all `indices` on `jobs` threads and hands the results over in order; nothing now and then, while there is
-/// none. Ends early where `progress` or a computation (with `None`) says stop, or `write` fails: all before that is written.
+/// Computes all `indices` on `jobs` threads and passes the results to `write` in order; while there is none, `write`
+/// gets `None` now and then. Ends early if `progress` or a computation (with `None`) says stop, or if `write` fails;
+/// everything before that is written.
 ///
 /// # Errors
-/// That of `write`; threads that cannot be made.
+/// The error of `write`, or that of threads that cannot be created.
 pub fn in_order<T: Send, E: From<ThreadPoolBuildError>>(
     indices: Range<u64>,
     jobs: usize,
@@ -64,11 +66,11 @@ pub fn in_order<T: Send, E: From<ThreadPoolBuildError>>(
     let (sender, receiver) = channel();
     std::thread::scope(|scope| {
         scope.spawn(move || {
-            // Taken one by one and in order, whichever thread is free.
+            // Taken one by one in order, by whichever thread is free.
             let admitted = indices.take_while(|index| !progress.stop() && window.admits(*index));
             pool.install(|| {
                 admitted.par_bridge().for_each_with(sender, |sender, index| match compute(index) {
-                    // The writer is there until the last sender is gone, or has closed the window.
+                    // The writer is there until the last sender is gone or has closed the window.
                     Some(item) => drop(sender.send((index, item))),
                     None => window.change(|state| state.closed = true),
                 });
@@ -105,7 +107,7 @@ mod tests {
     use pulloff_engine::progress::Unwatched;
     use std::sync::atomic::{AtomicU64, Ordering};
 
-    /// What was written of `0..rows`, each computed after its own pause.
+    /// The written part of `0..rows`, each row computed after its own pause.
     fn written(rows: u64, window: u64, last: u64) -> Vec<u64> {
         let begun = AtomicU64::new(0);
         let done = AtomicU64::new(0);

@@ -1,4 +1,4 @@
-//! Parts of a sweep joined: to the byte the results of a single run.
+//! Joins the parts of a sweep: byte for byte the results of a single run.
 
 use super::output::{Existing, FaultCounts, OutputError};
 use super::record::{Layout, Wrong};
@@ -20,7 +20,7 @@ pub enum MergeError {
     Output(#[from] OutputError),
     #[error("{path}: exists already; --overwrite replaces it")]
     Exists { path: String },
-    /// Nothing says what a part is.
+    /// No file beside the part says what it is.
     #[error("{path}: is not known to be a part of a sweep ({cause})")]
     NotOurs { path: String, cause: SidecarError },
     #[error("{path}: is of another sweep than {first}")]
@@ -30,18 +30,18 @@ pub enum MergeError {
         path: String,
         found: Shard,
         first: String,
-        /// Into how many parts the first one is divided.
+        /// The number of parts that the first one belongs to.
         of: u64,
     },
-    /// Two parts that are the same.
+    /// Two parts that are the same shard.
     #[error("{path}: is shard {shard}, as is {other}")]
     Doubled { path: String, shard: Shard, other: String },
     #[error("shards are missing: {0}")]
     Missing(String),
-    /// A part that is not at its end.
+    /// A part that is not complete.
     #[error("{path}: has {rows} of the {of} rows of shard {shard}; run it again to go on")]
     Incomplete { path: String, rows: u64, of: u64, shard: Shard },
-    /// A row that is not the one that belongs there.
+    /// A row that is not the expected one.
     #[error("{path}:{line}: {what}: the file was changed")]
     Changed {
         path: String,
@@ -94,7 +94,7 @@ impl MergePart {
         Ok(Self { path: path.to_owned(), shard, reader: BufReader::new(file), lines: 0, line: Vec::new() })
     }
 
-    /// The next whole line; `None` at the end, where a torn line counts for nothing.
+    /// The next complete line; `None` at the end, where a torn line does not count.
     fn next(&mut self) -> Result<Option<&[u8]>, MergeError> {
         self.line.clear();
         let read = self.reader.read_until(b'\n', &mut self.line);
@@ -111,7 +111,7 @@ impl MergePart {
     }
 }
 
-/// What parts were joined to.
+/// The outcome of joining parts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Merged {
     pub rows: u64,
@@ -119,8 +119,8 @@ pub struct Merged {
 }
 
 /// Joins `parts`, in any order, to `results`.
-/// Errors: A part is missing, doubled, incomplete or of another sweep; there is a file already, and `existing` does not replace it;
-/// nothing has changed then.
+/// Errors: A part is missing, doubled, incomplete or from another sweep, or a file exists and `existing` does not
+/// replace it; nothing has changed then.
 pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<Merged, MergeError> {
     let Some(first) = parts.first() else { return Err(MergeError::Missing("none is given".to_owned())) };
     let not_ours = |path: &Path| {
@@ -141,7 +141,7 @@ pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<Me
         if sidecar::of_whole(&text, shard) != whole {
             return Err(MergeError::OtherSweep { path: shown, first: show_path(first) });
         }
-        // From 1 to `of`, as a shard is.
+        // From 1 to `of`, as in every shard.
         let place = &mut found[usize::try_from(shard.number - 1).unwrap_or_default()];
         if let Some(before) = place.replace(path) {
             return Err(MergeError::Doubled { path: shown, shard, other: show_path(before) });
@@ -160,7 +160,7 @@ pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<Me
         (1..=of).zip(found.iter().flatten()).map(part).collect()
     };
     if stream::is_stream(results) {
-        // A stream cannot be taken back, so all parts are checked first.
+        // What was written to a stream cannot be taken back, so all parts are checked first.
         let faults = fill(&mut io::sink(), results, &mut open()?, &layout, sidecar.rows)?;
         let failed = |cause| OutputError::Io { path: stream::shown(results), doing: "open", cause };
         fill(&mut stream::open(results).map_err(failed)?, results, &mut open()?, &layout, sidecar.rows)?;
@@ -178,14 +178,14 @@ pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<Me
 }
 
 fn listed(names: &[String]) -> String {
-    /// Listed at most.
+    /// The largest number listed.
     const TOLD: usize = 10;
     let more = names.len().saturating_sub(TOLD);
     let told = names[..names.len() - more].join(", ");
     if more == 0 { told } else { format!("{told} and {more} more") }
 }
 
-/// The rows of all parts, taken in turn; how many of them failed.
+/// Writes the rows of all parts, taken in turn, and counts how many of them failed.
 fn fill(
     file: &mut dyn Write,
     results: &Path,
@@ -198,7 +198,7 @@ fn fill(
     };
     let mut out = BufWriter::new(file);
     for part in parts.iter_mut() {
-        // A torn line alone has no rows, as is said below.
+        // A torn line alone means no rows, which is reported below.
         let checked = part.next()?.map_or(Ok(()), |line| layout.check_header(line));
         checked.map_err(|wrong| part.changed(wrong))?;
     }

@@ -1,21 +1,21 @@
 //! The command `sweep`: one preset over many values of its keys, on all cores, into one CSV file.
 //!
-//! What a row is, and what can be computed of it, is in [`pulloff_engine::sweep`]: a pure function of the spec and the number
-//! of the row. So a stopped sweep goes on where it stopped, and shards join to the very file of a single run.
+//! A row, and what can be computed for it, is defined in [`pulloff_engine::sweep`]: a pure function of the spec and the
+//! row number. So a stopped sweep continues where it stopped, and joined shards give exactly the file of a single run.
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`spec`] | the spec from the disk; the form by which its results are known again |
+//! | [`spec`] | the spec from the disk; the form by which its results are recognised |
 //! | [`record`] | a row as a line of CSV |
-//! | [`in_order`](mod@in_order) | computations on every core, their results in order |
+//! | [`in_order`](mod@in_order) | computations on every core, with their results in order |
 //! | [`run`](mod@run) | rows on every core, written in order |
-//! | [`sidecar`] | the file beside the results that says what they are of |
-//! | [`output`] | the file of the results: begun, gone on with, appended to |
-//! | [`ensemble`] | the members of an ensemble, and what they say together |
+//! | [`sidecar`] | the file beside the results that says which sweep they belong to |
+//! | [`output`] | the file of the results: started, continued, appended to |
+//! | [`ensemble`] | the members of an ensemble, and their statistics |
 //! | [`shard`] | a part of the rows |
 //! | [`merge`](mod@merge) | parts joined |
-//! | [`check`](mod@check) | results looked at without computing |
-//! | [`results`] | the results read by the name of a column |
+//! | [`check`](mod@check) | results checked without computing |
+//! | [`results`] | the results read by column name |
 
 pub mod check;
 pub mod ensemble;

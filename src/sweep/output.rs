@@ -1,8 +1,9 @@
-//! The file of the results: begun, gone on with, appended to.
+//! The file of the results: started, continued, appended to.
 //!
-//! Rows are only ever appended, whole lines at a time, so whatever ends the program leaves whole rows and at most one
-//! torn line at the end, which the next run cuts off. The file beside it is written first: results without it are none
-//! of ours and are not touched. Standard output, a pipe or a device takes the rows as they come, and nothing else.
+//! Rows are only ever appended, whole lines at a time, so whatever ends the program leaves complete rows and at most
+//! one torn line at the end, which the next run cuts off. The file beside the results is written first: results without
+//! it are not ours and are not touched. Standard output, a pipe or a device gets the rows as they come, and nothing
+//! else.
 
 use super::record::{Layout, RowOutcome, Wrong};
 use super::results::ResultsError;
@@ -24,15 +25,15 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
-/// What to do with results that are there already.
+/// What to do with existing results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existing {
-    /// Go on with those of the same sweep, refuse all others.
+    /// Continue those of the same sweep, refuse all others.
     GoOn,
     Overwrite,
 }
 
-/// Why results cannot be begun, gone on with or written. Paths are safe to show.
+/// Why results cannot be started, continued or written. Paths are safe to show.
 #[derive(Debug, Error)]
 pub enum OutputError {
     #[error(transparent)]
@@ -41,17 +42,17 @@ pub enum OutputError {
     Io { path: String, doing: &'static str, cause: io::Error },
     #[error("{path}: another pulloff is writing it")]
     Busy { path: String },
-    /// There is a file, and nothing beside it says that it is a sweep's.
+    /// A file exists, and nothing beside it says that it belongs to a sweep.
     #[error("{path}: exists already, and is not known to be of a sweep ({cause}); --overwrite replaces it")]
     NotOurs { path: String, cause: SidecarError },
-    /// The file beside results that are not there.
+    /// The file beside the results exists without them.
     #[error("{path}: exists already, and does not describe this sweep; --overwrite replaces it")]
     Described { path: String },
     #[error("{path}: holds the results of another sweep: {what}; --overwrite replaces them")]
     OtherSweep { path: String, what: String },
     #[error("{path}: holds shard {found}, not {wanted}; --overwrite replaces it")]
     OtherShard { path: String, found: Shard, wanted: Shard },
-    /// A whole line that is not what this sweep writes there.
+    /// A complete line that differs from what this sweep writes there.
     #[error("{path}:{line}: {what}: the file was changed; --overwrite begins anew")]
     Changed {
         path: String,
@@ -59,7 +60,7 @@ pub enum OutputError {
         line: u64,
         what: Wrong,
     },
-    /// Rows of members of which there are no statistics.
+    /// Rows of members from which statistics cannot be made.
     #[error(transparent)]
     Rows(#[from] ResultsError),
     #[error("cannot start the threads: {0}")]
@@ -83,10 +84,10 @@ impl Mend for OutputError {
     }
 }
 
-/// Faults of rows.
+/// The faults of rows.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct FaultCounts {
-    /// How many, by their reason.
+    /// Their number, by reason.
     pub reasons: BTreeMap<&'static str, u64>,
     /// The rows with a fault and no quantity.
     pub failures: u64,
@@ -113,21 +114,21 @@ impl FaultCounts {
 pub struct Output {
     file: File,
     path: String,
-    /// Whether it goes straight to its reader: then there is nothing to go on with.
+    /// Whether the rows go directly to a reader; then there is nothing to continue.
     is_stream: bool,
-    /// Whole lines that are not in the file yet.
+    /// Complete lines that are not in the file yet.
     buffer: Vec<u8>,
     flushed: Instant,
     pub rows: u64,
     pub faults: FaultCounts,
 }
 
-/// So many bytes are written at once, or after so long.
+/// The buffer is written once it has this many bytes, or after this time.
 const BUFFER: usize = 1 << 16;
 const LATEST: Duration = Duration::from_millis(200);
 
 impl Output {
-    /// Opens the results of a part of a sweep, and finds how far they are.
+    /// Opens the results of a shard of a sweep, and finds how far they are.
     pub fn open(path: &Path, spec: &Spec, shard: Shard, existing: Existing) -> Result<Self, OutputError> {
         let shown = show_path(path);
         let failed = |doing| {
@@ -161,7 +162,7 @@ impl Output {
         Ok(output)
     }
 
-    /// Begins the results in standard output, a pipe or a device.
+    /// Starts the results on standard output, a pipe or a device.
     fn straight(path: &Path, spec: &Spec) -> Result<Self, OutputError> {
         let shown = stream::shown(path);
         let file = stream::open(path);
@@ -181,7 +182,7 @@ impl Output {
         move |cause| OutputError::Io { path, doing, cause: explained(cause) }
     }
 
-    /// Finds the rows that are there, and cuts a torn line off.
+    /// Finds the existing rows, and cuts off a torn line.
     fn scan(&mut self, spec: &Spec, shard: Shard) -> Result<(), OutputError> {
         let layout = Layout::of(spec);
         let mut whole = 0_u64;
@@ -220,7 +221,7 @@ impl Output {
         Ok(())
     }
 
-    /// Appends a whole line, now or a little later.
+    /// Appends a complete line, now or a little later.
     pub fn append(&mut self, line: &str) -> Result<(), OutputError> {
         self.buffer.extend_from_slice(line.as_bytes());
         if self.buffer.len() >= BUFFER || self.flushed.elapsed() >= LATEST { self.flush() } else { Ok(()) }
@@ -234,14 +235,14 @@ impl Output {
         Ok(())
     }
 
-    /// Makes sure that the disk has all rows.
+    /// Makes sure that all rows are on the disk.
     pub fn finish(mut self) -> Result<(), OutputError> {
         self.flush()?;
         if self.is_stream { Ok(()) } else { self.file.sync_all().map_err(self.failed("write")) }
     }
 }
 
-/// Refuses to begin results where the file beside them is there and would say something else.
+/// Refuses to start results where the file beside them exists and describes another sweep.
 fn begins(path: &Path, description: &str, existing: Existing) -> Result<(), OutputError> {
     let beside = sidecar::path(path);
     if existing == Existing::Overwrite || beside.symlink_metadata().is_err() {
@@ -253,7 +254,7 @@ fn begins(path: &Path, description: &str, existing: Existing) -> Result<(), Outp
     }
 }
 
-/// Refuses results that are not of this part of this sweep.
+/// Refuses results that do not belong to this shard of this sweep.
 fn check(path: &Path, spec: &Spec, shard: Shard) -> Result<(), OutputError> {
     let shown = || show_path(path);
     let (sidecar, text) =

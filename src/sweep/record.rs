@@ -1,6 +1,6 @@
 //! A row of the results as a line of CSV: its number, the values of its axes, the quantities, the fault.
 //!
-//! Numbers have every digit, so the values of a row bring back its problem. A line never holds a line end but its own.
+//! Numbers have all their digits, so the values of a row reproduce its problem. A line contains no line end but its own.
 
 use pulloff_engine::sweep::axis::SweepAxis;
 use pulloff_engine::sweep::spec::{Design, Spec, values};
@@ -13,7 +13,7 @@ pub const ROW: &str = "row";
 /// The name of the last column.
 pub const ERROR: &str = "error";
 
-/// The columns that count the rows at a point of an ensemble, and those of them with an error, with their meanings.
+/// The columns that count the rows at a point of an ensemble and those of them with an error, with their meanings.
 pub const COUNTS: [(&str, &str); 2] =
     [("members", "members computed"), ("refused", "members with an error, of whose values some are missing")];
 
@@ -31,12 +31,12 @@ pub struct Layout {
     pub columns: Vec<String>,
 }
 
-/// What became of a row.
+/// The outcome of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RowOutcome {
     /// The reason of its fault, if it has one.
     pub fault: Option<&'static str>,
-    /// Whether it has a quantity: a fault of one leaves the others.
+    /// Whether it has a quantity; a fault in one quantity leaves the others.
     pub has_quantity: bool,
 }
 
@@ -48,12 +48,12 @@ impl RowOutcome {
     }
 }
 
-/// Why a line is not the one that belongs there, in words that are safe to show.
+/// Why a line is not the expected one, in words that are safe to show.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Wrong(String);
 
 impl Wrong {
-    /// A line behind that of the last row.
+    /// A line after that of the last row.
     pub(super) fn behind_the_last() -> Self {
         Self("there are more lines than rows".to_owned())
     }
@@ -80,7 +80,7 @@ pub fn names(spec: &Spec) -> Vec<String> {
     std::iter::once(ROW.to_owned()).chain(axes).chain(columns).chain([ERROR.to_owned()]).collect()
 }
 
-/// What the line of a row begins with: its number and the values of its axes.
+/// The beginning of a row's line: its number and the values of its axes.
 fn known(axes: &[SweepAxis], design: Design, row: u64) -> Vec<String> {
     let values = values(axes, design, row);
     std::iter::once(row.to_string()).chain(values.iter().map(ToString::to_string)).collect()
@@ -93,7 +93,7 @@ fn beginning(fields: &[String]) -> String {
     text
 }
 
-/// The line of what is known of a row and what was found.
+/// The line made of the known cells of a row and those that were found.
 fn after(known: &[String], found: &[String]) -> String {
     format!("{}{}", beginning(known), line(found.iter().map(String::as_str)))
 }
@@ -107,7 +107,7 @@ pub fn record(spec: &Spec, row: u64, measured: &MeasuredQuantities) -> String {
     after(&known(&spec.axes, spec.design, row), &fields)
 }
 
-/// The fields of a line; none where it is no CSV.
+/// The fields of a line; `None` where it is not CSV.
 fn fields(line: &[u8]) -> Option<csv::StringRecord> {
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(line);
     reader.records().next()?.ok()
@@ -120,7 +120,7 @@ impl Layout {
         Self { axes: spec.axes.clone(), design: spec.design, columns: names(spec) }
     }
 
-    /// That of the points of an ensemble, which have no values of what the members draw.
+    /// The layout for the points of an ensemble, which has no values for what the members draw.
     #[must_use]
     pub fn of_points(mut self) -> Self {
         self.axes.retain(|axis| axis.count().is_some());
@@ -139,7 +139,7 @@ impl Layout {
         after(&known(&self.axes, self.design, row), &found.collect::<Vec<_>>())
     }
 
-    /// Looks at the first line.
+    /// Checks the first line.
     pub fn check_header(&self, line: &[u8]) -> Result<(), Wrong> {
         if line == self.header().as_bytes() {
             return Ok(());
@@ -148,7 +148,7 @@ impl Layout {
         Err(Wrong(format!("the columns are not {}", names.join(", "))))
     }
 
-    /// What became of a row, from its whole line.
+    /// The outcome of a row, from its complete line.
     pub fn outcome(&self, row: u64, line: &[u8]) -> Result<RowOutcome, Wrong> {
         let known = known(&self.axes, self.design, row);
         let wrong = |what: &str| Wrong(format!("row {row}: {what}"));

@@ -1,4 +1,4 @@
-//! The results of a sweep read again: columns by their names.
+//! Reads the results of a sweep: columns by name.
 
 use super::record::statistic;
 use super::sidecar::{ColumnInfo, Sidecar, SidecarError};
@@ -37,16 +37,16 @@ pub struct SweepResults {
     pub columns: Vec<ColumnInfo>,
     /// The columns of the axes, in the order of the spec.
     pub axes: Vec<String>,
-    /// Whether their values are drawn at random.
+    /// Whether the values of the axes are drawn at random.
     pub is_random: bool,
-    /// Whether they are statistics of an ensemble.
+    /// Whether the rows are statistics of an ensemble.
     pub is_statistics: bool,
-    /// The rows of the whole sweep: there may be fewer.
+    /// The number of rows of the whole sweep; fewer may exist.
     pub rows: u64,
 }
 
 impl SweepResults {
-    /// Opens the results; nothing but what stands beside them is read.
+    /// Opens the results; only the file beside them is read.
     pub fn open(path: &Path) -> Result<Self, ResultsError> {
         let (sidecar, _) = Sidecar::read(path)?;
         let axes = sidecar.axes();
@@ -55,14 +55,14 @@ impl SweepResults {
         Ok(Self { path, columns, axes, is_random, is_statistics, rows })
     }
 
-    /// What stands beside an axis of this column.
+    /// The title of an axis that shows this column.
     #[must_use]
     pub fn title(&self, name: &str) -> String {
         let column = self.columns.iter().find(|column| column.name == name);
         column.map_or_else(|| name.to_owned(), ColumnInfo::title)
     }
 
-    /// The same of a quantity, of which this column has a statistic.
+    /// The same for a quantity of which this column is a statistic.
     #[must_use]
     pub fn title_of(&self, quantity: &str, name: &str) -> String {
         let column = self.columns.iter().find(|column| column.name == name);
@@ -70,7 +70,7 @@ impl SweepResults {
         column.map_or_else(|| quantity.to_owned(), named)
     }
 
-    /// Whether there are statistics of this quantity, and no column of its own.
+    /// Whether there are statistics of this quantity and no column of its own.
     #[must_use]
     pub fn has_statistics_of(&self, quantity: &str) -> bool {
         let median = statistic(quantity, "q50");
@@ -91,7 +91,7 @@ impl SweepResults {
         self.read(names, |cell| Some(cell.to_owned()))
     }
 
-    /// The same as numbers, in the units in which they are shown; an empty cell is none.
+    /// The same as numbers, in the units in which they are shown; an empty cell gives `None`.
     /// Errors: As [`texts`](Self::texts), or a cell is neither empty nor a number.
     pub fn numbers(&self, names: &[&str]) -> Result<Vec<Vec<Option<f64>>>, ResultsError> {
         let number = |cell: &str| if cell.is_empty() { Some(None) } else { cell.parse().ok().map(Some) };
@@ -103,8 +103,8 @@ impl SweepResults {
         Ok(columns)
     }
 
-    /// The cells of one column as `value` reads them.
-    /// Errors: As [`texts`](Self::texts), or `value` says of one that it is none.
+    /// The cells of one column, as parsed by `value`.
+    /// Errors: As [`texts`](Self::texts), or `value` rejects one.
     pub fn cells<T>(&self, name: &str, value: impl Fn(&str) -> Option<T>) -> Result<Vec<T>, ResultsError> {
         Ok(self.read(&[name], value)?.pop().unwrap_or_default())
     }
@@ -138,9 +138,9 @@ impl SweepResults {
     }
 }
 
-/// The bytes of a file up to its last line end: a row that is just being written counts for nothing.
+/// The number of bytes up to the last line end; a row that is just being written does not count.
 fn whole_lines(mut file: &File) -> io::Result<u64> {
-    /// Far more than a line.
+    /// Far more than one line.
     const STEP: u64 = 1 << 16;
     let mut end = file.metadata()?.len();
     while end > 0 {

@@ -1,4 +1,4 @@
-//! Rows of a sweep on every core, written in their order.
+//! Computes rows of a sweep on every core and writes them in order.
 
 use super::in_order::in_order;
 use super::output::{FaultCounts, Output, OutputError};
@@ -10,16 +10,16 @@ use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
-/// The most rows begun and not written: a slow one among fast ones, and a few megabytes.
+/// The largest number of rows started but not written: enough for one slow row among fast ones, in a few megabytes.
 const WINDOW: u64 = 1 << 14;
 
-/// The most rows of an ensemble that one thread takes together.
+/// The largest number of rows of an ensemble that one thread takes together.
 const MOST_TOGETHER: u64 = 16;
 
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunSummary {
-    /// The rows that were there before.
+    /// The number of rows that existed before.
     pub before: u64,
     pub now: u64,
     pub of: u64,
@@ -27,13 +27,13 @@ pub struct RunSummary {
 }
 
 impl RunSummary {
-    /// Whether all rows are there.
+    /// Whether all rows exist.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.before + self.now == self.of
     }
 
-    /// Whether all rows are there, and none of them has a quantity.
+    /// Whether all rows exist and none of them has a quantity.
     #[must_use]
     pub fn is_failure(&self) -> bool {
         self.is_complete() && self.faults.failures == self.of
@@ -43,16 +43,16 @@ impl RunSummary {
 /// What a run may use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Means {
-    /// Threads.
+    /// The number of threads.
     pub jobs: usize,
-    /// The longest that a row may take; then it has an error.
+    /// The longest time that a row may take; after that it gets an error.
     pub row_limit: Option<Duration>,
 }
 
-/// Computes the rows of a part that `output` does not have.
+/// Computes the rows of a shard that `output` does not have.
 ///
-/// `progress` is asked often, by every thread; when it says stop, what is done is kept. `written` is told how many rows there
-/// are and how many of them have faults, several times a second.
+/// Every thread asks `progress` often; when it says stop, what is done is kept. `written` gets the number of existing
+/// rows and of those with faults, several times a second.
 pub fn run(
     spec: &Spec,
     shard: Shard,
@@ -87,9 +87,9 @@ pub fn run(
     Ok(RunSummary { before, now, of, faults })
 }
 
-/// Computes the rows of a part whose places in it are `indices`, and hands what `make` makes of each over in order, on this
-/// thread; nothing now and then, while there is none. Ends early where `progress` says stop or `write` fails: all before that is
-/// handed over.
+/// Computes the rows with the positions `indices` in a shard, and passes what `make` makes of each to `write` in order,
+/// on this thread; while there is none, `write` gets `None` now and then. Ends early if `progress` says stop or `write`
+/// fails; everything before that has been passed on.
 pub fn rows<T: Send>(
     spec: &Spec,
     shard: Shard,
@@ -109,7 +109,7 @@ pub fn rows<T: Send>(
             || means.row_limit.filter(|_| !progress.stop()).map(|limit| spec.lost(Fault::of_limit(limit)));
         Some(make(row, measured.or_else(late)?))
     };
-    // The points of a member have one surface, whose table costs more than they do: one thread computes them all.
+    // The points of a member share one surface, whose table costs more than they do, so one thread computes them all.
     let size = if spec.is_ensemble() { spec.points().min(MOST_TOGETHER) } else { 1 };
     let first = |unit: u64| (unit * size).saturating_sub(shard.number - 1).div_ceil(shard.of);
     let unit_of = |index: u64| shard.row(index) / size;

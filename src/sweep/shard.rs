@@ -1,38 +1,39 @@
 //! A part of the rows: every n-th one.
 //!
-//! Neighbouring rows cost about the same, so taking turns shares the load, and the parts are joined by taking turns again.
+//! Neighbouring rows cost about the same, so dealing them out in turn balances the load; the parts are joined by taking
+//! rows in turn again.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// The most parts; they are all open at once when they are joined.
+/// The largest number of parts; all are open at once when they are joined.
 pub const MOST_SHARDS: u64 = 1000;
 
 /// The part i of n.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
-    /// Which, from 1.
+    /// Its number, from 1.
     pub number: u64,
     pub of: u64,
 }
 
 impl Shard {
-    /// The one part that is the whole.
+    /// The only part, which is the whole.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// How many of `rows` are in it.
+    /// How many of `rows` belong to it.
     #[must_use]
     pub fn len(self, rows: u64) -> u64 {
         (rows + self.of - self.number) / self.of
     }
 
-    /// Whether none of `rows` is.
+    /// Whether none of `rows` belongs to it.
     #[must_use]
     pub fn is_empty(self, rows: u64) -> bool {
         self.len(rows) == 0
     }
 
-    /// The row that is its `index`-th, from 0.
+    /// Its `index`-th row, from 0.
     #[must_use]
     pub fn row(self, index: u64) -> u64 {
         self.number - 1 + index * self.of

@@ -1,7 +1,9 @@
-//! The file beside the results, `RESULTS.csv.spec.toml`: which sweep they are of, which part of it, what the columns are.
+//! The file beside the results, `RESULTS.csv.spec.toml`: which sweep and which part of it they belong to, and what the
+//! columns are.
 //!
-//! Readers of CSV dislike comments, so the results themselves hold nothing but the table. The sweep is recognised by the
-//! hash of its canonical form, which stands here as well, with the whole preset: the results can be repeated from it.
+//! Many CSV readers do not accept comments, so the results themselves contain only the table. The sweep is recognised
+//! by the hash of its canonical form, which is also in this file, with the whole preset, so that the results can be
+//! computed again from it.
 
 use super::record::{self, COUNTS, Layout};
 use super::shard::Shard;
@@ -21,10 +23,10 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 use toml::{Table, Value};
 
-/// The ending added to the name of the results.
+/// The suffix added to the name of the results.
 const ENDING: &str = ".spec.toml";
 
-/// Why the file beside some results says nothing. Names and paths in it are safe to show.
+/// Why the file beside some results is of no use. Names and paths in the error are safe to show.
 #[derive(Debug, Error)]
 pub enum SidecarError {
     #[error(transparent)]
@@ -50,16 +52,16 @@ impl Mend for SidecarError {
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 pub struct ColumnInfo {
     pub name: String,
-    /// What it is called in formulas; `None` where it has no such name.
+    /// Its symbol in formulas; `None` where it has none.
     pub symbol: Option<String>,
-    /// The unit of its numbers; `None` for pure numbers, texts, and in reduced units.
+    /// The unit of its numbers; `None` for pure numbers, text, and in reduced units.
     pub unit: Option<String>,
-    /// The unit in which a figure shows them, where that is another.
+    /// The unit in which a figure shows them, where it differs.
     pub shown: Option<String>,
     pub meaning: String,
 }
 
-/// What the file says.
+/// The contents of the file.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 pub struct Sidecar {
     pub identity: String,
@@ -73,11 +75,11 @@ pub struct Sidecar {
     sweep: Canonical,
 }
 
-/// What is read of the canonical form.
+/// The part of the canonical form that is read.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 struct Canonical {
     axis: Vec<AxisKey>,
-    /// How rows are drawn, where they are.
+    /// How rows are drawn, if they are.
     random: Option<Draws>,
     ensemble: Option<Draws>,
 }
@@ -88,11 +90,11 @@ struct Draws {}
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 struct AxisKey {
     key: String,
-    /// From what its values are drawn, where they are.
+    /// The distribution from which its values are drawn, if they are.
     distribution: Option<Draws>,
 }
 
-/// What stands beside the statistics of an ensemble, and how they are laid out.
+/// The file beside the statistics of an ensemble, and their layout.
 pub(super) struct Beside {
     pub(super) text: String,
     pub(super) layout: Layout,
@@ -135,20 +137,20 @@ fn written(identity: &str, shard: Shard, rows: &str, canonical: &str, columns: &
     text
 }
 
-/// The canonical form that stands in the text of the file.
+/// The canonical form in the text of the file.
 pub(super) fn canonical_in(text: &str) -> Option<&str> {
     let (_, rest) = text.split_once("\n\n")?;
     Some(&rest[..rest.find("\n[[column]]\n").unwrap_or(rest.len())])
 }
 
-/// The text for the whole sweep, made from that of a part.
+/// The text for the whole sweep, derived from that of a part.
 #[must_use]
 pub fn of_whole(text: &str, part: Shard) -> String {
     let line = |shard: Shard| format!("\nshard = \"{shard}\"\n");
     text.replacen(&line(part), &line(Shard::WHOLE), 1)
 }
 
-/// What of a sweep may differ: its keys in the canonical form, and how it is called.
+/// The ways in which sweeps may differ: the keys in the canonical form, and the words for them.
 const PARTS: [(&[&str], &str); 6] = [
     (&["program_version"], "another version of pulloff"),
     (&["preset"], "another preset"),
@@ -158,7 +160,7 @@ const PARTS: [(&[&str], &str); 6] = [
     (&["axis"], "other axes or values"),
 ];
 
-/// How a sweep differs from the one of this sidecar text, in words that are safe to show.
+/// How a sweep differs from the one in this sidecar text, in words that are safe to show.
 #[must_use]
 pub fn differences(text: &str, spec: &Spec) -> String {
     let sweep = |text: &str| toml::from_str::<Table>(text).ok()?.remove("sweep");
@@ -194,7 +196,7 @@ fn values_of(preset: &str) -> BTreeMap<String, Value> {
 }
 
 fn changed(theirs: &BTreeMap<String, Value>, ours: &BTreeMap<String, Value>) -> String {
-    /// Listed at most.
+    /// The largest number listed.
     const TOLD: usize = 3;
     let all: BTreeSet<&String> = theirs.keys().chain(ours.keys()).collect();
     let keys: Vec<String> = all
@@ -244,10 +246,10 @@ fn columns(spec: &Spec) -> Vec<ColumnInfo> {
 }
 
 impl ColumnInfo {
-    /// What stands beside an axis: what it is in words, its symbol, and the unit in which it is shown.
+    /// The title of an axis: the meaning in words, the symbol, and the unit in which it is shown.
     #[must_use]
     pub fn title(&self) -> String {
-        // A key of a preset has a dot in it and says what it is; a quantity is called what it is.
+        // A key of a preset contains a dot, and its meaning describes it; the name of a quantity describes itself.
         let words = if self.name.contains('.') {
             headline(&self.meaning).to_owned()
         } else {
@@ -259,7 +261,7 @@ impl ColumnInfo {
         format!("{words}{symbol}{}", unit.map_or_else(String::new, |unit| format!(" ({unit})")))
     }
 
-    /// A number of the column as it is shown.
+    /// A number of the column in the unit in which it is shown.
     #[must_use]
     pub fn shown(&self, number: f64) -> f64 {
         let unit = self.shown.as_ref().and_then(|unit| Unit::parse(unit, 0).ok());
@@ -268,10 +270,10 @@ impl ColumnInfo {
 }
 
 impl Sidecar {
-    /// Reads the file beside `results`, with its text.
+    /// Reads the file beside `results`; returns it with its text.
     pub fn read(results: &Path) -> Result<(Self, String), SidecarError> {
         let path = path(results);
-        // Every value of every axis stands in it.
+        // It contains every value of every axis.
         let (text, _) = read_text(&path, 4 * file::LARGEST)?;
         let unknown =
             |what: &str| SidecarError::Unknown { path: show_path(&path), what: sanitize(what, 120) };
@@ -280,7 +282,7 @@ impl Sidecar {
         Ok((sidecar, text))
     }
 
-    /// The layout of the results beside `text`, that of this file.
+    /// The layout of the results beside this file, whose content is `text`.
     pub fn layout(&self, results: &Path, text: &str) -> Result<Layout, SidecarError> {
         let path = path(results);
         let document = SpecText { name: &path.to_string_lossy(), text };
@@ -291,7 +293,7 @@ impl Sidecar {
         Ok(if self.statistics { layout.of_points() } else { layout })
     }
 
-    /// What stands beside the statistics of the members that this file, of this `text`, is of.
+    /// The file beside the statistics of the members that this file, with this `text`, describes.
     pub(super) fn of_statistics(&self, text: &str, members: &Layout, points: u64) -> Beside {
         let is_drawn = |column: &ColumnInfo| {
             members.axes.iter().any(|axis| axis.key == column.name && axis.count().is_none())
@@ -328,7 +330,7 @@ impl Sidecar {
         Beside { text, layout: Layout { columns, ..members.clone().of_points() } }
     }
 
-    /// The keys of the axes, which are the names of their columns.
+    /// The keys of the axes, which are also the names of their columns.
     #[must_use]
     pub fn axes(&self) -> Vec<String> {
         let all = self.sweep.axis.iter().filter(|axis| !self.statistics || axis.distribution.is_none());
@@ -353,10 +355,10 @@ impl Sidecar {
         self.sweep.random.is_some() || self.is_of_members()
     }
 
-    /// The part.
+    /// The part of the sweep.
     #[must_use]
     pub fn shard(&self) -> Shard {
-        // Checked when it was read.
+        // Validated when it was read.
         self.shard.parse().unwrap_or(Shard::WHOLE)
     }
 }

@@ -1,4 +1,4 @@
-//! The spec of a sweep from the disk, and the one form of it by which results are known again.
+//! The spec of a sweep from the disk, and the canonical form by which results are recognised.
 
 use crate::mend::Mend;
 use crate::store::file::{self, FileError};
@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// The keys that name files of data.
 const FILES: [&str; 2] = ["gap.file", FILE];
 
-/// Why a spec cannot be had.
+/// Why a spec cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     #[error(transparent)]
@@ -39,19 +39,19 @@ impl Mend for LoadError {
 #[derive(Debug)]
 pub struct LoadedSpec {
     pub spec: Spec,
-    /// The file of the preset, where it is not one that comes with the program.
+    /// The file of the preset; `None` for one that comes with the program.
     pub preset: Option<PathBuf>,
 }
 
-/// Reads the spec in a file; its preset is a name in `store`, or a path relative to the folder of the spec: the current
-/// one where the spec comes through a pipe. `changes` are laid over the preset behind those of the spec.
+/// Reads the spec in a file. Its preset is a name in `store`, or a path relative to the folder of the spec, or to the
+/// current folder where the spec comes through a pipe. `changes` are applied to the preset after those of the spec.
 pub fn load(store: &Store, path: &Path, changes: &[String]) -> Result<LoadedSpec, LoadError> {
     let (name, text) = stream::read_given(path, file::LARGEST)?;
     let folder = if stream::is_stream(path) { Path::new(".") } else { atomic::folder_of(path) };
     Ok(read_changed(store, folder, &name, &text, changes)?)
 }
 
-/// Reads a spec from text that `name` names, a path of a preset relative to `folder`.
+/// Reads a spec from text that messages call `name`; the path of its preset is relative to `folder`.
 pub fn read(store: &Store, folder: &Path, name: &str, text: &str) -> Result<Spec, SpecError> {
     read_changed(store, folder, name, text, &[]).map(|loaded| loaded.spec)
 }
@@ -78,7 +78,7 @@ fn read_changed(
             return Ok(preset);
         }
         let all: Vec<&str> = set.iter().copied().chain(changes.iter().map(String::as_str)).collect();
-        // What was wrong without them was told above.
+        // Faults without the changes were reported above.
         let changed = store.load(&source, &all).map_err(|error| format!("--set: {error}"))?;
         Ok(changed.preset)
     };
@@ -86,7 +86,7 @@ fn read_changed(
     Ok(LoadedSpec { spec, preset: file.into_inner() })
 }
 
-/// All that the results follow from, in one form: two specs that differ in it are different sweeps.
+/// Everything that determines the results, in one form: two specs that differ in it are different sweeps.
 #[must_use]
 pub fn canonical(spec: &Spec) -> String {
     let mut text = format!("[sweep]\nprogram_version = \"{}\"\n", env!("CARGO_PKG_VERSION"));
@@ -102,7 +102,7 @@ pub fn canonical(spec: &Spec) -> String {
     };
     let names: Vec<String> = spec.columns.iter().map(|column| format!("\"{}\"", column.name())).collect();
     let _ = writeln!(text, "quantities = [{}]", names.join(", "));
-    // Another title makes no other numbers.
+    // The title does not affect the numbers.
     let untitled = Preset { title: String::new(), ..spec.preset.clone() };
     let _ = writeln!(text, "preset = {}", toml::Value::String(write(&untitled)));
     let data: Vec<String> = data(spec).iter().map(|digest| format!("\"{digest}\"")).collect();
@@ -115,18 +115,19 @@ pub fn canonical(spec: &Spec) -> String {
     text
 }
 
-/// A hash of the canonical form.
+/// The hash of the canonical form.
 #[must_use]
 pub fn identity(spec: &Spec) -> String {
     sha256(canonical(spec).as_bytes())
 }
 
-/// Hashes of the measured profiles and curves it reads, that of the preset first: their names say nothing of their content.
+/// Hashes of the measured profiles and curves that the spec reads, that of the preset first, because file names say
+/// nothing about content.
 fn data(spec: &Spec) -> Vec<String> {
     presets(spec).flat_map(|preset| digests(&preset)).collect()
 }
 
-/// The preset, and it with each file of data that an axis names.
+/// The preset, and the preset with each data file that an axis names.
 pub fn presets(spec: &Spec) -> impl Iterator<Item = Preset> {
     let named = spec.axes.iter().filter(|axis| FILES.contains(&&*axis.key)).flat_map(|axis| {
         let preset = |value| {

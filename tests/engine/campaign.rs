@@ -1,15 +1,15 @@
-//! Random problems of every shape through the engine, as a person writes them, against an independent quadrature.
+//! Random problems of every shape through the engine, as a user writes them, against an independent quadrature.
 //!
-//! `cargo test --test engine campaign::` runs sixty of them. All two thousand:
+//! `cargo test --test engine campaign::` runs sixty of them. To run all two thousand:
 //!
 //! ```text
 //! cargo test --release --test engine campaign:: -- --ignored --nocapture
 //! ```
 //!
-//! and `PULLOFF_CAMPAIGN=17..18` before that line runs those numbers alone: each is drawn for itself. The answers are held
-//! against `support/quadrature.rs`: states and events to 1e-8 of their ranges, radii of limit points to 1e-6 of
-//! themselves, losses to 1e-6. An event that is missed or invented fails; so does a start that is refused where there is
-//! one. What is refused is counted by its reason.
+//! With `PULLOFF_CAMPAIGN=17..18` before that line, only those numbers run; each problem is drawn independently. The
+//! answers are compared with `support/quadrature.rs`: states and events to 1e-8 of their ranges, radii of limit points
+//! to a relative 1e-6, losses to a relative 1e-6. A missed or invented event is a failure; so is a refused start where
+//! one exists. Refusals are counted by reason.
 
 #![allow(
     clippy::float_cmp,
@@ -35,24 +35,24 @@ use std::fmt::Write;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// States and events, as a share of the ranges.
+/// The tolerance of states and events, as a share of their ranges.
 const STATES: f64 = 1e-8;
-/// Radii of limit points, as a share of themselves.
+/// The relative tolerance of the radii of limit points.
 const LIMITS: f64 = 1e-6;
-/// Losses, as a share of themselves, and of δ times P: their ranges on the path or, where that is short, their sizes, for a
-/// loss is a difference of energies.
+/// The tolerances of losses: relative, and as a share of δ times P. For δ and P, their ranges on the path are taken or,
+/// where the path is short, their sizes, because a loss is a difference of energies.
 const LOSSES: [f64; 2] = [1e-6, 1e-14];
-/// What is further off than this is printed.
+/// Larger errors than this are printed.
 const NOTABLE: f64 = 1e-10;
-/// Controls nearer to each other than this share of the range are a tie: which of two landings is taken is rounding.
+/// Controls closer than this share of the range are a tie: rounding decides which of two landings is taken.
 const TIE: f64 = 1e-13;
-/// How far beyond the start a state is looked for, where the gap goes on.
+/// How far beyond the start a state is looked for, where the gap continues.
 const OUTWARD: [f64; 4] = [1.0, 2.0, 6.0, 20.0];
 
-/// Contacts come this close to the end of what is known of a gap.
+/// The largest contact, as a share of the radius up to which a gap is known.
 const LARGEST_CONTACT: f64 = 0.995;
 
-/// The worst of each kind of error, as shares of what each may be.
+/// The worst of each kind of error, as shares of the tolerance.
 #[derive(Debug, Clone, Copy, Default)]
 struct Worst {
     states: f64,
@@ -70,16 +70,16 @@ impl Worst {
     }
 }
 
-/// What became of a problem.
+/// The outcome of a problem.
 enum Outcome {
     Right {
         worst: Worst,
         events: usize,
         corners: usize,
     },
-    /// With the reason.
+    /// The reason of the refusal.
     Refused(String),
-    /// Its numbers differ, and it warned.
+    /// The numbers differ, and the engine warned of it.
     Warned(String),
     Wrong(String),
 }
@@ -107,7 +107,7 @@ fn judge(problem: &Problem) -> Outcome {
             case.start * case.units().length
         ));
     };
-    // The truth must hold for itself.
+    // The truth must be consistent with itself.
     let finer = disc.clone().with_nodes(24);
     for share in [0.13, 0.57, 0.91] {
         let s = share * disc.reach();
@@ -133,7 +133,7 @@ fn judge(problem: &Problem) -> Outcome {
         }
     }
     for [corner, _] in disc.corners().iter().filter(|corner| corner[0] < from) {
-        // On it the curve is a root of the radius, of which a change of units takes the last digit.
+        // On a corner the curve is a root of the radius, so a change of units takes its last digit.
         for beside in [1.0 - 1e-6, 1.0 + 1e-6] {
             match state(problem, &case, &disc, beside * corner) {
                 Ok(error) => worst.states = worst.states.max(error),
@@ -181,7 +181,7 @@ fn judge(problem: &Problem) -> Outcome {
     let to = case.end * case.units().length / problem.length;
     let path = |stretches: &[[f64; 2]]| disc.unload(problem.control, stretches, from, to);
     let compare = |path: Option<Path>| compare(problem, &case, &ours, &disc, from, &path.ok_or("no path")?);
-    // Where they differ the radii looked at may have been too few.
+    // Where they differ, too few radii may have been examined.
     let found = compare(path(&stretches)).or_else(|_| compare(path(&disc.rising(problem.control, 12))));
     match found {
         Ok(errors) => {
@@ -200,10 +200,10 @@ fn judge(problem: &Problem) -> Outcome {
     }
 }
 
-/// The questions that a loop may ask before it counts as too long.
+/// The number of questions after which a loop counts as too long.
 const QUESTIONS: u64 = 5_000;
 
-/// The way down of the loop that turns at the start of a problem, as an unloading; why there is none, in words.
+/// The unloading branch of the loop that turns at the start of a problem, as an unloading; or why there is none, in words.
 fn way_down(problem: &Problem, case: &Case) -> Result<Ours, String> {
     let asked = AtomicU64::new(0);
     let tired = || asked.fetch_add(1, Ordering::Relaxed) > QUESTIONS;
@@ -224,7 +224,7 @@ fn way_down(problem: &Problem, case: &Case) -> Result<Ours, String> {
     Ok(Ours { events: cycle.events[turned + 1..].to_vec(), states: vec![start], ..cycle })
 }
 
-/// Compares the way down of a loop with the unloading of its disc.
+/// Compares the unloading branch of a loop with the unloading of its disc.
 fn judge_loop(problem: &Problem) -> Outcome {
     let case = match Case::new(&problem.preset) {
         Ok(case) => case,
@@ -266,14 +266,14 @@ fn refused(problem: &Problem, error: &CaseError) -> Outcome {
     Outcome::Refused(format!("{}: {reason}", problem.kind))
 }
 
-/// The disc up to where its path begins, the radius asked for, and the stretches on which the control rises.
+/// The disc up to where its path begins, the requested radius, and the stretches on which the control rises.
 struct Truth {
     disc: Disc,
     from: f64,
     stretches: Vec<[f64; 2]>,
 }
 
-/// The truth; none where no path begins.
+/// The truth; `None` where no path begins.
 fn truth(problem: &Problem) -> Option<Truth> {
     let known = LARGEST_CONTACT * problem.end;
     let disc = |reach: f64| Disc::new(&problem.terms, problem.gamma, reach.min(known));
@@ -300,7 +300,7 @@ fn truth(problem: &Problem) -> Option<Truth> {
     None
 }
 
-/// How far the engine's state of radius `s` is from the true one, over the sizes of δ and P.
+/// The distance of the engine's state of radius `s` from the true one, over the sizes of δ and P.
 fn state(problem: &Problem, case: &Case, disc: &Disc, s: f64) -> Result<f64, String> {
     let units = case.units();
     let at = case.basis.equilibrium(&case.reduced, s * problem.length / units.length);
@@ -356,7 +356,7 @@ fn compare(
             (Some(after), Some(truth)) => {
                 let after = in_ours(after);
                 near("landing", after, truth)?;
-                // Beside a limit point the radius of a landing is a root of the control's rounding.
+                // Near a limit point the radius of a landing is a root of the control's rounding error.
                 let error = (after.radius - truth.radius).abs() / from;
                 let size = Disc::held(
                     problem.control,
@@ -402,7 +402,7 @@ fn compare(
     Ok(worst)
 }
 
-/// The ranges of δ and P over the path, from the separated bodies to its ends.
+/// The ranges of δ and P over the path, from bodies apart to its ends.
 fn ranges(path: &Path) -> [f64; 2] {
     let states =
         path.jumps.iter().flat_map(|jump| [Some(jump.before), jump.after]).flatten().chain([path.start]);
@@ -429,7 +429,7 @@ fn tell(truth: &Path, ours: &Ours, in_ours: &dyn Fn(&PathState) -> State) -> Str
     text
 }
 
-/// Runs the problems of these numbers and prints what became of them.
+/// Runs the problems with these numbers and prints their outcomes.
 fn campaign(numbers: Range<u64>, judge: fn(&Problem) -> Outcome, share: f64) {
     let count = numbers.end - numbers.start;
     let outcomes: Vec<(u64, Option<Problem>, Outcome)> = numbers
@@ -491,7 +491,7 @@ fn the_ways_down_of_forty_loops_are_those_of_the_quadrature() {
     campaign(0..40, judge_loop, 0.7);
 }
 
-/// The numbers asked for, all where none are.
+/// The requested numbers, or all of them.
 fn asked() -> Range<u64> {
     let asked = std::env::var("PULLOFF_CAMPAIGN").unwrap_or_else(|_| "0..2000".to_owned());
     let (from, to) = asked.split_once("..").unwrap();

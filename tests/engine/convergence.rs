@@ -1,4 +1,4 @@
-//! Observed order of convergence against Hertz and JKR, and Newton's rounds from a threefold radius.
+//! Observed orders of convergence against Hertz and JKR, and Newton iterations from three times the true radius.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -104,7 +104,7 @@ fn rings_crowded_towards_the_edge_without_adhesion_and_with_little() {
         println!("Hertz {rings}: {radius:.2e} {force:.2e}");
         assert!(radius.abs() < 0.4 / rings as f64 && force.abs() < 0.35 / (rings * rings) as f64);
     }
-    // At the weakest adhesion that passes without a caution its part of the approach is still there.
+    // At the weakest adhesion that passes without a caution, its part of the approach still shows.
     let (gamma, s) = (1e-6, 0.3);
     let jkr = Jkr { effective_modulus: 1.0, work_of_adhesion: gamma, radius_of_curvature: 1.0 };
     let [uniform, edge] = Grading::ALL.map(|grading| {

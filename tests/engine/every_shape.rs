@@ -1,5 +1,5 @@
-//! Every shape a person can choose, as shipped, through both bases: the curve, the limit points, the landings and the
-//! losses against its exact solution, which knows neither basis, Newton nor continuation.
+//! Every shape that a user can choose, as shipped, in both bases: the curve, the limit points, the landings and the
+//! losses against its exact solution, which uses neither the bases nor Newton nor continuation.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -15,20 +15,21 @@ use pulloff_engine::theory::Exact;
 use pulloff_engine::theory::disc::ExactEquilibrium;
 use pulloff_engine::theory::unloading::{ExactPath, unload};
 
-/// How near eigenfunctions come in an automatic number: δ and P relative to their parts, radii of limit points and landings
-/// over that of the start, losses. A snap of little loss is a difference of energies a thousand times as large.
+/// The tolerances for an automatic number of eigenfunctions: δ and P relative to their parts, radii of limit points and
+/// landings over that of the start, and losses. The loss of a small snap is a difference of energies a thousand times
+/// larger.
 const EXACT: [f64; 3] = [1e-13, 1e-12, 1e-7];
 
-/// How near 400 rings come on the whole.
+/// The usual tolerances for 400 rings.
 const RINGS: [f64; 3] = [5e-3, 1e-3, 5e-3];
 
-/// The same where snaps lose as little as the waves of a profile let them.
+/// The same where the waves of a profile make the losses of snaps that small.
 const RINGS_SMALL_SNAPS: [f64; 3] = [5e-3, 1e-3, 0.1];
 
-/// The same at a corner of the gap, where the curve is a root of the radius: the nodes of rings pass it one by one.
+/// The same at a corner of the gap, where the curve is a root of the radius: the nodes of the rings pass it one by one.
 const RINGS_CORNER: [f64; 3] = [5e-3, 0.1, 5e-3];
 
-/// A preset of every shape, and formulas that are not smooth, with what rings are good for.
+/// A preset of every shape, and formulas that are not smooth, with the tolerances for rings.
 const SHAPES: [(&str, &[&str], [f64; 3]); 14] = [
     ("fig-3-jkr", &[], RINGS),
     ("fig-9", &[], RINGS),
@@ -102,7 +103,7 @@ fn check(name: &str, preset: &Preset, tolerances: [f64; 3]) {
         let curve = case.curve(&Unwatched).unwrap();
         let ours = case.unload(&curve, &PathSetting::one_disc(control), &Unwatched).unwrap();
         let truth = unload(&*exact, control, case.start * case.units().length).unwrap();
-        // The exact path goes on to the pull-off, ours to the end asked for.
+        // The exact path continues to the pull-off, ours to the requested end.
         let jumps = truth.jumps.len();
         let off = off_the_path(&case, &ours, &truth);
         println!(

@@ -1,4 +1,4 @@
-//! The exact basis through everything that computes for a person.
+//! The exact basis through everything that computes for the user.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -14,7 +14,7 @@ use std::cell::Cell;
 
 /// A shipped preset in the exact basis.
 fn preset(name: &str, assignments: &[&str]) -> Preset {
-    // A folder that need not exist: the preset is a shipped one.
+    // The folder need not exist: the preset is a shipped one.
     let store = Store::at("presets", &[]);
     let all = [&["basis.kind=exact"], assignments].concat();
     store.load(&store.resolve(name).unwrap(), &all).unwrap().preset
@@ -78,7 +78,7 @@ fn a_dense_curve_is_the_exact_one() {
         println!("off by {:.1e} of the range", worst / (hi - lo));
         assert!(worst < 1e-12 * (hi - lo), "off by {:.1e} of the range", worst / (hi - lo));
     }
-    // It is made in one piece of work that can be given up between points.
+    // The equilibria are computed in one call that can be given up between points.
     let asked = Cell::new(0);
     let few = case.basis.equilibria(&case.reduced, &radii, Order::State, &|| {
         asked.set(asked.get() + 1);

@@ -1,6 +1,6 @@
 //! The exact quasi-static path against reference tables made by another program, and against closed forms.
 //!
-//! `tests/data/fig8.json` and `fig9.json` hold limit points, jumps and losses under three controls, good to 1e-13.
+//! `tests/data/fig8.json` and `fig9.json` hold limit points, jumps and losses under three controls, accurate to 1e-13.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -121,7 +121,7 @@ fn an_unstable_start_runs_outward_at_constant_control() {
     let [_, case] = cases();
     let disc = Exact::of(&case.problem);
     for control in controls(&case) {
-        // Between a minimum and the maximum inward of it.
+        // Between a minimum and the next maximum inward.
         let limits = limit_points(&*disc, control, case.start, 0.2);
         let at = limits.iter().position(|limit| limit.minimum).unwrap();
         let asked = 0.5 * (limits[at].state.contact_radius + limits[at + 1].state.contact_radius);
@@ -131,7 +131,7 @@ fn an_unstable_start_runs_outward_at_constant_control() {
         assert!((value(path.start.contact_radius) - value(asked)).abs() < 1e-14, "{control}");
         let (approach, force) = disc.slopes(path.start.contact_radius);
         assert!(control.value(approach, force) > 0.0, "{control}");
-        // The first jump leaves from that very minimum.
+        // The first jump starts from exactly that minimum.
         let radius = path.jumps[0].before.contact_radius;
         assert!((radius - limits[at].state.contact_radius).abs() < 1e-12, "{control}");
     }
@@ -139,7 +139,7 @@ fn an_unstable_start_runs_outward_at_constant_control() {
 
 #[test]
 fn where_nothing_outward_is_stable_there_is_no_path() {
-    // A flat punch without end: adhesion alone rules, and the control falls with s for ever.
+    // An infinite flat punch: only adhesion acts, and the control falls with s without end.
     #[derive(Debug)]
     struct Flat;
     impl pulloff_engine::gap::Gap for Flat {

@@ -1,4 +1,4 @@
-//! Gap formulas and values from hostile text: an answer or a refusal, never a panic, a hang or a full stack.
+//! Gap formulas and values from hostile text: an answer or a refusal, never a panic, a hang or a stack overflow.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -10,7 +10,7 @@ use pulloff_engine::gap::Gap;
 use pulloff_engine::gap::formula::Formula;
 use pulloff_engine::units::{DisplayUnits, Quantity, UnitSystem, parse_quantity};
 
-/// The words of the language and some that are none.
+/// The words of the language, and some that are not.
 const TOKENS: &[&str] = &[
     "r",
     "R",
@@ -88,13 +88,13 @@ const TOKENS: &[&str] = &[
     "\"",
 ];
 
-/// Pieces of units and some that are none.
+/// Pieces of units, and some that are not.
 const UNIT_WORDS: &[&str] = &[
     "m", "um", "µm", "Å", "°", "J", "mJ", "N", "kPa", "/", "*", "·", " ", "^", "^2", "^-1", "²", "⁻¹", "⁻",
     "^99", "1/", "1", "⁹", "^-9", "x", "eV", "kg", "s", "(", "\u{202e}", "\u{7}",
 ];
 
-/// Everything a program does with a formula, in a text that may be anything.
+/// Does everything that the program does with a formula, for any text.
 fn exercise(text: &str) {
     if let Err(error) = parse_quantity(text) {
         shown_safely(&error.to_string());
@@ -123,7 +123,7 @@ fn exercise(text: &str) {
     }
 }
 
-/// A message fits a few lines and holds nothing that acts on a terminal.
+/// A message fits on a few lines and contains nothing that acts on a terminal.
 fn shown_safely(message: &str) {
     assert!(message.chars().count() < 200, "{message}");
     let acts = |c: char| c.is_control() || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}');
@@ -208,7 +208,7 @@ proptest! {
         cases: 300, rng_seed: RngSeed::Fixed(6), failure_persistence: None, ..ProptestConfig::default()
     })]
 
-    /// In a preset: a gap that is finite where the path may go, or a mistake that names a key of the gap.
+    /// In a preset: a gap that is finite where the path may go, or an error that names a key of the gap.
     #[test]
     fn hostile_formulas_in_a_preset(
         tokens in prop::collection::vec(prop::sample::select(TOKENS), 0..8),
@@ -247,7 +247,7 @@ proptest! {
     }
 }
 
-/// Values of parameters, and some that are none.
+/// Values of parameters, and some that are not.
 const VALUES: &[&str] = &[
     "1",
     "0",
@@ -272,7 +272,7 @@ const VALUES: &[&str] = &[
     "{ value = 1, max = 0 }",
 ];
 
-/// A formula built as the grammar says.
+/// A formula built by the grammar.
 fn well_formed() -> impl Strategy<Value = String> {
     let leaf = prop_oneof![
         Just("r".to_owned()),

@@ -1,4 +1,4 @@
-//! The tests of the numbers, through the program's library: against closed forms, tables, and each other.
+//! The numerical tests, through the program's library: against closed forms, tables, and each other.
 
 #[path = "../support/mod.rs"]
 mod support;

@@ -1,4 +1,4 @@
-//! Every gap that a preset can have, from its file to the jumps: both bases against the exact solution.
+//! Every gap that a preset can have, from its file to the jumps, in both bases against the exact solution.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -33,7 +33,7 @@ fn error(case: &Case, exact: &Exact) -> f64 {
         let found = case.basis.equilibrium(&case.reduced, s).unwrap();
         let radius = s * units.length;
         let (force, approach) = (exact.force(radius), exact.approach(radius));
-        // Both are differences of an elastic and an adhesive part: measured by what is subtracted.
+        // Both are differences of an elastic and an adhesive part, so errors are measured by what is subtracted.
         let drop =
             (std::f64::consts::TAU * exact.work_of_adhesion() * radius / exact.effective_modulus()).sqrt();
         let length = approach.abs() + drop;
@@ -55,7 +55,7 @@ fn both_bases_find_sneddons_integrals() {
         let sneddon = Exact::by_quadrature(problem.effective_modulus, problem.work_of_adhesion, gap);
         for exact in [&sneddon, &Exact::of(problem)] {
             let (fine, coarse) = (error(&spectral, exact), error(&rings, exact));
-            // A cone and a measured curve have derivatives that jump: no exponential convergence.
+            // The derivatives of a cone and of a measured curve jump, so there is no exponential convergence.
             let bound = if matches!(name, "cone" | "profile") { 1e-3 } else { 1e-9 };
             assert!(fine < bound, "{name}, spectral: off by {fine:e} from {}", exact.name());
             assert!(coarse < 0.02, "{name}, rings: off by {coarse:e} from {}", exact.name());
@@ -65,7 +65,7 @@ fn both_bases_find_sneddons_integrals() {
 
 #[test]
 fn limit_points_and_jumps_are_those_of_the_exact_path() {
-    // The exact path of a profile integrates over every row for every state: its states are checked above.
+    // The exact path of a profile integrates over every row for every state; its states are checked above.
     for name in NAMES.into_iter().filter(|name| *name != "profile") {
         let case = Case::new(&preset(name, &[])).unwrap();
         let exact = Exact::of(&case.problem);
@@ -132,7 +132,7 @@ fn a_start_by_approach_or_force_stays_where_the_gap_is_known() {
         {
             let near = preset(name, &[("path.end_contact_radius", (0.01 * s).into()), (key, value.into())]);
             let found = Case::new(&near).unwrap().start * case.units().length;
-            // The outermost of several contacts with this value, within what is known.
+            // The outermost of several contacts with this value, within the known range.
             assert!(found >= s * (1.0 - 1e-3) && found < known, "{name}, {key}: {found} {s}");
             let far = preset(
                 name,

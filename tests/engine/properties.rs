@@ -1,7 +1,7 @@
 //! Properties of the unloading that hold for every problem, on random wavy spheres with a fixed seed.
 //!
-//! The judge of the path is an independent walk: a dense scan of the explicit curve δ(s), P(s) of the same
-//! discretization that knows neither branches nor limit points, only "the control at a radius".
+//! The path is judged by an independent walk: a dense scan of the explicit curve δ(s), P(s) of the same discretization
+//! that knows neither branches nor limit points, only "the control at a radius".
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -15,7 +15,7 @@ use pulloff_engine::report::path::{EventReport, Extent, StateReport};
 use pulloff_engine::report::{PathReport, TraceReport, json};
 use pulloff_engine::ritz::Grading;
 
-/// Steps of the independent walk per wave.
+/// The steps of the independent walk per wave.
 const STEPS_PER_WAVE: f64 = 400.0;
 
 /// A number between two others, uniform in its logarithm.
@@ -27,10 +27,10 @@ fn any<T: Copy>(random: &mut fastrand::Rng, of: &[T]) -> T {
     of[random.usize(..of.len())]
 }
 
-/// Unit systems: E* and R of the reduced problem (E* = R = 1), of a soft sphere in SI, of a tip in SI.
+/// Unit systems: the reduced problem (E* = R = 1), a soft sphere in SI, a tip in SI.
 const UNITS: [(f64, f64); 4] = [(1.0, 1.0), (2.0e6, 5.0e-3), (7.0e10, 2.0e-8), (3.0e-4, 7.0e5)];
 
-/// A problem; a wild one is far outside what rings resolve, where only the bookkeeping must hold.
+/// A problem; a wild one is far beyond what rings resolve, where only the bookkeeping must hold.
 fn draw(random: &mut fastrand::Rng, wild: bool) -> Preset {
     let (modulus, radius) = any(random, &UNITS);
     let wavelength = log_between(random, if wild { 0.01 } else { 0.03 }, 0.4);
@@ -96,7 +96,7 @@ impl Explicit<'_> {
         (wave / STEPS_PER_WAVE).min(0.01 * s)
     }
 
-    /// Halves [lo, hi], at whose ends `inside` differs.
+    /// Bisects [lo, hi], at whose ends `inside` differs.
     fn bisect(mut lo: f64, mut hi: f64, at_hi: impl Fn(f64) -> bool) -> f64 {
         for _ in 0..80 {
             let s = 0.5 * (lo + hi);
@@ -105,7 +105,7 @@ impl Explicit<'_> {
         0.5 * (lo + hi)
     }
 
-    /// The first stable radius on the path: the start, or where the edge runs outward to.
+    /// The first stable radius on the path: the start, or the radius to which the edge runs outward.
     fn first(&self) -> Option<f64> {
         let mut s = self.0.start;
         let (value, slope) = self.at(s)?;
@@ -113,7 +113,7 @@ impl Explicit<'_> {
             return Some(s);
         }
         let mut fell = false;
-        // Close to a limit point the edge runs outward only a little: small steps first.
+        // Close to a limit point the edge runs outward only a little, so small steps come first.
         let mut share = 1e-4;
         while s < 100.0 * self.0.start {
             let next = s + share * self.step(s);
@@ -133,7 +133,7 @@ impl Explicit<'_> {
         let mut found = Vec::new();
         let least = 1e-4 * self.0.end;
         loop {
-            // Inward while stable.
+            // Inward as long as it is stable.
             let before = loop {
                 let next = s - self.step(s);
                 if next < self.0.end {
@@ -224,7 +224,7 @@ fn faults_of(case: &Case, control: Control, event: &EventReport) -> Vec<String> 
     faults
 }
 
-/// Everything that is wrong with one problem; the number of instabilities.
+/// Everything that is wrong with one problem, and the number of instabilities.
 fn faults(preset: &Preset) -> (usize, Vec<String>) {
     let case = match Case::new(preset) {
         Ok(case) => case,
@@ -242,7 +242,7 @@ fn faults(preset: &Preset) -> (usize, Vec<String>) {
     let explicit = Explicit(&case, case.control);
     let expected = explicit.first().and_then(|s| explicit.walk(s));
     if expected.is_none() {
-        // The basis has no equilibrium somewhere on the way: that must be said, and nothing else can be judged.
+        // The basis has no equilibrium somewhere on the path: this must be reported, and nothing else can be judged.
         if !report.stop.starts_with("the curve ends") {
             faults.push(format!("no equilibrium on the way, but: {}", report.stop));
         }
@@ -292,7 +292,7 @@ fn faults(preset: &Preset) -> (usize, Vec<String>) {
     (report.events.len(), faults)
 }
 
-/// Problems `from..to` of the seed, with everything wrong about them.
+/// Draws the problems `from..to` of the seed; returns everything that is wrong with them.
 fn run(seed: u64, problems: usize, wild: bool) {
     let mut random = fastrand::Rng::with_seed(seed);
     let (mut events, mut wrong) = (0, 0);
@@ -348,7 +348,7 @@ fn wavy(gamma: f64, amplitude: f64, wavelength: f64, control: Control, start: f6
 #[test]
 fn problems_that_once_went_wrong() {
     for (preset, events) in [
-        // Limit points were lost: the interpolation between points missed so weak an adhesion altogether.
+        // Limit points were lost: the interpolation between points missed such weak adhesion altogether.
         (wavy(1.097e-6, 0.1256, 0.3004, Control::Stiffness(0.0679), 0.7622), 2),
         (wavy(2.6e-8, 0.00548, 0.07136, Control::Stiffness(1.628), 0.252), 4),
         // The area of the first jump, a very thin lens, was off by 1.4e-6.

@@ -1,12 +1,12 @@
-//! Pulls of random problems of every shape: the balance of work and energy closes, whatever the gap, the device, the law and the rate.
+//! Pulls of random problems of every shape: work and energy balance, whatever the gap, the device, the law and the rate.
 //!
-//! All five hundred:
+//! To run all five hundred:
 //!
 //! ```text
 //! cargo test --release --test engine pulls:: -- --ignored --nocapture
 //! ```
 //!
-//! and `PULLOFF_PULLS=17..18` before that line runs those numbers alone.
+//! With `PULLOFF_PULLS=17..18` before that line, only those numbers run.
 
 #![allow(clippy::float_cmp, reason = "what is exact is compared so")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
@@ -20,10 +20,10 @@ use pulloff_engine::report::pull::{AskedPulls, PullReport};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What a balance may leave, of the work.
+/// The largest residual of the balance, as a share of the work.
 const BALANCE: f64 = 1e-9;
 
-/// A pull of a number, with its words.
+/// The pull of a problem number, with its description.
 struct Drawn {
     case: Case,
     edge: MovingEdge,
@@ -46,12 +46,12 @@ impl Drawn {
     }
 }
 
-/// The pull of a number; `None` where the problem has no adhesion or no start.
+/// The pull of a problem number; `None` where the problem has no adhesion or no start.
 fn drawn(number: u64) -> Option<Drawn> {
     let problem = draw(number).ok()?;
     let case = Case::new(&problem.preset).ok()?;
     let gamma = case.reduced.work_of_adhesion;
-    // Of weaker adhesion the edge is driven by less than a millionth of the radius: a pull takes more steps than there may be.
+    // With weaker adhesion the edge is driven by less than a millionth of the radius, and a pull needs more steps than allowed.
     if gamma < 1e-12 {
         return None;
     }
@@ -76,13 +76,13 @@ fn drawn(number: u64) -> Option<Drawn> {
     Some(Drawn { case, edge, control, parts, words })
 }
 
-/// What is wrong with the pull of a number; `None` where there is none.
+/// What is wrong with the pull of a problem number; `None` where there is no pull.
 fn judged(number: u64) -> Option<Result<(f64, String), String>> {
     let drawn = drawn(number)?;
     let words = drawn.words.clone();
     let pull = match drawn.puller().pull(&drawn.parts, &Unwatched) {
         Ok(pull) => pull,
-        // What is not known of a gap is not pulled, and where bodies touch ahead of the edge there is more than one disc.
+        // Where a gap is unknown it is not pulled, and where bodies touch ahead of the edge there is more than one disc.
         Err(RateError::Beyond { .. } | RateError::Pressed { .. }) => return None,
         Err(error) => return Some(Err(format!("{words}: {error:?}"))),
     };
@@ -92,7 +92,7 @@ fn judged(number: u64) -> Option<Result<(f64, String), String>> {
     )
 }
 
-/// What cannot be of a pull.
+/// What is impossible in a pull.
 fn faults(drawn: &Drawn, pull: &Pull) -> Option<String> {
     if pull.balance.is_nan() || pull.balance > BALANCE {
         return Some(format!("balance {:e} in {} steps", pull.balance, pull.steps));
@@ -135,7 +135,7 @@ fn five_hundred_random_pulls_close_their_balance() {
     campaign(range.unwrap_or(0..600));
 }
 
-/// Only the ratio of both speeds counts, and that exactly.
+/// Only the ratio of the two speeds matters, and exactly so.
 #[test]
 fn twice_both_speeds_is_half_the_time() {
     let pulled = |speed: &str, rate: f64| {

@@ -89,7 +89,7 @@ fn every_limit_point_is_found(name: &str, basis: impl Fn(&Reduced) -> Arc<dyn Ba
                     "problem {problem_number}, {control}: none between {lo} and {hi}: {by_trace:?}"
                 );
             }
-            // By the panels without a trace: the same limit points, to rounding.
+            // From the panels, without a trace: the same limit points, to rounding.
             assert_eq!(by_trace.len(), by_panels.len(), "problem {problem_number}, {control}");
             for (a, b) in by_trace.iter().zip(&by_panels) {
                 assert!((a / b - 1.0).abs() < 1e-8, "problem {problem_number}, {control}: {a} {b}");

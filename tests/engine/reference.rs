@@ -1,7 +1,7 @@
 //! The paper's wavy spheres against the exact solution.
 //!
-//! `tests/data/fig8.json` and `fig9.json` hold the exact curve (Sneddon/Abel), its limit points and the
-//! quasi-static unloading under three controls, good to 1e-13, and the range of each column of the curve.
+//! `tests/data/fig8.json` and `fig9.json` hold the exact curve (Sneddon/Abel), its limit points and the quasi-static
+//! unloading under three controls, accurate to 1e-13, and the range of each column of the curve.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -110,7 +110,7 @@ fn unloading_agrees_with_the_exact_solution() {
     for (case, name) in [(fig8(), "fig8"), (fig9(), "fig9")] {
         for control in controls(&case) {
             // The losses of Fig. 8's snaps are tiny differences near a cusp (the smallest is 1.5e-7): the rings'
-            // first-order error leaves 0.41 % and 0.11 % of them at N = 800, halved with every doubling of N.
+            // first-order error leaves 0.41 % and 0.11 % of them at N = 800, and halves with every doubling of N.
             let fine_loss = if name == "fig8" { 5e-3 } else { 1e-3 };
             for (rings, state_bound, loss_bound) in [(200, 1e-3, 1e-2), (800, 3e-4, fine_loss)] {
                 let (state, loss) = errors(&case, control, self::rings(rings));
@@ -177,7 +177,7 @@ fn the_exact_basis_gives_the_curve_and_every_limit_point() {
             let ours = curve.limit_points(control);
             assert_eq!(ours.len(), exact.len(), "{name} {control}");
             let mut worst = 0.0_f64;
-            // The table runs outward, a curve inward.
+            // The table runs outward, our curve inward.
             for (limit, exact) in ours.iter().rev().zip(exact) {
                 let off =
                     |ours: f64, key: &str, column: &str| (ours - number(exact, key)).abs() / range(column);

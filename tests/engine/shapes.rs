@@ -1,4 +1,4 @@
-//! Every gap through both bases, against its exact solution: states, limit points, landings and losses.
+//! Every gap in both bases, against its exact solution: states, limit points, landings and losses.
 //!
 //! E* = 1. The closed forms themselves are checked against Sneddon's integrals of the same gap.
 
@@ -27,9 +27,9 @@ struct Case {
     gamma: f64,
     /// The largest contact.
     from: f64,
-    /// What δ and P are good for, whatever the gap.
+    /// The accuracy of δ and P, whatever the gap.
     tolerance: f64,
-    /// The same for energies, whose terms fall as a power of their number where the gap is not even.
+    /// The same for energies, whose terms decay as a power of their number where the gap is not even.
     energy: f64,
 }
 
@@ -46,7 +46,7 @@ fn law(name: &'static str, factor: f64, exponent: f64, gamma: f64, [tolerance, e
 
 fn waves(name: &'static str, gap: &Harmonics, gamma: f64, from: f64) -> Case {
     let exact = harmonics::HarmonicDisc { effective_modulus: 1.0, work_of_adhesion: gamma, gap: gap.clone() };
-    // A phase gives the axis a slope, which energies feel as they feel odd powers.
+    // A phase gives the gap a slope on the axis, which affects energies as odd powers do.
     Case { energy: 1e-8, ..case(name, gap.clone(), exact, from) }
 }
 
@@ -96,7 +96,7 @@ fn sneddon(gap: &Arc<dyn Gap>, gamma: f64) -> Sneddon {
     Sneddon { effective_modulus: 1.0, work_of_adhesion: gamma, gap: Arc::clone(gap) }
 }
 
-/// From a tenth of a wave out to the largest contact.
+/// From a tenth of a wave to the largest contact.
 fn radii(from: f64) -> impl Iterator<Item = f64> {
     (0..12).map(move |i| from * 0.67_f64.powi(i))
 }
@@ -124,7 +124,7 @@ fn closed_forms_are_sneddons_integrals() {
         let integrals = sneddon(&gap, gamma);
         for s in radii(from).chain([1e-3 * from]) {
             let (a, b) = (exact.transform(s), integrals.transform(s));
-            // Waves leave little of terms of their own size.
+            // Where there are waves, terms of their size nearly cancel.
             let waves = exact.wave().map_or(1.0, |_| 100.0);
             for (a, b, size) in [
                 (a.value, b.value, b.value.abs().max(s * s)),
@@ -150,7 +150,7 @@ fn both_bases_find_the_states() {
             let [coarse, fine] =
                 [200, 400].map(|n| errors(&*Rings::shared(n).unwrap(), &problem, exact.as_ref(), from));
             println!("{name} adhesive {adhesive}: rings {coarse:?} {fine:?}");
-            // Without adhesion the force on waves is a small difference of their parts.
+            // Without adhesion, the force on waves is a small difference of their parts.
             let bound = if exact.wave().is_some() && !adhesive { 0.2 } else { 0.05 };
             for (coarse, fine) in coarse.into_iter().zip(fine) {
                 assert!(fine <= bound && fine <= 0.6 * coarse, "{name}: {coarse} {fine}");
@@ -165,7 +165,7 @@ fn limit_points_landings_and_losses_are_the_exact_ones() {
         let problem = reduced(&gap, gamma);
         let basis: Arc<dyn Basis> = Arc::new(ExactBasis::of(&problem, from).unwrap());
         let curve = Curve::of(problem, basis, from, 0.004 * from).unwrap();
-        // A limit point is where a slope vanishes: its place is good to the root of the tolerance, or to rounding.
+        // A slope vanishes at a limit point, so its position is accurate to the root of the tolerance, or to rounding.
         let tolerance = 100.0 * tolerance;
         for control in [Control::Displacement, Control::Force] {
             let unloading = unload(&curve, &PathSetting::one_disc(control), &Unwatched).unwrap();
@@ -219,14 +219,14 @@ fn a_profile_is_its_own_exact_solution_and_nears_that_of_its_source() {
     assert!(table.iter().all(|error| *error <= 1e-13), "{table:?}");
     let rings = errors(&*Rings::shared(400).unwrap(), &problem, &own, from);
     assert!(rings.iter().all(|error| *error <= 0.03), "{rings:?}");
-    // Half the distance of the rows: an eighth to a sixteenth of the error.
+    // Half the distance between rows gives an eighth to a sixteenth of the error.
     let [far, near] = [150, 300].map(|n| {
         let problem = reduced(&rows(n), gamma);
         errors(&ExactBasis::of(&problem, from).unwrap(), &problem, truth.as_ref(), from)
     });
     println!("profile: rows {far:?} {near:?}");
     assert!(near.iter().zip(far).all(|(near, far)| *near <= 0.2 * far && *near < 1e-3), "{far:?} {near:?}");
-    // The unloading jumps as that of the source does.
+    // The unloading has the same jumps as that of the source.
     let unloaded = |gap: Arc<dyn Gap>| {
         let problem = reduced(&gap, gamma);
         let basis: Arc<dyn Basis> = Arc::new(ExactBasis::of(&problem, from).unwrap());

@@ -1,4 +1,4 @@
-//! The spec of a sweep: what it says of each row, and what is wrong with a bad one.
+//! The spec of a sweep: what it specifies for each row, and what is wrong with a bad one.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -15,7 +15,7 @@ fn axis(text: &str) -> String {
     format!("preset = \"fig-9\"\n[[axis]]\n{text}")
 }
 
-/// The values of every row, as the results have them.
+/// The values of every row, as they appear in the results.
 fn rows(text: &str) -> Vec<String> {
     let spec = read(text).unwrap();
     let row = |row| spec.values(row).iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
@@ -46,7 +46,7 @@ fn values_of_every_kind() {
         one("key = 'path.control.stiffness'\nlogarithmic = { from = 1, to = 4, count = 3 }"),
         ["1.0", "2.0", "4.0"]
     );
-    // The ends are those that were typed, downwards too.
+    // The ends are exactly as typed, for descending ranges too.
     assert_eq!(one("key = 'gap.amplitude'\nlinear = { from = 0.3, to = 0.1, count = 2 }"), ["0.3", "0.1"]);
     let two = format!(
         "{}\n[[axis]]\nkey = 'gap.wavelength'\nvalues = [3, 4, 5]",
@@ -57,7 +57,7 @@ fn values_of_every_kind() {
 
 #[test]
 fn values_that_belong_together_are_laid_down_together() {
-    // One after the other, each of the two would be refused.
+    // One at a time, each of the two would be refused.
     let text = r#"
         preset = "random-waves"
         combine = "pairs"
@@ -72,7 +72,7 @@ fn values_that_belong_together_are_laid_down_together() {
     for (row, longest) in [(0, 0.02), (1, 5.0)] {
         assert_eq!(spec.problem(row).unwrap().get("gap.longest_wavelength"), Some(longest.into()));
     }
-    // Groups come last, whatever the order; a shape brings its own keys.
+    // Groups are applied last, whatever the order; a shape brings its own keys.
     let text = r#"
         preset = "fig-3-jkr"
         [[axis]]
@@ -353,7 +353,7 @@ fn the_identity_is_that_of_what_is_computed() {
     ] {
         assert_ne!(identity(&other), identity(&base), "{other}");
     }
-    // A measured profile is known by its data, not by its name.
+    // A measured profile is identified by its data, not by its name.
     let profile = "preset = 'profile'\n[[axis]]\nkey = 'material.work_of_adhesion'\nvalues = [0.01]";
     assert!(spec::canonical(&read(profile).unwrap()).contains("\ndata = [\""));
 }
@@ -381,10 +381,10 @@ fn a_value_of_set_that_no_row_has_is_refused() {
         let refused = read(&text(set)).unwrap_err().to_string();
         assert!(refused.starts_with(&format!("s.toml:4: {words}")), "{set}: {refused}");
         assert!(refused.ends_with("gives every row its own; remove one of them"), "{refused}");
-        // Without it the sweep is fine.
+        // Without the assignment the sweep is fine.
         read(&text("title=x")).unwrap();
     }
-    // What a group holds, or is computed from, has its effect.
+    // A value that a group holds, or is computed from, has an effect.
     for (set, axis) in [
         ("gap.wavelength=0.1", "groups.amplitude_over_wavelength"),
         ("groups.amplitude_over_wavelength=0.1", "gap.wavelength"),

@@ -1,4 +1,4 @@
-//! The exact solutions against one another, against the reference tables and against their own calculus.
+//! The exact solutions against one another, against the reference tables, and against their own derivatives and integrals.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -49,7 +49,7 @@ fn problems() -> Vec<Problem> {
     ]
 }
 
-/// From well inside the first wave to far out.
+/// From well inside the first wave to far outside.
 fn radii() -> Vec<f64> {
     (0..30).map(|i| 0.002 * 1.21f64.powi(i)).collect()
 }
@@ -62,7 +62,7 @@ fn closed_forms_agree_with_quadrature() {
         let radii = radii();
         for (a, b) in closed.curve(&radii).iter().zip(&numerical.curve(&radii)) {
             let s = a.contact_radius;
-            // The wave's part of g' is an integral of terms of this size, of which little may be left.
+            // The wave's part of g' is an integral of terms of this size, which may nearly cancel.
             let steepest = 2.0 * s / 1.3 + problem.shape.wave().map_or(0.0, |(a, l)| 60.0 * a * s / (l * l));
             let (g, h) = (closed.transform(s), numerical.transform(s));
             for (worst, error) in worst.iter_mut().zip([
@@ -123,7 +123,7 @@ fn the_pressure_carries_the_force() {
     for problem in problems() {
         let (exact, s) = (Exact::of(&problem), 0.17_f64);
         let modulus = problem.effective_modulus;
-        // Without the edge, in t = √(s² − r²), of which this part of the pressure is a smooth function.
+        // Without the edge, in t = √(s² − r²), in which this part of the pressure is smooth.
         let pressed = Exact::of(&Problem { work_of_adhesion: 0.0, ..problem.clone() });
         let wave = exact.wave().map(|wave| 0.1 * wave);
         let [force] = integrate(0.0, s, wave, |t| {
@@ -235,7 +235,7 @@ fn power_laws_and_the_exact_sphere_by_quadrature() {
             [g, g * g]
         })
         .values;
-        // Small discs lose digits of M₁ in its closed form, not in the quadrature.
+        // For small discs the closed form of M₁ loses digits; the quadrature does not.
         if a > 0.1 {
             check(
                 Arc::new(ExactSphere { radius }),
@@ -263,7 +263,7 @@ fn the_pressure_under_a_cone() {
 
 #[test]
 fn structure_too_fine_for_the_panels_is_said() {
-    // Waves a hundred million times shorter than the disc, of which the gap says nothing.
+    // Waves a hundred million times shorter than the disc, which the gap does not declare.
     #[derive(Debug)]
     struct Hidden;
     impl Gap for Hidden {
@@ -293,7 +293,7 @@ fn the_slopes_vanish_at_the_limit_points_of_the_reference() {
                     let s = limit["s"].as_f64().unwrap();
                     let (approach, force) = exact.slopes(s);
                     let edge = exact.edge(s);
-                    // What cancels in the slope: the share of the edge.
+                    // The size of the terms that cancel in the slope: the share of the edge.
                     let size = control_of.value(0.5 * edge / s, 3.0 * problem.effective_modulus * edge);
                     let slope = control_of.value(approach, force);
                     assert!(slope.abs() <= 1e-9 * size, "{name} at {s}: {slope}");
@@ -303,7 +303,7 @@ fn the_slopes_vanish_at_the_limit_points_of_the_reference() {
     }
 }
 
-/// A gap that does not say that it is a cubic: every integral between its knots is then refined until it is resolved.
+/// A gap that does not declare itself a cubic, so that every integral between its knots is refined until it is resolved.
 #[derive(Debug)]
 struct AnyPieces(ProfileGap);
 
@@ -355,7 +355,7 @@ fn a_profile_between_its_rows_is_what_refining_finds() {
 fn the_pressures_under_a_profile_carry_its_force() {
     let (s, points) = (0.8_f64, 4000);
     let exact = Exact::by_quadrature(0.7, 0.0, Arc::new(rough_profile(20)));
-    // r dr = −t dt, and the pressure is smooth in t but for the knots: midpoints.
+    // r dr = −t dt, and the pressure is smooth in t except at the knots: midpoints.
     let step = s / f64::from(points);
     let depths: Vec<f64> = (0..points).map(|i| step * (f64::from(i) + 0.5)).collect();
     let radii: Vec<f64> = depths.iter().map(|t| ((s - t) * (s + t)).sqrt()).collect();

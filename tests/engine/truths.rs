@@ -1,5 +1,5 @@
-//! Unloadings known to many digits, and verdicts of admissibility, as a person writes the presets: `data/truths.toml` says
-//! each with its events.
+//! Unloadings known to many digits, and verdicts of admissibility, with presets as a user writes them:
+//! `data/truths.toml` lists each with its events.
 
 #![allow(
     clippy::float_cmp,
@@ -25,7 +25,7 @@ use pulloff_engine::report::path::{EventReport, Extent};
 use std::f64::consts::{PI, TAU};
 use toml::{Table, Value};
 
-/// Digits of the last place by which a number may differ from what is written of it.
+/// The number of units in the last place by which a number may differ from its written value.
 const LAST_PLACE: f64 = 1.0;
 
 /// The preset of these tables, with E* = 1.
@@ -41,7 +41,7 @@ fn preset(work_of_adhesion: f64, gap: &Table, path: &Table) -> Preset {
     read("truth", &toml::to_string(&document).unwrap()).unwrap()
 }
 
-/// The preset of a formula, displacement control, from this radius.
+/// The preset of a formula, under displacement control, from this radius.
 fn formula(text: &str, work_of_adhesion: f64, start: f64) -> Preset {
     let gap = format!("shape = \"formula\"\nformula = \"{text}\"").parse().unwrap();
     preset(work_of_adhesion, &gap, &format!("start_contact_radius = {start:e}").parse().unwrap())
@@ -66,7 +66,7 @@ fn wavy_rows() -> String {
     (0..61).map(row).collect()
 }
 
-/// Whether `x` is what is written, to its last place.
+/// Whether `x` agrees with what is written, to its last place.
 fn is(x: f64, written: &str) -> bool {
     if written == "-" {
         return true;
@@ -176,7 +176,7 @@ fn losses_do_not_depend_on_how_stiff_the_device_is() {
     for k in [1e9, 1e13, 1e30] {
         let ours = losses(Control::Stiffness(k));
         assert_eq!(ours.len(), stiff.len(), "{k:e}");
-        // The device itself takes a share of the order of 1/k.
+        // The device itself has an effect of the order of 1/k.
         let tolerance = 1e-11 + 100.0 / k;
         for (ours, stiff) in ours.iter().zip(&stiff) {
             for loss in ours {
@@ -195,7 +195,7 @@ fn verdict(case: &Case, s: f64) -> Admissibility {
 
 #[test]
 fn overlaps_are_found_wherever_they_are() {
-    // The preset, the radius, the least gap and how many radii out it is.
+    // The preset, the radius, the smallest gap and the radius, in contact radii, at which it occurs.
     let wave =
         [0.15, 0.145, 0.13].map(|s| wavy(0.041313855589045656, 0.20830420097041344, 9.968404576450257e-5, s));
     let far = formula("r^2/2 - 0.97*exp(-((r-1.4)/0.15)^2)", 0.001, 0.3);
@@ -246,7 +246,7 @@ fn of_ninety_seven_radii_so_many_are_inadmissible() {
     }
 }
 
-/// h' of a spline as the quadrature takes it.
+/// h' of a spline in the form that the quadrature takes.
 fn spline(profile: &ProfileGap) -> Term {
     let knots = profile.knots().to_vec();
     let slopes = knots.windows(2).map(|ends| {
@@ -268,7 +268,7 @@ fn eight_rows_are_enough() {
     let path = folder.path().join("rows.csv");
     std::fs::write(&path, rows.concat()).unwrap();
     let gap = format!("shape = \"profile\"\nfile = {:?}", path.to_str().unwrap()).parse().unwrap();
-    // With little adhesion the pull-offs lie nearer to the axis than the second row.
+    // With weak adhesion the pull-offs lie closer to the axis than the second row.
     for (gamma, control) in [(1e-3, "displacement"), (1e-3, "force"), (2e-6, "displacement"), (2e-6, "force")]
     {
         let start =
@@ -297,7 +297,7 @@ fn eight_rows_are_enough() {
     }
 }
 
-/// A thousand waves down to 0.003 of the radius, against a sum over the waves themselves at the nodes of one rule.
+/// A thousand waves down to 0.003 of the radius, against a sum over the waves themselves at the nodes of a single rule.
 #[test]
 fn a_thousand_waves_have_the_events_of_their_sum() {
     let mut preset = read("t", pulloff::store::shipped::find("random-waves").unwrap().text).unwrap();
@@ -333,7 +333,7 @@ fn a_thousand_waves_have_the_events_of_their_sum() {
         );
         assert!(stable(after.contact_radius), "{event:?}");
     }
-    // Between two radii there are as many limit points, but for pairs, as the stability changes.
+    // Between two radii, the parity of the number of limit points is that of the changes of stability.
     let limits: Vec<f64> =
         curve.limit_points(Control::Displacement).iter().map(|limit| limit.contact_radius).collect();
     let radii: Vec<f64> = (1..=60).map(|i| f64::from(i) / 60.0).collect();

@@ -1,4 +1,4 @@
-//! Presets in SI: values with units, what is refused, what is written, and the reduced answers in any units.
+//! Presets in SI: values with units, refusals, what is written, and the reduced answers in any units.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -88,7 +88,7 @@ fn beside_a_unit_on_the_screen_a_bare_number_counts_in_it() {
 #[test]
 fn what_has_another_dimension_or_no_units_is_refused() {
     let reduced = WAVY.replace("\"SI\"", "\"reduced\"");
-    // Units to be shown in say nothing of what the numbers are in: they are not guessed to be in SI.
+    // Display units do not show which units the numbers are in, so SI is not assumed.
     let fig_9 = shipped::find("fig-9").unwrap().text;
     let said = fig_9.replace("format = 1", "format = 1\nunits = \"reduced\"");
     for (text, sets, words) in [
@@ -138,7 +138,7 @@ fn what_is_written_reads_back_and_keeps_units_where_they_are_exact() {
         assert!(text.contains("\nunits = \"SI\"") && text.contains("\namplitude = \""), "{text}");
         assert!(text.contains("\n[display]\nlength = \"um\""), "{text}");
     }
-    // A number that no text in the display unit gives back is written as SI.
+    // A number that no text in the display unit reproduces is written in SI.
     let mut preset = read("p", WAVY).unwrap();
     let mut plain = 0;
     for i in 1..200 {
@@ -174,7 +174,7 @@ start_contact_radius = \"0.1 mm\"
     }
     assert_eq!(read("p", &write(&typed)).unwrap(), typed);
     assert!(mistake(formula, &["gap.parameters.A=1 kPa"]).contains("expected a length"));
-    // The file of the shipped profile is in µm: in an SI preset its rows are metres.
+    // The file of the shipped profile is in µm; in an SI preset its rows are in metres.
     let measured = shipped_preset("profile");
     let sets = ["units=SI", "path.start_contact_radius=100 um", "path.end_contact_radius=1 um"];
     let si = read_with("profile", shipped::find("profile").unwrap().text, &sets).unwrap();
@@ -238,7 +238,7 @@ fn figure_9_in_si_gives_the_reduced_answers() {
     assert_eq!(shipped_preset("fig-9").units, UnitSystem::Reduced);
 }
 
-/// Soft and large: the adhesion acts at the edge. Hard and small: it reaches beyond, and that is said.
+/// Soft and large: the adhesion acts at the edge. Hard and small: it reaches beyond, and a warning says so.
 #[test]
 fn tabor_is_known_in_si_and_warned_of_where_the_method_does_not_hold() {
     let case = |sets: &[&str]| Case::new(&read_with("p", WAVY, sets).unwrap()).unwrap();
@@ -373,7 +373,7 @@ start_contact_radius = \"1 mm\"
         assert!((got - expected).abs() <= 2.0 * f64::EPSILON * expected, "{key} = {got}");
     }
     assert_eq!(read("p", &write(&preset)).unwrap(), preset, "{}", write(&preset));
-    // On the screen and in a file in the unit of its own, in a document in SI.
+    // On the screen and in a file, in its own unit; in a document, in SI.
     let row = preset.row("gap.parameters.lambda").unwrap();
     assert_eq!(row.shown(&preset.units, 50e-6).text("50000", true), "50000 nm");
     assert_eq!(preset.typed(&row, "20"), Ok(Value::Typed("20 nm".to_owned())));
@@ -385,7 +385,7 @@ start_contact_radius = \"1 mm\"
     let parameters = &document["problem"]["preset"]["gap"]["parameters"];
     assert_eq!((&parameters["lambda"]["unit"], &parameters["lambda"]["value"]), (&"m".into(), &5e-5.into()));
     assert_eq!((&parameters["k"]["unit"], &parameters["B"]["unit"]), (&"m^-1".into(), &"m^2".into()));
-    // A bare number beside a unit counts in it, wherever it comes from.
+    // A bare number next to a unit is in that unit, wherever it comes from.
     let near =
         |preset: &Preset, key: &str, x: f64| assert!((number(preset, key) / x - 1.0).abs() < 1e-15, "{key}");
     let set = ["gap.parameters.lambda=6e4", "gap.parameters.lambda.max=2e5", "gap.parameters.A=2e-6"];
@@ -396,7 +396,7 @@ start_contact_radius = \"1 mm\"
     let mut typed = preset.clone();
     typed.assign("gap.parameters.lambda", "7e4").unwrap();
     near(&typed, "gap.parameters.lambda", 7e-5);
-    // Assignments that lead from one to the other say their unit, so that every digit stays.
+    // Assignments that lead from one preset to the other state their unit, so that every digit is kept.
     typed.set("gap.parameters.lambda", (1e-4 / 3.0).into()).unwrap();
     let mut back = preset.clone();
     for (key, text) in changes(&preset, &typed).unwrap() {
@@ -404,7 +404,7 @@ start_contact_radius = \"1 mm\"
     }
     assert_eq!(back, typed);
     assert_eq!(read("p", &write(&typed)).unwrap(), typed, "{}", write(&typed));
-    // Reduced units take the unit for a remark; the change to SI makes it one, and the change back takes it away.
+    // In reduced units the unit is only a remark; the change to SI makes it a unit, and the change back removes it.
     let mut plain =
         read_with("f", shipped::find("formula").unwrap().text, &["gap.parameters.lambda.unit=mm"]).unwrap();
     assert_eq!(number(&plain, "gap.parameters.lambda").to_bits(), 0.05_f64.to_bits());
@@ -438,7 +438,7 @@ start_contact_radius = \"1 mm\"
     }
 }
 
-/// What computing a preset says when it refuses.
+/// The message when a preset cannot be computed.
 fn refusal(preset: &Preset) -> String {
     let unloaded =
         Case::new(preset).and_then(|case| case.unload(&case.curve(&Unwatched)?, &case.setting(), &Unwatched));
@@ -489,7 +489,7 @@ fn numbers_in_words_have_their_unit_in_si_and_none_in_reduced_units() {
     }
 }
 
-/// The lines that two computations of one problem say, in SI and in reduced units.
+/// The lines that two computations of one problem report, in SI and in reduced units.
 fn both(si: &[&str], reduced: &[&str], lines: impl Fn(&Preset) -> Vec<String>) -> [Vec<String>; 2] {
     let of =
         |name: &str, sets: &[&str]| lines(&read_with(name, shipped::find(name).unwrap().text, sets).unwrap());

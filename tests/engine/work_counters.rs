@@ -1,7 +1,7 @@
-//! What the standard traces cost, in counts that do not depend on the machine.
+//! The cost of the standard traces, in counts that do not depend on the machine.
 //!
-//! A change of the step size, the corrector or the search for limit points shows here before anyone feels it.
-//! After a wanted change put the printed row in the table.
+//! A change to the step size, the corrector or the search for limit points shows here before anyone notices it. After a
+//! deliberate change, put the printed row into the table.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -25,7 +25,7 @@ struct Counts {
 }
 
 fn counts(name: &str, basis: BasisSpec) -> Counts {
-    // A folder that need not exist: the preset is a shipped one.
+    // The folder need not exist: the preset is a shipped one.
     let store = Store::at("presets", &[]);
     let mut preset = store.load(&store.resolve(name).unwrap(), &[] as &[&str]).unwrap().preset;
     preset.basis = basis;
@@ -65,7 +65,7 @@ fn standard_traces_cost_what_they_did() {
     for (name, basis, row, ours) in all {
         let [points, rejections, evaluations, rounds, by_displacement, by_force] = row;
         let wanted = Counts { points, rejections, evaluations, rounds, by_displacement, by_force };
-        // Rounding differs between machines and may tip a step, and with it the ones that follow: 4 %, and 4.
+        // Rounding differs between machines and may change a step, and with it the following ones: 4 %, and 4.
         for (ours, was) in [
             (ours.points, wanted.points),
             (ours.rejections, wanted.rejections),
@@ -74,7 +74,7 @@ fn standard_traces_cost_what_they_did() {
         ] {
             assert!(ours.abs_diff(was) <= 4 + was / 25, "{name} {basis:?}: {ours}, was {was}");
         }
-        // Limit points are facts of the curve.
+        // Limit points are properties of the curve.
         assert_eq!(
             (ours.by_displacement, ours.by_force),
             (wanted.by_displacement, wanted.by_force),

@@ -1,4 +1,4 @@
-//! A panic in any thread ends the program in order. Needs a build that panics on demand (`fault-injection`).
+//! A panic in any thread ends the program in an orderly way. Needs a build that panics on demand (`fault-injection`).
 
 use std::{
     fs,
@@ -17,9 +17,9 @@ fn start(place: &str, state: &Path) -> Pty {
     Pty::spawn(&program(), &[], &[("PULLOFF_PANIC", place), ("XDG_STATE_HOME", state)], 200, 24)
 }
 
-/// What the program does that makes it panic.
+/// Makes the program do what lets it panic.
 fn provoke(pty: &mut Pty, place: &str) {
-    // The worker panics over the first curve: the screen never has one.
+    // The worker panics over the first curve, so the screen never gets one.
     if place == "worker" {
         return;
     }

@@ -1,7 +1,7 @@
 //! Figures as PDF. Needs a build that draws them (`pdf`).
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-/// The streams of a PDF as text, where they are texts.
+/// The streams of a PDF that are text.
 fn streams(pdf: &[u8]) -> Vec<String> {
     let find = |from: usize, what: &[u8]| {
         pdf[from..].windows(what.len()).position(|window| window == what).map(|at| from + at)
@@ -41,12 +41,12 @@ fn a_pdf_is_a_page_of_the_figure_with_letters_dashes_and_hatches() {
         assert!(!text.contains("/Subtype/Image") && !text.contains("/Subtype /Image"), "pixels");
         let streams = streams(&pdf);
         let has = |words: &str| streams.iter().any(|stream| stream.contains(words));
-        // The letter δ of the axis by its number, letters, dashes, and the pattern of the hatches.
+        // The letter δ of the axis by its code, letters, dashes, and the hatching pattern.
         assert!(has("beginbfchar") && has("<03B4>") || has("<03b4>"), "no δ");
         assert!(has("TJ") || has("Tj"), "no letters");
         assert!(has("[3") || has("[2.25"), "no dashes");
         assert!(has("/Pattern cs"), "no hatches");
-        // The same figure is the same file.
+        // The same figure gives the same file.
         assert!(drawn(&["fig-9", "--view", "unloading", "--width", width]) == pdf);
     }
 }

@@ -1,5 +1,5 @@
-//! The blocks of README and book run as they stand: commands in a shell, presets, specs, settings and scripts through their
-//! readers. Those of `docs/src/python.md` are run by the tests of the Python package.
+//! Runs the blocks of README and book as they are: commands in a shell; presets, specs, settings and scripts through
+//! their readers. The tests of the Python package run those of `docs/src/python.md`.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::rc::Rc;
 
-/// What needs something that a test has not, and what has tests of its own.
+/// Commands that need something a test does not have, and commands with tests of their own.
 const LEFT_OUT: [&str; 7] = [
     // The compiler and other installers.
     "cargo ",
@@ -21,12 +21,12 @@ const LEFT_OUT: [&str; 7] = [
     // A terminal: the tests of the explorer have one.
     "pulloff --resume",
     "pulloff wavy-sphere\n",
-    // Nothing is computed by these.
+    // These compute nothing.
     "pulloff sessions",
     "NAME",
 ];
 
-/// A spec of few rows, where the book says `SPEC.toml`.
+/// A spec with few rows, for the book's `SPEC.toml`.
 const SPEC: &str = "preset = 'fig-9'\nquantities = ['snaps']\n[[axis]]\nkey = 'gap.amplitude'\n\
                     linear = { from = 1e-3, to = 2e-3, count = 4 }\n";
 
@@ -51,7 +51,7 @@ fn blocks(page: &Path, language: &str) -> Vec<String> {
     text.split(&fence).skip(1).map(|rest| rest.split_once("\n```").unwrap().0.to_owned() + "\n").collect()
 }
 
-/// A folder with what a page and a block of it take for granted.
+/// A folder with everything that a page and one of its blocks assume.
 fn folder(page: &str, block: &str) -> Home {
     let home = Home::new();
     home.file("SPEC.toml", SPEC);
@@ -76,7 +76,7 @@ fn folder(page: &str, block: &str) -> Home {
     home
 }
 
-/// The commands of a block, which have one folder; one may go over several lines.
+/// The commands of a block, which share one folder; a command may span several lines.
 fn commands(block: &str, home: Home) -> Vec<(Rc<Home>, String)> {
     let (joined, home) = (block.replace("\\\n", " "), Rc::new(home));
     let all = joined.lines().map(|line| (Rc::clone(&home), format!("{line}\n")));
@@ -99,17 +99,17 @@ fn every_command_of_the_book_does_what_it_says() {
             let done = shell.env("XDG_CONFIG_HOME", home.path("config")).output().unwrap();
             let said = String::from_utf8_lossy(&done.stderr);
             assert!(done.status.success(), "{name}: {command}{said}");
-            // A table of residuals is no measured curve: the next command is given all that ends in .csv.
+            // A table of residuals is not a measured curve, and the next command is given every .csv file.
             let _ = fs::remove_file(home.path("residuals.csv"));
         }
     }
     assert!(count > 40, "{count}");
 }
 
-/// How the bytes of a measured curve are had.
+/// How the bytes of a measured curve are obtained.
 type Points = fn(Option<&Path>, &str) -> Result<Vec<u8>, String>;
 
-/// A problem around a part of one, in the order of what the part gives.
+/// Completes a part of a preset to a whole problem, depending on what the part gives.
 fn around(part: &str) -> String {
     const MATERIAL: &str = "[material]\neffective_modulus = 1.0\nwork_of_adhesion = 0.004\n";
     const SPHERE: &str = "[gap]\nshape = \"sphere\"\nradius_of_curvature = 1.0\n";

@@ -12,7 +12,7 @@ fn keys(value: &Value) -> Vec<&str> {
     value.as_object().unwrap().keys().map(String::as_str).collect()
 }
 
-/// `a/b/c` of a document as a number.
+/// The number at `a/b/c` in a document.
 fn number(document: &Value, pointer: &str) -> f64 {
     document.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("no number at {pointer}"))
 }
@@ -25,7 +25,7 @@ fn kinds(document: &Value) -> Vec<&str> {
     events(document).iter().map(|event| event["kind"].as_str().unwrap()).collect()
 }
 
-/// Records of a CSV text without its header.
+/// The records of a CSV text without its header.
 fn records(text: &str) -> Vec<Vec<String>> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     reader.records().map(|record| record.unwrap().iter().map(str::to_owned).collect()).collect()
@@ -39,7 +39,7 @@ const UNLOAD_HEADER: &str = "number,kind,direction,control,radius,\
                              before_area,before_energy,after_contact_radius,after_approach,after_force,\
                              after_wave,after_rings,after_area,after_energy,dissipated,dissipated_by_area,\
                              admissible";
-/// A short case: rings enough for the few waves it crosses.
+/// A short case: enough rings for the few waves that it crosses.
 const SHORT: &[&str] = &["fig-9", "--set", "basis.rings=60", "--set", "path.start_contact_radius=0.25"];
 
 fn short<'a>(command: &'a str, more: &[&'a str]) -> Vec<&'a str> {
@@ -61,7 +61,7 @@ fn trace_says_how_force_and_area_answer_to_the_approach() {
     let mut agree = Vec::new();
     for window in points.windows(3) {
         let [before, here, after] = window else { panic!() };
-        // A disc pressed by δ with its radius held answers like a flat punch.
+        // A disc pressed by δ with its radius fixed responds like a flat punch.
         let punch = 2.0 * modulus * of(here, "contact_radius");
         assert!((of(here, "contact_stiffness") / punch - 1.0).abs() < 1e-9);
         let between = |name: &str| of(after, name) - of(before, name);
@@ -72,7 +72,7 @@ fn trace_says_how_force_and_area_answer_to_the_approach() {
         let near = |chord: f64, slope: f64| (chord / slope - 1.0).abs() < 0.1;
         agree.push(near(between("force") / delta, tangent) && near(area / delta, of(here, "area_slope")));
     }
-    // Chords see the slopes of the curve except where it turns within them.
+    // Chords agree with the slopes of the curve except where the curve turns within them.
     let agreeing = agree.iter().filter(|agrees| **agrees).count();
     assert!(10 * agreeing > 7 * agree.len(), "{agreeing} of {}", agree.len());
     assert_eq!(signs, [true, true]);
@@ -93,7 +93,7 @@ fn trace_writes_one_csv_row_per_point() {
         assert!(row[9..12].iter().all(|cell| cell.parse::<f64>().unwrap().is_finite()), "{row:?}");
         assert_eq!(row[12], "true");
     }
-    // From the start to exactly the end.
+    // From the start exactly to the end.
     assert_eq!(rows[0][1].parse::<f64>().unwrap().to_bits(), 0.25f64.to_bits());
     assert_eq!(rows.last().unwrap()[1].parse::<f64>().unwrap().to_bits(), 0.002f64.to_bits());
 }
@@ -200,7 +200,7 @@ fn the_csv_of_a_trace_is_its_json() {
     let points = document["points"].as_array().unwrap();
     assert_eq!(rows.len(), points.len());
     for (row, point) in rows.iter().zip(points) {
-        // Full precision in both: the same double comes back.
+        // Full precision in both: the same double is recovered.
         let bits = |cell: &str| cell.parse::<f64>().unwrap().to_bits();
         for (column, key) in [(1, "contact_radius"), (2, "approach"), (3, "force"), (4, "energy")] {
             assert_eq!(bits(&row[column]), point[key].as_f64().unwrap().to_bits());
@@ -229,14 +229,14 @@ fn theory_adds_the_exact_columns_behind_the_others() {
                 number(point, &format!("/exact/{key}")).to_bits()
             );
         }
-        // Sixty rings on five waves: a few percent.
+        // Sixty rings on five waves: accurate to a few per cent.
         assert!(number(point, "/exact/relative_difference").abs() < 0.1, "{row:?}");
         assert!((number(point, "/approach") - number(point, "/exact/approach")).abs() < 0.002, "{row:?}");
     }
     assert!(home.json(&short("trace", &[]))["points"][0].get("exact").is_none());
     for preset in ["fig-1-hertz", "fig-3-jkr"] {
         let rows = records(&home.quiet(&["trace", preset, "--theory"]));
-        // Over the largest force: P itself passes through zero.
+        // Over the largest force, because P itself passes through zero.
         let cell = |row: &Vec<String>, at: usize| row[at].parse::<f64>().unwrap().abs();
         let largest = rows.iter().map(|row| cell(row, 14)).fold(0.0, f64::max);
         assert!(rows.iter().all(|row| cell(row, 16) * cell(row, 14) < 0.01 * largest), "{preset}");
@@ -401,7 +401,7 @@ fn an_unstable_start_runs_outward_and_says_so() {
     assert!(note.contains("unstable under displacement control") && note.contains("0.385"), "{note}");
     assert!(number(&document, "/states/0/contact_radius") > 0.385);
     assert!(home.quiet(&arguments).contains(&format!("note: {note}")));
-    // No loss is counted for the run outward: the first event is the next snap inward.
+    // The run outward counts as no loss: the first event is the next snap inward.
     assert!(
         number(&document, "/events/0/before/contact_radius") < number(&document, "/states/0/contact_radius")
     );
@@ -447,9 +447,9 @@ fn without_adhesion_nothing_snaps_on_a_sphere() {
     }
     let preload = home.json(&["unload", "fig-1-hertz", "--set", "path.start_force=0.1"]);
     assert!((number(&preload, "/states/0/force") - 0.1).abs() < 1e-12);
-    // Nor on waves so shallow that the curve rises all the way.
+    // Nor on waves so shallow that the curve rises throughout.
     let shallow = ["--set", "material.work_of_adhesion=0", "--set", "gap.amplitude=0.0005"];
-    // The gap rises throughout: the disc is connected, and nothing is to be said.
+    // The gap rises throughout, so the disc is connected and there is nothing to report.
     let wavy = home.json(&[["unload", "fig-8"].as_slice(), &shallow].concat());
     assert_eq!(events(&wavy).len(), 0);
     assert_eq!((&wavy["notes"], &wavy["inadmissible"]), (&Value::Array(vec![]), &Value::Array(vec![])));
@@ -501,7 +501,7 @@ fn the_states_of_the_paper_are_all_possible() {
         assert_eq!(unload["inadmissible"], Value::Array(Vec::new()), "{preset}");
         assert!(events(&unload).iter().all(|event| event["admissible"] == true));
     }
-    // The waves of Fig. 9 fall, which matters without adhesion only; those of Fig. 8 rise.
+    // The waves of Fig. 9 fall, which matters only without adhesion; those of Fig. 8 rise.
     let notes = |preset: &str| home.json(&["unload", preset])["notes"].as_array().unwrap().len();
     assert_eq!((notes("fig-8"), notes("fig-9"), notes("fig-3-jkr")), (0, 1, 0));
     assert!(home.quiet(&["unload", "fig-9"]).contains("note: the gap falls within the contact"));
@@ -512,7 +512,7 @@ const WEAK: &[&str] = &["fig-9", "--set", "material.work_of_adhesion=1e-4", "--s
 /// Without adhesion, where the disc would have to pull.
 const BARE: &[&str] = &["fig-9", "--set", "material.work_of_adhesion=0"];
 
-/// The result of a command with inadmissible states, which are said, and with `--strict` a status of their own.
+/// The result of a command with inadmissible states, which are reported and have their own status with `--strict`.
 fn inadmissible(home: &Home, command: &str, of: &[&str], passes: &str) -> Value {
     let run = |more: &[&str]| home.run(&[&[command], of, more].concat());
     let ended = run(&["--format", "json"]);
@@ -561,9 +561,9 @@ fn a_trace_says_where_the_next_crest_would_touch() {
         assert_eq!(row[12], admissible.to_string());
         seen[usize::from(admissible)] += 1;
     }
-    // As many as the radii that were counted by themselves: about a quarter.
+    // As many as the radii counted separately: about a quarter.
     assert!(seen[0] > 10 && seen[1] > seen[0], "{seen:?}");
-    // The jumps of the unloading lead past them all.
+    // The jumps of the unloading bypass all of them.
     let path = home.json(&[&["unload"], WEAK, &["--strict", "--one-disc"]].concat());
     assert_eq!(path["inadmissible"], Value::Array(Vec::new()));
     assert!(events(&path).iter().all(|event| event["admissible"] == true));
@@ -605,7 +605,7 @@ fn a_result_goes_to_a_file_whole() {
     assert_eq!(fs::read_to_string(&file).unwrap(), "old");
     assert_eq!(home.quiet(&short("trace", &["-o", "curve.csv", "--overwrite"])), "");
     assert_eq!(fs::read_to_string(&file).unwrap(), expected);
-    // Nothing temporary stays behind.
+    // No temporary file stays behind.
     assert_eq!(names(home.folder()), ["curve.csv"]);
     // A failed run leaves the old file alone.
     let failed = ["-o", "curve.csv", "--overwrite", "--set", "basis.rings=1"];
@@ -673,7 +673,7 @@ fn csv_of_an_si_preset_has_its_units_beside_it() {
         ),
         "{events}"
     );
-    // JSON and tables have them inside, and reduced numbers have none.
+    // JSON and tables contain the units, and reduced numbers have none.
     for arguments in [
         &["trace", "fig-9-si", "--format", "json"][..],
         &["unload", "fig-9-si"],

@@ -1,4 +1,4 @@
-//! What a person gives the program: assignments, preset files, names; what is wrong with them is said.
+//! User input: assignments, preset files, names; and the messages about what is wrong with them.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 use crate::support::home::Home;
@@ -77,7 +77,7 @@ fn what_a_group_changed_is_told() {
     let ended = home.run(&["unload", "fig-9-si", "--set", "groups.amplitude_over_wavelength=0.04"]);
     assert_eq!(ended.status, 0, "{}", ended.err);
     assert!(ended.err.contains("note: groups changed gap.amplitude = 10 um\n"), "{}", ended.err);
-    // What is assigned beside a group is no change of the group's.
+    // An assignment beside a group is not a change by the group.
     let beside = [
         "unload",
         "fig-9-si",
@@ -102,7 +102,7 @@ fn a_bare_number_far_from_the_presets_own_is_worth_a_word_in_si() {
             .contains("warning: gap.amplitude is 1.25e7 um now, 12.5 um in the preset: a bare number is SI"),
         "{warning}"
     );
-    // Near enough, or with a unit, or where there are none.
+    // Close enough, or with a unit, or in a preset without units.
     for (preset, assignment) in [
         ("fig-9-si", "gap.amplitude=11e-6"),
         ("fig-9-si", "gap.amplitude=0.001 um"),
@@ -128,7 +128,7 @@ fn a_preset_file_needs_only_its_required_keys() {
     assert_eq!(*basis, serde_json::json!({"kind": "exact"}));
     let end = document["problem"]["end_contact_radius"].as_f64().unwrap();
     assert!((end - 0.002).abs() < 1e-15, "{end}");
-    // Relative, without a slash: it is a file because it ends in .toml.
+    // Relative and without a slash, but a file because it ends in .toml.
     assert_eq!(home.json(&["unload", "mine.toml"])["events"], document["events"]);
 }
 
@@ -190,7 +190,7 @@ fn too_few_rings_per_wave_is_a_warning_on_stderr_and_in_the_document() {
 #[test]
 fn a_curve_that_ends_is_no_pull_off() {
     let home = Home::new();
-    // A ring per wave cannot resolve the gap: beyond some radius the basis has no equilibrium.
+    // One ring per wave cannot resolve the gap: beyond some radius the basis has no equilibrium.
     let file = home.file(
         "coarse.toml",
         "[material]\neffective_modulus = 7e10\nwork_of_adhesion = 0.0473\n[gap]\nshape = \"wavy-sphere\"\n\
@@ -202,7 +202,7 @@ fn a_curve_that_ends_is_no_pull_off() {
     let document: Value = serde_json::from_str(&ended.out).unwrap();
     assert_eq!(kinds(&document), [""; 0]);
     let stop = document["stop"].as_str().unwrap();
-    // The radius it ends at, in the units of the preset.
+    // The radius at which it ends, in the units of the preset.
     assert!(stop.contains("no equilibrium") && stop.contains("e-8"), "{stop}");
     assert!(ended.err.contains("stopped early") && ended.err.contains(stop), "{}", ended.err);
 }
@@ -224,7 +224,7 @@ fn presets_are_listed_shown_and_located() {
 
     let shown = home.quiet(&["presets", "show", "fig-9"]);
     assert!(shown.contains("shape = \"wavy-sphere\""), "{shown}");
-    // What is shown is a preset file that gives the same.
+    // The output is a preset file that gives the same result.
     let copy = home.file("copy.toml", &shown);
     assert_eq!(home.quiet(&["unload", &copy]), home.quiet(&["unload", "fig-9"]));
 

@@ -1,4 +1,4 @@
-//! Completion: what the program answers a shell, and what bash, zsh and fish make of it.
+//! Completion: what the program answers a shell, and what bash, zsh and fish do with it.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -8,7 +8,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::Command;
 
-/// What the program answers for the last of these words, as each shell asks it; the values alone.
+/// The program's answer for the last of these words, as each shell asks; only the values.
 fn asked(home: &Home, shell: &str, words: &[&str]) -> Vec<String> {
     let index = words.len().to_string();
     let mut command = home.command(&[&["--", "pulloff"], words].concat());
@@ -41,7 +41,7 @@ fn the_program_answers_every_shell_alike() {
                 assert!(!found.iter().any(|other| other == word), "{shell} {words:?}: {word} in {found:?}");
             }
         };
-        // Subcommands, and theirs; presets that are there, and files.
+        // Subcommands, and their own subcommands; existing presets, and files.
         has(&["un"], &["unload"], &["trace"]);
         has(&["presets", ""], &["list", "show", "delete", "path"], &[]);
         has(&["sweep", "mer"], &["merge"], &["check"]);
@@ -49,7 +49,7 @@ fn the_program_answers_every_shell_alike() {
         has(&["trace", "fig-9"], &["fig-9", "fig-9-weak"], &["fig-8"]);
         has(&["presets", "delete", ""], &["own-one"], &["lens", "mine.toml"]);
         has(&["fit", ""], &["curve.csv", "lens"], &[]);
-        // Keys of this preset, and of what was made of it.
+        // Keys of this preset, and of a changed one.
         has(&["trace", "--set", "gap.w"], &["gap.wavelength="], &["gap.slope="]);
         has(&["trace", "cone", "--set", "gap."], &["gap.slope="], &["gap.wavelength="]);
         has(&["trace", "--set", "gap.shape=power-law", "--set", "gap.e"], &["gap.exponent="], &[]);
@@ -73,7 +73,7 @@ fn the_program_answers_every_shell_alike() {
         );
         has(&["plot", "--view", "press"], &["pressure"], &[]);
         has(&["completions", "f"], &["fish"], &[]);
-        // What cannot be known is nothing, and no failure.
+        // What cannot be known gives no candidates, and no failure.
         has(&["trace", "--set", "banana="], &[], &["banana="]);
         has(&["trace", "no/such.toml", "--set", "gap.amp"], &["gap.amplitude="], &[]);
         has(&["\u{1b}[31m", ""], &[], &[]);
@@ -94,7 +94,7 @@ fn a_variable_of_somebody_else_changes_nothing() {
     }
 }
 
-/// The real shell at a terminal: what stands on the line after a Tab.
+/// Runs the real shell at a terminal, and checks the line after a Tab.
 fn completes(shell: &str, arguments: &[&str], setup: &str) {
     if Command::new(shell).arg("--version").output().is_err() {
         eprintln!("LEFT OUT: {shell} is not here");
@@ -123,7 +123,7 @@ fn completes(shell: &str, arguments: &[&str], setup: &str) {
         ("pulloff fit shipped:lens.csv le", "pulloff fit shipped:lens.csv lens x"),
         ("pulloff trace two", "pulloff trace two\\ words.toml x"),
     ] {
-        // The letter shows whether a space was put behind.
+        // The letter shows whether a space was added after the word.
         pty.keys(&format!("{typed}\t"));
         pty.wait_for(|screen| screen.contains(expected.trim_end_matches('x').trim_end()), expected);
         pty.keys("x");
@@ -142,7 +142,7 @@ fn zsh_completes() {
     completes("zsh", &["-f", "-i"], "autoload -U compinit; compinit -u; source <(pulloff completions zsh)");
 }
 
-/// As it is installed: a file of a function, loaded at the first Tab.
+/// As installed: a function file, loaded at the first Tab.
 #[test]
 fn zsh_completes_with_the_file_of_the_package() {
     let setup = "mkdir site; pulloff completions zsh >site/_pulloff; fpath=($PWD/site $fpath); autoload -U compinit; compinit -u";

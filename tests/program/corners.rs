@@ -1,5 +1,5 @@
-//! Where the slope of the gap jumps the equilibrium curve has a corner: traces land on it, steps by hand stop there, and a limit
-//! point may sit on it.
+//! Where the slope of the gap jumps, the equilibrium curve has a corner: traces land on it, manual steps stop there,
+//! and it may be a limit point.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -27,7 +27,7 @@ fn preset(height: f64) -> Preset {
 
 #[test]
 fn a_trace_lands_on_the_corner_and_goes_on_behind_it() {
-    // Downward the corner is a limit point; upward and slight it is none, and the curve is stable on both sides.
+    // Downward, the corner is a limit point; upward and slight, it is not, and the curve is stable on both sides.
     for height in [0.07, 0.01, -0.01] {
         let preset = preset(height);
         let case = Case::new(&preset).unwrap();
@@ -52,7 +52,7 @@ fn a_trace_lands_on_the_corner_and_goes_on_behind_it() {
         }
         let report = TraceReport::compute(&preset).unwrap();
         let at = report.points.iter().find(|point| (point.contact_radius - 0.12).abs() < 1e-12).unwrap();
-        // Two slopes there: none is given.
+        // There are two slopes here, so none is given.
         assert!(at.tangent_stiffness.is_none() && at.area_slope.is_none() && at.contact_stiffness > 0.0);
     }
 }
@@ -74,7 +74,7 @@ fn a_limit_point_sits_on_the_corner() {
     assert!(curve.limit_points(Control::Displacement).iter().any(|limit| limit.corner));
 }
 
-/// The radii of a walk by hand from the start inward, or with `back` from far inside outward.
+/// The radii of a manual walk from the start inward or, with `back`, from far inside outward.
 fn walked(preset: &Preset, back: bool) -> (Vec<f64>, WalkOutcome, f64) {
     let curve = Arc::new(CurveData::compute(preset, &Staged::unwatched()).unwrap());
     let drawn = &curve.base.curve;
@@ -103,7 +103,7 @@ fn walked(preset: &Preset, back: bool) -> (Vec<f64>, WalkOutcome, f64) {
 #[test]
 fn a_step_by_hand_ends_on_the_corner_and_the_next_begins_behind_it() {
     for back in [false, true] {
-        // No limit point: steps go on behind it.
+        // No limit point: the steps continue behind it.
         let (radii, outcome, corner) = walked(&preset(0.003), back);
         assert_eq!(outcome, WalkOutcome::Done, "{back}: {radii:?}");
         let at = radii.iter().position(|s| (s / corner - 1.0).abs() < 1e-13);

@@ -1,4 +1,4 @@
-//! `pulloff cycle`: its documents, where it turns, and what it refuses.
+//! `pulloff cycle`: its documents, its turns, and its refusals.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -19,7 +19,7 @@ fn near(value: &Value, expected: f64) -> bool {
     (number(value) - expected).abs() <= 1e-9 * expected.abs()
 }
 
-/// The kinds of the events in a row, with what stands in a row counted.
+/// The kinds of the events, in order.
 fn kinds(document: &Value) -> Vec<&str> {
     document["events"].as_array().unwrap().iter().map(|event| event["kind"].as_str().unwrap()).collect()
 }
@@ -102,7 +102,7 @@ fn the_document_has_its_form() {
     ];
     let whole = &document["totals"];
     assert_eq!(keys(whole), BTreeSet::from(sums));
-    // What the hand gives and does not get back is lost.
+    // The work that the hand does and does not get back is lost.
     let lost = number(&whole["dissipated"]);
     let work = number(&whole["work_of_loading"]) + number(&whole["work_of_unloading"]);
     assert!((work - lost).abs() < 1e-7 * lost, "{work} {lost}");
@@ -193,7 +193,7 @@ fn a_table_and_csv_say_the_same() {
         }
     }
     assert!(next.next().is_none());
-    // By the ending of the file.
+    // By the extension of the file.
     home.quiet(&["cycle", "fig-9-weak", "--rows", "states", "-o", "loop.csv"]);
     assert_eq!(home.text("loop.csv"), csv);
     home.quiet(&["cycle", "fig-9-weak", "-o", "loop.json"]);
@@ -218,18 +218,18 @@ fn a_loop_turns_where_it_is_told() {
         assert_eq!((&*found, asked), (of, value));
         assert!((reached - value).abs() < 1e-9, "{flag}: {reached}");
     }
-    // The edge jumps over a radius: the state is the first beyond it.
+    // The edge jumps over this radius: the state is the first one beyond it.
     let (of, asked, reached, document) = turn(&["--to-radius", "0.13"]);
     assert_eq!((&*of, asked), ("contact_radius", 0.13));
     assert!(reached > 0.15 && document["events"].as_array().unwrap().iter().any(|e| e["kind"] == "turn"));
-    // Controls of other kinds: what is given is what they hold.
+    // Other controls: the value given is the one that they hold.
     let (of, _, reached, document) = turn(&["--control", "force", "--to-control", "0.01"]);
     assert_eq!((&*of, reached, &document["control"]), ("control", 0.01, &"force".into()));
     assert!(document["totals"]["dissipated"].is_null() && document["totals"]["work_of_unloading"].is_null());
     assert!(number(&document["totals"]["dissipated_before_last_contact"]) > 0.0);
     let (_, _, reached, document) = turn(&["--control", "stiffness=0.2", "--to-control", "0.06"]);
     assert!((reached - 0.06).abs() < 1e-12 && near(&document["control"]["stiffness"], 0.2));
-    // Without areas they are null, and nothing else changes.
+    // Without areas the fields are null, and nothing else changes.
     let (.., without) = turn(&[]);
     let with = home.json(&["cycle", "fig-9-weak"]);
     assert!(without["totals"]["dissipated_by_area"].is_null());
@@ -245,7 +245,7 @@ fn the_turn_of_a_preset_comes_from_the_file_and_is_set() {
         let document = home.json(&[&["cycle", "--no-area"], arguments].concat());
         (document["turn"]["of"].as_str().unwrap().to_owned(), number(&document["turn"]["asked"]))
     };
-    // Where nothing is said: the radius at which the unloading starts.
+    // By default, the radius at which the unloading starts.
     assert_eq!(of(&["wavy-sphere"]), ("contact_radius".to_owned(), 0.41));
     assert_eq!(of(&["fig-9-weak"]), ("approach".to_owned(), 0.14));
     // One replaces another.
@@ -259,7 +259,7 @@ fn the_turn_of_a_preset_comes_from_the_file_and_is_set() {
     assert_eq!(of(&["./mine.toml"]), ("force".to_owned(), 0.02));
     home.file("two.toml", &format!("{text}turn_force = 0.02\n"));
     home.refused(&["cycle", "./two.toml"], &["turn_approach", "turn_force"]);
-    // Units, in a preset that has them.
+    // With units, in a preset that has them.
     let (kind, asked) = of(&["fig-9-si", "--set", "path.turn_approach=10um"]);
     assert!(kind == "approach" && (asked - 1e-5).abs() < 1e-18, "{asked}");
     let (kind, asked) = of(&["fig-9-si", "--to-radius", "0.3mm"]);
@@ -278,7 +278,7 @@ fn what_cannot_be_is_said_with_the_number_that_would_do() {
     // Beyond the rows of a profile.
     home.refused(&["cycle", "profile", "--to-radius", "1000"], &["1000"]);
     home.refused(&["cycle", "profile", "--to-approach", "1000"], &["approach"]);
-    // Without adhesion nothing bears a pull.
+    // Without adhesion the contact cannot bear a pull.
     let zero = ["--set", "material.work_of_adhesion=0"];
     for flags in
         [["--control", "force", "--to-force", "-0.01"], ["--control", "force", "--to-control", "-0.01"]]
@@ -345,7 +345,7 @@ fn without_adhesion_the_way_back_is_the_way_there() {
     assert_eq!(status, 0);
 }
 
-/// The jumps of the way down as (s before, s after): the last has none.
+/// The jumps of unloading as (s before, s after); the last one has no landing.
 fn ways_down(document: &Value) -> Vec<(f64, Option<f64>)> {
     let events = document["events"].as_array().unwrap().iter();
     let down = events.filter(|event| event["direction"] == "unloading");
@@ -353,7 +353,8 @@ fn ways_down(document: &Value) -> Vec<(f64, Option<f64>)> {
     down.map(|event| (radius(&event["before"]).unwrap(), radius(&event["after"]))).collect()
 }
 
-/// One disc is followed on its exact panels: no jump is missed for lying close to another or on a corner, wherever the loop turns.
+/// One disc is followed on its exact panels: no jump is missed because it is close to another or on a corner, wherever
+/// the loop turns.
 #[test]
 fn no_jump_of_one_disc_is_missed() {
     let home = Home::new();
@@ -364,7 +365,7 @@ fn no_jump_of_one_disc_is_missed() {
         document
     };
     let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
-    // A corner: its limit point in closed form is there, and makes a sixth of the losses.
+    // A corner: its limit point is known in closed form, and accounts for a sixth of the losses.
     let corner = of("concave-corner", ["--to-radius", "0.3"]);
     let down = ways_down(&corner);
     assert!(
@@ -375,16 +376,16 @@ fn no_jump_of_one_disc_is_missed() {
     let lost: Vec<f64> = events.iter().map(|event| number(&event["dissipated"])).collect();
     let snap = lost[lost.len() - 2] / lost.iter().sum::<f64>();
     assert!((0.15..0.18).contains(&snap), "{snap}");
-    // Two limit points that nearly are one: both snaps, whatever the turn.
+    // Two limit points that nearly coincide: both snaps are found, whatever the turn.
     for turn in ["0.01", "0.02", "0.03"] {
         let down = ways_down(&of("near-cusp", ["--to-control", turn]));
         assert_eq!(down.iter().filter(|(_, after)| after.is_some()).count(), 2, "{turn}: {down:?}");
     }
-    // Knots close to the axis: the end is no unstable piece.
+    // Knots close to the axis: the end is not an unstable piece.
     let down = ways_down(&of("lost-pull-off", ["--to-radius", "0.3"]));
     assert!(down.len() == 2 && near(down[0].0, 0.022_322), "{down:?}");
     assert!(near(down[1].0, 0.021_344) && down[1].1.is_none(), "{down:?}");
-    // Waves that are too short to matter do not matter: the loop of the smooth sphere.
+    // Waves too short to matter have no effect: the loop of the smooth sphere.
     let short = of("short-wave", ["--to-radius", "0.4"]);
     assert_eq!(kinds(&short), ["first-touch", "turn", "last-contact"]);
     assert!((number(&short["events"][0]["after"]["contact_radius"]) - 0.293).abs() < 1e-3);
@@ -408,18 +409,18 @@ fn no_jump_of_one_disc_is_missed() {
     let wavy = home.json(&[&["cycle", "wavy-sphere", "--to-radius", "0.30842864"], &set[..]].concat());
     let down = ways_down(&wavy);
     assert!((down[0].0 - 0.13781).abs() < 1e-5 && (down[0].1.unwrap() - 0.12857).abs() < 1e-5, "{down:?}");
-    // A power law as it comes is a loop, and so is a profile to its end, without a warning.
+    // A power law as shipped gives a loop, and so does a profile up to its end, without a warning.
     assert_eq!(kinds(&home.json(&["cycle", "power-law"])), ["first-touch", "turn", "last-contact"]);
     let profile = home.json(&["cycle", "profile", "--to-radius", "99"]);
     assert_eq!(profile["warnings"], Value::Array(vec![]));
     assert_eq!(ways_down(&profile).len(), 3);
 }
 
-/// A bump far narrower than the contact touches where it stands, before the disc comes there or before anything else does.
+/// A bump far narrower than the contact touches at its own place, before the disc reaches it or anything else does.
 #[test]
 fn a_narrow_bump_is_touched() {
     let home = Home::new();
-    // A ring that vanishes costs the losses by area some digits, of which a warning tells.
+    // A vanishing ring costs the losses by area some digits, and a warning says so.
     let loop_of = |arguments: &[&str]| -> Value {
         let ended = home.run(&[arguments, &["--format=json"]].concat());
         assert_eq!(ended.status, 0, "{}", ended.err);

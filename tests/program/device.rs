@@ -1,4 +1,4 @@
-//! The loading device in the explorer: its stiffness is a knob that never sweeps the curve again.
+//! The loading device in the explorer: its stiffness is a knob that does not compute the curve again.
 
 use crate::support::session::Session;
 use pulloff::explorer::device::line;
@@ -23,7 +23,7 @@ fn radii(curve: &CurveData) -> Vec<f64> {
     curve.limits.iter().map(|limit| limit.contact_radius).collect()
 }
 
-/// What belongs to the control is as if the whole curve had been computed for it.
+/// Everything that depends on the control is as if the whole curve had been computed for it.
 fn assert_as_computed_afresh(session: &Session) {
     let fresh = CurveData::compute(&session.model.preset, &Staged::unwatched()).expect("a curve");
     let (ours, fresh) = (curve(session), fresh.checked(&Unwatched).expect("not stopped"));
@@ -58,14 +58,14 @@ fn turning_the_stiffness_moves_limit_points_and_events_and_sweeps_nothing_again(
             break;
         }
     }
-    // At the stiff end the limit points are nearly those of displacement, and on the way they differ.
+    // At the stiff end the limit points are nearly those of displacement; in between they differ.
     let near =
         |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 5e-3 * a);
     assert!(near(&limits[0], &displacement));
     assert!(!near(&limits[limits.len() / 2], &displacement));
     assert_eq!(ends.last(), Some(&Control::Force));
     assert!(near(&limits[limits.len() - 2], limits.last().unwrap()));
-    // Another problem is another curve, whatever was turned before.
+    // Another problem is another curve, whatever was changed before.
     session.set("gap.amplitude", "0.003");
     assert!(!Arc::ptr_eq(&curve(&session).base, &base));
     assert_as_computed_afresh(&session);
@@ -77,7 +77,7 @@ fn the_walker_stays_and_its_flags_follow_the_device() {
     session.does(Id::NextEvent);
     let (state, nodes) = (session.radius(), session.model.history.nodes().len());
     assert!(session.status().starts_with("Event 1 of"), "{}", session.status());
-    // Softer than fixed grips, the same state is past its limit point: unstable.
+    // With a device softer than fixed grips, the same state is past its limit point: unstable.
     session.set("path.control", "0.15");
     assert_eq!(session.model.preset.path.control, Control::Stiffness(0.15));
     assert_eq!((session.radius(), session.model.history.nodes().len()), (state, nodes));
@@ -107,7 +107,7 @@ fn the_control_goes_round_and_comes_back_to_the_last_stiffness() {
         seen.push(session.model.preset.path.control);
     }
     assert_eq!(seen, [Control::Displacement, Control::Force, last]);
-    // At an end the knob says so.
+    // At an end of the range the knob says so.
     session.set("path.control", "force").does(Id::Less);
     assert!(session.status().contains("softest"), "{}", session.status());
 }
@@ -185,13 +185,13 @@ fn the_line_of_the_device_has_its_slope_and_ends_at_the_landing() {
 fn a_curve_can_be_given_up_and_undo_takes_the_values_back() {
     let mut session = Session::new("wavy-sphere");
     let shown = curve(&session);
-    // Asked for, not yet there.
+    // Requested, but not there yet.
     let late = update(&mut session.model, Id::MuchMore.into());
     let effects = update(&mut session.model, Id::Cancel.into());
     assert!(matches!(effects.as_slice(), [Effect::StopCurve(id)] if *id == session.model.curve_wanted));
     assert!(session.status().starts_with("cancelled"), "{}", session.status());
     assert!(!session.model.is_computing() && session.model.is_unsaved());
-    // An answer that comes late is not wanted.
+    // A late answer is not wanted.
     session.driver.settle(&mut session.model, late);
     assert!(Arc::ptr_eq(&curve(&session), &shown));
     session.does(Id::Axes);
@@ -201,13 +201,13 @@ fn a_curve_can_be_given_up_and_undo_takes_the_values_back() {
     assert!(!session.model.is_unsaved());
     assert!(Arc::ptr_eq(&curve(&session), &shown));
     assert!(session.status().starts_with("Start, stable"), "{}", session.status());
-    // A control given up is as before.
+    // A control change given up leaves everything as before.
     let late = update(&mut session.model, Id::Control.into());
     session.does(Id::Cancel);
     session.driver.settle(&mut session.model, late);
     assert!(!session.model.is_unsaved());
     assert_eq!(session.model.control(), Some(Control::Displacement));
-    // Values turned back before their curve has come need none.
+    // Values changed back before their curve has come need no curve.
     update(&mut session.model, Id::MuchMore.into());
     let effects = update(&mut session.model, Id::Undo.into());
     assert!(matches!(effects.as_slice(), [Effect::StopCurve(_)]), "{effects:?}");

@@ -39,7 +39,7 @@ fn the_walk_meets_the_events_of_the_curve() {
     }
     assert_eq!(session.model.walked_events().len(), 6);
     assert_eq!(session.model.walked_events()[5].1.kind, "last-contact");
-    // Apart: nothing to walk, but nothing is lost either.
+    // The bodies are apart: there is nothing to walk, but nothing is lost either.
     session.does(Id::Step);
     assert!(session.status().contains("apart"));
     session.does(Id::Undo).does(Id::Step);
@@ -57,7 +57,7 @@ fn outward_the_next_event_ends_where_the_path_does() {
     session.does(Id::NextEvent);
     assert_eq!(session.model.history.len(), nodes);
     assert!(session.status().contains("reverse turns round"), "{}", session.status());
-    // A step goes on, and a script says all of it again.
+    // A step continues the walk, and a script reproduces all of it.
     session.does(Id::Step);
     assert!(session.radius() > start);
     assert!(
@@ -89,7 +89,7 @@ fn from_apart_the_path_goes_up_to_its_turn_and_back() {
 #[test]
 fn outward_the_edge_jumps_on_loading() {
     let mut session = Session::new("wavy-sphere");
-    // Down to the third stable piece, then back up: the maximum there is left outward.
+    // Down to the third stable piece, then back up: the maximum there is left in the outward direction.
     session.all(&[Id::NextEvent, Id::Jump, Id::NextEvent, Id::Jump, Id::Reverse, Id::NextEvent]);
     let before = session.radius();
     session.does(Id::Jump);
@@ -116,7 +116,7 @@ fn steps_stop_at_a_limit_point_and_go_on_along_the_unstable_branch() {
     assert_eq!(session.kind(), NodeKind::Step);
     assert!(!session.model.history.current().unwrap().stability.under(control));
     assert!(session.status().starts_with("Off the path, unstable"));
-    // From an unstable state the edge runs as well, the way it is walked.
+    // The edge runs from an unstable state too, in the direction of the walk.
     session.does(Id::Jump);
     let NodeKind::Jump(event) = session.kind() else { panic!() };
     assert!(event.dissipated.unwrap() > 0.0);
@@ -145,7 +145,7 @@ fn undo_moves_a_cursor_a_step_after_it_makes_a_branch_and_nothing_is_erased() {
     assert_eq!(session.model.history.nodes().len(), 5);
     session.all(&[Id::Undo, Id::Redo]);
     assert_eq!(session.model.history.cursor(), Some(4));
-    // The step, the way, and the first step.
+    // The step, the direction, and the first step.
     session.all(&[Id::Undo, Id::Undo, Id::Undo, Id::Undo]);
     assert!(session.status().contains("nothing to undo"));
 }
@@ -164,7 +164,7 @@ fn a_knob_moves_curve_log_and_walker_and_undo_brings_the_value_back() {
     assert!((after.approach - before.approach).abs() < 1e-9);
     assert!((after.force / before.force - 1.0).abs() > 1e-3);
     assert_ne!(session.model.path_events()[0].before, events[0].before);
-    // Turned further it is the same command, and a step between makes it another.
+    // Further turns belong to the same command; after a step in between, a turn is a new one.
     session.does(Id::More).does(Id::Step).does(Id::More).does(Id::Undo).does(Id::Undo);
     assert!(session.model.is_unsaved());
     session.does(Id::Undo);
@@ -176,7 +176,7 @@ fn a_knob_moves_curve_log_and_walker_and_undo_brings_the_value_back() {
 #[test]
 fn undo_before_the_answer_takes_the_value_back() {
     let mut session = Session::new("wavy-sphere");
-    // The curve is asked for but has not come when undo is pressed.
+    // The curve has been requested but has not come when undo is pressed.
     let late = update(&mut session.model, Id::MuchMore.into());
     let effects = update(&mut session.model, Id::Undo.into());
     assert!(!session.model.is_unsaved());
@@ -229,7 +229,7 @@ fn the_control_can_change_in_mid_walk() {
     session.does(Command::Steps(4));
     let nodes = session.model.history.nodes().len();
     session.does(Id::Control);
-    // The state stays the same state; only its stability is judged anew.
+    // The state stays the same; only its stability is judged again.
     assert_eq!(session.model.history.nodes().len(), nodes);
     assert_eq!(session.model.path_events().last().unwrap().dissipated, None);
     session.does(Id::NextEvent);
@@ -263,7 +263,7 @@ fn presets_are_saved_opened_and_never_replaced_unasked() {
     assert!(session.model.question.take().is_some());
     session.does(Command::Open("lab-3".to_owned()));
     assert_eq!(session.model.preset.gap.wave(), Some((0.004, 0.05)));
-    // Changed behind our back: asked before it is replaced.
+    // Changed by another program: it asks before it replaces the file.
     let path = session.folder.path().join("presets/lab-3.toml");
     let text = std::fs::read_to_string(&path).unwrap().replace("0.004", "0.0045");
     std::fs::write(&path, &text).unwrap();
@@ -279,7 +279,7 @@ fn a_walker_that_was_stable_stays_so_when_a_value_changes() {
     let set = |session: &mut Session, amplitude: &str| {
         session.does(Command::Assign(vec![("gap.amplitude".into(), amplitude.into())]));
     };
-    // The smooth sphere is a way off the waves: the state nearest to it is not a stable one.
+    // The smooth sphere is far from the waves, and the state nearest to it is not stable.
     let mut session = Session::new("wavy-sphere");
     set(&mut session, "0");
     set(&mut session, "0.003");
@@ -291,7 +291,7 @@ fn a_walker_that_was_stable_stays_so_when_a_value_changes() {
         session.model.history.current().unwrap().state.contact_radius
     };
     assert!((node.state.contact_radius - direct).abs() < 1e-9 * direct);
-    // Where its part of the curve is still there, nothing is said; where a limit point has passed it, that is.
+    // While its part of the curve still exists, there is no message; once a limit point has passed the state, there is one.
     let mut session = Session::new("wavy-sphere");
     session.all(&[Id::NextEvent, Id::Reverse]).does(Command::Steps(1));
     set(&mut session, "0.00251");
@@ -328,7 +328,7 @@ fn the_least_force_is_one_key_away_under_every_control() {
         let force = node.state.force * node.setting.units().force;
         assert!((force - least).abs() < 1e-9 * least.abs(), "{control}: {force} {least}");
         assert_eq!(node.is_limit(node.control), control == "force", "{}", session.status());
-        // It is a place like any other: the script says it.
+        // It is a place like any other, and the script names it.
         let place = if control == "force" { "move-to event" } else { "move-to" };
         assert!(model.script().unwrap().last().unwrap().starts_with(place), "{:?}", model.script());
         session.does(Id::Undo);
@@ -407,7 +407,7 @@ fn a_restart_begins_a_walk_of_its_own() {
     assert_eq!(session.model.walked_events().len(), 2);
     session.all(&[Id::Restart, Id::NextEvent, Id::Jump]);
     assert_eq!(session.model.walked_events().len(), 1);
-    // Nothing is erased: the walk before is an undo away.
+    // Nothing is erased: undo leads back to the earlier walk.
     session.all(&[Id::Restart, Id::Undo]);
     assert_eq!(session.model.walked_events().len(), 1);
 }
@@ -446,7 +446,7 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
         &mut session.model,
         Command::Set { key: "material.work_of_adhesion".into(), text: "1e-4".to_owned() },
     );
-    // While a newer curve is on its way nothing is asked about the old one.
+    // While a newer curve is on its way, nothing is requested about the old one.
     let [Effect::Curve(_)] = effects.as_slice() else { panic!("{effects:?}") };
     let curve = session.driver.run(effects[0].clone()).unwrap();
     let effects = answer(&mut session.model, curve);
@@ -457,7 +457,7 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
         .partition(|effect| matches!(effect, Effect::Compute(task) if task.name == "check"));
     session.driver.settle(&mut session.model, walk);
     assert!(!session.model.curve.as_ref().unwrap().is_checked());
-    // A curve that is wanted meanwhile makes the answer void, and giving it up has it asked again.
+    // A curve requested meanwhile makes the answer void; giving it up requests the answer again.
     let late = session.driver.run(check[0].clone()).unwrap();
     update(&mut session.model, Command::Set { key: "gap.amplitude".into(), text: "0.003".to_owned() });
     answer(&mut session.model, late);
@@ -486,7 +486,7 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
     assert!(session.model.path_events().iter().all(|event| event.admissible.is_some()));
     session.does(Id::Undo);
 
-    // The log goes on to them, but they are no place to go to.
+    // The log lists them as well, but they are not places to go to.
     session.model.panel = ScreenPanel::Log;
     let count = session.model.path_events().len();
     for _ in 0..50 {
@@ -497,10 +497,10 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
     session.does(Id::Edit);
     assert!(session.status().contains("crest would touch"), "{}", session.status());
     assert!((session.radius() - before).abs() < f64::EPSILON);
-    // Another control keeps what is known of the curve.
+    // Another control keeps what is known about the curve.
     session.does(Id::Control);
     assert_eq!(session.model.shown_inadmissible(), parts);
-    // Where the walker is told so, the curve is drawn so.
+    // The curve is drawn as inadmissible exactly where the walker is reported to be.
     let part = parts[0].report;
     let mut told = [0, 0];
     session.does(Id::Restart).does(Id::Halve).does(Id::Halve);
@@ -543,10 +543,10 @@ fn the_inside_of_a_state_is_computed_only_where_a_view_shows_it_and_follows_the_
     assert_eq!(shown(&session), session.radius().to_bits());
     session.does(Command::Steps(3));
     assert_eq!(shown(&session), session.radius().to_bits());
-    // Asked for once: nothing has changed.
+    // Requested once only: nothing has changed.
     let [asked] = update(&mut session.model, Id::Reverse.into()).try_into().unwrap();
     assert!(update(&mut session.model, Id::Axes.into()).is_empty());
-    // Late answers of older states do not replace newer ones.
+    // Late answers for older states do not replace newer ones.
     let newest = session.driver.run(asked).unwrap();
     assert!(matches!(newest, Reply::Found(_)));
     session.all(&[Id::Undo, Id::Undo]);
@@ -565,7 +565,7 @@ fn zoom_and_cross_hair_have_their_limits() {
     for _ in 0..100 {
         session.does(Id::Left);
     }
-    // At the edge it takes the window along.
+    // At the edge it moves the window along.
     assert_eq!(session.model.cross.map(|(x, _)| x), Some(0.0));
     assert!(session.model.window(View::ForceApproach).x[0] < -0.5);
     for _ in 0..40 {
@@ -585,20 +585,21 @@ fn a_formula_is_tried_while_it_is_typed_and_can_be_taken_back() {
         session.does(Command::Try { key: "gap.formula".into(), text: text.to_owned() });
     };
     let value = |session: &Session, name: &str| session.model.preset.get(&format!("gap.parameters.{name}"));
-    // Halfway through a name: the new one has the value of the one it begins, which is gone; the others are as they were.
+    // Halfway through a name: the new parameter takes the value of the one whose name it begins, which is gone; the
+    // others are unchanged.
     tries(&mut session, "r^2/(2*R) + A*(1 - cos(2*pi*r/lam))");
     assert_eq!((value(&session, "lam"), value(&session, "lambda")), (Some(0.06.into()), None));
     assert_eq!(value(&session, "A"), before.get("gap.parameters.A"));
     assert_eq!(session.model.curve.clone().unwrap().setting.preset, session.model.preset);
-    // A name misspelt is said, and begins with the value of the one it resembles.
+    // A misspelt name is reported, and takes the value of the name that it resembles.
     tries(&mut session, "r^2/(2*R) + A*(1 - cos(2*pi*r/lamda))");
     assert_eq!(value(&session, "lamda"), Some(0.06.into()));
     let status = session.status().clone();
     assert!(status.contains("new parameter lamda = 0.06; did you mean lambda?"), "{status}");
-    // The whole name again: its value is the one from before.
+    // With the whole name again, its value is the earlier one.
     tries(&mut session, "r^2/(2*R) + A*(1 - cos(2*pi*r/lambda)) + 0*B");
     assert_eq!((value(&session, "lambda"), value(&session, "B")), (Some(0.06.into()), Some(1.0.into())));
-    // No formula: nothing changes.
+    // Not a formula: nothing changes.
     let tried = session.model.preset.clone();
     tries(&mut session, "r^2/(2*R");
     assert!(session.status().contains("column 9"), "{}", session.status());
@@ -637,7 +638,7 @@ fn a_gap_of_other_lengths_is_told_of() {
     };
     let said = told("profile", "wavy-sphere").unwrap();
     assert!(said.contains("that before had 1: E*, γ and the path keep their numbers"), "{said}");
-    // Gaps of one length, and metres in both.
+    // Gaps with a single length, and metres in both.
     assert_eq!([told("sphere", "wavy-sphere"), told("sphere", "fig-9-si")], [None, None]);
 }
 
@@ -671,11 +672,11 @@ fn a_profile_is_found_in_a_folder_read_and_saved_with_its_preset() {
     session.set("gap.file", &listed.name_of("good.csv"));
     assert!(session.status().contains("good.csv: 100 rows"), "{}", session.status());
     assert_eq!(session.model.curve.clone().unwrap().setting.preset, session.model.preset);
-    // Saved beside the data, the preset names it by its path from there.
+    // Saved beside the data, the preset names them by their path from there.
     let target = folder.join("mine.toml");
     save_file(&target, &session.model.preset, None, Overwrite::Never).unwrap();
     assert!(std::fs::read_to_string(&target).unwrap().contains("file = \"good.csv\""));
-    // With its data elsewhere: the preset of the session names the copy.
+    // With its data elsewhere, the preset of the session names the copy.
     session.does(Command::SaveAs { name: "scan".to_owned(), replace: false, with_data: true });
     assert!(session.status().contains("saved as scan"), "{}", session.status());
     assert!(!session.model.is_unsaved() && folder.join("presets/good.csv").is_file());

@@ -1,5 +1,5 @@
-//! Walks along the path of the device, where the states lie on no single curve: an edge that rests between two works of adhesion, and
-//! adhesion with a range.
+//! Walks along the path of the device, where the states lie on no single curve: an edge that rests between two works of
+//! adhesion, and adhesion with a range.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -34,7 +34,7 @@ fn session(set: &Set) -> Session {
     session
 }
 
-/// Walked to where the bodies are apart; how many events that took.
+/// Walks until the bodies are apart; returns the number of events.
 fn to_the_end(session: &mut Session) -> usize {
     let mut events = 0;
     while !session.model.history.current().unwrap().is_apart() {
@@ -54,15 +54,15 @@ fn every_event_of_the_path_is_walked_once_and_none_besides() {
         let path = session.model.path().unwrap();
         let done = log.entries.iter().filter(|entry| entry.mark == EventMark::Done && entry.number.is_some());
         assert_eq!((done.count(), log.entries.len()), (path.events.len(), path.events.len()), "{set:?}");
-        // What was lost on the way is what the path loses: each by its own sum.
+        // The losses on the walk equal those of the path; each is summed separately.
         let (lost, all) = (log.lost().0, path.totals.dissipated.unwrap());
         assert!((lost - all).abs() <= 1e-9 * all, "{set:?}: {lost} {all}");
-        // A walk goes one way, and says so.
+        // A walk can go only one way, and says so.
         let walk = session.model.history.path();
         let numbers: Vec<usize> = walk.iter().map(|(_, node)| node.on_path.unwrap()).collect();
         assert!(numbers.windows(2).all(|pair| pair[0] <= pair[1]), "{set:?}: {numbers:?}");
         assert!(session.model.inward, "{set:?}");
-        // Whatever the device holds is said to be held.
+        // What the device holds is reported as held.
         let is_held = |node: &Node| node.kind == NodeKind::Limit || node.stability.under(node.control);
         assert!(walk.iter().all(|(_, node)| node.is_apart() || is_held(node)), "{set:?}");
     }
@@ -73,7 +73,7 @@ fn an_edge_that_rests_answers_as_the_contact_does_until_its_g_is_that_of_opening
     let mut session = session(RESTS);
     let start = session.model.walker().unwrap();
     let (s, state) = (start.state.contact_radius, start.state);
-    // Held, dP/dδ is 2E*s (E* = 1), and no area opens.
+    // While the edge is held, dP/dδ is 2E*s (E* = 1), and no area opens.
     assert!((start.stiffness.tangent - 2.0 * s).abs() <= 1e-12 * s && start.stiffness.area_slope == 0.0);
     assert!(start.stability.under(start.control));
     session.does(Id::NextEvent);
@@ -133,7 +133,7 @@ fn another_value_leaves_the_walker_at_the_control_that_is_held() {
     session.set("material.cohesive_strength", "1.05");
     let after = session.model.walker().unwrap();
     assert_eq!(after.kind, NodeKind::Solved);
-    // The states of a path lie as densely as it is drawn.
+    // The states of a path are as dense as it is drawn.
     assert!((after.state.approach - before.approach).abs() < 2e-3, "{before:?} {:?}", after.state);
     assert!((after.state.contact_radius - before.contact_radius).abs() < 0.01);
 }
@@ -165,7 +165,7 @@ fn an_event_that_is_gone_to_is_the_one_where_the_walker_stands() {
     for set in [RESTS, RESTS_AFTER_LOADING, RANGE, RANGE_FROM_APART] {
         let mut session = session(set);
         let count = session.model.path_events().len();
-        // At the start nothing of the way down has begun.
+        // At the start no part of the unloading has begun.
         assert!(session.model.log().here().is_none(), "{set:?}: {:?}", session.model.log().here());
         for number in (1..=count).rev() {
             let is_first = session.model.path_events()[number - 1].before.is_none();
@@ -185,7 +185,7 @@ fn an_event_that_is_gone_to_is_the_one_where_the_walker_stands() {
 
 #[test]
 fn the_largest_pull_is_gone_to_from_anywhere() {
-    // A smooth edge that rests to the end: the turn, the end of rest and the pull have one radius.
+    // A smooth edge that rests to the end: the turn, the end of rest and the pull-off have the same radius.
     let smooth: &Set = &[
         ("gap.amplitude", "0"),
         ("material.closing_work_of_adhesion", "0.0005"),

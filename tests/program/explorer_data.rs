@@ -1,4 +1,4 @@
-//! A measured curve in the explorer: laid behind the chart, shifted, taken away, kept with preset, session and script.
+//! A measured curve in the explorer: laid behind the chart, shifted, removed, and kept with preset, session and script.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -11,7 +11,7 @@ use pulloff::explorer::{Command, Id, View};
 use pulloff::figure::{Mark, Sign, Subject};
 use pulloff_engine::preset::data;
 
-/// Does a line of a script.
+/// Runs a line of a script.
 fn says(session: &mut Session, line: &str) {
     let command = parse(line).unwrap().unwrap();
     session.does(command);
@@ -34,20 +34,20 @@ fn points_lie_behind_every_view_that_has_their_columns_and_go_again() {
         let count: usize = drawn(&session, view).iter().map(Vec::len).sum();
         let expected = match view {
             View::ForceApproach | View::ForcePosition | View::Unloading | View::Cycle => 700,
-            // There is no radius among the columns.
+            // The columns contain no radius.
             _ => 0,
         };
         assert_eq!(count, expected, "{view:?}");
     }
     let before = drawn(&session, View::ForceApproach);
-    // The curve is not computed again for what lies behind it.
+    // The curve is not computed again for the points behind it.
     session.set(data::OFFSET, "5 um");
     let shifted = drawn(&session, View::ForceApproach);
     for (a, b) in before.iter().flatten().zip(shifted.iter().flatten()) {
         assert!((a.0 - b.0 - 5.0).abs() < 1e-9 && a.1.to_bits() == b.1.to_bits(), "{a:?} {b:?}");
     }
     assert!(std::sync::Arc::ptr_eq(&curve, session.model.curve.as_ref().unwrap()));
-    // Over the way of the device they are as measured, less the offset: the spring is in the curve.
+    // Over the position of the device the points are as measured, less the offset: the spring is in the curve.
     let branches = session.model.preset.branches().unwrap().unwrap();
     let rows = branches.list.iter().flat_map(|branch| branch.attached.iter().chain(&branch.free));
     let over_position = drawn(&session, View::ForcePosition);
@@ -60,7 +60,7 @@ fn points_lie_behind_every_view_that_has_their_columns_and_go_again() {
     let on_curve = curve.points.iter().map(|at| 1e6 * (at.approach + at.force / 500.0));
     let [lo, hi] = on_curve.fold([f64::MAX, f64::MIN], |[lo, hi], x| [lo.min(x), hi.max(x)]);
     assert!(line.points.iter().all(|at| at.0 > lo - 1e-9 && at.0 < hi + 1e-9) && figure.x.symbol == "Δ");
-    // Turned by a key: a thousandth of the range, from wherever it is.
+    // Changed by a key: a thousandth of the range, from wherever it is.
     let knob = |key: &'static str| Command::Turn { id: Id::More, key: key.into() };
     let range = session.model.preset.branches().unwrap().unwrap().ranges;
     session.does(knob(data::OFFSET)).does(knob(data::BASELINE));
@@ -73,7 +73,7 @@ fn points_lie_behind_every_view_that_has_their_columns_and_go_again() {
     assert!(drawn(&session, View::ForceApproach).iter().all(Vec::is_empty));
     session.does(Id::Undo);
     assert_eq!(drawn(&session, View::ForceApproach)[0].len(), 350);
-    // A file that is none leaves all as it was, and says why.
+    // An invalid file leaves everything unchanged and says why.
     let path = session.folder.path().join("bad.csv");
     std::fs::write(&path, "delta,force\n1,2\n3,x\n").unwrap();
     says(&mut session, &format!("data {}", path.display()));
@@ -148,7 +148,7 @@ fn a_fit_changes_the_free_keys_as_one_command_and_says_their_errors() {
         says(&mut again, &line);
     }
     assert_eq!(again.model.preset, session.model.preset);
-    // Beside another R, another file or other rows the errors of all of them are gone.
+    // With another R, another file or other rows, all standard errors are gone.
     let fitted = session.model.preset.clone();
     let file = tempfile::tempdir().unwrap();
     let curve = include_str!("../../presets/data/lens.csv").replace("-227.8", "-227.9");
@@ -171,14 +171,14 @@ fn a_fit_changes_the_free_keys_as_one_command_and_says_their_errors() {
     let said = session.status();
     assert!(said.contains("approach: 191 in contact, 157 apart; retraction: "), "{said}");
     session.does(Id::Undo);
-    // And so they are beside another value; u takes the whole fit back.
+    // They are also gone with another value; u takes the whole fit back.
     session.set(adhesion, "60 mJ/m^2");
     assert!([adhesion, modulus].iter().all(|key| session.model.standard_error(key).is_none()));
     session.does(Id::Undo);
     assert_eq!(session.model.preset, fitted);
     session.does(Id::Undo);
     assert_eq!(session.model.preset, before);
-    // The residuals of the first guess are far from noise, those of the fit are noise.
+    // The residuals of the first guess are far above the noise; those of the fit are noise.
     let typical = |session: &mut Session| {
         session.model.view = View::Residuals;
         session.does(Id::Up);
@@ -193,7 +193,8 @@ fn a_fit_changes_the_free_keys_as_one_command_and_says_their_errors() {
     assert!((0.4..1.1).contains(&typical(&mut session)));
 }
 
-/// The baseline that a fit has left, or a person has set, is no knowledge beside the rows apart: each fit finds it anew, with an error.
+/// A baseline left by a fit, or set by the user, is not information in addition to the rows apart: each fit determines
+/// it again, with an error.
 #[test]
 fn a_second_fit_finds_the_baseline_anew() {
     let mut session = Session::new("lens");
@@ -281,7 +282,7 @@ fn a_foreign_header_asks_for_the_columns_and_the_answer_is_one_change() {
     session.does(Id::Undo);
     let data = &session.model.preset.data;
     assert!(data.source.is_none() && data.columns.is_empty());
-    // Another kind of fault is said, and nothing is asked.
+    // Another kind of fault is reported, and nothing is asked.
     std::fs::write(&path, "delta,force\n1,2\n3,x\n").unwrap();
     says(&mut session, &format!("data {}", path.display()));
     assert!(session.model.question.is_none(), "{}", session.status());

@@ -1,11 +1,11 @@
-//! A fit in the background of a real screen: its progress, and its best so far when it is stopped.
+//! A fit in the background of a real screen: its progress, and its best values so far when it is stopped.
 
 use crate::support::pty::Pty;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-/// The shipped curve with so many rows in place of each, of which a fit takes long enough to be seen and stopped.
+/// The shipped curve with this many rows in place of each, so that a fit takes long enough to be seen and stopped.
 const TIMES: u32 = 150;
 
 #[test]
@@ -20,7 +20,7 @@ fn a_fit_tells_its_progress_and_escape_takes_the_best_so_far() {
         let [x, force, branch] = row.split(", ").collect::<Vec<_>>()[..] else { panic!("{row}") };
         let [x, force]: [f64; 2] = [x, force].map(|cell| cell.parse().unwrap());
         for copy in 0..TIMES {
-            // No row is another one's copy, for those are dropped; all lie within the noise.
+            // No row copies another, because copies are dropped; all lie within the noise.
             let shift = f64::from(copy * 89 % TIMES) / f64::from(TIMES) - 0.5;
             write!(text, "\n{}, {}, {branch}", x + 0.01 * shift, force + shift).unwrap();
         }
@@ -42,7 +42,7 @@ fn a_fit_tells_its_progress_and_escape_takes_the_best_so_far() {
     pty.keys("\x1b");
     pty.wait_for(|screen| screen.contains("stopped, the best so far: χ²"), "the best so far");
     assert!(progress(&pty.screen()).is_none(), "{}", pty.screen());
-    // The values it had are taken as one command.
+    // Its best values are set as one command.
     pty.wait_for(|screen| screen.contains("unsaved"), "other values");
     pty.keys("u");
     pty.wait_for(|screen| !screen.contains("unsaved"), "the values of before");

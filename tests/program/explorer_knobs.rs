@@ -1,5 +1,5 @@
-//! The explorer without a terminal: groups as knobs, whole commands undone, commands that wait for a curve, what is said of
-//! long work and in units.
+//! The explorer without a terminal: groups as knobs, whole commands undone, commands that wait for a curve,
+//! messages about long work, and messages in units.
 
 use crate::support::session::Session;
 use pulloff::explorer::model::Level;
@@ -13,7 +13,7 @@ fn number(session: &Session, key: &str) -> f64 {
     value.and_then(|value| if let Value::Number(x) = value { Some(x) } else { None }).expect("a number")
 }
 
-/// Selects a knob that is not the first, as the arrows do.
+/// Selects a knob other than the first one, as the arrows do.
 fn select(session: &mut Session, key: &str) {
     session.model.panel = ScreenPanel::Problem;
     let at = session.model.knobs().iter().position(|(row, _)| row.key == key).expect("a knob");
@@ -49,7 +49,7 @@ fn a_group_is_turned_typed_and_taken_back_like_a_parameter() {
     session.set("groups.adhesion", "1 mN");
     assert_eq!(session.model.status().0, Level::Error);
     assert!(near(number(&session, "groups.adhesion"), 0.026));
-    // A gap without them has no such knobs.
+    // A gap without groups has no such knobs.
     let cone = Session::new("cone");
     assert!(cone.model.knobs().iter().all(|(row, _)| !row.key.starts_with("groups.")));
 }
@@ -80,7 +80,7 @@ fn a_whole_command_is_undone_at_once() {
     assert_eq!((cursor(&session), session.kind()), (0, NodeKind::Start));
     session.does(Id::Undo);
     assert!(session.status().contains("nothing to undo"));
-    // Each command of its own.
+    // Each one a separate command.
     session.does(Id::NextEvent);
     let limit = cursor(&session);
     session.does(Id::Jump).does(Command::Steps(3)).does(Id::Undo);
@@ -89,7 +89,7 @@ fn a_whole_command_is_undone_at_once() {
     assert_eq!(cursor(&session), limit);
     session.does(Id::Undo);
     assert_eq!(cursor(&session), 0);
-    // Nothing is erased: forward again, state by state.
+    // Nothing is erased: redo goes forward again, state by state.
     session.all(&[Id::Redo, Id::Redo, Id::Redo]);
     assert_eq!(session.model.history.current().unwrap().kind, NodeKind::Step);
     session.does(Command::Travel { id: Id::Undo, count: 3, states: true });
@@ -97,7 +97,7 @@ fn a_whole_command_is_undone_at_once() {
     // That was a command too.
     session.does(Command::Travel { id: Id::Undo, count: 3, states: false });
     assert_eq!(cursor(&session), limit);
-    // Values typed since are taken back first.
+    // Values typed since then are taken back first.
     let before = session.model.preset.clone();
     let set = Command::Set { key: "gap.amplitude".into(), text: "0.003".to_owned() };
     drop(update(&mut session.model, set));
@@ -118,7 +118,7 @@ fn how_far_a_curve_is_belongs_to_the_newest_one() {
     answer(&mut session.model, far(id));
     assert!(session.status().ends_with("point 70; cancel gives up"), "{}", session.status());
     session.driver.settle(&mut session.model, effects);
-    // Late, as from a thread: it is no longer computed.
+    // A late answer, as from a thread: the computation is no longer running.
     answer(&mut session.model, far(id));
     assert!(!session.model.is_computing() && !session.status().contains("point 70"));
 }
@@ -190,14 +190,14 @@ fn nothing_is_walked_on_a_curve_of_other_values() {
     drop(update(&mut session.model, Id::Cancel.into()));
     session.does(Id::Restart);
     assert!(session.model.shows_its_curve());
-    // A second change waits for what waits for the first.
+    // A second change waits for the commands that wait for the first.
     let steps = session.model.history.len();
     let effects = update(&mut session.model, set("0.0024"));
     drop(update(&mut session.model, Id::Step.into()));
     assert!(update(&mut session.model, set("0.0025")).is_empty());
     session.driver.settle(&mut session.model, effects);
     assert!(session.model.shows_its_curve() && session.model.queue.is_empty());
-    // Solved again, a step, solved again.
+    // Solved again, a step, and solved again.
     assert_eq!(session.model.history.len(), steps + 3);
 }
 
@@ -228,7 +228,7 @@ fn short_keys_are_the_last_part_of_a_key_or_its_symbol() {
         session.does(parse(line).unwrap().unwrap());
         assert_eq!(session.model.preset.get(key).unwrap().to_string(), text, "{line}: {}", session.status());
     }
-    // A letter of a formula is that letter.
+    // A letter that a formula uses as a parameter means that parameter.
     let mut session = Session::new("formula");
     session.does(parse("set A=0.003").unwrap().unwrap());
     assert_eq!(session.model.preset.get("gap.parameters.A").unwrap().to_string(), "0.003");

@@ -1,4 +1,4 @@
-//! The log of the explorer: what is done, where the walker stands, what lies ahead, and what was passed by.
+//! The log of the explorer: what is done, where the walker is, what lies ahead, and what was passed by.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -23,13 +23,13 @@ fn the_next_event_again_and_again_detaches_and_ticks_the_log() {
         let log = session.model.log();
         assert!(session.model.history.current().unwrap().is_apart(), "{preset}: {}", session.status());
         assert!(log.entries.iter().all(|entry| entry.mark == EventMark::Done), "{preset}: {log:?}");
-        // What is lost by hand is what the path loses.
+        // The losses of a manual walk are those of the path.
         let (lost, unbounded) = log.lost();
         let totals = session.model.path().unwrap().totals.clone();
         let all = totals.dissipated.unwrap_or(totals.dissipated_before_last_contact);
         assert_eq!(unbounded, totals.dissipated.is_none());
         assert!((lost - all).abs() <= 1e-12 * all, "{preset}: {lost} {all}");
-        // Anew, nothing of it has happened.
+        // After a restart, none of it has happened.
         session.does(Id::Restart);
         assert!(session.model.log().entries.iter().all(|entry| entry.mark == EventMark::Ahead));
     }
@@ -68,7 +68,7 @@ fn a_change_that_leaves_the_curve_as_it_was_leaves_the_walker_at_its_limit_point
     session.does(Id::NextEvent);
     let NodeKind::Jump(event) = session.kind() else { panic!("{:?}", session.kind()) };
     assert_eq!(event.kind, EventKind::Snap);
-    // What lies behind did not happen at these values, and is not counted.
+    // Earlier events did not happen at these values, and are not counted.
     session.does(Id::NextEvent).set("gap.amplitude", "0.0026");
     let log = session.model.log();
     assert_eq!(log.entries[0].mark, EventMark::PassedBy, "{log:?}");
@@ -89,7 +89,7 @@ fn an_event_that_a_jump_off_the_path_went_round_is_passed_by_and_no_longer_count
     let [walked, passed] = [0, 1].map(|at: usize| log.entries[at].event.dissipated.unwrap());
     assert!((log.lost().0 - walked).abs() <= 1e-12 * all);
     assert!((log.lost_in_all().0 - (all + walked - passed)).abs() <= 1e-9 * all);
-    // What follows is numbered as ever.
+    // Later events are numbered as usual.
     session.does(Id::NextEvent).does(Id::NextEvent);
     assert_eq!(session.model.log().entries[2].mark, EventMark::Done);
     session.all(&[Id::Undo; 4]);
@@ -124,7 +124,7 @@ fn selecting_an_event_moves_the_walker_to_its_limit_point() {
     let marks: Vec<EventMark> = session.model.log().entries.iter().map(|entry| entry.mark).take(4).collect();
     assert_eq!(marks, [EventMark::PassedBy, EventMark::PassedBy, EventMark::Here, EventMark::Ahead]);
     assert!(!session.model.is_unsaved());
-    // Done, it is ticked, and one goes back to it.
+    // Once done, it is ticked, and one can go back to it.
     session.all(&[Id::Jump, Id::NextEvent]);
     let marks: Vec<EventMark> = session.model.log().entries.iter().map(|entry| entry.mark).collect();
     assert_eq!(

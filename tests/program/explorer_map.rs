@@ -1,4 +1,4 @@
-//! The map in the explorer: limit points over a number, its axes, and where snaps begin.
+//! The map in the explorer: limit points over a parameter, its axes, and where snaps begin.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -38,7 +38,7 @@ fn the_limit_points_over_the_amplitude_carry_the_events_and_the_selected_one_is_
         count(&shown, |sign| *sign == Sign::Cusp) > 2 && count(&shown, |sign| *sign == Sign::Landing) > 0
     );
     assert!(count(&shown, |sign| matches!(sign, Sign::OfCrest(_))) > 2);
-    // The curve of each event passes its mark, and is another one.
+    // The curve of each event passes through its mark, and each has its own.
     let mut chosen = Vec::new();
     for number in 1..=events {
         session.does(Command::Pick { panel: ScreenPanel::Log, line: Some(number - 1) });
@@ -69,18 +69,18 @@ fn pressed_again_it_is_the_map_of_the_number_and_the_adhesion_and_any_axes_can_b
     assert!(session.model.results.found::<MapData>().unwrap().report().unwrap().counts.is_some());
     session.does(map("compliance", Some("gap.amplitude")));
     let shown = figure(&session);
-    // Under displacement control the preset stands at the beginning of the compliance.
+    // Under displacement control the preset is at the start of the compliance axis.
     let place = shown.marks.iter().find(|mark| mark.sign == Sign::Preset).unwrap().at;
     assert!(place.0 == 0.0 && shown.lines.iter().any(|line| line.role == Role::Cusps), "{place:?}");
     session.does(map("path.control", None));
     assert_eq!(session.model.map_axes, Some(MapAxes { x: "compliance".into(), y: "force".into() }));
-    // It is kept with the session.
+    // The map is kept with the session.
     let bytes = Document::new(&Snapshot::of(&session.model), Ended::Running, 7).json().unwrap();
     let (model, _) = Document::read(&bytes).unwrap().snapshot().unwrap().resume(None);
     assert_eq!(model.map_axes, session.model.map_axes);
     session.does(map("gap.amplitude", Some("gap.amplitude")));
     assert!(session.status().contains("two keys"), "{}", session.status());
-    // What is no number of this preset has a reason in place of a picture.
+    // A key that this preset does not have gives a reason in place of a picture.
     session.does(map("gap.rms", None));
     assert!(session.model.results.found::<MapData>().unwrap().report().is_err());
     assert!(figure(&session).missing.is_some());

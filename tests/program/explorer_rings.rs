@@ -1,4 +1,4 @@
-//! A walk through rings in the explorer: begun at the first touch, saved, resumed, undone, replayed.
+//! A walk through rings in the explorer: started at the first touch, saved, resumed, undone, replayed.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -6,7 +6,7 @@ use crate::support::session::Session;
 use pulloff::explorer::{Command, Id, NodeKind, View};
 use pulloff::figure::{Meaning, Role, Subject};
 
-/// Weak adhesion, begun at the first touch.
+/// Weak adhesion, started at the first touch.
 fn begun() -> Session {
     let mut session = Session::new("fig-9-weak");
     session.set("path.begin", "touch").does(Id::Restart);
@@ -33,7 +33,7 @@ fn it_begins_at_the_first_touch_and_says_at_each_touch_what_can_be_done() {
     assert!((radius - 0.049).abs() < 1e-3);
     let said = session.status();
     assert!(said.contains("a crest touches at r 0.04") && said.contains("inadmissible"), "{said}");
-    // Without the ring the walk goes on through states that cannot be, and says so.
+    // Without the ring, the walk continues through inadmissible states, and says so.
     session.does(Command::Steps(3));
     let said = session.status();
     assert!(
@@ -61,7 +61,7 @@ fn the_loop_is_walked_and_its_states_are_kept_undone_and_resumed() {
     assert!(node.has_rings() && node.stability.under(node.control) && node.admissibility.holds);
     session.does(Id::Undo);
     assert_eq!(session.model.walker().unwrap().state, state);
-    // On to the merge, round, and off.
+    // On to the merge, around the turn, and off.
     session.all(&[Id::NextEvent, Id::Jump]);
     let merged = session.model.walker().unwrap();
     assert!(!merged.has_rings() && (merged.state.contact_radius - 0.110_140_7).abs() < 1e-6);
@@ -108,7 +108,7 @@ fn every_view_of_a_state_knows_its_rings() {
         let count = |role: Role| figure.lines.iter().filter(|line| line.role == role).count();
         match view {
             View::Pressure => assert_eq!(count(Role::Body), 2),
-            // Between disc and ring, and outside.
+            // Between the disc and the ring, and outside.
             View::Gap => assert_eq!((count(Role::Body), count(Role::Contact)), (2, 2)),
             View::Contact => {
                 assert_eq!(figure.areas.iter().filter(|area| area.meaning == Meaning::Contact).count(), 2);
@@ -118,7 +118,7 @@ fn every_view_of_a_state_knows_its_rings() {
         }
     }
     let figure = Subject::of(&session.model).unwrap().figure(View::ForceRadius);
-    // The walk's own line, and the two edges within.
+    // The walk's own line, and the two inner edges.
     assert!(figure.lines.iter().filter(|line| line.role == Role::Walk).count() >= 3);
 }
 

@@ -1,4 +1,4 @@
-//! A whole session in a pseudo-terminal, as a person has it: open, step, run to an instability, jump, turn a
+//! A whole session in a pseudo-terminal, as a user experiences it: open, step, run to an instability, jump, turn a
 //! knob, save, export, quit, and find the preset again.
 
 use crate::support::pty::Pty;
@@ -21,13 +21,13 @@ fn line(pty: &Pty, text: &str) -> String {
     found.unwrap_or_default().to_owned()
 }
 
-/// Goes down the parameters to the one of this label.
+/// Moves down the parameters to the one with this label.
 fn select(pty: &mut Pty, label: &str) {
     let selected = format!(">{label}");
     pty.press_until("l", |screen| word_after(screen, ">"), |screen| screen.contains(&selected));
 }
 
-/// The first word behind a mark.
+/// The first word after a mark.
 fn word_after(screen: &str, mark: &str) -> Option<String> {
     screen.split_once(mark)?.1.split_whitespace().next().map(str::to_owned)
 }
@@ -60,13 +60,13 @@ fn a_session_from_opening_to_finding_the_preset_again() {
     pty.keys("x");
     pty.wait_for(|screen| screen.contains("Landed, stable again, lost 1.217e-4"), "the landing");
 
-    // Undo and redo move a cursor over what is kept.
+    // Undo and redo move a cursor over the kept states.
     pty.keys("u");
     pty.wait_for(|screen| screen.contains("Event 1 of 6"), "back at the limit point");
     pty.keys("\x12");
     pty.wait_for(|screen| screen.contains("Landed"), "landed again");
 
-    // A knob: a value out of range is refused with the reason, a good one moves curve and log.
+    // A knob: a value out of range is refused with the reason; a valid one changes curve and log.
     let before = line(&pty, "1 snap");
     pty.keys("\r");
     pty.wait_for(|screen| screen.contains("amplitude of the wave"), "the prompt");
@@ -76,7 +76,7 @@ fn a_session_from_opening_to_finding_the_preset_again() {
     pty.wait_for(|screen| screen.contains("unsaved") && screen.contains("0.003 "), "the new value");
     pty.wait_for(|screen| !screen.contains("computing") && !screen.contains(&before), "the new log");
 
-    // Saved under a name of one's own; the walk exported.
+    // Saved under a new name; the walk is exported.
     pty.keys("s");
     pty.wait_for(|screen| screen.contains("Save the preset as"), "the prompt");
     pty.keys("\x15lab-3\r");
@@ -132,7 +132,7 @@ fn every_view_a_closer_look_and_a_pin() {
     ] {
         pty.keys(keys);
         pty.wait_for(|screen| screen.contains(title), title);
-        // The state's own views come from a worker.
+        // The views of the state are drawn by a worker.
         pty.wait_for(|screen| !screen.contains("computing"), "its picture");
     }
     pty.keys("t");
@@ -195,7 +195,7 @@ fn the_stiffness_of_the_device_is_a_knob_from_displacement_to_force() {
         |screen| screen.contains("STIFFNESS=") && screen.contains("of the contact's"),
         "a stiff device",
     );
-    // The walker stays, and is past the limit point of the softer device.
+    // The walker stays, and is now past the limit point of the softer device.
     pty.keys("{{{{{{{{{{{{");
     pty.wait_for(|screen| screen.contains("unstable under stiffness control"), "the flags of the walker");
     pty.keys("\r");
@@ -248,7 +248,7 @@ fn a_formula_is_typed_and_its_parameters_are_knobs() {
     let waves = chart(&pty.screen());
     pty.keys("\r");
     pty.wait_for(|screen| screen.contains("the curve follows"), "the prompt");
-    // Without its waves: their parameters go, the curve follows, and the prompt is still there.
+    // Without the waves, their parameters go and the curve follows, while the prompt stays open.
     pty.keys("\x15r^2/(2*R)");
     pty.wait_for(
         |screen| {
@@ -256,7 +256,7 @@ fn a_formula_is_typed_and_its_parameters_are_knobs() {
         },
         "the curve of what is typed",
     );
-    // The state is solved anew after the curve.
+    // The state is solved again after the curve.
     pty.wait_for(on_curve, "the state on the curve");
     pty.keys(" + * B");
     pty.wait_for(|screen| screen.contains("column 13: expected a number"), "what is wrong, and where");
@@ -286,13 +286,13 @@ fn a_formula_is_typed_and_its_parameters_are_knobs() {
     assert_eq!(pty.exit_code(), 0);
 }
 
-/// Whether the state stands in the upper chart, and nothing is being computed.
+/// Whether the state is in the upper chart and nothing is being computed.
 fn on_curve(screen: &str) -> bool {
     !screen.contains("computing")
         && chart(screen).iter().any(|row| row.contains('@') && !row.contains("@ here"))
 }
 
-/// What is drawn in the upper chart, above all that may lie over it.
+/// The contents of the upper chart, above everything that may cover it.
 fn chart(screen: &str) -> Vec<String> {
     screen.lines().skip(2).take(8).map(|line| line.chars().skip(34).collect()).collect()
 }
@@ -334,7 +334,7 @@ fn a_shape_is_chosen_and_a_profile_loaded() {
     pty.wait_for(|screen| screen.contains("> a path ..."), "the last line");
     pty.keys("\r");
     pty.wait_for(|screen| screen.contains("Read a profile"), "the prompt");
-    // One that is refused leaves the prompt open, to be mended.
+    // A refused value leaves the prompt open for correction.
     for (name, said) in [("worse.csv", "worse.csv: line 101"), ("scan.csv", "have been sorted")] {
         pty.keys("\x15");
         pty.paste(home.path().join(name).to_str().unwrap());
@@ -353,7 +353,7 @@ fn a_shape_is_chosen_and_a_profile_loaded() {
     assert_eq!(pty.exit_code(), 0);
 }
 
-/// Where a text stands on the screen, as a mouse report counts: from 1.
+/// The position of a text on the screen as a mouse report counts it, from 1.
 fn place(pty: &Pty, text: &str) -> (usize, usize) {
     let screen = pty.screen();
     let found = screen.lines().enumerate().find_map(|(row, line)| Some((line.find(text)?, row, line)));
@@ -371,7 +371,7 @@ fn the_mouse_is_taken_and_given_back_in_every_way() {
     let mut pty = Pty::spawn_in_shell(program(), &["--mouse"], &[], 100, 30);
     ready(&pty);
     pty.wait_until(|pty| pty.modes_left().contains(&1000), "the mouse taken");
-    // Coordinates that are none, in both notations, and far ones.
+    // Invalid coordinates, in both notations, and distant ones.
     for report in ["\x1b[<0;0;0M", "\x1b[M   ", "\x1b[<0;65535;65535M", "\x1b[<64;0;9M"] {
         pty.keys(report);
     }
@@ -408,7 +408,7 @@ fn the_mouse_is_taken_and_given_back_in_every_way() {
 
 #[test]
 fn no_color_means_none_unless_a_theme_is_asked_for() {
-    // That of the frames and axes, in both palettes.
+    // The colour of the frames and axes, in both palettes.
     let colour = b"38;5;24";
     for (args, env, coloured) in [
         ([].as_slice(), [("NO_COLOR", "1")], false),

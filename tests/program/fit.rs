@@ -1,4 +1,4 @@
-//! `pulloff fit`: its document, its table, its statuses, and what it refuses.
+//! `pulloff fit`: its document, its table, its exit statuses, and its refusals.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -51,7 +51,7 @@ fn the_truth_of_the_shipped_curve_is_found_and_written() {
     let residuals = home.text("r.csv");
     assert!(residuals.starts_with("row,line,segment,part,"), "{residuals}");
     assert_eq!(residuals.matches(",retraction,free,").count(), counted(&rows["retraction"], "free"));
-    // Each row is that of its line, in JSON as in CSV.
+    // Each row corresponds to its line, in JSON as in CSV.
     let beside = document["residuals"].as_array().unwrap();
     assert_eq!(beside.len(), 700);
     let lines: Vec<&str> = LENS.lines().collect();
@@ -77,7 +77,7 @@ fn the_truth_of_the_shipped_curve_is_found_and_written() {
     assert_eq!(document["outliers"].as_u64(), Some(outliers as u64));
     assert_eq!(document["correlations"].as_array().unwrap().len(), 4);
     assert_eq!(home.text("r.csv").lines().count(), 701);
-    // The fitted preset is a preset, and fits as it is.
+    // The fitted preset is a valid preset, and fits as it is.
     assert!(home.text("fitted.toml").contains("stiffness"));
     let again = home.run(&["fit", "shipped:lens.csv", "fitted.toml", "--no-scan", FREE[0], FREE[1]]);
     assert_eq!(again.status, 0, "{}", again.err);
@@ -95,7 +95,7 @@ fn models_are_compared() {
     assert_eq!(pair["told_apart"], false, "{pair}");
     let [sharp, ranged] = &document["fits"].as_array().unwrap()[..] else { panic!("{document}") };
     assert_eq!([&sharp["model"], &sharp["verdict"]], ["short-range", "describes"]);
-    // The tension is free without being named, and not determined.
+    // The cohesive strength is free without being named, and is not determined.
     assert_eq!([&ranged["model"], &ranged["verdict"]], ["dugdale", "not-determined"]);
     let keys: Vec<&str> =
         ranged["parameters"].as_array().unwrap().iter().map(|of| of["key"].as_str().unwrap()).collect();
@@ -109,7 +109,7 @@ fn models_are_compared() {
     assert!(ended.status == 2 && ended.err.contains("dugdale"), "{}", ended.err);
 }
 
-/// A soft ball whose edge has a law.
+/// A soft ball with a law of the edge.
 pub const SOFT: &str = "format = 1
 units = \"SI\"
 [material]
@@ -126,11 +126,12 @@ control = \"displacement\"
 start_contact_radius = \"600 um\"
 ";
 
-/// Rates, and the files of pulls at them.
+/// Rates, and the files of the pulls at these rates.
 pub const SPEEDS: [(&str, &str); 3] =
     [("0.1um/s", "slow.csv"), ("1um/s", "middle.csv"), ("10um/s", "fast.csv")];
 
-/// The pull of a preset at a rate, 120 rows even in time and 30 after it, each as far beside the curve as a sine of its number takes it.
+/// The pull of a preset at a rate: 120 rows evenly spaced in time and 30 after it, each displaced from the curve by the
+/// sine of its number.
 pub fn pulled(home: &Home, preset: &str, rate: &str, file: &str) {
     let ended = home.run(&["pull", preset, "--rate", rate, "--rows", "moments", "--format", "csv"]);
     assert_eq!(ended.status, 0, "{}", ended.err);
@@ -169,7 +170,7 @@ fn three_speeds_are_fitted_together() {
         let free = ["soft.toml", "--together", "--free", "gamma,v0,edge.exponent"];
         home.run(&[&["fit"], files, &free, more].concat())
     };
-    // The times say the rates.
+    // The times give the rates.
     let ended = fit(&["slow.csv", "middle.csv", "fast.csv"], &["--format=json", "-o", "law.toml"]);
     assert_eq!(ended.status, 0, "{}", ended.err);
     let document: Value = serde_json::from_str(&ended.out).unwrap();
@@ -187,7 +188,7 @@ fn three_speeds_are_fitted_together() {
     assert_eq!(document["runs"].as_array().unwrap().len(), 3);
     let written = home.text("law.toml");
     assert!(written.contains("reference_speed") && !written.contains("exponent = 0.5\n"), "{written}");
-    // One of another work of adhesion does not follow the law.
+    // A file with another work of adhesion does not follow the law.
     let ended = fit(&["slow.csv", "other.csv"], &[]);
     assert_eq!(ended.status, 4, "{}", ended.err);
     assert!(ended.out.contains("the runs do NOT follow one law"), "{}", ended.out);
@@ -199,7 +200,7 @@ fn three_speeds_are_fitted_together() {
     assert!(ended.status == 2 && ended.err.contains("--together"), "{}", ended.err);
 }
 
-/// The rows of this part, of one branch or of both.
+/// The number of rows in this part, in one branch or in both.
 fn counted(rows: &Value, part: &str) -> usize {
     let of = |rows: &Value| usize::try_from(rows[part].as_u64().unwrap()).unwrap();
     if rows[part].is_u64() { of(rows) } else { of(&rows["approach"]) + of(&rows["retraction"]) }
@@ -213,7 +214,7 @@ fn rows_are_mended_by_hand_and_counted() {
         assert_eq!(ended.status, 0, "{more:?}: {}", ended.err);
         serde_json::from_str::<Value>(&ended.out).unwrap()
     };
-    // Rows between the jump of the approach and the part that is named are neither in contact nor apart.
+    // Rows between the jump of the approach and the named part are neither in contact nor apart.
     let named = fit(&["--free-part", "x=..9um"]);
     let (approach, rows) = (&named["rows"]["approach"], &named["rows"]);
     assert_eq!([counted(approach, "contact"), counted(approach, "free")], [191, 102]);
@@ -229,7 +230,7 @@ fn rows_are_mended_by_hand_and_counted() {
     let skipped = fit(&["--skip", "50", "--signs", "x=+,f=+"]);
     assert_eq!(skipped["rows"]["approach"]["dropped"], 50);
     assert_eq!(skipped["rows"]["retraction"], fit(&[])["rows"]["retraction"]);
-    // What is written has it.
+    // The written file has it.
     let ended =
         home.run(&["fit", "lens", "--skip=50", "--signs=x=+,force=+", "--free-part=x=..9um", "-o", "f.toml"]);
     assert_eq!(ended.status, 0, "{}", ended.err);
@@ -308,7 +309,7 @@ fn a_table_goes_on_where_it_ended() {
     assert!(ended.status == 2 && ended.err.contains("the segment \"back\" is not known"), "{}", ended.err);
     let first = home.text("t.csv");
     assert!(first.lines().count() == 3 && first.contains("a.csv,describes,"), "{first}");
-    // The bad one, mended, is fitted; the good one is passed over.
+    // The bad file, once corrected, is fitted; the good one is skipped.
     home.file("b.csv", LENS);
     let ended = home.run(&arguments);
     assert!(ended.status == 0 && ended.err.contains("a.csv: is in the table already"), "{}", ended.err);
@@ -316,7 +317,7 @@ fn a_table_goes_on_where_it_ended() {
     assert_eq!((second.lines().count(), second.matches(",describes,").count()), (3, 2), "{second}");
 }
 
-/// A pattern names what earlier fits wrote too: the command may be run twice in one folder.
+/// A pattern also matches what earlier fits wrote: the command may be run twice in one folder.
 #[test]
 fn what_fits_wrote_is_not_fitted() {
     let home = Home::new();
@@ -339,7 +340,7 @@ fn what_fits_wrote_is_not_fitted() {
     ] {
         assert!(again.err.contains(said), "{}", again.err);
     }
-    // Alone they are refused, and a measured curve is no table.
+    // Given alone they are refused, and a measured curve is not a table.
     home.refused(
         &[&["fit", "rest.csv", "lens"], &free[..]].concat(),
         &["rest.csv: is the residuals of a fit"],
@@ -351,13 +352,13 @@ fn what_fits_wrote_is_not_fitted() {
     assert_eq!(home.text("b.csv"), LENS);
 }
 
-/// What was cut off is in no table, and a rerun computes it.
+/// A fit that was cut off is in no table, and a rerun computes it.
 #[test]
 fn a_table_has_no_row_that_was_cut_off() {
     let home = Home::new();
     home.file("a.csv", LENS);
     home.file("b.csv", LENS);
-    // The second takes far longer than it takes to stop it.
+    // The second fit takes far longer than stopping it does.
     let common = ["lens", "--table", "t.csv", FREE[0], FREE[1], "--no-scan"];
     let bootstrap = ["--bootstrap", "100000"];
     let first = [&["fit", "a.csv"], &common[..]].concat();
@@ -368,7 +369,7 @@ fn a_table_has_no_row_that_was_cut_off() {
     assert_eq!(ended.status, 130, "{}", ended.err);
     assert!(ended.err.contains("the same command goes on from there"), "{}", ended.err);
     assert_eq!(home.text("t.csv"), before);
-    // Alone and without a table the best values are written, and it says so.
+    // For a single file without a table the best values are written, with a message.
     let ended =
         home.stopped(&[&["fit", "b.csv", "lens", FREE[0], FREE[1]], &bootstrap[..]].concat(), Signal::TERM);
     assert_eq!(ended.status, 143, "{}", ended.err);
@@ -378,7 +379,7 @@ fn a_table_has_no_row_that_was_cut_off() {
     assert_eq!(home.text("t.csv").matches(",describes,").count(), 2);
 }
 
-/// A rerun of a table ends as its worst row does.
+/// The status of a rerun of a table is that of its worst row.
 #[test]
 fn a_rerun_says_how_good_the_rows_are_that_it_passes_over() {
     let home = Home::new();
@@ -390,7 +391,7 @@ fn a_rerun_says_how_good_the_rows_are_that_it_passes_over() {
     }
 }
 
-/// However many threads there are, the files come in order, and the end sums them up.
+/// However many threads there are, the files come in order and are summed up at the end.
 #[test]
 fn many_files_are_summed_up_in_their_order_on_any_number_of_threads() {
     let home = Home::new();
@@ -412,18 +413,18 @@ fn many_files_are_summed_up_in_their_order_on_any_number_of_threads() {
     let value = &json["fits"][0]["parameters"][0];
     let summed = &json["summary"]["values"][0];
     assert_eq!((&summed["key"], &summed["count"]), (&value["key"], &serde_json::json!(4)));
-    // Four times the same.
+    // Four times the same curve.
     let [mean, of_one] = [&summed["mean"], &value["value"]].map(|number| number.as_f64().unwrap());
     assert!(
         (mean / of_one - 1.0).abs() < 1e-12 && summed["standard_deviation"].as_f64().unwrap() < 1e-9 * mean
     );
-    // With a table what cannot be fitted is in it, and in the list.
+    // With a table, a file that cannot be fitted is in the table and in the list.
     let said = with(&["--table", "t.csv"]).out;
     assert!(said.contains("4 of 5 files are described by the model"), "{said}");
     assert!(said.contains("material.effective_modulus: mean ") && said.contains("\n  2.csv: "), "{said}");
 }
 
-/// What is known with an error is in the errors, by the option as by the key.
+/// Values known with an error add to the errors of the fit, whether given by option or by key.
 #[test]
 fn an_error_of_what_is_given_is_in_those_of_the_values() {
     let home = Home::new();
@@ -452,12 +453,12 @@ fn an_error_of_what_is_given_is_in_those_of_the_values() {
     refused("R", &["expected KEY=ERROR"]);
 }
 
-/// The columns are said of the file that is given, whatever the preset's own file has.
+/// The columns are those of the given file, whatever the preset's own file has.
 #[test]
 fn columns_are_judged_by_the_file_that_is_given() {
     let home = Home::new();
     let free = [FREE[0], FREE[1], "--no-scan"];
-    // The same curve with columns of other names behind five others.
+    // The same curve with other column names, after five other columns.
     let wide: String = LENS
         .lines()
         .filter(|line| !line.starts_with('#'))
@@ -492,21 +493,21 @@ fn columns_are_judged_by_the_file_that_is_given() {
             fs::remove_file(home.path("x.csv")).unwrap();
         }
     }
-    // What is wrong is said of the right file, or of the option.
+    // The message names the right file, or the option.
     let wrong = |columns: &str, said: &[&str]| {
         home.refused(&[&["fit", &wide, "lens", "--columns", columns], &free[..]].concat(), said);
         home.refused(&["plot", "lens", "--measured", &wide, "--columns", columns], said);
     };
     wrong("x=9,force=7", &["wide.csv", "no column 9"]);
     wrong("way=6", &["--columns", "way"]);
-    // Of the preset's own curve, where no other is given.
+    // For the preset's own curve, where no other file is given.
     home.refused(
         &[&["fit", "lens", "--columns", "x=9,force=2"], &free[..]].concat(),
         &["lens.csv", "no column 9"],
     );
 }
 
-/// The list of what is free goes with the fitted values.
+/// The list of free keys is kept with the fitted values.
 #[test]
 fn a_fitted_preset_keeps_what_was_free() {
     let home = Home::new();

@@ -1,5 +1,5 @@
-//! The gallery of the book: every preset that comes with the program, with a sentence, a command and a picture, all made by
-//! the program. `UPDATE_DOCS=1 cargo test --test program gallery::` writes page and pictures.
+//! The gallery of the book: every preset that comes with the program, with a sentence, a command and a picture, all
+//! made by the program. `UPDATE_DOCS=1 cargo test --test program gallery::` writes the page and the pictures.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 const FOLDER: &str = "docs/src/gallery";
 
-/// What is drawn of these; of all others the force over the approach.
+/// The views drawn for these presets; for all others, force over approach.
 const VIEWS: [(&str, &str); 4] =
     [("fig-9-cycle", "cycle"), ("fig-9-weak", "contact-map"), ("crater", "contact-map"), ("profile", "gap")];
 
@@ -20,7 +20,7 @@ fn view(name: &str) -> &'static str {
     VIEWS.iter().find(|(known, _)| *known == name).map_or("force-approach", |(_, view)| view)
 }
 
-/// The paragraph that the text of a preset begins with.
+/// The first paragraph of a preset's text.
 fn sentence(text: &str) -> String {
     let lines = text.lines().map_while(|line| line.strip_prefix("# "));
     lines.collect::<Vec<_>>().join(" ")

@@ -1,14 +1,14 @@
 //! Command lines with outputs that nobody should name: links, folders, devices, pipes, the same file twice.
 //!
-//! `cargo test --test program hostile_outputs::` runs a tenth of them. All, or some by their numbers:
+//! `cargo test --test program hostile_outputs::` runs a tenth of them. To run all, or some by number:
 //!
 //! ```text
 //! cargo test --test program hostile_outputs:: -- --ignored --nocapture
 //! PULLOFF_HOSTILE=17..18 cargo test --test program hostile_outputs:: -- --ignored --nocapture
 //! ```
 //!
-//! Whatever is named: no panic, no end that has to be forced, no success without its output, nothing left behind, and no byte
-//! lost of a file that is read or that `--overwrite` does not give away.
+//! Whatever is named: no panic, no program that must be killed, no success without its output, nothing left behind, and
+//! no byte lost from a file that is read or that `--overwrite` does not release.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -25,18 +25,18 @@ use std::process::{Child, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How many there are.
+/// The number of command lines.
 const ALL: u64 = 150;
-/// What takes longer hangs: a hundred times what the slowest takes.
+/// Anything slower hangs: this is a hundred times the slowest run.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 const SPEC: &str = "preset = \"fig-3-jkr\"\nquantities = [\"critical_force\"]\n[[axis]]\nkey = \"material.work_of_adhesion\"\n\
     values = [0.01, 0.02]\n";
 const LENS: &str = include_str!("../../presets/data/lens.csv");
-/// What is there and is nobody's to replace.
+/// Existing content that no command may replace.
 const MINE: &str = "mine\n";
 
-/// Commands with `@` where an output is named, and `%` where a second one may be.
+/// Commands with `@` where an output is named, and `%` where a second one may follow.
 const COMMANDS: [&str; 13] = [
     "trace p.toml -o @",
     "trace - -o @",
@@ -53,7 +53,7 @@ const COMMANDS: [&str; 13] = [
     "verify --only uniform -o @",
 ];
 
-/// Names of outputs; `home` makes what they lead to.
+/// Names of outputs; `home` creates what they lead to.
 const NAMES: [&str; 36] = [
     "new.csv",
     "new.json",
@@ -93,7 +93,7 @@ const NAMES: [&str; 36] = [
     "s.toml/x.csv",
 ];
 
-/// What else may be behind a command.
+/// What may follow a command.
 const MORE: [&str; 10] = [
     "",
     "",
@@ -136,7 +136,7 @@ fn drawn(number: u64) -> Vec<OsString> {
         if random.0.usize(..9) == 0 { odd(random) } else { OsString::from(random.of(&NAMES)) }
     };
     let first = name(random);
-    // Often the same again.
+    // Often the same name again.
     let second = if random.0.bool() { first.clone() } else { name(random) };
     let more = random.of(&MORE);
     let words = command.split(' ').chain(more.split(' ')).filter(|word| !word.is_empty());
@@ -149,7 +149,7 @@ fn drawn(number: u64) -> Vec<OsString> {
         .collect()
 }
 
-/// A home with inputs, and with whatever a name may lead to.
+/// A home with inputs, and with everything that a name may lead to.
 fn home() -> Home {
     let home = Home::new();
     let path = |name: &str| home.path(name);
@@ -191,7 +191,7 @@ fn home() -> Home {
     home
 }
 
-/// The regular files of the home by their names, with their bytes; links by what they lead to.
+/// The regular files of the home by name, with their bytes; links with their targets.
 fn files(home: &Home) -> BTreeMap<OsString, Vec<u8>> {
     let entries = fs::read_dir(home.folder()).unwrap().map(Result::unwrap);
     entries
@@ -207,7 +207,7 @@ fn files(home: &Home) -> BTreeMap<OsString, Vec<u8>> {
         .collect()
 }
 
-/// The exit status; `None` where it had to be ended.
+/// The exit status; `None` if the process had to be killed.
 fn ended(child: &mut Child) -> Option<i32> {
     let begun = Instant::now();
     while begun.elapsed() < PATIENCE {
@@ -221,7 +221,7 @@ fn ended(child: &mut Child) -> Option<i32> {
     None
 }
 
-/// All of a stream, read beside what else happens.
+/// Reads a whole stream in a thread of its own.
 fn read(stream: impl Read + Send + 'static) -> thread::JoinHandle<Vec<u8>> {
     let mut stream = stream;
     thread::spawn(move || {
@@ -231,12 +231,12 @@ fn read(stream: impl Read + Send + 'static) -> thread::JoinHandle<Vec<u8>> {
     })
 }
 
-/// What is wrong with how a command line ends.
+/// Judges how a command line ends.
 fn judge(number: u64) -> Result<i32, String> {
     let mut arguments = drawn(number);
     let home = home();
     if arguments[0] == "run" {
-        // The name stands in the script.
+        // The output name is written into the script.
         let name = arguments.remove(4);
         let replace =
             if arguments.iter().any(|argument| argument == "--overwrite") { " replace" } else { "" };
@@ -246,7 +246,7 @@ fn judge(number: u64) -> Result<i32, String> {
     let mut command = home.command(&[]);
     command.args(&arguments).stdin(fs::File::open(home.path("p.toml")).unwrap());
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    // Somebody reads and writes the other end of each pipe, and does not wait.
+    // The test holds both ends of each pipe open, so that no command waits.
     let ends: Vec<_> = ["pipe", "pipe.csv"]
         .map(|name| fs::File::options().read(true).write(true).open(home.path(name)).unwrap())
         .into_iter()
@@ -262,7 +262,7 @@ fn judge(number: u64) -> Result<i32, String> {
     let (out, err) = (read(child.stdout.take().unwrap()), read(child.stderr.take().unwrap()));
     let status = ended(&mut child);
     for end in &ends {
-        // The last byte of all ends the reader.
+        // A final byte ends the reader.
         std::io::Write::write_all(&mut &*end, &[0]).unwrap();
     }
     for drain in drains {
@@ -294,7 +294,7 @@ fn judge(number: u64) -> Result<i32, String> {
     };
     for (name, bytes) in &before {
         let name = name.to_string_lossy();
-        // What the command reads, the file beside it, and the other names of both; links stay links.
+        // What the command reads, the file beside it, and other names of both must not change; links stay links.
         let own = match name.strip_suffix(".spec.toml").unwrap_or(&name) {
             "hard-preset.csv" => "p.toml",
             "hard-points.csv" => "points.csv",
@@ -309,7 +309,7 @@ fn judge(number: u64) -> Result<i32, String> {
             Some(_) => {}
         }
     }
-    // A success has its output: in a new or changed file, in a pipe or device, or in standard output.
+    // A success leaves its output in a new or changed file, in a pipe or device, or on standard output.
     let has_gone_elsewhere = arguments.iter().any(|argument| {
         let name = argument.to_string_lossy();
         name.starts_with("/dev/") || name.starts_with("pipe")

@@ -1,15 +1,15 @@
-//! Command lines with values that nobody should type: numbers beyond all bounds, units of something else, ranges upside down,
-//! names with control characters, text that is no text.
+//! Command lines with values that nobody should type: numbers beyond all bounds, units of other quantities, inverted
+//! ranges, names with control characters, text that is not valid text.
 //!
-//! `cargo test --test program hostile_values::` runs a tenth of them. All, or some by their numbers:
+//! `cargo test --test program hostile_values::` runs a tenth of them. To run all, or some by number:
 //!
 //! ```text
 //! cargo test --test program hostile_values:: -- --ignored --nocapture
 //! PULLOFF_HOSTILE=17..18 cargo test --test program hostile_values:: -- --ignored --nocapture
 //! ```
 //!
-//! Whatever is typed: no panic, no end that has to be forced, no refusal without a word, no success without a result, and no
-//! control character of the line in a message.
+//! Whatever is typed: no panic, no program that must be killed, no silent refusal, no success without a result, and no
+//! control character from the command line in a message.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -19,12 +19,12 @@ use std::ops::Range;
 use std::os::unix::ffi::OsStringExt;
 use std::time::Duration;
 
-/// How many there are.
+/// The number of command lines.
 const ALL: u64 = 150;
-/// What takes longer hangs.
+/// Anything slower hangs.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Commands with `@` where a value is, and `%` where an assignment is.
+/// Commands with `@` in place of a value, and `%` in place of an assignment.
 const COMMANDS: [&str; 22] = [
     "trace cone --set %",
     "unload fig-3-jkr --set % --set %",
@@ -159,7 +159,7 @@ fn drawn(number: u64) -> Vec<OsString> {
     command.split(' ').map(&mut word).collect()
 }
 
-/// What is wrong with how a command line ends.
+/// Judges how a command line ends.
 fn judge(number: u64) -> Result<i32, String> {
     let arguments = drawn(number);
     let home = Home::new();

@@ -1,4 +1,4 @@
-//! The journal of a session is a script that walks it again: the same states to the last digit, whatever the timing was.
+//! The journal of a session is a script that reproduces its walk: the same states to the last digit, whatever the timing was.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -47,7 +47,7 @@ fn any_command(rng: &mut Rng) -> Command {
     }
 }
 
-/// A driver that answers late, in pieces and out of order between the lanes, as threads may.
+/// A driver that answers late, in pieces, and out of order between the lanes, as threads may.
 struct Late {
     inline: Inline,
     pending: VecDeque<Effect>,
@@ -64,7 +64,7 @@ impl Late {
                 }
                 Effect::StopWalk(_) => self.cut(rng),
                 Effect::Walk(_) | Effect::File(_) | Effect::StopCurve(_) => {}
-                // Only what is known of the curve concerns the walk.
+                // Of these, only what is known of the curve affects the walk.
                 Effect::Compute(ref task) if ["check", "profile", "pins"].contains(&task.name) => {
                     let is_older =
                         |old: &Effect| matches!(old, Effect::Compute(waits) if waits.name == task.name);
@@ -76,7 +76,7 @@ impl Late {
         }
     }
 
-    /// A walk that has not been answered whole is cut short.
+    /// Cuts short a walk that has not been answered completely.
     fn cut(&mut self, rng: &mut Rng) {
         let open =
             self.replies.iter().rposition(|reply| matches!(reply, Reply::Walked { outcome: Some(_), .. }));
@@ -98,7 +98,7 @@ impl Late {
         if self.pending.is_empty() {
             return false;
         }
-        // Any lane may be first; within a lane the order stays.
+        // Any lane may come first; within a lane the order is kept.
         let at = rng.usize(..self.pending.len());
         let lane = std::mem::discriminant(&self.pending[at]);
         let first = self.pending.iter().position(|effect| std::mem::discriminant(effect) == lane).unwrap();
@@ -139,7 +139,7 @@ fn export(model: &mut Model, driver: &Inline, what: ExportKind, path: &Path) {
     }
 }
 
-/// The walk and the script of a session that ends as `model`, and the walk of that script.
+/// The walk and the script of a session in the state `model`, and the walk of that script.
 fn replayed(model: &mut Model, driver: &Inline, folder: &Path) -> (String, String, String) {
     let walked = walk_csv(model, driver, folder);
     let path = folder.join("session.pulloff");
@@ -230,7 +230,7 @@ fn the_journal_says_what_was_done_and_leaves_out_what_was_not() {
     assert_eq!(session.model.journal.lines(), ["step 6"]);
     session.all(&[Id::NextEvent, Id::Jump, Id::Undo, Id::Undo, Id::Redo]);
     session.all(&[Id::Reverse, Id::Reverse, Id::Halve]).does(Id::Step);
-    // Turned four times, each with a state of its own; the values are exact.
+    // Changed four times, each with its own state; the values are exact.
     session.all(&[Id::More, Id::More]).does(Id::Control).does(Id::Step);
     let expected = [
         "step 6",
@@ -258,11 +258,11 @@ fn the_journal_says_what_was_done_and_leaves_out_what_was_not() {
     assert_ne!(session.model.journal.lines(), lines);
     session.does(Command::TakeBack);
     assert_eq!((session.model.journal.lines(), session.model.history.cursor()), (&*lines, after));
-    // What a session keeps of it goes on as it would.
+    // What a session keeps of the journal continues in the same way.
     let kept = session.model.journal.kept();
     assert_eq!(*kept.lines, lines);
     assert_eq!(Journal::of(kept.clone()).kept(), kept);
-    // Opened anew, it begins anew.
+    // A newly opened preset starts a new journal.
     session.does(Command::Open("fig-3-jkr".to_owned())).does(Id::Restart);
     assert_eq!(session.model.journal.lines(), ["restart"]);
 }

@@ -1,5 +1,5 @@
-//! No jump of the walk loses negative energy, whatever is controlled and wherever it runs: on random wavy spheres with
-//! weak adhesion and without.
+//! No jump of the walk loses negative energy, whatever is controlled and in whichever direction it runs: on random wavy
+//! spheres with weak adhesion and without adhesion.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -41,8 +41,8 @@ fn preset(amplitude: f64, wavelength: f64, work_of_adhesion: f64, control: Contr
     }
 }
 
-/// What the jumps from every limit point of a problem come to: how many land or pull off, inward and outward, and how
-/// many are refused because the potential rises.
+/// The outcomes of the jumps from every limit point of a problem: how many land or pull off, inward and outward, and
+/// how many are refused because the potential rises.
 fn jumps(preset: &Preset) -> [usize; 3] {
     let curve = Arc::new(CurveData::compute(preset, &Staged::unwatched()).unwrap());
     let mut counts = [0; 3];
@@ -99,7 +99,7 @@ fn no_jump_loses_negative_energy() {
             all = std::array::from_fn(|i| all[i] + found[i]);
         }
     }
-    // All three come about.
+    // All three outcomes occur.
     println!("inward, outward, refused: {all:?}");
     assert!(all.iter().all(|count| *count > 0), "{all:?}");
 }

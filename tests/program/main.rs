@@ -1,4 +1,5 @@
-//! The tests of the program, and of the parts of it that people see. One binary, for each is linked with all of it.
+//! The tests of the program and of the parts that users see. They form one binary, because each binary is linked with
+//! the whole program.
 
 #[path = "../support/mod.rs"]
 mod support;

@@ -1,9 +1,9 @@
-//! The documentation says what the program does: its generated parts are current, its links lead somewhere, and the
-//! paths and names in ARCHITECTURE.md are those of the code.
+//! The documentation agrees with the program: its generated parts are current, its links lead somewhere, and the paths
+//! and names in ARCHITECTURE.md are those of the code.
 //!
-//! A generated part stands between the marks `<!-- NAME -->` and `<!-- /NAME -->`, each on a line of its own, in README.md or
-//! in a chapter of the book; [`generated`] makes its text from its name. `UPDATE_DOCS=1 cargo test --test program manual::` writes
-//! them.
+//! A generated part is between the marks `<!-- NAME -->` and `<!-- /NAME -->`, each on a line of its own, in README.md
+//! or in a chapter of the book; [`generated`] makes its text from its name.
+//! `UPDATE_DOCS=1 cargo test --test program manual::` writes these parts.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The most lines of README.md: what is longer belongs into the book.
+/// The largest number of lines in README.md; longer text belongs in the book.
 const README_LINES: usize = 150;
 /// The chapters of the book.
 const BOOK: &str = "docs/src";
@@ -27,7 +27,7 @@ const PAGES: [&str; 6] = [
     "engine/README.md",
     "examples/cluster/README.md",
 ];
-/// The generated parts; each is in some file.
+/// The generated parts; each occurs in some file.
 const PARTS: [&str; 15] = [
     "options",
     "charts",
@@ -82,7 +82,7 @@ fn output(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The output of a command, the first N lines of it where ` | head -N` stands behind.
+/// The output of a command, or its first N lines if ` | head -N` follows.
 fn shown(command: &str) -> String {
     let (command, lines) = match command.split_once(" | head -") {
         Some((command, lines)) => (command, lines.parse().unwrap()),
@@ -124,7 +124,7 @@ fn screen() -> String {
     })
 }
 
-/// The charts and the one place of each.
+/// The charts, each with its one place.
 fn charts() -> String {
     use pulloff::explorer::Home;
     let rows = Home::ALL.into_iter().flat_map(|home| {
@@ -137,10 +137,10 @@ fn charts() -> String {
     rows.fold(head, |text, row| text + &row)
 }
 
-/// The options that many commands have, by their long names.
+/// The long names of the options that many commands have.
 const SHARED: [&str; 7] = ["set", "control", "output", "format", "overwrite", "quiet", "strict"];
 
-/// The options of [`SHARED`] that each command has; this is what they are to be.
+/// The expected options of [`SHARED`] for each command.
 const MATRIX: [(&str, &str); 23] = [
     ("pulloff", "set control"),
     ("trace", "set control output format overwrite quiet strict"),
@@ -150,16 +150,16 @@ const MATRIX: [(&str, &str); 23] = [
     ("map", "set control output format overwrite quiet strict"),
     ("fit", "set control output format overwrite quiet strict"),
     ("speeds", "set control output format overwrite quiet strict"),
-    // A figure has a format of its own, by its ending.
+    // A figure has a format of its own, named by its extension.
     ("plot", "set control output overwrite quiet strict"),
     // Their presets are those of the paper.
     ("figures", "output overwrite quiet strict"),
-    // Rows are CSV as they come.
+    // Rows are CSV and nothing else.
     ("sweep", "set control output overwrite quiet strict"),
     ("sweep merge", "output overwrite quiet strict"),
     ("sweep check", "quiet strict"),
     ("sweep quantities", ""),
-    // It has problems of its own and warns of nothing.
+    // It has its own problems and gives no warnings.
     ("verify", "output format overwrite"),
     // The lines of a script name files and formats.
     ("run", "set control overwrite quiet strict"),
@@ -172,7 +172,7 @@ const MATRIX: [(&str, &str); 23] = [
     ("sessions delete", ""),
 ];
 
-/// Each command of the program with its name behind `pulloff`.
+/// Each command of the program with its name after `pulloff`.
 fn commands() -> Vec<(String, clap::Command)> {
     let mut whole = pulloff::cli::command();
     whole.build();
@@ -228,12 +228,12 @@ fn every_command_has_the_shared_options_that_it_has_something_for() {
     for (name, command) in &commands {
         let wanted = MATRIX.iter().find(|(known, _)| known == name).map_or("", |(_, wanted)| *wanted);
         assert_eq!(has(command), wanted, "{name}");
-        // What is written can be replaced, what takes values takes a control, and warnings go together.
+        // A command that writes can replace, one that takes values takes a control, and the options for warnings go together.
         for [one, other] in [["output", "overwrite"], ["set", "control"], ["quiet", "strict"]] {
             let [one, other] = [one, other].map(|long| option(command, long).is_some());
             assert!(one == other || name == "run" && other, "{name}");
         }
-        // One word for one thing.
+        // One word for one meaning.
         for former in ["json", "csv", "force", "out", "replace", "silent"] {
             assert!(option(command, former).is_none(), "{name} has --{former}");
         }
@@ -241,7 +241,7 @@ fn every_command_has_the_shared_options_that_it_has_something_for() {
     for (name, _) in MATRIX {
         assert!(commands.iter().any(|(known, _)| known == name), "there is no {name}");
     }
-    // Everywhere the same words, short form and values.
+    // The same words, short form and values everywhere.
     for long in SHARED {
         let all = commands.iter().filter_map(|(name, command)| Some((name, option(command, long)?)));
         let own = ["figures", "sweep", "sweep merge"];
@@ -278,7 +278,7 @@ fn generated(name: &str) -> String {
     }
 }
 
-/// `text` with its generated parts as they ought to be; their names are added to `seen`.
+/// `text` with its generated parts as they should be; their names are added to `seen`.
 fn current(file: &str, text: &str, seen: &mut BTreeSet<String>) -> String {
     let mut whole = String::new();
     let mut lines = text.lines();
@@ -331,7 +331,7 @@ fn prose(text: &str) -> impl Iterator<Item = &str> {
 /// The targets of the links and pictures of a page.
 fn links(text: &str) -> Vec<String> {
     let line = |line: &str| -> Vec<String> {
-        // Code is no link.
+        // Code contains no links.
         let bare: String = line.split('`').step_by(2).collect::<Vec<_>>().join("`");
         bare.split("](").skip(1).filter_map(|rest| Some(rest.split_once(')')?.0.to_owned())).collect()
     };
@@ -362,7 +362,7 @@ fn every_link_leads_somewhere() {
                 link.split_once('#').map_or((&*link, None), |(path, anchor)| (path, Some(anchor)));
             let target = if path.is_empty() { PathBuf::from(file) } else { folder.join(path) };
             assert!(root().join(&target).is_file(), "{file}: {link} leads nowhere");
-            // A book has nothing but what is in its folder.
+            // A book contains only what is in its folder.
             let is_chapter = file.starts_with(BOOK);
             assert!(!is_chapter || !path.starts_with(".."), "{file}: {link} leads out of the book");
             if let Some(anchor) = anchor {
@@ -395,7 +395,7 @@ fn the_readme_is_short() {
     );
 }
 
-/// A code span such as `src/store/presets.rs: Store::load, Loaded` names a file and what is in it.
+/// A code span such as `src/store/presets.rs: Store::load, Loaded` names a file and items in it.
 #[test]
 fn the_paths_and_names_of_the_architecture_are_those_of_the_code() {
     const ROOTS: [&str; 11] = [
@@ -447,7 +447,7 @@ fn without_tests(text: &str) -> String {
         .fold(String::new(), |all, line| all + line + "\n")
 }
 
-/// The files of a room that are code of its own: tests, examples and fixtures are not.
+/// The files of a room with its own code: tests, examples and fixtures do not count.
 fn files_of(room: &Path) -> Vec<PathBuf> {
     if room.is_file() {
         return vec![room.to_owned()];
@@ -462,7 +462,7 @@ fn files_of(room: &Path) -> Vec<PathBuf> {
     entries.filter(|path| is_code(path)).flat_map(|path| files_of(&path)).collect()
 }
 
-/// The rooms that a room names as `crate::ROOM` or `crate::{ROOM, …}`.
+/// The rooms that a room refers to as `crate::ROOM` or `crate::{ROOM, …}`.
 fn rooms_used(room: &Path) -> BTreeSet<String> {
     let is_in_name = |c: char| c.is_ascii_lowercase() || c == '_';
     let mut used = BTreeSet::new();
@@ -482,7 +482,7 @@ fn rooms_used(room: &Path) -> BTreeSet<String> {
     used
 }
 
-/// The tables of rooms say what each room uses, and a room uses only what stands above it: so there is no circle.
+/// The tables of rooms list what each room uses, and a room uses only those above it, so there is no cycle.
 #[test]
 fn the_tables_of_rooms_say_what_each_room_uses() {
     const EVERYWHERE: [&str; 2] = ["elementary", "progress"];
@@ -515,7 +515,7 @@ fn the_tables_of_rooms_say_what_each_room_uses() {
     }
 }
 
-/// The names at the root of the engine, modules and what they export, ascending.
+/// The names at the root of the engine, its modules and exports, in ascending order.
 fn public_items() -> Vec<String> {
     let source = text("engine/src/lib.rs");
     let mut names: Vec<String> = source

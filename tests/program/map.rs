@@ -1,4 +1,4 @@
-//! `pulloff map`: its rows, its figures, its refusals; counts as a sweep has them.
+//! `pulloff map`: its rows, its figures, its refusals; the same counts as in a sweep.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -107,7 +107,7 @@ fn files_are_replaced_only_when_told_and_figures_are_of_their_format() {
     text(home.path(), &[&folds[..], &["-o", "a.csv", "--overwrite"]].concat());
     let rows = fs::read_to_string(home.path().join("a.csv")).unwrap();
     assert!(rows.starts_with("line,kind,crest,"), "{rows}");
-    // A logarithmic axis begins where it was told to, and -o - is standard output.
+    // A logarithmic axis begins where requested, and -o - is standard output.
     assert_eq!(text(home.path(), &[&folds[..], &["-o", "-"]].concat()), rows);
     let numbers = rows.lines().skip(1).filter_map(|row| row.split(',').nth(4)?.parse::<f64>().ok());
     let [lo, hi] = numbers.fold([f64::INFINITY, 0.0], |[lo, hi]: [f64; 2], x| [lo.min(x), hi.max(x)]);
@@ -194,7 +194,7 @@ fn refusals_name_what_is_wrong_and_keep_files() {
 #[test]
 fn a_line_of_cusps_that_crosses_the_map_within_a_hair_of_radii_is_on_it() {
     let home = tempfile::tempdir().unwrap();
-    // Crest, x and y of the points of the cusps, over a range of adhesions that begins at zero.
+    // Crest, x and y of the points of the cusps, over a range of adhesion that begins at zero.
     let cusps = |most: f64| -> Vec<(String, [f64; 2])> {
         let y = format!("material.work_of_adhesion=0.0005..{most}");
         let rows = text(

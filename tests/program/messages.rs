@@ -1,8 +1,8 @@
-//! What the program says of a problem: in its own words, and no more than is worth saying.
+//! The program's messages about a problem: in its own terms, and no more than is worth saying.
 
 use crate::support::home::Home;
 
-/// The shipped profile copied with its rows is the same problem, with a word on what its lengths are in.
+/// The shipped profile, copied with its rows, is the same problem, with a message about the units of its lengths.
 #[test]
 fn a_copy_of_the_shipped_profile_is_the_same_problem() {
     let home = Home::new();
@@ -16,7 +16,7 @@ fn a_copy_of_the_shipped_profile_is_the_same_problem() {
     assert!(!theirs.err.contains("as the unit"), "{}", theirs.err);
 }
 
-/// What is subtracted on the axis is told where it is more than rounding.
+/// What is subtracted on the axis is reported where it is more than rounding.
 #[test]
 fn rounding_on_the_axis_is_no_news() {
     let home = Home::new();
@@ -31,7 +31,7 @@ fn rounding_on_the_axis_is_no_news() {
     assert!(!of("r^2/2 + (0.1 + 0.2 - 0.3)"));
 }
 
-/// Waves higher than any number can resolve are refused in words of the problem.
+/// Waves higher than any number can resolve are refused in terms of the problem.
 #[test]
 fn a_gap_of_any_height_has_no_message_from_inside() {
     let home = Home::new();

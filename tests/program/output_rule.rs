@@ -1,4 +1,4 @@
-//! One rule for every file that a command writes: nothing is replaced unasked, nothing that is read is written over, and two
+//! One rule for every file that a command writes: nothing is replaced unless asked, no input is overwritten, and two
 //! outputs are two files.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
@@ -13,7 +13,7 @@ const PRESET: &str = "[material]\neffective_modulus = 1.0\nwork_of_adhesion = 0.
     file = \"scan.csv\"\n[path]\nstart_contact_radius = 0.5\n";
 const SPEC: &str = "preset = \"mine.toml\"\nquantities = [\"snaps\"]\n[[axis]]\nkey = \"material.work_of_adhesion\"\n\
     values = [0.01, 0.02]\n";
-/// A sweep over two numbers, as `map --over` draws it.
+/// A sweep over two parameters, for `map --over`.
 const GRID: &str = "preset = \"wavy-sphere\"\nquantities = [\"snaps\"]\n[[axis]]\nkey = \"gap.amplitude\"\n\
     values = [1e-4, 2e-4]\n[[axis]]\nkey = \"groups.adhesion\"\nvalues = [0.01, 0.02]\n";
 const LENS: &str = include_str!("../../presets/data/lens.csv");
@@ -88,7 +88,7 @@ fn what_is_there_is_replaced_only_with_overwrite_and_asked_before_anything_is_co
         ("verify --only uniform -o x.csv", "x.csv", false),
         ("run run.pulloff", "x.csv", true),
     ] {
-        // The file itself, and a link to another.
+        // The file itself, and a link to another file.
         for is_link in [false, true] {
             home.file("kept", "mine");
             let path = home.path(file);
@@ -143,7 +143,7 @@ fn what_is_read_is_not_written_over_through_links_neither() {
     ] {
         for input in inputs {
             for is_hard in [false, true] {
-                // The output, by its ending, is a link to the input.
+                // The output, with its extension, is a link to the input.
                 let line = line.replace('@', "out");
                 let input = input.replace('@', "out");
                 let is_script = line.starts_with("run");
@@ -165,13 +165,13 @@ fn what_is_read_is_not_written_over_through_links_neither() {
     }
     let _ = fs::remove_file(home.path("out.pulloff"));
     assert_eq!(files(home.folder()), before);
-    // What is generated beside the results is an output too; a spec may not be it.
+    // What is generated beside the results is an output too; a spec must not be that file.
     home.file("x.csv.spec.toml", &home.text("free.toml"));
     home.refused(
         &words("sweep x.csv.spec.toml -o x.csv --overwrite"),
         &["is the file of the spec that is read"],
     );
-    // Standard input and output have files behind them.
+    // There are files behind standard input and output.
     let mut trace = home.command(&words("trace - -o mine.toml --overwrite"));
     let ended = crate::support::home::Ended::of(
         trace.stdin(fs::File::open(home.path("mine.toml")).unwrap()).output().unwrap(),
@@ -297,7 +297,7 @@ fn what_is_not_whole_is_no_success() {
         &words("plot fig-3-jkr --view residuals"),
         &["--view residuals: there are no measured points"],
     );
-    // Rows are missing, or none is whole.
+    // Rows are missing, or no row is complete.
     let all = home.text("all.csv");
     let torn = all.trim_end().rsplit_once('\n').unwrap().0;
     home.file("all.csv", &format!("{torn}\n"));
@@ -333,7 +333,7 @@ fn strict_makes_any_warning_exit_status_3_and_quiet_says_none() {
         let both = home.run(&words(&format!("{line} --strict -q")));
         assert_eq!((both.status, both.err.lines().count()), (3, 1), "{line}: {}", both.err);
     }
-    // A row with an error is a warning of a sweep.
+    // A row with an error is a warning in a sweep.
     home.file(
         "bad.toml",
         &SPEC.replace("material.work_of_adhesion", "path.start_contact_radius").replace("0.02", "50"),

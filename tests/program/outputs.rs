@@ -1,4 +1,4 @@
-//! Where results go and where presets, specs and scripts come from: files, standard streams, pipes, devices.
+//! The destinations of results and the sources of presets, specs and scripts: files, standard streams, pipes, devices.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -16,7 +16,7 @@ const PRESET: &str = "units = \"reduced\"\ntitle = \"piped\"\n[material]\neffect
 const SPEC: &str = "preset = \"wavy-sphere\"\nset = [\"path.start_contact_radius=0.3\", \"gap.wavelength=0.1\"]\n\
     quantities = [\"last_contact_force\"]\n[[axis]]\nkey = \"gap.amplitude\"\nvalues = [0.001, 0.002]\n";
 
-/// A shell line with the program as `$pulloff`, in the home.
+/// Runs a shell line in the home, with the program as `$pulloff`.
 fn shell(home: &Home, line: &str) -> Ended {
     let mut command = Command::new("bash");
     command.env_clear().env("HOME", home.folder()).env("XDG_CONFIG_HOME", home.path("config"));
@@ -25,7 +25,7 @@ fn shell(home: &Home, line: &str) -> Ended {
     Ended::of(command.output().unwrap())
 }
 
-/// The same, which succeeds; what it writes.
+/// The same for a line that succeeds; returns its output.
 fn piped(home: &Home, line: &str) -> String {
     let ended = shell(home, line);
     assert_eq!(ended.status, 0, "{line}: {}", ended.err);
@@ -65,7 +65,7 @@ fn results_go_straight_into_standard_output_pipes_and_devices() {
             assert!(out == plain, "{command} {line}: {out}");
         }
         assert_eq!(piped(&home, &format!("$pulloff {command} -o /dev/null 2>err")), "");
-        // Behind an open descriptor a file grows where it is, whatever was written before.
+        // A file behind an open descriptor grows in place, whatever was written before.
         piped(
             &home,
             &format!("{{ echo before; $pulloff {command} -o /dev/stdout 2>err; echo after; }} >file"),
@@ -73,7 +73,7 @@ fn results_go_straight_into_standard_output_pipes_and_devices() {
         assert!(home.text("file") == format!("before\n{plain}after\n"), "{command}");
         piped(&home, &format!("{{ echo before >&3; $pulloff {command} -o /dev/fd/3 2>err; }} 3>file"));
         assert!(home.text("file") == format!("before\n{plain}"), "{command}");
-        // A reader that goes away is a quiet end.
+        // A reader that goes away ends the program quietly.
         let gone = shell(&home, &format!("set -o pipefail; $pulloff {command} -o /dev/fd/3 3>&1 >&2 | true"));
         assert!(gone.status == 0 && !gone.err.contains("roken pipe"), "{command}: {}", gone.err);
     }
@@ -121,7 +121,7 @@ fn the_ending_of_a_file_is_its_format() {
             &["-o x.json: its ending says json, --format says csv"],
         );
         home.refused(&[command, "fig-3-jkr", "-o", "x.csv", "--format=json"], &["its ending says csv"]);
-        // No ending, or one that says nothing.
+        // No extension, or one that says nothing.
         home.quiet(&[command, "fig-3-jkr", "-o", "r.txt", "--format=json", "--overwrite"]);
         assert!(home.text("r.txt").starts_with('{'));
     }
@@ -178,7 +178,7 @@ fn presets_specs_and_scripts_come_through_pipes() {
             assert!(piped(&home, &line) == plain, "{line}");
         }
     }
-    // What is wrong with it is told by its name and line, and a preset that is too large is not read to its end.
+    // A fault is reported with name and line, and a preset that is too large is not read to its end.
     let bad = shell(&home, "echo 'rings = ' | $pulloff trace -");
     assert!(bad.status == 2 && bad.err.starts_with("pulloff: standard input:1: "), "{}", bad.err);
     for (command, limit) in [("trace", "1048576"), ("run", "1048576"), ("sweep -o x.csv", "1048576")] {

@@ -1,4 +1,4 @@
-//! Figures for print: every view is a valid document with what it should show, whatever the problem.
+//! Figures for print: every view is a valid document with the expected contents, whatever the problem.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use assert_cmd::Command;
@@ -16,7 +16,7 @@ fn svg(folder: &Path, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The elements of a document with their attributes' names, and its texts: its structure without its numbers.
+/// The elements of a document with the names of their attributes, and its texts: its structure without its numbers.
 fn structure(svg: &str) -> Vec<String> {
     let document = roxmltree::Document::parse(svg).unwrap();
     let elements = document.descendants().filter(roxmltree::Node::is_element);
@@ -82,7 +82,7 @@ fn data_beside_a_figure_are_the_points_drawn() {
         .filter(|line| line.starts_with("stable") || line.starts_with("unstable"))
         .map(|line| line.rsplit(',').next().unwrap().parse::<f64>().unwrap())
         .fold(f64::INFINITY, f64::min);
-    // The pull-off force of the smooth sphere is P_c; 200 rings know it to a part in a thousand.
+    // The pull-off force of the smooth sphere is P_c; 200 rings reproduce it to a part in a thousand.
     assert!((least + 1.0).abs() < 3e-3, "{least}");
 }
 
@@ -116,7 +116,7 @@ fn what_cannot_be_drawn_is_refused_with_its_reason() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
-/// The status and what was said.
+/// The status and the message.
 fn refused(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
     let output = pulloff(folder, &[&["plot"], arguments].concat());
     (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
@@ -132,7 +132,7 @@ fn a_figure_and_its_data_replace_nothing_unasked() {
     assert!(status == Some(2) && said.contains("--data jkr.csv: exists already; --overwrite"), "{said}");
     assert_eq!(std::fs::read_to_string(file("jkr.csv")).unwrap(), "r,h\n0,0\n");
     assert!(!file("jkr.svg").exists(), "nothing is drawn before");
-    // Without --data it is none of our business.
+    // Without --data, that file is none of our business.
     assert_eq!(refused(folder.path(), &["fig-3-jkr", "-o", "jkr.svg"]).0, Some(0));
     let (status, said) = refused(folder.path(), &with_data);
     assert!(status == Some(2) && said.contains("-o jkr.svg: exists already; --overwrite"), "{said}");
@@ -236,12 +236,12 @@ fn a_png_has_the_size_of_the_figure_and_letters() {
     let pixels = resvg::tiny_skia::Pixmap::decode_png(&bytes).unwrap();
     // 86 mm at 384 dots an inch.
     assert_eq!(pixels.width(), 1301);
-    // Pixels a metre, both ways, and that it is metres.
+    // Pixels per metre in both directions, and the unit, metres.
     let chunk = bytes.windows(4).position(|name| name == b"pHYs").unwrap() + 4;
     assert_eq!(bytes[chunk..chunk + 9], [0, 0, 0x3b, 0x0e, 0, 0, 0x3b, 0x0e, 1]);
     let millimetres = 1301.0 / f64::from(0x3b0e_u16) * 1e3;
     assert!((millimetres - 86.0).abs() < 25.4 / 384.0, "{millimetres}");
-    // The axis title to the left of everything else: letters are drawn.
+    // Something is drawn at the far left, where the axis title is, so letters are drawn.
     let dark = |x: u32| (0..pixels.height()).any(|y| pixels.pixel(x, y).unwrap().red() < 80);
     assert!((0..100).any(dark));
 }
@@ -300,7 +300,7 @@ fn the_figures_of_the_paper_agree_with_theory() {
         .skip(1)
         .map(|rest| rest.split(' ').next().unwrap().parse().unwrap())
         .collect();
-    // The pull of the sphere is Maugis', and the waves of Fig. 9 fall into rings below λ_M = 2.9.
+    // The pull of the sphere is Maugis', and the waves of Fig. 9 break up into rings below λ_M = 2.9.
     let after = |words: &str| {
         captions.split(words).nth(1).unwrap().split(' ').next().unwrap().parse::<f64>().unwrap()
     };
@@ -341,7 +341,7 @@ fn a_sweep_over_one_axis_is_a_curve_with_gaps() {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{said}");
     assert!(said.contains("plot --sweep 'r.csv' --quantity kesari_lew -o curve.svg"), "{said}");
-    // Its data stand beside it, as those of any figure.
+    // Its data are beside it, as for any figure.
     let with_data = ["plot", "--sweep", "r.csv", "--quantity", "kesari_lew", "--data", "-o", "p.svg"];
     assert!(pulloff(folder.path(), &with_data).status.success());
     let data = std::fs::read_to_string(folder.path().join("p.csv")).unwrap();
@@ -355,7 +355,7 @@ fn a_sweep_over_one_axis_is_a_curve_with_gaps() {
     let texts = structure(&whole).join("\n");
     assert!(texts.contains("\"amplitude of the wave, A (µm)") && texts.contains("\"kesari lew, "), "{texts}");
     assert_eq!(shapes(&whole).0, 5);
-    // A row without a value: its mark is missing and the line is in two.
+    // A row without a value: its mark is missing and the line is split in two.
     let path = folder.path().join("r.csv");
     let results = std::fs::read_to_string(&path).unwrap();
     let row = results.lines().find(|line| line.starts_with("3,")).unwrap();

@@ -17,7 +17,7 @@ fn document(arguments: &[&str]) -> Value {
     serde_json::from_str(&text).unwrap()
 }
 
-/// The wavy sphere from the radius of the known numbers.
+/// The wavy sphere, starting from the radius of the known numbers.
 const WAVY: [&str; 5] =
     ["wavy-sphere", "--set", "edge.exponent=0.5", "--set", "path.start_contact_radius=0.5"];
 
@@ -58,7 +58,7 @@ fn a_dead_load_falls_without_end_or_is_borne() {
     assert!(found["failures"][1]["time"].as_f64().unwrap() > 0.0);
 }
 
-/// Twice both speeds is the same in half the time.
+/// Doubling both speeds gives the same in half the time.
 #[test]
 fn only_the_ratio_of_the_speeds_counts() {
     let one = document(&[&WAVY[..], &["--rate", "0.01"]].concat());
@@ -106,7 +106,7 @@ fn what_cannot_be_says_what_could() {
     }
 }
 
-/// A loop says what the dead band costs, and what knows no dead band says so.
+/// A loop reports the cost of the dead band, and a command that ignores the dead band says so.
 #[test]
 fn a_dead_band_is_told_of_where_it_does_not_count() {
     let set = ["wavy-sphere", "--set", "material.closing_work_of_adhesion=0.002"];

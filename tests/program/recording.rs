@@ -1,5 +1,6 @@
-//! The recording of the explorer in the book: keys pressed in a real pseudo-terminal, and the screens that follow as an animated SVG.
-//! `UPDATE_DOCS=1 cargo test --test program recording::` records it; without that each key must lead to the screen that was recorded.
+//! The recording of the explorer in the book: keys pressed in a real pseudo-terminal, and the resulting screens as an
+//! animated SVG. `UPDATE_DOCS=1 cargo test --test program recording::` records it; without that, each key must lead to
+//! the recorded screen.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -16,7 +17,7 @@ const FILE: &str = "docs/src/recording.svg";
 const COLS: u16 = 80;
 const ROWS: u16 = 24;
 
-/// The keys of each step, and what is shown below the screen meanwhile.
+/// The keys of each step, and the text shown below the screen meanwhile.
 const STEPS: [(&str, &str); 9] = [
     ("", "pulloff wavy-sphere"),
     ("n", "n: the edge recedes to where it loses its hold"),
@@ -29,22 +30,22 @@ const STEPS: [(&str, &str); 9] = [
     ("?", "?: every key"),
 ];
 
-/// Seconds that a screen stays.
+/// How long a screen is shown, in seconds.
 const SHOWN: f64 = 1.8;
 
-/// A screen that nothing has changed for so long is settled. Only a recording waits so.
+/// A screen that has not changed for this long is settled. Only a recording waits for this.
 const SETTLED: Duration = Duration::from_millis(700);
 
-/// Pixels of a cell.
+/// The size of a cell in pixels.
 const CELL: [f64; 2] = [8.4, 17.0];
 
-/// How a cell looks: its colour on this screen, whether it is bold, whether it is reversed.
+/// The appearance of a cell: its colour on this screen, whether it is bold, whether it is reversed.
 type Look = (String, bool, bool);
 
-/// A row as runs of one look: the column they begin at and their text.
+/// A row as runs of equal appearance: the starting column and the text.
 type Row = Vec<(u16, Look, String)>;
 
-/// The sixteen colours of a terminal, dark ground.
+/// The sixteen colours of a terminal with a dark background.
 const COLOURS: [&str; 16] = [
     "#1c1c1c", "#e06c75", "#98c379", "#e5c07b", "#61afef", "#c678dd", "#56b6c2", "#c8ccd4", "#7f848e",
     "#e06c75", "#98c379", "#e5c07b", "#61afef", "#c678dd", "#56b6c2", "#ffffff",
@@ -88,12 +89,12 @@ fn rows(screen: &vt100::Screen) -> Vec<Row> {
         .collect()
 }
 
-/// The text of a screen as it stands in the file.
+/// The text of a screen as it is in the file.
 fn text(rows: &[Row]) -> String {
     rows.iter().map(|row| row.iter().map(|(_, _, text)| text.as_str()).collect::<String>() + "\n").collect()
 }
 
-/// A text without blanks: their looks, which divide rows into runs, depend on what was drawn before.
+/// A text without blanks, whose appearance, which splits rows into runs, depends on what was drawn before.
 fn squeezed(text: &str) -> String {
     text.split_whitespace().collect()
 }
@@ -129,7 +130,7 @@ fn drawn(row: &Row) -> String {
     out
 }
 
-/// All screens in turn, over and over. A row that several screens share is there once.
+/// All screens in turn, repeating. A row shared by several screens appears once.
 fn animation(screens: &[Vec<Row>]) -> String {
     let [width, height] = [f64::from(COLS) * CELL[0] + 16.0, f64::from(ROWS + 1) * CELL[1] + 20.0];
     let whole = SHOWN * screens.len() as f64;

@@ -1,4 +1,4 @@
-//! What is handed out: `scripts/release.sh` packs a program, and its Debian package is installed and removed.
+//! What is distributed: `scripts/release.sh` packs a program, and its Debian package is installed and removed.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -46,7 +46,7 @@ fn the_archive_holds_the_program_with_its_papers_and_its_sum() {
     }
     let sums = run(Command::new("sha256sum").arg("-c").arg("SHA256SUMS").current_dir(folder.path()));
     assert!(sums.status.success() && !sums.stdout.is_empty());
-    // Unpacked as the book says, by what it runs on the other machine, it runs.
+    // Unpacked as the book describes, with the commands for the other machine, it runs.
     let page = include_str!("../../docs/src/first-steps.md");
     let there = page.split_once("| ssh NODE '").unwrap().1.split_once('\'').unwrap().0;
     let home = folder.path().join("home");
@@ -69,7 +69,7 @@ fn the_package_is_installed_and_removed() {
         return;
     }
     assert!(done.status.success(), "{said}");
-    // Into a root of its own, with a list of packages of its own.
+    // Into a root of its own, with its own list of packages.
     let root = folder.path().join("root");
     for below in ["var/lib/dpkg/info", "var/lib/dpkg/updates", "var/log"] {
         fs::create_dir_all(root.join(below)).unwrap();
@@ -109,7 +109,7 @@ fn the_package_is_installed_and_removed() {
     assert!(!program.exists() && !root.join("usr/share/doc/pulloff").exists());
 }
 
-/// A program that is small to pack: it runs the one that is tested.
+/// A program that is small to pack: it runs the tested one.
 fn small(folder: &Path) -> PathBuf {
     let path = folder.join("small");
     script(&path, &format!("exec '{}' \"$@\"", env!("CARGO_BIN_EXE_pulloff")));
@@ -143,13 +143,13 @@ fn the_same_sources_give_the_same_bytes() {
             .collect::<Vec<_>>()
     };
     let first = made("one", "022", "1700000000");
-    // Another time of day, other permissions of new files.
+    // Another time, other permissions of new files.
     std::thread::sleep(std::time::Duration::from_millis(1100));
     assert!(first == made("two", "077", "1700000000"));
     assert!(first.len() >= 2 && first != made("three", "022", "1700000001"));
 }
 
-/// What a build would take, as scripts: a cargo that notes what it is asked, and a compiler's sysroot with the target.
+/// Scripts in place of what a build needs: a cargo that records what it is asked, and a compiler's sysroot with the target.
 fn toolchain(folder: &Path) -> String {
     let tools = folder.join("tools");
     fs::create_dir_all(tools.join("sysroot/lib/rustlib/x86_64-unknown-linux-musl")).unwrap();
@@ -183,7 +183,7 @@ fn a_missing_compiler_is_found_before_anything_is_built() {
     assert!(said.contains("a C compiler for musl is needed: no-such-compiler is not here"), "{said}");
     let asked = fs::read_to_string(folder.path().join("asked")).unwrap_or_default();
     assert!(!asked.contains("build"), "{asked}");
-    // So is a word that is no part, and a program that is none.
+    // The same holds for an unknown part, and for a program that does not exist.
     for (parts, program, expected) in
         [("tar debs", "/bin/true", "debs"), ("tar", "none", "none is no program")]
     {
@@ -207,7 +207,7 @@ fn the_target_folder_of_cargo_is_where_it_is_said() {
         .env("PATH", path)
         .current_dir(folder.path());
     command.env("CC_x86_64_unknown_linux_musl", "some-cc");
-    // Relative to where the script is called.
+    // Relative to the folder from which the script is called.
     let done = run(command.env("CARGO_TARGET_DIR", "my targets"));
     let said = String::from_utf8_lossy(&done.stderr).into_owned();
     assert!(done.status.success(), "{said}");
@@ -222,7 +222,7 @@ fn the_target_folder_of_cargo_is_where_it_is_said() {
     );
 }
 
-/// The licences go with every package: the crates', the sources of the Python package and, checked by the gate, its wheel.
+/// The licences come with every package: the crates, the sources of the Python package and, checked by the gate, its wheel.
 #[test]
 fn every_package_has_its_licences() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -252,7 +252,7 @@ fn what_cannot_be_made_is_refused_with_a_sentence() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    // Without PyPI they cannot be had.
+    // Without PyPI they are not available.
     let done = release(folder.path(), "wheels");
     let said = String::from_utf8_lossy(&done.stderr).into_owned();
     assert_eq!(done.status.code(), Some(3), "{said}");

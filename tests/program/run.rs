@@ -30,18 +30,18 @@ impl Scripts {
         command.current_dir(self.at("here"));
         let mut child =
             command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        // A script that is refused may not be read to its end.
+        // A refused script may not be read to its end.
         let _ = child.stdin.take().unwrap().write_all(script.as_bytes());
         Ended::of(child.wait_with_output().unwrap())
     }
 
-    /// A run that succeeds without a word.
+    /// A run that succeeds silently.
     fn quiet(&self, script: &str, arguments: &[&str]) {
         let ended = self.run(script, arguments);
         assert_eq!((ended.status, ended.err.as_str()), (0, ""), "{script}");
     }
 
-    /// A run that fails with this status and says this.
+    /// A run that fails with this status and this message.
     fn fails(&self, script: &str, arguments: &[&str], status: i32, said: &str) {
         let ended = self.run(script, arguments);
         assert_eq!((ended.status, ended.out.as_str()), (status, ""), "{script}: {}", ended.err);
@@ -99,7 +99,7 @@ fn the_first_line_that_fails_ends_the_script_and_what_ended_a_run_does_not() {
     for (script, said) in [
         ("step\nstepp", "standard input:2:1: no command is called \"stepp\"; did you mean step?"),
         ("zoom-in", "zoom-in only changes what a screen shows"),
-        // Before anything is walked.
+        // Refused before anything is walked.
         ("step 500\nexport walk w.txt", "standard input:2:13: the file must end in .csv or .json"),
         ("export script w.csv", "1:15: the file must end in .pulloff or .txt"),
     ] {
@@ -149,7 +149,7 @@ fn a_walk_records_every_key_that_changed_during_it() {
         (cell(first, "path.control"), cell(last, "path.control")),
         ("displacement".into(), "force".into())
     );
-    // What the preset no longer has is empty, and what did not change has no column of its own.
+    // Values that the preset no longer has are empty, and values that did not change have no column.
     assert!(number(first, "gap.amplitude") > 0.0 && cell(last, "gap.amplitude").is_empty());
     assert_eq!(cell(last, "gap.shape"), "sphere");
     let json: serde_json::Value =
@@ -158,7 +158,7 @@ fn a_walk_records_every_key_that_changed_during_it() {
     assert_eq!(points.len(), rows.len());
     assert_eq!(points[0]["material.effective_modulus"].as_f64(), modulus(first).parse().ok());
     assert!(points[points.len() - 1]["gap.amplitude"].is_null());
-    // Nothing changed: the columns are as ever.
+    // Nothing changed: the columns are the usual ones.
     home.quiet("step\nexport walk plain.csv\n", &["--preset", "fig-9-si"]);
     let plain = fs::read_to_string(home.at("here/plain.csv")).unwrap();
     assert!(plain.lines().next().unwrap().ends_with(",admissible"), "{plain}");
@@ -188,14 +188,14 @@ fn a_script_writes_below_the_current_folder_and_replaces_nothing_unless_told() {
     home.fails("export walk none/x.csv", &[], 2, "No such file");
     home.quiet("export walk link/x.csv\nexport walk ../y.csv", &["--anywhere"]);
     assert!(outside.exists() && home.at("y.csv").exists());
-    // Replacing.
+    // Replacing files.
     fs::write(here.join("a.csv"), "mine").unwrap();
     home.fails("export walk a.csv", &[], 2, "a.csv: exists already; --overwrite replaces it");
     home.fails("export walk a.csv replace", &[], 2, "--overwrite replaces it");
     assert_eq!(fs::read(here.join("a.csv")).unwrap(), b"mine");
     home.quiet("export walk a.csv\nexport walk a.csv replace", &["--overwrite"]);
     assert_ne!(fs::read(here.join("a.csv")).unwrap(), b"mine");
-    // Presets: by name to their folder; a file only where it may be replaced.
+    // Presets: by name into their folder; a file only where it may be replaced.
     home.quiet("set gap.amplitude=0.003\nsave-as mine", &[]);
     home.fails("save-as mine", &[], 2, "a preset called mine exists");
     home.fails("open mine\nset gap.amplitude=0.004\nsave", &[], 2, "only with --overwrite");
@@ -217,7 +217,7 @@ fn the_completions_of_every_shell_ask_the_program() {
     }
     let path = home.path("pulloff.bash");
     fs::write(&path, home.quiet(&["completions", "bash"])).unwrap();
-    // Where there is a bash, it finds no fault in it.
+    // If there is a bash, it finds no fault in the script.
     if let Ok(checked) = Command::new("bash").arg("-n").arg(&path).output() {
         assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
     }
@@ -262,11 +262,11 @@ fn a_script_draws_what_is_seen() {
     );
     assert!(axes("in.svg").contains("p/E*") && axes("law.svg").contains("s/λ"));
     assert_eq!(fs::read(home.at("here/cycle.png")).unwrap()[1..4], *b"PNG");
-    // The screen of 100x30, with the walk in it.
+    // The screen of 100x30, including the walk.
     let screen = drawn("screen.txt");
     assert_eq!(screen.lines().count(), 30);
     assert!(screen.lines().all(|line| line.chars().count() <= 100) && screen.contains("@ 5 "), "{screen}");
-    // Nothing is replaced unasked; what cannot be drawn says why.
+    // Nothing is replaced unless asked; what cannot be drawn says why.
     home.fails("export screen screen.txt\n", &[], 2, "exists");
     home.fails("export figure walk.svg walk\n", &[], 2, "export walk writes it");
     home.fails("export figure far.svg residuals\n", &[], 2, "no measured curve");

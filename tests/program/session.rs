@@ -1,4 +1,4 @@
-//! Sessions: what is read back is what was, bit for bit, and a walk goes on as if nothing had happened.
+//! Sessions: what is read back equals what was saved, bit for bit, and a walk continues as if nothing had happened.
 
 use crate::support::home::Home;
 use crate::support::pty::Pty;
@@ -140,7 +140,7 @@ fn a_value_that_was_being_typed_is_not_kept_but_an_unsolved_one_is() {
     session.does(Command::Try { key: "gap.amplitude".into(), text: "0.001".to_owned() });
     assert_ne!(session.model.preset, before);
     assert_eq!(Snapshot::of(&session.model).preset, before);
-    // Saved between a change and its curve: the curve is computed and the state solved after all.
+    // Saved between a change and its curve: the curve is still computed and the state solved.
     let (mut session, mut cut) = (Session::new("wavy-sphere"), Session::new("wavy-sphere"));
     let command = Command::Set { key: "gap.amplitude".into(), text: "0.002".to_owned() };
     session.does(command.clone());
@@ -180,7 +180,7 @@ fn what_is_no_session_is_refused_in_words() {
         told(&future)
     );
     assert!(matches!(summary(future.as_bytes()), Err(Unreadable::Format { format: 5, .. })));
-    // Nothing but the format of another one is looked at.
+    // Of another format, only the format number is read.
     assert!(matches!(read(br#"{"format":3,"program_version":"3"}"#), Err(Unreadable::Format { .. })));
     for cut in (0..bytes.len() - 2).step_by(97) {
         assert!(matches!(read(&bytes[..cut]), Err(Unreadable::Damaged(_))), "cut at {cut}");
@@ -224,7 +224,7 @@ fn branches_stay_and_can_be_gone_to() {
     assert!(session.status().contains("the walk has one branch"), "{}", session.status());
     let first = session.model.history.cursor().unwrap();
     session.does(Id::Undo).set("gap.amplitude", "0.002").does(Command::Steps(2));
-    // A knob turned on the way is no branch.
+    // A knob turned on the way is not a branch.
     session.does(Id::More).does(Id::More).does(Id::More);
     let found = branches(&session.model.history);
     assert_eq!(found.len(), 2, "{found:?}");
@@ -260,7 +260,7 @@ fn the_other_branches_are_drawn_where_the_curve_is() {
     };
     for view in [View::ForceApproach, View::ForceRadius] {
         let (lines, scale) = branch(view);
-        // From the state in which it parts through those after it, though they solve another problem.
+        // From the state in which it branches off through those after it, although they solve another problem.
         let states = (1..=3).map(|number| {
             let node = session.model.history.node(number).unwrap();
             let state = node.state.in_units(node.setting.units());
@@ -330,12 +330,12 @@ fn a_million_steps_stay_bounded_and_a_tree() {
     assert_eq!(jumped.len(), jumps);
     assert!(jumped.iter().all(|node| node.step % 5000 == 0));
     assert!(children.iter().filter(|count| **count == 0).count() > ends, "an end is lost");
-    // The newest are all there, and the way back from them leads to the start.
+    // All of the newest are there, and the way back from them leads to the start.
     assert_eq!(history.current().unwrap().step, 999_999);
     for _ in 0..1900 {
         let after = history.current().unwrap().step;
         assert!(history.undo());
-        // Three where a branch parts.
+        // Three steps where a branch splits off.
         let before = history.current().unwrap().step;
         assert!(before + 1 == after || (before + 3 == after && (after - 1) % 9000 == 0), "{before} {after}");
     }
@@ -386,7 +386,7 @@ fn sessions_are_listed_shown_and_deleted() {
     let lines: Vec<Vec<&str>> = list.lines().map(|line| line.split("  ").collect()).collect();
     assert_eq!((status, lines.len()), (0, 2), "{list}");
     assert!(list.lines().next().unwrap().starts_with("wavy-sphere-2  less than a minute ago"), "{list}");
-    // The one that says it runs has no program.
+    // The session that is marked as running has no program.
     assert!(lines[0].contains(&"dropped") && list.lines().nth(1).unwrap().contains("quit"), "{list}");
     assert!(list.contains("wavy-sphere, 5 steps, preset not saved"), "{list}");
 
@@ -407,7 +407,7 @@ fn sessions_are_listed_shown_and_deleted() {
     assert_eq!(home.run(&["sessions", "delete", "wavy-sphere-1", "--yes"]).0, 0);
     let (status, _, said) = home.run(&["sessions", "show", "wavy-sphere-1"]);
     assert!(status == 2 && said.contains("did you mean wavy-sphere-2?"), "{said}");
-    // What is wrong with the name is said before what is wrong with the terminal.
+    // A fault in the name is reported before a fault of the terminal.
     let (status, _, said) = home.run(&["--resume", "nothing"]);
     assert!(status == 2 && said.contains("no session is called \"nothing\""), "{said}");
     assert_eq!(home.run(&["fig-9", "--resume"]).0, 2);
@@ -416,7 +416,7 @@ fn sessions_are_listed_shown_and_deleted() {
     assert_eq!((status, &*said), (2, "pulloff: there is no session to resume\n"));
 }
 
-/// The lines of the screen that tell where the walker is.
+/// The lines of the screen that show where the walker is.
 fn walker(pty: &Pty) -> Vec<String> {
     let screen = pty.screen();
     screen.lines().filter(|line| line.starts_with("│ @ ")).map(str::to_owned).collect()
@@ -437,7 +437,7 @@ fn a_session_that_was_cut_off_is_offered_and_goes_on_with_the_same_numbers() {
         match signal {
             None => pty.close_terminal(),
             Some(Signal::KILL) => {
-                // Nobody can save then: what the last write had is there.
+                // Nobody can save any more; what the last write had is there.
                 pty.wait_until(|_| home.archive().summary("wavy-sphere-1").is_ok(), "a write");
                 let walked = |pty: &Pty| pty.screen().contains("Event 1 of 6");
                 pty.wait_until(
@@ -459,7 +459,7 @@ fn a_session_that_was_cut_off_is_offered_and_goes_on_with_the_same_numbers() {
         pty.keys("\r");
         pty.wait_for(|screen| screen.contains("Event 1 of 6"), "the limit point again");
         pty.wait_until(|pty| walker(pty) == before, "the same numbers");
-        // It goes on where it was, and everything before is there.
+        // It continues where it was, with everything before.
         pty.keys("x");
         pty.wait_for(|screen| screen.contains("Landed, stable again, lost 1.217e-4"), "the landing");
         pty.keys("uu");
@@ -473,7 +473,7 @@ fn a_session_that_was_cut_off_is_offered_and_goes_on_with_the_same_numbers() {
         assert_eq!(home.archive().summary("wavy-sphere-1").unwrap().ended, Ended::Quit);
         assert_eq!(home.archive().list().unwrap().len(), 1, "the same session, not another");
 
-        // Left well: not offered, but there by name.
+        // Left properly: not offered, but available by name.
         let mut pty = home.explore(&[]);
         pty.wait_for(|screen| screen.contains(UP), "the curve");
         assert!(!pty.screen().contains("cut off"), "{}", pty.screen());
@@ -495,7 +495,7 @@ fn an_offer_is_not_in_the_way_of_whoever_types_on() {
     pty.wait_for(|screen| screen.contains("@ 4 "), "four steps");
     pty.signal(Signal::TERM);
     assert_eq!(pty.exit_code(), 143);
-    // A preset asked for is shown; the session is only mentioned.
+    // A requested preset is shown; the session is only mentioned.
     let mut pty = home.explore(&["wavy-sphere"]);
     pty.wait_for(|screen| screen.contains("--resume wavy-sphere-1 goes on"), "the hint");
     assert!(!pty.screen().contains("Go on?"), "{}", pty.screen());

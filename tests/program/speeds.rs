@@ -12,7 +12,7 @@ fn pulloff(arguments: &[&str]) -> assert_cmd::assert::Assert {
     Command::cargo_bin("pulloff").unwrap().arg("speeds").args(arguments).assert()
 }
 
-/// A retraction of a sphere whose edge costs 0.05 J/m² at every speed, a row a second.
+/// A retraction of a sphere whose edge costs 0.05 J/m² at every speed, one row per second.
 fn curve(folder: &Path) -> String {
     let mut text = "time [s],contact radius [m],force [N]\n".to_owned();
     for i in 0..60 {

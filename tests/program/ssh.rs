@@ -1,4 +1,4 @@
-//! The program over a real SSH connection: it starts, is sparing, and is gone when the connection is.
+//! The program over a real SSH connection: it starts, sends little, and is gone when the connection is.
 
 use std::{
     collections::BTreeMap,
@@ -25,7 +25,7 @@ struct Far {
 struct Session {
     pty: Pty,
     wire: Wire,
-    /// Where the program's process number stands.
+    /// The file that holds the program's process number.
     number: PathBuf,
 }
 
@@ -59,7 +59,7 @@ impl Far {
         Session { pty, wire, number }
     }
 
-    /// No temporary file anywhere, no lock on the presets, and the program starts again.
+    /// Checks that there is no temporary file anywhere and no lock on the presets, and that the program starts again.
     fn assert_clean(&self) {
         let mut folders = vec![self.home.path().to_owned()];
         while let Some(folder) = folders.pop() {
@@ -80,7 +80,7 @@ impl Far {
         assert_eq!(again.pty.exit_code(), 0);
     }
 
-    /// The documents of all sessions, by their files.
+    /// The documents of all sessions, by file.
     fn sessions(&self) -> BTreeMap<PathBuf, Value> {
         let files = fs::read_dir(self.at("state/pulloff/sessions")).into_iter().flatten();
         files
@@ -94,12 +94,12 @@ impl Far {
             .collect()
     }
 
-    /// The session that was cut off goes on: left again, it is the same bit for bit.
+    /// Checks that the interrupted session resumes: left again, it is the same bit for bit.
     fn assert_resumes(&self) {
         let kept = |mut document: Value| {
             let ended = document["ended"].take();
             document["saved_at"] = Value::Null;
-            // A walk that was cut short is not waited for any more.
+            // A walk that was cut short is no longer waited for.
             document["settled"] = Value::Null;
             (ended, document)
         };
@@ -108,7 +108,7 @@ impl Far {
         assert_eq!(before.len(), 1, "one session was cut off");
         let mut again = self.start("--resume");
         again.pty.wait_for(|screen| screen.contains("resumed "), "the session");
-        // The question about unsaved changes, where there are any, is answered.
+        // Answers the question about unsaved changes, if there are any.
         again.pty.keys("qy");
         assert_eq!(again.pty.exit_code(), 0);
         let mut after = self.sessions();
@@ -159,7 +159,7 @@ enum Drop {
 
 const DROPS: [Drop; 2] = [Drop::KilledClient, Drop::Reset];
 
-/// A process that has ended may wait for a parent to ask how.
+/// A process that has ended may still wait for its parent to collect its status.
 fn is_running(process: &Path) -> bool {
     fs::read_to_string(process.join("stat"))
         .is_ok_and(|stat| !stat.rsplit(')').next().unwrap_or_default().trim_start().starts_with('Z'))
@@ -268,7 +268,7 @@ fn a_drop_while_saving() {
     for drop in DROPS {
         let mut session = far.start("mine");
         session.wait_until_up();
-        // Every press changes the value: one that a busy machine has not answered yet does no harm to the next.
+        // Every press changes the value: one that a busy machine has not answered yet does not affect the next.
         let changed = |screen: &str| screen.contains("unsaved");
         for _ in 0..10 {
             session.pty.keys("}");
@@ -281,7 +281,7 @@ fn a_drop_while_saving() {
             }
         }
         session.pty.wait_for(changed, "a change");
-        // The save waits for whoever saves in the same folder, so it is still under way at the drop.
+        // The save waits for another saver in the same folder, so it is still under way at the drop.
         let folder = store.folder().expect("a folder");
         let ours = FolderLock::acquire(folder, LIMIT).expect("a lock").expect("a lock");
         session.pty.keys("s");

@@ -1,4 +1,4 @@
-//! The exit status: the same fault has the same one in every command.
+//! The exit status: the same fault has the same status in every command.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -52,7 +52,7 @@ fn home() -> Home {
     home
 }
 
-/// What another call or another file mends.
+/// Faults that another call or another file mends.
 const MENDABLE: &[&str] = &[
     // A bad value or key.
     "trace fig-9 --set gap.amplitude=-1",
@@ -82,7 +82,7 @@ const MENDABLE: &[&str] = &[
     "trace -o x.json --format csv",
     "plot -o x.json",
     "completions none",
-    // A number with a sign is one, and out of range.
+    // A number with a sign is a number, though out of range.
     "fit shipped:lens.csv lens --sigma-x -1",
     "fit shipped:lens.csv lens --sigma-force -1uN",
     "fit shipped:lens.csv lens --bootstrap -1",
@@ -134,7 +134,7 @@ const MENDABLE: &[&str] = &[
     "sweep merge 1.csv 2.csv -o none/x.csv",
     "figures -o s.toml/x",
     "run no-folder.pulloff",
-    // A folder where a file is to be.
+    // A folder in place of a file.
     "trace -o folder.csv",
     "unload -o folder.csv",
     "sweep s.toml -o folder.csv",
@@ -154,12 +154,12 @@ const MENDABLE: &[&str] = &[
     "run marked.pulloff --overwrite",
     "run outside.pulloff",
     "figures -o marked --overwrite",
-    // Parts of a sweep that do not fit, and what is not done without a yes.
+    // Parts of a sweep that do not fit, and an action refused without a yes.
     "sweep merge 1.csv -o x.csv",
     "sweep merge 1.csv 1.csv -o x.csv",
     "sweep s.toml -o 1.csv --shard 2/2",
     "sessions delete none",
-    // What cannot be done now.
+    // A command that cannot be run now.
     "run unavailable.pulloff",
 ];
 
@@ -182,7 +182,7 @@ fn what_the_person_can_mend_is_2() {
     assert_eq!(home.text("marked.csv"), "mine");
 }
 
-/// A line of the shell with the program as `$pulloff`, in the home.
+/// Runs a line of the shell in the home, with the program as `$pulloff`.
 fn shell(home: &Home, line: &str) -> Ended {
     let mut command = Command::new("bash");
     command.env_clear().env("HOME", home.folder()).env("XDG_CONFIG_HOME", home.path("config"));
@@ -194,7 +194,7 @@ fn shell(home: &Home, line: &str) -> Ended {
 #[test]
 fn what_failed_is_1() {
     let home = home();
-    // A disk that is full.
+    // A full disk.
     for line in [
         "trace -o /dev/full",
         "unload -o /dev/full",
@@ -211,7 +211,7 @@ fn what_failed_is_1() {
         assert_eq!(ended.status, 1, "{line}: {}", ended.err);
         assert!(ended.err.contains("No space left on device"), "{line}: {}", ended.err);
     }
-    // A sweep of which every row failed, whole, joined of shards or looked at again; a shard may be a part of a good one.
+    // A sweep in which every row failed: complete, joined from shards, or checked again. A shard may be part of a good one.
     let spec = |forces: &str| {
         format!(
             "preset = \"fig-3-jkr\"\nquantities = [\"snaps\"]\n[[axis]]\nkey = \"path.start_force\"\nvalues = {forces}\n"
@@ -240,7 +240,7 @@ fn what_failed_is_1() {
     assert_eq!(ended.status, 1, "{}", ended.err);
 }
 
-/// The worst of many fits is said, and none keeps the others from being fitted.
+/// The status is that of the worst of many fits, and none prevents the others.
 #[test]
 fn many_fits_end_with_the_worst() {
     let home = Home::new();
@@ -262,7 +262,7 @@ fn many_fits_end_with_the_worst() {
     of(&[&bad, &good], &format!("gap.radius_of_curvature,{free}"), 2);
 }
 
-/// What a signal stops writes nothing and says which signal it was.
+/// A command stopped by a signal writes nothing and says which signal it was.
 #[test]
 fn what_a_signal_stops_has_the_status_of_the_signal() {
     let home = Home::new();
@@ -304,7 +304,7 @@ fn what_a_signal_stops_has_the_status_of_the_signal() {
     assert!(!home.path("new.csv").exists());
 }
 
-/// The table that book and manual page show is that of the program.
+/// The table in the book and the manual page is that of the program.
 #[test]
 fn every_status_is_listed_once_with_its_meaning() {
     let codes: Vec<u8> = Status::ALL.into_iter().map(Status::code).collect();
@@ -318,7 +318,7 @@ fn every_status_is_listed_once_with_its_meaning() {
     }
 }
 
-/// The limit on the size of files is no signal that kills, but an error as that of a full disk.
+/// The file-size limit is not a signal that kills, but an error like a full disk.
 #[test]
 fn a_file_larger_than_the_limit_is_a_failure_and_nothing_is_lost() {
     let home = home();
@@ -349,7 +349,7 @@ fn a_file_larger_than_the_limit_is_a_failure_and_nothing_is_lost() {
     // No temporary is left behind.
     let left = fs::read_dir(home.folder()).unwrap().filter_map(Result::ok);
     assert!(left.map(|entry| entry.file_name()).all(|name| !name.to_string_lossy().starts_with(".pulloff-")));
-    // A sweep keeps its whole rows, and goes on from them.
+    // A sweep keeps its complete rows, and continues from them.
     let many = SPEC.replace("values = [0.001, 0.002]", "linear = { from = 0.001, to = 0.002, count = 300 }");
     home.file("many.toml", &many.replace("\"snaps\"", "\"snaps\", \"enhancement\", \"last_contact_force\""));
     let limited = shell(&home, "ulimit -f 6; $pulloff sweep many.toml -o r.csv");

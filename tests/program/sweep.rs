@@ -1,4 +1,4 @@
-//! Sweeps from the command line: rows, faults, going on, shards, what is refused.
+//! Sweeps from the command line: rows, faults, continuing, shards, refusals.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -40,7 +40,7 @@ impl Sweeps {
         (status, out, err)
     }
 
-    /// A sweep that succeeds; what it says.
+    /// A sweep that succeeds; returns its messages.
     fn sweep(&self, spec: &str, results: &str, more: &[&str]) -> String {
         let (status, out, err) = self.run(&[&["sweep", spec, "-o", results], more].concat());
         assert_eq!((status, out.as_str()), (0, ""), "{err}");
@@ -62,7 +62,7 @@ impl Sweeps {
     }
 }
 
-/// Rows that cost little: few waves.
+/// Rows that cost little, because there are few waves.
 const GRID: &str = r#"
 preset = "wavy-sphere"
 set = ["path.start_contact_radius=0.3", "gap.wavelength=0.1"]
@@ -75,7 +75,7 @@ key = "groups.adhesion"
 logarithmic = { from = 0.01, to = 0.03, count = 5 }
 "#;
 
-/// So many rows that a signal comes in the middle.
+/// Enough rows for a signal to arrive in the middle.
 fn long(rows: u64) -> String {
     GRID.replace("count = 5", &format!("count = {}", rows / 2))
 }
@@ -94,13 +94,13 @@ fn a_grid_has_every_row_and_each_can_be_repeated() {
     assert!(text.starts_with(
         "row,gap.amplitude,groups.adhesion,last_contact_force,snaps_force,enhancement,kesari_lew,error\n0,0.001,0.01,"
     ));
-    // The last axis runs fastest, and its ends are those that were typed.
+    // The last axis varies fastest, and its ends are exactly as typed.
     let all = home.columns("r.csv", &["row", "gap.amplitude", "groups.adhesion", "error"]);
     let rows: Vec<String> = (0..10).map(|row| row.to_string()).collect();
     assert_eq!(all[0], rows);
     assert_eq!((&*all[1][4], &*all[1][5], &*all[2][4], &*all[2][5]), ("0.001", "0.002", "0.03", "0.01"));
     assert!(all[3].iter().all(String::is_empty));
-    // A row's values bring back its problem, to the bit.
+    // The values of a row reproduce its problem, to the bit.
     let sets = [1, 2]
         .map(|column| format!("{}={}", ["", "gap.amplitude", "groups.adhesion"][column], all[column][7]));
     let (_, out, _) = home.run(&[
@@ -118,7 +118,7 @@ fn a_grid_has_every_row_and_each_can_be_repeated() {
         last["before"]["force"].as_f64().unwrap().to_bits(),
         home.numbers("r.csv", "last_contact_force")[7].to_bits()
     );
-    // As many threads as one likes.
+    // Any number of threads.
     home.sweep("grid.toml", "one.csv", &["--jobs", "1"]);
     assert_eq!(home.text("one.csv"), text);
     assert_eq!(home.text("one.csv.spec.toml"), home.text("r.csv.spec.toml"));
@@ -200,12 +200,12 @@ fn random_rows_follow_from_seed_and_number() {
         assert!(home.numbers("a.csv", name).iter().all(|x| range.contains(x)));
     }
     assert!(home.numbers("a.csv", "least_force").iter().all(|force| *force < 0.0));
-    // A shard draws what the whole draws.
+    // A shard draws the same as the whole sweep.
     home.sweep("a.toml", "part.csv", &["--shard", "3/5"]);
     let whole = home.text("a.csv");
     let rows: Vec<&str> = whole.lines().collect();
     assert_eq!(home.text("part.csv").lines().collect::<Vec<_>>(), [rows[0], rows[3], rows[8]]);
-    // Many draws have the mean and the spread that were asked for.
+    // Many draws have the requested mean and spread.
     let store = Store::at(home.path("presets"), &[]);
     let many = RANDOM.replace("draws = 12", "draws = 20000");
     let spec = spec::read(&store, home.folder(), "many", &many).unwrap();
@@ -242,10 +242,10 @@ values = [200, 200, 200, 60]
         all[3][1],
         "refused value: path.end_contact_radius = 0.002 is not below path.start_contact_radius = 0.002"
     );
-    // What does not follow from the start is there all the same.
+    // Quantities that do not follow from the start are there all the same.
     assert_eq!(all[0][2], all[0][0]);
     assert!(all[3][2].starts_with("small start: ") && all[1][2].is_empty() && !all[2][2].is_empty());
-    // A rerun knows the faults of the rows that are there.
+    // A rerun knows the faults of the existing rows.
     let again = home.sweep("s.toml", "r.csv", &[]);
     assert!(
         again.starts_with(
@@ -261,7 +261,7 @@ fn a_sweep_goes_on_from_any_byte() {
     home.file("s.toml", GRID);
     home.sweep("s.toml", "whole.csv", &[]);
     let whole = home.text("whole.csv");
-    // Within the header, at its end, in the middle of a number, before and after a line end, at the end.
+    // Torn within the header, at its end, in the middle of a number, before and after a line end, at the end.
     let first = whole.find('\n').unwrap();
     let last = whole.trim_end().rfind('\n').unwrap();
     for cut in
@@ -274,7 +274,7 @@ fn a_sweep_goes_on_from_any_byte() {
     }
 }
 
-/// Waits until the results have so many rows.
+/// Waits until the results have this many rows.
 fn wait_for_rows(child: &mut Child, results: &Path, rows: usize) {
     let deadline = Instant::now() + Duration::from_secs(120);
     while fs::read_to_string(results).map_or(0, |text| text.lines().count()) <= rows {
@@ -289,7 +289,7 @@ fn signals_keep_what_is_done() {
     let home = Sweeps::new();
     home.file("s.toml", &long(6000));
     let ended = |results: &str, signal: Signal| {
-        // Rows of its own: by then it catches signals.
+        // Wait for rows of its own, because by then it catches signals.
         let before = fs::read_to_string(home.path(results)).map_or(0, |text| text.lines().count());
         let mut child =
             home.command(&["sweep", "s.toml", "-o", results]).stderr(Stdio::piped()).spawn().unwrap();
@@ -298,7 +298,7 @@ fn signals_keep_what_is_done() {
         let Output { status, stderr, .. } = child.wait_with_output().unwrap();
         (status.code(), String::from_utf8(stderr).unwrap())
     };
-    // Killed, it cannot say anything.
+    // A killed program cannot say anything.
     assert_eq!(ended("r.csv", Signal::KILL).0, None);
     for (signal, status) in [(Signal::TERM, 143), (Signal::INT, 130)] {
         let before = home.text("r.csv").lines().count();
@@ -321,7 +321,7 @@ fn two_at_once_do_not_write_one_file() {
     let mut child = home.command(&["sweep", "s.toml", "-o", "r.csv"]).stderr(Stdio::null()).spawn().unwrap();
     wait_for_rows(&mut child, &home.path("r.csv"), 2);
     home.refused(&["sweep", "s.toml", "-o", "r.csv"], "pulloff: r.csv: another pulloff is writing it");
-    // Who waits goes on from where the other one was ended.
+    // The waiting one continues from where the other was ended.
     let mut waiting = home.command(&["sweep", "s.toml", "-o", "r.csv", "--wait"]);
     let mut waiting = waiting.stderr(Stdio::piped()).spawn().unwrap();
     let mut said = BufReader::new(waiting.stderr.take().unwrap());
@@ -336,7 +336,7 @@ fn two_at_once_do_not_write_one_file() {
         line.starts_with("pulloff: 3000 of 3000 rows in r.csv (") && line.contains(" from before)"),
         "{line}"
     );
-    // To its end, so that it can say all.
+    // Read to its end, so that the program can write everything.
     io::copy(&mut said, &mut io::sink()).unwrap();
     assert!(waiting.wait().unwrap().success());
 }
@@ -354,7 +354,7 @@ fn shards_join_to_the_single_run() {
     assert_eq!((status, &*said), (0, "pulloff: 10 rows of 3 shards in all.csv\n"));
     assert_eq!(home.text("all.csv"), home.text("whole.csv"));
     assert_eq!(home.text("all.csv.spec.toml"), home.text("whole.csv.spec.toml"));
-    // It is the single run's: it can be gone on with.
+    // The result is that of a single run, so it can be continued.
     assert!(home.sweep("s.toml", "all.csv", &[]).contains("(10 from before)"));
     home.refused(
         &["sweep", "merge", "1.csv", "2.csv", "3.csv", "-o", "all.csv"],
@@ -371,7 +371,7 @@ fn shards_join_to_the_single_run() {
     home.file("t.toml", &GRID.replace("0.001,", "0.0011,"));
     home.sweep("t.toml", "other.csv", &["--shard", "2/3"]);
     home.refused(&merge(&["1.csv", "other.csv", "3.csv"]), "other.csv: is of another sweep than 1.csv");
-    // A part with a row that was changed, and one that was stopped.
+    // A part with a changed row, and one that was stopped.
     let text = home.text("2.csv");
     let row = text.lines().nth(2).unwrap();
     for (changed, wrong) in [
@@ -386,7 +386,7 @@ fn shards_join_to_the_single_run() {
         assert_ne!(changed, row, "{wrong}");
         home.file("2.csv", &text.replace(row, &changed));
         home.refused(&merge(&["1.csv", "2.csv", "3.csv"]), &format!("2.csv:3: {wrong}"));
-        // Going on finds the same fault.
+        // Continuing finds the same fault.
         home.refused(&["sweep", "s.toml", "-o", "2.csv", "--shard", "2/3"], &format!("2.csv:3: {wrong}"));
     }
     home.file("2.csv", &text.replace("gap.amplitude", "gap.wavelength"));
@@ -447,7 +447,7 @@ fn results_of_something_else_are_not_touched() {
     home.file("s.toml", GRID);
     home.sweep("s.toml", "r.csv", &[]);
     let whole = home.text("r.csv");
-    // Comments and line breaks make no other sweep; a value does, and so does the preset.
+    // Comments and line breaks do not make another sweep; a value does, and so does the preset.
     home.file("same.toml", &GRID.replace("values = [0.001, ", "# the same\nvalues = [\n1e-3, "));
     home.sweep("same.toml", "r.csv", &[]);
     for (name, text) in [
@@ -469,7 +469,7 @@ fn results_of_something_else_are_not_touched() {
         home.refused(&["sweep", name, "-o", "r.csv"], &format!("r.csv: holds the results of {differs}"));
         assert_eq!(home.text("r.csv"), whole);
     }
-    // Another title is none, and an older program is.
+    // Another title does not either, but an older program does.
     home.file("title.toml", &GRID.replace("set = [", "set = [\"title=of today\", "));
     assert!(home.sweep("title.toml", "r.csv", &[]).contains("(10 from before)"));
     let side = home.text("r.csv.spec.toml");
@@ -483,14 +483,14 @@ fn results_of_something_else_are_not_touched() {
     );
     home.sweep("value.toml", "r.csv", &["--overwrite"]);
     assert!(home.text("r.csv").contains("\n0,0.0011,"));
-    // A row that somebody changed, rows too many, a file that was never ours.
+    // A row changed by hand, too many rows, a file that was never ours.
     home.sweep("s.toml", "r.csv", &["--overwrite"]);
     home.file("r.csv", &whole.replace("\n3,0.001,", "\n3,0.002,"));
     home.refused(
         &["sweep", "s.toml", "-o", "r.csv"],
         "r.csv:5: row 3: column gap.amplitude is 0.002, expected 0.001: the file was changed; --overwrite begins anew",
     );
-    // A row that lost a field, or one that is no number.
+    // A row that lost a field, or that is not a valid row.
     let row = whole.lines().nth(4).unwrap();
     let (kept, last) = row.trim_end_matches(',').rsplit_once(',').unwrap();
     for damaged in [format!("{kept},"), format!("{kept},x{last},"), format!("{row}lost")] {
@@ -557,7 +557,7 @@ values = [0.0, 1e-5, 1e-4, 0.0039788735772973835]
 "#,
     );
     home.sweep("s.toml", "r.csv", &[]);
-    // Without adhesion nothing is lost, the first touch is a point, and rings last.
+    // Without adhesion nothing is lost, the first touch is a point, and rings touch last.
     let loss = home.numbers("r.csv", "cycle_loss");
     assert!(loss[0] == 0.0 && loss.is_sorted());
     assert!((loss[2] - 1.297_949_009_46e-4).abs() < 1e-12 && (loss[3] - 2.112_003_387_3e-3).abs() < 1e-12);
@@ -572,7 +572,7 @@ values = [0.0, 1e-5, 1e-4, 0.0039788735772973835]
     assert!(home.columns("r.csv", &["cycle_loss_force"])[0][1..].iter().all(String::is_empty));
 }
 
-/// Rows of many small waves; an assignment in `set` or an axis `start` says where their curves begin.
+/// Rows of many small waves; an assignment in `set` or an axis `start` determines where their curves begin.
 fn small_waves(home: &Sweeps, set: &str, start: &str) -> Spec {
     let store = Store::at(home.path("presets"), &[]);
     let text = format!(
@@ -597,7 +597,7 @@ distribution = {{ log-uniform = [0.01, 0.05] }}
     spec::read(&store, home.folder(), "s", &text).unwrap()
 }
 
-/// The rows of `spec` with an enhancement: its number, its distance from the estimate, the waves; and those without.
+/// The rows of `spec` with an enhancement: row number, distance from the estimate, number of waves; and the rows without one.
 fn enhanced(spec: &Spec) -> (Vec<(u64, f64, f64)>, Vec<u64>) {
     let (mut had, mut cut_off) = (Vec::new(), Vec::new());
     for index in 0..Shard::WHOLE.len(spec.rows) {
@@ -635,7 +635,7 @@ fn many_waves_are_enhanced_as_kesari_and_lew_estimate() {
 #[test]
 fn a_start_that_cuts_the_smallest_force_off_is_said() {
     let home = Sweeps::new();
-    // The same problems and one more draw, from starts on both sides of the smallest force.
+    // The same problems with one more draw: starts on both sides of the smallest force.
     let start = "[[axis]]\nkey = \"path.start_contact_radius\"\ndistribution = { uniform = [0.12, 0.45] }\n";
     let spec = small_waves(&home, "", start);
     let (had, cut_off) = enhanced(&spec);
@@ -643,7 +643,7 @@ fn a_start_that_cuts_the_smallest_force_off_is_said() {
     for (row, off, waves) in had.iter().filter(|(_, _, waves)| *waves > 8.0) {
         assert!(off.abs() < 0.01, "{:?}: {off} with {waves} waves", spec.values(*row));
     }
-    // The peak of the estimate says the same of all starts that are not within two waves of it.
+    // The peak of the estimate gives the same verdict for all starts that are not within two waves of it.
     for row in 0..spec.rows {
         let preset = spec.problem(row).unwrap();
         let Shape::WavySphere { radius_of_curvature, amplitude, wavelength } = preset.gap else {

@@ -1,4 +1,4 @@
-//! Sweeps where nobody watches: a status file, rows that take too long, results looked at.
+//! Unattended sweeps: a status file, rows that take too long, results checked later.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -31,7 +31,7 @@ fn the_status_says_how_far_it_is_and_spares_the_files_of_the_sweep() {
     assert_eq!(status["state"], "complete", "{text}");
     assert_eq!((&status["rows"], &status["of"], &status["shard"]), (&4.into(), &4.into(), &"2/3".into()));
     assert_eq!((&status["before"], &status["with_error"]), (&0.into(), &0.into()));
-    // Run again there is nothing to do, and the file says so.
+    // When it is run again there is nothing to do, and the file says so.
     said(&home, &["sweep", "s.toml", "-o", "r.csv", "--shard", "2/3", "--status", "state.json"], 0);
     let text = fs::read_to_string(home.path("state.json")).unwrap();
     let status: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -63,7 +63,7 @@ fn a_row_that_takes_too_long_has_an_error_that_says_so() {
         let (_, err) = said(&home, &["sweep", "s.toml", "-o", "x.csv", &format!("--row-limit={wrong}")], 2);
         assert!(err.contains("is no time above 0 such as 10s"), "{wrong}: {err}");
     }
-    // A limit that no row meets changes nothing.
+    // A limit that no row reaches changes nothing.
     said(&home, &["sweep", "s.toml", "-o", "a.csv"], 0);
     said(&home, &["sweep", "s.toml", "-o", "b.csv", "--row-limit", "2h"], 0);
     assert_eq!(fs::read(home.path("a.csv")).unwrap(), fs::read(home.path("b.csv")).unwrap());
@@ -85,7 +85,7 @@ fn results_are_looked_at_without_computing() {
     let (out, _) = said(&home, &["sweep", "check", "r.csv"], 1);
     assert!(out.contains("11 of 12 rows, the same command goes on") && out.contains("torn"), "{out}");
     assert_eq!(fs::read_to_string(home.path("r.csv")).unwrap().len(), whole.len() - 3);
-    // A row changed, a row too many, a sweep changed, a file of nobody.
+    // A changed row, one row too many, a changed sweep, a file of unknown origin.
     fs::write(home.path("r.csv"), whole.replacen("\n3,", "\n4,", 1)).unwrap();
     assert!(said(&home, &["sweep", "check", "r.csv"], 2).1.contains("r.csv:5:"));
     let last = whole.lines().last().unwrap();
@@ -98,7 +98,7 @@ fn results_are_looked_at_without_computing() {
     assert!(said(&home, &["sweep", "check", "other.csv"], 2).1.contains("other.csv"));
 }
 
-/// The script for Slurm, called as Slurm calls it.
+/// The script for Slurm, run as Slurm runs it.
 fn slurm(home: &Home, variables: &[(&str, &str)], arguments: &[&str]) -> Ended {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/cluster/slurm.sh");
     let mut command = Command::new("bash");
@@ -113,7 +113,7 @@ fn slurm(home: &Home, variables: &[(&str, &str)], arguments: &[&str]) -> Ended {
 fn the_shards_of_a_job_array_are_those_of_the_sweep() {
     let home = with_spec();
     let arguments = ["s.toml", "my results.csv", "5"];
-    // Whatever the array has, task i is shard i of 5.
+    // Whatever tasks the array has, task i is shard i of 5.
     let task = |number: &str, array: &[(&str, &str)]| {
         let variables = [&[("SLURM_JOB_ID", "7"), ("SLURM_ARRAY_TASK_ID", number)], array].concat();
         slurm(&home, &variables, &arguments)
@@ -124,7 +124,7 @@ fn the_shards_of_a_job_array_are_those_of_the_sweep() {
     }
     let part = "my results.csv.parts/3-of-5.csv";
     let third = home.text(part);
-    // A subset of the array, where the parts are there and where one was lost.
+    // A subset of the array, where the parts exist and where one was lost.
     for lost in [false, true] {
         if lost {
             fs::remove_file(home.path(part)).unwrap();
@@ -136,7 +136,7 @@ fn the_shards_of_a_job_array_are_those_of_the_sweep() {
         }
         assert_eq!(home.text(part), third);
     }
-    // A task that is no shard.
+    // A task that is not a shard.
     for number in ["0", "6"] {
         let ended = task(number, &[]);
         assert!(ended.status == 2 && ended.err.contains("shards 1 to 5"), "{}", ended.err);
@@ -146,7 +146,7 @@ fn the_shards_of_a_job_array_are_those_of_the_sweep() {
     assert_eq!(ended.status, 0, "{}", ended.err);
     said(&home, &["sweep", "s.toml", "-o", "whole.csv"], 0);
     assert_eq!(home.text("my results.csv"), home.text("whole.csv"));
-    // Shards of another number beside them are other files, and what fails has the status of the program.
+    // Shards of another number beside them are other files, and a failure has the status of the program.
     let ended = slurm(&home, &[("SLURM_JOB_ID", "9")], &["s.toml", "joined.csv", "4"]);
     assert!(ended.status == 2 && ended.err.contains("1-of-4.csv"), "{}", ended.err);
     for wrong in ["0", "-1", "x", "", "1.5"] {
@@ -159,7 +159,7 @@ fn the_shards_of_a_job_array_are_those_of_the_sweep() {
 #[test]
 fn the_job_that_joins_waits_for_the_array() {
     let home = with_spec();
-    // What Slurm would be told, and the number of a job for an answer.
+    // Records what Slurm would be told, and answers with a job number.
     home.file(
         "bin/sbatch",
         "#!/bin/sh\nprintf '%s|' \"$@\" >>calls\necho >>calls\necho \"$((40 + $(wc -l <calls)));cluster\"\n",

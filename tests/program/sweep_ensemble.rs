@@ -1,4 +1,4 @@
-//! Ensembles from the command line: members, what they say together, going on, shards, figures.
+//! Ensembles from the command line: members, their statistics, continuing, shards, figures.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -13,7 +13,7 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-/// Few waves and small contacts: a member costs little.
+/// Few waves and small contacts, so that a member costs little.
 const SPEC: &str = r#"
 preset = "random-waves"
 set = ["gap.count=6", "path.start_contact_radius=0.45", "gap.rms=0.0003"]
@@ -38,7 +38,7 @@ fn done(home: &Home, arguments: &[&str]) -> String {
     err
 }
 
-/// A column; what is empty is no number.
+/// A column of numbers; an empty cell gives NaN.
 fn numbers(home: &Home, results: &str, name: &str) -> Vec<f64> {
     let all = SweepResults::open(&home.path(results)).unwrap().numbers(&[name]).unwrap();
     all[0].iter().map(|x| x.unwrap_or(f64::NAN)).collect()
@@ -57,7 +57,7 @@ fn statistics_are_those_of_a_plain_loop_over_the_surfaces() {
     assert!(said.starts_with("pulloff: 36 of 36 rows in r.members.csv; "), "{said}");
     let loaded = spec::load(&Store::at(home.path("presets"), &[]), &home.path("s.toml"), &[]).unwrap().spec;
     let seeds: Vec<u64> = (0..36).map(|row| loaded.values(row)[1].to_string().parse().unwrap()).collect();
-    // A member is the same surface at every point, and no two are the same.
+    // A member is the same surface at every point, and no two members are the same.
     assert!(seeds.chunks(3).all(|same| same.iter().all(|seed| *seed == same[0])));
     let mut apart = seeds.clone();
     apart.dedup();
@@ -71,7 +71,7 @@ fn statistics_are_those_of_a_plain_loop_over_the_surfaces() {
             let cells = measure(&preset, &loaded.columns, &Unwatched).unwrap().cells;
             let cells: Vec<f64> =
                 cells.iter().map(|cell| cell.unwrap().to_string().parse().unwrap()).collect();
-            // No phases are worse than the worst ones.
+            // No phases give more than the worst ones.
             assert!(cells[0] <= cells[3] * (1.0 + 1e-9), "{cells:?}");
             found.push(cells[0]);
         }
@@ -90,7 +90,7 @@ fn statistics_are_those_of_a_plain_loop_over_the_surfaces() {
     }
     assert_eq!(numbers(&home, "r.csv", "members"), [12.0; 3]);
     assert_eq!(numbers(&home, "r.csv", "refused"), [0.0; 3]);
-    // As many threads as one likes; nothing is computed again.
+    // Any number of threads; nothing is computed again.
     let whole = files(&home, "r");
     done(&home, &["sweep", "s.toml", "-o", "one.csv", "--jobs", "1"]);
     assert_eq!(files(&home, "one"), whole);
@@ -117,7 +117,7 @@ fn what_was_killed_goes_on_to_the_byte() {
         kill_process(Pid::from_child(&child), signal).unwrap();
         child.wait().unwrap();
     }
-    // Told to end, it says of what is there how much it is of.
+    // Told to stop, it says how much is there, and of how much.
     assert!(home.text("r.csv").contains("incomplete: "), "{}", home.text("r.csv"));
     assert!(numbers(&home, "r.csv", "members")[0] < 300.0);
     done(&home, &["sweep", "s.toml", "-o", "r.csv"]);
@@ -137,7 +137,7 @@ fn shards_join_to_the_single_run() {
         done(&home, &["sweep", "s.toml", "-o", &format!("{part}.csv"), "--shard", &format!("{part}/2")]);
         assert!(!home.path(&format!("{part}.csv")).exists(), "a part says nothing of the whole");
     }
-    // By the names that were given, or those of the files.
+    // By the given names, or by those of the files.
     done(&home, &["sweep", "merge", "2.csv", "1.members.csv", "-o", "all.csv"]);
     assert_eq!(files(&home, "all"), files(&home, "whole"));
     home.refused(&["sweep", "merge", "1.csv", "2.csv", "-o", "all.csv"], &["all.csv: exists already"]);
@@ -147,7 +147,7 @@ fn shards_join_to_the_single_run() {
 
 #[test]
 fn members_with_an_error_are_counted_and_left_out() {
-    // What the members draw need not be a surface; half of these ends lie outside of the start.
+    // What the members draw need not be a surface; half of these ends lie outside the start.
     let home = with_spec(
         "preset = \"wavy-sphere\"\nset = [\"path.start_contact_radius=0.3\"]\nquantities = [\"least_force\"]\n\
          ensemble = { members = 20, seed = 3 }\n\

@@ -1,4 +1,4 @@
-//! Fits as rows of a sweep: the values of `pulloff fit`, in shards, gone on with, and known again by the bytes of their files.
+//! Fits as rows of a sweep: the values of `pulloff fit`, in shards, continued, and recognised by the bytes of their files.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -10,7 +10,7 @@ fn done(home: &Home, arguments: &[&str]) {
     assert_eq!(status, 0, "{err}");
 }
 
-/// The second file has every other row of the first, the third ends long before the bodies touch.
+/// The second file has every other row of the first; the third ends long before the bodies touch.
 fn with_files() -> Home {
     let home = Home::new();
     let text = concat!(env!("CARGO_MANIFEST_DIR"), "/engine/presets/data/lens.csv");
@@ -62,7 +62,7 @@ fn a_row_is_the_fit_of_its_file_and_says_why_there_is_none() {
         // R is not free.
         assert_eq!(row[6], "");
     }
-    // No value is given that the points do not determine.
+    // Values that the points do not determine are not given.
     assert!(rows[2][2..10].iter().all(|cell| cell.is_empty()), "{text}");
     assert!(rows[2][11].trim_matches('"').starts_with("no fit: "), "{text}");
     assert!(rows[3][11].contains("refused value: data.file"), "{text}");

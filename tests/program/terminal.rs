@@ -1,4 +1,4 @@
-//! The program in a pseudo-terminal: whatever ends it, the terminal is given back.
+//! The program in a pseudo-terminal: whatever ends it, the terminal is restored.
 
 use std::{
     fs,
@@ -25,7 +25,7 @@ fn wait_until_up(pty: &Pty) {
     pty.wait_for(|screen| screen.contains("stable under displacement control"), "the curve");
 }
 
-/// Whether the knob of this label is the selected one.
+/// Whether the knob with this label is selected.
 fn selects(screen: &str, label: &str) -> bool {
     screen.contains(&format!(">{label}"))
 }
@@ -53,7 +53,7 @@ fn signals_end_the_program_and_give_the_terminal_back() {
 fn a_terminal_that_nobody_reads_does_not_hold_up_the_end() {
     let mut pty = start(300, 100);
     pty.stop_reading();
-    // Whole frames, until the terminal takes no more and the drawing thread waits for room.
+    // Sends whole frames until the terminal accepts no more and the drawing thread waits for room.
     let waits_in = format!("/proc/{}/wchan", pty.pid().as_raw_nonzero());
     let start = Instant::now();
     while !fs::read_to_string(&waits_in).is_ok_and(|place| place.contains("poll")) {
@@ -75,7 +75,7 @@ fn keys_and_pastes_arrive_and_a_paste_is_never_a_command() {
     pty.wait_for(|screen| selects(screen, "λ"), "the next knob");
     pty.keys("\x1b[D");
     pty.wait_for(|screen| selects(screen, "A"), "the knob before");
-    // Outside a prompt a paste does nothing; inside it is text up to its first line end.
+    // Outside a prompt a paste does nothing; inside one it is text up to its first line end.
     pty.paste("q\rq\x1b[31m");
     pty.keys("\r");
     pty.wait_for(|screen| screen.contains("amplitude of the wave"), "the prompt");
@@ -93,7 +93,7 @@ fn no_key_waits_for_the_next_one() {
     pty.keys("l");
     pty.wait_for(|screen| selects(screen, "λ"), "the last key");
     for round in 2..20 {
-        // Together with a resize, which the reader takes from the same wait.
+        // Together with a resize, which the reader receives in the same wait.
         pty.resize(80 + round, 24);
         let (key, label) = if round % 2 == 0 { ("h", "A") } else { ("l", "λ") };
         pty.keys(key);
@@ -120,7 +120,7 @@ fn any_size_is_survived_and_the_next_one_drawn() {
         pty.resize(cols, rows);
         pty.keys("t");
     }
-    // Back to the views of the start, however many views there are.
+    // Back to the initial views, however many there are.
     pty.keys(":view force-approach\r");
     pty.resize(30, 8);
     pty.wait_for(|screen| screen.contains("pulloff needs 40x10"), "the notice");
@@ -139,7 +139,7 @@ fn ctrl_z_hands_the_terminal_to_the_shell_and_fg_takes_it_again() {
     for round in 1..=2 {
         let ours = pty.line_modes();
         pty.keys("\x1a");
-        // Counted in the bytes: the shell's screen still shows the last time.
+        // Counted in the bytes, because the shell's screen still shows the previous time.
         let stops = |pty: &Pty| String::from_utf8_lossy(&pty.raw()).matches("[stopped]").count();
         pty.wait_until(|pty| stops(pty) == usize::from(round), "the shell");
         pty.assert_restored();
@@ -178,7 +178,7 @@ fn nothing_is_written_while_nothing_changes() {
     pty.keys("u");
     pty.wait_for(|screen| !screen.contains("unsaved"), "the change undone");
     let before = pty.raw().len();
-    // Back where it was: only what differs between two frames is sent.
+    // Back where it was, because only the differences between two frames are sent.
     pty.keys("lh");
     pty.keys("t");
     pty.wait_for(|screen| screen.contains("s/λ over δ/R  (t:"), "the next view");
@@ -209,7 +209,8 @@ fn on_a_terminal_that_cannot_draw_it_says_so_in_one_line() {
     }
 }
 
-/// What a terminal would obey: a title, the clipboard, a question, an 8-bit introducer, a device control, a direction.
+/// Sequences that a terminal would obey: a title, the clipboard, a query, an 8-bit introducer, a device control, a text
+/// direction.
 const HOSTILE: [&str; 6] = [
     "\x1b]0;EVIL\x07",
     "\x1b]52;c;RVZJTA==\x07",
@@ -244,7 +245,7 @@ fn no_text_of_a_file_reaches_the_terminal_as_a_control() {
     let env = [("XDG_CONFIG_HOME", home.path().to_str().expect("Unicode"))];
     let mut pty = Pty::spawn(&program(), &[own.to_str().expect("Unicode")], &env, 200, 60);
     pty.wait_for(|screen| screen.contains("stable under displacement control"), "the curve");
-    // The presets with the reasons why some cannot be read, and an attempt at each of those.
+    // The presets, with the reasons why some cannot be read, and an attempt to open each of those.
     let shipped = fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/presets"))
         .expect("the shipped presets")
         .filter(|entry| {
@@ -260,7 +261,7 @@ fn no_text_of_a_file_reaches_the_terminal_as_a_control() {
     }
     let label = |screen: &str| screen.split_once("│>")?.1.split_whitespace().next().map(str::to_owned);
     pty.press_until("j", label, |screen| selects(screen, "file"));
-    // The files beside the data: those with hostile names are not offered.
+    // The files beside the data; those with hostile names are not offered.
     pty.keys("\r");
     pty.wait_for(|screen| screen.contains("Profiles in") && screen.contains("good.csv"), "the folder");
     pty.keys("\x03\x03");
@@ -281,7 +282,7 @@ fn keys_come_from_the_settings_and_bad_settings_are_said_and_left_alone() {
     pty.wait_for(|screen| screen.contains("Z quit"), "the person's key in the footer");
     pty.keys("Z");
     assert_eq!(pty.exit_code(), 0);
-    // A clash: the usual keys, said on the screen and before it; the file stays as it is.
+    // A conflict: the usual keys apply, with a message on the screen and before it; the file is unchanged.
     let bad = "[keys]\nstep = \"x\"\n";
     fs::write(&file, bad).expect("a file");
     let mut pty = Pty::spawn(&program(), &[], &env, 160, 24);
@@ -293,7 +294,7 @@ fn keys_come_from_the_settings_and_bad_settings_are_said_and_left_alone() {
     assert_eq!(pty.exit_code(), 0);
     assert!(String::from_utf8_lossy(&pty.raw()).contains("pulloff: the settings are not used: "));
     assert_eq!(fs::read_to_string(&file).expect("the file"), bad);
-    // Asked for, it must be good.
+    // A file requested explicitly must be valid.
     for (path, said) in [
         (file.as_path(), "config.toml:2: x would be the key of step and of jump"),
         (&folder.join("none.toml"), "none.toml: cannot read: No such file"),

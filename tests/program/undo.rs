@@ -1,4 +1,4 @@
-//! Undo takes back one command, whatever it was, and redo does it again: bit for bit, typed slowly or in one burst.
+//! Undo takes back one command, whatever it was, and redo repeats it: bit for bit, whether typed slowly or in one burst.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -12,7 +12,7 @@ use pulloff::store::Store;
 use pulloff_engine::preset::{Preset, write};
 use std::sync::Arc;
 
-/// All that undo is to bring back.
+/// Everything that undo should bring back.
 #[derive(Debug, Clone, PartialEq)]
 struct Told {
     preset: Preset,
@@ -39,7 +39,7 @@ fn told(session: &Session) -> Told {
     }
 }
 
-/// What a person may do; nothing that only looks.
+/// Any command that a user may give, except those that only look.
 fn any_command(rng: &mut Rng) -> Command {
     let set = |key: &'static str, text: String| Command::Set { key: key.into(), text };
     match rng.u8(..28) {
@@ -71,12 +71,12 @@ fn any_command(rng: &mut Rng) -> Command {
 fn small() -> Session {
     let mut session = Session::new("wavy-sphere");
     session.set("gap.wavelength", "0.1").set("path.end_contact_radius", "0.12");
-    // What led here is no part of what is tested.
+    // The commands that led here are not part of the test.
     session.model.undo = pulloff::explorer::undo::Undo::default();
     session
 }
 
-/// All back and all forth again, each place as it was.
+/// Undoes everything and redoes it; each place must be as it was.
 fn back_and_forth(session: &mut Session) -> usize {
     session.does(Command::Travel { id: Id::Redo, count: 400, states: false });
     let end = told(session);
@@ -99,7 +99,7 @@ fn back_and_forth(session: &mut Session) -> usize {
     count
 }
 
-/// The newest place of undo, and how many there are.
+/// The newest place of undo, and the number of places.
 fn newest(session: &Session) -> (Option<*const SessionPlace>, usize) {
     let past = session.model.undo.past();
     (past.last().map(Arc::as_ptr), past.len())
@@ -111,7 +111,7 @@ fn two_hundred_commands_typed_slowly_come_back_bit_for_bit() {
         let mut rng = Rng::with_seed(seed);
         let mut session = small();
         let start = told(&session);
-        // What each command that changed something led from.
+        // The places from which each command that changed something started.
         let mut before = Vec::new();
         for _ in 0..200 {
             let last = told(&session);
@@ -120,7 +120,7 @@ fn two_hundred_commands_typed_slowly_come_back_bit_for_bit() {
                 0 => Command::HeldStep(rng.usize(1..3)),
                 _ => any_command(&mut rng),
             });
-            // What a turn goes on with is a command already; steps of a key held become one.
+            // A turn that continues an earlier one is part of that command; steps of a held key become one command.
             let (now, left) = self::newest(&session);
             if left < count {
                 before.truncate(before.len() + left - count);
@@ -131,7 +131,7 @@ fn two_hundred_commands_typed_slowly_come_back_bit_for_bit() {
         let mut seen = before.len();
         for place in before.iter().rev() {
             session.does(Id::Undo);
-            // Walked to the state it was in: another node, told by nothing here.
+            // May first pass through the same state under another node, which nothing here distinguishes.
             while told(&session) != *place && seen < 400 {
                 session.does(Id::Undo);
                 seen += 1;
@@ -144,7 +144,7 @@ fn two_hundred_commands_typed_slowly_come_back_bit_for_bit() {
     }
 }
 
-/// Keys that arrive together: all of them before any answer.
+/// Keys that arrive together, all of them before any answer.
 fn burst(session: &mut Session, commands: &[Command]) {
     let mut effects: Vec<Effect> = Vec::new();
     for command in commands {
@@ -203,7 +203,7 @@ fn each_value_is_a_command_of_its_own_and_redo_returns_each() {
     let turned = told(&session);
     session.all(&[Id::Control, Id::Undo]);
     assert_eq!(told(&session), turned);
-    // Turns of one value in a row are one command.
+    // Successive turns of one value are one command.
     session.does(Id::Undo);
     assert_eq!(told(&session), start);
     session.does(Id::Redo);
@@ -216,7 +216,7 @@ fn steps_of_a_key_held_are_taken_back_together_and_end_at_a_limit_point() {
     let start = told(&session);
     session.does(Command::Steps(1));
     let first = told(&session);
-    // Pressed again, and held: the second repeat says so.
+    // Pressed again, and held: the second repeat says that it is held.
     for command in [Command::Steps(1), Command::Steps(1), Command::HeldStep(2), Command::HeldStep(1)] {
         session.does(command);
     }
@@ -240,7 +240,7 @@ fn steps_of_a_key_held_are_taken_back_together_and_end_at_a_limit_point() {
     assert_eq!(session.kind(), NodeKind::Limit);
     session.does(Id::Undo);
     assert_eq!(told(&session), start);
-    // What came between is not joined.
+    // Steps are not joined across another command.
     session.does(Command::Steps(1)).does(Id::Halve).does(Command::HeldStep(2)).does(Id::Undo);
     assert!(session.model.length < 0.02 && session.model.walker().unwrap().step == 1);
 }
@@ -250,7 +250,7 @@ fn a_burst_of_walks_and_undos_is_taken_in_its_order() {
     let mut session = Session::new("wavy-sphere");
     burst(&mut session, &[Id::NextEvent, Id::Jump, Id::NextEvent, Id::Undo].map(Command::from));
     assert!(matches!(session.kind(), NodeKind::Jump(_)), "{:?}", session.kind());
-    // Another line is selected before the turn comes: what is turned is what was selected at the key.
+    // Another line is selected before the turn is processed: the turn applies to what was selected at the key.
     let amplitude = session.model.preset.get("gap.amplitude");
     let all = [Id::NextEvent, Id::Down, Id::More, Id::Up, Id::More].map(Command::from);
     assert_eq!(session.model.panel, ScreenPanel::Problem);
@@ -284,12 +284,12 @@ fn looking_is_not_in_the_history() {
     session.all(&[Id::Pin, Id::ZoomIn, Id::NextView, Id::Axes, Id::NextPanel, Id::Down]);
     session.does(Id::Undo);
     assert!(session.status().contains("nothing to undo"), "{}", session.status());
-    // Nor is what came to nothing.
+    // Nor does a command that came to nothing.
     session.does(Id::Jump).does(Id::Undo);
     assert!(session.status().contains("nothing to undo"), "{}", session.status());
 }
 
-/// What a script leads to.
+/// The session that a script leads to.
 fn played(text: &str) -> Session {
     let mut session = Session::new("wavy-sphere");
     let store = Store::at(session.folder.path().join("presets"), &[]);

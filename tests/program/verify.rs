@@ -1,4 +1,4 @@
-//! The program's numbers against theory, as `pulloff verify` tells them.
+//! The program's numbers against theory, as reported by `pulloff verify`.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
@@ -32,7 +32,7 @@ fn every_row_passes() {
     assert_eq!(text.lines().last(), Some(format!("{0} of {0} pass", report.total).as_str()));
 }
 
-/// What the rows are about, in their order, without a digit that a machine could change.
+/// The subjects of the rows, in order, without any digit that could differ between machines.
 #[test]
 fn the_groups_are_these() {
     let titles: Vec<&str> = GROUPS.iter().map(|group| group.title.as_str()).collect();
@@ -77,7 +77,7 @@ fn the_groups_are_these() {
     assert!(text.lines().all(|line| line.chars().count() <= 100));
 }
 
-/// What the program finds in two ways of its own agrees, and says that it is not compared with theory.
+/// Numbers that the program finds in two of its own ways agree, and are marked as not compared with theory.
 #[test]
 fn two_of_our_own_numbers_stand_apart() {
     let own = |group: &&Group| group.title.starts_with("Two of our own numbers: ");
@@ -96,7 +96,7 @@ fn two_of_our_own_numbers_stand_apart() {
     }
 }
 
-/// The numbers of the method's papers, where rows have them: nothing here is computed twice by the same hand.
+/// The numbers from the papers of the method, where rows have them: here, nothing is computed twice by the same code.
 #[test]
 fn the_exact_column_has_the_known_values() {
     let exact = |group: &str, what: &str| {
@@ -189,10 +189,10 @@ fn a_number_that_is_wrong_is_counted_and_written_as_null_where_there_is_none() {
     ");
     let json = serde_json::to_value(&report).unwrap();
     assert!(json["rows"][3]["ours"].is_null() && json["rows"][3]["passes"] == false);
-    // What is ours is never called exact.
+    // Our own numbers are never called exact.
     assert!(json["rows"][0]["exact"] == 0.1 && json["rows"][0]["other"].is_null());
     assert!(json["rows"][4]["exact"].is_null() && json["rows"][4]["other"] == 0.26);
-    // By heading or by name, in any case of letters.
+    // By heading or by name, in upper or lower case.
     for (only, total) in [("spheres", 2), ("SPHERE", 2), ("of a", 1), ("count", 2), ("nothing", 0)] {
         assert_eq!(VerifyReport::new(&groups, Some(only)).total, total, "{only}");
     }

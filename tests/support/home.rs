@@ -1,4 +1,4 @@
-//! A home of its own in which the program runs, so that nothing of the machine's user is seen or touched.
+//! A separate home in which the program runs, so that nothing of the machine's user is seen or touched.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
@@ -15,7 +15,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// A folder that is home, configuration and current folder of the program.
+/// A folder that serves as home, configuration folder and current folder of the program.
 pub struct Home(TempDir);
 
 /// How a run ended.
@@ -38,7 +38,7 @@ impl Home {
         self.0.path().join(name)
     }
 
-    /// Writes a file below the home; its path.
+    /// Writes a file below the home; returns its path.
     pub fn file(&self, name: &str, text: &str) -> String {
         let path = self.path(name);
         fs::create_dir_all(path.parent().expect("below the home")).expect("a folder");
@@ -52,7 +52,7 @@ impl Home {
         text
     }
 
-    /// The program with nothing on standard input and no other variable than these.
+    /// The program with nothing on standard input and no environment variables but these.
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_pulloff"));
         command.env_clear().env("HOME", self.folder()).env("XDG_CONFIG_HOME", self.path("config"));
@@ -64,9 +64,9 @@ impl Home {
         Ended::of(self.command(arguments).output().expect("a run"))
     }
 
-    /// A run that is ended after `patience`; `None` where it had to be.
+    /// Runs the program for at most `patience`; `None` if it had to be killed.
     pub fn within(&self, arguments: &[OsString], patience: Duration) -> Option<Ended> {
-        // Files take whatever is written, and nobody need read them meanwhile.
+        // Files accept whatever is written, without anyone reading them meanwhile.
         let [mut out, mut err] = [(); 2].map(|()| tempfile::tempfile().expect("a file"));
         let [to_out, to_err] = [&out, &err].map(|file| file.try_clone().expect("a handle"));
         let mut child =
@@ -90,7 +90,7 @@ impl Home {
         Some(Ended::of(Output { status, stdout, stderr }))
     }
 
-    /// Starts the program, sends the signal once it is caught, and says how it ended.
+    /// Starts the program, sends the signal once it is caught, and returns how it ended.
     pub fn stopped(&self, arguments: &[&str], signal: Signal) -> Ended {
         let mut command = self.command(arguments);
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("a run");
@@ -104,7 +104,7 @@ impl Home {
         while !is_caught() && child.try_wait().expect("its state").is_none() {
             sleep(Duration::from_millis(5));
         }
-        // One that has ended already says so by its status.
+        // If it has already ended, its status shows that.
         let _ = kill_process(Pid::from_child(&child), signal);
         Ended::of(child.wait_with_output().expect("its end"))
     }
@@ -120,7 +120,7 @@ impl Home {
         serde_json::from_str(&self.quiet(&[arguments, &["--format", "json"]].concat())).expect("JSON")
     }
 
-    /// A run that is refused: status 2, nothing on standard output, one message that says all of `said`.
+    /// A run that is refused: status 2, nothing on standard output, one message that contains all of `said`.
     pub fn refused(&self, arguments: &[&str], said: &[&str]) {
         let ended = self.run(arguments);
         assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{arguments:?}: {}", ended.err);
@@ -132,10 +132,10 @@ impl Home {
 }
 
 impl Ended {
-    /// Of a program that ended by itself.
+    /// The end of a program that ended by itself.
     pub fn of(output: Output) -> Self {
         let out = String::from_utf8(output.stdout).expect("UTF-8");
-        // Whatever document a command writes is of its schema.
+        // Any document that a command writes must follow its schema.
         schema::check(&out);
         Self {
             status: output.status.code().expect("no signal"),

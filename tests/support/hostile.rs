@@ -1,8 +1,8 @@
-//! Many hostile command lines, each by its number.
+//! Runs many hostile command lines, each by its number.
 
 use std::collections::BTreeMap;
 
-/// Tries these numbers, fails with what is wrong, and counts the exit statuses.
+/// Tries these numbers, fails with a list of what is wrong, and counts the exit statuses.
 pub fn run(
     numbers: impl Iterator<Item = u64>,
     judge: fn(u64) -> Result<i32, String>,

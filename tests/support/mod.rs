@@ -1,4 +1,4 @@
-//! What the tests share. Each binary uses a part of it.
+//! Shared by the tests. Each binary uses a part of it.
 #![allow(
     dead_code,
     unused_imports,

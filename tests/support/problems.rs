@@ -1,4 +1,4 @@
-//! Random problems of every shape, as a person writes them, and the terms of their gaps for the quadrature.
+//! Random problems of every shape, as a user writes them, and the terms of their gaps for the quadrature.
 
 use super::quadrature::{Bump, Disc, Term};
 use pulloff_engine::gap::{Gap, Shape};
@@ -10,7 +10,7 @@ use pulloff_engine::read_in;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 
-/// Numbers for one problem.
+/// Random numbers for one problem.
 struct Random(fastrand::Rng);
 
 impl Random {
@@ -18,7 +18,7 @@ impl Random {
         lo + (hi - lo) * self.0.f64()
     }
 
-    /// Even in the logarithm.
+    /// Uniform in the logarithm.
     fn scale(&mut self, lo: f64, hi: f64) -> f64 {
         self.even(lo.ln(), hi.ln()).exp()
     }
@@ -40,7 +40,7 @@ pub enum Start {
     Force(f64),
 }
 
-/// A problem: in units in which its numbers are of the order of one, and as a person writes it in others.
+/// A problem: in units in which its numbers are of order one, and as a user writes it in other units.
 pub struct Problem {
     /// The shape, for the table of worst errors.
     pub kind: &'static str,
@@ -50,16 +50,16 @@ pub struct Problem {
     pub start: Start,
     /// The radius from which the start was drawn.
     pub drawn: f64,
-    /// A length and a modulus of the person's units.
+    /// A length and a modulus in the user's units.
     pub length: f64,
     pub modulus: f64,
     pub preset: Preset,
     pub text: String,
-    /// The radius where nothing is known any more.
+    /// The radius beyond which nothing is known.
     pub end: f64,
 }
 
-/// The problem of a number, which is drawn for itself; why there is none, in words.
+/// The problem with this number, drawn independently of others; or why there is none, in words.
 pub fn draw(number: u64) -> Result<Problem, String> {
     let mut random =
         Random(fastrand::Rng::with_seed(0x0070_756C_6C6F_6666 ^ number.wrapping_mul(0x9E37_79B9_7F4A_7C15)));
@@ -83,7 +83,7 @@ pub fn draw(number: u64) -> Result<Problem, String> {
     ];
     let kind = KINDS[usize::try_from(number).unwrap() % KINDS.len()];
     let si = r.chance(0.25);
-    // A coefficient holds a power of the length.
+    // A coefficient contains a power of the length.
     let si = si && kind != "power-law";
     let (length, modulus) = match (si, r.chance(0.5)) {
         (true, _) => (r.scale(1e-9, 1.0), r.scale(1e3, 1e12)),
@@ -181,7 +181,7 @@ pub fn draw(number: u64) -> Result<Problem, String> {
             }
         }
     }
-    // The adhesion by the radius of pull-off that it gives the body under the waves and features, or by that of the profile.
+    // The adhesion is set by the pull-off radius that it gives the body under the waves and features, or that of the profile.
     let body = match &terms[..] {
         [] => vec![paraboloid()],
         [first, ..] => vec![first.clone()],
@@ -210,7 +210,7 @@ pub fn draw(number: u64) -> Result<Problem, String> {
     let radius_line = format!("start_contact_radius = {:e}", start * length);
     let mut text = write(&radius_line);
     let mut preset = read(&text)?;
-    // What is drawn or fitted by the program is part of the problem, not of its answer.
+    // What the program draws or fits is part of the problem, not of its answer.
     let mut end = f64::INFINITY;
     match &preset.gap {
         Shape::RandomWaves { drawn, .. } => {
@@ -238,7 +238,7 @@ pub fn draw(number: u64) -> Result<Problem, String> {
         Shape::ExactSphere(_) => end = 0.999,
         _ => {}
     }
-    // A start by approach or force: that of the state of the radius drawn.
+    // A start by approach or force: that of the state with the drawn radius.
     let mut begin = Start::Radius(start);
     if by >= 2 && start < 0.9 * end {
         let state = Disc::new(&terms, gamma, start).state(start);
@@ -267,7 +267,7 @@ pub fn draw(number: u64) -> Result<Problem, String> {
     })
 }
 
-/// g' of a body, by a difference: it only sets the size of the adhesion.
+/// g' of a body, by a finite difference: it only sets the size of the adhesion.
 fn slope_of_transform(terms: &[Term], s: f64) -> f64 {
     let disc = Disc::new(terms, 0.0, 1.01 * s);
     (disc.value(1.001 * s) - disc.value(0.999 * s)) / (0.002 * s)
@@ -285,7 +285,7 @@ fn wave(r: &mut Random, start: f64) -> (f64, f64) {
 fn feature(r: &mut Random, start: f64) -> Term {
     let (b, size) = (start * r.even(0.05, 1.05), r.scale(0.02, 3.0));
     let sign = if r.chance(0.5) { 1.0 } else { -1.0 };
-    // The jump of h' that changes g' by `size` times that of the body a tenth further out.
+    // The jump of h' that changes g' by `size` times that of the body, a tenth further out.
     let slope = sign * size * start * 0.3;
     match r.0.u32(..14) {
         0..=5 => {
@@ -310,7 +310,7 @@ fn feature(r: &mut Random, start: f64) -> Term {
     }
 }
 
-/// The term as a person types it, in lengths of `length`.
+/// The term as a user types it, with lengths in units of `length`.
 fn typed_term(term: &Term, length: f64) -> String {
     let l = |x: f64| format!("{:e}", x * length);
     match *term {
@@ -334,7 +334,7 @@ fn typed_term(term: &Term, length: f64) -> String {
     }
 }
 
-/// The rows of a measured gap: uneven, with a wave and noise.
+/// The rows of a measured gap: unevenly spaced, with a wave and noise.
 fn rows(r: &mut Random, start: f64, length: f64, si: bool) -> String {
     let count = r.0.usize(8..90);
     let last = start * r.even(1.05, 2.0);
@@ -356,7 +356,7 @@ fn rows(r: &mut Random, start: f64, length: f64, si: bool) -> String {
     text
 }
 
-/// Reads a preset, whose profile lies on the disk.
+/// Reads a preset whose profile is on the disk.
 fn read(text: &str) -> Result<Preset, String> {
     let files = Files {
         rows: |folder, name| {

@@ -1,7 +1,7 @@
 //! A program in a pseudo-terminal: keys in, a parsed screen out.
 //!
-//! Nothing here sleeps for a fixed time in the hope that something has happened by then: every wait is for a
-//! condition, ends as soon as it holds, and after [`LIMIT`] fails with the screen as it was.
+//! Nothing here sleeps for a fixed time in the hope that something has happened by then: every wait is for a condition,
+//! ends as soon as the condition holds, and after [`LIMIT`] fails with the screen as it was.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use std::{
@@ -24,21 +24,21 @@ use rustix::{
     process::{Pid, Signal, kill_process},
 };
 
-/// How long any wait may take, on a machine that stands still for a while.
+/// How long any wait may take, even on a machine that stalls for a while.
 pub const LIMIT: Duration = Duration::from_secs(60);
 
 /// How many of the last bytes a failed wait shows.
 const TAIL: usize = 500;
 
-/// Between two looks at a condition.
+/// The pause between two checks of a condition.
 const LOOK: Duration = Duration::from_millis(2);
 
-/// The variables a program starts with, unless a test says otherwise.
+/// The environment variables that a program starts with, unless a test sets others.
 const ENVIRONMENT: [(&str, &str); 3] =
     [("TERM", "xterm-256color"), ("LANG", "C.UTF-8"), ("PATH", "/usr/bin:/bin")];
 
-/// Runs `"$@"` as a shell with job control does, then says how it ended and waits for a line; `fg` continues a
-/// stopped program. So the program does not lead the session, and may be stopped.
+/// Runs `"$@"` as a shell with job control does, then reports how it ended and waits for a line; `fg` continues a
+/// stopped program. So the program does not lead the session, and can be stopped.
 const SHELL: &str = r#"
 set -m
 "$@"
@@ -61,7 +61,7 @@ pub struct Pty {
     paused: Arc<AtomicBool>,
     output: Arc<Mutex<Output>>,
     modes_at_start: String,
-    /// The program's home, unless a test gives it another: nothing outlives a test, or comes from one before.
+    /// The program's home, unless a test gives it another: nothing outlives a test or comes from an earlier one.
     _home: tempfile::TempDir,
 }
 
@@ -72,14 +72,14 @@ struct Output {
 }
 
 impl Pty {
-    /// Starts a program as the leader of its session, as `ssh host program` does: Ctrl-Z is of no use to it.
+    /// Starts a program as the leader of its session, as `ssh host program` does: Ctrl-Z has no effect on it.
     pub fn spawn(program: &Path, args: &[&str], env: &[(&str, &str)], cols: u16, rows: u16) -> Self {
         let mut command = CommandBuilder::new(program);
         command.args(args);
         Self::start(command, env, cols, rows)
     }
 
-    /// Starts a program below a shell with job control, which can stop and continue it.
+    /// Starts a program under a shell with job control, which can stop and continue it.
     pub fn spawn_in_shell(program: &Path, args: &[&str], env: &[(&str, &str)], cols: u16, rows: u16) -> Self {
         let mut command = CommandBuilder::new("/bin/sh");
         command.args(["-c", SHELL, "sh"]);
@@ -88,7 +88,7 @@ impl Pty {
         Self::start(command, env, cols, rows)
     }
 
-    /// Starts a program that ignores SIGHUP, as below `nohup`.
+    /// Starts a program that ignores SIGHUP, as under `nohup`.
     pub fn spawn_ignoring_hup(
         program: &Path,
         args: &[&str],
@@ -162,17 +162,17 @@ impl Pty {
         writer.flush().expect("the terminal takes keys");
     }
 
-    /// Pastes, with the marks that a terminal puts around.
+    /// Pastes, with the marks that a terminal adds around.
     pub fn paste(&mut self, text: &str) {
         self.keys(&format!("\x1b[200~{text}\x1b[201~"));
     }
 
-    /// Waits until the screen's text is as wanted.
+    /// Waits until the screen's text meets the condition.
     pub fn wait_for(&self, wanted: impl Fn(&str) -> bool, what: &str) {
         self.wait_until(|pty| wanted(&pty.screen()), what);
     }
 
-    /// Waits until anything about the terminal is as wanted.
+    /// Waits until anything about the terminal meets the condition.
     pub fn wait_until(&self, wanted: impl Fn(&Self) -> bool, what: &str) {
         let start = Instant::now();
         while !wanted(self) {
@@ -181,8 +181,8 @@ impl Pty {
         }
     }
 
-    /// Presses a key until the screen is as wanted, each time when the mark that the key moves has come to stand
-    /// elsewhere. What is computed meanwhile changes the rest of the screen, and is no answer to the key.
+    /// Presses a key until the screen is as wanted, each time after the mark that the key moves has changed place.
+    /// Whatever is computed meanwhile changes the rest of the screen and is not an answer to the key.
     pub fn press_until(
         &mut self,
         key: &str,
@@ -192,7 +192,7 @@ impl Pty {
         while !wanted(&self.screen()) {
             let before = mark(&self.screen());
             self.keys(key);
-            // At the end of a list nothing moves, and this fails. Half a frame may have no mark, or half of it: a
+            // At the end of a list nothing moves, and this fails. Half a frame may have no mark, or half of it, so a
             // second look must find the same.
             let moved = |pty: &Self| mark(&pty.screen()).filter(|now| before.as_ref() != Some(now));
             self.wait_until(
@@ -216,7 +216,7 @@ impl Pty {
         look(self.output.lock().unwrap_or_else(PoisonError::into_inner).parser.screen())
     }
 
-    /// How things stand, for whoever reads why a wait failed.
+    /// The state of affairs, for reading why a wait failed.
     fn account(&self) -> String {
         let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.pid().as_raw_nonzero()));
         let state = stat.ok().and_then(|stat| Some(stat.rsplit_once(") ")?.1.chars().next()?.to_string()));
@@ -239,9 +239,9 @@ impl Pty {
         self.raw().windows(bytes.len()).any(|window| window == bytes)
     }
 
-    /// The private modes that the program has left other than it found them, by number: 1049 is the alternate screen.
+    /// The private modes that the program has left in another state than it found them, by number: 1049 is the alternate screen.
     ///
-    /// Read from the bytes, so that modes are seen which the parser does not know.
+    /// Read from the bytes, so that modes unknown to the parser are seen too.
     pub fn modes_left(&self) -> Vec<u16> {
         let raw = self.raw();
         let mut changed = Vec::new();
@@ -254,7 +254,7 @@ impl Pty {
             };
             for mode in sequence[..end].split(';').filter_map(|mode| mode.parse().ok()) {
                 changed.retain(|&other| other != mode);
-                // Line wrap and the cursor are on by themselves.
+                // Line wrap and the cursor are on by default.
                 if on != [7, 25].contains(&mode) {
                     changed.push(mode);
                 }
@@ -279,9 +279,9 @@ impl Pty {
         });
     }
 
-    /// Another window size; 0 in either is told to the program, while the parser keeps one cell.
+    /// Sets another window size; a 0 in either is passed to the program, while the parser keeps one cell.
     pub fn resize(&mut self, cols: u16, rows: u16) {
-        // The parser first: what the program draws next is for the new size.
+        // The parser first, because what the program draws next is for the new size.
         let (parser_rows, parser_cols) = (at_least_one(rows), at_least_one(cols));
         let mut output = self.output.lock().unwrap_or_else(PoisonError::into_inner);
         output.parser.set_size(parser_rows, parser_cols);
@@ -289,7 +289,7 @@ impl Pty {
         self.master.as_ref().expect("the terminal is open").resize(size(cols, rows)).expect("a new size");
     }
 
-    /// Reads no more from the program after one last piece, like a connection that has fallen silent.
+    /// Reads one last piece from the program and then no more, like a connection that has fallen silent.
     pub fn stop_reading(&self) {
         self.paused.store(true, Ordering::SeqCst);
     }
@@ -313,7 +313,7 @@ impl Pty {
         pid.and_then(Pid::from_raw).expect("a process")
     }
 
-    /// Waits for the end and returns the exit status. A death by a signal counts as 1 here: let programs exit.
+    /// Waits for the end and returns the exit status. Death by a signal counts as 1 here, because programs should exit.
     pub fn exit_code(&mut self) -> u32 {
         let start = Instant::now();
         let status = loop {
@@ -324,7 +324,7 @@ impl Pty {
             thread::sleep(LOOK);
         };
         if self.master.is_some() && !self.paused.load(Ordering::SeqCst) {
-            // With the last of its processes gone the reader comes to an end, and everything written is parsed.
+            // Once the last of its processes is gone, the reader finishes, and everything written is parsed.
             self.join_reader();
         }
         status.exit_code()
@@ -341,7 +341,7 @@ impl Pty {
             let _ = terminal.write_all(b" ");
         }
         self.join_reader();
-        // The writer types an end-of-file when dropped, which a program in raw mode takes for keys.
+        // When dropped, the writer types an end-of-file, which a program in raw mode takes for keys.
         self.writer = None;
         self.master = None;
     }
@@ -360,7 +360,7 @@ impl Pty {
 
 impl Drop for Pty {
     fn drop(&mut self) {
-        // Only what is still there after a failed test.
+        // Only for what remains after a failed test.
         if let Ok(None) = self.child.try_wait() {
             let _ = kill_process(self.pid(), Signal::KILL);
             let _ = self.child.wait();

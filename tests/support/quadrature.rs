@@ -1,6 +1,6 @@
-//! One adhesive disc by quadrature, for tests alone: it shares no code with the program, neither its tables nor its theory.
+//! One adhesive disc by quadrature, for tests only: it shares no code with the program, neither its tables nor its theory.
 //!
-//! A gap is a sum of terms with h' and h'' in closed form. Every integral is broken at the corners of the terms and, in
+//! A gap is a sum of terms with h' and h'' in closed form. Every integral is split at the corners of the terms and, in
 //! steps that grow with the distance, around each of their features, so that Gauss's rule resolves each piece by
 //! construction. With E* = 1, T = √(2πγs) and the jumps `J_q` of h' at corners q
 //!
@@ -9,9 +9,9 @@
 //! δ = g − T,  P = 2(δs − ∫g),  dδ/ds = g' − T/2s,  dP/ds = 2(s g' − 3T/2)
 //! ```
 //!
-//! Limit points are changes of sign of the slope on a grid that is refined with the pieces, bisected; landings are bisected
-//! too. What a jump from state 1 to state 2 loses follows from the energy ∫(δ − g)² − πγs² without differences of large
-//! numbers, for every stiffness:
+//! Limit points are sign changes of the slope on a grid that is refined with the pieces, then located by bisection; so
+//! are landings. The loss in a jump from state 1 to state 2 follows from the energy ∫(δ − g)² − πγs² without
+//! differences of large numbers, for every stiffness:
 //!
 //! ```text
 //! snap       ∫_{s₂}^{s₁} [(δ₁ − g)² − T²] da + ½(δ₁ − δ₂)(P(s₂, δ₁) − P₁)
@@ -24,13 +24,13 @@ use std::f64::consts::{PI, TAU};
 /// Gauss nodes on a piece.
 const NODES: usize = 16;
 
-/// Values of the slope looked at on a piece, between which its sign may change once unseen by pairs alone.
+/// The number of slope values examined on a piece. Between two of them the sign may change unseen only by a pair of limit points.
 const GRID: usize = 12;
 
-/// Parts of a piece for the integral of a loss: between two corners g bends more than h does.
+/// The number of parts of a piece for the integral of a loss: between two corners g bends more than h does.
 const PARTS: u32 = 4;
 
-/// A feature is resolved out to so many of its widths, from there on in steps that double.
+/// A feature is resolved out to this many of its widths; beyond, in steps that double.
 const STEPS: [f64; 12] = [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
 
 /// The form of a bump.
@@ -153,7 +153,7 @@ impl Term {
         }
     }
 
-    /// Radii at which integrals are broken.
+    /// Radii at which integrals are split.
     fn marks(&self, to: f64) -> Vec<f64> {
         let even = |step: f64| (1..).map(move |m| f64::from(m) * step).take_while(move |r| *r < to).collect();
         match *self {
@@ -195,9 +195,9 @@ pub struct State {
 pub struct Jump {
     /// The limit point.
     pub before: State,
-    /// The landing; none after a pull-off.
+    /// The landing; `None` after a pull-off.
     pub after: Option<State>,
-    /// What is lost, where that has a bound.
+    /// The loss, where it is bounded.
     pub loss: Option<f64>,
     /// How near, in the controlled quantity, the jump was to another landing.
     pub margin: f64,
@@ -217,7 +217,7 @@ pub struct Path {
 struct Turn {
     /// s.
     radius: f64,
-    /// Smallest, or largest.
+    /// Whether it is a minimum; otherwise a maximum.
     minimum: bool,
 }
 
@@ -229,7 +229,7 @@ pub struct Transform {
     pub area: f64,
 }
 
-/// A piece of the radii, over 0 ≤ u ≤ 1: a = lo + (hi − lo)u, right of a corner with u² for u.
+/// A piece of the radii, over 0 ≤ u ≤ 1: a = lo + (hi − lo)u; to the right of a corner, u² replaces u.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     lo: f64,
@@ -252,7 +252,7 @@ pub struct Disc {
     marks: Vec<f64>,
     corners: Vec<[f64; 2]>,
     rule: Vec<[f64; 2]>,
-    /// On each piece r, h' and h' + r h'' at the nodes, the last two times the weights by r.
+    /// On each piece, r, h' and h' + r h'' at the nodes, the last two multiplied by the weights in r.
     samples: Vec<Vec<[f64; 3]>>,
 }
 
@@ -262,7 +262,7 @@ impl Disc {
         let mut corners: Vec<[f64; 2]> = terms.iter().flat_map(|term| term.corners(reach)).collect();
         corners.retain(|[b, _]| *b > 0.0 && *b < reach);
         corners.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        // Corners at one place are one.
+        // Corners at one place are joined.
         corners.dedup_by(|next, kept| {
             let same = next[0] == kept[0];
             if same {
@@ -282,7 +282,7 @@ impl Disc {
             .with_nodes(NODES)
     }
 
-    /// The same with another number of nodes on each piece: what it changes is the error.
+    /// The same with another number of nodes on each piece; the change in the result is the error.
     pub fn with_nodes(mut self, nodes: usize) -> Self {
         self.rule = gauss(nodes);
         let inner = [0.0].into_iter().chain(self.marks.iter().copied());
@@ -305,12 +305,12 @@ impl Disc {
         of_terms.fold([0.0; 2], |[first, second], [f, s]| [first + f, second + s])
     }
 
-    /// How far it reaches.
+    /// The radius up to which it is known.
     pub fn reach(&self) -> f64 {
         self.reach
     }
 
-    /// The radii at which integrals are broken.
+    /// The radii at which integrals are split.
     pub fn marks(&self) -> &[f64] {
         &self.marks
     }
@@ -320,7 +320,7 @@ impl Disc {
         &self.corners
     }
 
-    /// At one radius.
+    /// The transform at one radius.
     pub fn transform(&self, a: f64) -> Transform {
         let mut sums = [0.0; 3];
         let mut lo = 0.0;
@@ -389,7 +389,7 @@ impl Disc {
         }
     }
 
-    /// A positive multiple of the controlled quantity, between δ and P.
+    /// A positive multiple of the controlled quantity, a combination of δ and P.
     pub fn held(control: Control, state: &State) -> f64 {
         match control {
             Control::Displacement => state.approach,
@@ -413,12 +413,12 @@ impl Disc {
         self.corners.iter().find(|corner| corner[0] == b).map_or(0.0, |corner| corner[1])
     }
 
-    /// The limit points, ascending; `finer` times as many radii are looked at.
+    /// The limit points, ascending; `finer` multiplies the number of radii examined.
     fn turns(&self, control: Control, finer: usize) -> Vec<Turn> {
         let tendency = |a: f64| self.tendency(a, control);
         let mut turns = Vec::new();
         let pieces = self.pieces();
-        // On the innermost piece adhesion alone rules.
+        // On the innermost piece adhesion alone dominates.
         let mut last = [pieces[0].hi, tendency(pieces[0].hi)];
         assert!(last[1] < 0.0 || self.gamma == 0.0, "the radii begin too far out");
         let mut before: Option<[f64; 2]> = None;
@@ -438,7 +438,7 @@ impl Disc {
                 let a = if j == count { piece.hi } else { piece.at(next_u) };
                 let next = [a, tendency(a)];
                 if (next[1] > 0.0) == (last[1] > 0.0) {
-                    // A pair between three values of one sign, the middle one nearest to zero.
+                    // A pair hides between three values of one sign, the middle one nearest to zero.
                     if let Some(before) = before {
                         self.pair(control, [before, last, next], &mut turns);
                     }
@@ -493,7 +493,8 @@ impl Disc {
         }
     }
 
-    /// The stretches on which the control rises with s, ascending: inner and outer end; looked for on `finer` times as many radii.
+    /// The stretches on which the control rises with s, ascending, as inner and outer ends; `finer` multiplies the
+    /// number of radii examined.
     pub fn rising(&self, control: Control, finer: usize) -> Vec<[f64; 2]> {
         let mut stretches = Vec::new();
         let mut inner = (self.gamma == 0.0).then_some(0.0);
@@ -525,8 +526,8 @@ impl Disc {
         stretches.iter().rev().find(takes).map(|stretch| self.crossing(control, *stretch, value))
     }
 
-    /// The stable state at which a path from the radius `from` begins, and its number among the rising stretches; none where
-    /// nothing outward is stable within reach.
+    /// The stable state at which a path from the radius `from` begins, and its index among the rising stretches; `None`
+    /// where nothing outward within reach is stable.
     pub fn start(&self, control: Control, stretches: &[[f64; 2]], from: f64) -> Option<(usize, f64)> {
         if let Some(at) = stretches.iter().position(|[lo, hi]| *lo <= from && from <= *hi) {
             return Some((at, from));
@@ -570,7 +571,7 @@ impl Disc {
         Some(Path { start, jumps })
     }
 
-    /// What a jump loses.
+    /// The loss in a jump.
     pub fn loss(&self, control: Control, before: &State, after: Option<&State>) -> Option<f64> {
         let inner = after.map_or(0.0, |after| after.radius);
         let work = |a: f64| {

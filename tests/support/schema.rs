@@ -1,9 +1,9 @@
-//! Documents held against their schemas in `docs/schema`.
+//! Checks documents against their schemas in `docs/schema`.
 
 use serde_json::{Map, Value};
 use std::fs;
 
-/// Checks a document that names itself against its schema; texts that are none are let pass.
+/// Checks a document that names its schema; other texts pass.
 pub fn check(text: &str) {
     let Ok(Value::Object(document)) = serde_json::from_str(text) else { return };
     let Some(name) = document.get("document").and_then(Value::as_str) else { return };
@@ -16,7 +16,7 @@ pub fn check(text: &str) {
     assert_eq!(fault, None, "{file}");
 }
 
-/// What is wrong with a value, and where; `None` where nothing is. A keyword that is not known here fails.
+/// What is wrong with a value, and where; `None` where nothing is. A keyword unknown here is a failure.
 fn fault(root: &Value, schema: &Value, value: &Value, at: &str) -> Option<String> {
     let Value::Object(schema) = schema else { return (schema == false).then(|| format!("{at}: not wanted")) };
     let each = |choices: &Value| -> Vec<Option<String>> {

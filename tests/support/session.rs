@@ -45,7 +45,7 @@ impl Session {
         self.does(Command::Set { key: key.into(), text: text.to_owned() })
     }
 
-    /// Saved, read again, and gone on with.
+    /// Saves the session, reads it again, and continues it.
     pub fn resume(&mut self) {
         let bytes = Document::new(&Snapshot::of(&self.model), Ended::Running, 7).json().expect("a session");
         let snapshot = Document::read(&bytes).expect("a session").snapshot().expect("a session");

@@ -1,4 +1,4 @@
-//! A real SSH server on the loopback, with keys of its own that live as long as the test.
+//! A real SSH server on the loopback interface, with its own keys that live as long as the test.
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use std::{
@@ -20,20 +20,20 @@ use tempfile::TempDir;
 
 use super::pty::{LIMIT, Pty};
 
-/// Set where these tests must run: without a server they fail then, and are left out elsewhere.
+/// Set where these tests must run: without a server they then fail; elsewhere they are skipped.
 const WANTED: &str = "PULLOFF_SSH_TESTS";
 
-/// How long a thread of the wire sleeps before it looks whether the wire was cut.
+/// How long a thread of the wire sleeps before it checks whether the wire was cut.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// Nothing came, and the wire stands.
+/// Nothing has come, and the wire is still up.
 const NOT_YET: [io::ErrorKind; 3] =
     [io::ErrorKind::WouldBlock, io::ErrorKind::TimedOut, io::ErrorKind::Interrupted];
 
-/// How often a server is started before it counts as not to be had.
+/// How often a server is started before it counts as unavailable.
 const STARTS: usize = 5;
 
-/// Folders outside the search path of a plain user that hold the server.
+/// Folders outside a normal user's search path that may contain the server.
 const PLACES: [&str; 4] = ["/usr/sbin", "/usr/local/sbin", "/sbin", "/usr/lib/ssh"];
 
 /// A server for the user who runs the test.
@@ -44,9 +44,9 @@ pub struct Sshd {
 }
 
 impl Sshd {
-    /// Starts one; `None`, and said on standard error, where there is no OpenSSH and nobody asked for these tests.
+    /// Starts one; `None`, with a message on standard error, where there is no OpenSSH and nobody asked for these tests.
     pub fn start() -> Option<Self> {
-        // Somebody may take the port between the look at it and the server: then another one.
+        // Another process may take the port between the check and the start of the server; then another port is tried.
         let mut tries = (0..STARTS).map(|_| Self::try_start());
         let mut started = tries.next()?;
         while started.is_err()
@@ -58,7 +58,7 @@ impl Sshd {
             Ok(sshd) => Some(sshd),
             Err(why) => {
                 assert!(std::env::var_os(WANTED).is_none(), "{WANTED} is set, but: {why}");
-                // Not `eprintln`, which a test program keeps to itself.
+                // Not `eprintln`, whose output a test program captures.
                 let _ = writeln!(
                     io::stderr(),
                     "LEFT OUT, no SSH server: {why} ({WANTED}=1 makes this a failure)"
@@ -79,7 +79,7 @@ impl Sshd {
             let made = make.status().map_err(|error| error.to_string())?;
             assert!(made.success(), "no key was made");
         }
-        // Needed by a server that root starts; the system's service would have made it.
+        // Needed by a server that root starts; the system's service would have created it.
         if rustix::process::getuid().is_root() {
             let _ = fs::create_dir_all("/run/sshd");
         }
@@ -102,7 +102,7 @@ impl Sshd {
         Ok(sshd)
     }
 
-    /// Also that the user may log in: a locked account may not.
+    /// Also checks that the user may log in: a locked account may not.
     fn wait_until_up(&mut self) -> Result<(), String> {
         let start = Instant::now();
         while !greets(self.port) {
@@ -170,7 +170,7 @@ impl Drop for Sshd {
     }
 }
 
-/// What lies between client and server: it carries one connection, and can be cut.
+/// The link between client and server: it carries one connection, and can be cut.
 pub struct Wire {
     port: u16,
     cut: Arc<AtomicBool>,
@@ -211,7 +211,7 @@ impl Drop for Wire {
     }
 }
 
-/// Copies until one end closes or the wire is cut, which closes the other.
+/// Copies until one end closes or the wire is cut, and then closes the other end.
 fn carry(mut from: TcpStream, mut to: TcpStream, is_cut: &AtomicBool) {
     let mut buffer = [0; 16384];
     while !is_cut.load(Ordering::SeqCst) {
@@ -223,13 +223,13 @@ fn carry(mut from: TcpStream, mut to: TcpStream, is_cut: &AtomicBool) {
     }
 }
 
-/// A port below those that the system gives to connections, so that none of them takes it before the server does.
+/// A port below those that the system assigns to connections, so that none of them takes it before the server does.
 fn free_port() -> u16 {
     let free = |port: &u16| TcpListener::bind(("127.0.0.1", *port)).is_ok();
     std::iter::repeat_with(|| fastrand::u16(10_000..32_000)).find(free).expect("a port")
 }
 
-/// Whether an SSH server is what answers at a port.
+/// Whether an SSH server answers at a port.
 fn greets(port: u16) -> bool {
     let Ok(mut stream) = TcpStream::connect(("127.0.0.1", port)) else { return false };
     let mut greeting = [0; 4];

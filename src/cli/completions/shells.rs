@@ -1,4 +1,4 @@
-//! What bash and zsh run at a Tab; the other shells run what `clap_complete` has for them.
+//! What bash and zsh run at a Tab; the other shells run what `clap_complete` provides.
 
 use clap::Command;
 use clap_complete::env::{Bash, Elvish, EnvCompleter, Fish, Powershell, Zsh};
@@ -6,7 +6,7 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// The shells that are known.
+/// The known shells.
 pub(super) const ALL: &[&dyn EnvCompleter] = &[
     &Scripted { answers: &Bash, script: BASH },
     &Elvish,
@@ -15,14 +15,14 @@ pub(super) const ALL: &[&dyn EnvCompleter] = &[
     &Scripted { answers: &Zsh, script: ZSH },
 ];
 
-/// A shell that is answered as usual and asks by a script of ours.
+/// A shell that is answered in the usual way but asks through a script of ours.
 struct Scripted {
     answers: &'static dyn EnvCompleter,
     script: &'static str,
 }
 
-/// Bash parts words at `=` and `:`, which belong to words such as `gap.shape=sphere`: they are put together again before the
-/// program is asked, and what stands on the line already is taken from its answers.
+/// Bash splits words at `=` and `:`, which belong to words such as `gap.shape=sphere`. The script joins them again
+/// before it asks the program, and removes from the answers what is already on the line.
 const BASH: &str = r#"_BIN_complete() {
     local IFS=$' \t\n' line=${COMP_LINE:0:COMP_POINT} rest word text reply at
     local -a words=() replies=()
@@ -62,7 +62,7 @@ const BASH: &str = r#"_BIN_complete() {
 complete -o bashdefault -F _BIN_complete BIN
 "#;
 
-/// The text may be run by `source`, or be the file of a function that zsh loads at the first Tab.
+/// The text may be run by `source`, or be an autoloaded function file that zsh reads at the first Tab.
 const ZSH: &str = r#"#compdef BIN
 _BIN_complete() {
     local -a replies folders open whole

@@ -1,4 +1,4 @@
-//! The words that only the program knows: presets, keys and their words, sessions.
+//! The words that only the program knows: presets, keys and their values, sessions.
 
 use crate::cli::problem;
 use crate::explorer::archive::Archive;
@@ -13,10 +13,10 @@ use std::env;
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
-/// The key that says which keys of `[gap]` there are.
+/// The key that decides which keys `[gap]` has.
 const GAP_SHAPE: &str = "gap.shape";
 
-/// What the value of an argument is, by the name of the argument; in every subcommand the same.
+/// What the value of an argument is, by the name of the argument; the same in every subcommand.
 const KNOWN: [(&str, Candidates); 11] = [
     ("preset", presets_or_files),
     ("assignments", assignments),
@@ -26,16 +26,16 @@ const KNOWN: [(&str, Candidates); 11] = [
     ("y_key", axes),
     ("control", controls),
     ("resume", sessions),
-    // Of `presets` and of `sessions`, each of its own.
+    // Both `presets` and `sessions` have an argument of this name.
     ("paths", points_or_presets),
     ("name", names),
     ("names", sessions),
 ];
 
-/// The candidates for a value that begins so.
+/// Returns the candidates for a value that begins with what is typed.
 type Candidates = fn(&OsStr) -> Vec<CompletionCandidate>;
 
-/// The command, with the words of its arguments.
+/// The command, with completers added to its arguments.
 pub(super) fn known(command: Command) -> Command {
     let with = |arg: Arg| match KNOWN.iter().find(|(id, _)| arg.get_id() == id) {
         Some((_, words)) => arg.add(ArgValueCompleter::new(*words)),
@@ -44,18 +44,18 @@ pub(super) fn known(command: Command) -> Command {
     command.mut_args(with).mut_subcommands(known)
 }
 
-/// A candidate where it begins with what is typed.
+/// A candidate, if it begins with what is typed.
 fn candidate(typed: &str, text: String, help: &str) -> Option<CompletionCandidate> {
     let help = (!help.is_empty()).then(|| help.to_owned().into());
     text.starts_with(typed).then(|| CompletionCandidate::new(text).help(help))
 }
 
-/// What is typed so far; nothing else is known of what is no text.
+/// What is typed so far; empty where it is not UTF-8.
 fn typed(current: &OsStr) -> &str {
     current.to_str().unwrap_or_default()
 }
 
-/// The presets that `is_wanted` takes, with their titles.
+/// The presets accepted by `is_wanted`, with their titles.
 fn presets(current: &OsStr, is_wanted: fn(&Source) -> bool) -> Vec<CompletionCandidate> {
     let listed = problem::store().list().presets.into_iter().filter(|listed| is_wanted(&listed.source));
     let named = listed.filter_map(|listed| {
@@ -82,7 +82,7 @@ fn points_or_presets(current: &OsStr) -> Vec<CompletionCandidate> {
     found
 }
 
-/// The names of subcommands of `presets` and `sessions`.
+/// The names that subcommands of `presets` and `sessions` take.
 fn names(current: &OsStr) -> Vec<CompletionCandidate> {
     let line = line();
     let has = |word: &str| line.iter().any(|other| other == word);
@@ -98,12 +98,12 @@ fn sessions(current: &OsStr) -> Vec<CompletionCandidate> {
     listed.into_iter().filter_map(|session| candidate(typed(current), session.name, "")).collect()
 }
 
-/// The words of the line that is completed, behind the name of the program.
+/// The words of the line being completed, after the name of the program.
 fn line() -> Vec<OsString> {
     env::args_os().skip_while(|word| word != "--").skip(2).collect()
 }
 
-/// The preset of the line, with what is assigned there before its last word.
+/// The preset on the line, with the assignments made there before its last word.
 fn preset() -> Option<Preset> {
     let line = line();
     let store = problem::store();
@@ -114,7 +114,7 @@ fn preset() -> Option<Preset> {
         .filter(|text| text.contains('='))
         .collect();
     let source = line.iter().rev().skip(1).find_map(|word| match store.resolve(word).ok()? {
-        // A file that can be read but once is not read for this.
+        // A file that can be read only once is not read for this.
         Source::File(path) if !path.is_file() => None,
         source => Some(source),
     });
@@ -122,7 +122,7 @@ fn preset() -> Option<Preset> {
     if let Ok(loaded) = store.load(&source, &assigned) {
         return Some(loaded.preset);
     }
-    // Another shape may want keys that are not typed yet; without them it begins as in the explorer.
+    // Another shape may need keys that are not typed yet; without them it begins as in the explorer.
     let mut preset = store.load(&source, &[] as &[&str]).ok()?.preset;
     for (key, value) in assigned.iter().filter_map(|text| text.split_once('=')) {
         let _ = preset.assign(key, value);
@@ -130,10 +130,10 @@ fn preset() -> Option<Preset> {
     Some(preset)
 }
 
-/// The rows that the preset of the line has, and the groups.
+/// The rows of the preset on the line, and the groups.
 fn rows(preset: &Preset) -> impl Iterator<Item = Row> {
     let groups = GROUPS.iter().filter(|row| preset.get(&row.key).is_some());
-    // The table has the keys of every shape.
+    // The table has the keys of all shapes.
     let own = preset.rows().filter(|row| row.fits(GAP_SHAPE, preset.gap.name()));
     own.chain(groups.map(Row::Borrowed))
 }
@@ -147,7 +147,7 @@ fn assignments(current: &OsStr) -> Vec<CompletionCandidate> {
     rows(&preset).filter_map(|row| candidate(typed, format!("{}=", row.key), &row.meaning)).collect()
 }
 
-/// The words that a key takes, or the files.
+/// The values that a key takes, or the files.
 fn values(row: &Parameter, typed: &str, key: &str) -> Vec<CompletionCandidate> {
     let word = |word: &str| candidate(typed, word.to_owned(), "");
     let mut found: Vec<CompletionCandidate> = match row.kind {
@@ -165,7 +165,7 @@ fn values(row: &Parameter, typed: &str, key: &str) -> Vec<CompletionCandidate> {
     found.into_iter().map(|candidate| candidate.add_prefix(format!("{key}="))).collect()
 }
 
-/// Keys with commas between.
+/// Keys separated by commas.
 fn free(current: &OsStr) -> Vec<CompletionCandidate> {
     numbers(current, "")
 }
@@ -174,7 +174,7 @@ fn uncertain(current: &OsStr) -> Vec<CompletionCandidate> {
     numbers(current, "=")
 }
 
-/// The keys that a fit can change, the last of a list, each with what stands behind it.
+/// The keys that a fit can change, for the last item of a list, each followed by `behind`.
 fn numbers(current: &OsStr, behind: &str) -> Vec<CompletionCandidate> {
     let (Some(preset), typed) = (preset(), typed(current)) else { return Vec::new() };
     let (before, last) = typed.rfind(',').map_or(("", typed), |at| typed.split_at(at + 1));
@@ -199,7 +199,7 @@ fn controls(current: &OsStr) -> Vec<CompletionCandidate> {
 mod tests {
     use super::*;
 
-    /// Each name is that of an argument somewhere, and the command stays whole.
+    /// Each name belongs to an argument somewhere, and the command remains valid.
     #[test]
     fn every_name_is_that_of_an_argument() {
         fn ids(command: &Command, all: &mut Vec<String>) {

@@ -1,4 +1,4 @@
-//! The fits of many files as they come: told, put into the table, and in the end summed up.
+//! Handles the fits of many files as they finish: reports each, puts it into the table, and sums all up at the end.
 
 use super::summary::FitSummary;
 use super::{FitArguments, FitSinks, table};
@@ -21,7 +21,7 @@ pub(super) struct FinishedFits<'a> {
     console: &'a Console,
     sinks: FitSinks,
     reports: Vec<FitReport>,
-    /// Where several models are compared.
+    /// The comparison, where several models were compared.
     compared: Option<ModelsReport>,
     worst: Status,
 }
@@ -45,7 +45,7 @@ impl<'a> FinishedFits<'a> {
         left
     }
 
-    /// Writes what was found of a file to all that is asked for.
+    /// Writes the result for one file to every requested output.
     pub(super) fn keep(&mut self, path: &Path, models: &Models, stop: &StopSignal) -> Result<(), Failure> {
         let arguments = self.arguments;
         let Some((found, free)) = models.best() else {
@@ -59,7 +59,7 @@ impl<'a> FinishedFits<'a> {
         }
         let report = FitReport::new(&show_path(path), found, arguments.poisson);
         self.console.warn(&report.doubts);
-        // What was cut off is computed again by a rerun.
+        // A rerun computes again what was cut off.
         if let Some(table) = self.sinks.table.as_mut().filter(|_| stop.signal().is_none()) {
             let fingerprint = table.fingerprint(path);
             table.add(path, Some(&fingerprint), &report.row())?;
@@ -88,7 +88,7 @@ impl<'a> FinishedFits<'a> {
         }
     }
 
-    /// Writes the report, of one of `many` files with a summary, and says how it ended.
+    /// Writes the report, with a summary if the file is one of `many`, and returns how the command ended.
     pub(super) fn end(self, many: bool, loaded: &Loaded, stop: &StopSignal) -> Result<ExitCode, Failure> {
         let Self { arguments, console, sinks, reports, compared, worst, .. } = self;
         let summary = match &sinks.table {
@@ -127,7 +127,7 @@ impl<'a> FinishedFits<'a> {
     }
 }
 
-/// The end of a command whose worst fit ended so.
+/// The end of a command whose worst fit ended in the status `worst`.
 pub(super) fn ended(worst: Status, accepts: bool, console: &Console) -> Result<ExitCode, Failure> {
     match worst {
         Status::Done => console.end(),

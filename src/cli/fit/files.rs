@@ -1,4 +1,4 @@
-//! The files that are fitted: those with measured curves, and not what a fit wrote.
+//! The files to fit: those with measured curves, not those that a fit wrote.
 
 use super::table;
 use crate::cli::Failure;
@@ -8,9 +8,9 @@ use pulloff_engine::report::residuals;
 use pulloff_engine::text::show_path;
 use std::path::{Path, PathBuf};
 
-/// What an earlier fit wrote into the file `path`, by its first line; `None` of anything else.
+/// What an earlier fit wrote into the file `path`, judged by its first line; `None` for anything else.
 fn written_by_a_fit(path: &Path) -> Option<&'static str> {
-    // What is no regular file can be read but once.
+    // Anything but a regular file can be read only once.
     let line = path.is_file().then(|| first_line(path).ok()).flatten()?;
     if table::is_header(&line) {
         Some("a table of fits")
@@ -21,8 +21,8 @@ fn written_by_a_fit(path: &Path) -> Option<&'static str> {
     }
 }
 
-/// The measured curves among `files`: a pattern such as `*.csv` also names what earlier fits wrote beside them, which is left out
-/// with a note.
+/// The measured curves among `files`. A pattern such as `*.csv` also matches what earlier fits wrote beside them; these
+/// files are left out, with a note.
 pub(super) fn measured(files: Vec<PathBuf>, console: &Console) -> Result<Vec<PathBuf>, Failure> {
     let mut kept = Vec::new();
     let mut left_out = Vec::new();

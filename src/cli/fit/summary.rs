@@ -1,4 +1,4 @@
-//! Many fits in a few lines: the mean and the spread of each value, and the files that are not described.
+//! Many fits in a few lines: the mean and spread of each value, and the files that the model does not describe.
 
 use super::table::csv_rows;
 use pulloff_engine::fit::Verdict;
@@ -9,46 +9,46 @@ use pulloff_engine::units::number::said;
 use serde::Serialize;
 use std::fmt::Write;
 
-/// Many fits.
+/// The summary of many fits.
 #[derive(Debug, PartialEq, Serialize)]
 pub(super) struct FitSummary {
     /// How many files there are.
     files: usize,
     /// How many of them the model describes.
     described: usize,
-    /// The values over these, in base units.
+    /// The values over the described files, in base units.
     values: Vec<ValueSpread>,
     /// The other files.
     flagged: Vec<Flagged>,
 }
 
-/// One value over the files that are described.
+/// One value over the files that the model describes.
 #[derive(Debug, PartialEq, Serialize)]
 struct ValueSpread {
     /// Its dotted key.
     key: String,
-    /// Of how many files.
+    /// The number of files with this value.
     count: usize,
-    /// Their mean.
+    /// The mean.
     mean: f64,
-    /// Their standard deviation, of n − 1; `None` of one.
+    /// The standard deviation, with n − 1; `None` for a single file.
     standard_deviation: Option<f64>,
-    /// The root of the mean square of their standard errors: what the deviation is where nothing but noise differs.
+    /// The root mean square of the standard errors: equal to the deviation where the files differ only by noise.
     standard_error: f64,
 }
 
-/// A file that is not described.
+/// A file that the model does not describe.
 #[derive(Debug, PartialEq, Serialize)]
 struct Flagged {
     file: String,
-    /// The word of its verdict, or why it was not fitted.
+    /// The word for its verdict, or why it was not fitted.
     verdict: String,
     /// What speaks against the model, in words.
     reasons: String,
 }
 
 impl FitSummary {
-    /// Of the rows of a table under its header, the file and the verdict first.
+    /// The summary of the rows of a table under its header; the file and the verdict are the first two columns.
     pub(super) fn of(header: &[String], rows: &[Vec<String>]) -> Self {
         let at = |row: &[String], place: Option<usize>| {
             place.and_then(|at| row.get(at)).cloned().unwrap_or_default()
@@ -85,13 +85,13 @@ impl FitSummary {
         }
     }
 
-    /// Of these fits.
+    /// The summary of these fits.
     pub(super) fn of_reports(reports: &[FitReport]) -> Self {
         let (header, rows) = csv_rows(&reports.iter().map(FitReport::row).collect::<Vec<_>>());
         Self::of(&header, &rows)
     }
 
-    /// Lines for a terminal, numbers in the units of `preset`.
+    /// Lines for a terminal, with numbers in the units of `preset`.
     pub(super) fn text(&self, preset: &Preset) -> String {
         let mut text = format!("{} of {} files are described by the model\n", self.described, self.files);
         for ValueSpread { key, count, mean, standard_deviation, standard_error } in &self.values {

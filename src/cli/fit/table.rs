@@ -1,4 +1,4 @@
-//! The table of many fits: one row for each file, whole after each, so that a rerun goes on where it ended.
+//! The table of many fits: one row per file. It is complete after each fit, so that a rerun continues where it ended.
 
 use crate::cli::Failure;
 use crate::cli::output::{OutputSink, Replacing, shown};
@@ -6,7 +6,7 @@ use crate::store::hash::sha256;
 use pulloff_engine::text::show_path;
 use std::path::Path;
 
-/// The table of many files: whole after each.
+/// The table of many files, complete after each fit.
 pub(super) struct FitTable {
     sink: OutputSink,
     settings: String,
@@ -14,7 +14,7 @@ pub(super) struct FitTable {
     rows: Vec<Vec<String>>,
 }
 
-/// The first two columns, and the last: what a row was computed from.
+/// The first two columns. The last one identifies what a row was computed from.
 const FILE: &str = "file";
 const STATE: &str = "verdict";
 const FINGERPRINT: &str = "fingerprint";
@@ -70,7 +70,7 @@ impl FitTable {
         &self.rows
     }
 
-    /// What a row of `path` is computed from.
+    /// Identifies what a row of `path` is computed from.
     pub(super) fn fingerprint(&self, path: &Path) -> String {
         let bytes = std::fs::read(path).unwrap_or_default();
         let mut whole = sha256(&bytes);
@@ -78,7 +78,7 @@ impl FitTable {
         sha256(whole.as_bytes())[..16].to_owned()
     }
 
-    /// How the file was fitted before, in the same way.
+    /// The verdict of an earlier fit of the file, if it was fitted in the same way.
     pub(super) fn state(&self, path: &Path) -> Option<&str> {
         let (shown, fingerprint) = (show_path(path), self.fingerprint(path));
         let mut rows = self.rows.iter();
@@ -86,7 +86,7 @@ impl FitTable {
         row.get(1).map(String::as_str)
     }
 
-    /// Puts a row in, in place of an older one of the same file; one without a fingerprint is tried again by a rerun.
+    /// Adds a row and replaces an older one of the same file; a rerun tries a row without a fingerprint again.
     pub(super) fn add(
         &mut self,
         path: &Path,
@@ -111,7 +111,7 @@ impl FitTable {
         self.sink.write(bytes)
     }
 
-    /// Makes room for the columns of `wanted`: those of rows that were computed otherwise keep their cells under their names.
+    /// Makes room for the columns of `wanted`; rows that were computed differently keep their cells under their own column names.
     fn widen(&mut self, wanted: &[String]) {
         if wanted.iter().all(|name| self.header.contains(name)) {
             return;
@@ -128,7 +128,7 @@ impl FitTable {
     }
 }
 
-/// The rows of fits with their headers under one header; a cell that a fit lacks is empty.
+/// The rows of fits under one common header; a cell that a fit lacks is empty.
 pub(super) fn csv_rows(fits: &[[Vec<String>; 2]]) -> (Vec<String>, Vec<Vec<String>>) {
     let mut columns: Vec<String> = Vec::new();
     for [header, _] in fits {
@@ -145,7 +145,7 @@ pub(super) fn csv_rows(fits: &[[Vec<String>; 2]]) -> (Vec<String>, Vec<Vec<Strin
     (columns, rows)
 }
 
-/// The same as CSV.
+/// The same as CSV text.
 pub(super) fn csv(fits: &[[Vec<String>; 2]]) -> Result<String, Failure> {
     let (columns, rows) = csv_rows(fits);
     let mut writer = csv::Writer::from_writer(Vec::new());
@@ -172,7 +172,7 @@ mod tests {
         Outputs::beside(Inputs::default(), Replacing::default()).kept("--table", path).unwrap()
     }
 
-    /// Rows of other keys stay under their own names.
+    /// Rows with different keys keep their own columns.
     #[test]
     fn a_value_stays_under_its_key() {
         let folder = tempfile::tempdir().unwrap();
