@@ -6,20 +6,20 @@
 //! w(r) = h(r) + u(r) − δ = (2/π) ∫_s^r (g(a) − δ)/√(r² − a²) da,   r > s
 //! ```
 //!
-//! must not be negative: where it is, the next crest would already touch, and the state cannot be reached as computed. It
-//! can become negative for the first time only where g < δ (see [`outside`]), so the table of g is searched for such
-//! radii, and only there w is computed. The search is complete: waves far out cannot reach, for
+//! must not be negative: where it is, the next crest would already touch, and the state cannot be reached as computed.
+//! It can become negative for the first time only where g < δ (see [`outside`]), so the table of g is searched for
+//! such radii, and w is computed only there. The search is complete: waves far out cannot touch, because
 //!
 //! ```text
 //! g(a) ≥ κa² − Σ A (√(πqa/2) + 1)
 //! ```
 //!
-//! and a gap that ends is searched to its end. A formula is searched to ten times its length; what is not known, or not
-//! looked at, is said. Without adhesion the pressure inside must not be negative either.
+//! and a gap that ends is searched to its end. A formula is searched to ten times its length. What is unknown, or was
+//! not examined, is reported as such. Without adhesion the pressure inside must not be negative either.
 //!
-//! With adhesion tension inside is allowed, whatever its size: the JKR limit has adhesion without range, which bears any
-//! tension until an edge runs, and no edge is there. So the limit γ → 0 is not γ = 0: states that an adhesion however
-//! weak allows are refused without any.
+//! With adhesion, tension inside is allowed, however large: in the JKR limit adhesion has no range and bears any
+//! tension until an edge runs, and there is no edge inside. So the limit γ → 0 differs from γ = 0: states that any
+//! adhesion allows, however weak, are refused without it.
 
 use crate::disc::{Table, outside};
 use crate::elementary::{pow, sin};
@@ -31,7 +31,7 @@ use crate::root;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
-/// A formula is searched up to so many of its lengths.
+/// A formula is searched out to this many of its lengths.
 const LENGTHS: f64 = 10.0;
 
 /// The nearest crest is looked for up to this multiple of s or this many waves outside the edge, whichever is more.
@@ -40,31 +40,35 @@ const FARTHEST_WAVES: f64 = 3.0;
 
 /// Steps per wave: a parabola through three of them sees every crest.
 const STEPS_PER_WAVE: f64 = 8.0;
-/// Steps in the first wave outside the edge, where the gap has a root at the edge: even in √(r − s).
+/// Steps in the first wave outside the edge, evenly spaced in √(r − s): the gap has a square root at the edge.
 const STEPS_AT_EDGE: f64 = 12.0;
 /// Steps from the edge to the end of the search for a gap without waves.
 const STEPS_WITHOUT_WAVES: f64 = 24.0;
-/// The nearest crest is looked for while h is not above δ by this many times √(2πγs) and this share of g(s).
+/// The nearest crest is looked for as long as h exceeds δ by no more than this many times √(2πγs) plus this share of
+/// g(s).
 const MARGIN: [f64; 2] = [2.0, 0.5];
-/// A gap counts as negative below this share of |δ| + √(2πγs): rounding.
+/// A gap counts as negative where it is below minus this share of |δ| + √(2πγs): less is rounding.
 const ROUNDING: f64 = 1e-12;
-/// A pressure counts as negative below this share of the largest: the square root of rounding, as it falls to the edge.
+/// A pressure counts as negative below minus this share of the largest: the square root of rounding, because the
+/// pressure falls off towards the edge.
 const PRESSED: f64 = 1e-7;
-/// Steps per wave, and at least and at most on the whole range, in the search for a falling gap.
+/// Steps in the search for a falling gap: per wave, and at least and at most over the whole range.
 const SLOPE_STEPS_PER_WAVE: f64 = 32.0;
 const SLOPE_STEPS: f64 = 200.0;
 const MOST_SLOPE_STEPS: f64 = 40_000.0;
-/// Points of the pressure without adhesion, even in the angle of r = s sin θ, and for each wave.
+/// Points at which the pressure without adhesion is evaluated, evenly spaced in the angle θ of r = s sin θ, and points
+/// for each wave.
 const PRESSURES: f64 = 100.0;
 const PRESSURES_PER_WAVE: f64 = 16.0;
 
-/// Waves are searched at least this far out, however far they could reach: so many of the shortest from the axis.
+/// Waves are searched at least this far out, however far they could reach: this many of the shortest waves from the
+/// axis.
 fn minimum_searched(steepest: f64) -> f64 {
     const WAVES: f64 = 1500.0;
     if steepest > 0.0 { WAVES * TAU / steepest } else { 0.0 }
 }
 
-/// A place outside the contact at which the bodies come near.
+/// A place outside the contact where the bodies come near each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crest {
     /// r, where the deformed gap has a minimum.
@@ -84,7 +88,7 @@ pub struct Admissibility {
     pub least_pressure: Option<(f64, f64)>,
     /// Whether the bodies stay apart outside, as far as the gap is known, and, without adhesion, nothing pulls inside.
     pub holds: bool,
-    /// The radius up to which the gap was looked at, where what lies beyond is unknown; `None` where nothing can follow.
+    /// The radius up to which the gap was examined, if what lies beyond is unknown; `None` where nothing can follow.
     pub known_to: Option<f64>,
 }
 
@@ -95,7 +99,7 @@ impl Admissibility {
     }
 }
 
-/// What says of the states of one problem whether they are admissible.
+/// Decides whether the states of one problem are admissible.
 #[derive(Debug, Clone)]
 pub struct Judge {
     problem: Reduced,
@@ -109,7 +113,7 @@ impl Judge {
         Self { problem: problem.clone(), table: Arc::clone(table), form: problem.gap.form() }
     }
 
-    /// The admissibility of the state (s, δ), and the nearest crest whether it touches or not.
+    /// The admissibility of the state (s, δ), with the nearest crest whether it touches or not.
     pub fn judge(&self, s: f64, delta: f64, progress: &dyn Progress) -> Admissibility {
         let found = self.verdict(s, delta, progress);
         let nearest = match (found.nearest, self.nearest_crest(s, delta, progress)) {
@@ -119,8 +123,8 @@ impl Judge {
         Admissibility { nearest, ..found }
     }
 
-    /// The same with a crest only where one overlaps: all that is needed of many states. Where `progress` says stop, nothing is
-    /// known of the gap outside.
+    /// The same, but with a crest only where one overlaps, which is enough when there are many states. Where
+    /// `progress` says stop, nothing is known about the gap outside.
     pub fn verdict(&self, s: f64, delta: f64, progress: &dyn Progress) -> Admissibility {
         let (end, known_to) = self.search_end(s, delta);
         let overlap = -ROUNDING * (delta.abs() + self.opening(s));
@@ -149,7 +153,8 @@ impl Judge {
         }
     }
 
-    /// The radius beyond which it is not known whether a disc of radius `s` stays apart; `None` where nothing can follow.
+    /// The radius beyond which it is not known whether the bodies stay apart outside a disc of radius `s`; `None`
+    /// where nothing can follow.
     pub fn unknown_beyond(&self, s: f64) -> Option<f64> {
         self.search_end(s, 0.0).1
     }
@@ -159,7 +164,7 @@ impl Judge {
         (TAU * self.problem.work_of_adhesion * s).sqrt()
     }
 
-    /// How far out the gap must be looked at, and that radius again where what follows is not known.
+    /// How far out the gap must be examined, and that radius again if what follows is unknown.
     fn search_end(&self, s: f64, delta: f64) -> (f64, Option<f64>) {
         match &self.form {
             // g only grows.
@@ -190,10 +195,11 @@ impl Judge {
         }
     }
 
-    /// The least pressure inside with its radius, and the largest, in a disc of radius `s` without adhesion.
+    /// In a disc of radius `s` without adhesion: the radius of the least pressure, that pressure, and the largest
+    /// pressure.
     ///
-    /// In equilibrium its edge neither pulls nor presses: δ = g(s). That of rings is a little off, and an edge that pulled by as
-    /// much would be taken for a disc that does.
+    /// In equilibrium its edge neither pulls nor presses, so δ = g(s). The δ of rings is slightly off, and an edge
+    /// that pulled by that much would be mistaken for a disc that pulls.
     fn least_pressure(&self, s: f64) -> Option<(f64, f64, f64)> {
         let panels = self.table.up_to(s).ok()?;
         let delta = panels.value(panels.place(s));
@@ -212,16 +218,16 @@ impl Judge {
         least.map(|(r, p)| (r, p, most))
     }
 
-    /// The minimum of the deformed gap outside that is smallest, near the edge; `None` where the gap only grows,
-    /// and where `progress` said stop.
+    /// The smallest minimum of the deformed gap outside, near the edge; `None` where the gap only grows, and where
+    /// `progress` said stop.
     pub fn nearest_crest(&self, s: f64, delta: f64, progress: &dyn Progress) -> Option<Crest> {
         let gap = &self.problem.gap;
         let mut radii = radii(s, gap.feature_length());
-        // A measured gap ends, and is no number beyond.
+        // A measured gap ends, and is not a number beyond its end.
         let h: Vec<f64> = radii.iter().map(|&r| gap.jet(r).value).take_while(|h| h.is_finite()).collect();
         let opening = self.opening(s);
         let reach = delta + MARGIN[0] * opening + MARGIN[1] * (delta + opening).abs();
-        // One step more, so that a minimum at the last radius within reach has two neighbours.
+        // One more step, so that a minimum at the last radius within reach has two neighbours.
         let within = h.iter().rposition(|&h| h < reach).map_or(0, |at| at + 2).min(h.len());
         radii.truncate(within);
         let panels = self.table.up_to(radii.last().copied()?).ok()?;
@@ -247,8 +253,8 @@ impl Judge {
     }
 }
 
-/// Whether h falls somewhere on (0, `largest`]: without adhesion a disc of every radius up to there could then not be
-/// connected, for which h' > 0 is needed (on the wavy sphere λ²/(AR) > 8.5761).
+/// Whether h falls anywhere on (0, `largest`]. If it does, a disc without adhesion cannot be connected at every radius
+/// up to there: that needs h' > 0 (on the wavy sphere λ²/(AR) > 8.5761).
 pub fn falls(gap: &dyn Gap, largest: f64) -> bool {
     let step = gap.feature_length().map_or(f64::INFINITY, |wave| wave / SLOPE_STEPS_PER_WAVE);
     let step = step.min(largest / SLOPE_STEPS).max(largest / MOST_SLOPE_STEPS);
@@ -259,7 +265,7 @@ pub fn falls(gap: &dyn Gap, largest: f64) -> bool {
         if jet.first < 0.0 {
             return true;
         }
-        // Where h'' turns from falling to rising the slope is least, between two radii of the search.
+        // Where h'' turns from negative to positive the slope is least, between two radii of the search.
         if gap.jet(last).second < 0.0 && jet.second > 0.0 {
             let [_, rising] = root::halved(last, r, |r| gap.jet(r).second < 0.0);
             if gap.jet(rising).first < 0.0 {
@@ -280,12 +286,12 @@ fn vertex([a, b, c]: [f64; 3], [fa, fb, fc]: [f64; 3]) -> (f64, f64, f64) {
     if bend.is_nan() || bend <= 0.0 {
         return (b, fb, width);
     }
-    // Not beyond the three: they bracket the minimum, or nearly do.
+    // Stay within the three points: they bracket the minimum, or nearly do.
     let step = (-0.5 * slope / bend).clamp(a - b, c - b);
     (b + step, fb + (slope + bend * step) * step, width)
 }
 
-/// How far out the nearest crest is looked for at most.
+/// How far out, at most, the nearest crest is looked for.
 fn farthest(s: f64, wave: Option<f64>) -> f64 {
     (FARTHEST * s).max(s + FARTHEST_WAVES * wave.unwrap_or(0.0))
 }
@@ -332,7 +338,7 @@ mod tests {
         judge.judge(s, basis.equilibrium(problem, s).unwrap().approach, &Unwatched)
     }
 
-    /// The least gap from `s` to far outside among many radii, from the exact solution by quadrature.
+    /// The least gap over many radii from `s` to far outside, by quadrature of the exact solution.
     fn exact_least(problem: &Problem, s: f64) -> f64 {
         let exact = theory::Exact::of(problem);
         let delta = exact.approach(s);
@@ -377,7 +383,7 @@ mod tests {
                 assert_eq!(ours.holds, exact >= 0.0, "{s}: {ours:?} {exact}");
                 seen[usize::from(ours.holds)] += 1;
                 if exact < 0.0 {
-                    // Ours is the minimum itself, the other the least of some radii near it.
+                    // Ours is the minimum itself, the other the least value at some radii near it.
                     let gap = ours.nearest.unwrap().gap;
                     assert!(gap <= exact + 1e-12 && exact - gap < 1e-5, "{s}: {gap} {exact}");
                 }
@@ -388,7 +394,7 @@ mod tests {
 
     #[test]
     fn where_the_gap_ends_the_search_ends() {
-        /// The wavy sphere up to r = 0.43, at which a crest near 0.445 is not known.
+        /// The wavy sphere known only up to r = 0.43, so that a crest near 0.445 is not known.
         #[derive(Debug)]
         struct Measured(Shape);
 
@@ -424,7 +430,7 @@ mod tests {
             assert!(!all.holds && all.known_to.is_none());
             let found = at(&measured, &short, &measured_basis, s);
             assert_eq!(!found.holds, seen, "{s}");
-            // What lies beyond is not known, and that is said.
+            // What lies beyond is unknown, and the result says so.
             assert!(found.known_to.is_some_and(|r| (r - 0.43).abs() < 1e-5), "{found:?}");
         }
         let delta = basis.equilibrium(&measured, 0.42).unwrap().approach;

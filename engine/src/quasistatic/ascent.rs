@@ -1,7 +1,8 @@
-//! The way up a solution at a slowly rising control: from the first touch to where the edge lands, along the curve to the next
-//! maximum of the control, from there outward to where the edge lands, and on.
+//! The way up a solution at a slowly rising control: from the first touch to where the edge lands, along the curve to
+//! the next maximum of the control, from there outward to where the edge lands, and so on.
 //!
-//! One disc alone: where a crest outside touches on the way, rings of contact take another one, see [`path`](super::path).
+//! This is for one disc alone. Where a crest outside touches on the way, rings of contact take a different way, see
+//! [`path`](super::path).
 
 use super::jump::{self, EdgeDirection, Landing};
 use super::monotone::Monotone;
@@ -16,8 +17,9 @@ pub struct Rise {
     pub end: Place,
 }
 
-/// The stable pieces of the way up of bodies that touch where the weighted control is `touch`, as far as the first whose outer end
-/// `enough` says is far enough, or as the solution goes. Empty where nothing is stable after the touch.
+/// The stable pieces of the way up for bodies that touch where the weighted control is `touch`: up to the first piece
+/// whose outer end is far enough according to `enough`, or to the end of the solution. Empty where nothing is stable
+/// after the touch.
 pub fn ascend(
     solution: &dyn Solution,
     monotone: &Monotone,

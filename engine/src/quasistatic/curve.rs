@@ -68,7 +68,7 @@ pub struct Sample {
     pub slopes: Stability,
 }
 
-/// The equilibrium curve, its states from the largest contact radius to the smallest.
+/// The equilibrium curve, with its states from the largest contact radius to the smallest.
 #[derive(Debug, Clone)]
 pub struct Curve {
     /// The equations it solves, with its scales.
@@ -81,11 +81,11 @@ pub struct Curve {
     pub stop: CurveStop,
     /// The radii of the solution at which it begins and ends: contact radii, or outer edges of zones.
     ends: [f64; 2],
-    /// The stretches held, by control: those of the whole solution.
+    /// The stretches kept so far, by control; they cover the whole solution.
     held: Vec<Arc<Monotone>>,
 }
 
-/// The settings of the arc-length tracer for a gap with this feature length.
+/// The settings of the arc-length tracer, which depend on the feature length of the gap.
 pub fn settings(equilibrium: &Equilibrium) -> Settings {
     let mut settings = Settings::new(unknown::COUNT);
     if let Some(wave) = equilibrium.problem.gap.feature_length() {
@@ -97,7 +97,7 @@ pub fn settings(equilibrium: &Equilibrium) -> Settings {
 
 /// Radii from `from` inward to `to`, both included, in steps of at most `ratio` of themselves and `step`.
 pub fn radii(from: f64, to: f64, ratio: f64, step: f64) -> Vec<f64> {
-    // With more steps than there may be they grow, so that the last still is at `to`.
+    // If there would be too many steps they grow, so that the last one is still at `to`.
     let step = step.max(2.0 * (from - to) / MOST_STATES);
     let inner = std::iter::successors(Some(from), |s| Some(s - (ratio * s).min(step)));
     let mut radii: Vec<f64> = inner.take_while(|s| *s > to).collect();
@@ -110,12 +110,12 @@ pub fn radii(from: f64, to: f64, ratio: f64, step: f64) -> Vec<f64> {
 pub enum Detail {
     /// Enough to be drawn.
     Drawn,
-    /// Those between panels, where only limit points and unloadings are wanted.
+    /// Only those between panels, where only limit points and unloadings are wanted.
     Borders,
 }
 
-/// The places of a curve's states from the radius `from` inward to `to`: every panel of the solution with as many, the
-/// borders at which it has a corner from both sides.
+/// The places of a curve's states from the radius `from` inward to `to`: the same number on every panel of the
+/// solution, and both sides of a border at which it has a corner.
 pub fn places(solution: &dyn Solution, from: f64, to: f64, detail: Detail) -> Vec<Place> {
     let [first, last] = [from, to].map(|s| solution.place(s));
     let Some(first) = first else { return Vec::new() };
@@ -176,7 +176,7 @@ impl Curve {
             let Local { contact_radius, approach, force, .. } = at;
             Sample { contact_radius, approach, force, slopes: at.stability() }
         };
-        // As far as it is connected.
+        // Only as far as the curve is connected.
         let mut samples: Vec<Sample> = Vec::new();
         let mut stop = CurveStop::End;
         for on_panel in places(&*solution, from, to, detail).chunk_by(|a, b| a.panel == b.panel) {
@@ -190,7 +190,7 @@ impl Curve {
                 samples.extend(solution.at_four(panel, x).into_iter().take(some.len()).map(sample));
             }
         }
-        // A radius asked for is the one answered with, not what the panel's variable makes of it.
+        // The radius returned is the one asked for, not what the panel's variable makes of it.
         samples.first_mut()?.contact_radius = from;
         let last = samples.last_mut()?;
         if stop == CurveStop::End {
@@ -206,11 +206,12 @@ impl Curve {
         Some(Self { equilibrium, solution, samples, stop, ends, held: Vec::new() })
     }
 
-    /// The curve of adhesion with a range from the largest of `zones` inward, as far as each state is one disc in one zone. What it
-    /// solves is none of its equilibria, which have no zone; its samples have the radii of the contact, 0 where there is none.
+    /// The curve of adhesion with a range, from the largest of `zones` inward, as long as each state is one disc in
+    /// one zone. Its `equilibrium` knows no zone, so the states of this curve do not solve those equations. Its
+    /// samples have the radius of the contact, 0 where there is none.
     ///
     /// # Errors
-    /// [`PathError`] where no state is one, or that cannot be known.
+    /// [`PathError`] where no state is of that kind, or where that cannot be known.
     pub fn of_zones(
         problem: Reduced,
         basis: Arc<dyn Basis>,
@@ -233,13 +234,13 @@ impl Curve {
         Ok(Self { equilibrium, solution, samples, stop: CurveStop::End, ends, held: Vec::new() })
     }
 
-    /// The same with a table of the gap of its own.
+    /// As `new`, but with a table of the gap of its own.
     pub fn of(problem: Reduced, basis: Arc<dyn Basis>, from: f64, to: f64) -> Option<Self> {
         let table = Table::new(Arc::clone(&problem.gap), from, &Unwatched).ok()?;
         Self::new(problem, basis, Arc::new(table), [from, to], Detail::Drawn, &Unwatched).ok().flatten()
     }
 
-    /// The same curve under another work of adhesion, with the states between panels; `None` as [`Curve::new`].
+    /// The same curve under another work of adhesion, with the states between panels; `None` as for [`Curve::new`].
     ///
     /// # Errors
     /// [`Stopped`].
@@ -270,7 +271,7 @@ impl Curve {
     /// could be added.
     pub fn reach(&mut self, to: f64) -> bool {
         let to = to.min(self.equilibrium.problem.largest_contact());
-        // A solution of the equations that the curve has is none of zones.
+        // Solving the equations of the curve again would give a solution without zones.
         if to <= self.solution.reach() || self.is_of_zones() {
             return false;
         }
@@ -291,7 +292,7 @@ impl Curve {
         held.map_or_else(|| Arc::new(Monotone::of(&*self.solution, control)), Arc::clone)
     }
 
-    /// Holds the stretches of `control` from now on: they are found once.
+    /// Keeps the stretches of `control` from now on, so that they are found only once.
     pub fn hold(&mut self, control: Control) {
         if self.held.iter().all(|held| held.control != control) {
             self.held.push(self.monotone(control));
@@ -328,7 +329,7 @@ impl Curve {
     /// The first point of a walk outward from the corner at the radius `s`: at the distance `length`, in units of the scales, or at
     /// the end of the panel. `None` where there is no corner.
     ///
-    /// Just outside a corner the curve is vertical, which no tangent by s can say.
+    /// Just outside a corner the curve is vertical, which no tangent with respect to s can express.
     pub fn beyond_corner(&self, s: f64, length: f64) -> Option<StatePoint> {
         let place = self.solution.place(s)?;
         let Place { panel, .. } = outer_side(&*self.solution, place);
@@ -346,8 +347,8 @@ impl Curve {
         self.equilibrium.explicit(span.radius(far))
     }
 
-    /// The same stretch of curve by spherical arc-length continuation, landing exactly on its end and on each corner on
-    /// the way, from which it goes on with the tangent of the other side.
+    /// The same stretch of curve by spherical arc-length continuation. It lands exactly on the end and on each corner
+    /// on the way, and goes on from a corner with the tangent of the other side.
     ///
     /// `adjust` may change the settings of the tracer. The scales of the arc length are the ranges of δ, P and s.
     pub fn traced(
@@ -366,7 +367,7 @@ impl Curve {
             let last = self.equilibrium.explicit(end)?;
             let corner = end > to;
             let value = end / self.equilibrium.scales.contact_radius;
-            // Next to a corner the curve is vertical, and what Newton's method knows of it ends at the corner.
+            // Next to a corner the curve is vertical, and Newton's method knows it only up to the corner.
             let is_near = |branch: &Branch| {
                 let near = |point: &StatePoint| (point.y() - last.y()).norm() <= CORNER_STEP;
                 corner && branch.points.last().is_some_and(near)

@@ -1,12 +1,12 @@
-//! The way down a solution at a slowly falling control: along it to the next minimum of the control, from there to where the
-//! edge lands, and on.
+//! The way down a solution at a slowly falling control: along it to the next minimum of the control, from there to
+//! where the edge lands, and so on.
 
 use super::jump::{self, EdgeDirection, Landing};
 use super::monotone::Monotone;
 use crate::disc::{Place, Solution};
 
-/// A start this near to a limit point, relative to its radius, is at its control value to rounding: comparing values decides
-/// nothing there.
+/// A start this near to a limit point, relative to its radius, has its control value to rounding: comparing values
+/// decides nothing there.
 const AT_LIMIT: f64 = 3e-8;
 
 /// An end this near to a landing is the landing.
@@ -30,7 +30,7 @@ pub struct Descent {
     pub jumps: Vec<Jump>,
     /// The stable pieces it follows, each from its outer end to its inner.
     pub pieces: Vec<[Place; 2]>,
-    /// The radius below which there is no equilibrium, where that ends it.
+    /// The radius below which there is no equilibrium, if that ends the way down.
     pub hole: Option<f64>,
 }
 
@@ -46,7 +46,7 @@ impl Descent {
     }
 }
 
-/// The start at the radius `s`, or at the limit point that it is at to rounding; `None` where it is not stable.
+/// The start at the radius `s`, or at the limit point that it matches to rounding; `None` where it is not stable.
 pub fn stable_start(solution: &dyn Solution, monotone: &Monotone, s: f64) -> Option<Landing> {
     let at = monotone.stretch_of(s);
     let stretch = monotone.stretches.get(at)?;
@@ -60,7 +60,7 @@ pub fn stable_start(solution: &dyn Solution, monotone: &Monotone, s: f64) -> Opt
         let inner = at.checked_sub(1)?;
         return Some(Landing { place: monotone.stretches[inner].outer, stretch: inner });
     }
-    // Just inside a minimum the next stable state is as far outside of it.
+    // Just inside a minimum the next stable state is equally far outside it.
     let outer = monotone.stretches.get(at + 1).filter(|next| next.rising && next.joined)?;
     if limit - s > AT_LIMIT * limit {
         return None;

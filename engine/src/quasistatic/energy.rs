@@ -15,8 +15,8 @@
 //! ```
 //!
 //! After a pull-off the curve goes on to s = 0 and then along P = 0 to where the spring is slack. Under a dead load there is
-//! no such place: the load falls for ever and no loss is reported. Both numbers are read from one table: that they agree
-//! checks the event and the quadrature, not the table.
+//! such place: the load falls for ever and no loss is reported. Both numbers are read from one table, so their
+//! agreement checks the event and the quadrature, not the table.
 
 use super::equilibrium::State;
 use crate::disc::{Local, Place, Solution, sources::GAUSS};
@@ -27,11 +27,12 @@ use crate::problem::Control;
 pub enum Losses {
     /// Once, by the drop of the potential.
     Once,
-    /// By the area between the curve and the control line as well, which costs far more: two independent numbers that must agree.
+    /// Also by the area between the curve and the control line, which costs far more: two independent numbers that
+    /// must agree.
     Twice,
 }
 
-/// The potential of bodies and device at `state`, but for a constant of the control.
+/// The potential of bodies and device at `state`, up to a constant of the control.
 pub fn potential(control: Control, value: f64, state: &State) -> f64 {
     match control {
         Control::Displacement => state.energy,
@@ -47,7 +48,7 @@ pub fn loss(control: Control, before: &State, after: Option<&State>) -> Option<f
     let Some(after) = after else {
         return (control != Control::Force).then(|| potential(control, 0.0, before));
     };
-    // The device's part as a product: its energy can be a billion times the loss, and would cancel.
+    // The device's part as a product: its energy can be a billion times the loss, and a difference would cancel.
     let device = match control {
         Control::Displacement => 0.0,
         Control::Force => -before.force * (before.approach - after.approach),
@@ -99,7 +100,8 @@ fn on_panel(
 
 /// The energy lost in a jump as the area between the curve and the control line, from `before` to `after`.
 ///
-/// Across a narrow hole, and across a border where zones change from one root to another, the work is the step of the energy.
+/// Across a narrow hole, and across a border where zones change from one root to another, the work is the step in
+/// energy.
 /// `None` for a pull-off under a dead load, or where the basis has no equilibrium on the way.
 pub fn area(solution: &dyn Solution, control: Control, before: Place, after: Option<Place>) -> Option<f64> {
     let line = solution.at(before);
@@ -110,7 +112,7 @@ pub fn area(solution: &dyn Solution, control: Control, before: Place, after: Opt
         Control::Stiffness(k) => 1.0 / k,
     };
     let end = after.unwrap_or(Place { panel: 0, x: -1.0 });
-    // Outward the same stretch is passed the other way.
+    // An outward jump passes the same stretch in the other direction.
     let is_inward = (end.panel, end.x) <= (before.panel, before.x);
     let (end, before, sign) = if is_inward { (end, before, 1.0) } else { (before, end, -1.0) };
     let in_zones = solution.edges(before).zone.is_some();
@@ -146,7 +148,7 @@ pub fn area(solution: &dyn Solution, control: Control, before: Place, after: Opt
     if let Some(to) = after.map(|place| solution.at(place)) {
         return Some(sign * sum + 0.5 * (line.force - to.force) * (line.approach - to.approach));
     }
-    // Rings begin a little outside the axis: what is missing there is a rectangle to rounding.
+    // Rings begin slightly outside the axis: to rounding, what is missing there is a rectangle.
     let first = solution.at(end);
     let rest = (first.force - line.force) * first.approach;
     Some(sum + rest + line.force * line.approach + 0.5 * line.force * line.force * compliance)

@@ -43,7 +43,7 @@ pub struct Scales {
 impl Scales {
     /// The ranges over states (δ, P, s), as powers of two; a quantity that does not vary is scaled by its size.
     ///
-    /// Powers of two cost no digit: a state comes back from the unknowns as it went in.
+    /// Powers of two cost no digits: a state comes back from the unknowns exactly as it went in.
     pub fn of(states: impl IntoIterator<Item = [f64; 3]>) -> Self {
         let empty = [f64::INFINITY, f64::NEG_INFINITY, 0.0];
         let mut ranges = [empty; 3];
@@ -115,15 +115,15 @@ impl Stability {
     }
 }
 
-/// How the force and the contact area answer to the approach at a state.
+/// How the force and the contact area respond to the approach at a state.
 ///
 /// Units: a force per length, and a length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stiffness {
-    /// `P_δ` = ∂P/∂δ at a contact radius held fast: the stiffness of the contact itself.
+    /// `P_δ` = ∂P/∂δ at a fixed contact radius: the stiffness of the contact itself.
     pub contact: f64,
-    /// dP/dδ along the curve; infinite at a limit point of the approach, its sign that of the side the rounding left; not a number
-    /// at a corner of the curve, where it has two.
+    /// dP/dδ along the curve; infinite at a limit point of the approach, with the sign that rounding leaves it; not a
+    /// number at a corner of the curve, where there are two slopes.
     pub tangent: f64,
     /// dA/dδ along the curve, A = πs² the contact area; infinite, or not a number, where `tangent` is.
     pub area_slope: f64,
@@ -207,7 +207,7 @@ impl Equilibrium {
         State { contact_radius: s, approach: delta, force, energy }
     }
 
-    /// What says whether a state is admissible.
+    /// The judge of whether a state is admissible.
     pub fn judge(&self) -> Judge {
         Judge::new(&self.problem, &self.table)
     }
@@ -248,9 +248,9 @@ impl Equilibrium {
         if found.len() == points.len() { Ok(all.collect()) } else { Err(Stopped) }
     }
 
-    /// The state and the stiffnesses at a point, which is evaluated.
+    /// The state and the stiffnesses at a point, already evaluated as `here`.
     fn known(&self, point: &StatePoint, here: &Evaluation) -> (State, Stiffness) {
-        /// The slope of the scaled approach along the curve, `t_δ`, that a located limit point leaves.
+        /// The largest slope of the scaled approach along the curve, `t_δ`, that remains at a located limit point.
         const ROUNDING: f64 = 1e-10;
         let [delta, force, s] = self.quantities(point.y());
         let [along_delta, along_force, along_s] = self.quantities(point.tangent());
@@ -276,7 +276,7 @@ impl Equilibrium {
         self.point(&self.basis.equilibrium(&self.problem, s)?)
     }
 
-    /// The wave index of an edge, where the gap has one wave alone.
+    /// The wave index of an edge, where the gap has a single wave.
     pub fn wave(&self, s: f64) -> Option<u64> {
         wave_index(s, self.problem.gap.wavelength())
     }
@@ -324,7 +324,7 @@ impl System for Equilibrium {
     fn second(&self, at: &Linearization, v: &Unknowns, mut second: MatrixMut<'_>) -> Option<()> {
         let Scales { approach: d0, force: p0, contact_radius: s0 } = self.scales;
         let &[r_dd, r_ds, r_ss, p_dd, p_ds, p_ss] = at.kept.as_slice() else { return None };
-        // Both depend on δ and s alone.
+        // Both depend only on δ and s.
         let rows = [[r_dd, r_ds, r_ss], [-p_dd / p0, -p_ds / p0, -p_ss / p0]].map(|[dd, ds, ss]| {
             let (dd, ds, ss) = (dd * d0 * d0, ds * d0 * s0, ss * s0 * s0);
             [dd * v[0] + ds * v[2], ds * v[0] + ss * v[2]]
@@ -375,7 +375,7 @@ mod tests {
             let stiffness = equilibrium.state_and_stiffness(point).1;
             assert!((stiffness.contact / dd - 1.0).abs() < 1e-5, "{} {dd}", stiffness.contact);
             for k in [0.01, 0.15, 1.0, 20.0] {
-                // The potential of bodies and device: its second derivatives are those of U and k on U_δδ.
+                // The potential of bodies and device: its second derivatives are those of U, with k added to U_δδ.
                 let determinant = ss * (dd + k) - sd * sd;
                 if determinant.abs() < 1e-4 * (ss.abs() * (dd + k) + sd * sd) {
                     continue;

@@ -1,9 +1,10 @@
 //! Where the edge lands when it runs at constant control.
 //!
-//! Running inward from a minimum the control first rises above its value, and the landing is on the first stretch further in
-//! on which it falls back to it; running outward on the first one on which it rises back. Either way the control grows
-//! with s there, which is stability. A stretch whose own minimum is the value to rounding is landed on. A narrow hole is passed where
-//! the control drives the edge on both sides of it.
+//! When the edge runs inward from a minimum, the control first rises above its value, and the edge lands on the first
+//! stretch further in on which the control falls back to it. When it runs outward, it lands on the first stretch on
+//! which the control rises back. Either way the control grows with s there, which is stability. The edge also lands on
+//! a stretch whose own minimum equals the value to rounding. A narrow hole is passed where the control drives the edge
+//! on both sides of it.
 
 use super::monotone::Monotone;
 use crate::disc::{Place, Solution};
@@ -26,14 +27,14 @@ pub struct Landing {
     pub stretch: usize,
 }
 
-/// Values this near to each other, relative to their size, are one.
+/// Values this near to each other, relative to their size, count as equal.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Runs from the stretch `from` at the weighted control `value` to the next stable state; `None` when the curve has none in
 /// that direction.
 ///
 /// # Errors
-/// The radius at which the curve ends before that is known.
+/// The radius at which the curve ends before the landing is known.
 pub fn run(
     solution: &dyn Solution,
     monotone: &Monotone,

@@ -1,4 +1,4 @@
-//! The potential of bodies and device over the contact radius, the control held.
+//! The potential of bodies and device over the contact radius, with the control held.
 //!
 //! At a radius s that is not in equilibrium the control still fixes δ, the force being linear in δ. With x = δ − δₑ the
 //! distance from the equilibrium (δₑ, Pₑ) of the same radius, and C(s) = δₑ, Pₑ or δₑ + Pₑ/k the value that the control
@@ -10,12 +10,12 @@
 //! Π'   = ∂U/∂s = P_s x + ½ P_sδ x²     since ∂U/∂s vanishes at x = 0, ∂²U/∂s∂δ = P_s, and U is quadratic in δ
 //! ```
 //!
-//! so one explicit equilibrium per radius gives the slope, which vanishes with all its digits where the state is in
-//! equilibrium; Π is its integral from the present radius (four Lobatto nodes a step), not a difference of energies that
-//! nearly cancel. It is a minimum where C grows with s, which is stability, and a maximum where C falls.
+//! so one explicit equilibrium per radius gives the slope, which vanishes to full precision where the state is in
+//! equilibrium. Π is its integral from the present radius (four Lobatto nodes a step), not a difference of energies
+//! that nearly cancel. It has a minimum where C grows with s, which is stability, and a maximum where C falls.
 //!
-//! With tension at the edge `x < −P_s/P_sδ`. Beyond, the edge is pressed: the bodies overlap just outside, and the
-//! potential is that of an impossible state. Such samples are marked.
+//! With tension at the edge `x < −P_s/P_sδ`. Beyond that, the edge is pressed: the bodies overlap just outside, and
+//! the potential is that of an impossible state. Such samples are marked.
 
 use super::curve::Curve;
 use super::energy::potential;
@@ -27,10 +27,10 @@ use crate::elementary::ln;
 use crate::problem::Control;
 use crate::progress::Unwatched;
 
-/// Samples of a landscape at least: a short range is drawn with as many steps as this.
+/// The least number of samples of a landscape: even a short range is drawn with this many steps.
 const SAMPLES: f64 = 100.0;
 
-/// Samples on each panel of the solution at least, and the largest step relative to the radius.
+/// The least number of samples on each panel of the solution, and the largest step relative to the radius.
 const SAMPLES_PER_PANEL: f64 = 20.0;
 const RATIO: f64 = 0.025;
 
@@ -62,7 +62,7 @@ const INNER: f64 = 0.447_213_595_499_958;
 pub struct LandscapeSample {
     /// s.
     pub contact_radius: f64,
-    /// Π less that of the present radius.
+    /// Π minus its value at the present radius.
     pub potential: f64,
     /// Whether the edge pulls; where it is pressed the bodies overlap just outside, and no such state exists.
     pub pulled: bool,
@@ -73,7 +73,7 @@ pub struct LandscapeSample {
 pub struct Stationary {
     /// s.
     pub contact_radius: f64,
-    /// Π less that of the present radius.
+    /// Π minus its value at the present radius.
     pub potential: f64,
     /// A minimum of the potential; a maximum otherwise.
     pub stable: bool,
@@ -84,7 +84,7 @@ pub struct Stationary {
 pub struct Landscape {
     /// What is held.
     pub control: Control,
-    /// At this value.
+    /// The value it is held at.
     pub value: f64,
     /// The present radius, at which the potential counts as zero.
     pub present: f64,
@@ -109,7 +109,7 @@ impl Landscape {
     ) -> Option<Self> {
         let equilibrium = &curve.equilibrium;
         let (from, to) = (from.max(curve.innermost()), to.min(curve.outermost()));
-        // A NaN is in no range either.
+        // A NaN is in no range, and ends here too.
         if !(from < to && (from..=to).contains(&present)) {
             return None;
         }
@@ -141,10 +141,10 @@ impl Landscape {
         Some(Self { control, value, present, level, points, stationary })
     }
 
-    /// How much higher than the present minimum the next maximum is when the edge runs that way.
+    /// How far the next maximum lies above the present minimum when the edge runs that way.
     ///
     /// The present state is the equilibrium nearest to the present radius. `None` where it is not stable, at a limit
-    /// point, where it has merged with the maximum, and where the range ends before there is one.
+    /// point (where it has merged with the maximum), and where the range ends before there is a maximum.
     pub fn barrier(&self, run: EdgeDirection) -> Option<f64> {
         let distance = |at: &Stationary| (at.contact_radius - self.present).abs();
         let order = |a: &Stationary, b: &Stationary| distance(a).total_cmp(&distance(b));
@@ -199,7 +199,7 @@ impl HeldControl<'_> {
     fn crossings(&self, curve: &Curve, monotone: &Monotone) -> Vec<(f64, bool)> {
         let value = match self.control {
             Control::Displacement | Control::Force => self.value,
-            // As the stretches have it, whatever the stiffness.
+            // Weighted as in the stretches, whatever the stiffness.
             Control::Stiffness(k) => self.value * (k / (1.0 + k)),
         };
         let radius = |place| curve.solution.radius(place);
@@ -334,7 +334,7 @@ mod tests {
                     let held = HeldControl { equilibrium: &curve.equilibrium, control, value };
                     assert!(seen.stationary.iter().any(|at| (at.contact_radius - present).abs() < 1e-9));
                     let deepest = seen.points.iter().fold(0.0_f64, |most, p| most.max(p.potential.abs()));
-                    // The energies themselves are good to their own rounding only.
+                    // The energies themselves are accurate only to their own rounding.
                     for at in seen.points.iter().step_by(9) {
                         let exact = held.level(at.contact_radius).unwrap() - seen.level;
                         let error = (at.potential - exact).abs();
@@ -389,7 +389,7 @@ mod tests {
                     .barrier(EdgeDirection::Inward)
             };
             let [high, low, least] = [1e-4, 1e-6, 1e-8].map(|above| barrier(above).unwrap());
-            // A fold: the height goes with the distance of the control to the power 3/2.
+            // A fold: the height scales as the distance of the control to the power 3/2.
             assert!(least > 0.0, "{control}: {least}");
             for ratio in [high / low, low / least] {
                 assert!((ratio / 1e3 - 1.0).abs() < 0.2, "{control}: {high} {low} {least}");

@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1e-14;
 /// A root this near to an end of a panel, which is 2 long, is at the end.
 const AT_END: f64 = 1e-13;
 
-/// Limit points nearer to each other than this share of their radius are none.
+/// Limit points nearer to each other than this share of their radius are rounding.
 const SAME: f64 = 1e-13;
 
 /// Whether the control is smallest or largest at a limit point, along the contact radius.
@@ -83,7 +83,7 @@ pub struct Monotone {
     pub limits: Vec<Limit>,
 }
 
-/// Where the slope changes its sign: the places on both sides, the same but for a corner.
+/// Where the slope changes its sign: the places on both sides, identical except at a corner.
 struct Cut {
     before: Place,
     after: Place,
@@ -96,7 +96,7 @@ impl Monotone {
         Self::on(solution, control, 0..solution.len())
     }
 
-    /// Those on some of its panels.
+    /// The stretches on some panels of the solution.
     pub fn on(solution: &dyn Solution, control: Control, panels: Range<usize>) -> Self {
         let mut cuts: Vec<Cut> = Vec::new();
         let mut signs = Vec::new();
@@ -171,7 +171,8 @@ impl Monotone {
         weighted(self.control, at.approach, at.force)
     }
 
-    /// The number of the stretch that holds the radius `s`; at a limit point that of which it is the inner end.
+    /// The number of the stretch that holds the radius `s`; at a limit point, that of the stretch whose inner end it
+    /// is.
     pub fn stretch_of(&self, s: f64) -> usize {
         let beyond = self.stretches.partition_point(|stretch| stretch.radii[1] <= s);
         beyond.min(self.stretches.len().saturating_sub(1))
@@ -233,15 +234,15 @@ impl Monotone {
     }
 }
 
-/// The weighted control of δ and P, as [`Monotone::value`].
+/// The weighted control of δ and P, as in [`Monotone::value`].
 pub fn weighted(control: Control, approach: f64, force: f64) -> f64 {
     let (of_approach, of_force) = control.weights();
-    // Nothing times a number that may be anything is nothing.
+    // Zero times any number, even an infinite one, counts as zero.
     let part = |weight: f64, x: f64| if weight == 0.0 { 0.0 } else { weight * x };
     part(of_approach, approach) + part(of_force, force)
 }
 
-/// Takes away pairs of cuts that rounding made.
+/// Removes pairs of cuts that rounding made.
 fn forget_rounding(solution: &dyn Solution, cuts: &mut Vec<Cut>, signs: &mut Vec<bool>) {
     let radius = |cut: &Cut| solution.span(cut.before.panel).radius(cut.before.x);
     let mut k = 0;

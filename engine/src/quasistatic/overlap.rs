@@ -6,8 +6,8 @@
 //! d gap(r)/ds = −(2/π)[√(2πγs)/√(r² − s²) + (dδ/ds) arccos(s/r)] < 0   where dδ/ds ≥ 0,
 //! ```
 //!
-//! so on such a stretch the verdict can change once: its two ends tell, and one root in between. Elsewhere, and without
-//! adhesion, where the pressure has a say, every state of the curve is looked at.
+//! so on such a stretch the verdict can change only once: its two ends, and one root in between, settle it. Elsewhere,
+//! and without adhesion, where the pressure has a say, every state of the curve is examined.
 
 use super::admissible::{Admissibility, Crest, Judge};
 use super::curve::Curve;
@@ -45,8 +45,8 @@ pub fn overlaps(curve: &Curve, progress: &dyn Progress) -> Result<Vec<Overlap>, 
     passed(curve, &[[curve.outermost(), curve.innermost()]], progress)
 }
 
-/// The states that are not admissible on pieces of the curve from one contact radius inward to another, both included:
-/// what a path passes, see [`Path::pieces`](super::Path::pieces).
+/// The states that are not admissible on pieces of the curve, each from one contact radius inward to another, both
+/// included: what a path passes, see [`Path::pieces`](super::Path::pieces).
 ///
 /// `progress` is asked before each state.
 ///
@@ -95,7 +95,7 @@ impl OverlapSearch<'_> {
         self.progress.go_on()?;
         let place = self.curve.solution.place(s).ok_or(Stopped)?;
         let verdict = self.judge.verdict(s, self.curve.solution.at(place).approach, self.progress);
-        // The first needs the table far out, which may take long.
+        // The first state needs the table far out, which may take long.
         self.progress.go_on().map(|()| verdict)
     }
 
@@ -133,7 +133,7 @@ impl OverlapSearch<'_> {
         Ok(())
     }
 
-    /// A stretch whose states are looked at one by one.
+    /// A stretch whose states are examined one by one.
     fn each(&mut self, outer: f64, inner: f64) -> Result<(), Stopped> {
         let curve = self.curve;
         let between = curve.samples.iter().map(|at| at.contact_radius).filter(|s| inner < *s && *s < outer);
@@ -160,8 +160,8 @@ impl OverlapSearch<'_> {
         Ok(())
     }
 
-    /// Adds the states from `from` inward to `to`, at fault as `state`, to the interval that is open, or begins one: at another
-    /// crest, or for the pressure, an interval is one of its own.
+    /// Adds the states from `from` inward to `to`, which fail as `state` does, to the open interval, or begins a new
+    /// one: each crest, and the pressure, has an interval of its own.
     fn add(&mut self, from: f64, to: f64, state: &Admissibility) {
         let crest = state.overlapping();
         let cause = crest.map_or(Violation::Pressure, |crest| Violation::Crest(crest.wave));

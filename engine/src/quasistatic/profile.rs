@@ -51,13 +51,14 @@ pub struct Outside {
 /// A state across the radius, in reduced units, from the axis outward.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// The outermost edge: of one disc s.
+    /// The outermost edge; s of one disc.
     pub contact_radius: f64,
     /// Where the bodies touch, as [inner, outer]; a disc is [0, s].
     pub contacts: Vec<[f64; 2]>,
     /// δ.
     pub approach: f64,
-    /// The pressure, finite and dense towards the edge. Rings give their values at mid-ring: theirs is a step function.
+    /// The pressure, finite and dense towards the edge. The basis of rings gives values at mid-ring: its pressure is a
+    /// step function.
     pub inside: Vec<Inside>,
     /// The gap outside the contacts, from the axis outward, as far as it is known: 0 at their edges.
     pub outside: Vec<Outside>,
@@ -73,7 +74,7 @@ impl Profile {
         let pressure = basis.pressure(problem, s, delta);
         let inside = pressure.into_iter().map(|(radius, pressure)| Inside { radius, pressure }).collect();
         let known = |r: f64| (r, problem.gap.jet(r).value);
-        // A measured gap ends, and is no number beyond.
+        // A measured gap ends, and is not a number beyond its end.
         let (radii, gap): (Vec<f64>, Vec<f64>) = radii(s, problem.gap.feature_length())
             .into_iter()
             .map(known)
@@ -95,8 +96,8 @@ impl Profile {
         }
     }
 
-    /// The profile of one disc in one zone, or of a zone without contact; the pressure out to the edge of the zone. `None` where the gap is
-    /// not known as far.
+    /// The profile of one disc in one zone, or of a zone without contact, with the pressure out to the edge of the
+    /// zone. `None` where the gap is not known that far.
     pub fn of_zone(problem: &Reduced, table: &Arc<Table>, cohesion: Cohesion, at: ZoneAt) -> Option<Self> {
         let ZoneAt { edge, contact_radius: s, approach } = at;
         let outer = radii(edge, problem.gap.feature_length());
@@ -147,7 +148,7 @@ impl Profile {
         let around = Around::new(&ground, &state, delta);
         let count =
             |lo: f64, hi: f64| (POINTS_PER_WAVE * (hi - lo) / ground.wave).clamp(POINTS[0], POINTS[1]).ceil();
-        // Shares of an interval, dense towards both ends, without them.
+        // Shares of an interval, dense towards both ends, which are left out.
         let shares = |count: f64| {
             std::iter::successors(Some(0.5), |j| Some(j + 1.0))
                 .take_while(move |j| *j < count)
@@ -271,7 +272,7 @@ mod tests {
             .map(|[lo, hi]| {
                 let of: Vec<&Inside> =
                     profile.inside.iter().filter(|at| at.radius > *lo && at.radius < *hi).collect();
-                // Trapezia, to what the singular ends leave.
+                // The trapezoidal rule, as good as the singular ends allow.
                 of.windows(2)
                     .map(|p| {
                         let [a, b] = [p[0], p[1]].map(|at| 2.0 * PI * at.radius * at.pressure);

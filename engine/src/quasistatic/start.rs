@@ -42,7 +42,7 @@ pub enum StartError {
         /// The largest radius tried.
         largest: f64,
     },
-    /// It was no longer wanted.
+    /// The start was no longer wanted.
     Stopped(#[from] Stopped),
 }
 
@@ -85,14 +85,14 @@ const FARTHEST: f64 = 1e12;
 /// A search ends when it takes more panels than this.
 const MOST_PANELS: usize = 100_000;
 
-/// A curve above the value over so many times its radius is not looked at further out.
+/// A curve that stays above the value over this factor in radius is not searched further out.
 const ABOVE: f64 = 2.0;
 
 /// The contact radius of the start state.
 ///
-/// For an approach or a preload the curve is looked at further and further out, until it stays above the value over a
-/// factor of two in radius; the outermost state that takes it, stable under the control, is the start. Where the gap is
-/// known up to a radius only, the outermost within it is.
+/// For an approach or a preload the curve is searched further and further out, until it stays above the value over a
+/// factor of two in radius. The start is the outermost state that takes the value and is stable under the control.
+/// Where the gap is known only up to some radius, it is the outermost such state within that radius.
 ///
 /// # Errors
 /// [`StartError`] when there is none.
@@ -130,7 +130,7 @@ pub fn contact_radius(
                 let inside = stretch.radii[1] <= outer || Some(stretch) == last.map(|at| &stretches[at]);
                 inside || lowest > value || stretch.radii[0] < outer && !stretch.takes(value)
             });
-            // Where it still falls it may reach the value further out.
+            // Where the curve still falls, it may reach the value further out.
             let ends = stretches.last().is_some_and(|stretch| stretch.rising && stretch.values[1] > value);
             let found = last.map(|at| {
                 let place = monotone.solve(&**solution, &stretches[at], value);

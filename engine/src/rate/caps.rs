@@ -1,7 +1,8 @@
-//! How far an edge may go in one step: never over a limit point unseen.
+//! How far an edge may go in one step, so that it never passes a limit point unseen.
 //!
-//! On both sides of a snap an implicit method finds a slow edge. With a step over all of it the snap would be lost without a sign, the
-//! error estimate being content. Every limit point is known, and with it how far around it a speed V rounds it off:
+//! On both sides of a snap an implicit method finds a slow edge. A step over the whole snap would lose it without a
+//! sign, because the error estimate would be content. Every limit point is known, and with it how far around it a
+//! speed V rounds it off:
 //!
 //! ```text
 //! X = √(2d/c''),     d = [V √(2/c'') (T_c/2)^{1/n}]^{2n/(2+n)},     T_c = T/δ_c
@@ -22,12 +23,12 @@ use crate::quasistatic::monotone::Limit;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// A limit point that a slow edge comes to.
+/// A limit point that a slow edge reaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fold {
     /// The limit point.
     pub limit: Limit,
-    /// c'' on the curve, by the contact radius; not finite at a corner.
+    /// c'' on the curve, with respect to the contact radius; not finite at a corner.
     pub bend: f64,
     /// `T_c`.
     pub unit: f64,
@@ -50,7 +51,7 @@ impl Fold {
         Self { limit, bend: if limit.corner { f64::INFINITY } else { bend.abs() }, unit }
     }
 
-    /// d: the control is late by so much, but for a number of the law, at a rate V.
+    /// d: at a rate V the control is late by this much, up to a number of the law.
     pub fn delay(&self, rate: f64, exponent: f64) -> f64 {
         let way = rate.abs() * (2.0 / self.bend).sqrt() * pow(0.5 * self.unit, 1.0 / exponent);
         pow(way, 2.0 * exponent / (2.0 + exponent))
@@ -67,7 +68,7 @@ pub struct MotionFolds {
 }
 
 impl MotionFolds {
-    /// Those of the equilibria under the adhesion of a motion.
+    /// The limit points of the equilibria under the adhesion of a motion.
     pub fn new(panels: &Arc<Panels>, edge: &MovingEdge, motion: Motion, control: Control) -> Self {
         let gamma = edge.adhesion(motion);
         let solution = ExactSolution::new(Arc::clone(panels), gamma);
@@ -94,17 +95,17 @@ impl MotionFolds {
 #[derive(Debug, Clone)]
 pub struct Caps<'a> {
     panels: &'a Panels,
-    /// Limit points with what the edge need not go less than, ascending.
+    /// Limit points, ascending, each with the way that an edge may always go near it.
     folds: Vec<[f64; 2]>,
     /// Radii at which a step ends: breaks of the gap, ascending.
     breaks: Vec<f64>,
-    /// The way of a step on a gap with waves.
+    /// The longest way of a step on a gap with waves.
     widest: Option<f64>,
     settings: PullSettings,
 }
 
 impl<'a> Caps<'a> {
-    /// Those of a motion at a rate of the control; `wave` is the length of the gap's structure, where it is known.
+    /// The caps of a motion at a rate of the control; `wave` is the length of the gap's structure, where it is known.
     pub fn new(
         panels: &'a Panels,
         folds: &MotionFolds,
@@ -113,7 +114,7 @@ impl<'a> Caps<'a> {
         wave: Option<f64>,
         settings: PullSettings,
     ) -> Self {
-        /// The least that an edge need not go less than, of its radius.
+        /// The least way that an edge may always go, as a share of its radius.
         const LEAST: f64 = 1e-8;
         let rounding = |fold: &Fold| {
             let s = fold.limit.contact_radius;
@@ -147,7 +148,7 @@ impl<'a> Caps<'a> {
 
     /// The next break from the radius `s` on.
     pub fn next_break(&self, motion: Motion, s: f64) -> Option<f64> {
-        /// A radius this near to a break, of itself, is on it.
+        /// A radius this near to a break, as a share of itself, is on it.
         const ON: f64 = 1e-11;
         match motion {
             Motion::Opening => {

@@ -1,4 +1,4 @@
-//! One disc under a device whose edge has a speed: the equation of motion of one stretch.
+//! One disc under a device, with an edge that has a speed: the equation of motion of one stretch.
 //!
 //! ```text
 //! K = g(s) − δ      T = √(2πγs)      κ = K/T = √(G/γ)      c: δ, P or Δ = δ + P/k, moved at the rate ċ
@@ -6,22 +6,22 @@
 //! T dκ/dt = (g' − κT/2s − δ_s) ṡ − δ_c ċ
 //! ```
 //!
-//! It is integrated over a mixture ξ of the way of the edge and of time, in which its right side is bounded and smooth through every
-//! snap and every rest:
+//! It is integrated over a mixture ξ of the way of the edge and of time, in which its right-hand side is bounded and
+//! smooth through every snap and every rest:
 //!
 //! ```text
 //! ξ = y + (t − t₀)/L_t,    s = s₀ ± L_s y,    dy/dξ = φ = (v/L_s)/(v/L_s + 1/L_t) ∈ [0, 1)
 //! ```
 //!
-//! As a function of s, dt/ds = 1/v grows with the control that is left: integrated along the way of the edge every error dies out, on
-//! stable and on unstable stretches alike. Reduced units: E* = 1, v₀ = 1.
+//! As a function of s, dt/ds = 1/v grows with the control that is left: integrated along the way of the edge, every
+//! error dies out, on stable and unstable stretches alike. Reduced units: E* = 1, v₀ = 1.
 
 use super::law::{EdgeLaw, Motion, MotionLaw};
 use crate::disc::Panels;
 use crate::problem::Control;
 use std::f64::consts::TAU;
 
-/// What a motion is offered and costs: the law, and γ where the edge opens, `γ_a` where it closes.
+/// The law of a moving edge and what its motion costs or gains: γ where the edge opens, `γ_a` where it closes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovingEdge {
     /// The law.
@@ -70,7 +70,7 @@ impl HeldDisc {
         Self::of(values, control, s, c)
     }
 
-    /// The same of g, ∫g and g' at its radius.
+    /// The same from g, ∫g and g' at its radius.
     fn of([value, area, slope]: [f64; 3], control: Control, s: f64, c: f64) -> Self {
         let approach = match control {
             Control::Displacement => c,
@@ -127,7 +127,7 @@ pub struct StretchMoment {
     pub drive_by_y: f64,
     /// Its derivative by time.
     pub drive_rate: f64,
-    /// v, not negative but for rounding.
+    /// v, not negative except by rounding.
     pub speed: f64,
     /// φ.
     pub phi: f64,
@@ -135,19 +135,19 @@ pub struct StretchMoment {
     pub phi_by_y: f64,
     /// dP/dt.
     pub force_rate: f64,
-    /// What is dissipated in a unit of y.
+    /// What is dissipated per unit of y.
     pub loss: f64,
-    /// What the device does in a unit of the rest of ξ.
+    /// The work of the device per unit of the rest of ξ.
     pub done: f64,
 }
 
 impl StretchMoment {
-    /// What is dissipated in a unit of ξ.
+    /// What is dissipated per unit of ξ.
     pub fn dissipation(&self) -> f64 {
         self.loss * self.phi
     }
 
-    /// What the device does in a unit of ξ.
+    /// The work of the device per unit of ξ.
     pub fn work(&self) -> f64 {
         self.done * (1.0 - self.phi)
     }
@@ -162,11 +162,11 @@ pub struct Equation<'a> {
     pub control: Control,
     /// Whether the edge opens or closes.
     pub motion: Motion,
-    /// What the control does.
+    /// The law of the motion.
     pub branch: MotionLaw,
     /// γ or `γ_a`.
     pub adhesion: f64,
-    /// s₀, t₀, c₀ and ċ.
+    /// s₀, the radius where it begins.
     pub radius: f64,
     /// t where it begins, in units of the length over v₀.
     pub time: f64,
@@ -179,7 +179,8 @@ pub struct Equation<'a> {
 }
 
 impl<'a> Equation<'a> {
-    /// The motion of the edge `edge` from s₀, t₀, c₀ while the control changes at `rate`; `duration` where it is held.
+    /// The motion of the edge `edge` from s₀, t₀, c₀ while the control changes at `rate`; `duration` counts where the
+    /// control is held.
     pub fn new(
         panels: &'a Panels,
         control: Control,
@@ -274,7 +275,7 @@ impl<'a> Equation<'a> {
         Some(())
     }
 
-    /// v/v₀ that belongs to φ, as the drive there, with its derivative.
+    /// The drive at the speed v/v₀ that belongs to φ, with its derivative.
     pub fn drive_of(&self, phi: f64) -> [f64; 2] {
         let unit = self.radius / self.unit_of_time;
         let rest = (1.0 - phi.abs()).max(f64::MIN_POSITIVE);

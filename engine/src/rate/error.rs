@@ -17,7 +17,7 @@ pub enum RateError {
         /// s.
         contact_radius: f64,
     },
-    /// It took too many.
+    /// It took too many steps.
     TooManySteps {
         /// How many.
         steps: usize,
@@ -31,7 +31,7 @@ pub enum RateError {
     },
     /// Without adhesion the law of the edge says nothing.
     NoAdhesion,
-    /// It was no longer wanted.
+    /// The pull was no longer wanted.
     Stopped(Stopped),
 }
 

@@ -1,4 +1,4 @@
-//! How long a disc bears a dead load: no equation of motion is needed, for the force is held.
+//! How long a disc bears a dead load: no equation of motion is needed, because the force is held.
 //!
 //! ```text
 //! t = ∫₀^{s₀} ds/v(s)      v = v₀ (G/γ − 1)^{1/n}      G at the radius s under the force P
@@ -18,14 +18,15 @@ use std::sync::Arc;
 
 /// The relative error of the time.
 const TOLERANCE: f64 = 1e-10;
-/// Halvings of an interval, and intervals in all: a bottleneck is as narrow as the load is near to being borne.
+/// The most halvings of an interval, and the most intervals in all: the nearer the load is to being borne, the
+/// narrower the bottleneck.
 const DEEPEST: u32 = 60;
 const INTERVALS: usize = 200_000;
 /// The edge is gone at this share of the radius at which it starts; it passes the rest in no time.
 const GONE: f64 = 1e-9;
 
-/// The time, in units of the length over v₀, until the bodies are apart, from the radius `start` under the dead load `force`, a negative
-/// one for a pull; `None` where an equilibrium bears it. Reduced units.
+/// The time, in units of the length over v₀, until the bodies are apart, from the radius `start` under the dead load
+/// `force`, which is negative for a pull; `None` where an equilibrium bears it. Reduced units.
 ///
 /// # Errors
 /// [`RateError::NoAdhesion`]; [`RateError::Lost`] where the load is so nearly borne that the time cannot be resolved.
@@ -64,7 +65,7 @@ pub fn time_to_failure(
 
 /// ∫f over an interval by Simpson's rule, halved until it settles.
 fn integral(f: &dyn Fn(f64) -> f64, [from, to]: [f64; 2]) -> Option<f64> {
-    /// An interval: its ends and its middle with the values there, and how often it was halved.
+    /// An interval: its ends and its middle with the values there, and how many times it was halved.
     struct Part([f64; 3], [f64; 3], u32);
     let part = |a: f64, b: f64, fa: f64, fb: f64, depth| {
         let middle = f64::midpoint(a, b);
@@ -74,7 +75,7 @@ fn integral(f: &dyn Fn(f64) -> f64, [from, to]: [f64; 2]) -> Option<f64> {
     let mut open = vec![part(from, to, f(from), f(to), 0)];
     let mut sum = 0.0;
     let mut seen = 0;
-    // What is summed so far and what is still open tell the size of the whole.
+    // The sum so far and what is still open give the size of the whole.
     let mut size = simpson(&open[0]).abs();
     while let Some(whole) = open.pop() {
         seen += 1;

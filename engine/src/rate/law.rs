@@ -5,8 +5,8 @@
 //! closing, G < γ_a   v = v_a (γ_a/G − 1)^{1/m}        G = γ_a / [1 + (v/v_a)ᵐ]
 //! ```
 //!
-//! and the edge rests between. Closing is the reciprocal of opening: a closing law linear in G would let a fast approach run into
-//! overlap, for G grows again where the edge is pressed. Speeds are in units of v₀ here.
+//! Between the two the edge rests. Closing is the reciprocal of opening: a closing law linear in G would let a fast
+//! approach run into overlap, because G grows again where the edge is pressed. Speeds are in units of v₀ here.
 //!
 //! A. N. Gent and J. Schultz, J. Adhesion 3, 281 (1972), doi:10.1080/00218467208072199; D. Maugis and M. Barquins, J. Phys. D 11, 1989
 //! (1978), doi:10.1088/0022-3727/11/14/011, for opening.
@@ -44,7 +44,7 @@ pub struct EdgeLaw {
 }
 
 impl EdgeLaw {
-    /// The law that closes as it opens.
+    /// The law by which an edge closes as it opens.
     #[must_use]
     pub fn symmetric(exponent: f64) -> Self {
         Self { exponent, closing_speed: 1.0, closing_exponent: exponent }
@@ -85,7 +85,7 @@ impl MotionLaw {
     }
 }
 
-/// xᵖ for x ≥ 0, by roots and products where they do.
+/// xᵖ for x ≥ 0, by roots and products where those suffice.
 #[expect(clippy::float_cmp, reason = "the exponents that people choose, as they are written")]
 fn power(x: f64, p: f64) -> f64 {
     if p == 0.0 {

@@ -1,23 +1,24 @@
 //! The edge has a speed: one disc pulled at a rate.
 //!
-//! An edge that is offered more than the work of adhesion moves at a speed that grows with what is left over, and dissipates that.
-//! The limit of a slow pull is the quasi-static path, whatever the law: the losses of its jumps are what is dissipated in the snaps.
+//! An edge that is offered more than the work of adhesion moves at a speed that grows with the excess, and dissipates
+//! that excess. The limit of a slow pull is the quasi-static path, whatever the law: the losses of its jumps are what
+//! is dissipated in the snaps.
 //!
 //! | file | what lives there |
 //! |---|---|
-//! | [`law`] | the speed of an edge over the energy it is offered |
+//! | [`law`] | the speed of an edge as a function of the energy it is offered |
 //! | [`equation`] | the equation of motion of a disc under a device |
 //! | [`radau`] | the weights of the integrator |
 //! | [`step`] | one implicit step |
 //! | [`caps`] | how far a step may go: limit points |
-//! | [`variation`] | how a pull moves with its values |
+//! | [`variation`] | how a pull changes with its values |
 //! | [`stretch`] | a stretch on which the edge goes one way |
 //! | [`record`] | moments, sums, least forces |
 //! | [`snaps`] | the snaps among them |
 //! | [`pull`] | a programme of ramps and holds |
 //! | [`failure`] | how long a dead load is borne |
 //! | [`settings`] | the settings of the integrator |
-//! | [`error`] | why there is none |
+//! | [`error`] | why there is no pull |
 //!
 //! In reduced units: E* = 1, and v₀ = 1, so that times are in units of the length over v₀.
 

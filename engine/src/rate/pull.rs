@@ -1,13 +1,14 @@
 //! A pull: a programme of ramps and holds, carried out on one disc.
 //!
-//! At every moment the edge opens (G > γ), rests (`γ_a` ≤ G ≤ γ) or closes (G < `γ_a`). While it rests δ and P move along the straight
-//! line dP/dδ = 2E*s. What the device does is on every way
+//! At every moment the edge opens (G > γ), rests (`γ_a` ≤ G ≤ γ) or closes (G < `γ_a`). While it rests, δ and P move
+//! along the straight line dP/dδ = 2E*s. On every way the work of the device is
 //!
 //! ```text
 //! ∫ (dΠ/dc) dc = ΔΠ + γ (area lost) − γ_a (area gained) + dissipated,      Π: elastic, of bodies and device
 //! ```
 //!
-//! of which the left side and the dissipation are sums over the steps, and the others are read from the table: the balance.
+//! where the left side and the dissipation are sums over the steps and the other terms are read from the table: the
+//! balance.
 
 use super::caps::{Caps, MotionFolds};
 use super::equation::{Equation, HeldDisc, MovingEdge};
@@ -23,13 +24,13 @@ use crate::progress::{Progress, Stopped};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// A drive below this is that of equilibrium.
+/// A drive below this counts as equilibrium.
 const EQUILIBRIUM: f64 = 1e-11;
-/// Changes between opening, rest and closing within one part of a programme.
+/// The most changes between opening, rest and closing within one part of a programme.
 const CHANGES: usize = 1000;
-/// A time this near to the end of a part, of its duration, is the end.
+/// A time this near to the end of a part, as a share of its duration, is the end.
 const OVER: f64 = 1e-13;
-/// How far beyond the start the table may have to go, as so many factors of [`WIDER`].
+/// How far beyond the start the table may have to reach, as this many factors of [`WIDER`].
 const WIDENINGS: usize = 60;
 const WIDER: f64 = 1.3;
 
@@ -46,7 +47,8 @@ pub struct Puller<'a> {
     pub start: f64,
     /// The length of the gap's structure, where it is known.
     pub wave: Option<f64>,
-    /// A least force counts as a peak of tension where the force rises by more than this after it; none means 1 % of the largest pull.
+    /// A least force counts as a peak of tension where the force rises by more than this after it; `None` means 1 % of
+    /// the largest pull.
     pub rise: Option<f64>,
     /// The integrator.
     pub settings: PullSettings,
@@ -65,17 +67,17 @@ pub struct Pull {
     pub tension_peaks: Vec<Moment>,
     /// The snaps, in order.
     pub snaps: Vec<Snap>,
-    /// The moment at which the bodies are apart; `None` where the programme ends before.
+    /// The moment at which the bodies are apart; `None` where the programme ends before that.
     pub last_contact: Option<Moment>,
     /// All that the edge dissipated; `None` where a dead load falls for ever.
     pub dissipated: Option<f64>,
-    /// What is missing in the balance of work and energy, over the work.
+    /// What is missing in the balance of work and energy, relative to the work.
     pub balance: f64,
     /// Moments in order.
     pub moments: Vec<Moment>,
     /// How s, δ and P of the moments in contact change with the values, where that was asked for.
     pub moved: Vec<MomentSlopes>,
-    /// Where the edge closed: the largest contact it closed to, with its approach.
+    /// If the edge closed, the largest contact it closed to, with its approach.
     pub closed_to: Option<[f64; 2]>,
     /// How far G still was from equilibrium at the end of each hold, as |G/γ − 1|.
     pub holds: Vec<f64>,
@@ -83,7 +85,7 @@ pub struct Pull {
     pub steps: usize,
 }
 
-/// The state of a pull that goes on.
+/// The state of a pull in progress.
 struct Going<'a> {
     puller: &'a Puller<'a>,
     panels: Arc<Panels>,
@@ -280,7 +282,7 @@ impl Going<'_> {
         Ok(())
     }
 
-    /// The control moves, and the edge does not: to where it begins to, or to the end of the part.
+    /// Moves the control while the edge rests: to where the edge begins to move, or to the end of the part.
     fn rests(&mut self, way: PartWay) {
         let MovingEdge { opening, closing, .. } = self.puller.edge;
         let control = self.puller.control;

@@ -26,10 +26,10 @@ pub struct Moment {
     pub dissipated: f64,
 }
 
-/// By how many values a pull is varied: γ, n, V, k and s₀.
+/// The number of values by which a pull is varied: γ, n, V, k and s₀.
 pub const VALUES: usize = 5;
 
-/// How s, δ and P of a moment change with the logarithm of each value; a way along the path is free in it.
+/// How s, δ and P of a moment change with the logarithm of each value, up to a shift along the path.
 pub type MomentSlopes = [[f64; 3]; VALUES];
 
 /// A least force of a pull, and what the force rises to before the next one.

@@ -5,25 +5,28 @@
 pub struct PullSettings {
     /// The error of a step as a share of the contact radius: 1e-12 to 1e-3.
     pub tolerance: f64,
-    /// Newton's method ends at this share of it: its next change would be of the square.
+    /// Newton's method ends when its change is this share of the tolerance: the next change would be of the order of
+    /// the square.
     pub converged: f64,
-    /// Newton iterations of a step.
+    /// The most Newton iterations of a step.
     pub newton: usize,
-    /// The edge goes at most this share of a wave in a step: wider steps can land behind a snap.
+    /// The edge goes at most this share of a wave in a step: longer steps can land beyond a snap.
     pub of_wave: f64,
-    /// The same of a panel of the table, for gaps without waves.
+    /// The same as a share of a panel of the table, for gaps without waves.
     pub of_panel: f64,
-    /// It goes at most this share of its distance from a limit point.
+    /// The edge goes at most this share of its distance from a limit point.
     pub of_distance: f64,
-    /// But need not go less than this share of the way within which the limit point is rounded off by the speed.
+    /// But it may always go this share of the way within which the speed rounds off the limit point.
     pub of_rounding: f64,
-    /// It goes at most this share of the way to the axis: what is dissipated there grows as a power of 1/s, which a step must resolve.
+    /// The edge goes at most this share of the way to the axis: what is dissipated there grows as a power of 1/s,
+    /// which a step must resolve.
     pub of_rest: f64,
     /// The edge is gone at this share of the radius at which its stretch began.
     pub gone: f64,
-    /// Steps of a stretch, the rejected ones counted.
+    /// The most steps of a stretch, with the rejected ones.
     pub steps: usize,
-    /// Whether the derivatives of the moments by the values are found too, of a pull that is one ramp to the last contact.
+    /// Whether the derivatives of the moments with respect to the values are found too, for a pull that is one ramp to
+    /// the last contact.
     pub derivatives: bool,
 }
 

@@ -1,8 +1,9 @@
-//! The snaps of a pull: stretches in which the edge is ten times as fast as at its slowest since the last one, and crosses equilibria that
-//! are not stable. Without those it follows the equilibria, however much its speed along them changes.
+//! The snaps of a pull: stretches in which the edge is ten times as fast as at its slowest since the last snap, and
+//! crosses unstable equilibria. Where it crosses none it follows the equilibria, however much its speed along them
+//! changes.
 //!
-//! An edge that runs past a place where there was an equilibrium before is slow there too, but it rests only where it is about as slow as
-//! along the equilibria: in between it is still the same snap.
+//! An edge that runs past a place where there was an equilibrium before is slow there too, but it rests only where it
+//! is about as slow as along the equilibria; in between, the snap goes on.
 
 use super::record::Moment;
 use crate::elementary::ln;
@@ -10,13 +11,14 @@ use crate::elementary::ln;
 /// A snap is this many times as fast.
 const FASTER: f64 = 10.0;
 
-/// Below this share of the speed along the equilibria an edge rests: after a snap it comes to them to rounding, and is as slow as that.
+/// Below this share of the speed along the equilibria an edge rests: after a snap it comes to them to rounding, and
+/// becomes that slow.
 const RESTS: f64 = 0.1;
 
-/// Above this many times the speed along the equilibria an edge that has run does not rest.
+/// An edge that has run does not rest above this many times the speed along the equilibria.
 const RUNS: f64 = 100.0;
 
-/// A way of the edge below this share of the radius is none.
+/// A motion of the edge below this share of the radius does not count.
 const NO_WAY: f64 = 1e-6;
 
 /// A stretch of the pull in which the edge ran.
@@ -43,8 +45,9 @@ struct BegunSnap {
     low: Moment,
 }
 
-/// The snaps among the moments of one stretch, whose edge would go at the speed `level` at its beginning if it followed the equilibria;
-/// of held control that is nothing. The one in which the bodies come apart is none. Between the radii `unstable` equilibria are not stable.
+/// The snaps among the moments of one stretch. At its beginning the edge would go at the speed `level` if it followed
+/// the equilibria; at held control that is 0. The run in which the bodies come apart is not a snap. Between the radii
+/// `unstable`, equilibria are not stable.
 pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool, unstable: &[[f64; 2]]) -> Vec<Snap> {
     let mut found = Vec::new();
     let slow = if level > 0.0 { RUNS * level } else { f64::INFINITY };

@@ -1,7 +1,8 @@
 //! One implicit step of the equation of motion.
 //!
-//! The unknowns of a stage are `p_i` = φ, by full Newton iteration. As a function of y, φ is a sigmoid as narrow as the speed is low: where
-//! it is steep against the step, its inverse, which is nearly a line, is solved in its place,
+//! The unknowns of a stage are `p_i` = φ, by full Newton iteration. As a function of y, φ is a sigmoid, the narrower
+//! the lower the speed. Where it is steep compared with the step, its inverse, which is nearly a line, is solved
+//! instead,
 //!
 //! ```text
 //! p − φ(ξ, y) = 0    or    drive(ξ, y) − drive of the speed of p = 0
@@ -42,20 +43,20 @@ impl SolvedStep {
         self.length * (REAL_EIGENVALUE * density(start) + dot(&ERROR_WEIGHTS, &values))
     }
 
-    /// What is summed over the step up to each stage.
+    /// The sums over the step up to each stage.
     pub fn sums(&self, density: fn(&StretchMoment) -> f64) -> [f64; STAGES] {
         let values = self.nodes.each_ref().map(density);
         WEIGHTS.map(|row| self.length * dot(&row, &values))
     }
 }
 
-/// The end of a step is brought to a place within this share of it.
+/// The end of a step is brought to a place within this share of its length.
 const THERE: f64 = 1e-14;
-/// φ stays this share of the way from where it was to a bound that Newton's method would pass.
+/// Where Newton's method would pass a bound, φ keeps this share of its distance from it.
 const TOWARDS_BOUND: f64 = 0.1;
 
-/// Solves a step of the length `h` from ξ and y, where the moment is `start`; `guess` are the stages expected, `tolerance` that
-/// of y. `None` where Newton's method finds nothing.
+/// Solves a step of the length `h` from ξ and y, where the moment is `start`; `guess` are the expected stages,
+/// `tolerance` is that of y. `None` where Newton's method finds nothing.
 pub fn solve(
     equation: &Equation<'_>,
     [xi, y]: [f64; 2],
@@ -109,11 +110,11 @@ pub fn solve(
             *p = next;
         }
         if h * size <= settings.converged * tolerance {
-            // What is summed over the step belongs to the same way as y.
+            // What is summed over the step then belongs to the same way as y.
             nodes.iter_mut().zip(p).for_each(|(node, p)| node.phi = p);
             let along = REAL_EIGENVALUE * start.phi + dot(&ERROR_WEIGHTS, &p);
             let damped = 1.0 - h * REAL_EIGENVALUE * start.phi_by_y;
-            // An estimate that grows where the edge runs away by itself would be none.
+            // An estimate that grew where the edge runs away by itself would be useless.
             let error = if damped.is_finite() { h * along / damped.abs().max(1.0) } else { 0.0 };
             (found.slopes, found.y, found.error) = (p, y + h * dot(&WEIGHTS[STAGES - 1], &p), error);
             return Some(found);
@@ -122,8 +123,8 @@ pub fn solve(
     None
 }
 
-/// The step that ends where `of` vanishes, by its length in `[from, to]`; `before` is its value at the shorter, `longest` the step at the
-/// longer one.
+/// The step that ends where `of` vanishes, found by its length in `[from, to]`; `before` is the value at the shorter
+/// length, `longest` is the step of the longer one.
 pub fn landed(
     step: &dyn Fn(f64) -> Option<Box<SolvedStep>>,
     [from, to]: [f64; 2],
@@ -134,7 +135,7 @@ pub fn landed(
     let mut found = longest;
     let after = of(found.end());
     let Some(mut bracket) = RootBracket::new([from, before], [to, after]) else {
-        // Passed before it begins, it ends where it begins.
+        // If the place was passed before the step begins, the step ends where it begins.
         return if after == 0.0 { Some(found) } else { step(THERE * to) };
     };
     bracket.close(THERE * to, |h| {

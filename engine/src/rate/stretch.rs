@@ -1,7 +1,7 @@
 //! One stretch of a pull, on which an edge goes one way: step by step to where it rests, the control stops or the bodies are apart.
 //!
-//! What ends a step (the end of a ramp, a rest, a break of the gap) and the least forces are found by solving the step again with
-//! another length; the polynomial of a step is not asked.
+//! What ends a step (the end of a ramp, a rest, a break of the gap) and the least forces are found by solving the step
+//! again with another length; the polynomial of a step is not used.
 
 use super::caps::Caps;
 use super::equation::{Equation, StretchMoment};
@@ -25,22 +25,22 @@ pub enum StretchEnd {
     Apart,
 }
 
-/// The safety of the next step, and by which factors it changes at most.
+/// The safety factor of the next step, and the factors by which it changes at most.
 const SAFETY: f64 = 0.9;
 const CHANGE: [f64; 2] = [0.2, 4.0];
-/// A step that Newton's method did not find is tried again with this share of it.
+/// A step that Newton's method did not find is tried again with this share of its length.
 const AGAIN: f64 = 0.4;
 /// The first step, in units of ξ.
 const FIRST: f64 = 1e-4;
 /// Steps below this share of ξ do not move it.
 const LEAST: f64 = 1e-15;
-/// An edge slower than this, as φ, may be expected to stay so for a step of the cap over it.
+/// An edge slower than this, in φ, may be expected to stay so for a step of the cap divided by this.
 const SLOW: f64 = 1e-3;
-/// What a step may miss of the energy, as a share of the tolerance: many steps add up.
+/// The energy that a step may miss, as a share of the tolerance: many steps add up.
 const OF_ENERGY: f64 = 0.3;
-/// A closing edge that is driven by so much is pressed: it closes without bound.
+/// A closing edge with a drive above this is pressed: it closes without bound.
 const PRESSED: f64 = 1e12;
-/// Steps between two questions whether to go on.
+/// Steps between two calls of `progress`.
 const ASKED: usize = 64;
 
 /// One stretch.
@@ -51,11 +51,11 @@ pub struct MotionStretch<'a> {
     pub caps: &'a Caps<'a>,
     /// Tolerance and bounds.
     pub settings: &'a PullSettings,
-    /// The time at which it ends; none for a ramp that goes on until the bodies are apart.
+    /// The time at which it ends; `None` for a ramp that goes on until the bodies are apart.
     pub until: Option<f64>,
     /// Whether the control turns the edge round, which then comes to rest.
     pub rests: bool,
-    /// The energy of which what is dissipated is known to the tolerance.
+    /// The energy relative to which the dissipation is known to the tolerance.
     pub energy: f64,
 }
 
@@ -132,7 +132,7 @@ impl MotionStretch<'_> {
                 continue;
             }
             let Some((step, end)) = self.cut(&here, step) else {
-                // The way to a break of the gap is as steep as a root: shorter steps come near.
+                // The way to a break of the gap is as steep as a square root: shorter steps come near.
                 h *= AGAIN;
                 continue;
             };
@@ -144,7 +144,7 @@ impl MotionStretch<'_> {
             if let Some(end) = end {
                 return Ok((here.at, end));
             }
-            // A step that was cut says nothing of the next one.
+            // A step that was cut says nothing about the next one.
             h *= if step.length < h { 1.0 } else { factor.clamp(CHANGE[0], CHANGE[1]) };
             last = Some(step);
         }
@@ -156,13 +156,13 @@ impl MotionStretch<'_> {
 
     /// Moves an edge that is next to a break of the gap onto it.
     fn onto_break(&self, here: &mut Here) {
-        /// So near to it, of the radius.
+        /// This near to it, as a share of the radius.
         const NEXT_TO: f64 = 1e-15;
         let s = here.at.held.contact_radius;
         let Some(at_break) = self.caps.next_break(self.equation.motion, s) else { return };
         let way = self.equation.motion.sense() * (at_break - s);
         if way > 0.0 && way <= 10.0 * NEXT_TO * s {
-            // A hair beyond, on the other side.
+            // Slightly beyond it, on the other side.
             let y = here.y + (way + NEXT_TO * s) / self.equation.radius;
             if let Some(at) = self.equation.at(here.xi, y) {
                 (here.y, here.at) = (y, at);
@@ -170,7 +170,7 @@ impl MotionStretch<'_> {
         }
     }
 
-    /// The step of the length `h` from here, with what the step before expects of it.
+    /// The step of the length `h` from here, with the stages that the previous step predicts.
     fn step(&self, here: &Here, h: f64, last: Option<&SolvedStep>) -> Option<Box<SolvedStep>> {
         let guess = match last {
             Some(last) => {

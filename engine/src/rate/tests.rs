@@ -1,4 +1,4 @@
-//! Pulls of the wavy sphere, against numbers of two programs that share nothing with this one.
+//! Pulls of the wavy sphere, against numbers from two programs that share nothing with this one.
 
 use super::law::EdgeLaw;
 use super::pull::{Pull, Puller};
@@ -58,7 +58,8 @@ fn the_peak_of_the_wavy_sphere_at_a_rate() {
     }
 }
 
-/// The sum of the losses of the quasi-static unloading of the wavy sphere from s = 0.5, and the exponent with which a pull comes near.
+/// The sum of the losses of the quasi-static unloading of the wavy sphere from s = 0.5, and the exponent with which a
+/// pull approaches it.
 #[test]
 fn what_a_slow_pull_dissipates_is_what_the_jumps_lose() {
     const LOSSES: f64 = 1.052_852_894_6e-3;
@@ -73,7 +74,8 @@ fn what_a_slow_pull_dissipates_is_what_the_jumps_lose() {
     }
 }
 
-/// The control at the last contact is late by `K_n` d, d of the law of a limit point; `K_1` is the first zero of Airy's function.
+/// The control at the last contact is late by `K_n` d, with d from the law of a limit point; `K_1` is the first zero
+/// of Airy's function.
 #[test]
 fn the_last_contact_of_a_slow_pull_is_late_by_the_law() {
     let table = wavy();
@@ -95,7 +97,7 @@ fn the_last_contact_of_a_slow_pull_is_late_by_the_law() {
     }
 }
 
-/// Where the edge runs it forgets how it was loaded: what is left is the error of the integration, and as fine as that is asked for.
+/// A running edge forgets how it was loaded: what is left is the error of the integration, as small as is asked for.
 #[test]
 fn the_start_is_forgotten() {
     let table = wavy();
@@ -163,7 +165,8 @@ fn a_dead_load_is_borne_as_long_as_the_law_says() {
     }
 }
 
-/// s, c, δ and P where one of them, by its number, has the value `at`, of the polynomial through the six moments around.
+/// s, c, δ and P where one of them, given by its number, has the value `at`, from the polynomial through the six
+/// moments around it.
 fn polynomial(moments: &[Moment], number: usize, at: f64) -> Option<[f64; 4]> {
     let of = |moment: &Moment| [moment.contact_radius, moment.control, moment.approach, moment.force];
     let next = moments.iter().position(|moment| of(moment)[number] < at)?;
@@ -178,7 +181,8 @@ fn polynomial(moments: &[Moment], number: usize, at: f64) -> Option<[f64; 4]> {
     Some(sum)
 }
 
-/// What the variational equation says is how pulls beside each other differ: at held control while the edge is slow, at held radius then.
+/// The variational equation says how neighbouring pulls differ: at held control while the edge is slow, at held radius
+/// afterwards.
 #[test]
 fn pulls_beside_each_other_differ_as_their_derivatives_say() {
     use super::variation::{START, STIFFNESS, VALUES};
@@ -256,7 +260,7 @@ fn pulls_beside_each_other_differ_as_their_derivatives_say() {
                 for (k, told, unit) in [(0, by_s, 0.4), (2, by_delta, 0.05), (3, by_force, 0.02)] {
                     let difference = (8.0 * (c[k] - b[k]) - (d[k] - a[k])) / (12.0 * step);
                     let way = (more[k] - less[k]) / (2.0 * way) * along;
-                    // Of a way along the pull most is taken away again.
+                    // Most of a way along the pull is taken away again.
                     let size = unit + told.abs() + way.abs();
                     worst = worst.max((told - way - difference).abs() / size);
                     most = most.max(difference.abs() / size);

@@ -1,11 +1,12 @@
-//! How a pull moves with its values: the variational equation, solved along with each step.
+//! How a pull changes with its values: the variational equation, solved along with each step.
 //!
 //! ```text
 //! η = ∂y/∂θ at held ξ:     dη/dξ = φ_y η + φ_θ     (1 − h φ_y A) q = φ_y η₀ + φ_θ,     η = η₀ + h b·q
 //! ```
 //!
-//! `φ_θ` is the derivative at held ξ, y, `L_s` and `L_t`. It is solved with the stages of the step that was taken, so that what comes out are the
-//! derivatives of the numbers that the pull has, whatever their error. One stretch of an edge that opens, and the rest before it.
+//! `φ_θ` is the derivative at held ξ, y, `L_s` and `L_t`. The equation is solved with the stages of the step that was
+//! taken, so it gives the derivatives of the numbers that the pull has, whatever their error. It covers one stretch of
+//! an opening edge, and the rest before it.
 
 use super::equation::{Equation, HeldDisc, StretchMoment};
 use super::radau::{STAGES, WEIGHTS};
@@ -17,15 +18,15 @@ use crate::problem::Control;
 use nalgebra::SMatrix;
 use std::f64::consts::TAU;
 
-/// The place of γ among them.
+/// The index of γ among the values.
 pub const ADHESION: usize = 0;
-/// That of n.
+/// The index of n.
 pub const EXPONENT: usize = 1;
-/// That of V.
+/// The index of V.
 pub const RATE: usize = 2;
-/// That of k.
+/// The index of k.
 pub const STIFFNESS: usize = 3;
-/// That of s₀.
+/// The index of s₀.
 pub const START: usize = 4;
 
 /// The variation of one stretch.
@@ -37,7 +38,7 @@ pub struct Variation<'a> {
     eta: [f64; VALUES],
 }
 
-/// What changes at a place that ξ and y name, by each value: s, c, and K at held s and c.
+/// How the place named by ξ and y changes with each value: s, c, and K at held s and c.
 struct PlaceSlopes {
     radius: [f64; VALUES],
     control: [f64; VALUES],
@@ -45,7 +46,7 @@ struct PlaceSlopes {
 }
 
 impl<'a> Variation<'a> {
-    /// That of a stretch which begins in equilibrium, with the disc `start`.
+    /// The variation of a stretch that begins in equilibrium, with the disc `start`.
     pub fn new(equation: &'a Equation<'a>, start: &HeldDisc) -> Self {
         let Equation { control, radius: s, adhesion, .. } = *equation;
         let root = (TAU * adhesion * s).sqrt();
@@ -100,7 +101,7 @@ impl<'a> Variation<'a> {
         })
     }
 
-    /// The change of a moment, where y changes by `eta`.
+    /// The change of a moment if y changes by `eta`.
     fn moved(&self, held: &HeldDisc, passed: f64, eta: [f64; VALUES]) -> MomentSlopes {
         let equation = self.equation;
         let named = self.named(held, passed);
@@ -119,13 +120,13 @@ impl<'a> Variation<'a> {
         self.moved(&held, 0.0, [0.0; VALUES])
     }
 
-    /// The changes of the moments of a step; not numbers where there are none.
+    /// The changes of the moments of a step; NaN where there are none.
     pub fn step(&mut self, step: &SolvedStep) -> [MomentSlopes; STAGES] {
         let h = step.length;
         let mut matrix = SMatrix::<f64, STAGES, STAGES>::zeros();
         let mut right = SMatrix::<f64, STAGES, VALUES>::zeros();
         for (i, node) in step.nodes.iter().enumerate() {
-            // A row that is steep would drown the others.
+            // A steep row would drown the others.
             let share = 1.0 / (1.0 + (h * WEIGHTS[i][i] * node.phi_by_y).abs());
             let steepness = share * node.phi_by_y;
             for (j, weight) in WEIGHTS[i].iter().enumerate() {

@@ -1,7 +1,7 @@
 //! What the columns of CSV measure, for the person who reads their numbers.
 //!
-//! The header names stay as they are and no comment stands above them: programs read these files. So the units are told
-//! beside them.
+//! Programs read these files, so the header names stay as they are and no comment stands above them. The units are
+//! given beside the files instead.
 
 use crate::problem::Control;
 use crate::units::{Quantity, UnitSystem};
@@ -22,13 +22,13 @@ fn quantity(column: &str, control: Control) -> Option<Quantity> {
         "energy" | "dissipated" | "dissipated_by_area" => Some(Quantity::Energy),
         "contact_stiffness" | "tangent_stiffness" | "held_stiffness" => Some(Quantity::ForcePerLength),
 
-        // What the grips hold: a spring's other end is moved.
+        // For a spring, how far its other end is moved.
         "control" => Some(if control == Control::Force { Quantity::Force } else { Quantity::Length }),
         _ => None,
     }
 }
 
-/// The SI unit of a column; nobody types an area, so it is no quantity of ours.
+/// The SI unit of a column; nobody types an area, so it is not one of our quantities.
 fn unit(column: &str, control: Control) -> Option<&'static str> {
     match column {
         "area" | "before_area" | "after_area" => Some("m^2"),

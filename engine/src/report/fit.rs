@@ -29,27 +29,27 @@ pub struct FitReport {
     pub file: String,
     /// How the adhesion acts: the word of `material.adhesion`, or `rate` where its growth with the speed of the edge is fitted.
     pub model: &'static str,
-    /// What it comes to: whether the values and their errors may be believed.
+    /// The outcome: whether the values and their errors may be believed.
     pub verdict: Verdict,
     /// What speaks against it; empty where the model describes the points.
     pub reasons: Vec<Reason>,
     /// The values.
     pub parameters: Vec<ParameterReport>,
-    /// What was known of values before, with an error, and what it makes up of theirs.
+    /// What was known about values before, with an error, and its share in them.
     pub priors: Vec<Given>,
     /// The correlations of the values, in their order; `None` where they are not determined.
     pub correlations: Option<Vec<Vec<f64>>>,
     /// Σr²/(n − p), r in σ.
     pub chi_squared: f64,
-    /// Σr²/n of the points in contact; `None` without.
+    /// Σr²/n of the points in contact; `None` if there are none.
     pub chi_squared_in_contact: Option<f64>,
-    /// Of those apart.
+    /// The same for the points apart.
     pub chi_squared_apart: Option<f64>,
-    /// The noise of neighbouring points in contact, in σ; `None` of too few.
+    /// The noise of neighbouring points in contact, in σ; `None` if there are too few.
     pub noise_of_neighbours: Option<f64>,
     /// How many rows of the noise count as one: 1 for white noise.
     pub rows_that_count_as_one: f64,
-    /// The degrees of freedom of the error that is known worst.
+    /// The degrees of freedom of the error that is known least well.
     pub degrees_of_freedom: f64,
     /// The rows of the file by branch and part.
     pub rows: Rows,
@@ -69,19 +69,19 @@ pub struct FitReport {
     pub abscissa: &'static str,
     /// σ of x and of P, and of s where it is measured beside x.
     pub sigma: Vec<f64>,
-    /// Where each is from.
+    /// Where each comes from.
     pub sigma_from: Vec<Origin>,
     /// The snaps of the fitted path.
     pub snaps: usize,
     /// The starts that were run, the nearest first.
     pub starts: Vec<StartReport>,
-    /// E of one body, rigid the other, where a Poisson's ratio is given; with its standard error.
+    /// E of one body if the other is rigid, where a Poisson's ratio is given; with its standard error.
     pub youngs_modulus: Option<[Option<f64>; 2]>,
-    /// Fits of the bootstrap, and the rows of its blocks.
+    /// The number of bootstrap fits, and the rows of each block.
     pub bootstrap: Option<[usize; 2]>,
-    /// What was found, assumed and held.
+    /// What was found, assumed and held fixed.
     pub notes: Vec<String>,
-    /// What is to be doubted.
+    /// What should be doubted.
     pub warnings: Vec<String>,
     /// The sentences of the reasons, and the warnings.
     #[serde(skip)]
@@ -127,7 +127,7 @@ pub struct ParameterReport {
 }
 
 impl ParameterReport {
-    /// A value fitted to a problem like `preset`; whether its error `holds`.
+    /// A value fitted to a problem like `preset`; `holds` says whether its error does.
     fn new(preset: &Preset, fitted: &Fitted, holds: bool) -> Self {
         let quantity = quantity(preset, &fitted.key);
         let is_si = matches!(preset.units, UnitSystem::Si(_));
@@ -168,7 +168,7 @@ pub struct TogetherReport {
     pub schema: u32,
     /// Which document it is.
     pub document: &'static str,
-    /// What it comes to: whether the law and its errors may be believed.
+    /// The outcome: whether the law and its errors may be believed.
     pub verdict: Verdict,
     /// The values of the law.
     pub law: Vec<ParameterReport>,
@@ -178,7 +178,7 @@ pub struct TogetherReport {
     pub collapse: Collapse,
     /// The curves.
     pub runs: Vec<RunReport>,
-    /// What is to be doubted of each.
+    /// What should be doubted about each.
     #[serde(skip)]
     pub doubts: Vec<String>,
     #[serde(skip)]
@@ -189,11 +189,11 @@ pub struct TogetherReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct RunReport {
-    /// Under the one law, with the errors of all curves.
+    /// The fit under the common law, with the errors of all curves.
     pub fit: FitReport,
-    /// What it alone comes to.
+    /// The outcome for this curve alone.
     pub alone_verdict: Verdict,
-    /// The law that it alone would have.
+    /// The law that this curve alone would give.
     pub alone: Vec<ParameterReport>,
 }
 
@@ -266,9 +266,9 @@ pub struct ModelsReport {
     pub document: &'static str,
     /// The file of the points.
     pub file: String,
-    /// The model that is nearest to the points for what it takes; null where none could be fitted.
+    /// The model that comes nearest to the points for its number of free values; null where none could be fitted.
     pub best: Option<Model>,
-    /// Each other one beside it, and whether the points tell them apart.
+    /// Each other model beside it, and whether the points tell the two apart.
     pub pairs: Vec<Pair>,
     /// The fits, in the order in which they were asked for.
     pub fits: Vec<FitReport>,

@@ -52,13 +52,13 @@ pub struct RowReport {
     pub y: Option<f64>,
     /// δ, P or Δ at the limit point.
     pub control: f64,
-    /// Of a fold, on which side of it the states are stable, `outward` or `inward`; null for the others.
+    /// For a fold, the side on which the states are stable, `outward` or `inward`; null for the others.
     pub stable: Option<&'static str>,
-    /// Of a line of a map, whether the number of snaps differs on its two sides; null for the others.
+    /// For a line of a map, whether the number of snaps differs on its two sides; null for the others.
     pub changes: Option<bool>,
 }
 
-/// The columns of the points as CSV; they never change, new ones come behind them.
+/// The columns of the points as CSV; they never change, new ones come after them.
 pub const COLUMNS: &[&str] =
     &["line", "kind", "crest", "contact_radius", "x", "y", "control", "stable", "changes"];
 
@@ -74,7 +74,7 @@ pub struct AxisReport {
     pub to: Option<f64>,
     /// Whether its steps are equal factors.
     pub logarithmic: bool,
-    /// What stands in the middle of a compliance that goes on to infinity; null elsewhere.
+    /// The value in the middle of a compliance that goes on to infinity; null elsewhere.
     pub middle: Option<f64>,
 }
 
@@ -97,7 +97,7 @@ impl AxisReport {
 pub struct CountsReport {
     /// The numbers of the columns; null for infinity.
     pub x: Vec<Option<f64>>,
-    /// Those of the rows.
+    /// The numbers of the rows.
     pub y: Vec<Option<f64>>,
     /// The snaps without the pull-off, one list for each row; null where there is no path.
     pub snaps: Vec<Vec<Option<usize>>>,
@@ -117,7 +117,7 @@ pub struct OnsetReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct MapReport {
-    /// What it begins with.
+    /// The head of the document.
     #[serde(flatten)]
     pub head: Head,
     /// What is controlled.
@@ -126,9 +126,9 @@ pub struct MapReport {
     pub x: AxisReport,
     /// The ordinate.
     pub y: AxisReport,
-    /// What is to be said of the lines.
+    /// Remarks on the lines.
     pub notes: Vec<String>,
-    /// Where snaps begin; null for a gap without a wave, and where none do.
+    /// Where snaps begin; null for a gap without a wave, and where there are none.
     pub onset: Option<OnsetReport>,
     /// The points of the lines, line by line.
     pub rows: Vec<RowReport>,
@@ -136,7 +136,7 @@ pub struct MapReport {
     pub counts: Option<CountsReport>,
 }
 
-/// What is said of a preset in rings.
+/// The note for a preset with the basis of rings.
 pub(super) const EXACT: &str =
     "all numbers are those of the exact equation of one disc, whatever the basis of the preset";
 
@@ -149,7 +149,7 @@ pub enum MapError {
     /// The preset cannot be computed.
     #[error(transparent)]
     Case(#[from] crate::case::CaseError),
-    /// It was no longer wanted.
+    /// The map was no longer wanted.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }

@@ -8,15 +8,15 @@
 //! | [`trace`] | the equilibrium curve as a document |
 //! | [`path`] | an unloading, or a loop of loading and unloading, as a document |
 //! | [`pull`] | pulls at a rate, and times to failure, as a document |
-//! | [`slow`] | the largest pull of slow ones over their rate, in closed form |
+//! | [`slow`] | the largest pull of slow pulls as a function of their rate, in closed form |
 //! | [`speeds`] | G of measured rows beside the speed of the edge as a document |
 //! | [`map`] | maps of two numbers, and limit points over one, as a document |
 //! | [`stability`] | the law of stability over the contact radius as a document |
 //! | [`fit`] | a fit to a measured curve as a document, a table and text |
-//! | [`residuals`] | its points row by row |
+//! | [`residuals`] | the points of a fit, row by row |
 //! | [`verify`] | our numbers against theory as a document |
 //! | [`walk`] | the states of a walk by hand as a document |
-//! | `schema` | the JSON schemas of all of them, made and held by its test |
+//! | `schema` | the JSON schemas of all documents, written and checked by its test |
 //! | [`rows`] | nested rows as CSV |
 //! | [`path_table`] | a path as text for a terminal |
 //! | [`table`] | cells in columns, a verification as text for a terminal |

@@ -20,7 +20,7 @@ pub struct OverlapReport {
     pub crest_wave: Option<u64>,
 }
 
-/// Intervals told one by one in words; a document lists all.
+/// The most intervals listed one by one in words; a document lists all.
 const TOLD: usize = 3;
 
 impl OverlapReport {
@@ -47,7 +47,7 @@ impl OverlapReport {
     }
 }
 
-/// One line that says what `passes` (the curve, the path) them; `None` where there is none.
+/// One line saying that something (`passes`: the curve, the path) crosses such states; `None` where there are none.
 pub fn warning(passes: &str, overlaps: &[OverlapReport], units: &UnitSystem) -> Option<String> {
     if overlaps.is_empty() {
         return None;

@@ -23,7 +23,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PathReport {
-    /// What it begins with.
+    /// The head of the document.
     #[serde(flatten)]
     pub head: Head,
     /// What to be careful about.
@@ -36,7 +36,7 @@ pub struct PathReport {
     pub contact: &'static str,
     /// Why the path does not start from the state asked for; null where it does.
     pub start_note: Option<String>,
-    /// Where the control turned round; null of an unloading alone.
+    /// Where the control turned round; null for an unloading alone.
     pub turn: Option<TurnReport>,
     /// Why the path ended, in words.
     pub stop: String,
@@ -47,8 +47,8 @@ pub struct PathReport {
     pub events: Vec<EventReport>,
     /// The sums.
     pub totals: TotalsReport,
-    /// Where a path of one disc passes states in which the bodies would overlap, from the start inward; null where that is not known,
-    /// and of a path with rings, which passes none.
+    /// Where a path of one disc passes states in which the bodies would overlap, from the start inward; null where
+    /// that is not known, and for a path with rings, which passes none.
     pub inadmissible: Option<Vec<OverlapReport>>,
     /// Stable states in order, dense enough to be drawn.
     pub states: Vec<PathStateReport>,
@@ -62,7 +62,7 @@ pub struct TurnReport {
     pub of: &'static str,
     /// What was asked for.
     pub asked: f64,
-    /// What the state at the turn has of it: more where loading jumped over the value.
+    /// The value in the state at the turn: more than asked for where loading jumped over it.
     pub reached: f64,
 }
 
@@ -76,24 +76,24 @@ pub struct StateReport {
     pub force: f64,
     /// The outermost edge; 0 where a zone alone holds the bodies.
     pub contact_radius: f64,
-    /// The outer edge of the zone in which adhesion with a range acts; else nothing is written.
+    /// The outer edge of the zone in which adhesion with a range acts; otherwise omitted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub zone_radius: Option<f64>,
     /// The crest of the outermost edge; none for a gap without waves.
     pub wave: Option<u64>,
     /// Every contact as [inner, outer], from the axis outward; a disc is [0, s].
     pub contacts: Vec<[f64; 2]>,
-    /// Whether the device holds it: not at a limit point, from which edges run.
+    /// Whether the device can hold it: not at a limit point, from which edges run.
     pub stable: bool,
     /// dP/dδ while all edges are held, a force per length.
     pub held_stiffness: f64,
     /// The area in contact.
     pub area: f64,
-    /// U: the elastic energy less γ times the contact area; on the way up less what that gained in closing.
+    /// U: the elastic energy minus γ times the contact area; on the way up, minus what that area gained in closing.
     pub energy: f64,
 }
 
-/// A state of a path and where on it it lies.
+/// A state of a path, and where it lies on the path.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PathStateReport {
@@ -128,11 +128,11 @@ pub struct EventReport {
     pub after: Option<StateReport>,
     /// Energy lost, by the drop of the potential of bodies and device; null where a dead load leaves no bound.
     pub dissipated: Option<f64>,
-    /// The same by the work that the edges leave over on their way; null where it was not asked for.
+    /// The same from the work left over at the edges on their way; null where it was not asked for.
     pub dissipated_by_area: Option<f64>,
     /// What the jump passed; its order means nothing.
     pub passed: Vec<PassedReport>,
-    /// Whether the states before and after are admissible, of a path of one disc; null where that is not known.
+    /// For a path of one disc, whether the states before and after are admissible; null where that is not known.
     pub admissible: Option<bool>,
 }
 
@@ -146,8 +146,8 @@ pub struct PassedReport {
     pub radius: f64,
 }
 
-/// The sums of a path; null where a dead load leaves no bound, what was not asked for, and those of a way that was not followed to its
-/// end.
+/// The sums of a path. Null where a dead load leaves no bound, where the sum was not asked for, and where the way was
+/// not followed to its end.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TotalsReport {
@@ -167,18 +167,19 @@ pub struct TotalsReport {
     pub work_of_loading: Option<f64>,
     /// The same on the way down.
     pub work_of_unloading: Option<f64>,
-    /// What closed and gained less than it costs to open, of a loop with `material.closing_work_of_adhesion`; else nothing is written.
+    /// The loss because closing gains less than opening costs, for a loop with `material.closing_work_of_adhesion`;
+    /// otherwise omitted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dead_band: Option<DeadBandReport>,
 }
 
-/// What a loop loses besides its jumps: with `dissipated` the work of the loop, loading and unloading.
+/// What a loop loses besides its jumps: together with `dissipated`, the work of the loop, loading and unloading.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct DeadBandReport {
     /// The area that closed, all of which opened again.
     pub area: f64,
-    /// The work of adhesion less what closing gained of it, times the area.
+    /// The work of adhesion minus what closing gained of it, times the area.
     pub dissipated: f64,
 }
 
@@ -271,10 +272,11 @@ pub const STATE_COLUMNS: &[&str] = &[
     "outer_radius",
 ];
 
-/// The column behind [`STATE_COLUMNS`] where the adhesion has a range; a state without contact then has one row, without radii.
+/// The column after [`STATE_COLUMNS`] where the adhesion has a range; a state without contact then has one row,
+/// without radii.
 pub const STATE_ZONE_COLUMNS: &[&str] = &["zone_radius"];
 
-/// The columns behind [`COLUMNS`] where the adhesion has a range.
+/// The columns after [`COLUMNS`] where the adhesion has a range.
 pub const ZONE_COLUMNS: &[&str] = &["before_zone_radius", "after_zone_radius"];
 
 /// How much of a path is computed.
@@ -282,7 +284,7 @@ pub const ZONE_COLUMNS: &[&str] = &["before_zone_radius", "after_zone_radius"];
 pub struct Extent {
     /// Whether losses are computed twice.
     pub losses: Losses,
-    /// Whether it is found where a path of one disc is not admissible: that takes longer than all the rest.
+    /// Whether to find where a path of one disc is not admissible, which takes longer than all the rest.
     pub admissibility: bool,
 }
 
@@ -322,12 +324,12 @@ impl PathReport {
             report = report.checked(&case, &curve, &path, &ProgressPart::new(progress, [0.8, 1.0]))?;
         }
         report.warnings.extend(case.unsettled(&path, progress));
-        // What was given up may lack its warning.
+        // A check that was given up may lack its warning.
         progress.go_on()?;
         Ok(report)
     }
 
-    /// The loop of `preset`, turned round at `turn`, in the units of the preset, in place of what that says.
+    /// The loop of `preset`, turned round at `turn`, in the units of the preset, instead of where the preset says.
     ///
     /// ```
     /// use pulloff_engine::{Extent, PathReport, Unwatched, preset};
@@ -360,7 +362,7 @@ impl PathReport {
         report.checked(&case, &curve, &path, &ProgressPart::new(progress, [0.95, 1.0]))
     }
 
-    /// The document of a path of `case`; whether one of one disc is admissible is not known yet.
+    /// The document of a path of `case`; whether a path of one disc is admissible is not known yet.
     #[must_use]
     pub fn new(preset: &Preset, case: &Case, path: &Path) -> Self {
         let (units, problem) = (case.units(), &case.reduced);
@@ -423,7 +425,7 @@ impl PathReport {
             let found = on(curve, &path.pieces())?;
             return Ok(self.with_overlaps(case, path, [&[], &found]));
         };
-        // What has closed is on the equilibria of a closing edge, the start of an unloading too.
+        // Contact that has closed is on the equilibria of a closing edge, and so is the start of an unloading.
         let growing = curve.under(closing, progress)?;
         let start = path.start().map_or(0.0, |start| start.contact_radius);
         let up = if path.turn.is_some() { path.pieces_on(&[Direction::Loading]) } else { vec![[start; 2]] };
@@ -432,7 +434,7 @@ impl PathReport {
         Ok(self.with_overlaps(case, path, [&grown, &found]))
     }
 
-    /// With what is not admissible of edges that closed, and of others.
+    /// With the inadmissible states of edges that closed, and of the others.
     fn with_overlaps(mut self, case: &Case, path: &Path, [grown, passed]: [&[Overlap]; 2]) -> Self {
         let holds = |state: &PathState| {
             let of =
@@ -665,7 +667,7 @@ impl TotalsReport {
         let energy = |x: f64| x * problem.units.energy;
         let state = |state: &PathState| StateReport::new(problem, state);
         Self {
-            // What is not followed to its end may pull more, or go farther.
+            // A path that was not followed to its end may pull more, or go farther.
             largest_pull: path.largest_pull().filter(|_| path.is_whole()).map(state),
             farthest: path.farthest().filter(|_| path.is_whole()).map(state),
             last_contact: path.last_contact().and_then(|event| event.before.as_ref()).map(state),

@@ -8,7 +8,7 @@ use crate::quasistatic::EventKind;
 use crate::units::{Quantity, UnitSystem};
 use std::fmt::Write;
 
-/// Rings told one by one in a line; a document lists all.
+/// The most rings listed one by one in a line; a document lists all.
 const TOLD: usize = 2;
 
 /// The path as lines of text.
@@ -26,7 +26,7 @@ pub fn path(report: &PathReport) -> String {
     text
 }
 
-/// The case, its control, its start, and what is to be known of them.
+/// The case, its control, its start, and the notes about them.
 fn opening(report: &PathReport) -> String {
     let title = report.head.problem.preset.get("title").and_then(|title| title.as_str()).unwrap_or_default();
     let units = &report.head.units.shown;
@@ -49,7 +49,7 @@ fn opening(report: &PathReport) -> String {
     text
 }
 
-/// The events as a table, and what is wrong with those that cannot be.
+/// The events as a table, and what is wrong with those that are not admissible.
 fn events(report: &PathReport) -> String {
     let units = &report.head.units.shown;
     let head = |name, quantity| head(units, name, quantity);
@@ -90,7 +90,7 @@ fn row(units: &UnitSystem, event: &EventReport) -> Vec<String> {
         state.as_ref().map_or_else(|| "apart".to_owned(), |state| held(units, state, 5))
     };
     let (before, after) = (&event.before, &event.after);
-    // Where nothing jumps there is one state.
+    // Where nothing jumps, the two states are the same.
     let still = before == after;
     let landed = |text: String| if still { dash() } else { text };
     let crest = |state: &Option<StateReport>| {
@@ -148,7 +148,7 @@ fn in_contact(units: &UnitSystem, contacts: &[[f64; 2]], digits: usize) -> Strin
     disc.into_iter().chain(told).chain(more).collect::<Vec<_>>().join(" ")
 }
 
-/// What the path comes to: where it turned, extreme states, losses, its end.
+/// The outcome of the path: where it turned, extreme states, losses, its end.
 fn outcome(report: &PathReport) -> String {
     let (units, totals) = (&report.head.units.shown, &report.totals);
     let mut text = String::new();

@@ -139,8 +139,8 @@ fn document(preset: &Preset) -> Map<String, Value> {
     document
 }
 
-/// The unit of a parameter of a formula in an SI document: its numbers there are in SI, whatever the file wrote, so the
-/// unit beside them is too. One that is none of ours is the remark it was.
+/// The unit of a parameter of a formula in an SI document: its numbers there are in SI, whatever the file wrote, so
+/// the unit beside them is too. A unit that is not one of ours stays the remark it was.
 fn unit_of_parameter(preset: &Preset, key: &str, value: &crate::preset::Value) -> Option<Value> {
     let parameter = key.strip_suffix(".unit").filter(|key| is_parameter(key))?;
     let crate::preset::Value::Text(unit) = value else { return None };

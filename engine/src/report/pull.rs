@@ -63,7 +63,7 @@ pub struct MomentReport {
     pub force: f64,
 }
 
-/// A stretch in which the edge exceeds ten times its least speed since the last one and crosses unstable equilibria.
+/// A stretch in which the edge exceeds ten times its least speed since the last snap and crosses unstable equilibria.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SnapReport {
@@ -101,15 +101,15 @@ pub struct RunReport {
     pub peak: MomentReport,
     /// The least forces after which the force rises by more than 1 % of `P_c`.
     pub tension_peaks: Vec<MomentReport>,
-    /// The snaps but the one in which the bodies come apart, in order.
+    /// The snaps in order, except the one in which the bodies come apart.
     pub snaps: Vec<SnapReport>,
-    /// Null where the parts of the pull end before.
+    /// The last contact; null where the parts of the pull end before it.
     pub last_contact: Option<LastContactReport>,
     /// What the edge dissipates in all; null where a dead load falls without end.
     pub dissipated: Option<f64>,
-    /// The largest speed of the edge before the last contact, while a snap or at a peak.
+    /// The largest speed of the edge before the last contact, in a snap or at the peak.
     pub top_edge_speed: f64,
-    /// What is missing between the work and elastic energy, adhesion and dissipation, over the work.
+    /// What is missing between the work and elastic energy, adhesion and dissipation, relative to the work.
     pub balance: f64,
     /// Every moment that the integrator kept.
     #[serde(skip)]
@@ -198,7 +198,7 @@ pub const FAILURE_COLUMNS: &[&str] = &["force", "time"];
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct PullReport {
-    /// What it begins with.
+    /// The head of the document.
     #[serde(flatten)]
     pub head: Head,
     /// What to be careful about.
@@ -214,13 +214,13 @@ pub struct PullReport {
 /// What is asked for.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AskedPulls {
-    /// Rates of the control, in the units of the preset's numbers; none means what the preset says.
+    /// Rates of the control, in the units of the preset's numbers; if there are none, what the preset says.
     pub rates: Vec<f64>,
     /// Dead loads whose time to failure is wanted. With these and without rates nothing is pulled.
     pub loads: Vec<f64>,
 }
 
-/// What turns the numbers of a pull into those of a preset.
+/// The factors that turn the numbers of a pull into those of a preset.
 struct Factors {
     length: f64,
     force: f64,
@@ -288,13 +288,13 @@ impl Factors {
     }
 }
 
-/// The largest speed of the edge in a snap, or else at the least force.
+/// The largest speed of the edge in a snap or at the least force.
 fn top_speed(pull: &Pull) -> f64 {
     pull.snaps.iter().map(|snap| snap.top_speed).fold(pull.peak.speed.abs(), f64::max)
 }
 
 impl PullReport {
-    /// What `asked` says of `preset`; `progress` is told the share that is done, and may stop it.
+    /// Computes what is `asked` of `preset`; `progress` is told the share that is done, and may stop it.
     ///
     /// # Errors
     /// [`PullError`].
@@ -539,7 +539,7 @@ pub fn missing(preset: &Preset) -> Option<PullError> {
     law(preset).err().or_else(|| programmes(preset, &AskedPulls::default()).err())
 }
 
-/// What is done in a run, with its rate where it has one alone.
+/// What is done in a run, with its rate where it has a single one.
 type Programme = (Option<f64>, Vec<Part>);
 
 /// What is done in each run, in the preset's units.
@@ -559,7 +559,7 @@ fn programmes(preset: &Preset, asked: &AskedPulls) -> Result<Vec<Programme>, Pul
     Ok(vec![(rate, steps)])
 }
 
-/// Where a pull leaves what the law is good for.
+/// Where a pull leaves the range in which the law is good.
 fn limits(
     preset: &Preset,
     case: &Case,
@@ -575,7 +575,8 @@ fn limits(
     });
     let mut warnings = Vec::new();
     let ratio = pull.moments.iter().filter(|moment| moment.contact_radius > 0.0);
-    // Towards the last contact G grows without bound whatever the rate: what matters is what the edge passes before.
+    // Towards the last contact G grows without bound whatever the rate: what matters is what the edge passes before
+    // that.
     let before_end = ratio.filter(|moment| moment.contact_radius >= pull.peak.contact_radius);
     let highest = before_end
         .map(|moment| moment.energy_release_rate / case.reduced.work_of_adhesion)

@@ -14,15 +14,15 @@ pub const HEADER: &str = "row,line,segment,part,x,force,residual,outlier";
 pub struct ResidualRow {
     /// Its number among the rows that are read, from 1.
     pub row: usize,
-    /// Its line in the file, from 1; `None` of points that come from no file.
+    /// Its line in the file, from 1; `None` for points that come from no file.
     pub line: Option<usize>,
     /// Its branch.
     pub segment: &'static str,
     /// `contact` or `free`.
     pub part: &'static str,
-    /// x, its sign put right.
+    /// x, with its sign put right.
     pub x: f64,
-    /// P, its sign put right.
+    /// P, with its sign put right.
     pub force: f64,
     /// Its signed distance from the curve, in σ.
     pub residual: f64,

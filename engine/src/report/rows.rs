@@ -7,7 +7,7 @@ use std::collections::HashMap;
 /// Why rows could not be written as CSV.
 #[derive(Debug, thiserror::Error)]
 pub enum RowsError {
-    /// A row is no object of the columns; the types of the documents exclude it.
+    /// A row does not fit the columns; the types of the documents exclude it.
     #[error("a row does not fit its columns: {0}")]
     Shape(String),
     /// A value could not be serialized.

@@ -1,6 +1,6 @@
-//! The JSON schemas of all documents, made of the types that are written: they lie in `docs/schema`.
+//! The JSON schemas of all documents, made from the types that are written; they are in `docs/schema`.
 //!
-//! `UPDATE_DOCS=1 cargo test -p pulloff-engine --lib schema` writes them anew.
+//! `UPDATE_DOCS=1 cargo test -p pulloff-engine --lib schema` rewrites them.
 
 use super::walk::WalkReport;
 use super::{
@@ -12,7 +12,7 @@ use schemars::transform::{RecursiveTransform, Transform};
 use schemars::{JsonSchema, Schema};
 use serde_json::json;
 
-/// Every object has the keys of its type and no others; a number that is none is written as null.
+/// Every object has the keys of its type and no others; what is not a number is written as null.
 fn strict(schema: &mut Schema) {
     let closes = schema.get("properties").is_some() && schema.get("additionalProperties").is_none();
     if closes {

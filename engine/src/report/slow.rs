@@ -1,11 +1,12 @@
-//! The largest pull of slow pulls over their rate, in closed form: the quasi-static one, and the first order beside it.
+//! The largest pull of slow pulls as a function of their rate, in closed form: the quasi-static value and its
+//! first-order correction.
 //!
 //! ```text
 //! P = P* − E*s*T* (V s*/(T* v₀))ⁿ,    T* = √(2πγs*/E*)
 //! ```
 //!
-//! At a smooth minimum of P the edge passes the state of the smallest force at the speed V s/T of its equilibria, at which it costs
-//! γ (vs/T v₀)ⁿ more; any gap, fixed grips or a spring.
+//! At a smooth minimum of P the edge passes the state of the smallest force at the speed V s/T of its equilibria,
+//! and at this speed it costs γ (vs/T v₀)ⁿ more. This holds for any gap, under fixed grips or a spring.
 
 use super::pull::{PullError, law};
 use crate::case::Case;
@@ -22,12 +23,13 @@ use std::f64::consts::TAU;
 pub struct SlowPulls {
     /// P*, the smallest force of the unloading of one disc.
     pub force: f64,
-    /// What the first order takes off it at the rate 1, and n; none where P* is at a limit point of the control, or under a dead load.
+    /// What the first order takes off it at the rate 1, and n; `None` where P* is at a limit point of the control, or
+    /// under a dead load.
     first: Option<[f64; 2]>,
 }
 
 impl SlowPulls {
-    /// That of `preset`, whose rates are those of the controlled quantity; none where its path has no state.
+    /// The law of `preset`, whose rates are those of the controlled quantity; `None` where its path has no state.
     ///
     /// # Errors
     /// [`PullError`].
@@ -49,7 +51,7 @@ impl SlowPulls {
         let is_smooth = case.control != Control::Force && !path.events.iter().any(leaves);
         let s = at.contact_radius;
         let stretch = (TAU * case.reduced.work_of_adhesion * s).sqrt();
-        // Reduced, a rate is one over v₀.
+        // In reduced units a rate is divided by v₀.
         let first = s * stretch * pow(s / (stretch * speed), law.exponent) * units.force;
         Ok(Some(Self { force: at.force * units.force, first: is_smooth.then_some([first, law.exponent]) }))
     }

@@ -4,9 +4,10 @@
 //! K = g(s) − δ      G = E* K²/2πs      δ = P/(2E* s) + ∫₀ˢ g / s   of P and s;      v = −ds/dt
 //! ```
 //!
-//! No law of adhesion is in it: E* and the gap alone. G follows from any two of force, approach and contact radius; of force and approach s
-//! follows first, for at a held approach the force falls with s. From approach and radius no force is in it, unless the way is that of the
-//! other end of a spring. D. Maugis and M. Barquins, J. Phys. D 11, 1989 (1978).
+//! It contains no law of adhesion, only E* and the gap. G follows from any two of force, approach and contact radius;
+//! from force and approach, s follows first, because at a held approach the force falls with s. From approach and
+//! radius, G does not depend on the force, unless the way is that of the other end of a spring. D. Maugis and M.
+//! Barquins, J. Phys. D 11, 1989 (1978).
 
 use super::problem::Head;
 use super::rows::{ReportTable, RowsError};
@@ -25,7 +26,7 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// How often the gap is tabulated further out for radii that are not measured.
+/// How many times the gap may be tabulated further out for radii that are not measured.
 const WIDER: usize = 12;
 
 /// Why there are no speeds.
@@ -37,10 +38,10 @@ pub enum SpeedsError {
     /// The preset has no measured curve.
     #[error("the preset has no measured curve: name a file, or set data.file")]
     NoData,
-    /// Its file gives no points, in words.
+    /// Its file gives no points: why, in words.
     #[error("{0}")]
     Data(String),
-    /// A column is not there.
+    /// A column is missing.
     #[error("G cannot be computed from {}: the file has no {missing}", .pair.words())]
     Lacks {
         /// What was asked for.
@@ -92,19 +93,19 @@ impl MeasuredPair {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SpeedRow {
-    /// When it was taken, in seconds, or in reduced units; null where the file does not say it.
+    /// When it was taken, in seconds, or in reduced units; null where the file does not say.
     pub time: Option<f64>,
-    /// s, measured or of force and approach.
+    /// s, measured, or from force and approach.
     pub contact_radius: f64,
     /// −ds/dt: positive where the contact recedes; null without times.
     pub speed: Option<f64>,
     /// G; negative where the edge is pressed, K < 0.
     pub energy_release_rate: f64,
-    /// The standard deviation of G, by the noise of the columns.
+    /// The standard deviation of G, from the noise of the columns.
     pub error: f64,
-    /// That of the speed, by the noise of the contact radius.
+    /// The standard deviation of the speed, from the noise of the contact radius.
     pub speed_error: Option<f64>,
-    /// The rows of the window by which the speed is told.
+    /// The number of rows in the window from which the speed is found.
     pub window: Option<usize>,
     /// `approach` or `retraction`.
     pub segment: &'static str,
@@ -129,7 +130,7 @@ pub const COLUMNS: &[&str] = &[
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SpeedsReport {
-    /// What it begins with.
+    /// The head of the document.
     #[serde(flatten)]
     pub head: Head,
     /// What to be careful about.
@@ -144,13 +145,13 @@ pub struct SpeedsReport {
     pub rows: Vec<SpeedRow>,
 }
 
-/// What rows are turned into states by.
+/// What turns rows into states.
 struct RowReading {
     panels: Arc<Panels>,
     units: Units,
     abscissa: Abscissa,
     pair: MeasuredPair,
-    /// That of the way, reduced.
+    /// The control that the measured way belongs to, reduced.
     control: Control,
     /// δ₀, P₀ and its slope over x, in base units.
     instrument: [f64; 3],
@@ -158,7 +159,8 @@ struct RowReading {
     sigma: [f64; 2],
 }
 
-/// G of one row in base units, its standard deviation but for that of s, and its derivative by s at what is measured beside it.
+/// G of one row in base units, its standard deviation without the part from s, and its derivative with respect to s at
+/// what else is measured.
 struct Released {
     contact_radius: f64,
     energy: f64,
@@ -167,7 +169,7 @@ struct Released {
 }
 
 impl RowReading {
-    /// G at a row; `None` at a radius that is none, or for which the gap is not known.
+    /// G at a row; `None` where its radius is not valid, or one for which the gap is not known.
     fn released(&self, point: &MeasuredPoint) -> Option<Released> {
         let [offset, baseline, tilt] = self.instrument;
         let force = (point.force - baseline - tilt * point.x) / self.units.force;
@@ -221,7 +223,7 @@ impl RowReading {
     fn at_force(&self, approach: f64, force: f64) -> Option<HeldDisc> {
         let at = |s: f64| HeldDisc::new(&self.panels, Control::Displacement, s, approach);
         let (lo, hi) = (self.panels.smallest(), self.panels.reach());
-        // Below the disc whose edge is free the force rises with s: it is behind that one.
+        // Below the disc whose edge is free the force rises with s: the disc looked for lies beyond that one.
         let is_beyond = |held: &HeldDisc| held.opening > 0.0 && held.force < force;
         if !is_beyond(&at(hi)) {
             return None;
@@ -237,8 +239,9 @@ fn signed(held: &HeldDisc) -> f64 {
 }
 
 impl SpeedsReport {
-    /// Of the measured curve of `preset`, with its E*, gap, device and what it says of the instrument, from two of its columns: force and
-    /// radius where no others are asked for, and force and approach of a file without radii.
+    /// The report on the measured curve of `preset`, with its E*, gap, device and what it says about the instrument,
+    /// from two of its columns: force and radius where no others are asked for, and force and approach for a file
+    /// without radii.
     ///
     /// # Errors
     /// [`SpeedsError`].
@@ -284,7 +287,7 @@ impl SpeedsReport {
             instrument: [preset.data.offset.unwrap_or(0.0), baseline, preset.data.tilt.unwrap_or(0.0)],
             sigma: [sigma_x, sigma_force],
         };
-        // Of force and approach the radius is not known before.
+        // From force and approach, the radius is not known beforehand.
         for _ in 0..WIDER {
             let found = reading(Arc::clone(&panels));
             let is_wide = of_file.iter().all(|point| found.released(point).is_some());
@@ -336,7 +339,7 @@ impl SpeedsReport {
     }
 }
 
-/// The radius up to which the gap is wanted: the largest that is measured, or else one at which every row is beyond the disc it has.
+/// The radius up to which the gap is wanted: the largest that is measured, or the start radius where that is larger.
 fn wanted(case: &Case, branches: &Branches) -> f64 {
     let of_branch = |branch: &MeasuredBranch| branch.attached.clone();
     let measured = branches.list.iter().flat_map(of_branch).map(|point| radius_of(branches.abscissa, &point));
@@ -391,7 +394,8 @@ mod tests {
     const E: f64 = 1e6;
     const R: f64 = 1e-3;
 
-    /// A retraction of a sphere with G = 0.05 (1 + √(v/v₀)) and v that grows as the contact recedes: s, δ, P, t, v and G of rows even in s.
+    /// A retraction of a sphere with G = 0.05 (1 + √(v/v₀)) and a v that grows as the contact recedes: s, δ, P, t, v
+    /// and G of rows evenly spaced in s.
     fn rows() -> Vec<[f64; 6]> {
         let mut time = 0.0;
         let step = 5e-7;
@@ -487,7 +491,7 @@ mod tests {
                 assert!((row.energy_release_rate / energy - 1.0).abs() < 1e-6, "{row:?} {energy}");
             }
         }
-        // An E* twice as large: twice the G of approach and radius, and another one of the others.
+        // Twice the E*: twice the G from approach and radius, and a different G from the others.
         preset.set("material.effective_modulus", Value::Number(2e6)).unwrap();
         let of = |pair| SpeedsReport::compute(&preset, Some(pair), &Unwatched).unwrap().rows[50];
         let [s, .., energy] = made[of(MeasuredPair::ApproachRadius).row - 1];

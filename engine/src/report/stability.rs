@@ -36,7 +36,7 @@ pub struct RowReport {
     pub critical: CriticalReport,
 }
 
-/// The columns of the rows as CSV; they never change, new ones come behind them.
+/// The columns of the rows as CSV; they never change, new ones come after them.
 pub const COLUMNS: &[&str] =
     &["kind", "contact_radius", "critical_displacement", "critical_force", "critical_chosen"];
 
@@ -44,21 +44,21 @@ pub const COLUMNS: &[&str] =
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct StabilityReport {
-    /// What it begins with.
+    /// The head of the document.
     #[serde(flatten)]
     pub head: Head,
     /// What to be careful about.
     pub warnings: Vec<String>,
     /// What is controlled.
     pub control: Control,
-    /// The work of adhesion of the preset, that the law is held against.
+    /// The work of adhesion of the preset, with which the law is compared.
     pub work_of_adhesion: f64,
-    /// Samples of equal distance, cusps and corners, from the end outward.
+    /// Equally spaced samples, cusps and corners, from the end outward.
     pub rows: Vec<RowReport>,
 }
 
 impl StabilityReport {
-    /// The law of `preset` at `samples` radii of equal distance, at least 2, and at its cusps and corners.
+    /// The law of `preset` at `samples` equally spaced radii, at least 2, and at its cusps and corners.
     ///
     /// ```
     /// use pulloff_engine::report::StabilityReport;

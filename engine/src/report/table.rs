@@ -79,7 +79,7 @@ pub(super) fn ascii_unit(
 
 /// The verification as lines of text, its rows under the headings of their groups; the last line counts them.
 pub fn verify(report: &VerifyReport) -> String {
-    // Beside ours stands the exact number or another of ours, which no heading may call exact.
+    // Beside our number stands the exact one or another of ours, which no heading may call exact.
     let heads = ["exact", "ours too"].map(|beside| ["", "ours", beside, "difference", "bound", ""]);
     let mut rows: Vec<Vec<String>> = heads.iter().map(|head| head.map(str::to_owned).to_vec()).collect();
     rows.extend(report.rows.iter().map(verified));
@@ -106,7 +106,7 @@ pub fn verify(report: &VerifyReport) -> String {
 
 fn verified(row: &RowReport) -> Vec<String> {
     let dash = || "-".to_owned();
-    // Counts and orders are whole numbers: no decimals that say nothing.
+    // Counts and orders are whole numbers: they need no decimals.
     let number = |x: f64| if x.fract() == 0.0 { short(x, 8) } else { significant(x, 8) };
     let off = |x: f64| if x == 0.0 { short(x, 1) } else { difference(x) };
     vec![

@@ -24,7 +24,7 @@ use std::f64::consts::TAU;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TraceReport {
-    /// What it begins with.
+    /// The head of the document.
     #[serde(flatten)]
     pub head: Head,
     /// What to be careful about.
@@ -56,7 +56,7 @@ pub struct PointReport {
     pub step: usize,
     /// s.
     pub contact_radius: f64,
-    /// The outer edge of the zone in which adhesion with a range acts; else nothing is written.
+    /// The outer edge of the zone in which adhesion with a range acts; otherwise omitted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub zone_radius: Option<f64>,
     /// δ.
@@ -69,7 +69,7 @@ pub struct PointReport {
     pub newton_iterations: usize,
     /// Its stability under each control.
     pub stable: StableReport,
-    /// ∂P/∂δ at the contact radius held fast, a force per length.
+    /// ∂P/∂δ at a fixed contact radius, a force per length.
     pub contact_stiffness: f64,
     /// dP/dδ along the curve, a force per length; null where it is infinite, at a limit point of displacement.
     pub tangent_stiffness: Option<f64>,
@@ -77,7 +77,7 @@ pub struct PointReport {
     pub area_slope: Option<f64>,
     /// Whether the bodies stay apart outside the disc and, without adhesion, nothing pulls inside.
     pub admissible: bool,
-    /// The exact solution at the same contact radius, where it was asked for; else nothing is written.
+    /// The exact solution at the same contact radius, where it was asked for; otherwise omitted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exact: Option<ExactReport>,
 }
@@ -92,7 +92,7 @@ pub struct ExactReport {
     pub force: f64,
     /// U.
     pub energy: f64,
-    /// P of the point less the exact P, over the exact P: near P = 0 rounding is seen.
+    /// P of the point minus the exact P, relative to the exact P: near P = 0 rounding shows.
     pub relative_difference: f64,
 }
 
@@ -195,7 +195,7 @@ pub struct LimitReport {
     pub control: Control,
     /// s.
     pub contact_radius: f64,
-    /// The outer edge of the zone in which adhesion with a range acts; else nothing is written.
+    /// The outer edge of the zone in which adhesion with a range acts; otherwise omitted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub zone_radius: Option<f64>,
     /// δ.
@@ -206,7 +206,7 @@ pub struct LimitReport {
     pub wave: Option<u64>,
 }
 
-/// The columns of the points as CSV; they never change, new ones come behind them.
+/// The columns of the points as CSV; they never change, new ones come after them.
 pub const COLUMNS: &[&str] = &[
     "step",
     "contact_radius",
@@ -223,14 +223,14 @@ pub const COLUMNS: &[&str] = &[
     "admissible",
 ];
 
-/// The columns of the exact solution, behind [`COLUMNS`] where it was asked for.
+/// The columns of the exact solution, after [`COLUMNS`] where it was asked for.
 pub const EXACT_COLUMNS: &[&str] =
     &["exact_approach", "exact_force", "exact_energy", "exact_relative_difference"];
 
-/// Why the trace of adhesion with a range ends where nothing cuts it short.
+/// Why a trace of adhesion with a range ends where nothing cuts it short.
 pub const OUT_OF_RANGE: &str = "the zone has shrunk to nothing: the bodies are out of range";
 
-/// The column behind them where the adhesion has a range.
+/// The column after them where the adhesion has a range.
 pub const ZONE_COLUMNS: &[&str] = &["zone_radius"];
 
 /// Why an unloading does not begin where the curve does.

@@ -29,15 +29,15 @@ pub struct VerifyReport {
 pub struct RowReport {
     /// What is compared, with the basis.
     pub group: String,
-    /// By what the difference is divided.
+    /// What the difference is divided by.
     pub measure: &'static str,
     /// What the number is.
     pub what: String,
-    /// The engine's; null where it could not be computed.
+    /// The engine's number; null where it could not be computed.
     pub ours: Option<f64>,
-    /// The exact one; null where ours stands beside another of ours.
+    /// The exact number; null where ours stands beside another of ours.
     pub exact: Option<f64>,
-    /// The other of ours, where it is compared with that.
+    /// The other number of ours, where it is compared with that.
     pub other: Option<f64>,
     /// Whether it is compared with another of ours; the table has a heading for these.
     #[serde(skip)]
@@ -55,7 +55,7 @@ pub const COLUMNS: &[&str] =
     &["group", "measure", "what", "ours", "exact", "other", "difference", "bound", "passes"];
 
 impl VerifyReport {
-    /// The document of `groups`, or of the rows of which the group or the name contains `only`, in any case of letters.
+    /// The document of `groups`, or only of the rows whose group or name contains `only`, ignoring case.
     pub fn new(groups: &[Group], only: Option<&str>) -> Self {
         let wanted = only.map(str::to_lowercase);
         let is_wanted = |group: &Group, row: &VerifyRow| {

@@ -1,4 +1,4 @@
-//! The states that a person walked through as a document.
+//! The states that a person walked through, as a document.
 
 use super::Head;
 use super::path::EventReport;
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct WalkReport {
-    /// What it begins with.
+    /// The head of the document.
     #[serde(flatten)]
     pub head: Head,
     /// What to be careful about.
@@ -46,7 +46,7 @@ pub struct WalkRow {
     pub energy: f64,
     /// The crest at the contact radius; null for a gap without waves.
     pub wave: Option<u64>,
-    /// Newton's steps to it.
+    /// The Newton steps that led to it.
     pub newton_iterations: usize,
     /// Whether it is stable.
     pub stable: StableReport,
@@ -62,14 +62,14 @@ pub struct WalkRow {
     pub amplitude: Option<f64>,
     /// λ when it was solved.
     pub wavelength: Option<f64>,
-    /// Whether it is admissible; nothing once the bodies are apart.
+    /// Whether it is admissible; null once the bodies are apart.
     pub admissible: Option<bool>,
     /// The keys that changed during the walk, with their values here; null where the preset had none.
     #[serde(flatten)]
     pub changed: BTreeMap<String, Value>,
 }
 
-/// The columns of the walk as CSV; behind them stand the keys that changed during it.
+/// The columns of the walk as CSV; after them come the keys that changed during it.
 pub const WALK_COLUMNS: &[&str] = &[
     "step",
     "kind",

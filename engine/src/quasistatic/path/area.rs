@@ -1,13 +1,14 @@
-//! What a jump loses, by the work that its edges leave over.
+//! The loss of a jump as the work left over at its edges.
 //!
 //! ```text
 //! −∫ Σ 2πe_i (G_i − γ) dα_i      at held control, along straight lines from the edges before to those after
 //! ```
 //!
-//! The potential knows no way, so any will do: a new contact opens from a point, a gap closes to its middle. The sum is Fejér's second
-//! rule, whose nodes are doubled until two sums agree (J. Waldvogel, BIT Numer. Math. 46, 195 (2006), doi:10.1007/s10543-006-0045-4). It
-//! runs over the root of the time from where a contact opens, or from where an edge passes a corner; as a gap closes G is smooth. A stretched ring that vanishes holds an energy that falls with the logarithm of its width alone, and is integrated
-//! in that variable,
+//! The potential does not depend on the way, so any way will do: a new contact opens from a point, a gap closes to its
+//! middle. The sum is Fejér's second rule, whose nodes are doubled until two sums agree (J. Waldvogel, BIT Numer.
+//! Math. 46, 195 (2006), doi:10.1007/s10543-006-0045-4). It runs over the square root of the time from where a contact
+//! opens, or from where an edge passes a corner; as a gap closes, G is smooth. The energy of a stretched ring that
+//! vanishes falls only with the logarithm of its width, so the ring is integrated in that variable,
 //!
 //! ```text
 //! U = K/(ln(32c/w) + C)      c its radius, w → 0, C from what stands beside it
@@ -20,27 +21,27 @@ use crate::annuli::ground::gauss;
 use crate::elementary::{cos, exp, ln, sin};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Nodes of the rest of a vanishing ring.
+/// Nodes for the integral over a vanishing ring.
 const NODES: usize = 32;
 
-/// Intervals of one way at most, and more for each wave that an edge passes.
+/// The most intervals on one way, and how many more for each wave that an edge passes.
 const INTERVALS: f64 = 64.0;
 const INTERVALS_PER_WAVE: f64 = 48.0;
 
-/// What the finer of two sums may be off, as a share of its parts: by what it differs from the coarser one, times how much less that
-/// is than between that one and the one before. Sums of an analytic function are far better.
+/// The largest error of the finer of two sums, as a share of its parts. It is estimated as the difference from the
+/// coarser sum, times the ratio of that difference to the previous one. Sums of an analytic function are far better.
 const OFF: f64 = 3e-8;
 
-/// Where the rest of a vanishing ring takes over, as a share of its width, and how much wider its other sample is.
+/// Where the rest of a vanishing ring takes over, as a share of its width, and how much wider its second sample is.
 const REST: f64 = 1e-6;
 const WIDER: f64 = 10.0;
 
-/// A way of edges: from where it is small, to where it is large.
+/// The way of two edges, from the small contact to the large one.
 #[derive(Debug, Clone, Copy)]
 enum EdgeWay {
     /// On a straight line.
     Line([f64; 2], [f64; 2]),
-    /// A ring from nothing at a radius.
+    /// A ring that opens from nothing at a radius.
     Open(f64, [f64; 2]),
 }
 
@@ -59,8 +60,8 @@ impl EdgeWay {
 type Moving = Vec<[[f64; 2]; 2]>;
 
 impl Balance<'_> {
-    /// What is lost between two states at one control value, one within the other; `None` where a state on the way is none. A contact
-    /// between them that is new opens from one of the crests, a length each.
+    /// What is lost between two states at one control value, one within the other; `None` where there is no state on
+    /// the way. A new contact opens from one of the `crests`, a length each.
     pub fn area_between(
         &self,
         before: Option<&PathState>,
@@ -105,7 +106,8 @@ impl Balance<'_> {
             }
             debug_assert!(first[0] <= last[1]);
         }
-        // First what stays moves, beside whole rings that are about to go; then these go, one after the other.
+        // First the contacts that stay move, beside the whole rings that are about to vanish; then those vanish, one
+        // after the other.
         let farthest = ways
             .iter()
             .flat_map(|way| match way {
@@ -113,7 +115,7 @@ impl Balance<'_> {
                 EdgeWay::Open(point, to) => [point - to[0], to[1] - point],
             })
             .fold(0.0, f64::max);
-        // Some hundred at most.
+        // At most 1024.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let most = (INTERVALS + INTERVALS_PER_WAVE * farthest / self.ground.wave).min(1024.0) as usize;
         let mut sum = 0.0;
@@ -144,7 +146,8 @@ impl Balance<'_> {
         Some(sum)
     }
 
-    /// The times at which an edge passes a break of the gap, with 0 and 1: there G goes like the root of the time.
+    /// The times at which an edge passes a break of the gap, with 0 and 1: there G varies as the square root of the
+    /// time.
     fn borders(&self, ways: &[EdgeWay]) -> Vec<f64> {
         let mut times = vec![0.0, 1.0];
         for way in ways {
@@ -181,7 +184,7 @@ impl Balance<'_> {
         )
     }
 
-    /// The same for a stretched ring from nothing, beside others.
+    /// The same for a stretched ring that opens from nothing, beside others.
     fn vanished(&self, others: &[[f64; 2]], [a, b]: [f64; 2], value: f64) -> Option<f64> {
         let (middle, width) = (0.5 * (a + b), b - a);
         let of = |w: f64| {
@@ -200,7 +203,7 @@ impl Balance<'_> {
         }
         // U = K/(L + C), L = ln(32c/w): the root of −dU/dL = w dU/dw is √K/(L + C).
         let w = REST * width;
-        // Of U the elastic energy; the adhesion of the rest is its area's.
+        // The elastic part of U; the adhesion of the rest follows from its area.
         let adhesion = 2.0 * PI * middle * self.work_of_adhesion;
         let [near, wider] = [w, WIDER * w].map(|w| of(w).map(|rate| ((rate + adhesion) * w).max(0.0).sqrt()));
         let (near, wider) = (near?, wider?);
@@ -209,10 +212,10 @@ impl Balance<'_> {
     }
 }
 
-/// ∫₀¹ f du, with up to about so many intervals; the ends are not asked.
+/// ∫₀¹ f du, with up to about `most` intervals; f is not evaluated at the ends.
 fn integral(most: usize, f: &mut dyn FnMut(f64) -> Option<f64>) -> Option<f64> {
     const FEWEST: usize = 16;
-    // Between the ends: of n intervals n − 1 values.
+    // Only between the ends: n intervals have n − 1 values.
     let mut values = vec![f(0.5)?];
     let (mut coarser, mut differed) = (f64::NAN, f64::NAN);
     loop {
@@ -261,7 +264,7 @@ mod tests {
         assert!((found.unwrap() / right - 1.0).abs() < 1e-13, "{found:?} {right}");
         assert!(asked <= 31, "{asked}");
         assert_eq!(integral(1024, &mut |u| (u < 0.7).then_some(u)), None);
-        // A root at a place within: as many as there may be, and no more.
+        // A square root at a place inside: it takes as many values as there may be, and no more.
         let mut asked = 0;
         let rough = integral(64, &mut |u| {
             asked += 1;

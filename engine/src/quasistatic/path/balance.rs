@@ -7,7 +7,8 @@
 //! J = ∂κ/∂α − f κ¹ (∂P/∂α)ᵀ,    ∂P/∂α_j = 4πe_j κ_j κ¹_j,    ∂κ/∂c = κ¹ (1, 1/P¹, k/(P¹ + k))
 //! ```
 //!
-//! A state is stable where all eigenvalues of J are positive. J = S·diag(e κ) with S symmetric, so that they are real where κ > 0.
+//! A state is stable where all eigenvalues of J are positive. J = S·diag(e κ) with S symmetric, so they are real where
+//! κ > 0.
 
 use super::lane::Lane;
 use crate::annuli::{
@@ -21,14 +22,14 @@ use nalgebra::{DMatrix, DVector};
 use std::cell::RefCell;
 use std::f64::consts::{PI, TAU};
 
-/// Newton's steps at most, from edges that are near.
+/// The most Newton steps, from edges that are near.
 const ITERATIONS: usize = 30;
 
-/// A Newton step that ends the iteration, in waves; where it no longer falls the second is enough.
+/// The size of a Newton step that ends the iteration, in waves; once steps no longer shrink, the second is enough.
 pub const CONVERGED: f64 = 1e-12;
 const STALLED: f64 = 1e-9;
 
-/// A Newton step is cut to so many waves and so that no width falls below this share.
+/// A Newton step is cut to this many waves, and so that no width falls below this share of itself.
 const LONGEST: f64 = 0.1;
 const LEFT: f64 = 0.4;
 
@@ -48,9 +49,9 @@ pub struct Balance<'a> {
     pub contact: ContactKind,
     /// Asked while the edges run.
     pub progress: &'a dyn Progress,
-    /// The equilibria of one disc alone, where they are known: edges run on them at once.
+    /// The equilibria of one disc alone, where they are known: edges run on them directly.
     pub lane: Option<&'a Lane>,
-    /// The radii of edges that are held as long as their G is below γ, where those that closed gained less.
+    /// The radii of edges that are held as long as their G is below γ, where closing edges gained less.
     pub pinned: Option<&'a RefCell<Vec<f64>>>,
 }
 
@@ -91,7 +92,7 @@ pub enum NotFound {
 }
 
 impl Balance<'_> {
-    /// The edges of `contacts` at the control value, with so many points on the rings.
+    /// The edges of `contacts` at the control value, with the given points on the rings.
     ///
     /// # Errors
     /// [`AnnuliError`].
@@ -131,7 +132,7 @@ impl Balance<'_> {
         self.pinned.is_some_and(|pinned| pinned.borrow().iter().any(|held| is_same(*held, radius)))
     }
 
-    /// Nothing is asked of edges that are held, and nothing moves them.
+    /// Held edges have no equation to satisfy, and nothing moves them.
     fn pin(&self, held: &mut HeldEdges) {
         if self.pinned.is_none() {
             return;
@@ -162,7 +163,7 @@ impl Balance<'_> {
         }
     }
 
-    /// Lets go of the held edges that would move; whether there are any.
+    /// Lets go of the held edge nearest to moving if it would move; returns whether it did.
     pub fn lets_go(&self, held: &HeldEdges) -> bool {
         let before = self.nearest_to_moving(held).filter(|(_, excess)| *excess > 0.0);
         if let Some((radius, _)) = before {
@@ -171,8 +172,8 @@ impl Balance<'_> {
         before.is_some()
     }
 
-    /// The way in which edges that are not stable begin to run: the eigenvector of the least eigenvalue of J, outward at every edge, by inverse
-    /// iteration. Edges that adhere ease each other, so that no part of it has the other sign.
+    /// How unstable edges begin to run: the eigenvector of the least eigenvalue of J, outward at every edge, by
+    /// inverse iteration. Adhesive edges ease each other, so no component has the other sign.
     pub fn softest(held: &HeldEdges) -> DVector<f64> {
         /// The shift is below the eigenvalue by this share of J: the other eigenvalues are further away.
         const BELOW: f64 = 1e-10;
@@ -209,8 +210,8 @@ impl Balance<'_> {
         Ok(state.intensities(delta))
     }
 
-    /// The equilibrium at the control value with the same contacts, by Newton's method from these edges; they need not be near an
-    /// equilibrium of their own, but nothing is said of what lies between: no landing is claimed.
+    /// The equilibrium with the same contacts at the control value, by Newton's method from these edges. They need not
+    /// be near an equilibrium, but nothing is known about the states in between: no landing is claimed.
     ///
     /// # Errors
     /// [`NotFound`].
@@ -253,7 +254,7 @@ impl Balance<'_> {
             0 => f64::NAN,
             1 => j[(0, 0)],
             _ => {
-                // J_ij J_ji are squares where κ > 0; a pressed edge eases nothing, and stands alone.
+                // J_ij J_ji is a square where κ > 0; a pressed edge eases no other, and stands alone.
                 let off = |i: usize, k: usize| {
                     let (a, b) = (j[(i, k)], j[(k, i)]);
                     if a < 0.0 && b < 0.0 { -(a * b).sqrt() } else { 0.0 }
@@ -268,8 +269,8 @@ impl Balance<'_> {
         }
     }
 
-    /// The least gap outside the contacts and its radius, crests alone; `None` where nothing can come near, or nothing else is
-    /// followed.
+    /// The least gap outside the contacts and its radius, among crests only; `None` where nothing can come near, or
+    /// where only one disc is followed.
     pub fn least_gap(&self, held: &HeldEdges) -> Option<GapMinimum> {
         if self.contact == ContactKind::OneDisc {
             return None;
@@ -277,7 +278,7 @@ impl Balance<'_> {
         let to = self.ground.can_touch_up_to(held.approach);
         let contacts = &held.state.contacts;
         if contacts.is_disc() {
-            // Searched with the table, which is as fine as the gap is there.
+            // Searched with the table, which is as fine as the gap there.
             let end = to.min(self.ground.reach());
             let opening = (TAU * self.work_of_adhesion * contacts.disc).sqrt();
             let overlap = -ROUNDING * (held.approach.abs() + opening);
@@ -291,7 +292,7 @@ impl Balance<'_> {
                 gap: if gap < overlap { gap } else { gap.max(0.0) },
             });
             let overlaps = found.is_some_and(|crest| crest.gap < 0.0);
-            // A search that was given up says nothing of what lies beyond: that is sampled, as it is around rings.
+            // A search that gave up says nothing about what lies beyond: that is sampled, as it is around rings.
             if overlaps || least.given_up.is_none() {
                 return found;
             }
@@ -306,7 +307,7 @@ impl Balance<'_> {
     }
 }
 
-/// Whether two numbers are those of one radius.
+/// Whether two numbers stand for one radius.
 fn is_same(a: f64, b: f64) -> bool {
     const SHARE: f64 = 1e-10;
     (a - b).abs() <= SHARE * b

@@ -1,4 +1,4 @@
-//! A path of any contacts while it runs: the loop from apart to a turn and back.
+//! A path with any contacts while it runs: the loop from bodies apart to a turn and back.
 
 use super::balance::{Balance, HeldEdges};
 use super::error::PathError;
@@ -25,29 +25,30 @@ pub(super) enum CourseEnd {
     Fold(usize),
     Touch(GapMinimum),
     Turn,
-    /// G of a held edge has come to γ.
+    /// G of a held edge has reached γ.
     Free,
 }
 
-/// A path of any contacts while it runs.
+/// A path with any contacts while it runs.
 pub(in crate::quasistatic) struct Course<'a, 'b> {
     pub balance: &'a Balance<'b>,
     pub setting: &'a PathSetting<'a>,
-    /// Where the control turns round; `None` on the way down alone.
+    /// Where the control turns round; `None` for the way down alone.
     pub turn: Option<Turn>,
-    /// Below this radius a disc is not followed, a length.
+    /// The radius below which a disc is not followed, a length.
     pub end: f64,
     pub record: Record<'a>,
     pub steps: usize,
 }
 
-/// How far beyond what may touch a table goes.
+/// How far a table reaches beyond what may touch.
 const BEYOND: f64 = 1.3;
 
-/// A formula is looked at up to so many of its lengths.
+/// A formula is examined up to this many of its lengths.
 const LENGTHS: f64 = 10.0;
 
-/// The loop of the gap of `table` with the work of adhesion `gamma` (E* = 1): as [`cycle_on`], as far out as the loop goes.
+/// The loop of the gap of `table` with the work of adhesion `gamma` (E* = 1): as [`cycle_on`], but as far out as the
+/// loop needs.
 ///
 /// # Errors
 /// [`PathError`].
@@ -71,14 +72,14 @@ pub fn cycle(
     on_ground(table, at_least(table, reach), &far_enough, progress, &path, &highest)
 }
 
-/// How far a gap is looked at for `reach`.
+/// How far out a gap is examined where `reach` is wanted.
 pub(super) fn at_least(table: &Table, reach: f64) -> f64 {
     let reach = reach.max(2.0 * table.gap().feature_length().unwrap_or(0.0)).max(0.05);
     if matches!(table.gap().form(), Form::Any) { reach.max(LENGTHS) } else { reach }
 }
 
-/// What is found on as much of the gap as it needs: `reach` at first, more where it comes to the end of that or is not `far_enough`; with
-/// the largest approach of what is found.
+/// What `find` finds on as much of the gap as it needs: `reach` at first, and more where that is not `far_enough` or
+/// where it comes to the end of it. `highest` gives the largest approach of what is found.
 ///
 /// # Errors
 /// [`PathError`].
@@ -90,7 +91,7 @@ pub(in crate::quasistatic) fn on_ground<T>(
     find: &dyn Fn(&Ground) -> Result<T, PathError>,
     highest: &dyn Fn(&T) -> f64,
 ) -> Result<T, PathError> {
-    /// Times the gap may be looked at further out for its least value.
+    /// How many times the gap may be searched further out for its least value.
     const FURTHER: usize = 6;
     for round in 0..40 {
         let ground = Ground::new(Arc::clone(table), reach, progress)?;
@@ -125,9 +126,10 @@ pub(super) fn highest(path: &Path) -> f64 {
     path.states.iter().map(|state| state.approach).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The loop of a gap with the work of adhesion `gamma` (E* = 1), as far out as `ground` goes: a loop that comes to its end is an error.
+/// The loop of a gap with the work of adhesion `gamma` (E* = 1), as far out as `ground` goes: a loop that reaches the
+/// end of `ground` is an error.
 ///
-/// `progress` is asked before each step with the share of the way that is done, 0 to 1, roughly.
+/// Before each step `progress` is told roughly what share of the way is done, 0 to 1, and is asked whether to go on.
 ///
 /// # Errors
 /// [`PathError`].
@@ -152,7 +154,7 @@ pub(super) fn lane(ground: &Ground, gamma: f64, control: Control) -> Option<Lane
     (gamma > 0.0).then(|| Lane::new(ground, gamma, control))
 }
 
-/// What holds contacts on a path.
+/// The balance that holds contacts on a path.
 pub(super) fn balance<'a>(
     ground: &'a Ground,
     gamma: f64,
@@ -160,15 +162,16 @@ pub(super) fn balance<'a>(
     lane: Option<&'a Lane>,
     progress: &'a dyn Progress,
 ) -> Balance<'a> {
-    // Without adhesion all controls rise together, and the approach is the one that is stepped.
+    // Without adhesion all controls rise together, and steps are taken in the approach.
     let control = if gamma > 0.0 { setting.control } else { Control::Displacement };
     let (contact, pinned) = (setting.contact, None);
     Balance { ground, work_of_adhesion: gamma, control, contact, progress, lane, pinned }
 }
 
-/// The place of the least gap; the axis where it is one of several. `None` where there is none, or `progress` said stop.
+/// The place of the least gap; the axis if it is one of several such places. `None` where there is none, or `progress`
+/// said stop.
 fn first_crest(ground: &Ground, progress: &dyn Progress) -> Option<GapMinimum> {
-    /// Radii at which the gap is looked at between two questions.
+    /// Radii at which the gap is evaluated between two calls of `progress`.
     const TOGETHER: usize = 64;
     let reach = ground.reach();
     let value = |r: f64| ground.gap.jet(r).value;
@@ -195,7 +198,8 @@ fn first_crest(ground: &Ground, progress: &dyn Progress) -> Option<GapMinimum> {
     Some(GapMinimum { radius, gap: value(radius) })
 }
 
-/// The error with what was reached, where an edge ran beyond what is known of the gap, or a state has too many contacts.
+/// The error, with the state that was reached, where an edge ran beyond the known gap or a state has too many
+/// contacts.
 pub(super) fn beyond(error: PathError, approach: f64, force: f64) -> PathError {
     match error {
         PathError::State(AnnuliError::BeyondGap { known, .. }) => {
@@ -210,7 +214,7 @@ pub(super) fn beyond(error: PathError, approach: f64, force: f64) -> PathError {
 }
 
 impl<'a, 'b> Course<'a, 'b> {
-    /// One that has not begun, to no turn and no end.
+    /// A course that has not begun, without a turn or an end.
     pub fn new(balance: &'a Balance<'b>, setting: &'a PathSetting<'a>, direction: Direction) -> Self {
         let record = Record::new(setting, direction, balance.progress);
         Self { balance, setting, turn: None, end: 0.0, record, steps: 0 }
@@ -227,7 +231,7 @@ impl Course<'_, '_> {
         PathState { control_value: control.value(held.approach, held.force), ..state }
     }
 
-    /// What the turn is measured by.
+    /// The value by which the turn is measured.
     pub(super) fn measure(&self, held: &HeldEdges) -> f64 {
         match self.turn {
             Some(Turn::Control(_)) if self.balance.control == self.setting.control => held.control_value,
@@ -310,8 +314,8 @@ impl Course<'_, '_> {
         self.down(held, gamma, &|record, stop| record.finished(None, turn, work_of_loading, stop))
     }
 
-    /// The way down at the work of adhesion `gamma` of contacts that are recorded; what gained less in closing is held until G has
-    /// come to γ at its edge.
+    /// The way down, at the work of adhesion `gamma`, of contacts that are already recorded. Edges that gained less in
+    /// closing are held until their G has reached γ.
     pub(super) fn down(
         mut self,
         held: HeldEdges,
@@ -365,7 +369,7 @@ impl Course<'_, '_> {
         Ok(held)
     }
 
-    /// The way down of contacts that are recorded, until the bodies are apart.
+    /// The way down of contacts that are already recorded, until the bodies are apart.
     pub(super) fn unloaded(&mut self, mut held: HeldEdges) -> Result<PathStop, PathError> {
         let balance = self.balance;
         loop {
@@ -399,7 +403,7 @@ impl Course<'_, '_> {
         }
     }
 
-    /// The edges where a held one begins to move, which it may from here on.
+    /// The edges where a held one begins to move; from here on it may.
     fn let_go(&mut self, at: &HeldEdges) -> Result<HeldEdges, PathError> {
         let balance = self.balance;
         let lost = PathError::Lost { control_value: at.control_value };
@@ -418,14 +422,14 @@ impl Course<'_, '_> {
         value: f64,
         passed: &[Passed],
     ) -> Option<f64> {
-        // Bodies apart hold nothing; a dead load has no bound.
+        // Bodies apart hold nothing; under a dead load the loss has no bound.
         if self.setting.losses == Losses::Once || (after.is_none() && self.setting.control == Control::Force)
         {
             return None;
         }
         let on_lane = self.balance.lane.and_then(|lane| match (before, after) {
             (Some(before), after) => lane.area(&before.contacts, after.map(|after| &after.contacts[..])),
-            // What it took to come from apart to there is what it takes to come back, with another sign.
+            // The work from bodies apart to this state is that of the way back with the other sign.
             (None, Some(after)) => lane.area(&after.contacts, None).map(|area| -area),
             (None, None) => None,
         });
@@ -445,7 +449,7 @@ impl Course<'_, '_> {
         }
     }
 
-    /// The first touch and what it jumps to.
+    /// The first touch, and the state it jumps to.
     pub fn first_touch(&mut self, crest: GapMinimum, value: f64) -> Result<HeldEdges, PathError> {
         let start = self.balance.seeded(&Contacts::default(), crest.radius, value)?;
         let mut passed = vec![Passed { kind: PassedKind::Touch, radius: crest.radius }];
@@ -476,7 +480,7 @@ impl Course<'_, '_> {
         Ok(landed)
     }
 
-    /// The event of a jump that has landed, or of the bodies come apart, with the state after it.
+    /// Adds the event of a jump that has landed, or of bodies that came apart, with the state after it.
     pub(super) fn jumped(
         &mut self,
         kind: EventKind,
@@ -502,7 +506,7 @@ mod tests {
     use crate::gap::shapes::{Harmonic, Harmonics};
     use crate::progress::Unwatched;
 
-    /// The loop of a gap, with discs on the exact panels or step by step as any contact.
+    /// The loop of a gap, with discs on the exact panels or followed step by step like any contact.
     fn looped(ground: &Ground, gamma: f64, control: Control, turn: Turn, on_lane: bool) -> Path {
         let setting = PathSetting::new(control);
         let lane = on_lane.then(|| Lane::new(ground, gamma, control));

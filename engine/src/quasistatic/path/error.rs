@@ -47,7 +47,7 @@ pub enum PathError {
     },
     /// More contacts, or points on them, than a state may have.
     TooMany {
-        /// Of what.
+        /// What there are too many of.
         error: AnnuliError,
         /// The approach reached.
         approach: f64,
@@ -220,10 +220,11 @@ impl From<TableError> for PathError {
     }
 }
 
-/// What is to be known about a path beyond its numbers.
+/// What should be known about a path besides its numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Warning {
-    /// Some state had fewer digits than nine: breaks of the gap lie inside a ring, or it takes more points than there may be.
+    /// Some state had fewer than nine digits: breaks of the gap lie inside a ring, or it takes more points than there
+    /// may be.
     Digits {
         /// The fewest decimal digits of the edges of any state.
         digits: f64,
@@ -235,7 +236,7 @@ pub enum Warning {
         /// |Π − Σ areas + Σ losses| over the losses or the work of loading, whichever is more.
         share: f64,
     },
-    /// A jump's loss by energy and by area do not agree.
+    /// The losses of a jump by energy and by area do not agree.
     Area {
         /// The number of the event, from 1 as tables count.
         event: usize,

@@ -39,13 +39,13 @@ impl Direction {
 pub struct PathState {
     /// The outermost edge of contact, a length; 0 where a zone holds the bodies without contact.
     pub contact_radius: f64,
-    /// c, the outer edge of the zone of adhesion with a range, a length; `None` of adhesion without one.
+    /// c, the outer edge of the zone of adhesion with a range, a length; `None` for adhesion without one.
     pub zone: Option<f64>,
     /// δ, a length.
     pub approach: f64,
     /// P, a force.
     pub force: f64,
-    /// U, an energy: elastic, less γ times the contact area; on the way up less what that gained in closing.
+    /// U, an energy: elastic, minus γ times the contact area; on the way up, minus what that area gained in closing.
     pub energy: f64,
     /// Contacts as [inner, outer], lengths, from the axis outward; a disc is [0, s].
     pub contacts: Vec<[f64; 2]>,
@@ -53,10 +53,10 @@ pub struct PathState {
     pub contact_area: f64,
     /// dP/dδ while all edges are held, a force over a length: 2E*s for a disc.
     pub held_stiffness: f64,
-    /// Whether the device holds it: not at a limit point, from which edges run.
+    /// Whether the device can hold it: not at a limit point, from which edges run.
     pub stable: bool,
-    /// dδ/ds and dP/ds along the equilibria of one disc, or by the outer edge of its zone, where the state was found on them and no edge
-    /// is on a corner.
+    /// dδ/ds and dP/ds along the equilibria of one disc, or with respect to the outer edge of its zone; only where the
+    /// state was found on them and no edge is on a corner.
     pub slopes: Option<Stability>,
     /// c: δ, P or Δ.
     pub control_value: f64,
@@ -110,7 +110,8 @@ impl PathState {
         }
     }
 
-    /// The potential of bodies and device, that of bodies apart being 0 at the same control value; of a dead load U − Pδ.
+    /// The potential of bodies and device, relative to bodies apart at the same control value; under a dead load,
+    /// U − Pδ.
     pub fn potential(&self, control: Control) -> f64 {
         energy::potential(control, self.force, &self.state())
     }
@@ -206,14 +207,14 @@ impl EventKind {
     }
 }
 
-/// What a jump passed on its way; neither its order nor its radii mean much, both depend on how fast edges move.
+/// What a jump passed on its way. Neither its order nor its radii mean much: both depend on how fast edges move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PassedKind {
     /// A crest touched.
     Touch,
     /// A gap closed.
     Merge,
-    /// A contact went.
+    /// A contact vanished.
     Vanish,
 }
 
@@ -254,7 +255,7 @@ pub struct Event {
     pub after: Option<PathState>,
     /// The energy lost, by the drop of the potential; `None` for a last contact under a dead load.
     pub dissipated: Option<f64>,
-    /// The same by the work that the edges leave over on their way; `None` where it was not asked for.
+    /// The same from the work left over at the edges on their way; `None` where it was not asked for.
     pub dissipated_by_area: Option<f64>,
     /// What the jump passed.
     pub passed: Vec<Passed>,
@@ -267,7 +268,8 @@ impl Event {
         matches!(self.kind, EventKind::LastContact | EventKind::SnapOff) && self.after.is_none()
     }
 
-    /// The jump of one disc at a limit point, at a held control, to where its edge lands; the last contact where it lands nowhere.
+    /// The jump of one disc at a limit point, at a held control, to where its edge lands; the last contact if it lands
+    /// nowhere.
     pub fn of_disc(
         solution: &dyn Solution,
         control: Control,

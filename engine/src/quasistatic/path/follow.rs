@@ -11,7 +11,7 @@ use crate::annuli::{AnnuliError, MOST_POINTS_IN_ALL, points};
 use crate::problem::{ContactKind, Control};
 use crate::quasistatic::energy::Losses;
 
-/// Steps of a path at most.
+/// The most steps of a path.
 const STEPS: usize = 200_000;
 
 /// The first step of a stretch, in the units of the arc length.
@@ -20,20 +20,20 @@ pub const FIRST: f64 = 0.02;
 /// The longest step of many, in the units of the arc length.
 pub const LONGEST: f64 = 0.15;
 
-/// How much longer than the one before a step may be.
+/// How much longer than the previous step a step may be.
 pub const GROWTH: f64 = 1.5;
 
-/// Points behind a step by which it is foreseen.
+/// The number of past points from which a step is predicted.
 pub const PAST: usize = 2;
 
-/// The way of a step is known where a state lies on it to this, in the units of the arc length: with it the balance of loops closes
-/// within 1e-8 of their losses.
+/// The way of a step is known once a state lies on it to this accuracy, in the units of the arc length: the balance of
+/// loops then closes within 1e-8 of their losses.
 const ON_THE_WAY: f64 = 1e-7;
 
-/// Nodes of an area on a step at a corner.
+/// Nodes for an area on a step at a corner.
 const NODES_AT_CORNERS: usize = 12;
 
-/// With this share of the most points a step may ask for more.
+/// Above this share of the most points, a step that fails is taken to need more.
 const NEARLY: f64 = 0.8;
 
 impl Course<'_, '_> {
@@ -80,7 +80,7 @@ impl Course<'_, '_> {
         }
     }
 
-    /// Where δ or P has an extreme on a step: the smallest force of a path is that of a state of it.
+    /// Where δ or P has an extreme on a step, so that the smallest force of a path is that of one of its states.
     fn extremes(
         &self,
         step: &PathStep<'_, '_>,
@@ -89,7 +89,7 @@ impl Course<'_, '_> {
     ) -> Vec<PathPoint> {
         let slopes = |point: &PathPoint| self.balance.slopes(point);
         let [start, end] = [slopes(from), slopes(to)];
-        // What is held has its extremes at the ends of stretches.
+        // The controlled quantity has its extremes at the ends of stretches.
         let held = match self.balance.control {
             Control::Displacement => Some(0),
             Control::Force => Some(1),
@@ -103,9 +103,9 @@ impl Course<'_, '_> {
         found.into_iter().map(|(_, point)| point).collect()
     }
 
-    /// Whether an edge goes against the control: of stable edges that adhere none does, for they ease each other.
+    /// Whether an edge moves against the control. Stable edges that adhere never do, because they ease each other.
     fn goes_back(&self, at: &PathPoint) -> bool {
-        /// A part of the tangent that is nothing.
+        /// A part of the tangent that counts as zero.
         const NOTHING: f64 = 1e-9;
         let sense = self.record.direction.sense();
         at.along_edges().iter().any(|part| part * sense < -NOTHING)
@@ -122,7 +122,7 @@ impl Course<'_, '_> {
         Ok(self.balance.progress.go_on()?)
     }
 
-    /// Whether all that could touch at an approach lies within the table, where the gap goes on.
+    /// Checks that all that could touch at an approach lies within the table, unless the gap ends with it.
     pub(super) fn within_reach(&self, approach: f64, force: f64) -> Result<(), PathError> {
         let ground = self.balance.ground;
         let ends = ground.reach() >= ground.table.end() * (1.0 - 1e-9);
@@ -187,9 +187,9 @@ impl Course<'_, '_> {
         Ok(end)
     }
 
-    /// ∫ (dΠ/dc) dc over a step, in the root of the distance from a corner.
+    /// ∫ (dΠ/dc) dc over a step; at a corner, in the square root of the distance from it.
     fn area_of(&self, step: &PathStep<'_, '_>, length: f64, next: &PathPoint, side: SingularSide) -> f64 {
-        /// What is left of an area's places: their errors enter as products.
+        /// The last Newton step at the places of an area: their errors enter as products.
         const NEAR: f64 = 1e-9;
         if length <= 0.0 {
             return 0.0;

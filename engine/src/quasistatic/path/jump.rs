@@ -1,12 +1,13 @@
-//! Where edges land that run at held control.
+//! Where edges land when they run at held control.
 //!
 //! ```text
 //! dα_i/dt = m_i (γ − G_i),  any mobilities m_i > 0;      step (J + μ D⁻¹) Δα = √γ − κ,  D = diag m
 //! ```
 //!
-//! An edge that advances eases every other (its derivative of their κ is negative), so this flow keeps order: begun where all G ≤ γ it only grows,
-//! and ends in the least equilibrium that contains its start, whatever the mobilities; begun where all G ≥ γ it only shrinks, to the
-//! greatest one inside. On the way contacts merge, touch and vanish.
+//! An edge that advances eases every other (the derivative of their κ with respect to it is negative), so this flow
+//! keeps order. Started where all G ≤ γ, it only grows, and ends in the least equilibrium that contains its start,
+//! whatever the mobilities. Started where all G ≥ γ, it only shrinks, to the greatest equilibrium inside its start. On
+//! the way contacts merge, touch and vanish.
 
 use super::balance::{Balance, CONVERGED, HeldEdges, keeps_widths, moved};
 use super::error::PathError;
@@ -16,32 +17,32 @@ use crate::elementary::cbrt;
 use crate::quasistatic::jump::EdgeDirection;
 use nalgebra::DVector;
 
-/// Steps of one run at most.
+/// The most steps of one run.
 const STEPS: usize = 4000;
 
 /// The longest step, and the longest Newton step that may go back, in waves.
 const LONGEST: f64 = 0.03;
 const BACK: f64 = 0.02;
 
-/// What a step leaves of every width.
+/// The share of every width that a step leaves.
 const LEFT: f64 = 0.4;
 
 /// The kick at a limit point in waves, and as a share of the narrowest width.
 const KICK: f64 = 2e-3;
 const KICK_OF_WIDTH: f64 = 0.1;
 
-/// Widths that close or vanish: in waves, and in (γρ²)^{1/3}.
+/// Widths at which gaps close and contacts vanish: in waves, and in (γρ²)^{1/3}.
 const NARROW: f64 = 0.004;
 const NARROW_BY_ADHESION: f64 = 0.05;
 
-/// An adhesive gap narrower than so many of these widths closes. In a valley G falls with the width of the gap, so that none this narrow is
-/// stable, and following it to nothing would take the most points of all.
+/// An adhesive gap narrower than this many of these widths closes. In a valley G falls with the width of the gap, so
+/// no gap this narrow is stable, and following one to nothing would take the most points of all.
 const CLOSES: f64 = 5.0;
 
-/// How fast edges move at a radius: nothing that lasts depends on it.
+/// How fast edges move at a radius; no landing depends on it.
 pub type Mobility<'a> = &'a (dyn Fn(f64) -> f64 + Sync);
 
-/// The same for all edges.
+/// The same mobility for all edges.
 pub const EVEN: Mobility<'static> = &|_| 1.0;
 
 impl Balance<'_> {
@@ -176,7 +177,8 @@ impl Balance<'_> {
         let size = held.jacobian.amax();
         let fastest = slow.iter().copied().fold(f64::INFINITY, f64::min);
         let mut mu = if lowest > 0.0 { 0.0 } else { 1.3 * lowest.abs() / fastest };
-        // An edge a hair beyond its place stands still until the others ease it: what is left is corrected at the end.
+        // An edge slightly beyond its place stands still until the others ease it; what is left is corrected at the
+        // end.
         let push = held.excess.map(|excess| if -excess * sense < 0.0 { 0.0 } else { -excess });
         let stands: Vec<bool> = push.iter().map(|push| *push == 0.0).collect();
         for _ in 0..200 {
@@ -213,7 +215,8 @@ impl Balance<'_> {
         self.seeded(&held.state.contacts, crest.radius, value).map(Some)
     }
 
-    /// The contacts without gaps that are too narrow, and when they shrink without contacts that are.
+    /// The contacts without the gaps that are too narrow and, when they shrink, without the contacts that are too
+    /// narrow.
     fn tidied(&self, mut contacts: Contacts, sense: f64, passed: &mut Vec<Passed>) -> Contacts {
         let narrow = self.narrow();
         let mut k = 0;

@@ -1,9 +1,10 @@
 //! The equilibria of one disc, exactly, on the panels of the table: what a loop follows while there are no rings.
 //!
-//! One disc has one equilibrium for each radius. Where its control is monotone, its limit points and its landings are found on
-//! every panel ([`Monotone`]), so that none is missed however close to another it lies, and the length of the waves does not
-//! matter. Only while the control goes up a crest outside can touch: contact gained anywhere eases every other edge, so along a
-//! stable stretch the gap outside falls with the radius of the disc, and changes its sign once.
+//! One disc has one equilibrium for each radius. The stretches on which its control is monotone, its limit points and
+//! its landings are found on every panel ([`Monotone`]), so that none is missed however close to another it lies, and
+//! the length of the waves does not matter. A crest outside can touch only while the control goes up: contact gained
+//! anywhere eases every other edge, so along a stable stretch the gap outside falls as the radius of the disc grows,
+//! and changes its sign once.
 
 use crate::annuli::Ground;
 use crate::disc::solution::ExactSolution;
@@ -16,7 +17,7 @@ use crate::quasistatic::monotone::Monotone;
 use crate::root;
 use std::sync::Arc;
 
-/// Control values nearer to each other than this share of themselves are one.
+/// Control values nearer to each other than this share of themselves count as equal.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The equilibria of one disc as far out as a ground reaches.
@@ -29,18 +30,18 @@ pub struct Lane {
 }
 
 impl Lane {
-    /// Those under the adhesion `gamma` (E* = 1), which is positive, and a device.
+    /// The equilibria under the adhesion `gamma` (E* = 1), which is positive, and a device.
     pub fn new(ground: &Ground, gamma: f64, control: Control) -> Self {
         let solution: Arc<dyn Solution> = Arc::new(ExactSolution::new(Arc::clone(&ground.panels), gamma));
         Self::on(&solution, control, &|of| Arc::new(Monotone::of(&*solution, of)))
     }
 
-    /// Those of a curve, as far out as its solution goes.
+    /// The equilibria of a curve, as far out as its solution goes.
     pub fn of(curve: &Curve, control: Control) -> Self {
         Self::on(&curve.solution, control, &|of| curve.monotone(of))
     }
 
-    /// Those of a solution, with its stretches by control.
+    /// The equilibria of a solution, with its stretches by control.
     pub(super) fn on(
         solution: &Arc<dyn Solution>,
         control: Control,
@@ -59,11 +60,11 @@ impl Lane {
         if self.monotone.control == Control::Force { of_force * c } else { of_approach * c }
     }
 
-    /// The radius to which a disc of the radius `s`, in equilibrium or not, runs at the control value `c`: outward the least one from
-    /// there on that is stable, inward the largest. `None` where there is none.
+    /// The radius to which a disc of the radius `s`, in equilibrium or not, runs at the control value `c`: outward, to
+    /// the least stable radius from there on; inward, to the largest. `None` where there is none.
     ///
-    /// An edge that is not in equilibrium runs as it is pulled, whatever `run` says: one that has come a hair too far on the way goes
-    /// back, and not on to a state that nothing drives it to.
+    /// An edge that is not in equilibrium runs the way it is pulled, whatever `run` says: one that has come slightly
+    /// too far goes back, not on to a state to which nothing drives it.
     pub fn landing(&self, s: f64, c: f64, run: EdgeDirection) -> Option<f64> {
         let value = self.weighted(c);
         let at = self.monotone.stretch_of(s);
@@ -89,8 +90,9 @@ impl Lane {
         Some(self.solution.radius(place))
     }
 
-    /// What a jump between contacts, as [inner, outer], dissipates by area: from one disc to another, or to bodies apart; `None` of others. A dead load of
-    /// zero, at which bodies first touch, does no work: there it is the energy.
+    /// What a jump between contacts, as [inner, outer], dissipates by area: from one disc to another, or to bodies
+    /// apart; `None` for other contacts. A dead load of zero, at which bodies first touch, does no work: there the
+    /// loss is the energy.
     pub fn area(&self, before: &[[f64; 2]], after: Option<&[[f64; 2]]>) -> Option<f64> {
         let place = |contacts: &[[f64; 2]]| match contacts {
             [[inner, outer]] if *inner <= 0.0 => self.solution.place(*outer),
@@ -105,7 +107,8 @@ impl Lane {
         energy::area(&*self.solution, control, from, None)
     }
 
-    /// The first place between two on a stable stretch of zones at which contact has the radius `s`; `None` where it has not.
+    /// The first place between two on a stable stretch of zones at which the contact has the radius `s`; `None` where
+    /// it never has.
     fn reaches(&self, s: f64, [from, to]: [Place; 2]) -> Option<Place> {
         let contact = |place: Place| self.solution.edges(place).contact_radius;
         if contact(from) >= s {

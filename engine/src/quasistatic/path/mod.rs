@@ -1,32 +1,31 @@
 //! The whole loop: the approach, the first touch, loading to a turn and back until the bodies are apart, with rings of contact.
 //!
-//! Along stable states, which are followed by arc length in all edges and the control, three things happen: the control has a limit
-//! point and edges run; a crest outside touches and a new contact runs; the turn is reached. Jumps happen at held control
-//! ([`jump`]); each loses the drop of the potential, and as an independent number
-//!
+//! Stable states are followed by arc length in all edges and the control. Three things can happen along them: the
+//! control has a limit point and edges run; a crest outside touches and a new contact runs; the turn is reached. Jumps
+//! happen at held control ([`jump`]). Each loses the drop of the potential and, computed independently,
 //! ```text
 //! −∫ Σ 2πe_i (G_i − γ) dα_i  between the edges before and after,     Π(last) = Σ ∫ (dΠ/dc) dc − Σ losses,  dΠ/dc = P, −δ (dead load)
 //! ```
 //!
-//! Contact that merged on loading stays one on unloading: for γ > 0 an interior bears any tension in the limit of Johnson, Kendall and
-//! Roberts. The loop is the memory of that.
+//! Contacts that merged on loading stay merged on unloading: for γ > 0 an interior bears any tension in the limit of
+//! Johnson, Kendall and Roberts. This memory is what makes the loop.
 //!
 //! | file | what lives there |
 //! |---|---|
 //! | [`balance`] | equilibrium of given contacts at a control value, stability |
 //! | [`point`] | points of the equilibria, places beside them |
 //! | [`stepped`] | steps along the equilibria, past corners, to what ends them |
-//! | [`jump`] | where edges land that run at held control |
+//! | [`jump`] | where edges land when they run at held control |
 //! | [`event`] | events and states |
 //! | [`error`] | why there is none, and what is to be known about one, in words |
 //! | [`setting`] | what a path is asked for, and what it answers |
 //! | `record` | what has happened so far |
 //! | [`lane`] | the equilibria of one disc, exactly |
-//! | `one_disc` | a path on them |
+//! | `one_disc` | a path on those equilibria |
 //! | [`course`] | the loop |
 //! | `unload` | the way down from a disc |
 //! | `follow` | the stable stretches between events |
-//! | `area` | losses a second time |
+//! | `area` | losses, computed a second time |
 //! | [`zone`] | paths of adhesion with a range |
 //! | `zero` | the loop without adhesion |
 

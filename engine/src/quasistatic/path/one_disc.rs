@@ -13,7 +13,7 @@ use crate::quasistatic::descent::stable_start;
 use crate::quasistatic::jump::{self, EdgeDirection};
 use crate::root::RootBracket;
 
-/// A gap that is nothing, in waves.
+/// A gap that counts as zero, in waves.
 const TOUCHES: f64 = 1e-11;
 
 impl Course<'_, '_> {
@@ -62,15 +62,15 @@ impl Course<'_, '_> {
         Ok(Some((end, last)))
     }
 
-    /// Where the gap outside first vanishes between two places, at the outer of which `crest` overlaps. Each crest is brought to its own
-    /// touch; whether another overlaps there is looked at as a whole.
+    /// Where the gap outside first vanishes between two places, at the outer of which `crest` overlaps. Each crest is
+    /// followed to its own touch; then the whole gap is searched for another that overlaps there.
     fn touch_between(
         &self,
         lane: &Lane,
         [from, mut to]: [Place; 2],
         mut crest: GapMinimum,
     ) -> Result<(Place, GapMinimum), PathError> {
-        /// Crests that may overlap one after the other.
+        /// The most crests that may overlap one after the other.
         const CRESTS: usize = 8;
         for _ in 0..CRESTS {
             (to, crest) = self.touch_of(lane, [from, to], crest)?;
@@ -91,7 +91,7 @@ impl Course<'_, '_> {
         [from, to]: [Place; 2],
         crest: GapMinimum,
     ) -> Result<(Place, GapMinimum), PathError> {
-        /// The part of the gap's own length around the last place of the crest in which it is looked for.
+        /// How far around its last place the crest is looked for, as a share of the gap's own length there.
         const NEAR: f64 = 1.0 / 14.0;
         let (solution, ground) = (&lane.solution, self.balance.ground);
         let [lo, hi] = [from, to].map(|place| solution.radius(place));
@@ -117,7 +117,7 @@ impl Course<'_, '_> {
             return Err(error);
         }
         self.balance.progress.go_on()?;
-        // Where the first place touches already, it is the first touch.
+        // If the first place already touches, it is the first touch.
         Ok((on(touch.unwrap_or(lo)), best))
     }
 
@@ -139,7 +139,7 @@ impl Course<'_, '_> {
         let landed = self.disc(&lane.solution.at(landing.ok_or(ends)?.place))?;
         let mut passed = Vec::new();
         let value = before.control_value;
-        // Contact gained is gained once: what would have touched before the landing is in it, or touches there too.
+        // Contact is gained only once: what would have touched before the landing is in it, or touches there too.
         let landed = match self.balance.touched(&landed, value, &mut passed)? {
             Some(start) => self
                 .balance
@@ -162,7 +162,7 @@ impl Course<'_, '_> {
 }
 
 impl Balance<'_> {
-    /// What these contacts are followed on, where they are one disc.
+    /// The lane on which these contacts are followed, if they are one disc.
     pub(super) fn lane_of(&self, contacts: &Contacts) -> Option<&Lane> {
         self.lane.filter(|_| contacts.is_disc())
     }
@@ -170,7 +170,7 @@ impl Balance<'_> {
     /// The disc to which a disc runs at the control value; `None` where it vanishes.
     ///
     /// # Errors
-    /// The table ends before.
+    /// Where the table ends before that.
     pub(super) fn disc_run(
         &self,
         lane: &Lane,

@@ -7,7 +7,7 @@ use crate::root::RootBracket;
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 use std::f64::consts::PI;
 
-/// Newton's steps of one correction at most.
+/// The most Newton steps of one correction.
 const ITERATIONS: usize = 10;
 
 /// A step of Newton's method that ends a correction, in the units of the arc length, and one at which it may stall.
@@ -24,11 +24,11 @@ const LEFT: f64 = 0.4;
 pub struct PathPoint {
     /// The edges, in equilibrium.
     pub held: HeldEdges,
-    /// The unit tangent by (α/ℓ, c/c₀).
+    /// The unit tangent in (α/ℓ, c/c₀).
     pub tangent: DVector<f64>,
     /// ℓ of every edge, and c₀.
     pub scales: ArcScales,
-    /// Newton's rounds that led to it.
+    /// The number of Newton rounds that led to it.
     pub rounds: usize,
 }
 
@@ -42,7 +42,7 @@ pub struct ArcScales {
 }
 
 impl ArcScales {
-    /// A change of edges and control that is told in these units, in others.
+    /// A change of edges and control in these units, converted to other units.
     fn changed(&self, to: &Self, change: &DVector<f64>) -> DVector<f64> {
         DVector::from_fn(change.len(), |i, _| match (self.edges.get(i), to.edges.get(i)) {
             (Some(before), Some(after)) => change[i] * before / after,
@@ -52,12 +52,12 @@ impl ArcScales {
 }
 
 impl PathPoint {
-    /// The part of the tangent that is the control's.
+    /// The part of the tangent along the control.
     pub fn along_control(&self) -> f64 {
         self.tangent[self.tangent.len() - 1]
     }
 
-    /// The part that is the edges'.
+    /// The part of the tangent along the edges.
     pub fn along_edges(&self) -> DVector<f64> {
         self.tangent.rows(0, self.held.excess.len()).into_owned()
     }
@@ -71,7 +71,8 @@ impl PathPoint {
 /// The equations of a correction, factored.
 type Factored = LU<f64, Dyn, Dyn>;
 
-/// A step from a point: its points on the rings are held. Its length is measured along the tangent, or along one edge.
+/// A step from a point, during which its points on the rings are held. Its length is measured along the tangent, or
+/// along one edge.
 pub struct PathStep<'a, 'b> {
     balance: &'a Balance<'b>,
     from: &'a PathPoint,
@@ -82,8 +83,8 @@ pub struct PathStep<'a, 'b> {
 }
 
 impl Balance<'_> {
-    /// The units of the arc length at `contacts`: of every edge the length in which the gap changes there, and of the control a
-    /// share of the largest.
+    /// The units of the arc length at `contacts`: for every edge, the length over which the gap changes there; for the
+    /// control, a share of the largest.
     pub fn scales(&self, contacts: &Contacts) -> ArcScales {
         const OF_APPROACH: f64 = 0.2;
         const OF_FORCE: f64 = 0.1;
@@ -100,7 +101,7 @@ impl Balance<'_> {
         self.point_along(held, &|_| DVector::from_fn(n + 1, |i, _| if i == n { sense } else { 0.0 }))
     }
 
-    /// The same with its tangent on the side of `along`, which is asked for in the units of the arc length.
+    /// The same with its tangent on the side of `along`, which gives a direction in the units of the arc length.
     pub fn point_along(
         &self,
         held: HeldEdges,
@@ -116,7 +117,8 @@ impl Balance<'_> {
         Some(PathPoint { held, tangent, scales, rounds: 0 })
     }
 
-    /// Whether the equations of a point, closed by its tangent, have a positive determinant: one sign along a curve.
+    /// Whether the equations of a point, closed by its tangent, have a positive determinant: its sign stays the same
+    /// along a curve.
     pub fn is_positive(point: &PathPoint) -> bool {
         Self::bordered(&point.held, &point.tangent, &point.scales).determinant() > 0.0
     }
@@ -162,7 +164,7 @@ impl Balance<'_> {
 }
 
 impl PathPoint {
-    /// The same in the units of where it is, ready for a step of its own.
+    /// The same in the units of its own place, ready for a step from there.
     #[must_use]
     pub fn rescaled(self, balance: &Balance<'_>) -> Self {
         let scales = balance.scales(self.contacts());
@@ -180,8 +182,8 @@ impl<'a, 'b> PathStep<'a, 'b> {
         Self { balance, from, points: points(balance.ground, from.contacts()), row, past: None }
     }
 
-    /// The same where the curve has come through these points with the contacts of the start: it goes on as the polynomial through all of
-    /// them and their tangents.
+    /// The same where the curve has come through the points `past`, which have the contacts of the start: it goes on
+    /// as the polynomial through all of them and their tangents.
     #[must_use]
     pub fn after(self, past: &[PathPoint]) -> Self {
         let known = past.iter().map(|point| (self.offset(point).dot(&self.row), point));
@@ -200,8 +202,8 @@ impl<'a, 'b> PathStep<'a, 'b> {
         way
     }
 
-    /// Steps measured by the way of one edge, in waves, on the side to which it goes along the tangent: close to a corner of the gap
-    /// the tangent turns without bound, and only this way is regular.
+    /// Steps measured by the motion of one edge, in waves, in the direction in which the tangent moves it: close to a
+    /// corner of the gap the tangent turns without bound, and only this motion is regular.
     pub fn of_edge(balance: &'a Balance<'b>, from: &'a PathPoint, edge: usize) -> Self {
         let mut row = DVector::zeros(from.tangent.len());
         row[edge] = if from.tangent[edge] < 0.0 { -1.0 } else { 1.0 };
@@ -213,7 +215,7 @@ impl<'a, 'b> PathStep<'a, 'b> {
         self.from
     }
 
-    /// What holds the contacts on it.
+    /// The balance that holds the contacts on it.
     pub fn balance(&self) -> &'a Balance<'b> {
         self.balance
     }
@@ -223,25 +225,27 @@ impl<'a, 'b> PathStep<'a, 'b> {
         self.from.scales.control
     }
 
-    /// What lies at the distance `length` by the tangent.
+    /// The offset at the distance `length` according to the tangent.
     pub fn line(&self, length: f64) -> DVector<f64> {
         let along = self.from.tangent.dot(&self.row);
         &self.from.tangent * (length / along.max(1e-6))
     }
 
-    /// The tangent at a point with the contacts of the start, in the units of that, scaled to 1 along its tangent.
+    /// The tangent at a point with the contacts of the start, in the units of the start, scaled to 1 along the tangent
+    /// of the start.
     pub fn rate_of(&self, point: &PathPoint) -> DVector<f64> {
         let tangent = point.scales.changed(&self.from.scales, &point.tangent);
         &tangent / tangent.dot(&self.row)
     }
 
-    /// The point at the distance `length` along the tangent of the start, beginning at the sum of the start and `guess` in the units of
-    /// the arc length; with the tangent scaled to 1 along that of the start, times which dℓ is.
+    /// The point at the distance `length` along the tangent of the start, searched from the start plus `guess` in the
+    /// units of the arc length. With it comes the tangent there, scaled to 1 along that of the start: the rate of
+    /// change with the length.
     pub fn to(&self, length: f64, guess: &DVector<f64>) -> Option<(PathPoint, DVector<f64>)> {
         self.within(length, guess, CONVERGED)
     }
 
-    /// The same with a last step of Newton's method of `converged` at most.
+    /// The same, with a last Newton step of at most `converged`.
     pub fn within(
         &self,
         length: f64,
@@ -274,15 +278,17 @@ impl<'a, 'b> PathStep<'a, 'b> {
         None
     }
 
-    /// The point at the distance `length`, from what is known of the curve; `None` where the step is too long for its rules.
+    /// The point at the distance `length`, predicted from what is known of the curve; `None` where the step exceeds
+    /// its bounds.
     pub fn taken(&self, length: f64) -> Option<PathPoint> {
         let going_on = self.past.as_ref().and_then(|past| self.to(length, &past.at(length).0));
         let (point, _) = going_on.or_else(|| self.to(length, &self.line(length)))?;
         self.allowed(&point).then_some(point)
     }
 
-    /// The step up to `end`, at the distance `length`, as a polynomial in the length, through states that are added until one lies on it
-    /// to `near`: the offsets in the units of the arc length, and dΠ/dc, which is P or, for `by_force`, −δ.
+    /// The step up to `end`, at the distance `length`, as a polynomial in the length. States are added to it until one
+    /// lies on it to `near`. Its values are the offsets in the units of the arc length, and dΠ/dc, which is P or, for
+    /// `by_force`, −δ.
     pub fn way(&self, length: f64, end: &PathPoint, by_force: bool, near: f64) -> Option<Interpolant> {
         /// Where states are added, as shares of the step.
         const ADDED: [f64; 7] = [0.5, 0.2, 0.8, 0.35, 0.65, 0.1, 0.9];
@@ -309,9 +315,10 @@ impl<'a, 'b> PathStep<'a, 'b> {
         Some(way)
     }
 
-    /// The offset of the point at the distance `length` to second order in what `guess` is off, with its δ and P and the size of that.
+    /// The offset of the point at the distance `length`, to second order in the error of `guess`; then its δ and P,
+    /// and the size of that error.
     fn near(&self, length: f64, mut guess: DVector<f64>) -> Option<(DVector<f64>, [f64; 2], f64)> {
-        /// What a guess may be off for one correction.
+        /// The largest error of a guess for which one correction is enough.
         const ONCE: f64 = 3e-5;
         let scales = &self.from.scales;
         let mut off = None;
@@ -368,8 +375,8 @@ impl<'a, 'b> PathStep<'a, 'b> {
         })
     }
 
-    /// The place between the start and `end`, at the distance `length`, where `measure` vanishes: it is `at_start` at the start and of
-    /// the other sign at the end.
+    /// The distance and the point between the start and `end` where `measure` vanishes; it is `at_start` at the start
+    /// and has the other sign at the end.
     pub fn located(
         &self,
         end: (f64, &PathPoint),
@@ -403,7 +410,7 @@ impl<'a, 'b> PathStep<'a, 'b> {
     }
 }
 
-/// A way as a polynomial in Newton's form: what is known of it at each node in turn.
+/// A way as a polynomial in Newton's form, built from what is known at each node in turn.
 #[derive(Default)]
 pub struct Interpolant {
     nodes: Vec<f64>,
@@ -437,7 +444,7 @@ impl Interpolant {
         })
     }
 
-    /// The nodes by which a product of two of its components is integrated exactly.
+    /// The number of nodes with which a product of two of its components is integrated exactly.
     pub fn degree(&self) -> usize {
         self.nodes.len()
     }

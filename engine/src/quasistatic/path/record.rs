@@ -12,19 +12,19 @@ use crate::quasistatic::descent::{AT_END, Descent, descend, stable_start};
 use crate::quasistatic::energy::{self, Losses};
 use crate::quasistatic::jump::{self, EdgeDirection, Landing};
 
-/// What the balance of a path may leave of its losses.
+/// The share of its losses to which the balance of a path may stay open.
 const BALANCED: f64 = 1e-6;
 
 /// The share of a loss by which energy and area may differ.
 const AGREE: f64 = 1e-6;
 
-/// Digits below which a path warns.
+/// The number of digits below which a path has a warning.
 const DIGITS: f64 = 9.0;
 
 /// The smallest radius of a state that is not asked for, as a share of the largest.
 const SMALLEST: f64 = 1e-6;
 
-/// States of one disc between two questions.
+/// States of one disc between two calls of `progress`.
 const TOGETHER: usize = 256;
 
 /// A path while it runs.
@@ -42,14 +42,14 @@ pub(in crate::quasistatic) struct Record<'a> {
     pub area: f64,
     /// The fewest digits, and where.
     pub digits: (f64, f64),
-    /// Π where it begins.
+    /// Π where the path begins.
     pub begin: f64,
     /// What the area that closed loses when it opens.
     pub dead_band: Option<DeadBand>,
 }
 
 impl<'a> Record<'a> {
-    /// Nothing yet.
+    /// An empty record.
     pub fn new(setting: &PathSetting<'_>, direction: Direction, progress: &'a dyn Progress) -> Self {
         Self {
             control: setting.control,
@@ -80,7 +80,8 @@ impl<'a> Record<'a> {
         self.states.push(state);
     }
 
-    /// Adds the stable states of one disc between two places, in the order of the way and the first left out, with their area.
+    /// Adds the stable states of one disc between two places, in the order of the way and without the first, with
+    /// their area.
     ///
     /// # Errors
     /// [`PathError::Stopped`].
@@ -110,7 +111,7 @@ impl<'a> Record<'a> {
         let is_inward = order(to) <= order(from);
         let (inner, outer) = if is_inward { (to, from) } else { (from, to) };
         let [lo, hi] = [inner, outer].map(|place| solution.radius(place));
-        // The smallest force of a path is that of a state of it.
+        // Extremes are among them: the smallest force of a path is that of one of its states.
         let mut between: Vec<(f64, Place)> = places(solution, hi, lo.max(SMALLEST * hi), self.detail)
             .into_iter()
             .chain(lane.extremes.iter().copied())
@@ -133,7 +134,7 @@ impl<'a> Record<'a> {
         Ok(())
     }
 
-    /// The way of one disc down to the radius `to`, jump by jump, from a stable state that is recorded.
+    /// The way of one disc down to the radius `to`, jump by jump, from a stable state that is already recorded.
     ///
     /// # Errors
     /// [`PathError::Stopped`].
@@ -170,7 +171,7 @@ impl<'a> Record<'a> {
         self.events.push(event);
     }
 
-    /// A jump of edges that run at a held control value, and what it loses by area.
+    /// Adds a jump of edges that run at a held control value, with its loss by area.
     pub fn jump(
         &mut self,
         kind: EventKind,
@@ -223,7 +224,8 @@ impl<'a> Record<'a> {
         });
     }
 
-    /// Turns the control round, where a unit of area costs more to open than it gained in closing by `more`; the work done on the way up.
+    /// Turns the control round and returns the work done on the way up. With `more`, a unit of area costs that much
+    /// more to open than it gained in closing.
     pub fn turned(&mut self, at: PathState, more: Option<f64>) -> Option<f64> {
         let potential = match self.control {
             Control::Force => at.energy,
@@ -255,13 +257,14 @@ impl<'a> Record<'a> {
         self.states.push(to);
     }
 
-    /// An edge begins to move.
+    /// Adds the event at which an edge begins to move.
     pub fn depinned(&mut self, radius: f64, at: &PathState) {
         self.continuous(EventKind::Depin, Some(radius), [Some(at.clone()), Some(at.clone())]);
     }
 
-    /// The way of one disc down to the radius `to` from where its edge is held at the radius `s`, which is recorded: along a straight
-    /// line to where G is γ, and from there as [`descend`](Self::descend), or at once inward where no device holds the edge.
+    /// The way of one disc down to the radius `to` from a recorded state in which its edge is held at the radius `s`:
+    /// along a straight line to where G is γ, and from there as [`descend`](Self::descend), or inward at once where no
+    /// device holds the edge.
     ///
     /// # Errors
     /// [`PathError`].
@@ -316,7 +319,8 @@ impl<'a> Record<'a> {
             let band = self.dead_band.map_or(0.0, |band| band.lost);
             let error = last - self.begin - self.area + before_last + band;
             let whole = self.lost().unwrap_or(before_last).abs();
-            // An unloading from a start in contact is measured by what it stored there, a path that ends before its turn by what it stores.
+            // An unloading from a start in contact is measured by what it stored there; a path that ends before its
+            // turn, by what it stores at its end.
             let stored = self.begin.abs().max(last.abs());
             error.abs() / whole.max(work_of_loading.map_or(stored, f64::abs))
         });
@@ -351,10 +355,10 @@ impl<'a> Record<'a> {
         }
     }
 
-    /// What is to be known about it.
+    /// The warnings about it.
     fn warnings(&self, balance: Option<f64>) -> Vec<Warning> {
         let mut warnings = Vec::new();
-        // Written so that what is no number warns.
+        // Written so that NaN warns too.
         if let Some(share) =
             balance.filter(|share| !matches!(share.total_cmp(&BALANCED), std::cmp::Ordering::Less))
         {

@@ -1,4 +1,4 @@
-//! What a path is asked for, and what it answers.
+//! What is asked of a path, and what it returns.
 
 use super::balance::HeldEdges;
 use super::error::{Warning, beyond_zone};
@@ -11,7 +11,7 @@ use crate::quasistatic::energy::Losses;
 use crate::zone::FaultKind;
 use std::fmt;
 
-/// What the turn is measured by, of edges at a control value.
+/// The value by which a turn is measured, for edges at a control value.
 pub(super) fn measure(turn: Turn, held: &HeldEdges, control: Control) -> f64 {
     match turn {
         Turn::Approach(_) => held.approach,
@@ -21,32 +21,33 @@ pub(super) fn measure(turn: Turn, held: &HeldEdges, control: Control) -> f64 {
     }
 }
 
-/// What a path is asked for.
+/// What is asked of a path.
 #[derive(Clone, Copy)]
 pub struct PathSetting<'a> {
     /// The device.
     pub control: Control,
     /// Which contacts are followed.
     pub contact: ContactKind,
-    /// `γ_a`, what a closing edge gains where that is less than γ, which an opening one costs; `None` where it is the same.
+    /// `γ_a`, what a closing edge gains, where that is less than γ, the cost of an opening edge; `None` where both are
+    /// the same.
     pub closing: Option<f64>,
     /// Whether losses are computed twice.
     pub losses: Losses,
-    /// How many states of one disc there are.
+    /// How many states of one disc are recorded.
     pub detail: Detail,
-    /// How fast edges move at a radius: nothing that lasts depends on it.
+    /// How fast edges move at a radius; no landing depends on it.
     pub mobility: Mobility<'a>,
 }
 
 impl PathSetting<'static> {
-    /// Contact in rings wherever it appears, losses twice, states to draw.
+    /// Contact in rings wherever it appears, losses computed twice, enough states to draw.
     #[must_use]
     pub fn new(control: Control) -> Self {
         let (contact, losses, detail) = (ContactKind::Rings, Losses::Twice, Detail::Drawn);
         Self { control, contact, closing: None, losses, detail, mobility: EVEN }
     }
 
-    /// The same of one disc alone.
+    /// The same for one disc alone.
     #[must_use]
     pub fn one_disc(control: Control) -> Self {
         Self { contact: ContactKind::OneDisc, ..Self::new(control) }
@@ -66,11 +67,11 @@ impl PathSetting<'_> {
 pub struct TurnReached {
     /// What was asked for.
     pub asked: Turn,
-    /// What the state there has of it: more than asked for where loading jumped over it.
+    /// The value in the state there: more than asked for where loading jumped over it.
     pub reached: f64,
 }
 
-/// A state asked for from which the edge first ran outward.
+/// A state that was asked for, but from which the edge first ran outward.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AskedState {
     /// The state.
@@ -100,7 +101,7 @@ pub enum PathStop {
     Apart,
     /// The end contact radius was reached in a stable state.
     End,
-    /// The curve ends before.
+    /// The curve ends before that.
     Curve(CurveStop),
     /// The next state of adhesion with a range is not one disc in one zone: where, and δ and P there, as in
     /// [`PathError::BeyondZone`](super::PathError::BeyondZone).
@@ -136,8 +137,8 @@ impl PathStop {
     }
 }
 
-/// The sums of a path; `None` where a dead load leaves no bound, what was not asked for, and those of a way that was not followed to
-/// its end.
+/// The sums of a path. `None` where a dead load leaves no bound, where the sum was not asked for, and where the way
+/// was not followed to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Totals {
     /// All losses.
@@ -146,11 +147,12 @@ pub struct Totals {
     pub dissipated_by_area: Option<f64>,
     /// The losses up to the last contact, without it.
     pub dissipated_before_last_contact: f64,
-    /// The work done by the device on the way up, its own elastic energy counted with the bodies; `None` of an unloading alone.
+    /// The work done by the device on the way up, its own elastic energy counted with the bodies; `None` for an
+    /// unloading alone.
     pub work_of_loading: Option<f64>,
     /// The same on the way down.
     pub work_of_unloading: Option<f64>,
-    /// What closed gains less than it costs to open.
+    /// The loss because closing gains less than opening costs.
     pub dead_band: Option<DeadBand>,
     /// |Π(last) − Π(first) − Σ areas + Σ losses| over the losses or the work of loading, whichever is more, from the start to before
     /// the last contact.
@@ -173,9 +175,9 @@ pub struct Path {
     pub control: Control,
     /// Which contacts were followed.
     pub contact: ContactKind,
-    /// The state asked for, where the path starts at another further out.
+    /// The state asked for, if the path starts at another one further out.
     pub asked: Option<AskedState>,
-    /// Where it turned; `None` of an unloading alone.
+    /// Where it turned; `None` for an unloading alone.
     pub turn: Option<TurnReached>,
     /// The events in order.
     pub events: Vec<Event>,
@@ -185,7 +187,7 @@ pub struct Path {
     pub stop: PathStop,
     /// The sums.
     pub totals: Totals,
-    /// What is to be known about it.
+    /// What should be known about it.
     pub warnings: Vec<Warning>,
 }
 
@@ -210,7 +212,7 @@ impl Path {
         self.states.iter().min_by(|a, b| a.approach.total_cmp(&b.approach))
     }
 
-    /// How the contact ended: with it the bodies came apart, or a zone alone held them on.
+    /// How the contact ended: the bodies came apart with it, or a zone alone went on holding them.
     pub fn last_contact(&self) -> Option<&Event> {
         let held = |state: &Option<PathState>| state.as_ref().is_some_and(|state| !state.contacts.is_empty());
         let ends = |event: &&Event| match event.kind {
@@ -237,7 +239,7 @@ impl Path {
         self.pieces_on(&[Direction::Loading, Direction::Unloading])
     }
 
-    /// The same of one way, or both.
+    /// The same for one direction, or both.
     pub fn pieces_on(&self, ways: &[Direction]) -> Vec<[f64; 2]> {
         let mut pieces: Vec<[f64; 2]> = (self.states.chunk_by(|a, b| a.piece == b.piece))
             .filter(|piece| piece.iter().any(|state| ways.contains(&state.direction)))

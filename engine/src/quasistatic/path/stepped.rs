@@ -1,7 +1,7 @@
 //! One step along equilibria, past corners of the gap, and what ends it: a limit point of the control, or a touch.
 //!
-//! Where a contact covers a corner of the gap κ goes like the root of the distance from it. Arc length is no measure there: the way of
-//! the edge is, by which it is led to the corner and a little beyond.
+//! Where a contact covers a corner of the gap, κ varies as the square root of the distance from it. Arc length is no
+//! measure there, but the motion of the edge is: by it the edge is led to the corner and slightly beyond.
 
 use super::balance::Balance;
 use super::error::PathError;
@@ -17,21 +17,21 @@ const ON: f64 = 1e-7;
 /// How far beyond a corner the first state lies, in waves.
 const BEYOND: f64 = 1e-3;
 
-/// A step is led to a corner that lies less than this many times as far as it goes, or this many waves.
+/// A step is led to a corner that lies within this many times its length, or within this many waves.
 const AHEAD: f64 = 1.2;
 const NEAREST: f64 = 2e-3;
 
-/// How often a step at a corner is halved.
+/// How many times a step at a corner may be halved.
 const HALVINGS: usize = 20;
 
-/// A gap that is nothing, in waves.
+/// A gap that counts as zero, in waves.
 pub const ROUNDING: f64 = 1e-11;
 
-/// Crests that may touch one after the other within a step.
+/// The most crests that may touch one after the other within a step.
 const CRESTS: usize = 8;
 
-/// A slope of the control whose least value within a step is below this share of those at its ends may change its sign there twice. It
-/// is looked at in steps of this length at least.
+/// If the least slope of the control within a step is below this share of the slopes at its ends, the slope may change
+/// its sign there twice. Such places are examined in steps no shorter than this length.
 const GRAZING: f64 = 0.05;
 const LONG: f64 = 2e-3;
 
@@ -48,9 +48,9 @@ pub enum SingularSide {
 
 /// A step that was taken.
 pub struct TakenStep<'a, 'b> {
-    /// Along what.
+    /// The step itself.
     pub step: PathStep<'a, 'b>,
-    /// How far, in its own measure.
+    /// Its length, in its own measure.
     pub length: f64,
     /// Where it ends.
     pub end: PathPoint,
@@ -59,8 +59,9 @@ pub struct TakenStep<'a, 'b> {
 }
 
 impl<'b> Balance<'b> {
-    /// The step from `from`, to which the curve has come through the points of `past`, of the length asked for where no rule makes it
-    /// shorter; `None` where even the shortest breaks one. `fits` says whether it may end at a point.
+    /// The step from `from`, which the curve has reached through the points of `past`. It has the length asked for
+    /// unless a bound makes it shorter; `None` where even the shortest breaks a bound. `fits` says whether it may end
+    /// at a point.
     pub fn step<'a>(
         &'a self,
         from: &'a PathPoint,
@@ -72,7 +73,8 @@ impl<'b> Balance<'b> {
             return self.led(from, edge, way, side);
         }
         let step = PathStep::new(self, from).after(past);
-        // Faster than its tangent said, or on other equilibria: shorter steps see it coming.
+        // An edge may have moved faster than its tangent said, or onto other equilibria: shorter steps see that
+        // coming.
         let taken = |length: f64| step.taken(length).filter(|end| !self.crosses(from, end) && fits(end));
         while length >= SHORTEST {
             if let Some(end) = taken(length) {
@@ -88,7 +90,7 @@ impl<'b> Balance<'b> {
         None
     }
 
-    /// The step on which one edge goes so far, in waves, to a corner or from it.
+    /// The step on which one edge goes the distance `way`, in waves, to a corner or from it.
     fn led<'a>(
         &'a self,
         from: &'a PathPoint,
@@ -145,7 +147,7 @@ impl<'b> Balance<'b> {
         ahead.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(i, way, _)| (i, way, SingularSide::Towards))
     }
 
-    /// Whether an edge meets a corner of the gap between two points, one on which it does not stand at first.
+    /// Whether an edge meets a corner of the gap between two points, other than one on which it stands at first.
     fn crosses(&self, from: &PathPoint, to: &PathPoint) -> bool {
         let (corners, margin) = (self.ground.stops(), ON * self.ground.wave);
         let edges = from.contacts().edges().into_iter().zip(to.contacts().edges());
@@ -155,7 +157,7 @@ impl<'b> Balance<'b> {
         })
     }
 
-    /// The gap at a point near a crest, least there; `reach` is half the width in which it is followed.
+    /// The least gap near a crest, at a point; `reach` is half the width in which the crest is followed.
     fn near(&self, point: &PathPoint, crest: GapMinimum, reach: f64) -> GapMinimum {
         let around = Around::new(self.ground, &point.held.state, point.held.approach);
         if crest.radius > 0.0 {
@@ -167,8 +169,8 @@ impl<'b> Balance<'b> {
 }
 
 impl PathStep<'_, '_> {
-    /// Where on the step up to `end` the slope of the control is least, if it may change its sign there and back; by the cubic with
-    /// the control and its slope at both ends.
+    /// Where on the step up to `end` the slope of the control is least, if it may change its sign there and back; from
+    /// the cubic that has the control and its slope at both ends.
     fn grazes(&self, length: f64, end: &PathPoint) -> Option<f64> {
         let last = end.tangent.len() - 1;
         let [first, second] = [self.line(1.0)[last], self.rate_of(end)[last]];
@@ -184,7 +186,7 @@ impl PathStep<'_, '_> {
 }
 
 impl TakenStep<'_, '_> {
-    /// Ends the step where the control turns on it; whether it does.
+    /// Ends the step where the control turns on it; returns whether it does.
     ///
     /// # Errors
     /// [`PathError::Lost`].
@@ -223,7 +225,8 @@ impl TakenStep<'_, '_> {
         let wave = balance.ground.wave;
         let at_start = |crest: GapMinimum| balance.near(from, crest, wave / 14.0);
         let mut touched = None;
-        // The crest that touches first: each is brought to its own touch. What is left there of the one before is rounding.
+        // Finds the crest that touches first: each is followed to its own touch. What is left there of the previous
+        // overlap is rounding.
         let mut overlap = 0.0;
         for _ in 0..CRESTS {
             let crest = if past {

@@ -1,11 +1,11 @@
 //! The way down: from a disc inward, through every snap, until the bodies are apart.
 //!
-//! On the way down gaps open: contact that shrinks anywhere takes load off what lies outside. So a path that starts with one disc that
-//! overlaps nothing stays one disc. Where a crest outside would overlap at the start, the contact first grows at the held control to
-//! the least equilibrium that contains it, as a path of loading does at a touch, and unloads from there. Deep inside an overlap none
-//! contains it, since what presses outside opens the disc: then it starts from what loading from apart has come to at this control,
-//! which is the same contact where both are found. Without adhesion contact has
-//! no memory: the way down is that of the loop.
+//! On the way down gaps open: contact that shrinks anywhere takes load off what lies outside. So a path that starts
+//! with one disc without overlap stays one disc. Where a crest outside would overlap at the start, the contact first
+//! grows at the held control to the least equilibrium that contains it, as a loading path does at a touch, and unloads
+//! from there. Deep inside an overlap no equilibrium contains it, because the contact that presses outside opens the
+//! disc. The path then starts from the contact that loading from bodies apart reaches at this control; where both
+//! contacts are found, they are the same. Without adhesion contact has no memory: the way down is that of the loop.
 
 use super::balance::{Balance, HeldEdges};
 use super::course::{Course, at_least, balance, cycle_on, highest, lane, on_ground};
@@ -27,7 +27,7 @@ use crate::quasistatic::landscape;
 /// How far outward a stable state is looked for, as a multiple of the start radius.
 const OUTWARD_REACH: f64 = 1000.0;
 
-/// How far beyond the start the table goes for rings at first.
+/// How far beyond the start the table for rings reaches at first.
 const BEYOND: f64 = 1.3;
 
 /// Unloads along `curve`, from its outermost state down to its innermost.
@@ -47,7 +47,7 @@ pub fn unload(curve: &Curve, setting: &PathSetting<'_>, progress: &dyn Progress)
         }
         None => None,
     };
-    // What is in contact at the start has grown to there.
+    // The contact at the start got there by growing.
     let curve = growing.as_ref().unwrap_or(curve);
     let mut longer = None;
     let asked = curve.solution.place(from).map(|place| curve.state(place));
@@ -89,12 +89,12 @@ pub fn unload(curve: &Curve, setting: &PathSetting<'_>, progress: &dyn Progress)
     Ok(record.finished(asked, None, None, stop_of(&descent)))
 }
 
-/// A state as it opens, where that costs so much more than closing gained.
+/// A state as it opens, where opening costs `more` than closing gained.
 fn opening(state: PathState, more: f64) -> PathState {
     PathState { energy: state.energy - more * state.contact_area, ..state }
 }
 
-/// Why a disc in equilibrium is not all of the contact; `None` where it is.
+/// Why a disc in equilibrium is not the whole contact; `None` where it is.
 fn fault(curve: &Curve, s: f64, progress: &dyn Progress) -> Option<WhyNot> {
     let point = curve.equilibrium.explicit(s)?;
     let [delta, _, s] = curve.equilibrium.quantities(point.y());
@@ -130,7 +130,8 @@ fn with_rings(
         let lane = lane(ground, gamma, control);
         let balance = balance(ground, gamma, setting, lane.as_ref(), progress);
         let held = match grown(&balance, setting, start.contact_radius, value) {
-            // The bodies press at the crest and open the disc: nothing contains it. Loading from apart comes to what there is.
+            // The bodies press at the crest and open the disc, so no equilibrium contains it. Loading from bodies
+            // apart finds the one there is.
             Err(lost @ PathError::NoLanding { .. }) => {
                 let turn = Some(Turn::Control(value));
                 let mut up = Course { turn, ..Course::new(&balance, setting, Direction::Loading) };
@@ -166,7 +167,7 @@ fn grown(
     landed.ok_or(PathError::Lost { control_value: value })
 }
 
-/// The way down of a loop at which nothing is lost.
+/// The way down of a loop in which nothing is lost.
 fn way_back(mut whole: Path) -> Path {
     let turn = whole.events.iter().position(|event| event.kind == EventKind::Turn);
     whole.events.drain(..turn.map_or(0, |at| at + 1));
@@ -181,14 +182,14 @@ fn way_back(mut whole: Path) -> Path {
     whole
 }
 
-/// From an unstable start outward, at constant control, to the next stable state; `curve` reaches there then.
+/// Runs from an unstable start outward, at constant control, to the next stable state; `curve` then reaches that far.
 fn run_outward(curve: &mut Curve, control: Control, from: f64) -> Result<Landing, PathError> {
     let limit = (OUTWARD_REACH * from).min(curve.equilibrium.problem.largest_contact().max(from));
     let mut reach = from;
     loop {
         reach = (1.5 * reach).min(limit);
         curve.reach(reach);
-        // A start at a limit point that lies beyond the curve as it was.
+        // The start may be at a limit point that lay beyond the curve before.
         let monotone = curve.monotone(control);
         if let Some(start) = stable_start(&*curve.solution, &monotone, from) {
             return Ok(start);

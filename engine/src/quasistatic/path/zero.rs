@@ -1,8 +1,9 @@
 //! The loop without adhesion: one solution for every approach, no jumps, no losses; unloading is loading reversed.
 //!
-//! κ = 0 at every edge, with J diagonal and positive. Events are continuous: a crest touches and its contact grows from nothing; a gap
-//! narrows until two contacts are one. The second is found on the contact that is already one: where its pressure at the closing point
-//! is 0; before that it pulls there. All controls rise together, so the approach is the one that is stepped.
+//! κ = 0 at every edge, with J diagonal and positive. Events are continuous: a crest touches and its contact grows
+//! from nothing; a gap narrows until two contacts become one. The second kind is found on the merged contact: it
+//! happens where the pressure at the closing point is 0; before that, the merged contact pulls there. All controls
+//! rise together, so steps are taken in the approach.
 
 use super::balance::HeldEdges;
 use super::course::Course;
@@ -17,13 +18,13 @@ use crate::disc::chebyshev;
 use crate::problem::{Control, Turn};
 use crate::root::RootBracket;
 
-/// A gap below so many waves may be about to close.
+/// A gap narrower than this many waves may be about to close.
 const CLOSING: f64 = 0.02;
 
-/// A new contact begins at an approach further by this share of λ²/ρ.
+/// A new contact begins at an approach that is larger by this share of λ²/ρ.
 const LIFT: f64 = 1e-3;
 
-/// Points by which a least pressure is found.
+/// Points from which a least pressure is found.
 const POINTS: usize = 15;
 
 impl Course<'_, '_> {
@@ -66,7 +67,7 @@ impl Course<'_, '_> {
         Ok(self.record.finished(None, Some(turn), Some(work), PathStop::Apart))
     }
 
-    /// The way back: what happened on the way up, the other way round.
+    /// The way back: what happened on the way up, in reverse.
     fn reversed(&mut self, up: &[Event]) {
         let record = &mut self.record;
         let last_piece = record.piece;
@@ -120,7 +121,7 @@ impl Course<'_, '_> {
         Ok(held)
     }
 
-    /// Follows the contacts up to the next event, which is passed.
+    /// Follows the contacts up to the next event and past it.
     fn risen(&mut self, from: &HeldEdges) -> Result<HeldEdges, PathError> {
         const SHORTEST: f64 = 1e-10;
         let lost = |held: &HeldEdges| PathError::Lost { control_value: held.control_value };
@@ -139,7 +140,7 @@ impl Course<'_, '_> {
             let mut taken = TakenStep { step, length, end: next, side: SingularSide::Smooth };
             let crest = taken.to_touch(false)?;
             let next = taken.end;
-            // A gap that closes does so before that touch, or is looked at again after it.
+            // A gap that closes does so before that touch, or is examined again after it.
             let closed = self.closing(&next.held, crest.as_ref().map(|_| next.held.approach));
             if let Some((gap, merged)) = closed.filter(|(_, merged)| !self.has_turned(merged)) {
                 let after = self.state(&merged);
@@ -158,7 +159,7 @@ impl Course<'_, '_> {
                     .located((taken.length, &next), at_start, &mut left)
                     .ok_or_else(|| lost(&point.held))?;
                 self.record(&end.held);
-                // Reached to rounding, whatever its last digit.
+                // The turn is reached to rounding, whatever its last digit.
                 return Ok(end.held);
             }
             self.record(&next.held);
@@ -175,7 +176,8 @@ impl Course<'_, '_> {
         }
     }
 
-    /// The merged contact at the approach at which a narrow gap closes, and where, if nothing touches before; up to `before`.
+    /// Where a narrow gap closes, and the merged contact at that approach, if nothing touches before; up to the
+    /// approach `before`.
     fn closing(&self, held: &HeldEdges, before: Option<f64>) -> Option<(f64, HeldEdges)> {
         let contacts = &held.state.contacts;
         let gaps = contacts.gaps();
@@ -205,7 +207,7 @@ impl Course<'_, '_> {
         if first >= 0.0 {
             return Some((radius, start));
         }
-        // Outward until it presses there.
+        // Go up until it presses there.
         let (mut lo, mut f_lo) = (held.approach, first);
         let mut step = 1e-4 * wave;
         let mut high = None;
@@ -223,7 +225,7 @@ impl Course<'_, '_> {
             }
         }
         let (hi, f_hi, mut best, mut radius) = high?;
-        // Where the pressure vanishes there to the last digit, that is the place.
+        // If the pressure there vanishes to the last digit, this is the place.
         if let Some(mut bracket) = RootBracket::new([lo, f_lo], [hi, f_hi]) {
             bracket.find(1e-15 * hi.abs().max(wave), |delta| {
                 let (next, [at, pressure]) = least(delta, &best.state.contacts)?;
@@ -236,7 +238,7 @@ impl Course<'_, '_> {
     }
 }
 
-/// Divides the contact around a radius there.
+/// Divides the contact that holds a radius at that radius.
 fn split_at(contacts: &mut Vec<[f64; 2]>, radius: f64) {
     if let Some(at) = contacts.iter().position(|[lo, hi]| *lo <= radius && radius < *hi) {
         let [lo, hi] = contacts[at];

@@ -1,7 +1,8 @@
-//! A path of adhesion with a range: from bodies apart over the jump into a zone to the turn and back, along one disc in one zone.
+//! A path under adhesion with a range: from bodies apart, through the jump into a zone, to the turn and back, along
+//! one disc in one zone.
 //!
-//! Every stable stretch and every landing is held to what one disc in one zone is ([`Zone::fault`](crate::zone::Zone::fault)): a path that
-//! comes to a state with more ends before it and names it.
+//! Every stable stretch and every landing is checked to be one disc in one zone
+//! ([`Zone::fault`](crate::zone::Zone::fault)). A path that comes to a state with more ends before it and names it.
 
 use super::error::PathError;
 use super::event::{Direction, EventKind, Passed, PassedKind, PathState};
@@ -25,32 +26,33 @@ use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-/// Times that the equilibria are grown for a path.
+/// How many times the equilibria may be grown for a path.
 const TIMES: usize = 40;
 
-/// How much further each time.
+/// How much further they reach each time.
 const FURTHER: f64 = 1.3;
 
-/// Places between the ends of a jump outward that are looked at, beside those where the control is largest.
+/// Places between the ends of an outward jump that are examined, besides those where the control is largest.
 const PASSED: u32 = 6;
 
-/// Halvings by which the first state with a fault is found.
+/// Halvings with which the first state with a fault is located.
 const HALVINGS: usize = 24;
 
-/// How many times as far out as a value is first taken it is looked for at most.
+/// A value is looked for at most this many times as far out as where it is first taken.
 const FARTHER: f64 = 4.0;
 
-/// The edge of the smallest zone that is drawn, as a share of that of the largest.
+/// The edge of the smallest zone that is drawn, as a share of the edge of the largest.
 const SMALLEST: f64 = 1e-4;
 
-/// How far beyond a corner the edge of a contact that passes it is looked at, of the radius.
+/// How far beyond a corner the edge of a contact that passes it is examined, as a share of the radius.
 const BEYOND_CORNER: f64 = 1e-3;
 
-/// The loop of the gap of `table` with adhesion that has a range (E* = 1): from apart to the turn and back until the bodies are apart.
+/// The loop of the gap of `table` with adhesion that has a range (E* = 1): from bodies apart to the turn and back
+/// until they are apart.
 ///
 /// # Errors
-/// [`PathError`]; [`PathError::BeyondZone`] where one disc in one zone is not all of the first state. Where it is not all of a later one the
-/// path stops before it.
+/// [`PathError`]; [`PathError::BeyondZone`] where the first state is more than one disc in one zone. Where a later
+/// state is more, the path stops before it.
 pub fn cycle_in_zone(
     table: &Arc<Table>,
     cohesion: Cohesion,
@@ -110,10 +112,11 @@ pub fn unload_in_zone(
     })
 }
 
-/// The contact radius of the largest state with contact at an approach or a force, or why there is none; that of a start by radius itself.
+/// The contact radius of the largest state with contact at an approach or a force, or why there is none; for a start
+/// by radius, that radius.
 ///
 /// # Errors
-/// [`PathError`] where the equilibria cannot be had.
+/// [`PathError`] where the equilibria cannot be found.
 pub fn start_in_zone(
     table: &Arc<Table>,
     cohesion: Cohesion,
@@ -125,7 +128,7 @@ pub fn start_in_zone(
         Start::Approach(approach) => (Control::Displacement, approach, "approach"),
         Start::Force(force) => (Control::Force, force, "force"),
     };
-    // Further out than where it is first taken, as far as a paraboloid would have it.
+    // Further out than where the value is first taken, as far as a paraboloid would take it.
     let elastic = if control == Control::Force { cbrt(value.abs()) } else { value.abs().sqrt() };
     let outer = elastic.max(cbrt(cohesion.work()));
     let first = Cell::new(f64::INFINITY);
@@ -174,7 +177,7 @@ fn on_equilibria(
                 let reach = FURTHER * found.reach();
                 found.grow(&|state| state.edge >= reach, progress)?;
             }
-            // What lies beyond is to be seen too.
+            // What lies beyond must be seen too.
             Err(PathError::Unseen { radius }) if found.look(radius, progress)? => {}
             Err(PathError::Unseen { .. }) => break,
             other => return other,
@@ -199,7 +202,7 @@ pub struct Zones {
 }
 
 impl Zones {
-    /// Those up to contact of the radius `s`.
+    /// The equilibria up to contact of the radius `s`.
     ///
     /// # Errors
     /// [`PathError`] where there is no such contact.
@@ -217,8 +220,8 @@ impl Zones {
         Ok(found)
     }
 
-    /// Those up to the first panel at whose end `enough` says that they reach far enough, or to the end of the gap, where they start; the
-    /// table begins with the reach `about`.
+    /// The equilibria up to the first panel at whose end `enough` says that they reach far enough, or to the end of
+    /// the gap. They start at their outer end; the table begins with the reach `about`.
     ///
     /// # Errors
     /// [`PathError`] where the gap has no table.
@@ -264,7 +267,7 @@ impl Zones {
         [of(1.0, 0.0), of(0.0, 1.0)]
     }
 
-    /// The error of the state at a place that is not one disc in one zone; `None` where it is.
+    /// The error of the state at a place if it is not one disc in one zone; `None` if it is.
     ///
     /// # Errors
     /// [`PathError`] where that cannot be known.
@@ -273,11 +276,11 @@ impl Zones {
         Ok(found.map(|found| beyond(&*self.solution, place, Some(found))))
     }
 
-    /// The places from the start inward, as dense as they are drawn, as far as each is one disc in one zone, and the error of the first that
-    /// is not.
+    /// The places from the start inward, as dense as they are drawn, up to the first that is not one disc in one zone;
+    /// and the error of that one.
     ///
     /// # Errors
-    /// [`PathError`] of the start where that is none, and where it cannot be known.
+    /// [`PathError`] of the start where the start is not, and where that cannot be known.
     pub fn drawn(&self, progress: &dyn Progress) -> Result<(Vec<Place>, Option<PathError>), PathError> {
         let start = self.solution.radius(self.start);
         let mut found = Vec::new();
@@ -291,7 +294,7 @@ impl Zones {
         Ok((found, None))
     }
 
-    /// ds/dc at a place: the edge of the disc follows that of its zone as ω does, which vanishes there.
+    /// ds/dc at a place: the edge of the disc follows that of its zone so that ω stays zero there.
     #[must_use]
     pub fn contact_slope(&self, place: Place) -> f64 {
         let ZoneAt { edge, contact_radius, .. } = zone_at(&*self.solution, place);
@@ -313,7 +316,7 @@ fn zone_at(solution: &dyn Solution, place: Place) -> ZoneAt {
     }
 }
 
-/// What a state is beside one disc in one zone, where it is more.
+/// What a state has besides one disc in one zone, if anything.
 fn fault(
     Equilibria { zone, ground, .. }: &Equilibria,
     solution: &dyn Solution,
@@ -348,7 +351,7 @@ fn place_of(solution: &dyn Solution, s: f64) -> Option<Place> {
     solution.place(c)
 }
 
-/// What is known of a path beside its states.
+/// What is known about a path besides its states.
 #[derive(Default)]
 struct PathFacts {
     asked: Option<AskedState>,
@@ -378,7 +381,7 @@ impl Course<'_> {
         beyond(self.solution(), place, fault)
     }
 
-    /// Adds the stable states between two places, as far as each is one disc in one zone; that the first is one is known.
+    /// Adds the stable states between two places, as far as each is one disc in one zone; the first is known to be.
     ///
     /// # Errors
     /// [`PathError::BeyondZone`] with the first state that is not.
@@ -393,7 +396,7 @@ impl Course<'_> {
                 continue;
             };
             let (mut beyond, mut good, mut bad) = (to, radius(last), radius(to));
-            // It appears once on the way.
+            // The fault appears only once on the way.
             for _ in 0..HALVINGS {
                 let Some(place) = self.solution().place(0.5 * (good + bad)) else { break };
                 if let Some(found) = self.fault(place, ends)? {
@@ -408,7 +411,7 @@ impl Course<'_> {
         self.record.along(&self.lane, [from, to])
     }
 
-    /// The places between two, in order, at which contact ends just beyond a corner, where most pulls.
+    /// The places between two, in order, at which the contact ends just beyond a corner, where the pull is strongest.
     fn passed(&self, [from, to]: [Place; 2]) -> Vec<Place> {
         let [begin, end] = [from, to].map(|place| self.solution().edges(place).contact_radius);
         let corners = self.equilibria.zone.corners().map(|corner| corner * (1.0 + BEYOND_CORNER));
@@ -420,12 +423,13 @@ impl Course<'_> {
         places
     }
 
-    /// Holds what a jump lands on to one disc in one zone.
+    /// Checks that what a jump lands on is one disc in one zone.
     ///
-    /// What is passed need not be one. Edges that run outward end in the least state above, and those of one zone do not run further
-    /// than all there may be: where they pass, all do, and the landing, a state, holds all. Inward it is the same with the greatest
-    /// state below. Whether they pass is known inward, where δ and P of a zone with any contact are no less than those of a disc; outward they
-    /// may be more by [`Zone::slack`](crate::zone::Zone::slack).
+    /// What is passed need not be. Edges that run outward end in the least state above, and those of one zone run no
+    /// further than all edges there may be: where they pass, all do, and the landing, a state, holds all. Inward the
+    /// same is true with the greatest state below. That they pass is certain inward, where δ and P of a zone with any
+    /// contact are no less than those of a disc; outward they may be larger by
+    /// [`Zone::slack`](crate::zone::Zone::slack).
     fn lands(&self, before: Place, landing: Option<Landing>) -> Result<(), PathError> {
         let Some(landing) = landing else { return Ok(()) };
         if let Some(fault) = self.fault(landing.place, Ends::Both)? {
@@ -453,7 +457,7 @@ impl Course<'_> {
         Ok(())
     }
 
-    /// Where edges run from the outer end of a stretch at its value, or from bodies apart.
+    /// Where edges land that run from the outer end of a stretch at its value, or from bodies apart.
     fn outward(&self, stretch: usize, value: f64) -> Result<Landing, PathError> {
         let Lane { solution, monotone, .. } = &self.lane;
         let from = monotone.stretches[stretch].outer;
@@ -474,7 +478,7 @@ impl Course<'_> {
         self.record.disc(&self.lane, place)
     }
 
-    /// From apart into the first zone.
+    /// From bodies apart into the first zone.
     fn jumped_in(&mut self) -> Result<Landing, PathError> {
         let begin = Place { panel: 0, x: -1.0 };
         let first =
@@ -495,7 +499,7 @@ impl Course<'_> {
         self.lands(begin, Some(landing))?;
         let after = self.state(landing.place);
         let touched = (after.contact_radius > 0.0).then_some(Passed { kind: PassedKind::Touch, radius: 0.0 });
-        // A dead load of nothing does no work.
+        // A dead load of zero does no work.
         let control = match self.setting.control {
             Control::Force => Control::Displacement,
             other => other,
@@ -513,7 +517,7 @@ impl Course<'_> {
         Ok(landing)
     }
 
-    /// The path of what `way` follows, which ends where a state is not one disc in one zone.
+    /// The path that `way` follows; it ends where a state is not one disc in one zone.
     fn path(
         mut self,
         way: impl FnOnce(&mut Self, &mut PathFacts) -> Result<PathStop, PathError>,
@@ -557,7 +561,7 @@ impl Course<'_> {
         self.descend(at_turn)
     }
 
-    /// The way down of a stable state that is recorded, until the bodies are apart.
+    /// The way down of a stable state that is already recorded, until the bodies are apart.
     fn descend(&mut self, from: Landing) -> Result<PathStop, PathError> {
         let Lane { solution, monotone, .. } = &self.lane;
         let way = descend(&**solution, monotone, from, 0.0);
@@ -598,7 +602,7 @@ impl Course<'_> {
                 force: at.force,
                 energy: solution.energy(asked_at),
             };
-            // From a falling stretch outward the first crossing is the landing.
+            // Outward from a falling stretch, the first crossing is the landing.
             known.asked = Some(AskedState { state, why: WhyNot::Unstable { falls: true } });
             landing
         };

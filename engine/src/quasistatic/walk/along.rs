@@ -1,4 +1,4 @@
-//! A walk along a path that is known, for bodies whose states lie on no single curve.
+//! A walk along a known path, for bodies whose states do not lie on a single curve.
 //!
 //! With two works of adhesion an edge grows on one curve, recedes on another and rests in between; adhesion with a range has states without
 //! contact. A walker then goes from state to state of the path of the device, through its events.
@@ -9,7 +9,7 @@ use crate::quasistatic::path::{Direction, EventKind};
 use crate::quasistatic::{Admissibility, Event, Path, PathState, Scales, Stability, StatePoint, Stiffness};
 use std::f64::consts::TAU;
 
-/// Control values as near as this share of their range are one.
+/// Control values closer than this share of their range count as equal.
 const SAME: f64 = 1e-9;
 
 /// Where a walker on a path stands, and how it goes.
@@ -27,15 +27,15 @@ pub struct Along<'a> {
     pub length: f64,
 }
 
-/// An event of a path with the numbers of the states before and after it: the two are one where nothing runs, and where no state stands on
-/// one side of it, because the bodies are apart there.
+/// An event of a path with the numbers of the states before and after it. The two numbers are the same where nothing
+/// runs, and where one side has no state because the bodies are apart there.
 #[derive(Debug, Clone, Copy)]
 pub struct Passing<'a> {
     /// The event.
     pub event: &'a Event,
     /// The number of the state before it, from 0.
     pub before: usize,
-    /// That of the state after it.
+    /// The number of the state after it.
     pub after: usize,
 }
 
@@ -52,7 +52,7 @@ impl<'a> Passing<'a> {
             };
             let last = || states.iter().rposition(|state| state.piece == before.piece);
             let at = (from..states.len()).find(|at| is_before(&states[*at])).or_else(last).unwrap_or(from);
-            // The path may have one state twice: the last of them is where it goes on.
+            // The path may hold the same state twice: it goes on from the last of them.
             let same = (at..states.len()).take_while(|at| is_before(&states[*at])).last();
             let before = same.unwrap_or(at);
             let next = states.get(before + 1).filter(|next| next.piece != states[before].piece);
@@ -63,13 +63,13 @@ impl<'a> Passing<'a> {
         path.events.iter().map(&mut passing).collect()
     }
 
-    /// Whether edges run, so that a walker waits before it.
+    /// Whether edges run in it, so that a walker waits before it.
     pub fn is_jump(&self) -> bool {
         let runs = self.after != self.before && self.event.kind != EventKind::Turn;
         runs || self.event.after.is_none()
     }
 
-    /// How a walker comes to the state before it, where edges run.
+    /// How a walker comes to the state before the event, where edges run.
     fn arrival(&self) -> Arrival {
         match (self.event.kind, self.event.radius) {
             (EventKind::Touch, Some(radius)) => Arrival::Touch(radius),
@@ -92,12 +92,13 @@ impl<'a> Along<'a> {
         self.from.filter(|at| *at < self.path.states.len())
     }
 
-    /// So many steps, or as many of a run; stops where edges run and where the path turns, or a held edge begins to move.
+    /// Takes `count` steps, single or of a run; stops where edges run, where the path turns, and where a held edge
+    /// begins to move.
     pub fn steps(&self, count: usize, emit: &mut Emit<'_>) -> WalkEnd {
         let states = &self.path.states;
         let Some(mut at) = self.here() else { return WalkEnd::Failed(WalkFailure::NoState("walk")) };
         if let Some(passing) = self.waiting(at) {
-            // Edges may run at once where a held one is let go. The path goes on behind the jump alone.
+            // Edges may run at once where a held one is let go. The path goes on only after the jump.
             emit(self.reached(at, passing.arrival()));
             return WalkEnd::AtLimit;
         }
@@ -135,7 +136,7 @@ impl<'a> Along<'a> {
         WalkEnd::Done
     }
 
-    /// Lets the edges run that wait.
+    /// Lets the waiting edges run.
     pub fn jump(&self, emit: &mut Emit<'_>) -> WalkEnd {
         let Some(passing) = self.here().and_then(|at| self.waiting(at)) else {
             return WalkEnd::Failed(WalkFailure::Stable);
@@ -159,8 +160,8 @@ impl<'a> Along<'a> {
         self.move_to(found.unwrap_or(usize::MAX), emit)
     }
 
-    /// Goes to the state at this value of the control on the way in `direction`; of several, as around a jump, to that of the contact radius
-    /// nearest to `s`.
+    /// Goes to the state at this value of the control on the way in `direction`; of several, as around a jump, to the
+    /// one whose contact radius is nearest to `s`.
     pub fn solve(&self, value: f64, s: f64, direction: Direction, emit: &mut Emit<'_>) -> WalkEnd {
         let values = self.path.states.iter().map(|state| state.control_value);
         let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], c| [lo.min(c), hi.max(c)]);
@@ -175,7 +176,8 @@ impl<'a> Along<'a> {
         WalkEnd::Done
     }
 
-    /// The state on the way in `direction` of which `measure` is least, or of the whole path where there is none on that way.
+    /// The state with the least `measure` on the way in `direction`, or on the whole path where there is none on that
+    /// way.
     fn nearest(&self, direction: Direction, measure: &dyn Fn(&PathState) -> [f64; 2]) -> Option<usize> {
         let states = || self.path.states.iter().enumerate();
         let least = |a: &(usize, &PathState), b: &(usize, &PathState)| {
@@ -186,7 +188,7 @@ impl<'a> Along<'a> {
         there.or_else(|| states().min_by(least)).map(|(at, _)| at)
     }
 
-    /// The way from one state to another in the scaled unknowns.
+    /// The distance from one state to another in the scaled unknowns.
     fn distance(&self, ends: [usize; 2]) -> f64 {
         let Scales { approach, force, contact_radius } = *self.scales;
         let [a, b] = ends.map(|at| &self.path.states[at]);
@@ -198,7 +200,7 @@ impl<'a> Along<'a> {
         ways.iter().map(|way| way * way).sum::<f64>().sqrt()
     }
 
-    /// Whether the edge rests between two neighbours.
+    /// Whether the edge rests between a state and the next.
     fn rests(&self, at: usize) -> bool {
         let states = &self.path.states;
         states.get(at + 1).is_some_and(|next| {
@@ -210,15 +212,16 @@ impl<'a> Along<'a> {
         })
     }
 
-    /// A state with what is to be known of it.
+    /// A state with what is known about it.
     fn reached(&self, at: usize, arrival: Arrival) -> Reached {
         let state = &self.path.states[at];
         let Scales { approach, force, contact_radius } = *self.scales;
         let (s, held) = (state.contact_radius, state.held_stiffness);
-        // A held edge answers as the contact itself does.
+        // With a held edge, the response is that of the contact itself.
         let rests = self.rests(at).then_some(Stability { approach: 1.0, force: held });
         let slopes = rests.or(state.slopes);
-        // What a path holds is stable; what it says of other devices neighbours tell where the state does not.
+        // A state on a path is stable under its device; for other devices its neighbours tell where the state itself
+        // does not.
         let stability = slopes.unwrap_or(Stability { approach: 1.0, force: self.slope(at) });
         let tangent = slopes.map_or(f64::NAN, |slopes| slopes.force / slopes.approach);
         let area_slope = match (rests, slopes, state.zone) {
@@ -228,7 +231,7 @@ impl<'a> Along<'a> {
         };
         let stiffness = Stiffness { contact: held, tangent, area_slope };
         let edges = state.contacts.concat();
-        // The axis is no edge.
+        // The axis is not an edge.
         let mut radii: Vec<f64> = edges.into_iter().filter(|r| *r > 0.0).collect();
         if radii.is_empty() {
             radii.push(0.0);
@@ -248,14 +251,14 @@ impl<'a> Along<'a> {
             state: state.state(),
             stability,
             stiffness,
-            // What a path holds has been looked at.
+            // The states of a path have already been checked.
             admissibility: Admissibility { nearest: None, least_pressure: None, holds: true, known_to: None },
             digits: self.digits,
             on_path: Some(at),
         }
     }
 
-    /// dP/dδ between neighbours on the path: its sign alone is used.
+    /// dP/dδ between neighbours on the path: only its sign is used.
     fn slope(&self, at: usize) -> f64 {
         let states = &self.path.states;
         let here = &states[at];

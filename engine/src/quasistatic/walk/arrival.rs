@@ -40,7 +40,7 @@ pub enum WalkEnd {
     AtLimit,
     /// Where a crest touches.
     AtTouch,
-    /// Whoever took the states did not want more.
+    /// The receiver of the states did not want more.
     Paused,
     /// At the end contact radius.
     AtEnd,
@@ -71,7 +71,7 @@ pub enum WalkFailure {
     /// The basis has no equilibrium where the walker stands.
     #[error("the basis has no equilibrium here")]
     NoBasis,
-    /// The edge would have to climb.
+    /// The potential would have to rise on the way.
     #[error("the edge cannot run to the next stable state: on the way the potential rises")]
     Rises,
     /// The edge runs outward and finds no stable state.
@@ -86,7 +86,7 @@ pub enum WalkFailure {
     /// Nothing runs from here.
     #[error("this state is stable: its edges do not run")]
     Stable,
-    /// A state with rings could not be had.
+    /// A state with rings could not be found.
     #[error("the edges could not be followed: {0}")]
     Edges(String),
     /// The changed problem has no state near the old one.
@@ -94,7 +94,7 @@ pub enum WalkFailure {
     NotSolved,
 }
 
-/// A state that a walk arrived at, with what is to be known of it.
+/// A state that a walk arrived at, with what is known about it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reached {
     /// How it was reached.
@@ -112,7 +112,7 @@ pub struct Reached {
     pub admissibility: Admissibility,
     /// Decimal digits of the edges.
     pub digits: f64,
-    /// Of a walk along a path, the number of the state on it, from 0.
+    /// For a walk along a path, the number of the state on it, from 0.
     pub on_path: Option<usize>,
 }
 

@@ -17,7 +17,7 @@ use crate::quasistatic::{StatePoint, energy, landscape};
 use crate::ritz::{self, NewtonSettings};
 use crate::root::RootBracket;
 
-/// A landing outward is looked for further out by this factor, and up to this multiple of the radius.
+/// A landing outward is looked for further out by this factor each time, and up to this multiple of the radius.
 const OUTWARD_STEP: f64 = 1.5;
 const OUTWARD_REACH: f64 = 1000.0;
 
@@ -35,7 +35,8 @@ struct StepStop {
     is_corner: bool,
 }
 
-/// A limit point is known to the root of rounding, and so is a touch: the digits beyond differ from table to table, and a replay would too.
+/// A limit point, like a touch, is known only to the square root of rounding: the digits beyond differ from table to
+/// table, and so would a replay.
 fn rounded(radius: f64) -> f64 {
     const KNOWN: u64 = 1 << 8;
     f64::from_bits((radius.to_bits() + KNOWN / 2) & !(KNOWN - 1))
@@ -71,12 +72,13 @@ impl Walk<'_> {
         WalkEnd::AtLimit
     }
 
-    /// Goes to the state at this value of the control, nearest to the contact radius `s` before the problem changed. From a
-    /// stable state it goes to the nearest stable one, where there is one: bodies would not stay in another.
+    /// Goes to the state at this value of the control, nearest to the contact radius `s` before the problem changed.
+    /// From a stable state it goes to the nearest stable one, where there is one: bodies would not stay in an unstable
+    /// one.
     pub fn solve(&self, value: f64, s: f64, was_stable: bool, emit: &mut Emit<'_>) -> WalkEnd {
         let equilibrium = self.equilibrium();
         let problem = &equilibrium.problem;
-        // Newton may find another state far away on a wavy gap: the old radius' own branch is wanted.
+        // On a wavy gap Newton's method may find another state far away; the branch of the old radius is wanted.
         let near = |found: f64| {
             let feature = problem.gap.feature_length().unwrap_or(s);
             (found - s).abs() <= NEAR * feature.min(s)
@@ -99,7 +101,8 @@ impl Walk<'_> {
         let Some(point) = stable(found) else {
             return WalkEnd::Failed(WalkFailure::NotSolved);
         };
-        // Where the control is at its limit, as after a change that leaves the curve as it was, the state is at the limit point itself.
+        // If the control is at its limit, as after a change that leaves the curve as it was, the state is at the limit
+        // point itself.
         if let Some(limit) = self.limit_at(value, equilibrium.contact_radius(&point)) {
             return self.move_to_limit(limit, emit);
         }
@@ -109,7 +112,8 @@ impl Walk<'_> {
 
     /// The radius of the limit point beside the state of radius `s` at which the control takes this value; `None` where none does.
     fn limit_at(&self, value: f64, s: f64) -> Option<f64> {
-        /// How far the value may be off, over the scale of the control: beside a limit point that is a millionth of the way.
+        /// How far the value may be off, over the scale of the control; beside a limit point, that is a millionth of
+        /// the way.
         const AT_LIMIT: f64 = 1e-12;
         let equilibrium = self.equilibrium();
         let mut curve = self.curve.clone();
@@ -197,7 +201,7 @@ impl Walk<'_> {
             }
             let stop = first_between(&stops, before, s).map(|stop| self.located(stop));
             let to = stop.map_or(s, |stop| stop.contact_radius);
-            // One on which it stands is left behind.
+            // A touch on which the walker stands is left behind.
             let touch = if touching { None } else { self.touch_between(before, to) };
             touching = false;
             if let Some((radius, crest)) = touch {
@@ -237,8 +241,8 @@ impl Walk<'_> {
         Ok(WalkEnd::Done)
     }
 
-    /// Where, on the way from one contact radius to another, the next crest touches, and its radius: one that touches or overlaps at the
-    /// start does not.
+    /// Where the next crest touches on the way from one contact radius to another, and its radius. A crest that
+    /// touches or overlaps at the start does not count.
     fn touch_between(&self, from: f64, to: f64) -> Option<(f64, f64)> {
         let equilibrium = self.equilibrium();
         let judge = equilibrium.judge();
@@ -261,7 +265,8 @@ impl Walk<'_> {
         Some((rounded(bracket.end(false)), at))
     }
 
-    /// A jump outward on whose way a crest touches, so that rings take part in it; `None` where the disc alone runs.
+    /// An outward jump in which a crest touches on the way, so that rings take part in it; `None` where the disc alone
+    /// runs.
     pub(super) fn runs_into_crests(&self) -> Option<Jumped> {
         let from = self.from.filter(|_| self.equilibrium().problem.work_of_adhesion > 0.0)?;
         let outward = match self.at {
@@ -279,7 +284,7 @@ impl Walk<'_> {
         self.equilibrium().control_row(self.control).dot(&point.curvature())
     }
 
-    /// The next point by arc length; a corner of the curve is left and reached without the tangent that it does not have.
+    /// The next point by arc length. A corner of the curve is left and reached without a tangent, because it has none.
     fn next(
         &self,
         stops: &[StepStop],
@@ -327,7 +332,7 @@ impl Walk<'_> {
         loop {
             let monotone = curve.monotone(self.control);
             let place = curve.solution.place(s.min(curve.solution.reach())).ok_or(WalkFailure::NoBasis)?;
-            // Away from the stable side of a limit point; from any other state, as walked.
+            // From a limit point, away from its stable side; from any other state, in the direction of the walk.
             let limit = if self.at == At::Limit { nearest_limit(&monotone, s) } else { None };
             let (place, stretch, run) = match limit {
                 Some((index, limit)) => match limit.turn {
@@ -384,7 +389,7 @@ impl Walk<'_> {
         let monotone = curve.monotone(self.control);
         let value = match self.control {
             Control::Displacement | Control::Force => value,
-            // The stretches hold the value scaled so.
+            // The stretches hold the value scaled like this.
             Control::Stiffness(k) => value * (k / (1.0 + k)),
         };
         let radius = |place: Place| solution.radius(place);

@@ -1,8 +1,8 @@
 //! Any number of edges as a walk keeps them.
 //!
-//! Unknowns y = (δ/δ₀, P/P₀, e₁/s₀, e₂/s₀, …), the edges from the axis outward, with the unit tangent dy/dℓ along their equilibria and its
-//! derivative. A disc alone has the unknowns of [`Equilibrium`]. Whether there is a disc follows from the number of edges, which it
-//! makes odd.
+//! Unknowns y = (δ/δ₀, P/P₀, e₁/s₀, e₂/s₀, …), the edges from the axis outward, with the unit tangent dy/dℓ along
+//! their equilibria and its derivative. A disc alone has the unknowns of [`Equilibrium`]. The number of edges is odd
+//! exactly where there is a disc.
 
 use crate::annuli::{Around, Contacts, Ground, points};
 use crate::continuation::{ColumnView, Columns, Vector};
@@ -20,16 +20,16 @@ use std::f64::consts::PI;
 /// δ and P stand before the edges.
 const BEFORE: usize = 2;
 
-/// The distance by which tangents tell how a curve bends, in the units of its arc length.
+/// The distance between the two tangents from which the bend of a curve is found, in the units of its arc length.
 const BESIDE: f64 = 1e-3;
 
-/// A slope of the approach along the curve that a located limit point leaves.
+/// The largest slope of the approach along the curve that remains at a located limit point.
 const ROUNDING: f64 = 1e-9;
 
-/// A pressure counts as negative below this share of the largest.
+/// A pressure counts as negative below minus this share of the largest.
 const PRESSED: f64 = 1e-7;
 
-/// Whether a point is one of more than a disc.
+/// Whether a point has more contacts than a disc.
 pub fn has_rings(point: &StatePoint) -> bool {
     point.y().len() > BEFORE + 1
 }
@@ -52,13 +52,13 @@ pub fn device(scales: &Scales, point: &StatePoint) -> [f64; 2] {
     [point.y()[0] * scales.approach, point.y()[1] * scales.force]
 }
 
-/// The change of a control that goes with one of the unknowns.
+/// The change of a control that goes with a change of the unknowns.
 pub(super) fn of_control(control: Control, scales: &Scales, change: &ColumnView<'_>) -> f64 {
     control.value(change[0] * scales.approach, change[1] * scales.force)
 }
 
-/// The slopes that decide the stability of a state with rings: where all eigenvalues of J at a held approach are positive, a device of
-/// stiffness k holds it when dP/dδ > −k; where one is not, none does.
+/// The slopes that decide the stability of a state with rings: where all eigenvalues of J at a held approach are
+/// positive, a device of stiffness k holds it when dP/dδ > −k; where one is not, no device does.
 pub fn stability(lowest: f64, stiffness: &Stiffness) -> Stability {
     if lowest > 0.0 {
         Stability { approach: 1.0, force: stiffness.tangent }
@@ -87,7 +87,8 @@ pub(super) fn resumed(balance: &Balance<'_>, scales: &Scales, point: &StatePoint
     })
 }
 
-/// The point of edges in equilibrium on which the contacts shrink; `None` where the curve is singular.
+/// The point of edges in equilibrium with the tangent along which the contacts shrink; `None` where the curve is
+/// singular.
 pub(super) fn shrinking(balance: &Balance<'_>, held: HeldEdges) -> Option<path::PathPoint> {
     let edges = held.state.contacts.edges();
     balance.point_along(held, &|units| {
@@ -96,14 +97,16 @@ pub(super) fn shrinking(balance: &Balance<'_>, held: HeldEdges) -> Option<path::
     })
 }
 
-/// How the contacts grow along the tangent of a point, every edge outward of its contact, in the scale of radii.
+/// How the contacts grow along the tangent of a point, every edge counted outward from its contact, in the scale of
+/// radii.
 pub(super) fn growth(point: &StatePoint) -> DVector<f64> {
     let along = point.tangent();
     let signs = of_edges(&point.y().as_slice()[BEFORE..]).edges();
     DVector::from_fn(signs.len(), |i, _| signs[i].sign * along[BEFORE + i])
 }
 
-/// The derivatives of the unknowns along the equilibria, of unit length, and that length for one of the arc.
+/// The derivatives of the unknowns along the equilibria, scaled to unit length, and their length per unit of arc
+/// length before that.
 pub(super) fn direction(balance: &Balance<'_>, scales: &Scales, point: &path::PathPoint) -> (Vector, f64) {
     let [delta, force] = balance.slopes(point);
     let edges = point.contacts().edges();
@@ -138,7 +141,7 @@ pub(super) fn kept(balance: &Balance<'_>, scales: &Scales, point: &path::PathPoi
     kept
 }
 
-/// What is to be known of a state with rings.
+/// What is known about a state with rings.
 #[derive(Debug)]
 pub struct Judged {
     /// δ, P, U and the outermost edge.
@@ -160,7 +163,7 @@ pub(super) fn state(held: &HeldEdges, gamma: f64) -> State {
     State { contact_radius, approach, force, energy: held.state.energy(approach, gamma) }
 }
 
-/// What is to be known of `point`, whose edges are `held` at its approach.
+/// What is known about `point`, whose edges are `held` at its approach.
 pub fn judged(equilibrium: &Equilibrium, ground: &Ground, point: &StatePoint, held: &HeldEdges) -> Judged {
     let (scales, gamma) = (&equilibrium.scales, equilibrium.problem.work_of_adhesion);
     let contacts = &held.state.contacts;
@@ -191,7 +194,7 @@ pub fn judged(equilibrium: &Equilibrium, ground: &Ground, point: &StatePoint, he
 }
 
 fn admissibility(equilibrium: &Equilibrium, ground: &Ground, held: &HeldEdges) -> Admissibility {
-    /// A touch that has just been located is none yet, in waves.
+    /// A touch that has just been located does not overlap yet: its gap may be this far below zero, in waves.
     const TOUCHES: f64 = 1e-11;
     let around = Around::new(ground, &held.state, held.approach);
     let crests = around.crests(ground.can_touch_up_to(held.approach));
@@ -213,7 +216,7 @@ fn admissibility(equilibrium: &Equilibrium, ground: &Ground, held: &HeldEdges) -
     }
 }
 
-/// The least pressure in the contacts, its radius and the largest.
+/// The radius of the least pressure in the contacts, that pressure, and the largest one.
 fn least_pressure(ground: &Ground, around: &Around<'_>, held: &HeldEdges) -> Option<(f64, f64, f64)> {
     const PER_WAVE: f64 = 16.0;
     const FEWEST: f64 = 40.0;
@@ -222,7 +225,7 @@ fn least_pressure(ground: &Ground, around: &Around<'_>, held: &HeldEdges) -> Opt
     for [a, b] in held.state.contacts.intervals() {
         let count = (PER_WAVE * (b - a) / ground.wave).max(FEWEST).ceil();
         for at in std::iter::successors(Some(0.5), |k| Some(k + 1.0)).take_while(|k| *k < count) {
-            // Dense towards the edges; a disc has one.
+            // Dense towards the edges; a disc has only one.
             let share = if a > 0.0 { sin(0.5 * PI * at / count).powi(2) } else { sin(0.5 * PI * at / count) };
             let radius = a + (b - a) * share;
             let p = around.pressure(radius);

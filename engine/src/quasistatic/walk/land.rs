@@ -1,4 +1,4 @@
-//! Where edges land that run at held control, with the rings that they make on the way.
+//! Where edges land when they run at held control, with the rings that they make on the way.
 
 use super::arrival::{Ahead, Arrival, Emit, Reached, WalkEnd, WalkFailure};
 use super::edges;
@@ -32,7 +32,7 @@ impl Jumped {
         passed.into_iter().any(|passed| passed.kind == PassedKind::Touch)
     }
 
-    /// What it costs.
+    /// Where it lands, and what it costs.
     pub fn ahead(&self) -> Ahead {
         let dissipated = self.event.as_ref().map_or(Some(0.0), |event| event.dissipated);
         Ahead { after: self.after, dissipated }
@@ -40,7 +40,7 @@ impl Jumped {
 }
 
 impl Walk<'_> {
-    /// The state of a disc, with what is to be known of it.
+    /// The state of a disc, with what is known about it.
     pub(super) fn of_disc(&self, arrival: Arrival, point: StatePoint) -> Reached {
         let equilibrium = self.equilibrium();
         let (state, stiffness) = equilibrium.state_and_stiffness(&point);
@@ -56,7 +56,7 @@ impl Walk<'_> {
         }
     }
 
-    /// The state of a point with rings, with what is to be known of it.
+    /// The state of a point with rings, with what is known about it.
     pub(super) fn of_rings(&self, ground: &Ground, arrival: Arrival, point: StatePoint) -> Option<Reached> {
         let equilibrium = self.equilibrium();
         let balance = self.balance(ground, Control::Displacement);
@@ -83,13 +83,13 @@ impl Walk<'_> {
         self.of_rings(balance.ground, arrival, edges::kept(balance, scales, &point)).ok_or(missing)
     }
 
-    /// What holds edges that run. Without adhesion a ring begins with no width, a little further on.
+    /// The balance of edges that run. Without adhesion a ring begins with no width, a little further on.
     pub(super) fn running<'a>(&self, ground: &'a Ground) -> Balance<'a> {
         let adheres = self.equilibrium().problem.work_of_adhesion > 0.0;
         self.balance(ground, if adheres { self.control } else { Control::Displacement })
     }
 
-    /// What edges come to on as much of the gap as it takes.
+    /// What `run` finds on as much of the gap as it needs.
     fn ran<T>(
         &self,
         [radius, delta]: [f64; 2],
@@ -107,8 +107,8 @@ impl Walk<'_> {
         })
     }
 
-    /// Lets the edges run: with a ring from a touch; from a limit point to the side on which the control cannot follow; from any other
-    /// unstable state as walked.
+    /// Lets the edges run: from a touch, with a ring; from a limit point, to the side on which the control cannot
+    /// follow; from any other unstable state, in the direction of the walk.
     pub(super) fn try_rings(&self) -> Result<Jumped, WalkFailure> {
         let from = self.begun("jump")?;
         let scales = &self.equilibrium().scales;
@@ -118,7 +118,7 @@ impl Walk<'_> {
         found.ok_or(WalkFailure::Stable)
     }
 
-    /// The same on a gap known so far; `None` where nothing runs.
+    /// The same on the gap as far as `ground` goes; `None` where nothing runs.
     fn jumped(&self, ground: &Ground, from: &StatePoint) -> Result<Option<Jumped>, PathError> {
         let scales = &self.equilibrium().scales;
         let (balance, contacts) = (self.running(ground), edges::contacts(scales, from));
@@ -136,9 +136,9 @@ impl Walk<'_> {
             (EventKind::Touch, direction, start, Some(radius))
         } else {
             let (null, outward) = if self.at == At::Limit {
-                // Beyond a maximum of the control there is nothing near for a contact that is larger, beyond a minimum for one that
-                // is smaller.
-                // On a corner of the gap there is no bend, but a slope on the side towards the axis: stored tangents run inward.
+                // Beyond a maximum of the control there is no state nearby with a larger contact; beyond a minimum,
+                // none with a smaller one. On a corner of the gap there is no bend, but a slope on the side towards
+                // the axis: stored tangents run inward.
                 let on_corner = balance.on_corner(&contacts).is_some();
                 let bend = if on_corner { from.tangent() } else { from.curvature() };
                 (edges::growth(from), edges::of_control(balance.control, scales, &bend) < 0.0)
@@ -161,7 +161,7 @@ impl Walk<'_> {
         Ok(Some(Jumped::of(&balance, held, course.record.events.pop())))
     }
 
-    /// The first touch of bodies that were apart and what it jumps to: where a walk begins that begins apart.
+    /// The first touch of bodies that were apart, and the state it jumps to: where a walk that starts apart begins.
     ///
     /// # Errors
     /// [`WalkFailure`] where the gap has no least value, or the edges do not land.

@@ -1,9 +1,10 @@
 //! A walk along the equilibrium curve, one request at a time: steps, runs, jumps, moves.
 //!
-//! A [`Walk`] says where the walker stands and how it goes; each state it arrives at is handed over with how it came about.
-//! A step that would pass a limit point of the control, a touch of the next crest, or a corner of the curve, stops exactly there. At a
-//! touch the walk goes on without the new contact, through states that are not admissible, or lets it run: then there are rings, and the
-//! same steps lead along all edges. All quantities are reduced.
+//! A [`Walk`] says where the walker stands and how it goes; each state it arrives at is handed over with how it was
+//! reached. A step that would pass a limit point of the control, a touch of the next crest, or a corner of the curve
+//! stops exactly there. At a touch the walk either goes on without the new contact, through states that are not
+//! admissible, or lets the contact run: then there are rings, and the same steps follow all edges. All quantities are
+//! reduced.
 //!
 //! | file | what lives there |
 //! |---|---|
@@ -12,8 +13,8 @@
 //! | `disc` | steps and jumps of one disc |
 //! | [`edges`] | any number of edges as a walk keeps them |
 //! | `rings` | steps with rings |
-//! | `land` | where edges land that run |
-//! | [`along`] | steps along a path that is known |
+//! | `land` | where edges land when they run |
+//! | [`along`] | steps along a known path |
 
 pub mod along;
 pub mod arrival;
@@ -30,8 +31,8 @@ pub use walker::{At, ROOM, Walk};
 use super::Event;
 
 impl Walk<'_> {
-    /// So many steps of the length asked for, or of a `run` of the length that the curve allows; stops at a limit point of the control and
-    /// where a crest touches.
+    /// Takes `count` steps of the length asked for or, in a `run`, of the length that the curve allows; stops at a
+    /// limit point of the control and where a crest touches.
     pub fn steps(&self, count: usize, run: bool, emit: &mut Emit<'_>) -> WalkEnd {
         let end = if self.has_rings() {
             self.ring_steps(count, run, emit)
@@ -41,7 +42,7 @@ impl Walk<'_> {
         end.unwrap_or_else(WalkEnd::Failed)
     }
 
-    /// Lets the edges run at constant control to the next stable state; from a touch with the new contact.
+    /// Lets the edges run at constant control to the next stable state; from a touch, with the new contact.
     pub fn jump(&self, emit: &mut Emit<'_>) -> WalkEnd {
         self.try_jump(emit).unwrap_or_else(WalkEnd::Failed)
     }
@@ -57,7 +58,7 @@ impl Walk<'_> {
                 None => return self.disc_jump(emit),
             }
         };
-        // What it passed depends on how fast edges move, and is not kept.
+        // What the jump passed depends on how fast edges move, so it is not kept.
         let event = jumped.event.map(|event| Box::new(Event { passed: Vec::new(), ..event }));
         let arrival = event.map_or(Arrival::Step, Arrival::Jump);
         let reached = match jumped.held {

@@ -81,7 +81,7 @@ impl Walk<'_> {
         Ok(WalkEnd::Done)
     }
 
-    /// One step, which ends at the first limit point of the control or touch.
+    /// One step, which ends at the first limit point of the control or the first touch.
     fn ring_step(
         &self,
         ground: &Ground,
@@ -97,7 +97,8 @@ impl Walk<'_> {
         // A step asked for by hand has the length of a step of one disc.
         let asked = self.length / edges::direction(&balance, scales, &from).1;
         let wanted = if run { length.unwrap_or(asked).min(LONGEST) } else { asked };
-        // From a limit point to the side on which its bend says that the control goes on: a step that ends elsewhere passes another.
+        // A step from a limit point must go to the side on which, by its bend, the control goes on; one that ends
+        // elsewhere has passed another limit point.
         let bend = edges::of_control(self.control, scales, &here.curvature());
         let goes_on = |end: &path::PathPoint| at != At::Limit || end.along_control() * bend > 0.0;
         let mut taken = balance.step(&from, wanted, &[], &goes_on).ok_or_else(lost)?;

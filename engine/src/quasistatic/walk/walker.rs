@@ -50,12 +50,12 @@ impl Walk<'_> {
         &self.curve.equilibrium
     }
 
-    /// The same of a walker that stands elsewhere.
+    /// The same walk, with the walker standing elsewhere.
     pub(super) fn standing<'b>(&'b self, from: &'b StatePoint, at: At) -> Walk<'b> {
         Walk { from: Some(from), at, ..*self }
     }
 
-    /// The state to begin with, for what `what` says.
+    /// The state to begin with; `what` names the request in the error.
     pub(super) fn begun(&self, what: &'static str) -> Result<&StatePoint, WalkFailure> {
         self.from.ok_or(WalkFailure::NoState(what))
     }
@@ -71,7 +71,8 @@ impl Walk<'_> {
         ground.map_err(|error| WalkFailure::Edges(error.to_string()))
     }
 
-    /// What is found on it, with its largest approach, or on more where it takes that.
+    /// What `find` finds on that gap, or on more of it where it needs more; `highest` gives the largest approach of
+    /// the result.
     pub(super) fn on_ground<T>(
         &self,
         radius: f64,
@@ -85,7 +86,7 @@ impl Walk<'_> {
         on_ground(&self.equilibrium().table, reach, &far_enough, &Unwatched, find, highest)
     }
 
-    /// The equilibrium of contacts on `ground` under `control`.
+    /// The balance of contacts on `ground` under `control`.
     pub(super) fn balance<'a>(&self, ground: &'a Ground, control: Control) -> Balance<'a> {
         Balance {
             ground,
