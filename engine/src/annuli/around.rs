@@ -15,16 +15,16 @@ use crate::gap::Gap;
 use std::f64::consts::{FRAC_2_PI, PI};
 use wide::f64x4;
 
-/// Between an edge and the first radius that is looked at there are so many waves: beside an edge the sums are poor.
+/// Distance between an edge and the first sampled radius, in waves: beside an edge the sums are poor.
 pub const BESIDE: f64 = 0.06;
 
-/// Radii that are looked at in each wave.
+/// Sampled radii in each wave.
 const PER_WAVE: f64 = 14.0;
 
-/// Points by which a minimum is found.
+/// Points of the series that finds a minimum.
 const POINTS: usize = 11;
 
-/// The most radii of one search.
+/// The most radii in one search.
 const MOST_RADII: f64 = 20_000.0;
 
 /// A place where the gap has a minimum.
@@ -49,7 +49,7 @@ pub struct Around<'a> {
 }
 
 impl<'a> Around<'a> {
-    /// Of a state at the approach `delta`.
+    /// For a state at the approach `delta`.
     pub fn new(ground: &'a Ground, state: &'a AnnuliState, delta: f64) -> Self {
         let y: Vec<f64> = state.y[0].iter().zip(&state.y[1]).map(|(a, b)| a + delta * b).collect();
         let radii: Vec<f64> = state.nodes.iter().flat_map(|nodes| nodes.radii.iter().copied()).collect();
@@ -140,8 +140,9 @@ impl<'a> Around<'a> {
         f64::NAN
     }
 
-    /// The minima of the gap outside the contacts, from the axis outward: those between contacts, and those beyond the last up to
-    /// the radius `to`; the axis itself is one where it lies outside and the gap rises from it, and so is a corner.
+    /// The minima of the gap outside the contacts, from the axis outward: those between contacts, and those beyond the
+    /// last contact up to the radius `to`. The axis itself counts as one where it lies outside and the gap rises from
+    /// it, and so does a corner.
     pub fn crests(&self, to: f64) -> Vec<GapMinimum> {
         let contacts = &self.state.contacts;
         let mut intervals = contacts.gaps();
@@ -162,17 +163,17 @@ impl<'a> Around<'a> {
         found
     }
 
-    /// Radii of an interval with both its ends, close together where the gap is fine.
+    /// Radii of an interval including both ends, closer together where the gap is fine.
     fn radii(&self, [from, to]: [f64; 2]) -> Vec<f64> {
         let waves = self.ground.lengths_between([from, to]);
         let steps = (waves * PER_WAVE).ceil().clamp(2.0, MOST_RADII);
-        // Evenly in the lengths of the gap.
+        // Evenly spaced, in the lengths of the gap.
         let unit = waves / steps;
         let mut radii = vec![from];
         let mut r = from;
         loop {
             let step = unit * self.ground.length_at(r);
-            // Towards what is fine the length at the end of the step counts.
+            // Where the gap gets finer, the length at the end of the step counts.
             r += step.min(unit * self.ground.length_at(r + step));
             if r >= to - 0.5 * unit * self.ground.wave || radii.len() as f64 > 2.0 * MOST_RADII {
                 break;
@@ -215,7 +216,7 @@ impl<'a> Around<'a> {
         }
     }
 
-    /// The minimum between two radii, by a Chebyshev series; around a corner of the gap by one on each side.
+    /// The minimum between two radii, by a Chebyshev series, or by one on each side of a corner of the gap.
     pub fn minimum(&self, [lo, hi]: [f64; 2]) -> GapMinimum {
         let corners = self.ground.stops();
         let inside = corners.partition_point(|r| *r <= lo)..corners.partition_point(|r| *r < hi);

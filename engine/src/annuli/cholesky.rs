@@ -3,17 +3,18 @@
 use nalgebra::{DMatrix, Dyn, LU};
 use wide::f64x4;
 
-/// A matrix made ready for right-hand sides.
+/// A matrix factored and ready for right-hand sides.
 #[derive(Debug, Clone)]
 pub enum Factorization {
     /// `UᵀU`.
     Cholesky(Vec<f64>),
-    /// With pivots: between breaks of a gap the sums need not be positive definite.
+    /// With pivoting: between breaks of a gap the sums need not be positive definite.
     Pivoted(Box<LU<f64, Dyn, Dyn>>),
 }
 
 impl Factorization {
-    /// Of the `n`×`n` matrix with this upper triangle, by rows; `definite` where nothing else is expected. `None` where it is singular.
+    /// Factors the `n`×`n` matrix with this upper triangle, by rows; `definite` where it must be positive definite.
+    /// `None` where it is singular.
     pub fn of(mut matrix: Vec<f64>, n: usize, definite: bool) -> Option<Self> {
         if definite {
             return factorize(&mut matrix, n).then_some(Self::Cholesky(matrix));
@@ -57,7 +58,7 @@ fn factorize(a: &mut [f64], n: usize) -> bool {
                 }
             }
             let pivot = row[j + p];
-            // Written so that what is no number fails.
+            // Written so that NaN fails.
             if !(pivot > 0.0 && pivot.is_finite()) {
                 return false;
             }
@@ -72,7 +73,7 @@ fn factorize(a: &mut [f64], n: usize) -> bool {
         let (r2, r3) = tail.split_at(n);
         for (i, row) in rest.chunks_exact_mut(n).enumerate() {
             let i = j + BLOCK + i;
-            // From the last multiple of four below the diagonal: what is below it is never read.
+            // Starts at the last multiple of four up to the diagonal: entries below the diagonal are never read.
             let from = i & !3;
             let u = [r0[i], r1[i], r2[i], r3[i]].map(f64x4::splat);
             let fours = row[from..].as_chunks_mut::<4>().0.iter_mut();

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-/// The most contacts of one state.
+/// The most contacts in one state.
 pub const MOST_CONTACTS: usize = 64;
 
 /// The contact of two axisymmetric bodies: a central disc, rings around it, or both.
@@ -23,7 +23,7 @@ pub struct Edge {
     pub sign: f64,
 }
 
-/// Why contacts are none.
+/// Why contacts are invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ContactsError {
     /// More than [`MOST_CONTACTS`].
@@ -42,7 +42,7 @@ pub enum ContactsError {
         /// The edge that follows it.
         after: f64,
     },
-    /// There is nothing.
+    /// There is no contact.
     #[error("there is no contact")]
     None,
 }
@@ -63,7 +63,7 @@ impl Contacts {
         self.has_disc() && self.rings.is_empty()
     }
 
-    /// Whether there is nothing.
+    /// Whether there is no contact at all.
     pub fn is_empty(&self) -> bool {
         !self.has_disc() && self.rings.is_empty()
     }
@@ -88,7 +88,7 @@ impl Contacts {
         disc.into_iter().chain(rings).collect()
     }
 
-    /// The contacts with as many edges at these radii, which need not ascend.
+    /// The contacts with the same number of edges, at these radii, which need not ascend.
     #[must_use]
     pub fn with_edges(&self, radii: &[f64]) -> Self {
         let (disc, rings) = radii.split_at(usize::from(self.has_disc()).min(radii.len()));
@@ -115,8 +115,8 @@ impl Contacts {
         inner.zip(self.rings.iter().map(|ring| ring[0])).map(|(lo, hi)| [lo, hi]).collect()
     }
 
-    /// The widths that no step may use up: of the disc, of every ring and of every gap between contacts; of a gap around the
-    /// axis twice, its diameter.
+    /// The widths that no step may use up: of the disc, of every ring and of every gap between contacts; of a gap
+    /// around the axis, its diameter.
     pub fn widths(&self) -> Vec<f64> {
         let disc = self.has_disc().then_some(self.disc);
         let rings = self.rings.iter().map(|[a, b]| b - a);
@@ -130,7 +130,7 @@ impl Contacts {
         PI * (self.disc * self.disc + rings)
     }
 
-    /// Nothing, where these can be contacts.
+    /// Checks that these can be contacts.
     ///
     /// # Errors
     /// [`ContactsError`].

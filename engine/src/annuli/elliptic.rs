@@ -29,7 +29,7 @@ pub const FOUR_MEANS: f64 = 0.75;
 /// The power of 16 q/m in [`Near`].
 pub const ROOT: f64 = -4.0;
 
-/// Of parameters up to [`FOUR_MEANS`], or of any below 1 − 1e-12 where `more` means are taken.
+/// The integrals of parameters up to [`FOUR_MEANS`], or of any below 1 − 1e-12 where `more` means are taken.
 #[inline]
 pub fn near(m: f64x4, more: bool) -> Near {
     let half = f64x4::splat(0.5);
@@ -59,7 +59,7 @@ pub fn near(m: f64x4, more: bool) -> Near {
             weight *= 2.0;
             *mean = a;
         }
-        // (a₄^½ a₅^¼ …)², which with a₄ alone is a₄: there ln a₄ has the weight of all that follow.
+        // (a₄^½ a₅^¼ …)², which is a₄ if the means end with a₄: then ln a₄ carries the weight of all that would follow.
         fourth = (a4 * (means[1] * (means[2] * means[3]).sqrt()).sqrt()).sqrt();
         last = a;
     }
@@ -82,7 +82,7 @@ pub fn far(complement: f64x4, means: u32) -> [f64x4; 2] {
         sum += weight * (c * c);
         weight += weight;
     }
-    // The next mean, of which only the square of c is missing.
+    // The next mean, for which only the square of c is missing from the sum.
     let k = f64x4::splat(PI) / (a + b);
     [k, k * (f64x4::ONE - sum - half * weight * half * (a - b) * (a - b))]
 }

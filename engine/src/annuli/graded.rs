@@ -8,8 +8,8 @@
 //! θ = θ_j + Δ S(u) between two breaks,   Δ (2S((1 + u)/2) − 1) from an edge to a break
 //! ```
 //!
-//! w' vanishes to a high order at the breaks, and all sums stay what they are with cos t in the place of x. Breaks fall midway between
-//! points; beside one the angle is kept as its distance from it.
+//! w' vanishes to a high order at the breaks, and all sums stay as they are with cos t in place of x. Breaks fall
+//! midway between points; beside a break the angle is kept as its distance from that break.
 //!
 //! R. Kress, J. Comput. Appl. Math. 61, 345 (1995), for the substitution.
 
@@ -47,7 +47,7 @@ struct GradedPlace {
     slope: f64,
 }
 
-/// The place at u of a piece of the width Δ, the first or last of all where there is no break at that end.
+/// The place at u on a piece of width Δ; `first` or `last` where there is no break at that end.
 fn place(u: f64, width: f64, first: bool, last: bool) -> GradedPlace {
     if first {
         let [s, slope] = sigmoid(0.5 * (1.0 - u));
@@ -97,8 +97,8 @@ pub fn angle_of([a, b]: [f64; 2], r: f64) -> f64 {
 }
 
 impl Nodes {
-    /// The points of a ring with these breaks inside, ascending, so many on each piece between them; all of them together are a
-    /// multiple of four.
+    /// The points of a ring with these breaks inside, ascending, with the given number on each piece between them; the
+    /// total is a multiple of four.
     pub fn graded(ends: [f64; 2], breaks: &[f64], pieces: &[usize]) -> Self {
         let n: usize = pieces.iter().sum();
         let rule = RingRule::of(n);
@@ -115,7 +115,7 @@ impl Nodes {
                 breaks[j - 1]
             }
         };
-        // θ as the distance from a border, and what it makes of r.
+        // θ as the distance from a border, and dθ/dt.
         let mut angles = Vec::with_capacity(n);
         let mut stretches = Vec::with_capacity(n);
         for (j, count) in pieces.iter().enumerate() {
@@ -132,7 +132,7 @@ impl Nodes {
             }
         }
         let theta: Vec<f64> = angles.iter().map(|(border, off)| borders[*border] + off).collect();
-        // r less the radius of a border: 2d sin sin of half sum and half difference.
+        // r minus the radius of a border: 2d times the sines of half the sum and half the difference.
         let from_border = |k: usize, border: usize| {
             let (own, off) = angles[k];
             let difference = if own == border { off } else { theta[k] - borders[border] };
@@ -174,7 +174,7 @@ impl Nodes {
                 }
             }
         }
-        // Where both move on one line the quotient is its slope, which differences would lose.
+        // Where both speeds lie on one line the quotient is its slope, which differences would lose.
         for i in 0..in_first {
             quotients[0][i * n..i * n + in_first].fill(-inward);
         }

@@ -1,7 +1,7 @@
-//! What rings ask of a gap: h, its transform, its lengths, and sums over the disc.
+//! What rings need from a gap: h, its transform, its lengths, and sums over the disc.
 //!
-//! Under the disc sums are taken in v, a = a₁ tanh v, with a₁ the inner edge of the first ring: 1/√(r² − a²) for r ≥ a₁ is then
-//! analytic for |Im v| < π/2 however near to the disc the ring begins.
+//! Sums under the disc are taken over v, with a = a₁ tanh v and a₁ the inner edge of the first ring: 1/√(r² − a²) for r
+//! ≥ a₁ is then analytic for |Im v| < π/2, however near to the disc the ring begins.
 
 use crate::disc::{Panel, Panels, Table, TableError, outside};
 use crate::elementary::{cbrt, cosh, ln, tanh};
@@ -13,19 +13,19 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::num::NonZeroUsize;
 use std::sync::{Arc, OnceLock};
 
-/// The most nodes of one sum over the disc.
+/// The most nodes in one sum over the disc.
 const MOST_NODES: usize = 512;
 
-/// Digits of sums over the disc, as ln(1/error).
+/// Accuracy of sums over the disc, as ln(1/error).
 const DIGITS: f64 = 34.6;
 
-/// Samples of a gap in which stand-ins for its lengths, and its crests, are looked for: so many evenly, and so many on all panels of
-/// the table, which are as fine as the gap is, at most and on each.
+/// Samples of a gap from which stand-ins for its lengths, and its crests, are found: how many evenly spaced; how many
+/// at most on all panels of the table, which are as fine as the gap is; and the limits on each panel.
 const SAMPLES: u32 = 4000;
 const MOST_ON_PANELS: usize = 200_000;
 const ON_PANEL: [usize; 2] = [2, 16];
 
-/// The share of a gap that ends up to which its lengths are looked for.
+/// For a gap that ends, the share of it within which its lengths are found.
 const INSIDE: f64 = 0.9;
 
 /// Gauss's nodes and weights on (−1, 1), ascending; made once.
@@ -40,7 +40,7 @@ pub fn gauss(n: usize) -> &'static [[f64; 2]] {
     })
 }
 
-/// A gap with its table, as far out as it was asked for.
+/// A gap with its table, as far out as requested.
 #[derive(Debug, Clone)]
 pub struct Ground {
     /// The gap.
@@ -53,13 +53,14 @@ pub struct Ground {
     pub wave: f64,
     /// ρ: the smallest radius of curvature of a crest, 1/max h''.
     pub crest: f64,
-    /// The wavenumber up to which h is analytic on every disc; none where it is not.
+    /// The largest wavenumber of h where h is analytic on every disc; none where it is not.
     pub(super) entire: Option<f64>,
-    /// The smallest g from the inner end of each panel on, less what samples may miss.
+    /// The smallest g from the inner end of each panel outward, less what samples may miss.
     pub(super) least: Vec<f64>,
-    /// Those of the breaks where h' itself jumps.
+    /// The breaks where h' itself jumps.
     pub corners: Vec<f64>,
-    /// A length at each border of the panels, from the axis outward, in which the gap changes there; nothing where λ is everywhere.
+    /// The length over which the gap changes, at each border of the panels from the axis outward; empty where it is λ
+    /// everywhere.
     pub(super) local: Vec<f64>,
     /// Whether the transform only grows.
     pub(super) grows: bool,
@@ -101,7 +102,7 @@ impl DiscNodes {
         nodes
     }
 
-    /// The nodes for the same with a function of wavenumbers up to `wavenumber`, which need not be even.
+    /// The nodes for the same integrand times a function with wavenumbers up to `wavenumber`, which need not be even.
     pub fn any(s: f64, edge: f64, wavenumber: f64) -> Self {
         let end = artanh(s, edge);
         let beta = PI / end;
@@ -155,7 +156,7 @@ impl Ground {
         Ok(Self { gap, table, panels, wave, crest, entire, least, corners, local, grows, spline, breaks })
     }
 
-    /// The length in which the gap changes at a radius: λ, or more where the panels of the table are wide.
+    /// The length over which the gap changes at a radius: λ, or more where the panels of the table are wide.
     pub fn length_at(&self, r: f64) -> f64 {
         let list = self.panels.list();
         let at = list.partition_point(|panel| panel.span.hi < r);
@@ -195,28 +196,30 @@ impl Ground {
         .sum()
     }
 
-    /// Radii at which the gap is looked at as a whole, ascending: close together where it is fine.
+    /// Radii at which the whole gap is sampled, ascending: closer together where it is fine.
     pub fn samples(&self) -> Vec<f64> {
         samples(&self.panels)
     }
 
-    /// The largest radius that is tabulated.
+    /// The largest tabulated radius.
     pub fn reach(&self) -> f64 {
         self.panels.reach()
     }
 
-    /// The breaks at which steps of a path end: all of them, but corners alone where they are many or the knots of a spline.
+    /// The breaks at which steps of a path end: all of them, or only the corners where the breaks are many or the knots
+    /// of a spline.
     pub fn stops(&self) -> &[f64] {
         const MANY: usize = 100;
         if self.spline || self.breaks.len() > MANY { &self.corners } else { &self.breaks }
     }
 
-    /// Whether the gap falls from the axis: a corner of the body there, which presses last and never without adhesion.
+    /// Whether the gap falls away from the axis: the body has a corner there, which presses last, and never without
+    /// adhesion.
     pub fn is_dimpled(&self) -> bool {
         self.gap.jet(1e-9 * self.wave).first < -1e-7
     }
 
-    /// The breaks inside a ring, so far from its edges that they are none of these.
+    /// The breaks inside a ring, far enough from its edges to be distinct from them.
     pub fn inside(&self, [a, b]: [f64; 2]) -> &[f64] {
         const APART: f64 = 1e-9;
         let margin = APART * (b - a);
@@ -242,11 +245,11 @@ impl Ground {
         if a > 0.0 { self.panels.values(self.panels.place(a)).slope } else { 0.0 }
     }
 
-    /// The radius beyond which g > δ: from the last edge on the gap can become negative for the first time only where g < δ, for
-    /// by Abel's inversion what a gap ≥ 0 up to a radius and g > δ beyond it give is positive.
+    /// The radius beyond which g > δ. Outside the last edge the gap can first become negative only where g < δ: by
+    /// Abel's inversion, a gap ≥ 0 up to a radius and g > δ beyond it give a positive gap.
     pub fn can_touch_up_to(&self, delta: f64) -> f64 {
         if self.grows {
-            // One panel may be the whole gap, whose transform takes each value once.
+            // One panel may cover the whole gap, whose transform takes each value once.
             let [_, beyond] = root::halved(0.0, self.reach(), |a| self.transform(a) < delta);
             return if delta > 0.0 { beyond } else { 0.0 };
         }
@@ -256,7 +259,7 @@ impl Ground {
 
     /// ∫₀^s g/√(r² − a²) da for r ≥ `edge` > s as Σ w/√((r² − edge²) + below): [below, w].
     pub fn sum_below(&self, s: f64, edge: f64) -> Vec<[f64; 2]> {
-        // A sum with more nodes than there are at most would not be resolved.
+        // A sum that needs more nodes than the maximum would not be resolved.
         let Some(wavenumber) = self.entire.filter(|k| k * edge < 400.0) else {
             return outside::sum_below(&self.panels, s, edge);
         };
@@ -266,8 +269,8 @@ impl Ground {
     }
 }
 
-/// Twice the width of the panels at their borders, which grows no faster than the distance from the narrow ones: an edge sees what is
-/// fine before it is there.
+/// Twice the width of the panels at their borders, made to grow no faster than the distance from the narrow ones, so
+/// that an edge sees fine structure before it gets there.
 fn local(panels: &Panels) -> Vec<f64> {
     let widths: Vec<f64> = panels.list().iter().map(|panel| panel.span.hi - panel.span.lo).collect();
     let n = widths.len();
@@ -285,7 +288,7 @@ fn local(panels: &Panels) -> Vec<f64> {
     lengths
 }
 
-/// Radii on all panels of a table, ascending: as close as the gap is fine.
+/// Radii on all panels of a table, ascending, spaced as closely as the gap is fine.
 fn samples(panels: &Panels) -> Vec<f64> {
     let list = panels.list();
     let each = (MOST_ON_PANELS / list.len().max(1)).clamp(ON_PANEL[0], ON_PANEL[1]);
@@ -296,9 +299,9 @@ fn samples(panels: &Panels) -> Vec<f64> {
     list.iter().flat_map(|panel| on(panel)).collect()
 }
 
-/// The smallest g from the inner end of each panel on: ascending.
+/// The smallest g from the inner end of each panel outward: ascending.
 fn least(panels: &Panels) -> Vec<f64> {
-    /// Places looked at on a panel, and what may lie between them as a share of the range.
+    /// Places sampled on a panel, and what may be missed between them, as a share of the range.
     const PLACES: u32 = 24;
     const MISSED: f64 = 0.01;
     let of = |panel: usize| {
@@ -322,8 +325,8 @@ fn least(panels: &Panels) -> Vec<f64> {
 /// λ = 2π max|h' − cr|/max|h'' − c|,  c the least-squares slope of h';      ρ = 1/max h''
 /// ```
 ///
-/// λ is at most twice the least distance of corners and a fourth of the reach. Close to where a gap ends, as a sphere at its
-/// equator, h'' may grow without bound, which says nothing about the gap further in.
+/// λ is at most twice the smallest distance between corners, and at most a fourth of the reach. Close to where a gap
+/// ends, as at the equator of a sphere, h'' may grow without bound, which says nothing about the gap further in.
 fn lengths(gap: &dyn Gap, panels: &Panels, breaks: &[f64]) -> (Vec<f64>, [f64; 2]) {
     let reach = panels.reach();
     let sampled = gap.largest_radius().map_or(reach, |end| reach.min(INSIDE * end));
@@ -337,7 +340,7 @@ fn lengths(gap: &dyn Gap, panels: &Panels, breaks: &[f64]) -> (Vec<f64>, [f64; 2
         .filter(|(_, [first, second])| first.is_finite() && second.is_finite())
         .collect();
     let [mut moment, mut square] = [0.0; 2];
-    // The slope of the whole, of which fine parts must not be more than their share.
+    // The slope of the whole, from even samples alone: fine parts must not get more than their share.
     for (r, [first, _]) in jets.iter().take(even.len()) {
         moment += r * first;
         square += r * r;

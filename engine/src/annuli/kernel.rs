@@ -38,8 +38,8 @@ fn put(into: &mut [f64], from: usize, what: f64x4) {
     }
 }
 
-/// The block of one ring into the rows of `block` that begin at its diagonal, `stride` apart, from the diagonal on; with what moves
-/// it where `moved` is given.
+/// Writes the block of one ring, from the diagonal on, into the rows of `block`, which begin at its diagonal, `stride`
+/// apart; where `moved` is given, also what moves the block.
 pub fn own(nodes: &Nodes, block: &mut [f64], stride: usize, mut moved: Option<&mut MovedBlock>) {
     let (n, r, rule) = (nodes.radii.len(), &nodes.radii[..], nodes.rule);
     let half = nodes.half();
@@ -100,7 +100,7 @@ pub fn own(nodes: &Nodes, block: &mut [f64], stride: usize, mut moved: Option<&m
     }
 }
 
-/// The block between a ring and another further out, into the rows of `block`, `stride` apart.
+/// Writes the block between a ring and another further out into the rows of `block`, `stride` apart.
 pub fn between(
     inner: &Nodes,
     outer: &Nodes,

@@ -1,7 +1,7 @@
 //! Contact on a disc and on rings around it, in equilibrium or not.
 //!
-//! With X(a) = ∫_a^∞ p r/√(r² − a²) dr the bodies touch on the disc exactly where X = ½E*(δ − g), whatever the rings do: the disc drops
-//! out, and the pressures of the rings alone are unknown.
+//! With X(a) = ∫_a^∞ p r/√(r² − a²) dr, the bodies touch on the disc exactly where X = ½E*(δ − g), whatever the rings
+//! do: the disc drops out, and only the pressures of the rings are unknown.
 //!
 //! ```text
 //! Σ_rings ∫ p r' (M − N) dr' = F(r)                M = K(k)/(r + r'),  k = 2√(rr')/(r + r'),   N = ∫₀^s da/√((r² − a²)(r'² − a²))
@@ -11,19 +11,20 @@
 //! U = E* ∫₀^s (δ − g)² + (4/E*) ∫ p r' F dr' − γ·area
 //! ```
 //!
-//! Equilibrium is κ = √γ at every edge. On a ring p r dr/dt is a cosine series in the angle t, r = c − d cos t; its own block is exact
-//! for such sums. Everything is linear in δ, so force and intensities are polynomials in δ, and all derivatives by the edges
-//! are exact. Reduced units, E* = 1. A gap trapped between contacts holds no gas.
+//! Equilibrium is κ = √γ at every edge. On a ring p r dr/dt is a cosine series in the angle t, r = c − d cos t; a
+//! ring's own block is exact for such sums. Everything is linear in δ, so force and intensities are polynomials in δ,
+//! and all derivatives with respect to the edges are exact. Reduced units, E* = 1. A gap trapped between contacts holds
+//! no gas.
 //!
-//! I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965), for one disc; W. D. Collins, Proc. Edinburgh Math. Soc. 13, 235 (1963), for annuli by Abel
-//! transforms; J. J. Kalker's variational principle for their equilibrium.
+//! I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965), for one disc; W. D. Collins, Proc. Edinburgh Math. Soc. 13, 235
+//! (1963), for annuli by Abel transforms; J. J. Kalker's variational principle for their equilibrium.
 //!
 //! | file | what lives there |
 //! |---|---|
 //! | [`contacts`] | a disc and rings, their edges |
-//! | [`ground`] | what is asked of a gap: its table, its lengths, sums under the disc |
+//! | [`ground`] | what is needed from a gap: its table, its lengths, sums under the disc |
 //! | [`state`] | pressures, force, energy, intensities |
-//! | `rates` | their derivatives by the edges |
+//! | `rates` | their derivatives with respect to the edges |
 //! | [`around`] | the gap outside the contacts, the pressure in them |
 //! | [`elliptic`] | complete elliptic integrals, four at a time |
 //! | `kernel` | blocks of the equations |

@@ -46,8 +46,9 @@ struct Rates<'a> {
 }
 
 impl AnnuliState {
-    /// J, the derivatives of κ by α at an approach, rows and columns in the order of [`Contacts::edges`](super::Contacts::edges); α = e or −e,
-    /// so that a contact grows with it. Not a number where the state was not made with [`Rates`](super::Wanted::Rates).
+    /// J, the derivatives of κ with respect to α at an approach, rows and columns in the order of
+    /// [`Contacts::edges`](super::Contacts::edges). α is e or −e, so that a contact grows with it. NaN where the state
+    /// was not made with [`Rates`](super::Wanted::Rates).
     pub fn jacobian(&self, delta: f64, slope_at_disc: f64) -> DMatrix<f64> {
         let edges = self.contacts.edge_count();
         let Some(kept) = &self.kept else { return DMatrix::from_element(edges, edges, f64::NAN) };
@@ -80,7 +81,7 @@ impl Rates<'_> {
     /// The block between two rings, the nearer to the axis first.
     fn between(&self, inner: usize, outer: usize) -> &MovedBlock {
         let rings = self.state.nodes.len();
-        // Those of the rings before come first: rings − 1, rings − 2, …
+        // The blocks of the preceding rings come first: rings − 1, rings − 2, … of them.
         &self.kept.between[inner * (2 * rings - inner - 1) / 2 + outer - inner - 1]
     }
 
@@ -125,7 +126,7 @@ impl Rates<'_> {
         let y = &self.y[range.clone()];
         let MovedBlock { first, second } = &self.kept.own[ring];
         let mut sides = [vec![0.0; self.n], vec![0.0; self.n]];
-        // The own block: Σ (first Λ − second (v + v')/σ) y.
+        // The ring's own block: Σ (first Λ − second (v + v')/σ) y.
         for i in 0..size {
             let rows = [first, second].map(|of| &of[i * size..(i + 1) * size]);
             let (r, v) = (nodes.radii[i], [nodes.speeds[0][i], nodes.speeds[1][i]]);
@@ -209,7 +210,7 @@ impl Rates<'_> {
         jacobian
     }
 
-    /// What one edge changes.
+    /// What moving one edge changes.
     fn column(
         &self,
         jacobian: &mut DMatrix<f64>,

@@ -18,7 +18,7 @@ pub const MOST_POINTS: usize = 400;
 /// Numbers of points are multiples of this.
 pub const STEP: usize = 4;
 
-/// What belongs to n points.
+/// The rule for n points.
 #[derive(Debug)]
 pub struct RingRule {
     /// cos²(t/2) and sin²(t/2): (b − r)/2d and (r − a)/2d.
@@ -29,7 +29,7 @@ pub struct RingRule {
     pub sines: Vec<f64>,
     /// 2 C(j) + ln 2, j = 0 … 2n.
     pub log_sums: Vec<f64>,
-    /// What makes of the sums' terms (π/n) f the values at t = 0 and t = π.
+    /// Weights that turn the sums' terms (π/n) f into the values at t = 0 and t = π.
     pub ends: [Vec<f64>; 2],
 }
 

@@ -17,17 +17,19 @@ use std::fmt;
 use std::sync::Arc;
 use wide::f64x4;
 
-/// The most points on all rings.
+/// The most points on all rings together.
 pub const MOST_POINTS_IN_ALL: usize = 2000;
 
 /// The fewest points on a ring.
 const FEWEST_POINTS: f64 = 12.0;
 
-/// Digits that the points of a ring leave of a state in equilibrium, and of one on the way there: enough to tell where its edges go.
+/// Digits that the points of a ring give to a state in equilibrium, and to one on the way there: enough to tell where
+/// its edges go.
 const DIGITS: f64 = 12.0;
 const DIGITS_ON_THE_WAY: f64 = 9.0;
 
-/// Points on a piece of a ring between breaks beside those that an unbroken ring takes, and on a ring with many breaks.
+/// Points on a piece of a ring between breaks, on top of those of an unbroken ring; and the fewest on a ring with many
+/// breaks.
 const ON_A_PIECE: f64 = 36.0;
 const AMONG_BREAKS: f64 = 96.0;
 
@@ -38,7 +40,7 @@ pub enum AnnuliError {
     Contacts(#[from] ContactsError),
     /// More points than there may be.
     TooManyPoints {
-        /// How many it takes.
+        /// How many points the rings take.
         points: usize,
         /// How many there may be.
         most: usize,
@@ -96,11 +98,11 @@ impl AnnuliError {
 pub enum Wanted {
     /// Pressures, force, energy, intensities.
     Values,
-    /// What their derivatives by the edges take as well.
+    /// Also what the derivatives with respect to the edges need.
     Rates,
 }
 
-/// What the derivatives by the edges take.
+/// What the derivatives with respect to the edges need.
 #[derive(Debug, Clone, Default)]
 pub(super) struct RateTerms {
     /// The equations.
@@ -115,7 +117,7 @@ pub(super) struct RateTerms {
     pub inverse: Vec<f64>,
 }
 
-/// A disc and rings at any approach δ (E* = 1): what is solved is linear in δ, so all of it is a polynomial in δ.
+/// A disc and rings at any approach δ (E* = 1): the equations are linear in δ, so every result is a polynomial in δ.
 #[derive(Debug, Clone)]
 pub struct AnnuliState {
     /// Where the bodies touch.
@@ -124,9 +126,9 @@ pub struct AnnuliState {
     pub intensity: Vec<[f64; 2]>,
     /// P = P⁰ + P¹δ.
     pub force: [f64; 2],
-    /// The elastic energy at δ = 0; with P its derivative by δ.
+    /// The elastic energy at δ = 0; P is its derivative with respect to δ.
     pub elastic: f64,
-    /// Decimal digits of the intensities that the points leave.
+    /// Decimal digits of the intensities that the points give.
     pub digits: f64,
     /// X at the edge of the disc, for δ⁰ and δ¹.
     pub(super) at_disc: [f64; 2],
@@ -136,8 +138,8 @@ pub struct AnnuliState {
     pub(super) kept: Option<RateTerms>,
 }
 
-/// The points on every ring, one number for each piece between breaks of the gap inside. Held while Newton's method runs, what it solves
-/// is smooth.
+/// The number of points on every ring, one for each piece between breaks of the gap inside it. It is held while
+/// Newton's method runs, so that the equations stay smooth.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Resolution {
     rings: Vec<Vec<usize>>,
@@ -164,12 +166,12 @@ fn ellipse(contacts: &Contacts, ring: usize) -> f64 {
     1.0 + z + (z * (2.0 + z)).sqrt()
 }
 
-/// Points for every ring of `contacts`: enough for 1e-12, 400 at most. The same contacts take the same.
+/// Points for every ring of `contacts`: enough for 1e-12, 400 at most. The same contacts always take the same points.
 pub fn points(ground: &Ground, contacts: &Contacts) -> Resolution {
     points_for(ground, contacts, DIGITS)
 }
 
-/// The same for contacts that are passed on the way to others, where 1e-9 is enough.
+/// The same for contacts passed on the way to others, where 1e-9 is enough.
 pub fn points_on_the_way(ground: &Ground, contacts: &Contacts) -> Resolution {
     points_for(ground, contacts, DIGITS_ON_THE_WAY)
 }
@@ -184,7 +186,7 @@ fn points_for(ground: &Ground, contacts: &Contacts, digits: f64) -> Resolution {
         FEWEST_POINTS.max(waves).max(tolerance / ln(ellipse(contacts, j))).min(most)
     };
     let up = |n: f64, step: usize| {
-        // Positive, and some hundred at most.
+        // Positive, and a few hundred at most.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let n = n.ceil() as usize;
         n.next_multiple_of(step)
@@ -212,13 +214,14 @@ fn points_for(ground: &Ground, contacts: &Contacts, digits: f64) -> Resolution {
     Resolution { rings: (0..contacts.rings.len()).map(pieces).collect() }
 }
 
-/// The digits that the points leave.
+/// The digits that the points give.
 fn digits(ground: &Ground, contacts: &Contacts, nodes: &[Nodes]) -> f64 {
     let of = |j: usize| {
         let breaks = ground.inside(contacts.rings[j]);
         let count = nodes[j].radii.len() as f64;
         let analytic = count * log10(ellipse(contacts, j));
-        // As found on a ring with as many breaks: one takes 98 points for ten digits, two 136 for eight; knots of a spline at 96 five.
+        // As found on rings with as many breaks: with one break, 98 points give ten digits; with two, 136 give eight;
+        // with knots of a spline, 96 give five.
         let broken = match breaks.len() {
             0 => return analytic,
             1 => 10.0,
@@ -231,7 +234,7 @@ fn digits(ground: &Ground, contacts: &Contacts, nodes: &[Nodes]) -> f64 {
     (0..nodes.len()).map(of).fold(12.0, f64::min)
 }
 
-/// The points of all rings of a state, with what the disc makes of them.
+/// The points of all rings of a state, with what sums over the disc need of them.
 struct RingPoints {
     r: Vec<f64>,
     /// √(r² − s²).
@@ -267,7 +270,7 @@ impl RingPoints {
 }
 
 impl Ground {
-    /// The state of `contacts`, with points of its own choice.
+    /// The state of `contacts`, with points chosen for them.
     ///
     /// # Errors
     /// [`AnnuliError`].
@@ -275,8 +278,8 @@ impl Ground {
         self.state_with(contacts, &points(self, contacts), wanted)
     }
 
-    /// The state of `contacts` with so many points on every ring: to be held while Newton's method runs, so that what it solves is
-    /// smooth.
+    /// The state of `contacts` with this many points on every ring, held while Newton's method runs so that the
+    /// equations stay smooth.
     ///
     /// # Errors
     /// [`AnnuliError`].
@@ -304,7 +307,7 @@ impl Ground {
             } else if breaks.is_empty() || !self.grades(breaks) {
                 Nodes::plain(*ring, pieces.iter().sum())
             } else {
-                // An edge has passed a break since they were chosen.
+                // An edge has passed a break since the points were chosen.
                 let fresh = self::points(self, contacts);
                 Nodes::graded(*ring, breaks, &fresh.rings[j])
             });
@@ -462,7 +465,7 @@ impl Ground {
     }
 }
 
-/// F = F⁰ + F¹δ and its slope at the points, ½ arccos(s/r).
+/// F = F⁰ + F¹δ and its slope at the points, and ½ arccos(s/r).
 struct Loads {
     values: [Vec<f64>; 2],
     slopes: [Vec<f64>; 2],
@@ -474,12 +477,12 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// κ of an edge over the sum of its rule.
+/// κ of an edge divided by the sum of its rule.
 pub(super) fn edge_unit(nodes: &Nodes, edge: usize) -> f64 {
     -(PI / (2.0 * nodes.half())).sqrt() / (nodes.ends[edge] * nodes.stretch[edge])
 }
 
-/// Takes N from the upper triangle.
+/// Subtracts N from the upper triangle.
 fn subtract(matrix: &mut [f64], n: usize, kept: &RateTerms) {
     let rows: Vec<&[f64]> = kept.inverse.chunks_exact(n).collect();
     for (i, row) in matrix.chunks_exact_mut(n).enumerate() {
@@ -504,13 +507,13 @@ impl AnnuliState {
         self.force[0] + self.force[1] * delta
     }
 
-    /// U at an approach: the elastic energy less `gamma` for every unit of area.
+    /// U at an approach: the elastic energy less `gamma` times the area.
     pub fn energy(&self, delta: f64, gamma: f64) -> f64 {
         self.elastic + delta * (self.force[0] + 0.5 * self.force[1] * delta) - gamma * self.contacts.area()
     }
 }
 
-/// A ground with its gap alone, for tests and for what needs no table of its own.
+/// A ground from its gap alone, for tests and for callers that need no table of their own.
 impl Ground {
     /// The gap `gap` with a table up to `reach`.
     ///

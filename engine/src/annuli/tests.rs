@@ -157,7 +157,7 @@ fn the_force_is_the_integral_of_the_pressure_and_gaps_vanish_in_contact() {
     let around = Around::new(&ground, &state, 0.0063);
     let mut sum = 0.0;
     for [lo, hi] in contacts.intervals() {
-        // r = c − d cos t takes the roots at the edges away; at the axis nothing is lost.
+        // r = c − d cos t removes the roots at the edges; at the axis nothing is lost.
         let n = 400;
         let (c, d) = if lo > 0.0 { (0.5 * (lo + hi), 0.5 * (hi - lo)) } else { (0.0, hi) };
         for k in 0..n {
@@ -168,7 +168,7 @@ fn the_force_is_the_integral_of_the_pressure_and_gaps_vanish_in_contact() {
         }
     }
     assert!((sum / state.force_at(0.0063) - 1.0).abs() < 1e-5, "{sum} {}", state.force_at(0.0063));
-    // Between the contacts and outside the gap is that of one formula; it is positive beside the edges in equilibrium.
+    // Between the contacts and outside them one formula gives the gap; it is positive beside the edges in equilibrium.
     for r in [0.025, 0.07, 0.1] {
         let gap = around.gap(r);
         let again = Around::new(&Ground { entire: None, ..ground.clone() }, &state, 0.0063).gap(r);
@@ -186,7 +186,7 @@ fn formula(text: &str) -> Ground {
 
 #[test]
 fn breaks_in_a_ring_have_the_same_derivatives() {
-    // A corner under the disc, in a ring, between contacts; a kink in a ring; two corners in one.
+    // A corner under the disc, in a ring, between contacts; a kink in a ring; two corners in one ring.
     for (text, contacts, tolerance) in [
         ("r^2/2 + 0.1*max(r-0.05, 0)", rings(0.1, &[[0.13, 0.2]]), 1e-7),
         ("r^2/2 + 0.1*max(r-0.17, 0)", rings(0.1, &[[0.13, 0.2]]), 1e-6),
@@ -212,7 +212,7 @@ fn a_graded_angle_converges() {
     for ((a, b), c) in exact.iter().zip(at([24, 24])).zip(chosen) {
         assert!((a - b).abs() < 1e-7 && (a - c).abs() < 1e-9, "{a} {b} {c}");
     }
-    // Breaks close to an edge, and other contacts beside.
+    // Breaks close to an edge, with other contacts beside it.
     for (text, inner) in [
         ("r^2/2 + 0.03*max(r-0.125, 0) + 1.1*max(r-0.1753, 0)^2", 1e-4),
         ("r^2/2 + 0.03*max(r-0.125, 0) + 1.1*max(r-0.1753, 0)^2", 6e-3),

@@ -8,7 +8,7 @@ use serde::Serialize;
 /// One solution on a branch, with the local frame of the curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// y, t and k, n × 3: together, so that a point is one allocation.
+    /// y, t and k, n × 3, together, so that a point takes one allocation.
     columns: Columns,
     /// Whether det(J; tᵀ) is positive.
     pub positive: bool,
@@ -21,8 +21,8 @@ pub struct Point {
 }
 
 impl Point {
-    /// A point from a solution (n numbers), linearized there, its tangent along `forward`; `None` where the curve is
-    /// singular, or where the sizes do not agree.
+    /// A point from a solution (n numbers) and its linearization, with its tangent along `forward`; `None` where the
+    /// curve is singular, or where the sizes do not agree.
     pub fn new(system: &dyn System, y: &Vector, at: &Linearization, forward: &Vector) -> Option<Self> {
         let n = system.unknowns();
         at.has_sizes_of(n).ok().filter(|()| n >= 2 && y.len() == n && forward.len() == n)?;
@@ -50,17 +50,17 @@ impl Point {
         self.columns.column(2)
     }
 
-    /// Sets one unknown to the value that it has but for rounding.
+    /// Sets one unknown to the value that it has apart from rounding.
     pub(super) fn set(&mut self, unknown: usize, value: f64) {
         self.columns[(unknown, 0)] = value;
     }
 
-    /// That it is one of a system with so many unknowns.
+    /// Checks that it belongs to a system with this many unknowns.
     pub(super) fn has_size_of(&self, unknowns: usize) -> Result<(), SizeError> {
         SizeError::check("a point", self.columns.nrows(), unknowns)
     }
 
-    /// The same as the next one after `before`, with the length and the turning of the step.
+    /// The same point as the next one after `before`, with the length and the turning of the step.
     #[must_use]
     pub fn after(self, before: &Self) -> Self {
         let (length, turning) = before.step_to(&self);
@@ -71,8 +71,8 @@ impl Point {
     fn step_to(&self, next: &Self) -> (f64, f64) {
         let chord = next.numbers(0).zip(self.numbers(0)).map(|(to, from)| to - from);
         let length = norm(chord.clone());
-        // The angles from the first tangent to the chord and from there to the second, because end tangents alone miss
-        // a whole S-bend; or the mean curvature times the length, because it warns before the bend.
+        // The angles from the first tangent to the chord and from the chord to the second tangent, because end tangents
+        // alone miss a whole S-bend; or the mean curvature times the length, because it warns before the bend.
         let bends = angle(&self.numbers(1), &chord) + angle(&chord, &next.numbers(1));
         let arc = 0.5 * (norm(self.numbers(2)) + norm(next.numbers(2))) * length;
         (length, bends.max(arc))
@@ -89,10 +89,10 @@ impl Point {
         row.dot(&self.tangent())
     }
 
-    /// The same point walked the other way.
+    /// The same point, walked the other way.
     #[must_use]
     pub fn reversed(mut self) -> Self {
-        // k = d²y/dℓ² keeps its sign when ℓ changes it; the determinant changes with its last row.
+        // k = d²y/dℓ² keeps its sign when ℓ changes sign; the determinant changes sign with its last row.
         self.columns.column_mut(1).neg_mut();
         self.positive = !self.positive;
         self

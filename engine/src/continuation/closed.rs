@@ -4,7 +4,7 @@
 //! M = (J; rᵀ)  n × n,   P M = L U        elimination with exchange of rows
 //! ```
 //!
-//! A matrix crate's factorization takes a new matrix each time; this one is factored anew in the room it has.
+//! A matrix crate's factorization needs a new matrix each time; this one is redone in the room it has.
 
 use super::system::{ColumnView, Matrix, Vector};
 
@@ -80,7 +80,7 @@ impl Closed {
     }
 }
 
-/// Factors n rows of n numbers in place, and says which row came from where; the determinant.
+/// Factors n rows of n numbers in place, and records which row came from where; returns the determinant.
 #[expect(clippy::inline_always, reason = "a constant n unrolls its loops")]
 #[inline(always)]
 fn eliminate(factors: &mut [f64], order: &mut [usize], n: usize) -> Option<f64> {

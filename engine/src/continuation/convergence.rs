@@ -6,12 +6,12 @@
 //! |Δ| / |Δ_before|              the rate, which for Newton's method falls to nothing
 //! ```
 //!
-//! Both are relative: the residual to the scale of its equation, the correction to unknowns that their user has scaled.
+//! Both are relative: the residual to the scale of its equation, the correction to unknowns that the caller has scaled.
 //! Neither has an absolute floor.
 
 use super::system::SizeError;
 
-/// What is asked of an iteration; a limit of infinity asks nothing.
+/// What is required of an iteration; an infinite limit requires nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Criteria {
     /// Largest relative residual of a solution.
@@ -20,14 +20,14 @@ pub struct Criteria {
     pub correction: f64,
     /// Rounds before it is given up.
     pub rounds: usize,
-    /// Largest rate after the second round: an iteration that shrinks its corrections by less has failed.
+    /// Largest rate after the second round: an iteration that shrinks its corrections less has failed.
     pub contraction: f64,
     /// Longest correction: one that leads further has lost its way.
     pub longest: f64,
 }
 
 impl Criteria {
-    /// A relative residual of at most `residual` within so many rounds, and nothing else.
+    /// A relative residual of at most `residual` within this many rounds, and nothing else.
     pub const fn new(residual: f64, rounds: usize) -> Self {
         let none = f64::INFINITY;
         Self { residual, correction: none, rounds, contraction: none, longest: none }
@@ -54,7 +54,7 @@ pub enum NewtonFailure {
     Diverging {
         /// The round.
         round: usize,
-        /// Last correction over the one before.
+        /// Last correction over the previous one.
         ratio: f64,
     },
     /// An iterate left the region in which the solution is looked for.
@@ -72,7 +72,7 @@ pub enum NewtonFailure {
         rounds: usize,
         /// The relative residual reached.
         residual: f64,
-        /// Last correction over the one before.
+        /// Last correction over the previous one.
         rate: f64,
     },
     /// There is nothing to iterate.
@@ -105,7 +105,7 @@ impl Convergence {
         self.correction
     }
 
-    /// Whether the iterate, of this relative residual, is the solution.
+    /// Whether the iterate with this relative residual is the solution.
     ///
     /// # Errors
     /// When it is not and no round is left.
@@ -123,7 +123,7 @@ impl Convergence {
     /// Takes the length of the next correction.
     ///
     /// # Errors
-    /// When it is no number, too long, or not enough shorter than the one before.
+    /// When it is not a number, too long, or not enough shorter than the previous one.
     pub fn corrected(&mut self, length: f64) -> Result<(), NewtonFailure> {
         let round = self.round;
         self.rate = length / self.correction;
@@ -161,7 +161,7 @@ mod tests {
     fn it_ends_at_the_first_criterion_that_is_met() {
         let (x, course) = root(1.5, Criteria::new(1e-10, 9)).unwrap();
         assert!((x - 2f64.sqrt()).abs() < 1e-11 && course.round() == 3, "{course:?}");
-        // The residual of a start that is good enough asks for no correction; the correction asks for one.
+        // Judged by its residual, a good enough start needs no correction; judged by the correction, it needs one.
         assert_eq!(root(2f64.sqrt(), Criteria::new(1e-10, 9)).unwrap().1.round(), 0);
         let small = Criteria { correction: 1e-8, ..Criteria::new(1e-10, 9) };
         assert_eq!(root(2f64.sqrt(), small).unwrap().1.round(), 1);

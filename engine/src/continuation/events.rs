@@ -3,7 +3,7 @@
 //! The slope of the control c is φ = c·t with dφ/dℓ = c·k. Between two points
 //!
 //! 1. a sign change of φ brackets a limit point;
-//! 2. equal signs can hide a pair. The cubic through both values and slopes is looked at: where its
+//! 2. equal signs can hide a pair. The cubic through both values and slopes is examined: where its
 //!    extreme comes close to zero, the curve is solved there and both halves are judged anew.
 
 use super::branch::{Point, hermite};
@@ -75,8 +75,8 @@ impl Tracer<'_> {
     }
 }
 
-/// Where the cubic on 0..1 with end values `f` (of one sign) and end slopes `d` comes closest to zero, if
-/// it crosses it or comes nearer than `share` of its larger end.
+/// Where the cubic on 0..1 with end values `f` (of one sign) and end slopes `d` comes closest to zero, if it crosses
+/// zero or comes nearer to it than `share` of its larger end.
 fn approach_to_zero(f: [f64; 2], d: [f64; 2], share: f64) -> Option<f64> {
     let sign = if f[0] + f[1] < 0.0 { -1.0 } else { 1.0 };
     let [f0, f1, d0, d1] = [f[0] * sign, f[1] * sign, d[0] * sign, d[1] * sign];

@@ -17,7 +17,7 @@ impl Cubic {
     }
 }
 
-/// The point of a solution, its tangent along `forward`.
+/// The point of a solution, with its tangent along `forward`.
 pub fn point(system: &dyn System, y: Vec<f64>, forward: &[f64]) -> Point {
     let (y, mut at) = (Vector::from_vec(y), Linearization::new(system.unknowns()));
     system.linearize(&y, &mut at).unwrap();
@@ -71,7 +71,7 @@ impl System for Circle {
 /// p = u³ − 3u, v = u², w = uv with unknowns (u, v, w, p): folds of p at u = ∓1, as the cubic's.
 #[derive(Debug)]
 pub struct Lifted {
-    /// Whether it says its second derivatives.
+    /// Whether it provides its second derivatives.
     pub with_second: bool,
 }
 
@@ -110,7 +110,7 @@ impl System for Lifted {
 #[derive(Debug)]
 pub struct Bratu {
     pub nodes: usize,
-    /// Whether it says its second derivatives.
+    /// Whether it provides its second derivatives.
     pub with_second: bool,
 }
 

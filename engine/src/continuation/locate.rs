@@ -36,7 +36,7 @@ impl Tracer<'_> {
     /// Locates the limit point of the control `row` (n numbers) inside `bracket`, to rounding.
     ///
     /// # Errors
-    /// The last failure when not even halving finds it, which a smooth curve does not do.
+    /// The last failure when even halving does not find it, which does not happen on a smooth curve.
     pub fn limit_point(&mut self, bracket: &Bracket, row: &Vector) -> Result<LimitPoint, NewtonFailure> {
         let Bracket { index, from, to } = bracket;
         self.guarded(
@@ -57,7 +57,7 @@ impl Tracer<'_> {
     /// The point between two neighbours at which the control `row` (n numbers) takes `value`, to rounding.
     ///
     /// # Errors
-    /// The last failure when not even halving finds it, as where the control does not pass `value` between the two.
+    /// The last failure when even halving does not find it, as where the control does not pass `value` between the two.
     pub fn control_value(
         &mut self,
         ends: [&Point; 2],
@@ -79,8 +79,8 @@ impl Tracer<'_> {
         })
     }
 
-    /// What `find` finds between two points, from its guess at a share of the piece; where it fails, in the part of the piece
-    /// in which `side` changes its sign.
+    /// What `find` finds between two points, starting from a guess at a share of the piece; where that fails, the
+    /// search goes on in the part of the piece in which `side` changes sign.
     fn guarded<T>(
         &mut self,
         [from, to]: [&Point; 2],
@@ -109,8 +109,8 @@ impl Tracer<'_> {
         }
     }
 
-    /// A point of the curve inside the piece, on the plane across the chord at share `x` if it can be had, nearer to an end
-    /// otherwise.
+    /// A point of the curve inside the piece, on the plane across the chord at share `x` if one can be found there,
+    /// otherwise nearer to an end.
     ///
     /// The interpolation is best near the ends. Under weak adhesion its error in the middle of a long piece can exceed
     /// the whole adhesion term, and the equations are not defined there.
@@ -179,7 +179,7 @@ fn root_of_slope(from: &Point, to: &Point, row: &Vector) -> f64 {
     let a = 2.0 * (f0 - f1) + d0 + d1;
     let b = 3.0 * (f1 - f0) - 2.0 * d0 - d1;
     let (mut lo, mut hi) = (0.0, 1.0);
-    // Halving cannot leave the bracket; a millionth of the piece is far below what the cubic is off.
+    // Halving cannot leave the bracket; a millionth of the piece is far below the error of the cubic.
     for _ in 0..20 {
         let x = 0.5 * (lo + hi);
         let value = ((a * x + b) * x + d0) * x + f0;

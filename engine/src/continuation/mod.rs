@@ -1,19 +1,19 @@
-//! Following a curve of solutions, and what is special on it. Knows no contact.
+//! Following a curve of solutions, and finding its special points. Knows nothing of contact.
 //!
-//! n − 1 equations g(y) = 0 in n unknowns define a curve. The caller scales its unknowns so that a unit
-//! change of any of them matters equally: every length, angle and step here is Euclidean in y. n is known when
-//! the program runs, 2 to some hundred: the algebra is dense.
+//! n − 1 equations g(y) = 0 in n unknowns define a curve. The caller scales its unknowns so that a unit change of any
+//! of them matters equally: every length, angle and step here is Euclidean in y. n is known at run time, 2 to a few
+//! hundred: the algebra is dense.
 //!
 //! | file | what lives there |
 //! |---|---|
 //! | `system` | the equations with their Jacobian, and second derivatives where they have them |
-//! | `second` | second derivatives along a direction, by the system or by differences |
+//! | `second` | second derivatives along a direction, from the system or by differences |
 //! | `closed` | the equations closed by one more: a square system, factored |
 //! | `tangent` | tangent, curvature and the orientation sign |
 //! | `branch` | points with tangent and curvature |
 //! | `convergence` | when Newton's method has converged, and when it is given up |
 //! | `settings` | every number of this module, with its reason |
-//! | `tracer` | what follows a curve: system, settings, room to compute in |
+//! | `tracer` | what follows a curve: system, settings, work space |
 //! | `corrector` | correct: Newton-Raphson to the sphere, a plane, or a control value |
 //! | `step_size` | the length of the next step |
 //! | `step` | step: predict, correct, judge, retry |

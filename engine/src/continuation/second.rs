@@ -1,10 +1,11 @@
-//! Second derivatives along a direction: those of the system, or differences of its Jacobian.
+//! Second derivatives along a direction: from the system, or by differences of its Jacobian.
 //!
 //! ```text
 //! J_v = (J(y + ηv) − J(y − ηv)) / 2η + O(η²),     η|v| = ε^⅓ max(1, max|y|)
 //! ```
 //!
-//! about ten digits. Next to the border of the region in which the equations are defined one of the two sides is y itself.
+//! This gives about ten digits. Next to the border of the region in which the equations are defined, one of the two
+//! sides is y itself.
 
 use super::system::{Linearization, Matrix, System, Vector};
 use crate::elementary::cbrt;
@@ -19,13 +20,13 @@ pub struct Second {
 }
 
 impl Second {
-    /// Room for a system with so many unknowns.
+    /// Room for a system with this many unknowns.
     pub fn new(unknowns: usize) -> Self {
         let at = Linearization::new(unknowns);
         Self { along: at.jacobian.clone(), y: Vector::zeros(unknowns), at }
     }
 
-    /// Finds `J_v` at `y`, linearized there, and counts the evaluations that it takes; `None` where the equations are
+    /// Finds `J_v` at `y`, linearized there, and counts the evaluations that this takes; `None` where the equations are
     /// defined on neither side of `y`.
     pub fn find(
         &mut self,

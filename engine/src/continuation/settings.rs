@@ -6,7 +6,7 @@ use super::convergence::Criteria;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// A point is accepted when no equation exceeds this times its scale. Range 1e-14 to 1e-6.
-    /// 1e-10: the exact derivatives reach it in the round in which 1e-6 is reached.
+    /// 1e-10: the exact derivatives reach it in the same round as 1e-6.
     pub tolerance: f64,
     /// Newton rounds before a correction is given up. Range 2 to 50. 8: quadratic convergence needs 3.
     pub rounds: usize,
@@ -35,7 +35,7 @@ pub struct Settings {
     pub largest_increment: Vec<f64>,
     /// Points of a trace before it stops. Range 2 to 1 000 000.
     pub points: usize,
-    /// A control slope whose cubic comes nearer to zero than this share of its larger end is looked at.
+    /// A control slope whose cubic comes nearer to zero than this share of its larger end is examined.
     pub grazing: f64,
     /// How often a grazing piece is halved.
     pub grazing_depth: usize,

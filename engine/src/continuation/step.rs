@@ -40,7 +40,7 @@ enum Rejected {
 }
 
 impl Tracer<'_> {
-    /// The next point after `from`; the step length adapts itself for the one after.
+    /// The next point after `from`; the step length adapts itself for the following one.
     ///
     /// # Errors
     /// [`StepFailure`] when even the shortest step is not accepted.
@@ -96,7 +96,7 @@ impl Tracer<'_> {
             }
         }
         let mut point = self.point(rounds, tangent).ok_or(Rejected::Orientation)?;
-        // The determinant decides which way is on; the old tangent only starts the guess.
+        // The determinant decides which way is forward; the old tangent only starts the guess.
         if point.positive != from.positive {
             point = point.reversed();
         }

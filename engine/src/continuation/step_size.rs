@@ -3,7 +3,7 @@
 use super::branch::Point;
 use super::settings::Settings;
 
-/// The factor by which a step that turned by `turning` would have turned as wanted.
+/// The factor by which to change a step that turned by `turning` so that it turns as wanted.
 pub fn factor(turning: f64, settings: &Settings) -> f64 {
     let wanted = settings.safety * settings.turning;
     if turning > 0.0 { (wanted / turning).clamp(settings.cut, settings.growth) } else { settings.growth }

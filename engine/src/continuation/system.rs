@@ -7,7 +7,7 @@
 //! J_v = ∂J/∂y · v     (n − 1) × n, the second derivatives along a direction v:   g_yy[v, z] = J_v z
 //! ```
 //!
-//! n is known when the program runs: 2 to some hundred, for the algebra is dense.
+//! n is known at run time: 2 to a few hundred, since the algebra is dense.
 
 use nalgebra::{DMatrix, DMatrixViewMut, DVector, DVectorView, MatrixXx3};
 
@@ -31,12 +31,12 @@ pub struct Linearization {
     pub scale: Vector,
     /// J, (n − 1) × n.
     pub jacobian: Matrix,
-    /// What the system wants to find again when it is asked for its second derivatives here.
+    /// What the system keeps for when it is asked for its second derivatives here.
     pub kept: Vec<f64>,
 }
 
 impl Linearization {
-    /// Room for the equations of a system with so many unknowns.
+    /// Room for the equations of a system with this many unknowns.
     pub fn new(unknowns: usize) -> Self {
         let equations = unknowns.saturating_sub(1);
         Self {
@@ -67,10 +67,10 @@ impl Linearization {
             .all(|part| part.iter().all(|x| x.is_finite()))
     }
 
-    /// Whether it is one of a system with so many unknowns.
+    /// Checks that it belongs to a system with this many unknowns.
     ///
     /// # Errors
-    /// The first part of another size.
+    /// Names the first part of another size.
     pub fn has_sizes_of(&self, unknowns: usize) -> Result<(), SizeError> {
         let equations = unknowns.saturating_sub(1);
         SizeError::check("the residual", self.residual.len(), equations)?;
@@ -107,7 +107,7 @@ pub enum SizeError {
 }
 
 impl SizeError {
-    /// That `part` has the size expected.
+    /// Checks that `part` has the expected size.
     pub(super) fn check(part: &'static str, found: usize, expected: usize) -> Result<(), Self> {
         if found == expected { Ok(()) } else { Err(Self::Mismatch { part, found, expected }) }
     }
@@ -118,8 +118,8 @@ pub trait System {
     /// n, at least 2.
     fn unknowns(&self) -> usize;
 
-    /// Writes the equations at `y` (n numbers) to `at`, whose numbers are those of another point; `None` where they are
-    /// not defined.
+    /// Writes the equations at `y` (n numbers) to `at`, which still holds the numbers of another point; `None` where
+    /// they are not defined.
     fn linearize(&self, y: &Vector, at: &mut Linearization) -> Option<()>;
 
     /// Writes `J_v` ((n − 1) × n) at the point of `at` to `second`; `None` where the system leaves it to differences of J.

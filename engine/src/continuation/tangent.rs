@@ -5,8 +5,8 @@
 //! curvature  J k = −J_t t,         t·k = 0        (k = dt/dℓ, ℓ the arc length)
 //! ```
 //!
-//! The sign of det(J; tᵀ) is constant along a regular branch and is free from the factorization: a flip
-//! tells that a step has passed a hairpin or jumped to another piece, which a dot product cannot.
+//! The sign of det(J; tᵀ) is constant along a regular branch and comes free with the factorization: a flip shows that a
+//! step has passed a hairpin or jumped to another piece, which a dot product cannot show.
 
 use super::closed::Closed;
 use super::second::Second;
@@ -26,7 +26,7 @@ pub struct Algebra {
 }
 
 impl Algebra {
-    /// Room for a system with so many unknowns.
+    /// Room for a system with this many unknowns.
     pub fn new(unknowns: usize) -> Self {
         Self {
             closed: Closed::new(unknowns),
@@ -37,8 +37,8 @@ impl Algebra {
         }
     }
 
-    /// The solution `y`, linearized there, with its tangent and curvature (n × 3), and whether det(J; tᵀ) is positive; the
-    /// tangent is turned so that its product with `forward` is positive.
+    /// The solution `y`, linearized there, with its tangent and curvature (n × 3), and whether det(J; tᵀ) is positive.
+    /// The tangent is turned so that its product with `forward` is positive.
     ///
     /// `None` when the Jacobian is singular there (a branch point) or orthogonal to `forward`.
     pub fn frame(

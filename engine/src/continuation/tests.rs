@@ -33,7 +33,7 @@ fn the_fold_of_a_hundred_unknowns_is_the_known_one_to_second_order() {
     assert!((order - 2.0).abs() < 0.01, "{coarse} {fine} {order}");
     assert!((fine + (fine - coarse) / 3.0 - KNOWN).abs() < 5e-8, "{coarse} {fine}");
     assert!(evaluations < 400, "{evaluations}");
-    // By differences the same, for two evaluations more a point and a round.
+    // Differences give the same, for two more evaluations per point and per round.
     let (by_differences, more) = fold(99, false);
     assert!((by_differences - fine).abs() < 1e-12, "{by_differences} {fine}");
     assert!(more > evaluations && more < 2 * evaluations, "{more} {evaluations}");
@@ -83,7 +83,7 @@ fn differences_are_as_good_as_second_derivatives_need_be_and_stay_inside() {
     assert!((edge.curvature() + edge.y()).norm() < 1e-4, "{edge:?}");
 }
 
-/// A system whose Jacobian has a column less than it has unknowns.
+/// A system whose Jacobian has one column fewer than the system has unknowns.
 struct Narrow;
 
 impl System for Narrow {

@@ -81,12 +81,12 @@ impl Tracer<'_> {
         let mut row = Vector::zeros(self.y.len());
         row[end.unknown] = 1.0;
         let (a, b) = (from.y()[end.unknown], to.y()[end.unknown]);
-        // Where the unknown did not move, the quotient is no number and the far end is as good a guess.
+        // Where the unknown did not move, the quotient is not a number, and the far end is as good a guess as any.
         let share = Some((end.value - a) / (b - a)).filter(|share| share.is_finite()).unwrap_or(1.0);
         self.y = from.y() + (to.y() - from.y()) * share;
         let rounds = self.correct(Constraint::Plane { row: row.column(0), value: end.value }).ok()?;
         let mut point = self.point(rounds, from.tangent())?;
-        // Newton meets the plane to rounding; the caller asked for this very value.
+        // Newton meets the plane only to rounding; the caller asked for this very value.
         point.set(end.unknown, end.value);
         Some(point.after(from))
     }

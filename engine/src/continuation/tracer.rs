@@ -1,4 +1,4 @@
-//! What follows a curve: a system, the settings, and room to compute in.
+//! What follows a curve: a system, the settings, and work space.
 
 use super::branch::{Point, Work};
 use super::convergence::NewtonFailure;
@@ -27,7 +27,7 @@ pub struct Tracer<'a> {
 }
 
 impl<'a> Tracer<'a> {
-    /// A tracer with its first step length. Room to compute in is made here, and none in a step but for its point.
+    /// A tracer with its first step length. Its work space is allocated here; a step allocates only its point.
     pub fn new(system: &'a dyn System, settings: Settings) -> Self {
         let n = system.unknowns();
         let zeros = || Vector::zeros(n);
@@ -44,7 +44,7 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// That settings, points and rows are of the system's size.
+    /// Checks that settings, points and rows have the system's size.
     pub(super) fn check(&self, points: &[&Point], row: Option<&Vector>) -> Result<(), SizeError> {
         let n = self.y.len();
         if n < 2 {

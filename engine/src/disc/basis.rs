@@ -1,8 +1,8 @@
-//! What the rest of the program knows of a way to compute one disc: a basis.
+//! A basis: what the rest of the program knows of a way to compute one disc.
 //!
-//! At a contact radius and an approach it answers with the equilibrium residual, the force and the energy with their exact
-//! derivatives; over all radii, with the equilibria in panels ([`Solution`]). The exact basis reads the table of the gap
-//! ([`ExactBasis`](super::ExactBasis)), ring elements are the paper's method ([`Rings`](crate::ritz::Rings)).
+//! At a contact radius and an approach it gives the equilibrium residual, the force and the energy with their exact
+//! derivatives; over all radii, the equilibria in panels ([`Solution`]). The exact basis reads the table of the gap
+//! ([`ExactBasis`](super::ExactBasis)); ring elements are the paper's method ([`Rings`](crate::ritz::Rings)).
 
 use super::solution::Solution;
 use crate::problem::Reduced;
@@ -10,7 +10,7 @@ use crate::progress::{Progress, Stopped};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// What a basis answers at one (s, δ): value, gradient and second derivatives.
+/// What a basis gives at one (s, δ): value, gradient and second derivatives.
 ///
 /// Gradients are `[∂/∂δ, ∂/∂s]`, second derivatives `[∂²/∂δ², ∂²/∂δ∂s, ∂²/∂s²]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,12 +47,12 @@ impl Evaluation {
     }
 }
 
-/// How much is asked of an equilibrium: each answers what the ones before it do.
+/// How much of an equilibrium is wanted: each order includes the ones before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
-    /// δ and P, and what follows from P alone: its gradient, and its second derivatives with a δ in them.
+    /// δ and P, and what follows from P alone: its gradient, and those of its second derivatives that involve δ.
     State,
-    /// The gradient of the residual as well, the slopes of the curve, and the energy.
+    /// Also the gradient of the residual, the slopes of the curve, and the energy.
     Slopes,
     /// Everything: the curvature of the curve.
     Curvature,
@@ -63,8 +63,8 @@ pub trait Basis: Debug + Send + Sync {
     /// The residual, the force and the energy at contact radius `s > 0` and approach `delta`.
     fn evaluate(&self, problem: &Reduced, s: f64, delta: f64) -> Evaluation;
 
-    /// The same at each of `states`, (s, δ); fewer where `progress`, asked before each, said stop. Many at once are answered faster
-    /// than one by one.
+    /// The same at each of `states`, (s, δ); fewer where `progress`, asked before each, says stop. Many at once are
+    /// faster than one by one.
     fn evaluations(
         &self,
         problem: &Reduced,
@@ -77,13 +77,13 @@ pub trait Basis: Debug + Send + Sync {
 
     /// The approach at which a disc of radius `s` is in equilibrium with tension at its edge, evaluated there.
     ///
-    /// `None` where there is none: rings too coarse for the gap, or a radius beyond what is known of the gap.
+    /// `None` where there is none: rings too coarse for the gap, or a radius beyond the known part of the gap.
     fn equilibrium(&self, problem: &Reduced, s: f64) -> Option<Evaluation>;
 
     /// The equilibria at `radii`, one after the other, up to the first radius that has none.
     ///
-    /// What is beyond `order` need not be there: it may be not a number. Shorter than `radii` there, and where `progress`,
-    /// asked before a radius or some of them, says stop. Many radii at once are answered faster than one by one.
+    /// Values beyond `order` may be not a number. The result is shorter than `radii` if a radius has no equilibrium, or
+    /// if `progress`, asked before one or several radii, says stop. Many radii at once are faster than one by one.
     fn equilibria(
         &self,
         problem: &Reduced,
@@ -92,7 +92,7 @@ pub trait Basis: Debug + Send + Sync {
         progress: &dyn Progress,
     ) -> Vec<Evaluation>;
 
-    /// The equilibria over all radii from `from` or further in to `to`, or as far as the gap is known.
+    /// The equilibria over all radii, from `from` or further in, to `to` or as far as the gap is known.
     ///
     /// `None` where there are none.
     ///
@@ -106,13 +106,13 @@ pub trait Basis: Debug + Send + Sync {
         progress: &dyn Progress,
     ) -> Result<Option<Arc<dyn Solution>>, Stopped>;
 
-    /// The contact pressure as (r, p) pairs from the axis outward, compression positive, at points that make a picture:
+    /// The contact pressure as (r, p) pairs from the axis outward, compression positive, at points suited to a picture:
     /// finite, and dense towards the edge.
     ///
-    /// Rings have one value each, the pressure being a step function: those at mid-ring are given.
+    /// With rings the pressure is a step function, with one value for each ring: it is given at mid-ring.
     fn pressure(&self, problem: &Reduced, s: f64, delta: f64) -> Vec<(f64, f64)>;
 
-    /// The deformed gap h(r) + u(r) − δ at `radii`, none below `s`, under the pressures at (s, δ).
+    /// The deformed gap h(r) + u(r) − δ at `radii`, none of them below `s`, under the pressures at (s, δ).
     ///
     /// Not a number where the gap is not known.
     fn gap_outside(&self, problem: &Reduced, s: f64, delta: f64, radii: &[f64]) -> Vec<f64>;
@@ -120,9 +120,9 @@ pub trait Basis: Debug + Send + Sync {
     /// The number of unknown pressures, 0 where there are none.
     fn size(&self) -> usize;
 
-    /// Decimal digits of force and contact radius the basis can be trusted for at radius `s`, an estimate.
+    /// An estimate of the decimal digits of force and contact radius for which the basis can be trusted at radius `s`.
     fn trusted_digits(&self, problem: &Reduced, s: f64) -> f64;
 
-    /// What to be careful about, in a largest contact of radius `s`, in words.
+    /// Warnings, in words, for a largest contact of radius `s`.
     fn cautions(&self, problem: &Reduced, s: f64) -> Vec<String>;
 }

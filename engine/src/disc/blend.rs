@@ -1,5 +1,5 @@
-//! Mixtures of gaps: where a gap is linear in numbers so is g, and the transforms of a few gaps on the same panels give that of
-//! every mixture for a sum each.
+//! Mixtures of gaps: where a gap is linear in some numbers, so is g, and the transforms of a few gaps on the same
+//! panels give that of every mixture by one sum.
 
 use super::chebyshev::ChebyshevRule;
 use super::clusters::NODES;
@@ -12,7 +12,7 @@ use crate::progress::Progress;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Borders of panels nearer to each other than this share of their radius are one.
+/// Borders of panels nearer to each other than this share of their radius count as one.
 const SAME: f64 = 1e-12;
 
 /// g and its slope at the nodes of a panel.
@@ -22,16 +22,16 @@ type PanelSamples = [[f64; NODES]; 2];
 #[derive(Debug)]
 struct Tabulated {
     spans: Vec<Span>,
-    /// Whether slopes are by the variable of the panel.
+    /// Whether slopes are with respect to the variable of the panel.
     steep: Vec<bool>,
     /// One list for each gap.
     samples: Vec<Vec<PanelSamples>>,
 }
 
-/// Gaps of which mixtures are tabulated.
+/// Gaps whose mixtures are tabulated.
 pub struct Blend {
     gaps: Vec<Arc<dyn Gap>>,
-    /// What has been asked for, by the reach and the smallest radius.
+    /// The transforms made so far, by the reach and the smallest radius.
     known: Mutex<Vec<([u64; 2], Arc<Tabulated>)>>,
 }
 
@@ -112,7 +112,7 @@ impl Blend {
                 let by_variable = span.is_steep(|base| sources.jumps_at(base));
                 for (j, x) in rule.nodes.iter().enumerate() {
                     let [value, slope] = sources.transform(&**gap, span, *x);
-                    // All by the variable of the panel where one of them is.
+                    // All with respect to the variable of the panel where one of them is.
                     let stretch = if *steep && !by_variable { span.stretch(*x) } else { 1.0 };
                     (own[0][j], own[1][j]) = (value, slope * stretch);
                 }
@@ -126,7 +126,7 @@ impl Blend {
     }
 }
 
-/// Panels with the borders of all these lists, which reach as far and have the same breaks.
+/// Panels with the borders of all these lists, which reach equally far and have the same breaks.
 fn common(lists: &[Vec<Span>]) -> Vec<Span> {
     let mut borders: Vec<f64> = lists.iter().flatten().map(|span| span.hi).collect();
     borders.sort_by(f64::total_cmp);
@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn a_mixture_has_the_table_of_its_own_gap() {
-        // A corner, a narrow bump that only one of them has, and a number between.
+        // A corner, a narrow bump that only one of them has, and numbers in between.
         let text = |a: f64, b: f64| {
             format!("r^2/2 + {a:?}*abs(r-0.12) + {b:?}*exp(-((r-0.2)/0.003)^2) + 0.001*cos(60*r)")
         };

@@ -14,7 +14,7 @@ use wide::f64x4;
 /// The most nodes of a rule that is kept.
 const MOST: usize = 64;
 
-/// Nodes that resolve √a and whatever power of a gap on any panel but the innermost.
+/// Nodes that resolve √a and any power of a gap on every panel but the innermost.
 pub const ROOT_NODES: usize = 40;
 
 /// The n nodes with the matrix from samples to coefficients.
@@ -52,7 +52,7 @@ impl ChebyshevRule {
         Self { nodes, columns }
     }
 
-    /// The coefficients of the function with these `samples` at the nodes, into a slice as long.
+    /// The coefficients of the function with these `samples` at the nodes, into a slice of the same length.
     pub fn coefficients(&self, samples: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         for (sample, column) in samples.iter().zip(self.columns.chunks_exact(self.nodes.len())) {
@@ -62,8 +62,8 @@ impl ChebyshevRule {
         }
     }
 
-    /// The weight of node `j` in the sum over the nodes that, of any polynomial they resolve, is the sum with these `moments`: what it
-    /// makes of the polynomials of Chebyshev, the constant first.
+    /// The weight of node `j` in a sum over the nodes that is exact for every polynomial they resolve. `moments` are
+    /// the values of the exact sum for the Chebyshev polynomials, the constant first.
     pub fn weight(&self, j: usize, moments: &[f64]) -> f64 {
         let n = self.nodes.len();
         self.columns[j * n..(j + 1) * n].iter().zip(moments).map(|(c, moment)| c * moment).sum()
@@ -130,7 +130,7 @@ pub fn sum_and_slopes(series: &[f64], x: f64) -> [f64; 3] {
     let [mut b1, mut b2, mut d1, mut d2, mut e1, mut e2] = [0.0; 6];
     let twice = 2.0 * x;
     for c in series.iter().skip(1).rev() {
-        // The derivatives of the recurrence, each with what the one before has before this step.
+        // The derivatives of the recurrence, each with the value that the previous one has before this step.
         (e1, e2) = (twice * e1 - e2 + 4.0 * d1, e1);
         (d1, d2) = (twice * d1 - d2 + 2.0 * b1, d1);
         (b1, b2) = (twice * b1 - b2 + c, b1);
@@ -221,7 +221,7 @@ pub fn least(nodes: usize, [lo, hi]: [f64; 2], f: impl Fn(f64) -> f64) -> [f64; 
 /// Parts into which an interval is divided until each has no root or is monotone.
 const PARTS: usize = 4;
 
-/// Trailing coefficients that sum up to less than this share of the rounding count for nothing.
+/// Trailing coefficients that add up to less than this share of the rounding are ignored.
 const NEGLIGIBLE: f64 = 0.01;
 
 /// f and f' at four places.
@@ -256,11 +256,11 @@ struct RootSearch<'a> {
 
 /// The roots of the function, ascending; a double root counts as none, or two.
 ///
-/// Where all values are below `rounding` there are none. With |f''| ≤ M an interval of width w has no root where f has one
-/// sign at its ends and is larger there than M w²/8, and it is monotone, so that its ends tell, where the mean of f' at its
-/// ends is larger than M w/2; any other is divided.
+/// Where all values are below `rounding` there are none. With |f''| ≤ M, an interval of width w has no root where f has
+/// one sign at its ends and is larger there than M w²/8. It is monotone, so that its ends decide, where the mean of f'
+/// at its ends is larger than M w/2. Any other interval is divided.
 pub fn roots(series: &[f64], rounding: f64) -> Vec<f64> {
-    // A function that is no number has no roots, and would be divided for ever.
+    // A function that is not a number has no roots, and would be divided for ever.
     if series.iter().any(|c| !c.is_finite()) {
         return Vec::new();
     }
@@ -283,8 +283,8 @@ pub fn roots(series: &[f64], rounding: f64) -> Vec<f64> {
 }
 
 impl RootSearch<'_> {
-    /// Adds the roots between two ends. Neighbours share the sign of their border, so that rounding there makes no roots and
-    /// loses none.
+    /// Adds the roots between two ends. Neighbours share the sign at their border, so that rounding there neither makes
+    /// nor loses roots.
     fn within(&mut self, lo: IntervalEnd, hi: IntervalEnd) {
         let width = hi.x - lo.x;
         let changes = (lo.value > 0.0) != (hi.value > 0.0);
@@ -311,8 +311,8 @@ impl RootSearch<'_> {
     }
 }
 
-/// The root between `lo` and `hi` of a function that is positive at the upper end alone, or at the lower: Newton kept in its
-/// bracket.
+/// The root between `lo` and `hi` of a function that is positive only at the upper end, if `rising`, or only at the
+/// lower: Newton kept in its bracket.
 fn bracketed(series: &[f64], [mut lo, mut hi]: [f64; 2], rising: bool) -> f64 {
     let mut x = 0.5 * (lo + hi);
     for _ in 0..100 {

@@ -4,14 +4,15 @@
 //! f(a) = Σ w/√(a² − r²)  over sources r < a
 //! ```
 //!
-//! Neighbouring panels are taken together, two, four, eight and so on. From a place at least as far away as they are wide their
-//! sources are as good as [`NODES`] at Chebyshev nodes, where the weight at a node is that of its cardinal polynomial,
+//! Neighbouring panels are grouped by two, four, eight and so on. Seen from at least as far away as a group is wide,
+//! its sources are as good as [`NODES`] at Chebyshev nodes, where the weight at a node is that of its cardinal
+//! polynomial,
 //!
 //! ```text
 //! W_m = Σ w ℓ_m(r),   ℓ_m = 1 at node m and 0 at the others,
 //! ```
 //!
-//! for the kernel is its own polynomial there to (3 + √8)⁻²⁴. A sum over N panels takes some log N of them.
+//! because the kernel equals its own polynomial there to (3 + √8)⁻²⁴. A sum over N panels takes about log N groups.
 //!
 //! L. Greengard and V. Rokhlin, J. Comput. Phys. 73, 325 (1987), doi:10.1016/0021-9991(87)90140-9, for the tree.
 
@@ -21,7 +22,7 @@ use wide::f64x4;
 /// Samples of h' on a panel.
 pub const NODES: usize = 24;
 
-/// Clusters are used from this distance on, in their widths.
+/// Clusters are used from this distance on, in units of their width.
 const FAR: f64 = 1.0;
 
 /// Sources between two radii, with K weights each.
@@ -36,7 +37,7 @@ pub struct Cluster<const K: usize> {
 }
 
 impl<const K: usize> Cluster<K> {
-    /// What is seen from far away of neighbours.
+    /// The neighbours as seen from far away.
     fn of(parts: &[Self]) -> Self {
         let ends = [0, 1].map(|end| parts[end * (parts.len() - 1)].ends[end]);
         let (centre, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
@@ -83,18 +84,18 @@ impl<const K: usize> Cluster<K> {
 pub enum SumPart<'a, const K: usize> {
     /// Panels that are far away, together.
     Far(&'a Cluster<K>),
-    /// The number of a panel that is looked at for itself.
+    /// The number of a panel that is summed by itself.
     Panel(usize),
 }
 
-/// Panels, two by two, four by four, and so on.
+/// Panels, grouped by two, by four, and so on.
 #[derive(Debug, Clone)]
 pub struct Clusters<const K: usize> {
     levels: Vec<Vec<Cluster<K>>>,
 }
 
 impl<const K: usize> Clusters<K> {
-    /// Those of panels that ascend; fewer than `few` are not taken together.
+    /// The clusters of ascending panels; fewer than `few` are not grouped.
     pub fn new(panels: Vec<Cluster<K>>, few: usize) -> Self {
         let mut levels = vec![panels];
         while let Some(last) = levels.last().filter(|last| last.len() >= 2 && levels[0].len() >= few) {
@@ -109,7 +110,8 @@ impl<const K: usize> Clusters<K> {
         &self.levels[0][index]
     }
 
-    /// Calls `add` for what the first `count` panels are made of, seen from where `distance` measures.
+    /// Calls `add` for the parts that make up the first `count` panels, seen from the place from which `distance`
+    /// measures.
     pub fn visit(&self, count: usize, distance: &dyn Fn(f64) -> f64, add: &mut dyn FnMut(SumPart<'_, K>)) {
         let top = self.levels.len() - 1;
         for index in 0..self.levels[top].len() {

@@ -5,18 +5,20 @@
 //! ```
 //!
 //! The integrals over one piece are known in closed form, but those of narrow pieces are small differences of large
-//! numbers: with 1000 knots they leave nine digits, with 100 000 four. Gauss's rule keeps them all, if only differences
-//! that nothing cancels in are taken. With a = lo + y² on the panel of the knot lo, a − r is y² and differences of knots:
+//! numbers: with 1000 knots they leave nine digits, with 100 000 four. Gauss's rule keeps all digits, provided that it
+//! takes only differences without cancellation. With a = lo + y² on the panel of the knot lo, a − r is y² and
+//! differences of knots. Pieces closer than their width are near, and r = a is the singularity:
 //!
 //! | piece | how |
 //! |---|---|
-//! | the panel's own, and those closer than their width, where the singularity r = a is far from the axis | z = √(a − r): dr/√(a² − r²) = −2dz/√(a + r), r − lo = (z₁ − z)(z₁ + z) |
+//! | the panel's own and near ones, with r = a far from the axis | z = √(a − r): dr/√(a² − r²) = −2dz/√(a + r), r − lo = (z₁ − z)(z₁ + z) |
 //! | the same near the axis | r = a cos φ: dr/√(a² − r²) = −dφ, r − lo = 2a sin((φ₁ + φ)/2) sin((φ₁ − φ)/2) |
 //! | any other | Gauss's rule in r: the singularity is at least the width away |
 //!
-//! So that many pieces do not cost their square, the samples of 8, 16, 32, … neighbours are spread onto 20 Chebyshev
-//! points of their block, from which the panels see them that are at least the width of the block away: the weights are
-//! those of the interpolation of the kernel 1/√(a² − r²), transposed. The singularity of the kernel leaves 5.8⁻²⁰ of it.
+//! To keep the cost of many pieces from growing with their square, the samples of 8, 16, 32, … neighbours are spread
+//! onto 20 Chebyshev points of their block, from which they are seen by panels at least the width of the block away.
+//! The weights are those of the interpolation of the kernel 1/√(a² − r²), transposed. The singularity of the kernel
+//! leaves an error of 5.8⁻²⁰.
 
 use crate::elementary::{atan2, cos, sin};
 use crate::gap::Piece;
@@ -30,7 +32,8 @@ use wide::f64x4;
 /// Nodes of a panel.
 pub const NODES: usize = 16;
 
-/// Nodes of Gauss's rule on a piece, in any of the variables. A singularity as far away as the piece is wide leaves 5.8⁻²⁰.
+/// Nodes of Gauss's rule on a piece, in any of the variables. A singularity as far away as the piece is wide leaves an
+/// error of 5.8⁻²⁰.
 const SAMPLES: usize = 10;
 const RULE: NonZeroUsize = NonZeroUsize::new(SAMPLES).unwrap();
 
@@ -40,10 +43,11 @@ const POINTS: usize = 20;
 /// Pieces of the smallest block; every further level has twice as many.
 const SMALLEST_BLOCK: usize = 8;
 
-/// The largest (a − lo)/a for which a piece is taken in z: the singularity of 1/√(a + r) is as far as to leave 9⁻²⁰.
+/// The largest (a − lo)/a for which a piece is taken in z: the singularity of 1/√(a + r) is then so far that it leaves
+/// an error of 9⁻²⁰.
 const FAR_FROM_AXIS: f64 = 0.25;
 
-/// Panels between two questions whether to go on.
+/// Panels between two checks whether to go on.
 const PANELS_PER_QUESTION: usize = 32;
 
 /// Four nodes at a time.
@@ -126,7 +130,7 @@ impl PanelSums {
         [array::from_fn(|j| a[j] * slope[j]), array::from_fn(|j| 2.0 * y[j] * (slope[j] + bend[j]))]
     }
 
-    /// Adds what the samples contribute, which lie at a distance from all nodes.
+    /// Adds the contribution of samples that lie at a distance from all nodes.
     fn add<const N: usize>(&mut self, samples: &WeightedSamples<N>) {
         let distance = f64x4::splat(self.lo - samples.lo);
         let offset: [f64x4; LANES] = self.from_lo.map(|x| x + distance);
@@ -143,9 +147,9 @@ impl PanelSums {
         }
     }
 
-    /// Adds what `piece` contributes, which is near the nodes or, if `own`, holds them.
+    /// Adds the contribution of `piece`, which is near the nodes or, if `own`, holds them.
     fn add_near(&mut self, rule: &[(f64, f64)], piece: &Piece, own: bool) {
-        // The first node is the outermost, where the share of the way to the axis is largest.
+        // The first node is the outermost, where (a − lo)/a is largest.
         let outermost = self.a[0].to_array()[0];
         if outermost - piece.lo <= FAR_FROM_AXIS * outermost {
             self.add_in_root(rule, piece, own);
@@ -194,7 +198,7 @@ impl PanelSums {
                     (piece.hi, piece.width(), end)
                 };
                 let largest = atan2(begin, piece.lo);
-                // Of sin(φ₁ − φ₀) = (r₀√(a² − r₁²) − r₁√(a² − r₀²))/a², times the sum of the two.
+                // From sin(φ₁ − φ₀) = (r₀√(a² − r₁²) − r₁√(a² − r₀²))/a², times the sum of the two.
                 let sine = a * width * ((hi + piece.lo) / (begin * hi + end * piece.lo)) * a;
                 let length = atan2(sine, hi * piece.lo + begin * end);
                 for &(x, weight) in rule {
@@ -259,13 +263,13 @@ impl WeightedSamples<POINTS> {
     }
 }
 
-/// All pieces as samples, and the blocks of them.
+/// All pieces as samples, and their blocks.
 struct PieceSamples<'a> {
     pieces: &'a [Piece],
     /// Gauss's rule on (0, 1).
     rule: Vec<(f64, f64)>,
     samples: Vec<WeightedSamples<SAMPLES>>,
-    /// Blocks of 8, 16, 32, … pieces, the last of a level of fewer, up to the level with one block.
+    /// Blocks of 8, 16, 32, … pieces, with fewer in the last block of a level, up to the level with one block.
     levels: Vec<Vec<WeightedSamples<POINTS>>>,
 }
 
@@ -290,7 +294,7 @@ impl<'a> PieceSamples<'a> {
         Self { pieces, rule, samples, levels }
     }
 
-    /// Adds everything up to the nodes of `panel`, that of the piece `i`.
+    /// Adds everything up to the nodes of `panel`, the panel of the piece `i`.
     fn gather(&self, panel: &mut PanelSums, i: usize) {
         self.gather_block(panel, i, self.levels.len() - 1, 0);
         panel.add_near(&self.rule, &self.pieces[i], true);
@@ -368,7 +372,7 @@ mod tests {
             let mut to = length;
             for k in 0..=halvings {
                 let from = if k == halvings && beyond > 0.0 { 0.0 } else { 0.5 * to };
-                // Summed by themselves, so that thousands of terms do not round thousands of times.
+                // Summed separately, so that thousands of terms do not round thousands of times.
                 let [mut slope_here, mut bend_here] = [0.0; 2];
                 for (x, weight) in &rule {
                     let s = 0.5 * ((from + to) + (to - from) * x);

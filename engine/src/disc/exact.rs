@@ -20,22 +20,22 @@ use crate::progress::{Progress, Stopped, Unwatched};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
-/// Rounding of the edge functional relative to the sizes in it, over Newton's tolerance of 1e-10: 1e-13 leaves room
-/// for the rounding of the phase of some hundred waves.
+/// Rounding of the edge functional relative to the sizes in it, over Newton's tolerance of 1e-10: 1e-13 leaves room for
+/// the rounding of the phase of a few hundred waves.
 const EDGE_ROUNDING: f64 = 1e-3;
 
-/// Points of a picture of the pressure per wave, so many that its crests are round on paper, and the fewest and most of
-/// them.
+/// Points per wave in a picture of the pressure, enough that its crests look round on paper, and the fewest and the
+/// most points.
 const PICTURE_POINTS_PER_WAVE: f64 = 48.0;
 const PICTURE_POINTS: [f64; 2] = [80.0, 2000.0];
 
-/// Fewer digits than this are warned of.
+/// Fewer digits than this cause a warning.
 pub const DIGITS_WANTED: f64 = 11.0;
 
-/// Beyond so many radii of a disc the gap around it follows from the pressure inside, and needs no table out there.
+/// Beyond this many radii of a disc the gap around it follows from the pressure inside, and needs no table out there.
 pub const FAR: f64 = 2.0;
 
-/// How often a table is made finer towards the axis where its innermost disc is not yet unstable.
+/// How often a table is refined towards the axis while its innermost disc is not yet unstable.
 const TIMES_FINER: i32 = 40;
 
 /// The exact basis of one gap.
@@ -111,7 +111,7 @@ fn state(s: f64, value: f64, area: f64, root: f64) -> Evaluation {
     }
 }
 
-/// An evaluation that is nothing: beyond what is known of the gap.
+/// An empty evaluation: beyond the known part of the gap.
 fn nothing(s: f64, delta: f64) -> Evaluation {
     let values = TransformValues {
         radius: s,
@@ -194,7 +194,7 @@ impl Basis for ExactBasis {
         let to = to.max(self.reach);
         let table = |fineness| match self.table.up_to_while(to, fineness, progress) {
             Err(TableError::Stopped(stopped)) => Err(stopped),
-            // What has no table has no equilibria.
+            // A gap without a table has no equilibria.
             found => Ok(found.ok()),
         };
         let Some(mut panels) = table(0)? else { return Ok(None) };
@@ -213,7 +213,8 @@ impl Basis for ExactBasis {
         let waves = problem.gap.feature_length().map_or(0.0, |wave| s / wave);
         let [least, most] = PICTURE_POINTS;
         let points = (PICTURE_POINTS_PER_WAVE * waves).clamp(least, most).ceil();
-        // r = s sin θ: evenly spaced near the axis and, as √(s² − r²) = s cos θ, near the edge too, which itself is left out.
+        // r = s sin θ: evenly spaced near the axis and, as √(s² − r²) = s cos θ, near the edge too; the edge itself is
+        // left out.
         let angles = std::iter::successors(Some(0.0), |j| Some(j + 1.0)).take_while(|j| *j < points);
         let radii = angles.map(|j| s * sin(FRAC_PI_2 * j / points));
         radii.map(|r| (r, outside::pressure(&panels, s, delta, r))).collect()
@@ -222,7 +223,7 @@ impl Basis for ExactBasis {
     fn gap_outside(&self, problem: &Reduced, s: f64, delta: f64, radii: &[f64]) -> Vec<f64> {
         let near = FAR * s;
         let farthest = radii.iter().fold(s, |most, r| most.max(r.min(near)));
-        // Where the table ends before, what is farther out is far.
+        // Where the table ends before that, radii beyond its end are computed as far ones.
         let panels = self.table.up_to(farthest.max(self.reach)).ok().or_else(|| self.panels(s));
         let Some(panels) = panels.filter(|panels| s <= panels.reach()) else {
             return vec![f64::NAN; radii.len()];
@@ -394,7 +395,7 @@ mod tests {
                 let size = problem.gap.jet(*r).value + delta.abs();
                 assert!((ours - exact).abs() <= 1e-12 * size, "{shape:?} {r}: {ours} {exact}");
             }
-            // A radius that no table reaches takes nothing from the others.
+            // A radius that no table reaches does not affect the others.
             let with_far = basis.gap_outside(&problem, s, delta, &[radii.clone(), vec![1e9]].concat());
             assert_eq!(with_far[..200], ours, "{shape:?}");
             let (far, undeformed) = (with_far[200], problem.gap.jet(1e9).value);

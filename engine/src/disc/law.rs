@@ -9,10 +9,10 @@ use crate::elementary::pow;
 use crate::gap::{panels::Span, panels::Variable};
 use std::f64::consts::PI;
 
-/// g varies by this factor on a panel at most, so that relative digits are there all over it.
+/// g varies by at most this factor on a panel, so that it has relative digits all over the panel.
 const VARIATION: f64 = 1e3;
 
-/// A panel is at most so many times as far out at its outer end as at its inner.
+/// The outer end of a panel is at most this many times as far out as its inner end.
 const RATIO: f64 = 4.0;
 
 /// g = κ aⁿ.
@@ -25,7 +25,7 @@ pub struct PowerTransform {
 impl PowerTransform {
     /// The transform of h = c rⁿ, 1 ≤ n ≤ 100.
     pub fn new(c: f64, n: f64) -> Self {
-        // The two that people know, without the rounding of a logarithm.
+        // The two well-known ones, without the rounding of a logarithm.
         let shape = if n <= 1.0 {
             0.5 * PI
         } else if (n - 2.0).abs() < f64::EPSILON {

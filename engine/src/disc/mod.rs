@@ -11,10 +11,10 @@
 //! | [`waves`] | g of a paraboloid with waves |
 //! | [`cubic`] | g of a gap that is cubic between knots |
 //! | [`law`] | g of a power of r, in closed form |
-//! | [`basis`] | what the program asks of a way to compute a disc |
+//! | [`basis`] | what the program needs from a way to compute a disc |
 //! | [`exact`] | the basis that reads the table |
 //! | [`solution`] | the equilibria over all radii, from the table |
-//! | [`sampled`] | the same from what is asked radius by radius |
+//! | [`sampled`] | the same, computed radius by radius |
 //! | [`outside`] | the gap around a disc and the pressure under it |
 //! | [`span`] | places on a panel |
 //! | [`chebyshev`] | series, their integrals and their roots |

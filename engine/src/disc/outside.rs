@@ -6,14 +6,14 @@
 //! r < s    p(r)   = (1/π) [(δ − g(s))/√(s² − r²) + ∫_r^s g'(a)/√(a² − r²) da]
 //! ```
 //!
-//! The first follows from h(r) = (2/π) ∫₀ʳ g/√(r² − a²) da, Abel's inversion of g, and the displacement that the pressure
-//! causes outside. The second is the first with the whole integral taken as h(r): near the edge it loses digits, far out it needs
-//! no table there. All hold for any δ, not only in equilibrium. On every panel a substitution takes the singularity
-//! away: a = b + (r − b) sin²ψ right of a break b, a = r sin ψ elsewhere.
+//! The first follows from h(r) = (2/π) ∫₀ʳ g/√(r² − a²) da, Abel's inversion of g, and the displacement that the
+//! pressure causes outside. The second is the first with the whole integral replaced by h(r): near the edge it loses
+//! digits, far out it needs no table there. All hold for any δ, not only in equilibrium. On every panel a substitution
+//! removes the singularity: a = b + (r − b) sin²ψ right of a break b, a = r sin ψ elsewhere.
 //!
-//! **What is to be searched.** If the gap is not negative on [s, q], what those radii give at r > q is
-//! (2/π)√(r² − q²) ∫_s^q t gap(t)/((r² − t²)√(q² − t²)) dt ≥ 0, so beyond the edge the gap can become negative for the first
-//! time only where g < δ. Where g stays above δ the bodies stay apart, and no gap needs to be computed.
+//! **What must be searched.** If the gap is not negative on [s, q], the contribution of those radii at r > q is
+//! (2/π)√(r² − q²) ∫_s^q t gap(t)/((r² − t²)√(q² − t²)) dt ≥ 0, so beyond the edge the gap can first become negative
+//! only where g < δ. Where g stays above δ the bodies stay apart, and no gap needs to be computed.
 
 use super::chebyshev::{self, ChebyshevRule};
 use super::clusters::SumPart;
@@ -28,27 +28,28 @@ use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 use wide::f64x4;
 
-/// Nodes on a panel near r, on one at least as far as it is wide, and on one at least [`VERY_FAR`] times as far.
+/// Nodes on a panel near r, on one at least its own width away, and on one at least [`VERY_FAR`] widths away.
 const NODES: [usize; 3] = [32, 14, 8];
 const VERY_FAR: f64 = 6.0;
 
-/// A part of a panel of at most this share takes the nodes of a panel that is far.
+/// A part of at most this share of a panel takes the nodes of a far panel.
 const SMALL: f64 = 0.2;
 
-/// Stretches of panels integrated over in one search at most: those of fifty crests and more, some hundredths of a second.
+/// The most stretches of panels integrated over in one search: those of fifty crests and more, a few hundredths of a
+/// second.
 const MOST_WORK: usize = 1000;
 
-/// Crests looked at from the first that overlaps on.
+/// Crests examined from the first that overlaps onward.
 const CRESTS: usize = 8;
 
-/// Among more neighbouring panels than this the smallest gap is looked for at three places of each, and then nearby.
+/// Among more neighbouring panels than this, the smallest gap is sought at three places on each, and then nearby.
 const MANY: usize = 8;
 
 /// Halvings of an interval in which the gap is searched, until its series ends.
 const HALVINGS: usize = 8;
 
-/// Places on a piece at which the gap is computed, and its last coefficients there relative to the largest: its minimum is then
-/// found to four digits of the piece, and its value to seven.
+/// Places on a piece at which the gap is computed, and the limit of its last coefficients there relative to the
+/// largest: its minimum is then found to four digits of the piece, and its value to seven.
 const SEARCHED: usize = 12;
 const TAIL: f64 = 1e-7;
 
@@ -76,12 +77,12 @@ pub fn gap_from(panels: &Panels, s: f64, delta: f64, r: f64) -> f64 {
     gap_by(panels, s, r, |i, ends| stretch_outside(panels, i, delta, r, ends))
 }
 
-/// The sum over the panels between s and r of what `stretch` makes of each, and of its ends there, times 2/π.
+/// The sum over the panels between s and r of what `stretch` gives for each, and for its ends there, times 2/π.
 fn gap_by(panels: &Panels, s: f64, r: f64, stretch: impl Fn(usize, [f64; 2]) -> f64) -> f64 {
     FRAC_2_PI * over_panels(panels, s, r, stretch)
 }
 
-/// The sum over the panels between s and r of what `stretch` makes of each, and of its ends there.
+/// The sum over the panels between s and r of what `stretch` gives for each, and for its ends there.
 fn over_panels(panels: &Panels, s: f64, r: f64, stretch: impl Fn(usize, [f64; 2]) -> f64) -> f64 {
     if r <= s {
         return 0.0;
@@ -105,8 +106,8 @@ pub fn sum_from(panels: &Panels, s: f64, r: f64, f: OfRadii<'_>) -> f64 {
     })
 }
 
-/// ∫_s^r g' (a/r)/√(r² − a²) da; the panels must reach to `r`. `angle` has the cosine s/r: for a thin ring it has more
-/// digits than the difference of `s` and `r`.
+/// ∫_s^r g' (a/r)/√(r² − a²) da; the panels must reach to `r`. `angle` is the angle whose cosine is s/r: for a thin
+/// ring it has more digits than the difference of `s` and `r`.
 pub fn rise_from(panels: &Panels, s: f64, r: f64, angle: f64) -> f64 {
     let (inner, outer) = (panels.place(s), panels.place(r));
     let from_border = s - panels.list()[inner.panel].span.lo;
@@ -122,7 +123,7 @@ pub fn rise_from(panels: &Panels, s: f64, r: f64, angle: f64) -> f64 {
     over_panels(panels, s, r, |i, ends| slope_outside(panels, i, r, ends))
 }
 
-/// The same far from the edge, where `gap` is h(r); the panels must reach to `s` alone.
+/// The same far from the edge, where `gap` is h(r); the panels need to reach only to `s`.
 pub fn gap_far(panels: &Panels, gap: f64, s: f64, delta: f64, r: f64) -> f64 {
     let last = panels.place(s).panel;
     let part = |i: usize| {
@@ -152,8 +153,8 @@ fn each(of: f64x4, f: impl FnMut(f64) -> f64) -> f64x4 {
     f64x4::new(of.to_array().map(f))
 }
 
-/// ∫ f dv by a rule. `node` gives the place of v on a panel and a number of its own, `of` what the panel says there, and `f` takes all
-/// three.
+/// ∫ f dv by a rule. `node` gives the place of v on a panel and a number of its own, `of` the values of the panel
+/// there, and `f` takes all three.
 fn by_fours(
     rule: &[[f64; 2]],
     [from, to]: [f64; 2],
@@ -164,7 +165,7 @@ fn by_fours(
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     let mut sum = f64x4::ZERO;
     for four in rule.chunks(4) {
-        // A short last group is filled with its first node, at no weight.
+        // A short last group is filled with its first node, with zero weight.
         let at: [f64; 4] = std::array::from_fn(|i| four.get(i).unwrap_or(&four[0])[0]);
         let weights: [f64; 4] = std::array::from_fn(|i| four.get(i).map_or(0.0, |[_, weight]| *weight));
         let node = node(f64x4::new(at) * half + middle);
@@ -229,13 +230,14 @@ fn sum_by(
     }
 }
 
-/// What a sum over the disc of the radius `s` is made of, seen from any r ≥ `edge` > s:
+/// The terms of a sum over the disc of the radius `s`, seen from any r ≥ `edge` > s:
 ///
 /// ```text
 /// ∫₀^s g/√(r² − a²) da = Σ w/√((r² − edge²) + below),   below = edge² − a²
 /// ```
 ///
-/// as [below, w]. Whole panels far from the edge are taken together; towards it parts of panels are as wide as they are far from it.
+/// as [below, w]. Whole panels far from the edge are grouped; towards it, parts of panels are as wide as they are far
+/// from it.
 pub fn sum_below(panels: &Panels, s: f64, edge: f64) -> Vec<[f64; 2]> {
     let mut nodes = Vec::new();
     let mut add = |a: f64, weight: f64| nodes.push([(edge - a) * (edge + a), weight]);
@@ -286,9 +288,9 @@ fn slope_outside(panels: &Panels, index: usize, r: f64, [lo, hi]: [f64; 2]) -> f
     }
 }
 
-/// The sources of a panel up to a place of it.
+/// The sources of a panel up to a place on it.
 fn parts_below(panels: &Panels, end: Place, edge: f64, add: &mut dyn FnMut(f64, f64)) {
-    /// Parts, each half as wide as the one before.
+    /// Parts, each half as wide as the previous one.
     const PARTS: usize = 60;
     let span = panels.list()[end.panel].span;
     let [centre, half] = span.line();
@@ -403,14 +405,14 @@ pub fn below(panels: &Panels, s: f64, delta: f64, end: f64) -> Vec<(usize, [f64;
 pub struct LeastGap {
     /// Where the gap is smallest and how large it is there, `[r, gap]`; `None` where g stays above δ: the bodies stay apart.
     pub at: Option<[f64; 2]>,
-    /// The radius at which the search was given up, where it was.
+    /// The radius at which the search was given up, if it was.
     pub given_up: Option<f64>,
 }
 
-/// The smallest gap around the disc among the radii at which it can become negative first.
+/// The smallest gap around the disc among the radii at which it can first become negative.
 ///
-/// Once the gap is below `overlap` only a few crests more are looked at, and without that no more than some hundred. The panels
-/// must reach to `end`. Where `progress` says stop, it is given up.
+/// Once the gap is below `overlap`, only a few more crests are examined; otherwise no more than about a hundred. The
+/// panels must reach to `end`. Where `progress` says stop, the search is given up.
 pub fn least_gap(
     panels: &Panels,
     s: f64,
@@ -475,7 +477,7 @@ fn least_on(panels: &Panels, s: f64, delta: f64, index: usize, [lo, hi]: [f64; 2
         return least(left, right);
     }
     let slope = chebyshev::derivative(&series);
-    // The series tells where; only what may be the smallest is computed.
+    // The series tells where the minima are; the gap itself is computed only at the smallest.
     let inner = chebyshev::roots(&slope, 0.0);
     let by_series = |x: &f64| chebyshev::sum(&series, *x);
     let places = [-1.0, 1.0].into_iter().chain(inner);

@@ -12,7 +12,7 @@ use wide::f64x4;
 /// A series ends where its coefficients fall below this share of the largest.
 const CHOP: f64 = 1e-17;
 
-/// Panels whose outer end is farther out than their inner by less than this factor are far from the axis.
+/// Panels whose outer end is less than this many times as far out as their inner end are far from the axis.
 const FAR_FROM_AXIS: f64 = 1.6;
 
 /// One panel of a table.
@@ -26,7 +26,7 @@ pub struct Panel {
     value: Vec<f64>,
     /// The series of dg/da, or of dg/dv.
     slope: Vec<f64>,
-    /// Whether `slope` is by the panel's variable: where h' jumps at the base dg/da is infinite there.
+    /// Whether `slope` is with respect to the panel's variable: where h' jumps at the base, dg/da is infinite there.
     steep: bool,
     /// The series of ∫₀ᵃ g and ∫₀ᵃ g².
     area: Vec<f64>,
@@ -42,7 +42,7 @@ pub struct TransformValues {
     pub radius: f64,
     /// g.
     pub value: f64,
-    /// dg/da, that of the panel's side at a break; infinite right of one where h' jumps.
+    /// dg/da, on the panel's side at a break; infinite right of a break where h' jumps.
     pub slope: f64,
     /// d²g/da².
     pub bend: f64,
@@ -70,7 +70,7 @@ impl Panel {
         Self { span, line, value, slope, steep: false, area, square, edge: OnceLock::new() }
     }
 
-    /// The panel of these series; ∫g and ∫g² begin with what the panel before ends with.
+    /// The panel with these series; ∫g and ∫g² continue from the end of the panel before.
     fn new(span: Span, value: Vec<f64>, slope: Vec<f64>, steep: bool, before: Option<&Self>) -> Self {
         let line @ [centre, half] = span.line();
         let value = chebyshev::chop(value, CHOP);
@@ -114,7 +114,8 @@ impl Panel {
         ((v - centre) / half).clamp(-1.0, 1.0)
     }
 
-    /// The series of da/dv/√a where the slope is by the variable, of 1/√a where it is by the radius.
+    /// The series of da/dv/√a where the slope is with respect to the variable, of 1/√a where it is with respect to the
+    /// radius.
     pub fn edge(&self) -> &[f64] {
         self.edge.get_or_init(|| self.edge_rule().series(|x| self.weight(x) / self.span.radius(x).sqrt()))
     }
@@ -125,12 +126,12 @@ impl Panel {
         ChebyshevRule::of(if near_axis { ROOT_NODES } else { ROOT_NODES / 2 })
     }
 
-    /// What a derivative by the radius is multiplied with, so that it is smooth on the whole panel: da/dv or 1.
+    /// The factor that makes a derivative with respect to the radius smooth on the whole panel: da/dv or 1.
     pub fn weight(&self, x: f64) -> f64 {
         if self.steep { self.span.stretch(x) } else { 1.0 }
     }
 
-    /// Whether derivatives are by the panel's variable.
+    /// Whether derivatives are with respect to the panel's variable.
     pub fn is_steep(&self) -> bool {
         self.steep
     }
@@ -152,7 +153,7 @@ impl Panels {
         self.smallest
     }
 
-    /// The place of `a`; a border belongs to the panel that ends with it.
+    /// The place of `a`; a border belongs to the panel that ends there.
     pub fn place(&self, a: f64) -> Place {
         let panel = panel_of(&self.list, |panel| &panel.span, a);
         Place { panel, x: self.list[panel].place(a) }
@@ -218,7 +219,7 @@ impl Panels {
         }
     }
 
-    /// Sources of ∫ g f da between two places of a panel, seen from at least as far away as these are from each other.
+    /// Sources of ∫ g f da between two places of a panel, seen from at least as far away as these are apart.
     pub fn sources(&self, panel: usize, [lo, hi]: [f64; 2]) -> Cluster<1> {
         let (span, [_, half]) = (self.list[panel].span, self.list[panel].line);
         let (middle, part) = (0.5 * (lo + hi), 0.5 * (hi - lo));
@@ -264,7 +265,7 @@ impl Panels {
         }
     }
 
-    /// dg/dv at a place: by the panel's own variable, finite everywhere.
+    /// dg/dv at a place: with respect to the panel's own variable, finite everywhere.
     pub fn slope_by_variable(&self, at: Place) -> f64 {
         let panel = &*self.list[at.panel];
         let slope = self.weighted_slope(at);
@@ -314,8 +315,8 @@ impl Panels {
         }
     }
 
-    /// g', g'' and g''' at a place off the innermost panel, by a; not finite right of a break at which a derivative of the gap
-    /// jumps.
+    /// g', g'' and g''' with respect to a, at a place off the innermost panel; not finite right of a break at which a
+    /// derivative of the gap jumps.
     pub fn slopes(&self, at: Place) -> [f64; 3] {
         let panel = &*self.list[at.panel];
         let radius = panel.span.radius(at.x);
@@ -326,7 +327,8 @@ impl Panels {
         let [_, half] = panel.line;
         let [by_v, by_v2] = [first / half, second / (half * half)];
         let (stretch, bend) = (panel.span.stretch(at.x), panel.span.bend(at.x));
-        // By v, of what is by a; the stretch of a panel right of a break is a line in v.
+        // With respect to v, of the derivative with respect to a; the stretch of a panel right of a break is linear in
+        // v.
         let [slope, by_v, by_v2] = if panel.steep {
             let ratio = bend / stretch;
             let slope = value / stretch;

@@ -1,8 +1,9 @@
-//! The equilibria of what is asked radius by radius, as series on panels: of a basis, or of a zone by its outer edge.
+//! Equilibria that are computed radius by radius, as series on panels: those of a basis, or of a zone by its outer
+//! edge.
 //!
-//! Of a basis with u = √s as the variable, in which δ and P of an adhesive disc are smooth down to the axis. Each panel takes
-//! `NODES` equilibria and is halved while its series do not end. A stretch without equilibria, as rings have where they
-//! are too coarse for the gap, is a hole.
+//! For a basis the variable is u = √s, in which δ and P of an adhesive disc are smooth down to the axis. Each panel
+//! takes `NODES` equilibria and is halved while its series do not end. A stretch without equilibria, as rings have
+//! where they are too coarse for the gap, is a hole.
 
 use super::basis::{Basis, Evaluation, Order};
 use super::chebyshev::{self, ChebyshevRule};
@@ -17,16 +18,16 @@ use std::sync::Arc;
 /// Equilibria on a panel.
 const NODES: usize = 20;
 
-/// A share of a zone in contact that is none, over what it is elsewhere on the panel.
+/// A share of a zone in contact that counts as none, relative to what it is elsewhere on the panel.
 const NO_CONTACT: f64 = 1e-13;
 
 /// A hole of this share of its radius is narrow.
 const NARROW: f64 = 1e-3;
 
-/// A panel is at most so many times as far out at its outer end as at its inner.
+/// The outer end of a panel is at most this many times as far out as its inner end.
 const RATIO: f64 = 4.0;
 
-/// Panels at the start at most.
+/// The most panels at the start.
 const PANELS: f64 = 2000.0;
 
 /// How fine panels are.
@@ -36,14 +37,16 @@ pub struct Fineness {
     pub tail: f64,
     /// Halvings of a panel without a hole.
     pub halvings: usize,
-    /// Halvings of any panel: the ends of a hole are known so well.
+    /// Halvings of any panel: they set how well the ends of a hole are known.
     pub of_holes: usize,
-    /// What they may be after all halvings: a panel with more is a hole, for the equilibria jump on it.
+    /// The limit on these coefficients after all halvings: a panel that exceeds it is a hole, because the equilibria
+    /// jump on it.
     pub loose: f64,
 }
 
-/// Of ring elements: below what they are good for by many digits. Where the gap is not smooth a series ends no sooner on a narrower
-/// panel, for each ring that passes a corner leaves one in δ(s). The ends of a hole are known to a thousandth of half a wave.
+/// For ring elements: many digits below their accuracy. Where the gap is not smooth a series ends no sooner on a
+/// narrower panel, because each ring that passes a corner leaves one in δ(s). The ends of a hole are known to a
+/// thousandth of half a wave.
 const OF_RINGS: Fineness = Fineness { tail: 1e-9, halvings: 4, of_holes: 9, loose: f64::INFINITY };
 
 /// One equilibrium.
@@ -53,11 +56,11 @@ pub struct SampledState {
     pub approach: f64,
     /// P.
     pub force: f64,
-    /// dδ/da and dP/da, a the radius it was asked for.
+    /// dδ/da and dP/da, where a is the radius it was computed for.
     pub slopes: [f64; 2],
     /// U.
     pub energy: f64,
-    /// Of a zone that ends at the radius it was asked for the share (s/c)² of it that is in contact.
+    /// For a zone that ends at that radius, the share (s/c)² of it that is in contact.
     pub share: f64,
 }
 
@@ -79,7 +82,7 @@ impl SampledPanel {
 #[derive(Debug, Default)]
 pub struct Sampled {
     panels: Vec<Arc<SampledPanel>>,
-    /// Of zones: where contact in them begins or ends.
+    /// For zones: where contact in them begins or ends.
     touches: Option<Vec<Place>>,
 }
 
@@ -100,7 +103,7 @@ impl Sampled {
         let mut hi = to;
         while hi > from {
             hi = (hi / RATIO).max(hi - width).max(from);
-            // What is left over is no panel of its own.
+            // What is left over gets no panel of its own.
             if hi < from * (1.0 + 1e-9) {
                 hi = from;
             }
@@ -126,7 +129,7 @@ impl Sampled {
         Ok((!panels.is_empty()).then_some(Self { panels, touches: None }))
     }
 
-    /// Zones in panels that ascend; contact in them begins or ends at the radii `touches`, which are borders of panels.
+    /// Zones in ascending panels; contact in them begins or ends at the radii `touches`, which are borders of panels.
     pub fn of_zones(panels: Vec<Arc<SampledPanel>>, touches: &[f64]) -> Self {
         let mut zones = Self { panels, touches: None };
         zones.touches = Some(touches.iter().filter_map(|radius| zones.place(*radius)).collect());
@@ -134,10 +137,10 @@ impl Sampled {
     }
 }
 
-/// What is asked for the equilibria at radii: as many of them as there are, up to the first radius that has none.
+/// Gives the equilibria at radii, up to the first radius that has none.
 type SampleSource<'a> = dyn Fn(&[f64]) -> Vec<SampledState> + 'a;
 
-/// Adds panels on which what `source` gives on `span` is resolved.
+/// Adds panels that resolve what `source` gives on `span`.
 ///
 /// # Errors
 /// [`Stopped`].
@@ -250,7 +253,7 @@ impl Solution for Sampled {
     }
 
     fn is_passed(&self, panel: usize) -> bool {
-        // Where zones go from one root of D to another a hole is left, as narrow as panels are halved.
+        // Where zones jump from one root of D to another, a hole remains, as narrow as panels get by halving.
         let most = if self.touches.is_some() { NARROW } else { 0.0 };
         let next = self.panels.get(panel + 1).map(|next| next.span.lo);
         next.is_some_and(|lo| lo <= self.panels[panel].span.hi * (1.0 + most))

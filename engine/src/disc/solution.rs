@@ -1,4 +1,4 @@
-//! The equilibria of one disc over all its radii, panel by panel: what limit points, landings and losses are found on.
+//! The equilibria of one disc over all its radii, panel by panel: limit points, landings and losses are found on them.
 
 use super::panels::Panels;
 use super::span::Place;
@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// One equilibrium with the slopes of the curve by the variable v of its panel, finite everywhere.
+/// One equilibrium with the slopes of the curve with respect to the variable v of its panel, finite everywhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Local {
     /// s, or the outer edge of a zone: what runs along the curve.
@@ -32,8 +32,8 @@ pub struct Edges {
     pub zone: Option<f64>,
 }
 
-/// The equilibria of one disc, one for each radius, in panels that ascend. The radius is that of the contact, or of the zone in which
-/// adhesion with a range acts.
+/// The equilibria of one disc, one for each radius, in ascending panels. The radius is that of the contact, or of the
+/// zone in which adhesion with a range acts.
 pub trait Solution: Debug + Send + Sync {
     /// The number of panels.
     fn len(&self) -> usize;
@@ -46,13 +46,13 @@ pub trait Solution: Debug + Send + Sync {
     /// One of the panels; there may be holes between them, where rings have no equilibrium.
     fn span(&self, panel: usize) -> &Span;
 
-    /// The place of the radius `s`, on the panel that ends with it where it is a border; `None` outside all panels.
+    /// The place of the radius `s`, on the panel that ends there if it is a border; `None` outside all panels.
     fn place(&self, s: f64) -> Option<Place>;
 
     /// The equilibrium at a place.
     fn at(&self, place: Place) -> Local;
 
-    /// The radius at a place, for which it is the equilibrium, a length.
+    /// The radius of the equilibrium at a place, a length.
     fn radius(&self, place: Place) -> f64 {
         self.span(place.panel).radius(place.x)
     }
@@ -75,10 +75,10 @@ pub trait Solution: Debug + Send + Sync {
         &[]
     }
 
-    /// On a panel, the series of a positive multiple of the slope of the controlled quantity by s; with the size of its terms, of
-    /// which its rounding is a share.
+    /// On a panel, the series of a positive multiple of the derivative of the controlled quantity with respect to s;
+    /// and the size of its terms, to which its rounding is relative.
     ///
-    /// The state is stable where it is positive.
+    /// The state is stable where the series is positive.
     fn tendency(&self, panel: usize, control: Control) -> (Vec<f64>, f64);
 
     /// How far the solution reaches.
@@ -91,7 +91,7 @@ pub trait Solution: Debug + Send + Sync {
         if self.is_empty() { 0.0 } else { self.span(0).lo }
     }
 
-    /// Whether edges that run pass on to the next panel, which begins where this one ends or a hair beyond.
+    /// Whether moving edges pass on to the next panel, which begins where this one ends or a hair beyond.
     fn is_passed(&self, panel: usize) -> bool {
         self.is_joined(panel)
     }
@@ -110,7 +110,7 @@ pub trait Solution: Debug + Send + Sync {
 /// ```
 ///
 /// (x = 0 for displacement, x → ∞ for force): the slope of the control is linear in T, so that only the weight of one
-/// known function depends on the adhesion, and turning it costs nothing.
+/// known function depends on the adhesion, and changing the adhesion costs nothing.
 #[derive(Debug, Clone)]
 pub struct ExactSolution {
     panels: Arc<Panels>,

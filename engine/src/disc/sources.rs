@@ -5,11 +5,11 @@
 //! g'(a) = ∫₀ᵃ h'/√(a² − r²) dr + ∫₀ᵃ r h''/√(a² − r²) dr + Σ_{q<a} J_q q/√(a² − q²)
 //! ```
 //!
-//! `J_q` is the jump of h' at the break q. Panels that end well below a are **far**: Gauss's rule in r, with samples that serve
-//! every a. The others, and that of a itself, are **near**: Gauss's rule in φ, r = a cos φ, in which the singularity is
-//! gone; there h' is the polynomial through its samples. Of many panels those far away are taken together
-//! ([`clusters`](super::clusters)). Angles come from differences a − r that are exact on the panels
-//! right of a break.
+//! `J_q` is the jump of h' at the break q. Panels that end well below a are **far**: Gauss's rule in r, with samples
+//! that serve every a. The others, and the panel of a itself, are **near**: Gauss's rule in φ, r = a cos φ, in which
+//! the singularity is gone; there h' is the polynomial through its samples. Where there are many panels, those far away
+//! are grouped ([`clusters`](super::clusters)). Angles come from differences a − r that are exact on the panels right
+//! of a break.
 
 use super::chebyshev::ChebyshevRule;
 use super::clusters::{Cluster, Clusters, NODES, SumPart};
@@ -22,10 +22,10 @@ use gauss_quad::GaussLegendre;
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 
-/// A panel is far from a when its distance is this share of its width: 24 nodes then leave 2.1⁻⁴⁸.
+/// A panel is far from a when its distance is at least this share of its width: 24 nodes then leave an error of 2.1⁻⁴⁸.
 const FAR: f64 = 0.15;
 
-/// From so many panels on those far away are taken together.
+/// From this many panels on, those far away are grouped.
 const MANY: usize = 64;
 
 /// A jump of h' below this share of its size is rounding.
@@ -59,7 +59,7 @@ pub struct Sources {
     jumps: Vec<[f64; 2]>,
 }
 
-/// h' and h'' of `gap` at `radii`; what is not a number counts as nothing, as h'' on a break.
+/// h' and h'' of `gap` at `radii`; what is not a number counts as zero, as h'' on a break.
 fn slopes(gap: &dyn Gap, radii: &[f64; NODES]) -> [[f64; NODES]; 2] {
     let [mut first, mut second, mut third] = [[0.0; NODES]; 3];
     gap.derivatives(1.0, radii, [&mut first, &mut second, &mut third]);
@@ -105,7 +105,7 @@ impl PanelSource {
     }
 }
 
-/// A series at as many places.
+/// A series, summed at as many places as it has terms.
 fn sums(series: &[f64; NODES], places: &[f64; NODES]) -> [f64; NODES] {
     let (mut b1, mut b2) = ([0.0; NODES], [0.0; NODES]);
     for c in series.iter().skip(1).rev() {
@@ -155,7 +155,7 @@ impl TargetRadius {
 }
 
 impl Sources {
-    /// The samples of `gap` on `spans`, panels from the axis on, and its jumps at those of `breaks`.
+    /// The samples of `gap` on `spans`, panels from the axis outward, and its jumps at those of `breaks` that have one.
     ///
     /// # Errors
     /// [`Stopped`].
@@ -170,7 +170,7 @@ impl Sources {
         let samples = Clusters::new(samples, MANY);
         let mut jumps = Vec::new();
         for &q in breaks {
-            // A few units in the last place off: the break is known to the last bit, and on which side it lies is not.
+            // A few units in the last place off: the break is known to the last bit, but not on which side it lies.
             let (out, inward) = (q * (1.0 + 4.0 * f64::EPSILON), q * (1.0 - 4.0 * f64::EPSILON));
             let [outer, inner] = [out, inward].map(|r| gap.jet(r).first);
             let jump = outer - inner;
@@ -186,8 +186,8 @@ impl Sources {
         self.jumps.iter().any(|[q, _]| q.to_bits() == base.to_bits())
     }
 
-    /// g and its derivative at x of `span`: by the radius, or by the panel's variable where h' jumps at its base and on the
-    /// innermost panel.
+    /// g and its derivative at x of `span`: with respect to the radius, or to the panel's variable where h' jumps at
+    /// its base and on the innermost panel.
     pub fn transform(&self, gap: &dyn Gap, span: &Span, x: f64) -> [f64; 2] {
         let target = TargetRadius::new(span, x);
         let a = target.a;

@@ -36,7 +36,7 @@ impl Span {
         }
     }
 
-    /// Whether derivatives on the panel are by its own variable, where `jumps` says of a break whether h' jumps there.
+    /// Whether derivatives on the panel are with respect to its own variable; `jumps` says whether h' jumps at a break.
     pub fn is_steep(&self, jumps: impl Fn(f64) -> bool) -> bool {
         match self.variable {
             Variable::Fifth => true,
@@ -99,7 +99,7 @@ impl Span {
     }
 }
 
-/// The panel of `a` among `spans`, which ascend without holes; a border belongs to the panel that ends with it.
+/// The panel of `a` among `spans`, which ascend without holes; a border belongs to the panel that ends there.
 pub fn panel_of<T>(panels: &[T], span: impl Fn(&T) -> &Span, a: f64) -> usize {
     panels.partition_point(|panel| span(panel).hi < a).min(panels.len().saturating_sub(1))
 }

@@ -6,7 +6,7 @@ use crate::gap::{panels::Span, panels::Unresolved, panels::Variable};
 use crate::problem::Printer;
 use crate::progress::Stopped;
 
-/// The slope of a gap grows on a panel by this factor at most, in so many parts at most.
+/// On a panel the slope of a gap grows by at most this factor; a panel is split into at most this many parts.
 const GRADED: f64 = 1e3;
 const MOST_PARTS: f64 = 64.0;
 
@@ -16,7 +16,7 @@ pub enum TableError {
     /// The gap has structure too fine for the most panels.
     #[error(transparent)]
     TooFine(Unresolved),
-    /// It was no longer wanted.
+    /// The table was no longer wanted.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
@@ -38,7 +38,7 @@ pub(super) fn graded(gap: &dyn Gap, spans: Vec<Span>) -> Vec<Span> {
     let parted = |span: Span| {
         let [inner, outer] = [span.lo, span.hi].map(|r| gap.jet(r).first.abs());
         let growth = if span.variable == Variable::Radius && span.lo > 0.0 { outer / inner } else { 1.0 };
-        // Where the slope vanishes at the inner end there is no number of parts that would do.
+        // Where the slope vanishes at the inner end, no number of parts would do.
         let parts = if growth > GRADED { (ln(growth) / ln(GRADED)).ceil().min(MOST_PARTS) } else { 1.0 };
         let border = |k: f64| if k < parts { span.lo * pow(span.hi / span.lo, k / parts) } else { span.hi };
         let parts = std::iter::successors(Some(0.0), |k| Some(k + 1.0)).take_while(move |k| *k < parts);

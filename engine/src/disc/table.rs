@@ -4,10 +4,10 @@
 //! g(a) = a ∫₀^{π/2} h'(a sin θ) dθ      with  g',  ∫₀ᵃ g,  ∫₀ᵃ g²
 //! ```
 //!
-//! On panels that are proved to resolve h', and so g ([`panels`](crate::gap::panels)), each is a Chebyshev series; powers of r are
-//! closed forms. A table belongs to a gap alone: adhesion, modulus, device and start are no part of it. It reaches as far
-//! as it was asked to; asked for more it is made anew, in stages that do not depend on what was asked before, so that the same
-//! question has the same answer to the last bit.
+//! On panels that are proved to resolve h', and so g ([`panels`](crate::gap::panels)), each is a Chebyshev series;
+//! powers of r have closed forms. A table belongs to a gap alone: adhesion, modulus, device and start are no part of
+//! it. It reaches as far as requested. When more is requested it is made anew, in stages that do not depend on earlier
+//! requests, so that the same question has the same answer to the last bit.
 //!
 //! I. N. Sneddon, Int. J. Eng. Sci. 3, 47 (1965), doi:10.1016/0020-7225(65)90019-4, eqs. (4.1)-(4.9), for g.
 
@@ -28,17 +28,18 @@ use std::fmt;
 use std::num::NonZero;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// The smallest radius that matters, as a share of the largest asked for first.
+/// The smallest radius that matters, as a share of the largest one first requested.
 const SMALLEST: f64 = 1e-5;
 
-/// Panels of a gap with waves are half a wave wide; towards the axis each is a fourth of the one before.
+/// Panels of a gap with waves are half a wave wide; towards the axis each is a fourth as wide as the one before.
 const WAVE_SHARE: f64 = 0.5;
 const TOWARDS_AXIS: f64 = 4.0;
 
-/// The panel of a cubic right of a knot is at most this many times as wide as the interval before it: 16 nodes then leave 1e-13.
+/// The panel of a cubic right of a knot is at most this many times as wide as the interval before it: 16 nodes then
+/// leave an error of 1e-13.
 const WIDER: f64 = 1.25;
 
-/// Panels of half a wave at most: some hundred megabytes.
+/// The most panels of half a wave: a few hundred megabytes.
 const MOST_WAVE_PANELS: f64 = 100_000.0;
 
 /// Tables reach this close to the radius where the gap ends; a spline reaches its last knot.
@@ -47,23 +48,23 @@ const SHARE_OF_KNOWN: f64 = 0.999_999;
 /// How much finer towards the axis each step in fineness is.
 const FINER: f64 = 1e-3;
 
-/// Waves times panels times angles beyond which waves are sampled as any other gap is.
+/// Waves times panels times angles beyond which waves are sampled like any other gap.
 const MANY_WAVES: f64 = 3e7;
 
-/// An error that is only rounding: more digits are not told.
+/// An error that is only rounding: no more digits are reported.
 const ROUNDING: f64 = 1e-13;
 
 /// Radii at which the table is checked against the gap itself.
 const CHECKS: u32 = 6;
 
-/// Tables kept, and as many more as there are cores: each may be at work on a gap of its own.
+/// Tables kept, in addition to one for each core: each core may be at work on a gap of its own.
 const KEPT: usize = 8;
 
 /// The tables of the last gaps, each with its key.
 pub type KeptTables<K> = Mutex<Vec<(K, Arc<Table>)>>;
 
-/// How far panels reach and how finely they begin: nothing else decides them, so that an answer never depends on what was asked
-/// before.
+/// How far panels reach and how finely they begin: nothing else decides them, so that an answer never depends on
+/// earlier requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct TableStage {
     /// They reach to 2^(k/4), or to the end of the gap.
@@ -78,7 +79,7 @@ pub struct Table {
     form: Form,
     /// What the gap is a mixture of, with the weights, where that is known.
     blend: Option<(Arc<Blend>, Vec<f64>)>,
-    /// The panels that have been asked for.
+    /// The panels requested so far.
     stages: Mutex<BTreeMap<TableStage, Arc<Panels>>>,
 }
 
@@ -106,7 +107,7 @@ impl Table {
         Self { gap, form, blend: Some((Arc::clone(blend), weights)), stages: Mutex::default() }
     }
 
-    /// The table of `gap`, which is that of `key`: made once, and shared while it is among the last ones asked for.
+    /// The table of `gap`, which is the gap of `key`: made once, and shared while it is among the last ones requested.
     ///
     /// # Errors
     /// [`TableError`].
@@ -131,7 +132,8 @@ impl Table {
             table.up_to_while(reach, 0, progress)?;
             return Ok(table);
         }
-        // Not under the lock, nor what takes memory or gives it back: another gap must not wait for this one.
+        // Not under the lock, and neither is anything that allocates or frees memory: another gap must not wait for
+        // this one.
         let table = Arc::new(Self::new(Arc::clone(gap), reach, progress)?);
         let entry = (key.clone(), Arc::clone(&table));
         let oldest = {
@@ -189,7 +191,7 @@ impl Table {
     ) -> Result<Arc<Panels>, TableError> {
         let end = self.end();
         let whole = reach >= end || matches!(self.form, Form::Cubic(_));
-        // A positive number has a binary logarithm of some hundred at most.
+        // A positive number has a binary logarithm of about a thousand at most.
         #[expect(clippy::cast_possible_truncation)]
         let steps = (4.0 * log2(reach.max(f64::MIN_POSITIVE)) - 1e-9).ceil() as i32;
         let stage = TableStage { reach: if whole { i32::MAX } else { steps }, fineness };
@@ -270,7 +272,8 @@ impl Table {
         Ok(())
     }
 
-    /// Decimal digits of g on `panels`, as found at a few radii where the gap itself is compared with what the table makes of it.
+    /// Decimal digits of g on `panels`, as found at a few radii where the gap itself is compared with the one that the
+    /// table gives.
     ///
     /// ```text
     /// h(r) = (2/π) ∫₀ʳ g(a)/√(r² − a²) da
@@ -303,19 +306,19 @@ fn kept_at_most() -> usize {
     KEPT + *CORES.get_or_init(|| std::thread::available_parallelism().map_or(1, NonZero::get))
 }
 
-/// Whether each wave may be transformed for itself.
+/// Whether each wave may be transformed by itself.
 fn few(waves: &[Wave], reach: f64) -> bool {
     let steepest = waves.iter().fold(0.0_f64, |most, wave| most.max(wave.wavenumber));
     let phase = steepest * reach;
     waves.len() as f64 * phase * phase <= MANY_WAVES
 }
 
-/// The pieces parted so that a panel of each is resolved.
+/// The pieces, split so that a panel resolves each.
 ///
-/// The first, which begins at the axis, is parted until its innermost part ends at `smallest` or below: of the innermost panel
-/// no more is asked than that its discs are too small to be stable. On the panel right of a knot the transform is smooth in the
-/// root of the distance from it, but not at the knot before: a panel much wider than the interval before it has parts, each
-/// as wide as its distance from the knot.
+/// The first, which begins at the axis, is split until its innermost part ends at `smallest` or below: the innermost
+/// panel needs only discs that are too small to be stable. On the panel right of a knot the transform is smooth in the
+/// root of the distance from that knot, but not at the knot before: a panel much wider than the interval before it is
+/// split into parts, each as wide as its distance from the knot.
 fn parted(pieces: &[Piece], smallest: f64) -> Vec<Piece> {
     let Some(first) = pieces.first() else { return Vec::new() };
     let inward = |outer: &f64| (*outer > smallest).then(|| outer / TOWARDS_AXIS);
@@ -345,7 +348,7 @@ fn part(piece: &Piece, [lo, hi]: [f64; 2]) -> Piece {
     Piece { lo, hi, slope: [c0 + t * (c1 + t * c2), c1 + 2.0 * t * c2, c2] }
 }
 
-/// Panels of half the shortest wave, and towards the axis each a fourth of the one before.
+/// Panels of half the shortest wave, and towards the axis each a fourth as wide as the one before.
 fn wave_spans(waves: &[Wave], reach: f64, smallest: f64) -> Result<Vec<Span>, TableError> {
     let steepest = waves.iter().fold(0.0_f64, |most, wave| most.max(wave.wavenumber));
     let span = |lo, hi| Span { lo, hi, variable: Variable::Radius };
@@ -528,7 +531,7 @@ mod tests {
 
     #[test]
     fn a_wrong_table_has_no_digits() {
-        /// A paraboloid whose slope is not that of its values.
+        /// A paraboloid whose slope does not match its values.
         #[derive(Debug)]
         struct Wrong;
 

@@ -5,9 +5,9 @@
 //! g'(a) = 2κa + Σ A q [∫ sin(q a sin θ + φ) dθ + q a ∫ cos(q a sin θ + φ) sin θ dθ]
 //! ```
 //!
-//! One Gauss rule in θ serves all panels, and on a panel a = c + d x the angle is that of its centre and a part that
-//! panels of one width share: with the addition theorems a panel takes one sine and cosine for each θ, not one for each θ
-//! and x.
+//! One Gauss rule in θ serves all panels. On a panel a = c + d x the angle is that of its centre plus a part that
+//! panels of one width share: with the addition theorems a panel takes one sine and cosine for each θ, not one for each
+//! θ and x.
 
 use super::chebyshev::ChebyshevRule;
 use crate::elementary::{sin, sin_cos};
@@ -30,7 +30,7 @@ const HALF: usize = NODES / 2;
 const PER_RADIAN: f64 = 1.0 / 3.0;
 const MORE: f64 = 14.0;
 
-/// Numbers of nodes are multiples of this, and rules of up to so many multiples are kept.
+/// Numbers of nodes are multiples of this, and rules of up to this many multiples are kept.
 const GROUP: usize = 4;
 const KEPT: usize = 256;
 
@@ -113,10 +113,10 @@ struct WaveAngles {
 }
 
 impl WaveAngles {
-    /// The rule of at least so many nodes: one of a few sizes, each made once while it is small enough to be kept.
+    /// The rule of at least this many nodes: one of a few sizes, each made once if it is small enough to be kept.
     fn of(nodes: f64) -> Arc<Self> {
         static RULES: [OnceLock<Arc<WaveAngles>>; KEPT] = [const { OnceLock::new() }; KEPT];
-        // Positive and at most some thousand.
+        // Positive and at most a few thousand.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let groups = (nodes / GROUP as f64).ceil() as usize;
         let make = || Arc::new(Self::new(groups * GROUP));

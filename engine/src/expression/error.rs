@@ -1,20 +1,20 @@
-//! Why a text is no expression, and where.
+//! Why a text is not an expression, and where.
 
 use thiserror::Error;
 
-/// Characters of an expression at most.
+/// The most characters in an expression.
 pub const LENGTH: usize = 4096;
 
-/// Parentheses, calls and powers within each other at most.
+/// The deepest nesting of parentheses, calls and powers.
 pub const DEPTH: usize = 64;
 
-/// Operations of an expression at most: more are no gap that a person wrote.
+/// The most operations in an expression: nobody types a gap with more.
 pub const OPERATIONS: usize = 1000;
 
-/// Characters of a name at most, so that messages stay in a line.
+/// The most characters in a name, so that messages stay on one line.
 pub const NAME: usize = 40;
 
-/// Where an operand was expected, a `*` is the second of a `**`.
+/// A `*` where an operand was expected is the second one of a `**`.
 const POWERS: &str = "; powers are written with ^";
 
 /// A place in a text.
@@ -34,7 +34,7 @@ impl TextPlace {
     }
 }
 
-/// Why a text is no formula, and where.
+/// Why a text is not a formula, and where.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("column {}: {problem}", place.column)]
 pub struct FormulaError {
@@ -50,13 +50,13 @@ pub enum SyntaxProblem {
     /// More text than a formula may have.
     #[error("the text is longer than {LENGTH} characters")]
     TooLong,
-    /// Parentheses, calls and powers within each other.
+    /// Parentheses, calls and powers nested too deeply.
     #[error("parentheses, functions and powers are nested more than {DEPTH} deep")]
     TooDeep,
     /// More operations than a formula may have.
     #[error("more than {OPERATIONS} operations")]
     TooManyOperations,
-    /// A name of a parameter or function that goes on and on.
+    /// A name of a parameter or function that is too long.
     #[error("a name is longer than {NAME} characters")]
     LongName,
     /// A number beyond the largest double.
@@ -99,7 +99,7 @@ pub enum SyntaxProblem {
         /// What to write in its place.
         instead: Option<&'static str>,
     },
-    /// A name before a parenthesis that is no function.
+    /// A name before a parenthesis that is not a function.
     #[error("there is no function {name}; a product is written {name}*(...)")]
     UnknownFunction {
         /// The name.
@@ -156,7 +156,7 @@ impl SyntaxProblem {
     }
 }
 
-/// One character for a message: what a terminal must not get is escaped.
+/// One character for a message: what must not reach a terminal is escaped.
 fn quoted(character: char) -> String {
     format!("'{}'", character.escape_debug())
 }

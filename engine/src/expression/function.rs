@@ -14,7 +14,7 @@ pub const CONSTANTS: [(&str, f64); 2] = [("pi", PI), ("e", E)];
 pub enum Unary {
     /// −x.
     Negate,
-    /// sin x, in radians as all angles.
+    /// sin x, in radians like all angles.
     Sin,
     /// cos x.
     Cos,
@@ -124,7 +124,7 @@ pub fn constant(name: &str) -> Option<f64> {
 }
 
 impl Unary {
-    /// The value at `x`: infinite or not a number where mathematics has none.
+    /// The value at `x`: infinite or not a number where it is not defined.
     pub fn value(self, x: f64) -> f64 {
         match self {
             Self::Negate => -x,
@@ -152,7 +152,7 @@ impl Unary {
 }
 
 impl Binary {
-    /// The value at (`a`, `b`): infinite or not a number where mathematics has none.
+    /// The value at (`a`, `b`): infinite or not a number where it is not defined.
     pub fn value(self, a: f64, b: f64) -> f64 {
         match self {
             Self::Add => a + b,
@@ -160,7 +160,7 @@ impl Binary {
             Self::Multiply => a * b,
             Self::Divide => a / b,
             Self::Power => pow(a, b),
-            // `f64::min` would hide what is not a number.
+            // `f64::min` would hide a value that is not a number.
             Self::Min | Self::Max if a.is_nan() || b.is_nan() => f64::NAN,
             Self::Min => a.min(b),
             Self::Max => a.max(b),

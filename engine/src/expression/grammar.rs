@@ -1,6 +1,6 @@
 //! Text → program.
 //!
-//! The grammar stands in the head of [`super`]. Every loop moves forward and every descent is counted, so the time
+//! The grammar is given at the head of [`super`]. Every loop moves forward and every descent is counted, so the time
 //! and the stack that a text takes are bounded by its length: [`LENGTH`], [`DEPTH`], [`OPERATIONS`].
 
 use super::error::{DEPTH, FormulaError, LENGTH, NAME, OPERATIONS, SyntaxProblem, TextPlace, piece};
@@ -18,7 +18,7 @@ use winnow::token::{one_of, take_while};
 struct ProgramWriter {
     program: Program,
     operations: usize,
-    /// Whether r and parameters may stand in the text.
+    /// Whether r and parameters may occur in the text.
     variables: bool,
 }
 
@@ -31,12 +31,12 @@ struct SyntaxFault {
     problem: SyntaxProblem,
 }
 
-/// The grammar fails without a word of its own only where an operand must stand.
+/// Only where an operand must stand does the grammar fail without a message of its own.
 impl ParserError<FormulaInput<'_>> for SyntaxFault {
     type Inner = Self;
 
     fn from_input(input: &FormulaInput<'_>) -> Self {
-        // Blanks are skipped together with what follows them: here they still stand before it.
+        // Blanks are skipped together with what follows them: here they are still in front of it.
         let rest: &str = input;
         let trimmed = rest.trim_ascii_start();
         let byte = input.current_token_start() + rest.len() - trimmed.len();
@@ -102,7 +102,7 @@ fn leading(text: &str, variables: bool) -> Result<(Program, usize), FormulaError
     }
 }
 
-/// What is wrong with `rest`, which stands behind a complete operand.
+/// What is wrong with `rest`, which follows a complete operand.
 fn after_operand(rest: &str, expected: &'static str) -> SyntaxProblem {
     let found = piece(rest);
     match rest.chars().next() {
@@ -151,7 +151,7 @@ fn product(input: &mut FormulaInput, depth: usize) -> Parsed {
 }
 
 fn unary(input: &mut FormulaInput, depth: usize) -> Parsed {
-    // A loop and not a descent: a row of signs takes no stack.
+    // A loop, not a descent: a row of signs takes no stack.
     let mut negative = false;
     while let Some(sign) = symbol(input, ['+', '-'])? {
         negative ^= sign == '-';
@@ -248,7 +248,7 @@ fn named(input: &mut FormulaInput, depth: usize) -> Parsed {
     emit(input, Op::Parameter(index))
 }
 
-/// One sum in parentheses, or with `commas` several; the number of them.
+/// One sum in parentheses, or several with `commas`; returns their number.
 fn enclosed(input: &mut FormulaInput, depth: usize, commas: bool) -> Parsed<usize> {
     let opening = input.current_token_start();
     '('.parse_next(input)?;

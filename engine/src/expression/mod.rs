@@ -8,9 +8,8 @@
 //! operand  = number | constant | name | function "(" sum ("," sum)? ")" | "(" sum ")"
 //! ```
 //!
-//! A product always has its `*`, so that a name is never read as two. The result is a postfix program, evaluated by
-//! whoever knows what r is: `gap::formula` with derivatives, `units`
-//! for plain numbers.
+//! A product always has its `*`, so that a name is never read as two. The result is a postfix program, evaluated by the
+//! code that knows what r is: `gap::formula` with derivatives, `units` for plain numbers.
 //!
 //! | file | what lives there |
 //! |---|---|

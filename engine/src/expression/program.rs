@@ -1,4 +1,4 @@
-//! A parsed expression: its operations in the order in which they are done.
+//! A parsed expression: its operations in the order in which they are carried out.
 
 use super::function::{Binary, Unary};
 
@@ -27,7 +27,7 @@ pub struct Program {
 }
 
 impl Program {
-    /// The value of an expression without names; one that has them is not a number.
+    /// The value of an expression without names; with names it is not a number.
     pub fn value(&self) -> f64 {
         let mut stack = Vec::new();
         // The grammar gives every operation its operands.

@@ -5,8 +5,8 @@
 //! P(t > τ) = ½ I_{ν/(ν + τ²)}(ν/2, ½),     P(F > f) = I_{d₂/(d₂ + d₁ f)}(d₂/2, d₁/2)
 //! ```
 //!
-//! The fraction is summed by Lentz's method, to 1e-13 of its value. Crates of special functions use those of the machine's library,
-//! whose last digits differ from machine to machine.
+//! The fraction is summed by Lentz's method, to 1e-13 of its value. Crates of special functions use the machine's
+//! library, whose last digits differ from machine to machine.
 
 use crate::elementary::{exp, ln, ln_1p};
 use crate::root;
@@ -63,7 +63,7 @@ pub fn beyond_f(f: f64, above: f64, below: f64) -> f64 {
     incomplete_beta(below / (below + above * f), 0.5 * below, 0.5 * above)
 }
 
-/// t that is passed on either side by this share alone: 1.96 for 0.05 and many degrees of freedom.
+/// The t beyond which, on either side, only this share lies: 1.96 for 0.05 and many degrees of freedom.
 #[must_use]
 pub fn t_of(share: f64, degrees: f64) -> f64 {
     let mut hi = 1.0;
@@ -101,7 +101,7 @@ mod tests {
             let found = beyond_f(f, above, below);
             assert!((found - share).abs() < 0.02 * share, "{f}: {found}");
         }
-        // One degree above is the square of t, whatever the sizes.
+        // With one degree above, F is the square of t, whatever the sizes.
         for degrees in [3.0, 50.0, 1e5] {
             assert!((beyond_f(9.0, 1.0, degrees) / beyond_t(3.0, degrees) - 1.0).abs() < 1e-10);
         }

@@ -1,4 +1,5 @@
-//! How well each error is known: the degrees of freedom of the variance of each value, by which its interval is that of Student's t.
+//! How well each error is known: the degrees of freedom of the variance of each value, which its Student's t interval
+//! needs.
 //!
 //! ```text
 //! V_j = Σ_i w_ij² (a n_xi² + b n_Pi²) + what is known before,     w = H⁻¹Jᵀ,  a and b of `spread`
@@ -6,18 +7,19 @@
 //! C = 2e n/(n − p) (Σ_i n_ik² n_il²/var_i²)⁻¹,     τ₂ = 1 + 2a²ρ²/(1 − ρ²)
 //! ```
 //!
-//! ν is twice the square of a variance over the variance with which it is known: F. E. Satterthwaite, Biom. Bull. 2, 110 (1946); B. L.
-//! Welch, Biometrika 34, 28 (1947). C is the inverse of Fisher's information of the two variances in normal residuals; where one variance is
-//! that of all rows this is ν = (n − p)/e. e is 1 for squares. For those that count up to c = 2.5 deviations it is
-//! ½ var min(z², c²)/(mean of z² up to c)² = ½ · 1.6815/0.8999² = 1.04. Squares of noise that is correlated as a ρᵏ are correlated as its
-//! square, and ρ itself is known to var ρ = (1 − ρ²)/m by the m rows apart: M. S. Bartlett, J. R. Stat. Soc. Suppl. 8, 27 (1946).
+//! ν is twice the square of a variance over the variance with which it is known: F. E. Satterthwaite, Biom. Bull. 2,
+//! 110 (1946); B. L. Welch, Biometrika 34, 28 (1947). C is the inverse of Fisher's information of the two variances in
+//! normal residuals; where all rows have one variance this is ν = (n − p)/e. e is 1 for squares. For squares that count
+//! up to c = 2.5 deviations it is ½ var min(z², c²)/(mean of z² up to c)² = ½ · 1.6815/0.8999² = 1.04. Where noise is
+//! correlated as a ρᵏ, its squares are correlated as the square of that. ρ itself is known to var ρ = (1 − ρ²)/m from
+//! the m rows apart: M. S. Bartlett, J. R. Stat. Soc. Suppl. 8, 27 (1946).
 
 use super::problem::FitProblem;
 use super::scatter::{Correlation, Scatter, together};
 use super::spread::Spread;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
-/// What squares that count up to 2.5 deviations lose of the degrees of freedom.
+/// The factor by which squares that count up to 2.5 deviations reduce the degrees of freedom.
 pub(super) const LOST: f64 = 1.04;
 /// The change of ρ by which a derivative is taken is at most this share of 1 − ρ.
 const SHARE: f64 = 0.3;
@@ -30,14 +32,15 @@ pub(super) struct VarianceSources<'a> {
     pub noisy: &'a DMatrix<f64>,
     /// The Jacobian.
     pub jacobian: &'a DMatrix<f64>,
-    /// What the points give of the variances, and all of them.
+    /// The part of the variances that the points give, and all of them.
     pub points: &'a DVector<f64>,
     pub whole: &'a DVector<f64>,
-    /// The rows that are there.
+    /// The number of rows.
     pub rows: usize,
 }
 
-/// With so many degrees of freedom Student's t is the normal distribution to eight digits: a value that is known beforehand has more.
+/// With this many degrees of freedom Student's t is the normal distribution to eight digits: a value that is known
+/// beforehand has more.
 const NORMAL: f64 = 1e8;
 
 /// The degrees of freedom of the variance of each value.
@@ -88,7 +91,7 @@ pub(super) fn degrees(
     DVector::from_iterator(p, (0..p).map(of_value))
 }
 
-/// (∂ ln V'/∂ρ)² var ρ of each value; none of white noise.
+/// (∂ ln V'/∂ρ)² var ρ of each value; zero for white noise.
 fn of_decay(problem: &FitProblem, made: &VarianceSources, scatter: &Scatter) -> DVector<f64> {
     let none = DVector::zeros(made.whole.len());
     let Correlation { share, decay } = scatter.correlation;

@@ -6,8 +6,8 @@
 //! ∂δ/∂ln E* = T/2     ∂P/∂ln E* = P + E* s T     ∂δ/∂ln γ = −T/2     ∂P/∂ln γ = −E* s T     ∂Δ/∂ln k = −P/k
 //! ```
 //!
-//! So the paths beside one path are needed for values of the gap alone, and where a point lies on a jump or at an end of an arc, which move
-//! with every value.
+//! So neighbouring paths are needed only for values of the gap, and where a point lies on a jump or at an end of an
+//! arc, which move with every value.
 
 use super::distance::Nearest;
 use super::least_squares::LeastSquares;
@@ -25,7 +25,7 @@ pub struct FootedPaths {
     feet: Vec<Option<Nearest>>,
 }
 
-/// How the scaled point moves against its foot, per unit of u.
+/// How the scaled point moves relative to its foot, per unit of u.
 fn shift(target: &Target) -> Option<fn(&Datum) -> PathPlace> {
     match target {
         Target::Offset => Some(|_| [-1.0, 0.0, 0.0]),
@@ -35,7 +35,7 @@ fn shift(target: &Target) -> Option<fn(&Datum) -> PathPlace> {
     }
 }
 
-/// What of a path a parameter moves by a closed form, and on which branch alone.
+/// What a parameter moves on a path by a closed form, and the branch if it does so on one alone.
 fn mover(target: &Target) -> Option<(Mover, Option<Segment>)> {
     match target {
         Target::Key(key) if key == "material.effective_modulus" => Some((Mover::Modulus, None)),
@@ -79,7 +79,9 @@ impl FitProblem {
         }
     }
 
-    /// The paths on either side of `u` in the parameter `j`, with the step between them; where one has other snaps, that of `paths`.
+    /// The paths on either side of `u` in the parameter `j`, with the step between them; where one has other snaps,
+    /// `paths` takes its place.
+    /// left out.
     fn either_side(&self, u: &[f64], j: usize, paths: &Paths) -> Option<([Option<Paths>; 2], f64)> {
         let step = paths.of(Segment::Retraction).step();
         let beside = |h: f64| {

@@ -5,12 +5,12 @@
 //! Φ_i = E ψ'(r_i) = erf(t/√2),    V_i² = E ψ(r_i)² = s_i² [erf(t/√2) − √(2/π) t exp(−t²/2) + t² erfc(t/√2)],    t = c/s_i
 //! ```
 //!
-//! ψ is Huber's, linear up to c; `s_i` is the standard deviation of the residual i, which goes with the slope of the curve, by the mean of
-//! squares that count up to 2.5 of them: P. J. Huber, Ann. Math. Stat. 35, 73 (1964), proposal 2. R is the correlation of the noise of the
-//! rows, 1 for white noise, and K the weights of what is known before. Where all `s_i` are one and K is none this is P. J. Huber, *Robust
-//! Statistics* (1981), section 7.6; where they differ, H. White, Econometrica 48, 817 (1980), with variances that are known but for two
-//! factors. The condition is that of J with columns of length 1: beyond
-//! [`LARGEST_CONDITION`] no errors are told.
+//! ψ is Huber's, linear up to c; `s_i` is the standard deviation of the residual i, which depends on the slope of the
+//! curve, from the mean of squares that count up to 2.5 deviations: P. J. Huber, Ann. Math. Stat. 35, 73 (1964),
+//! proposal 2. R is the correlation of the noise of the rows, 1 for white noise, and K the weights of what is known
+//! before. Where all `s_i` are one and K is zero this is P. J. Huber, *Robust Statistics* (1981), section 7.6; where
+//! they differ, H. White, Econometrica 48, 817 (1980), with variances that are known up to two factors. The condition
+//! is that of J with columns of length 1: beyond [`LARGEST_CONDITION`] no errors are reported.
 
 use super::degrees::{VarianceSources, degrees};
 use super::least_squares::Evaluated;
@@ -27,11 +27,12 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// The condition beyond which errors mean nothing.
 pub const LARGEST_CONDITION: f64 = 1e3;
-/// The same where values that are given with an error say most of what is known in the weakest direction: that of rounding.
+/// The same where values given with an error provide most of what is known in the weakest direction: the limit set by
+/// rounding.
 const LARGEST_WITH_GIVEN: f64 = 1e6;
 /// Most of what is known.
 const HALF: f64 = 0.5;
-/// Exponents this near to a half are one.
+/// Exponents this near to a multiple of a half count as one.
 const HALVES: f64 = 0.02;
 
 /// What the points determine.
@@ -47,9 +48,9 @@ pub struct Determined {
     pub correlations: Option<DMatrix<f64>>,
     /// (JᵀJ)⁻¹, where they are determined.
     pub inner: Option<DMatrix<f64>>,
-    /// Of each value given with an error, its share of the variance of each parameter.
+    /// For each value given with an error, its share of the variance of each parameter.
     pub shares: Vec<Vec<f64>>,
-    /// What cannot be told, in words.
+    /// What the points cannot tell, in words.
     pub direction: Option<String>,
 }
 
@@ -67,7 +68,7 @@ pub fn determined(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatter, r
     };
     let p = u.len();
     let factor = level(&problem.real(&at.residuals), problem.taken(), robust);
-    // What is known before counts as points do.
+    // What is known before counts like the points.
     let known = problem.of_priors() * factor.sqrt();
     let rows = at.jacobian.nrows();
     let mut all = at.jacobian.clone().resize_vertically(rows + known.nrows(), 0.0);
@@ -84,7 +85,7 @@ pub fn determined(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatter, r
     let Some(bread) = (bread + &known).try_inverse() else { return none };
     let of_points = (&bread * &points * &bread).diagonal();
     let mut whole = &bread * (points + &known) * &bread;
-    // The level of a force in steps is not known better than they are, however many rows stand at it.
+    // The level of a force in steps is known no better than the steps allow, however many rows stand at it.
     let level = &inner * at.jacobian.tr_mul(&rounding(problem, scatter, at.residuals.len()));
     whole += &level * level.transpose();
     let share = |prior: &Prior, j: usize| {
@@ -119,14 +120,14 @@ pub(super) struct White {
     pub(super) condition: f64,
     /// (JᵀJ)⁻¹; `None` where the condition is too large.
     pub(super) inner: Option<DMatrix<f64>>,
-    /// How many directions it tells.
+    /// How many directions it determines.
     pub(super) rank: usize,
-    /// The direction of which it says least.
+    /// The direction about which it says least.
     pub(super) weakest: Vec<f64>,
 }
 
 impl White {
-    /// Of a Jacobian whose last `known` rows are of what is known before; `None` without columns.
+    /// For a Jacobian whose last `known` rows stand for what is known before; `None` without columns.
     pub(super) fn of(mut jacobian: DMatrix<f64>, known: usize) -> Option<Self> {
         let p = jacobian.ncols();
         let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
@@ -142,7 +143,7 @@ impl White {
         let (most, least) = (values.max(), values.min());
         let condition = if least > 0.0 { most / least } else { f64::INFINITY };
         let weakest = values.imin();
-        // A direction in which the points say little is still known where a value is given with an error.
+        // A direction about which the points say little is still known where a value is given with an error.
         let given = (of_known * v.row(weakest).transpose()).norm_squared() > HALF * least * least;
         let most = if given { LARGEST_WITH_GIVEN } else { LARGEST_CONDITION };
         let refused = condition.is_nan() || condition > most || lengths.contains(&0.0);
@@ -159,14 +160,15 @@ impl White {
     }
 }
 
-/// The standard deviation in σ by which all rows apart are off together, where the force is in steps:
+/// The standard deviation in σ by which all rows apart are off together, where the force comes in steps:
 ///
 /// ```text
 /// q²/(2π²) Σ_k exp(−4π²k²σ²/q²)/k²         q²/12 without noise, and nothing where noise carries the force over many steps
 /// ```
 ///
-/// B. Widrow and I. Kollár, *Quantization Noise* (2008), chapter 4. Rows apart that stand on both sides of an edge between two steps scatter by
-/// up to q/2 without any noise, so those in contact tell it, whose force goes over many steps.
+/// B. Widrow and I. Kollár, *Quantization Noise* (2008), chapter 4. Rows apart on both sides of an edge between two
+/// steps scatter by up to q/2 without any noise, so the noise is taken from the rows in contact, whose force covers
+/// many steps.
 fn rounding(problem: &FitProblem, scatter: &Scatter, rows: usize) -> DVector<f64> {
     const TERMS: u32 = 20;
     let (per, step, sigma) = (problem.per_point(), problem.step, problem.sigma[1]);
@@ -223,7 +225,7 @@ pub(super) fn sandwich(
     let noisy = scaled(&|[_, v]| *v);
     let points =
         if correlation.share > 0.0 { together(problem, &noisy, correlation) } else { noisy.tr_mul(&noisy) };
-    // A fit takes more of noise that hangs together: tr (JᵀJ)⁻¹JᵀRJ of n rows, p of white noise.
+    // A fit takes up more of correlated noise: tr (JᵀJ)⁻¹JᵀRJ of n rows, instead of p for white noise.
     let taken_more = if correlation.share > 0.0 {
         let n = problem.real(&at.residuals).len() as f64;
         let of = |crossed: DMatrix<f64>| (inner * crossed).trace();
@@ -232,7 +234,7 @@ pub(super) fn sandwich(
     } else {
         1.0
     };
-    // Without an end of what counts the squares of all rows do.
+    // Without a limit on what counts, the squares of all rows do.
     let level = if robust {
         1.0
     } else {
@@ -244,7 +246,7 @@ pub(super) fn sandwich(
     Sandwich { points: points * (level * taken_more), bread, noisy, spread }
 }
 
-/// The variance of the residuals, of which the parameters take `p`.
+/// The variance of the residuals, of which the parameters take up `p`.
 fn level(residuals: &[f64], p: usize, robust: bool) -> f64 {
     let n = residuals.len() as f64;
     let squares = residuals.iter().map(|r| r * r).sum::<f64>() / n;
@@ -261,7 +263,7 @@ pub(super) fn words(
     direction: &[f64],
 ) -> String {
     let largest = direction.iter().fold(0.0_f64, |most, d| most.max(d.abs()));
-    // A length of the gap is what people know best; it leads where it does not lag.
+    // A length of the gap is what people know best; it leads unless another moves clearly more.
     let leads = |j: &usize| {
         let of_gap = parameters[*j].key().starts_with("gap.");
         direction[*j].abs() * if of_gap { 1.2 } else { 1.0 }
@@ -320,7 +322,7 @@ fn products(
     for &j in order.iter().filter(|j| **j != lead) {
         let exponent = -moves[j] / moves[lead];
         if parameters[j].scale.is_some() {
-            // A shift that hardly moves has no part in it.
+            // A shift that hardly moves plays no part.
             if exponent.abs() > HALVES {
                 return None;
             }

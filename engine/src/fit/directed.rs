@@ -1,4 +1,5 @@
-//! Fits in the direction in which the columns run. Where the points leave two in doubt both are fitted, and the better is taken.
+//! Fits in the direction in which the columns run. Where the points leave two directions in doubt, both are fitted and
+//! the better one is taken.
 
 use super::options::{FitError, Options};
 use super::run::{Fit, fit_branches};
@@ -9,7 +10,7 @@ use crate::preset::Preset;
 use crate::progress::{Progress, ProgressPart};
 use crate::units::number::short;
 
-/// A direction is the better one if its χ² is smaller by so much.
+/// A direction is the better one if its χ² is smaller by this much.
 const CLEAR: f64 = 20.0;
 
 /// Fits the free keys of `preset` to its own measured curve, as [`fit`] does.
@@ -34,7 +35,7 @@ pub fn fit_own(preset: &Preset, options: &Options, progress: &dyn Progress) -> R
     Ok(found)
 }
 
-/// The points of a preset's own measured curve, and what is used of them.
+/// The points of a preset's own measured curve, and which of them are used.
 fn seen(preset: &Preset, options: &Options) -> Result<(Points, Asked), FitError> {
     let (source, reading) = (preset.data.source.as_ref().ok_or(FitError::NoData)?, preset.reading());
     let points = source.points(&reading).map_err(FitError::Data)?;
@@ -63,8 +64,8 @@ pub(super) fn branches_of(preset: &Preset, options: &Options) -> Result<Branches
     Ok(branches)
 }
 
-/// Fits the free keys of `preset`, its device and what lies between the instrument and it among them, to `points`. Where
-/// `progress` says stop, the best so far is what there is.
+/// Fits the free keys of `preset` to `points`; they may include its device and what lies between it and the instrument.
+/// Where `progress` says stop, the best fit so far is returned.
 ///
 /// # Errors
 /// [`FitError`].
@@ -80,7 +81,7 @@ pub fn fit(
     let branches = points.branches(&options.asked)?;
     let Some(other) = branches.or else { return fit_branches(preset, &branches, options, progress) };
     let first = fit_branches(preset, &branches, options, &ProgressPart::new(progress, [0.0, 0.3]));
-    // One is judged by the noise of the other.
+    // The second is judged by the noise of the first.
     let sigma = first.as_ref().map_or(options.asked.sigma, |fit| {
         let of = |axis: usize| Some(fit.noise.sigma[axis]).filter(|sigma| *sigma > 0.0);
         [of(0), of(1), of(2)]

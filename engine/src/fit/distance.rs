@@ -4,8 +4,9 @@
 //! c(s) = (x/σ_x, P/σ_P[, s/σ_s]),     (m − c)·c' = 0 at the foot,     r = (m − c)·n
 //! ```
 //!
-//! The polyline gives the stretch on which the foot lies; there it is the root of (m − c)·c', with the exact c'. An error ε of the
-//! foot changes r by ε² times the curvature. At the ends of a piece the distance is that from the end, signed as beside it.
+//! The polyline gives the stretch on which the foot lies; there the foot is the root of (m − c)·c', with the exact c'.
+//! An error ε of the foot changes r by ε² times the curvature. At the ends of a piece the distance is that from the
+//! end, with the sign that it has beside the end.
 
 use super::path::{FitPath, Foot, PathPiece, PathPlace, Vertex};
 use crate::elementary::hypot;
@@ -17,11 +18,11 @@ pub struct Nearest {
     pub piece: usize,
     /// Where on it.
     pub foot: Foot,
-    /// That place of the path.
+    /// The place of the foot on the path.
     pub at: PathPlace,
     /// The distances along the normals, one in a plane, two in space.
     pub residuals: [f64; 2],
-    /// The derivatives of the residuals by the scaled point.
+    /// The derivatives of the residuals with respect to the scaled point.
     pub normals: [PathPlace; 2],
 }
 
@@ -30,19 +31,20 @@ pub struct Nearest {
 pub struct ScaledPath<'a> {
     path: &'a FitPath,
     corners: Vec<PathPlace>,
-    /// The derivatives by s at the corners.
+    /// The derivatives with respect to s at the corners.
     slopes: Vec<PathPlace>,
     /// The ends of the boxes around [`BOXED`] stretches each.
     boxes: Vec<[PathPlace; 2]>,
-    /// Those around [`BOXED`] boxes each.
+    /// The ends of the boxes around [`BOXED`] boxes each.
     chests: Vec<[PathPlace; 2]>,
     weights: PathPlace,
 }
 
-/// The way along a curve at which the foot is found, in units of noise.
+/// The foot is found once it moves along the curve by less than this, in units of noise.
 const FOUND: f64 = 1e-8;
 const STEPS: usize = 60;
-/// Stretches of the polyline that are passed over together where their box is too far away, and boxes where the one around them is.
+/// The number of stretches of the polyline that are skipped together where their box is too far away, and of boxes
+/// where the one around them is.
 const BOXED: usize = 8;
 
 fn minus(a: PathPlace, b: PathPlace) -> PathPlace {
@@ -54,7 +56,7 @@ fn dot(a: PathPlace, b: PathPlace) -> f64 {
 }
 
 fn scaled(a: PathPlace, by: PathPlace) -> PathPlace {
-    // A coordinate without weight may be no number.
+    // A coordinate without weight may be not a number.
     std::array::from_fn(|i| if by[i] == 0.0 { 0.0 } else { a[i] * by[i] })
 }
 
@@ -92,8 +94,8 @@ impl<'a> ScaledPath<'a> {
         Self { path, corners, slopes, boxes, chests, weights }
     }
 
-    /// The foot of the point `m`, in units of noise; `None` where the path is nothing. `box_of_last` is the box that holds the foot of the
-    /// point before, where it is looked for first: rows that follow each other lie near each other.
+    /// The foot of the point `m`, in units of noise; `None` where the path is empty. `box_of_last` is the box that
+    /// holds the foot of the previous point and is searched first: rows that follow each other lie near each other.
     #[must_use]
     pub fn nearest(&self, m: PathPlace, box_of_last: &mut usize) -> Option<Nearest> {
         let vertices = &self.path.vertices;
@@ -106,7 +108,7 @@ impl<'a> ScaledPath<'a> {
             }
             let boxes = self.boxes.iter().enumerate().skip(chest * BOXED).take(BOXED);
             for (i, ends) in boxes {
-                // Of places that are equally near the first on the path counts.
+                // Of equally near places the first on the path counts.
                 if i != first && from_box(m, ends) <= best.0 {
                     self.search(m, i, &mut best);
                 }
@@ -144,7 +146,7 @@ impl<'a> ScaledPath<'a> {
             let (along, from) = (minus(pair[1], pair[0]), minus(m, pair[0]));
             let square = dot(along, along);
             if square == 0.0 {
-                // A line between equal states has no direction: the arc that begins there has.
+                // A line between equal states has no direction; the arc that begins there has one.
                 continue;
             }
             let share = (dot(from, along) / square).clamp(0.0, 1.0);
@@ -201,12 +203,12 @@ impl<'a> ScaledPath<'a> {
             } else {
                 lo = s;
             }
-            // By the bend of the bridge, and by the curve's own after the first step.
+            // By the bend of the bridge at first, and by the curve's own after the first step.
             let bend = match last {
                 Some((t, before)) => (slope - before) / (s - t),
                 None => length - dot(off, bridge.bend(share)),
             };
-            // Of two places that are one it is no number.
+            // Between two places that coincide it is not a number.
             let bend = if bend > 0.1 * length { bend } else { length };
             let mut next = s - slope / bend;
             if !(next > lo && next < hi) {
@@ -223,17 +225,18 @@ impl<'a> ScaledPath<'a> {
     }
 }
 
-/// The cubic between two corners of an arc, with the slopes of the curve at both: next to the curve itself, and had without it.
+/// The cubic between two corners of an arc, with the slopes of the curve at both: close to the curve, and known without
+/// evaluating it.
 struct Bridge {
     /// The inner end, and the outer.
     ends: [PathPlace; 2],
     slopes: [PathPlace; 2],
-    /// The way of s between them.
+    /// The difference of s between them.
     way: f64,
 }
 
 impl Bridge {
-    /// The place at a share of the way and its first two derivatives by the share.
+    /// The place at a share of the way and its first two derivatives with respect to the share.
     fn at(&self, t: f64) -> [PathPlace; 3] {
         let [a, b] = self.ends;
         let weights = [
@@ -250,7 +253,7 @@ impl Bridge {
         places
     }
 
-    /// The second derivative by s.
+    /// The second derivative with respect to s.
     fn bend(&self, t: f64) -> PathPlace {
         self.at(t)[2].map(|x| x / (self.way * self.way))
     }
@@ -299,7 +302,7 @@ fn told(
     let flat = hypot(t[0], t[1]);
     let first = [-t[1] / flat, t[0] / flat, 0.0];
     let space = weights[2] > 0.0;
-    // t × first: with it the three are a frame.
+    // t × first: it completes the frame.
     let second =
         if space { [-t[2] * first[1], t[2] * first[0], t[0] * first[1] - t[1] * first[0]] } else { [0.0; 3] };
     let (r, beside, beyond) = (dot(off, first), dot(off, second), dot(off, t));

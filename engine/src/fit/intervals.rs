@@ -1,4 +1,4 @@
-//! Intervals that need no straight line: by the profile of χ², and by a block bootstrap.
+//! Intervals that do not assume a linear model: by the profile of χ², and by a block bootstrap.
 
 use super::least_squares::MinimizationSettings;
 use super::problem::{FitProblem, FreeParameter, Target};
@@ -14,7 +14,7 @@ const RISE: f64 = 3.841_458_820_694_124;
 const WARM: MinimizationSettings =
     MinimizationSettings { rounds: 40, tolerance: 1e-6, resolution: 1.0, huber: f64::INFINITY, nothing: 0.0 };
 
-/// Below so many degrees of freedom an interval is much wider than 1.96 errors.
+/// Below this many degrees of freedom an interval is much wider than 1.96 errors.
 pub const FEW_DEGREES: f64 = 40.0;
 
 /// What a bootstrap found of one parameter, in base units.
@@ -22,12 +22,12 @@ pub const FEW_DEGREES: f64 = 40.0;
 pub struct Bootstrapped {
     /// The standard deviation.
     pub error: f64,
-    /// 2.5 and 97.5 % of the fits.
+    /// The 2.5 and 97.5 % points of the fits.
     pub interval: [f64; 2],
 }
 
 impl FitProblem {
-    /// The same with the parameter `j` held at `u`.
+    /// The same problem with the parameter `j` held at `u`.
     pub(super) fn holding(&self, j: usize, u: f64) -> Option<Self> {
         let mut held = self.clone();
         let FreeParameter { target, .. } = held.parameters.remove(j);
@@ -41,7 +41,7 @@ impl FitProblem {
             Target::Baseline => held.instrument.baseline = value,
             Target::Tilt => held.instrument.tilt = value,
             Target::Key(key) => held.preset.set(&key, Value::Number(value)).ok()?,
-            // One of two adhesions: the other would become that of both.
+            // With one of two adhesions held, the other would become the adhesion of both.
             Target::Adhesion(_) => return None,
         }
         Some(held)
@@ -52,7 +52,8 @@ fn without(u: &[f64], j: usize) -> Vec<f64> {
     u.iter().enumerate().filter(|(i, _)| *i != j).map(|(_, u)| *u).collect()
 }
 
-/// The ends of the 95 % interval of the parameter `j`, in base units, where χ² has risen by 3.84 and all others are fitted again.
+/// The ends of the 95 % interval of the parameter `j`, in base units, where χ² has risen by 3.84 with all others fitted
+/// again.
 pub fn profile(
     problem: &FitProblem,
     solved: &SolvedFit,
@@ -68,7 +69,7 @@ pub fn profile(
     let scale = noise(problem, solved, robust);
     let end = |side: f64| {
         let mut others = without(u, j);
-        // √Δχ² over the distance is nearly a straight line.
+        // √Δχ² is nearly proportional to the distance.
         let root = |distance: f64, others: &mut Vec<f64>| {
             let held = problem.holding(j, u[j] + side * distance)?;
             let found = held.minimize(others, &settings, progress)?;
@@ -111,7 +112,7 @@ fn rms(problem: &FitProblem, solved: &SolvedFit) -> f64 {
     (real.iter().map(|r| r * r).sum::<f64>() / real.len() as f64).sqrt()
 }
 
-/// How many rows belong together: the lag at which the residuals have forgotten themselves, one over e.
+/// How many rows belong together: the lag at which the correlation of the residuals has fallen to one over e.
 #[must_use]
 pub fn block(residuals: &[f64]) -> usize {
     let n = residuals.len();
@@ -123,8 +124,8 @@ pub fn block(residuals: &[f64]) -> usize {
     (1..n / 10).find(|lag| covariance(*lag) < whole / std::f64::consts::E).unwrap_or(1)
 }
 
-/// `count` fits to blocks of rows drawn at random with the seed `seed`, each from the fit; how many came to an end, and what they
-/// found.
+/// `count` fits to blocks of rows drawn at random with the seed `seed`, each starting from the fit; how many came to an
+/// end, and what they found.
 pub fn bootstrap(
     problem: &FitProblem,
     solved: &SolvedFit,
@@ -170,7 +171,7 @@ pub fn bootstrap(
         let many = values.len() as f64;
         let mean = values.iter().sum::<f64>() / many;
         let error = (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (many - 1.0)).sqrt();
-        // Some hundred.
+        // A few hundred.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let at = |share: f64| values[(share * (many - 1.0)).round() as usize];
         Bootstrapped { error, interval: [at(0.025), at(0.975)] }

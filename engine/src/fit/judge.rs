@@ -1,4 +1,4 @@
-//! What speaks against a fit, and what is to be doubted about it.
+//! What speaks against a fit, and what is doubtful about it.
 //!
 //! | file | what it asks |
 //! |---|---|
@@ -11,7 +11,7 @@
 //! | `touch` | do the bodies pull before they touch |
 //! | `spring` | what would another spring give |
 //!
-//! Here: are the values such as anything has.
+//! This file asks whether the values are physically plausible.
 
 mod apart;
 mod contact;
@@ -43,24 +43,25 @@ use crate::units::number::{said, short, significant};
 use crate::units::{Quantity, UnitSystem};
 use nalgebra::DMatrix;
 
-/// A contact so wide, or an approach so deep, in units of R, is none of a soft ball.
+/// A contact this wide, or an approach this deep, in units of R, is not that of a soft ball.
 const WIDE: f64 = 0.5;
 const DEEP: f64 = 1.0;
-/// Moduli of everything people press, in Pa.
+/// The range of moduli of everything people press, in Pa.
 const MODULI: [f64; 2] = [10.0, 1e12];
 /// Residuals below this share of the noise are rounding, in which there is always some order.
 const ROUNDING: f64 = 0.1;
-/// Works of adhesion that differ by less than this share are one, whatever their errors: points without noise have none.
+/// Works of adhesion that differ by less than this share count as one, whatever their errors: points without noise have
+/// no errors.
 const DIFFERENT: f64 = 1e-3;
-/// A work of adhesion below so many of its errors is hardly one.
+/// A work of adhesion below this many of its errors is hardly one.
 const FROM_NONE: f64 = 5.0;
-/// Noise in contact so many times that of the rows apart is another; and how much more where that is known from few rows, times
-/// 1/√n: three of its deviations.
+/// Noise in contact beyond this many times that of the rows apart is another noise; and how much more is allowed where
+/// the noise is known from few rows, times 1/√n: three of its deviations.
 const NOISIER: f64 = 1.3;
 const OF_FEW: f64 = 3.5;
 
-/// The deviation of the number of runs of signs from that of chance, in its own; A. Wald and J. Wolfowitz, Ann. Math. Stat. 11,
-/// 147 (1940).
+/// The deviation of the number of runs of signs from the number expected by chance, in units of its standard deviation;
+/// A. Wald and J. Wolfowitz, Ann. Math. Stat. 11, 147 (1940).
 #[must_use]
 pub fn runs(residuals: &[f64]) -> f64 {
     let plus = residuals.iter().filter(|r| **r > 0.0).count() as f64;
@@ -89,7 +90,7 @@ pub(super) fn reasons(
     if preset.cohesion().is_some() {
         reasons.extend(range::of_zone(problem, solved));
     } else if !is_pulled(&problem.preset) {
-        // All are told by what an adhesion at the edge alone does.
+        // All of these start from what an adhesion at the edge alone does.
         reasons.extend(touch::of_touch(problem, solved, scatter, inner));
         reasons.extend(scores::of_range(problem, solved, scatter, inner));
         reasons.extend(rate::of_rate(problem, solved, scatter, inner));
@@ -99,7 +100,8 @@ pub(super) fn reasons(
     reasons
 }
 
-/// Branches of so few rows that those apart would not be seen, where nothing says that there are none or which force they have.
+/// Branches with so few rows that rows apart would not be seen, where nothing says that there are none or what their
+/// force is.
 pub(super) fn of_sparse(branches: &Branches, preset: &Preset) -> Option<Reason> {
     let is_said =
         branches.baseline.is_some() || preset.data.baseline.is_some() || !preset.data.free_part.is_empty();
@@ -135,7 +137,7 @@ fn of_range(preset: &Preset) -> Option<Reason> {
     (tabor < LARGE_TABOR).then(|| Reason::new("tabor", tabor, sentence))
 }
 
-/// Values in SI that nothing has. In reduced units all sizes are possible.
+/// Values in SI that nothing real has. In reduced units all sizes are possible.
 fn unlikely(problem: &FitProblem, solved: &SolvedFit, preset: &Preset) -> Vec<Reason> {
     let mut reasons = Vec::new();
     if !matches!(preset.units, UnitSystem::Si(_)) {
@@ -162,8 +164,8 @@ fn unlikely(problem: &FitProblem, solved: &SolvedFit, preset: &Preset) -> Vec<Re
     reasons
 }
 
-/// What is to be doubted about a fit, and leaves its verdict. `is_known` says whether the noise of the force was given, or found in
-/// rows apart.
+/// What is doubtful about a fit but leaves its verdict as it is. `is_known` says whether the noise of the force was
+/// given, or found in rows apart.
 pub(super) fn doubts(
     problem: &FitProblem,
     solved: &SolvedFit,

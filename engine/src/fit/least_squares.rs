@@ -5,14 +5,14 @@
 //! (JᵀWJ + μ D²) h = −JᵀWr,   D_j the largest length of column j of √W J so far
 //! ```
 //!
-//! Each round the QR factors of √W J are taken once; a damped step then costs a matrix of 2p rows. K. Levenberg (1944),
-//! D. W. Marquardt (1963); the damping: H. B. Nielsen, IMM-REP-1999-05. `levenberg-marquardt` 0.15 is of another nalgebra than
-//! ours, and has neither weights nor a way to be stopped.
+//! In each round √W J is QR-factored once; a damped step then costs a matrix of 2p rows. K. Levenberg (1944), D. W.
+//! Marquardt (1963); the damping: H. B. Nielsen, IMM-REP-1999-05. `levenberg-marquardt` 0.15 uses another version of
+//! nalgebra than ours, and has neither weights nor a way to be stopped.
 
 use crate::progress::Progress;
 use nalgebra::{DMatrix, DVector};
 
-/// Residuals at some parameters, with their derivatives by column.
+/// Residuals at some parameters, with their derivatives in columns.
 #[derive(Debug, Clone)]
 pub struct Evaluated {
     /// r.
@@ -23,13 +23,13 @@ pub struct Evaluated {
 
 /// What is fitted.
 pub trait LeastSquares {
-    /// What residuals are made of, from which their derivatives are had.
+    /// What the residuals are made from; their derivatives use it again.
     type Look;
 
     /// The residuals at `u`; `None` where there are none.
     fn look(&self, u: &[f64]) -> Option<(DVector<f64>, Self::Look)>;
 
-    /// The derivatives at `u`, of what was seen there.
+    /// The derivatives at `u`, from what was seen there.
     fn derivatives(&self, u: &[f64], look: &Self::Look) -> Option<DMatrix<f64>>;
 
     /// The residuals at `u` alone.
@@ -44,7 +44,7 @@ pub trait LeastSquares {
         Some(Evaluated { residuals, jacobian })
     }
 
-    /// How often each residual counts; none counts once.
+    /// How often each residual counts; without counts, each counts once.
     fn counts(&self) -> Option<&[f64]> {
         None
     }
@@ -53,16 +53,16 @@ pub trait LeastSquares {
 /// Settings of one minimization.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MinimizationSettings {
-    /// Rounds at most.
+    /// The most rounds.
     pub rounds: usize,
     /// Steps that would move the residuals by less than this share of their size end it.
     pub tolerance: f64,
-    /// The size of a residual that is as good as none: what the tolerance is a share of where residuals vanish.
+    /// The size of a residual that is as good as zero: where residuals vanish, the tolerance is a share of this.
     pub resolution: f64,
     /// c: residuals beyond it count linearly; infinite for plain squares.
     pub huber: f64,
-    /// A gain of the cost that no value shows, beside a share of the cost itself: where the residuals have kinks, ever smaller ones are found
-    /// without end.
+    /// A gain of the cost too small to show in any value, on top of a share of the cost itself: where the residuals
+    /// have kinks, ever smaller gains are found without end.
     pub nothing: f64,
 }
 
@@ -79,7 +79,7 @@ pub enum Ending {
     Converged,
     /// The rounds were used up.
     Rounds,
-    /// It was no longer wanted.
+    /// The minimization was no longer wanted.
     Cancelled,
 }
 
@@ -148,7 +148,7 @@ impl TriangularSystem {
     /// The damped step.
     fn step(&self, mu: f64, scales: &DVector<f64>) -> Option<DVector<f64>> {
         let (rows, p) = self.r.shape();
-        // A column of nothing: the parameter stays where it is, whatever its scale.
+        // A column of zeros: the parameter stays where it is, whatever its scale.
         let scale = |j: usize| if scales[j] > 0.0 { scales[j] } else { 1.0 };
         let stacked = DMatrix::from_fn(rows + p, p, |i, j| {
             if i < rows {
@@ -168,8 +168,8 @@ impl TriangularSystem {
     }
 }
 
-/// Minimizes from `start`. Once `progress` says stop, which it is asked before each round, the best so far is returned with
-/// [`Ending::Cancelled`]; `None` where there is nothing at the start.
+/// Minimizes from `start`. `progress` is asked before each round; once it says stop, the best so far is returned with
+/// [`Ending::Cancelled`]. `None` where there are no residuals at the start.
 pub fn minimize<P: LeastSquares>(
     problem: &P,
     start: &[f64],
@@ -190,7 +190,7 @@ pub fn minimize_from<P: LeastSquares>(
     /// The first damping, its smallest change and the largest that is tried.
     const FIRST: f64 = 1e-3;
     const LARGEST: f64 = 1e16;
-    /// So many rounds, each better by a gain that no value shows, are the end.
+    /// This many rounds, each with a gain that no value shows, end it.
     const IDLE: usize = 6;
     const SHOWN: f64 = 1e-10;
     let mut idle = 0;

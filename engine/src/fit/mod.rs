@@ -9,31 +9,31 @@
 //! | [`path`] | the curve that points lie on: equilibria and jumps |
 //! | [`distance`] | the signed distance of a point from it |
 //! | `pulled` | the path of a pull at a rate |
-//! | [`prior`] | the minimum with what is known of values before |
+//! | [`prior`] | the minimum with what is known of values beforehand |
 //! | [`problem`] | parameters, data, the paths of values |
 //! | [`derivatives`] | residuals and their derivatives |
 //! | `rings` | loading with rings of contact, which is left out |
 //! | [`options`] | what is asked for, what can be free, why there is no fit |
-//! | [`pose`] | points and parameters of what is asked for |
+//! | [`pose`] | points and parameters of the requested fit |
 //! | [`start`] | where a fit starts |
 //! | [`solve`] | one fit with its own scale of the noise |
 //! | [`determined`] | covariance, condition, the direction in words |
 //! | `degrees` | how well the errors are known |
 //! | [`intervals`] | profile intervals and the block bootstrap |
 //! | [`scatter`] | the noise of the rows as neighbours show it |
-//! | `spread` | how that noise goes with the slope of the curve |
+//! | `spread` | how that noise varies with the slope of the curve |
 //! | [`chance`] | how likely a statistic is by chance |
 //! | [`judge`] | what speaks against the fit: means along the path, rows apart, ranges, the device's stiffness |
 //! | `uncertain` | values that are given with an error |
 //! | [`verdict`] | what it comes to, in one word, and why |
 //! | [`rows`] | what a fit makes of the rows of a file, counted |
 //! | [`run`] | all of it, in order |
-//! | [`models`] | several models beside each other |
+//! | [`models`] | several models side by side |
 //! | [`together`] | one law for several curves, and whether they follow it |
-//! | `directed` | the same, in the direction in which the columns run |
+//! | `directed` | the whole fit, in the direction in which the columns run |
 //!
-//! Distances are measured to the curve itself and not along one axis: a residual P − P(x) jumps with the values where the
-//! pull-off passes a point, and its intervals then hold the truth in 8 % of trials.
+//! Distances are measured to the curve itself and not along one axis: a residual P − P(x) jumps when the values change
+//! so that the pull-off passes a point, and its intervals then hold the truth in 8 % of trials.
 
 pub mod chance;
 mod degrees;

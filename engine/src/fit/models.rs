@@ -1,4 +1,4 @@
-//! Several models fitted to the same points, and which of them these tell apart.
+//! Several models fitted to the same points, and which of them the points tell apart.
 //!
 //! ```text
 //! A = Σ min(r²/s², 16)/k + 2p
@@ -23,11 +23,11 @@ use crate::units::number::short;
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// What a law of the edge's speed has free.
+/// The free keys of a law of the edge's speed.
 const LAW_KEYS: [&str; 2] = [edge::REFERENCE_SPEED, edge::EXPONENT];
 /// A difference of A that tells two models apart.
 const APART: f64 = 10.0;
-/// Residuals count as so many s at most.
+/// Residuals count as at most this many s.
 const MOST: f64 = 4.0;
 
 /// How the adhesion acts, or the edge moves.
@@ -63,8 +63,8 @@ impl Model {
         Self::ALL.into_iter().find(|model| model.name() == word)
     }
 
-    /// `preset` with this model, and what is free in it beside `free`: the tension of adhesion with a range, unless its range is, or the law
-    /// of an edge's speed.
+    /// `preset` with this model, and what is free in it in addition to `free`: the tension of adhesion with a range,
+    /// unless its range is free, or the law of an edge's speed.
     #[must_use]
     pub fn laid(self, preset: &Preset, free: &[String]) -> (Preset, Vec<String>) {
         let mut laid = preset.clone();
@@ -95,7 +95,7 @@ impl Model {
                 free.push(RANGE_KEYS[key].to_owned());
             }
             Self::Rate => {
-                // A scan around the rate of the device finds the law: these only say that there is one.
+                // A scan around the rate of the device finds the law: these values only say that there is one.
                 let speed = if matches!(preset.units, UnitSystem::Si(_)) { 1e-6 } else { 1.0 };
                 laid.edge.reference_speed = laid.edge.reference_speed.or(Some(speed));
                 laid.edge.exponent = laid.edge.exponent.or(Some(0.5));
@@ -118,7 +118,7 @@ fn guess(preset: &Preset) -> f64 {
 /// One model fitted.
 #[derive(Debug, Clone)]
 pub struct FittedModel {
-    /// The model; `None` of one that the preset alone has.
+    /// The model; `None` for one that only the preset has.
     pub model: Option<Model>,
     /// What is free in it.
     pub free: Vec<String>,
@@ -126,7 +126,7 @@ pub struct FittedModel {
     pub fit: Result<Fit, FitError>,
 }
 
-/// Two models beside each other.
+/// Two models compared.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Pair {
@@ -147,7 +147,7 @@ pub struct Models {
     pub fits: Vec<FittedModel>,
     /// The number of the best; `None` where no fit came to an end.
     pub best: Option<usize>,
-    /// Each other one beside the best.
+    /// Each of the others compared with the best.
     pub pairs: Vec<Pair>,
 }
 
@@ -160,7 +160,7 @@ impl Models {
     }
 }
 
-/// Fits `models`, each named once, to the own measured curve of `preset`; where none is named, that of the preset.
+/// Fits `models`, each named once, to the preset's own measured curve; where none is named, the model of `preset`.
 ///
 /// # Errors
 /// [`FitError`] of the only model; where there are several, each has its own.
@@ -183,7 +183,7 @@ pub fn fit_models(
             models.iter().map(of).collect()
         }
     };
-    // A pull is fitted to the retraction: to compare it all have the same rows.
+    // A pull is fitted to the retraction: for a comparison all models have the same rows.
     let of_retraction = models.len() > 1 && models.contains(&Model::Rate);
     let count = laid.len() as f64;
     let mut fits: Vec<FittedModel> = Vec::new();
@@ -193,7 +193,7 @@ pub fn fit_models(
             laid.set(data::SEGMENT, retraction).map_err(|invalid| FitError::Data(invalid.to_string()))?;
         }
         let mut options = Options { free: free.clone(), ..options.clone() };
-        // One is judged by the noise of the other.
+        // The others are judged by the noise of the first.
         if let Some(first) = fits.iter().find_map(|fitted| fitted.fit.as_ref().ok())
             && first.noise.from[1] == Origin::Neighbours
         {
@@ -230,7 +230,8 @@ fn scores(fits: &[FittedModel]) -> Vec<f64> {
     fits.iter().map(|fitted| fitted.fit.as_ref().map_or(f64::INFINITY, of)).collect()
 }
 
-/// A, a difference in what it takes for a model that is not determined: such a one is no better than one that is as good.
+/// A, raised by the difference that tells two models apart where the model is not determined: it must not win over one
+/// that is as good.
 fn rank(fitted: &FittedModel, score: f64) -> f64 {
     let is_told = fitted.fit.as_ref().is_ok_and(|fit| fit.direction.is_none());
     if is_told { score } else { score + APART }

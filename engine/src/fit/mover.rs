@@ -19,6 +19,6 @@ pub enum Mover {
     Exponent,
     /// The contact radius at which a pull begins.
     Start,
-    /// 1/σ₀², of an adhesion that is a tension σ₀ up to the separation γ/σ₀, where it is 0: not by its logarithm.
+    /// 1/σ₀², for an adhesion with a tension σ₀ up to the separation γ/σ₀, at the value 0: not by its logarithm.
     Range,
 }

@@ -1,4 +1,4 @@
-//! What is asked of a fit, what can be free, and why there is none.
+//! What is asked of a fit, what can be free, and why there is no fit.
 
 use super::problem::{ADHESION, Target};
 use crate::measured::Asked;
@@ -18,7 +18,7 @@ pub struct Options {
     pub free: Vec<String>,
     /// Whether each branch has a work of adhesion of its own.
     pub separate: bool,
-    /// Whether outliers count linearly, or squared as all others.
+    /// Whether outliers count linearly, or squared like all others.
     pub robust: bool,
     /// What is used of the points.
     pub asked: Asked,
@@ -60,7 +60,7 @@ pub enum FitError {
         /// Why not.
         why: String,
     },
-    /// A value that is given with an error, as it cannot be given.
+    /// A value given with an error in a way that is not possible.
     #[error("data.uncertain \"{given}\": {why}")]
     Uncertain {
         /// What was given, safe to show.
@@ -68,7 +68,7 @@ pub enum FitError {
         /// Why not.
         why: String,
     },
-    /// An edge with a speed, and no device with one.
+    /// An edge with a speed, but a device without one.
     #[error(
         "{0} is fitted to a retraction at an even rate: set path.rate, or give times beside the way of the device, {1}"
     )]
@@ -94,7 +94,7 @@ pub enum FitError {
         /// How many are wanted.
         needed: usize,
     },
-    /// Loading with rings of contact, in words when they begin.
+    /// Loading with rings of contact; in words, when they begin.
     #[error(
         "loading on this gap takes rings of contact, which are not fitted: {0}. Use the retraction, without --separate"
     )]
@@ -104,7 +104,7 @@ pub enum FitError {
         "the points do not show which way their columns run: {one} and {other} fit them alike. Say it with --signs, or in data.signs"
     )]
     Direction {
-        /// The signs of one, as `--signs` says them.
+        /// The signs of one, as `--signs` writes them.
         one: String,
         /// Those of the other.
         other: String,
@@ -114,12 +114,12 @@ pub enum FitError {
         "no values near those of the preset give a curve that reaches the points: check the unit of x and of the force"
     )]
     NoStart,
-    /// It was no longer wanted.
+    /// The fit was no longer wanted.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
 
-/// What a name after `--free` says.
+/// What a name after `--free` stands for.
 ///
 /// # Errors
 /// [`FitError::Key`].
@@ -175,7 +175,7 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
     }
 }
 
-/// A key as a sentence has it: E*, γ, R.
+/// A key as it appears in a sentence: E*, γ, R.
 #[must_use]
 pub fn letter(preset: &Preset, key: &str) -> String {
     if let Some(branch) = key.strip_prefix(ADHESION) {

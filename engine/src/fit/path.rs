@@ -1,8 +1,8 @@
 //! The curve that measured points lie on, for one set of values: arcs of equilibria and the lines of jumps between them.
 //!
-//! Without snaps it is the whole equilibrium curve, its unstable part too, so that it passes smoothly through the pull-off as
-//! values change. With snaps it is the path of a quasi-static unloading, jumps included, and behind the pull-off the unstable
-//! stretch that begins there; or that of loading from the first touch.
+//! Without snaps it is the whole equilibrium curve, with its unstable part, so that it passes smoothly through the
+//! pull-off as values change. With snaps it is the path of a quasi-static unloading, jumps included, followed beyond
+//! the pull-off by the unstable stretch that begins there; or the path of loading from the first touch.
 
 use super::pulled::TrackState;
 use super::track::{Eye, Mover, Reach, Track};
@@ -39,7 +39,7 @@ pub enum Foot {
 pub enum PathPiece {
     /// Equilibria between two radii, or edges of a zone, the outer first.
     Arc([f64; 2]),
-    /// A jump, by its ends, that before it first: x, P, s.
+    /// A jump, by its ends, the one before the jump first: x, P, s.
     Line([PathPlace; 2]),
 }
 
@@ -48,7 +48,7 @@ pub enum PathPiece {
 pub struct Vertex {
     /// Where it is.
     pub at: PathPlace,
-    /// The derivatives by s; nothing at the ends of a line.
+    /// The derivatives with respect to s; zero at the ends of a line.
     pub slopes: PathPlace,
     /// Its piece.
     pub piece: usize,
@@ -84,12 +84,12 @@ pub struct FitPath {
     pub least_force: f64,
 }
 
-/// The cosine of the turn of the curve between two corners of the polyline, and how often a step is halved for it.
+/// The cosine of the turn of the curve between two corners of the polyline, and how often a step is halved to reach it.
 const STRAIGHT: f64 = 0.98;
 const DEEPEST: usize = 7;
 
 impl FitPath {
-    /// The path of `preset` on this way; `None` where it has none that reaches so far.
+    /// The path of `preset` on this way; `None` where no path reaches far enough.
     #[must_use]
     pub fn new(preset: &Preset, abscissa: Abscissa, reach: &Reach, way: Way) -> Option<Self> {
         let control = preset.path.control;
@@ -104,7 +104,7 @@ impl FitPath {
         let held = control.in_units(units.stiffness);
         let mut track = Track::new(preset, reduced, &eye, reach, held)?;
         let [outermost, innermost] = track.ends();
-        // A rising stretch outside a falling one, or one of either: a curve without snaps.
+        // A rising stretch outside a falling one, or only one of the two, is a curve without snaps.
         let inside = |s: f64| s > innermost && s < outermost;
         let limits = track.monotone(held).map_or(0, |monotone| {
             monotone.limits.iter().filter(|limit| inside(limit.contact_radius)).count()
@@ -115,7 +115,7 @@ impl FitPath {
             turn: [reach.turn[0], reach.turn[1] / units.force],
         };
         let legs = if limits > 1 { legs(&mut track, held, way, &seen) } else { Vec::new() };
-        // What runs along a pull is none.
+        // What runs along a pull is not a radius.
         let outermost_radius =
             if let Track::Pull(trail) = &track { trail.state(outermost).at[0] } else { outermost };
         let mut path = Self {
@@ -152,16 +152,16 @@ impl FitPath {
         Some(path)
     }
 
-    /// Begins with an edge that is pinned: from where `before` ends, at the same contact radius, to where this path begins. P and x move along a
-    /// straight line at a held radius.
+    /// Makes the path begin with a pinned edge: from where `before` ends to where this path begins, at the same contact
+    /// radius. At a held radius P and x move along a straight line.
     pub(super) fn pinned_after(&mut self, before: &Self) {
         let ends = [before, &*self].map(|path| path.corner(path.outermost, [1.0; 2]).at);
         self.pieces.insert(0, PathPiece::Line(ends));
         self.draw();
     }
 
-    /// The smallest radius at which the disc would overlap a crest outside, on this path up to the radius `to`: rings of contact take
-    /// another one then.
+    /// The smallest radius at which the disc would overlap a crest outside, on this path up to the radius `to`: with
+    /// rings of contact the path is then another one.
     #[must_use]
     pub fn overlap(&self, to: f64) -> Option<f64> {
         let Track::Edge(curve) = &self.track else { return None };
@@ -175,8 +175,8 @@ impl FitPath {
         found.iter().map(|overlap| overlap.to * length).reduce(f64::min)
     }
 
-    /// Where the state `along` an arc is not one disc in one zone, and what else there is; `None` where that is all of it, or adhesion has no
-    /// range.
+    /// Where the state `along` an arc is not just one disc in one zone, and what else there is; `None` where it is, or
+    /// where adhesion has no range.
     pub(super) fn fault(&self, along: f64) -> Option<(f64, Option<FaultKind>)> {
         let length = self.eye.units.length;
         match self.track.fault(along / length)? {
@@ -225,7 +225,7 @@ impl FitPath {
         self.vertices = vertices;
     }
 
-    /// The corner at a place `along` an arc; no number where there is none.
+    /// The corner at a place `along` an arc; not a number where there is none.
     fn corner(&self, along: f64, ranges: [f64; 2]) -> Corner {
         let none = Corner { at: [f64::NAN; 3], slopes: [f64::NAN; 3], along, direction: None };
         let state = self.track.state(along / self.eye.units.length);
@@ -269,19 +269,19 @@ impl FitPath {
         [self.eye.x(state), state[2] * self.eye.units.force, state[0] * self.eye.units.length]
     }
 
-    /// The derivatives of x, P and s by what runs along, of those of the reduced state.
+    /// The derivatives of x, P and s with respect to what runs along, from those of the reduced state.
     fn slopes(&self, slopes: [f64; 3]) -> PathPlace {
         self.place(slopes).map(|slope| slope / self.eye.units.length)
     }
 
-    /// The place `along` an arc, with its derivatives by that; `None` beyond what is known.
+    /// The place `along` an arc, with its derivatives with respect to that; `None` beyond the known part.
     pub fn at(&self, along: f64) -> Option<(PathPlace, PathPlace)> {
         let state = self.track.state(along / self.eye.units.length)?;
         Some((self.place(state.at), self.slopes(state.slopes)))
     }
 
-    /// How the place `at`, `along` an arc, moves for each unit of the logarithm of a value, what runs along held; `None` where no closed form
-    /// says it.
+    /// How the place `at`, `along` an arc, moves per unit of the logarithm of a value, with what runs along held;
+    /// `None` where there is no closed form.
     #[must_use]
     pub fn moves(&self, mover: Mover, along: f64, at: PathPlace) -> Option<PathPlace> {
         let [_, force, s] = at;
@@ -344,7 +344,7 @@ impl FitPath {
         self.at(along).map(|([_, _, s], _)| s)
     }
 
-    /// The step of the logarithm of a value by which its derivatives are taken.
+    /// The step of the logarithm of a value over which its derivatives are taken.
     #[must_use]
     pub(super) fn step(&self) -> f64 {
         self.track.step()

@@ -14,13 +14,13 @@ use crate::preset::{BasisSpec, Preset, Value};
 use crate::problem::{Control, Start};
 use crate::units::{Quantity, number::said};
 
-/// Points in contact for each free parameter, at least.
+/// The fewest points in contact for each free parameter.
 const PER_PARAMETER: usize = 3;
-/// Rows by which the beginning of a retraction is known.
+/// The number of rows that show where a retraction begins.
 const TURN: usize = 5;
-/// Rates that differ by less than this share are one.
+/// Rates that differ by less than this share count as one.
 const EVEN: f64 = 0.05;
-/// δ₀ and P₀ begin with a unit of their ranges.
+/// The units of δ₀ and P₀ are their ranges, but at least this.
 const LEAST_UNIT: f64 = f64::MIN_POSITIVE;
 
 /// What is fitted to these branches.
@@ -34,9 +34,9 @@ pub fn posed(
     notes: &mut Vec<String>,
 ) -> Result<FitProblem, FitError> {
     let mut bare = preset.clone();
-    // Its own points say nothing of other values.
+    // The preset's own points say nothing about other values.
     bare.data = DataSpec::default();
-    // Values far off would be refused for where the path of the preset starts, which means nothing here.
+    // Values far off would be refused because of where the path of the preset starts, which does not matter here.
     (bare.path.start, bare.path.end_contact_radius, bare.path.turn) = (Start::Force(0.0), None, None);
     if preset.basis != BasisSpec::Exact {
         notes.push("the fit is made in the exact basis, whatever basis.kind says".to_owned());
@@ -104,7 +104,8 @@ pub fn posed(
     })
 }
 
-/// Makes `bare` a pull at the rate of the retraction, of which alone the points are kept; where it starts.
+/// Makes `bare` a pull at the rate of the retraction and keeps only the points of the retraction; returns where it
+/// starts.
 fn pulled(
     bare: &mut Preset,
     branches: &Branches,
@@ -126,7 +127,7 @@ fn pulled(
     }
     let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
     let attached: Vec<&MeasuredPoint> = retraction.flat_map(|branch| &branch.attached).collect();
-    // What the times of a file say is of that file, and what the preset says of no file in particular.
+    // The times of a file are about that file, and what the preset says is about no file in particular.
     let is_way = branches.abscissa == Abscissa::Position
         || bare.path.control == Control::Displacement && branches.abscissa == Abscissa::Approach;
     let timed = if is_way { even_rate(&attached) } else { None };
@@ -150,7 +151,7 @@ fn pulled(
     begun(bare, branches, &attached, bare.data.offset)
 }
 
-/// The contact radius at which the points of a retraction begin, as the first guesses have it.
+/// The contact radius at which the points of a retraction begin, according to the first guesses.
 fn begun(
     preset: &Preset,
     branches: &Branches,
@@ -196,7 +197,7 @@ fn data(branches: &Branches) -> Vec<Datum> {
     data
 }
 
-/// What is free, by what is asked for.
+/// What is free, according to what is asked for.
 fn targets(preset: &Preset, branches: &Branches, options: &Options) -> Result<Vec<Target>, FitError> {
     let mut targets: Vec<Target> = Vec::new();
     for name in &options.free {
@@ -235,8 +236,8 @@ fn known(preset: &Preset, branches: &Branches, options: &Options) -> Result<Vec<
     Ok(known)
 }
 
-/// Where the values between model and instrument start; a baseline that the points show is free too, and so is that of radii without
-/// rows apart, as far as a tare may be off, unless it `is_known` before with an error of its own.
+/// Where the values between model and instrument start. A baseline that the points show is free too. So is that of
+/// radii without rows apart, within what a tare may be off, unless it `is_known` before with an error of its own.
 fn instrument(
     preset: &Preset,
     branches: &Branches,
@@ -260,7 +261,7 @@ fn instrument(
     match branches.baseline {
         Some(found) if is_asked || given.baseline.is_none() => {
             too("since there is a free part");
-            // One that a former fit has left says less than the points.
+            // A baseline that an earlier fit has left says less than the points.
             instrument.baseline = found;
         }
         None if is_known => {}

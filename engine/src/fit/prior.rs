@@ -4,8 +4,8 @@
 //! χ² = Σ r_i² + Σ ((u_j − m_j)/σ_j)²
 //! ```
 //!
-//! A value that is given with an error is no longer held: it is free, and the points may move it. Its error is then in those of all
-//! others.
+//! A value that is given with an error is no longer held: it is free, and the points may move it. Its error then enters
+//! those of all others.
 
 use super::least_squares::{Evaluated, LeastSquares, MinimizationSettings, Minimum, minimize_from};
 use super::problem::FitProblem;
@@ -13,7 +13,7 @@ use crate::progress::Progress;
 use nalgebra::{DMatrix, DVector};
 
 impl FitProblem {
-    /// The derivatives of the terms by u, a row for each.
+    /// The derivatives of the terms with respect to u, a row for each.
     pub(super) fn of_priors(&self) -> DMatrix<f64> {
         let mut rows = DMatrix::zeros(self.priors.len(), self.parameters.len());
         for (i, prior) in self.priors.iter().enumerate() {
@@ -22,7 +22,7 @@ impl FitProblem {
         rows
     }
 
-    /// Minimizes with the terms of what is known; what comes back has the residuals of the points alone.
+    /// Minimizes with the terms of what is known; the result has the residuals of the points alone.
     pub(super) fn minimize(
         &self,
         u: &[f64],
@@ -58,7 +58,7 @@ impl FitProblem {
     }
 }
 
-/// A problem with the terms of what is known behind its residuals.
+/// A problem with the terms of what is known after its residuals.
 struct InformedProblem<'a> {
     problem: &'a FitProblem,
     counts: Option<Vec<f64>>,
@@ -73,7 +73,7 @@ impl InformedProblem<'_> {
 }
 
 impl InformedProblem<'_> {
-    /// The derivatives of the terms below those of the points.
+    /// The derivatives of the points, with those of the terms below them.
     fn below(&self, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
         let (rows, columns) = jacobian.shape();
         let of_priors = self.problem.of_priors();

@@ -32,7 +32,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// Its dotted key; that of a branch's adhesion has the branch behind it.
+    /// Its dotted key; for the adhesion of a branch, followed by the branch.
     #[must_use]
     pub fn key(&self) -> String {
         match self {
@@ -81,7 +81,7 @@ impl FreeParameter {
         self.scale.unwrap_or(value)
     }
 
-    /// Its dotted key; that of a branch's adhesion has the branch behind it.
+    /// Its dotted key; for the adhesion of a branch, followed by the branch.
     #[must_use]
     pub fn key(&self) -> String {
         self.target.key()
@@ -106,7 +106,7 @@ pub struct Datum {
     pub point: MeasuredPoint,
     /// Its branch.
     pub segment: Segment,
-    /// Its number among the branches, which are more than two in a file of several loops.
+    /// Its number among the branches, of which a file of several loops has more than two.
     pub branch: usize,
     /// Whether the bodies are apart there.
     pub free: bool,
@@ -134,7 +134,7 @@ pub struct FitProblem {
     pub parameters: Vec<FreeParameter>,
     /// What is known of them before.
     pub priors: Vec<Prior>,
-    /// What is held of the instrument.
+    /// The values of the instrument that are held.
     pub instrument: Instrument,
     /// The points.
     pub data: Vec<Datum>,
@@ -148,11 +148,11 @@ pub struct FitProblem {
     pub reach: Reach,
     /// Whether approach and retraction go different ways: there are waves, and points of an approach.
     pub loops: bool,
-    /// How often each residual counts; none counts once.
+    /// How often each residual counts; without counts, each counts once.
     pub counts: Option<Vec<f64>>,
 }
 
-/// The paths of the two branches, which are one unless their adhesions or their ways differ.
+/// The paths of the two branches, which are the same unless their adhesions or their ways differ.
 pub struct Paths {
     retraction: FitPath,
     approach: Option<FitPath>,
@@ -170,7 +170,7 @@ impl Paths {
 }
 
 impl FitProblem {
-    /// How many of the residuals the parameters take: what is known before costs none.
+    /// How many of the residuals the parameters take up: what is known before costs none.
     #[must_use]
     pub fn taken(&self) -> usize {
         self.parameters.len() - self.priors.len()
@@ -266,7 +266,7 @@ impl FitProblem {
         };
         let way = if self.loops && segment == Segment::Approach { Way::Up } else { Way::Down };
         let preset = self.preset_at(u, segment)?;
-        // A pinned edge stands where the approach has left it.
+        // A pinned edge stays where the approach has left it.
         let reach = match preset.path.start {
             Start::ContactRadius(radius) if self.pins() => Reach { radius: Some(radius), ..reach },
             _ => reach,
@@ -318,9 +318,9 @@ impl FitProblem {
         ]
     }
 
-    /// The feet of all attached points, nothing for free ones; `None` where one has none.
+    /// The feet of all attached points, and no foot for free ones; `None` where an attached point has none.
     pub(super) fn feet(&self, paths: &Paths, at: &Instrument) -> Option<Vec<Option<Nearest>>> {
-        /// Rows from which threads are worth their beginning.
+        /// The number of rows from which starting threads is worthwhile.
         const MANY: usize = 20_000;
         let weights = self.weights();
         let scaled =
@@ -340,7 +340,7 @@ impl FitProblem {
             return part(&self.data);
         }
         let threads = available_parallelism().map_or(1, NonZero::get);
-        // Each foot is found for itself: how many threads there are changes nothing.
+        // Each foot is found independently: the number of threads changes nothing.
         std::thread::scope(|scope| {
             let parts = self.data.chunks(self.data.len().div_ceil(threads));
             let parts: Vec<_> = parts.map(|rows| scope.spawn(move || part(rows))).collect();
@@ -352,7 +352,7 @@ impl FitProblem {
         })
     }
 
-    /// The residuals of given feet: one of each point, two in space, where free points have a second one that is zero.
+    /// The residuals of given feet: one for each point, or two in space, where the second one of free points is zero.
     pub(super) fn told(&self, feet: &[Option<Nearest>], at: &Instrument) -> DVector<f64> {
         let per = self.per_point();
         let mut residuals = DVector::zeros(per * self.data.len());

@@ -1,12 +1,14 @@
-//! The path of a disc that is pulled at a rate: force over approach or contact radius, along what device and edge do together.
+//! The path of a disc that is pulled at a rate: force over approach or contact radius, along the combined motion of
+//! device and edge.
 //!
 //! ```text
 //! q = ∫ (V/L_c dt + |ds|/s₀)     ds/dt = −v     dδ/dt = δ_s ds/dt + δ_c dc/dt     dP/dt = 2s dδ/dt + 2Kv     K = √(2πsG)
 //! ```
 //!
-//! with `L_c` the way of the control and `δ_s`, `δ_c` the derivatives of δ at held control and at held radius. In q both the rest at the start, where the
-//! edge does not move, and the snaps, where the control does not, are smooth. Between the moments of the integrator the path is a cubic. Over
-//! what runs along, the largest q less q, it runs inward as the other paths do. Reduced units.
+//! with `L_c` the way of the control and `δ_s`, `δ_c` the derivatives of δ at held control and at held radius. Both the
+//! rest at the start, where the edge does not move, and the snaps, where the control does not, are smooth in q. Between
+//! the moments of the integrator the path is a cubic. What runs along it is the largest q minus q, so that it runs
+//! inward like the other paths. Reduced units.
 
 use super::mover::Mover;
 use crate::disc::Table;
@@ -18,15 +20,16 @@ use crate::rate::variation::{ADHESION, EXPONENT, MomentSlopes, RATE, START, STIF
 use crate::rate::{EdgeLaw, Moment, MovingEdge, PullSettings, Puller};
 use std::f64::consts::TAU;
 
-/// The error of a step of the integrator as a share of the noise, and its least and largest as a share of the radius.
+/// The error of a step of the integrator as a share of the noise, and its smallest and largest value as a share of the
+/// radius.
 const OF_NOISE: f64 = 1e-3;
 const TOLERANCE: [f64; 2] = [1e-8, 1e-5];
-/// States between which a derivative is a polynomial.
+/// The number of states that the polynomial for a derivative goes through.
 const AROUND: usize = 4;
-/// Moments nearer to each other than this, of the whole way, are one.
+/// Moments nearer to each other than this share of the whole way count as one.
 const ONE: f64 = 1e-9;
 
-/// One state of what the arcs of a path run along: s, δ and P, with their slopes by what runs along.
+/// One state of what the arcs of a path run along: s, δ and P, with their derivatives with respect to what runs along.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TrackState {
     /// The contact radius, or the edge of the zone.
@@ -51,7 +54,7 @@ pub(super) fn is_pulled(preset: &Preset) -> bool {
 }
 
 impl Trail {
-    /// The pull of `preset` until the bodies are apart; `None` where it is none, or cannot be followed.
+    /// The pull of `preset` until the bodies are apart; `None` where there is none, or where it cannot be followed.
     pub(super) fn of(
         preset: &Preset,
         reduced: &Reduced,
@@ -110,7 +113,7 @@ impl Trail {
         [self.states[0].along, self.states[self.states.len() - 1].along]
     }
 
-    /// The state at `along`, or at the end that is beyond.
+    /// The state at `along`, or at the nearer end if `along` lies beyond it.
     pub(super) fn state(&self, along: f64) -> TrackState {
         let states = &self.states;
         let [outer, inner] = self.ends();
@@ -133,7 +136,8 @@ impl Trail {
 }
 
 impl Trail {
-    /// How s, δ and P at `along` change for each unit of the logarithm of a value, but for a way along the path; `None` where that is not known.
+    /// How s, δ and P at `along` change per unit of the logarithm of a value, up to a shift along the path; `None`
+    /// where that is not known.
     pub(super) fn moves(&self, mover: Mover, along: f64) -> Option<[f64; 3]> {
         let states = &self.states;
         let at = states.partition_point(|state| state.along >= along);

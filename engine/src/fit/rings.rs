@@ -25,7 +25,7 @@ impl FitProblem {
         Some(format!("a crest outside touches when the contact radius is {}", shown(overlap)))
     }
 
-    /// The same without the approach.
+    /// The same problem without the approach.
     ///
     /// # Errors
     /// [`FitError::Loading`] where nothing is left, or the approach has a work of adhesion of its own.

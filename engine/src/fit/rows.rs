@@ -12,9 +12,9 @@ pub struct BranchRows {
     pub contact: usize,
     /// Those apart, which are fitted.
     pub free: usize,
-    /// Those within the jump between both, which are of neither.
+    /// Those within the jump between the two, which belong to neither.
     pub jump: usize,
-    /// Those left out: by what is asked for, as repeated, or with the whole branch.
+    /// Those left out: on request, as repeated, or with the whole branch.
     pub dropped: usize,
 }
 
@@ -40,7 +40,7 @@ impl Rows {
             };
             let [contact, free] = [false, true].map(count);
             let list = branches.list.iter().filter(|branch| branch.segment == segment);
-            // The rows of a branch that is left out as a whole have no part.
+            // The rows of a branch that is left out as a whole play no part.
             let jump = if contact + free > 0 { list.map(|branch| branch.jump).sum() } else { 0 };
             BranchRows { contact, free, jump, dropped: all.saturating_sub(contact + free + jump) }
         };

@@ -31,10 +31,10 @@ use serde::Serialize;
 
 /// Rounds of the last fit.
 const ROUNDS: usize = 200;
-/// Residuals beyond so many times their scale are outliers.
+/// Residuals beyond this many times their scale are outliers.
 const OUTLIER: f64 = 4.0;
 
-/// One point beside the fit.
+/// One point compared with the fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Residual {
     /// The point.
@@ -72,49 +72,49 @@ pub struct Fit {
     pub parameters: Vec<Fitted>,
     /// What was known of them before, with an error.
     pub priors: Vec<Given>,
-    /// Their correlations; `None` where they are not determined.
+    /// The correlations of the values; `None` where they are not determined.
     pub correlations: Option<Vec<Vec<f64>>>,
     /// Σr²/(n − p), r in σ.
     pub chi_squared: f64,
     /// Σr²/n of the points in contact, and of those apart.
     pub chi_squared_of: [Option<f64>; 2],
-    /// The degrees of freedom of the error that is known worst.
+    /// The degrees of freedom of the error that is known least well.
     pub degrees: f64,
     /// The noise of the rows as neighbours show it.
     pub scatter: Scatter,
     /// The rows of the file by branch and part.
     pub rows: Rows,
-    /// How many are outliers.
+    /// How many rows are outliers.
     pub outliers: usize,
     /// The condition of the whitened Jacobian.
     pub condition: f64,
-    /// What cannot be told, in words; `None` where all is determined.
+    /// What the points cannot tell, in words; `None` where everything is determined.
     pub direction: Option<String>,
     /// How it ended.
     pub ending: Ending,
-    /// The starts that were run, the best first, by their ends.
+    /// The starts that were run, by their ends, the best first.
     pub starts: Vec<Tried>,
     /// The snaps of the fitted path.
     pub snaps: usize,
-    /// σ of x, P and s, and where each is from.
+    /// σ of x, P and s, and where each comes from.
     pub noise: Noise,
     /// How many fits of the bootstrap there were, and the rows of its blocks.
     pub bootstrapped: Option<[usize; 2]>,
     /// What was found, assumed and held, in words.
     pub notes: Vec<String>,
-    /// What is to be doubted, in words.
+    /// What is doubtful, in words.
     pub warnings: Vec<String>,
     /// The preset with the fitted values.
     pub preset: Preset,
     /// The values between model and instrument.
     pub instrument: Instrument,
-    /// The points beside the fit.
+    /// The points compared with the fit.
     pub residuals: Vec<Residual>,
 }
 
 impl Fit {
-    /// Whether what was found is true of `preset`: it has the same points, taken in the same way, and all the fitted and all the held
-    /// values of the fit. Its path, which a fit does not see, may be another.
+    /// Whether what was found holds for `preset`: it has the same points, taken in the same way, and all the fitted and
+    /// all the held values of the fit. Its path, which a fit does not see, may differ.
     #[must_use]
     pub fn holds_for(&self, preset: &Preset) -> bool {
         let found = &self.preset;
@@ -129,14 +129,14 @@ impl Fit {
     }
 }
 
-/// What x is, and the distances of the points of a preset's own measured curve from its curve as it is.
+/// What x is, and the distances of the points of a preset's own measured curve from its curve as it stands.
 ///
 /// # Errors
 /// [`FitError`].
 pub fn residuals_own(preset: &Preset) -> Result<(Abscissa, Vec<Residual>), FitError> {
     let source = preset.data.source.as_ref().ok_or(FitError::NoData)?;
     let branches = source.branches(&preset.reading()).map_err(FitError::Data)?;
-    // A baseline that nobody says is the median of the free part, where a fit begins.
+    // A baseline that is not given is the median of the free part, where a fit begins.
     let problem = posed(preset, &branches, &Options::default(), &mut Vec::new())?;
     let at_start = |problem: &FitProblem| -> Vec<f64> {
         problem.parameters.iter().map(|parameter| parameter.inner(parameter.start)).collect()
@@ -173,9 +173,9 @@ impl<'a> Posed<'a> {
     ) -> Result<Self, FitError> {
         let mut notes = branches.notes.clone();
         let mut problem = posed(preset, branches, options, &mut notes)?;
-        // Without rows apart neighbours say how well the force is known, never the residuals themselves.
+        // Without rows apart, neighbours tell how well the force is known, never the residuals themselves.
         let of_neighbours = branches.noise.from[1] == Origin::Neighbours;
-        // Nor are both told apart of radii, but by the slope of the curve.
+        // For radii, only the slope of the curve tells the noise of x and of P apart.
         let of_both = branches.abscissa == Abscissa::Radius && branches.noise.from[0] == Origin::Assumed;
         let least = of_neighbours
             .then_some([if of_both { problem.sigma[0] } else { f64::INFINITY }, FLOOR * branches.ranges[1]]);
@@ -212,7 +212,7 @@ impl<'a> Posed<'a> {
         Ok(Self { preset, branches, options, problem, starts, solved, notes })
     }
 
-    /// The fit of which `what` is determined, by its points `alone` or by others too.
+    /// The fit, where `what` is determined by its points `alone` or by others too.
     pub(super) fn fit(
         self,
         mut what: Determined,
@@ -303,8 +303,8 @@ impl<'a> Posed<'a> {
     }
 }
 
-/// The number of the contact radius at which an edge is pinned, where the points tell less of it than a tenth: the works of adhesion of both branches
-/// are one then, and no line is between them.
+/// The number of the contact radius at which an edge is pinned, where the points determine it worse than to a tenth:
+/// then the works of adhesion of both branches are the same, and there is no line between them.
 fn unpinned(problem: &FitProblem, solved: &SolvedFit) -> Option<usize> {
     const LEAST: f64 = 10.0;
     let j = problem.parameters.iter().position(|parameter| parameter.target == Target::Key(START.to_owned()));
@@ -331,7 +331,7 @@ pub(super) fn fit_branches(
 
 /// What was known before, and a sentence where it decides how well a value is known.
 fn given(problem: &FitProblem, shares: &[Vec<f64>], notes: &mut Vec<String>) -> Vec<Given> {
-    /// A share of the variance from which the points matter less.
+    /// Above this share of the variance the points matter less.
     const MOST: f64 = 0.5;
     let none = Vec::new();
     let of = |(i, prior): (usize, &Prior)| {
@@ -356,8 +356,8 @@ fn given(problem: &FitProblem, shares: &[Vec<f64>], notes: &mut Vec<String>) -> 
     given
 }
 
-/// By how much G of a fast edge grows, G − γ = K vⁿ with K = γ/v₀ⁿ, where its law is fitted: better known than γ and v₀, of which a fast pull
-/// alone tells no more.
+/// How much G of a fast edge grows, G − γ = K vⁿ with K = γ/v₀ⁿ, where its law is fitted. K is known better than γ and
+/// v₀, about which a fast pull alone tells nothing more.
 fn growth(problem: &FitProblem, u: &[f64], what: &Determined) -> Option<String> {
     if !is_pulled(&problem.preset) {
         return None;
@@ -365,7 +365,7 @@ fn growth(problem: &FitProblem, u: &[f64], what: &Determined) -> Option<String> 
     let preset = problem.preset_at(u, Segment::Retraction)?;
     let (n, speed) = (preset.edge.exponent?, preset.edge.reference_speed?);
     let value = preset.material.work_of_adhesion / pow(speed, n);
-    // d ln K by the logarithms of the values.
+    // d ln K with respect to the logarithms of the values.
     let slope = |parameter: &FreeParameter| match &*parameter.key() {
         ADHESION => 1.0,
         edge::REFERENCE_SPEED => -n,
@@ -403,8 +403,8 @@ fn of_part(problem: &FitProblem, solved: &SolvedFit, free: bool) -> Option<f64> 
     (count > 0.0).then(|| sum / count)
 }
 
-/// The last fit, from `u`. Where `least` is given, σ of P is that of neighbours, not below its second, and so is that of x where its first is
-/// finite.
+/// The last fit, from `u`. Where `least` is given, σ of P is that of neighbours, but not below the second number; so is
+/// σ of x, not below the first, where that is finite.
 fn last(
     problem: &mut FitProblem,
     u: &[f64],
@@ -412,7 +412,7 @@ fn last(
     least: Option<[f64; 2]>,
     progress: &dyn Progress,
 ) -> Result<SolvedFit, FitError> {
-    /// Fits by which σ has settled.
+    /// The number of fits after which σ has settled.
     const TIMES: usize = 2;
     let mut solved = solve(problem, u, robust, ROUNDS, progress).ok_or(FitError::NoStart)?;
     let Some([least_x, least_force]) = least else { return Ok(solved) };
@@ -430,8 +430,8 @@ fn last(
     Ok(solved)
 }
 
-/// Fits again where the noise is correlated from row to row: its σ, which differences of neighbours tell, is larger by 1/√(1 − r), r the
-/// correlation of neighbours.
+/// Fits again where the noise is correlated from row to row: σ is then larger than differences of neighbours tell, by
+/// 1/√(1 − r), with r the correlation of neighbours.
 fn of_correlated(
     problem: &mut FitProblem,
     solved: SolvedFit,
@@ -446,8 +446,9 @@ fn of_correlated(
     solve(problem, &solved.minimum.parameters, robust, ROUNDS, progress).unwrap_or(solved)
 }
 
-/// Fits again where the points contradict what a tare of the force is assumed to be, 0 ± σ: with σ² = b² − v, the largest likelihood of b, which
-/// the points alone give with the variance v; J. O. Berger, *Statistical Decision Theory and Bayesian Analysis* (1985), section 3.5.4.
+/// Fits again where the points contradict the assumed tare of the force, 0 ± σ: with the σ of the largest likelihood,
+/// σ² = b² − v, where b is the tare that the points alone give, with the variance v; J. O. Berger, *Statistical
+/// Decision Theory and Bayesian Analysis* (1985), section 3.5.4.
 fn of_tare(
     problem: &mut FitProblem,
     solved: SolvedFit,
@@ -477,15 +478,16 @@ fn of_tare(
     solve(problem, &solved.minimum.parameters, robust, ROUNDS, progress).unwrap_or(solved)
 }
 
-/// The bootstrap that is made unasked: where there are few degrees of freedom, a straight line says too little of the intervals.
+/// The bootstrap that is run unasked: with few degrees of freedom, a linear model says too little about the intervals.
 fn of_few(degrees: f64) -> Option<(usize, u64)> {
-    /// So many fits, and which random numbers they draw.
+    /// The number of fits, and the seed of their random numbers.
     const FITS: usize = 200;
     const SEED: u64 = 1;
     (degrees < FEW_DEGREES).then_some((FITS, SEED))
 }
 
-/// Puts the intervals that are asked for into `fitted`; how many fits of the bootstrap there were, and the rows of its blocks.
+/// Puts the requested intervals into `fitted`; returns how many fits of the bootstrap there were, and the rows of its
+/// blocks.
 fn intervals(
     problem: &FitProblem,
     solved: &SolvedFit,
@@ -513,7 +515,7 @@ pub(super) fn values(
     u: &[f64],
     known: Option<(&DVector<f64>, &DVector<f64>)>,
 ) -> Vec<Fitted> {
-    /// The share of truths outside of an interval.
+    /// The share of truths outside an interval.
     const OUTSIDE: f64 = 0.05;
     let of = |(j, parameter): (usize, &FreeParameter)| {
         let value = parameter.value(u[j]);
@@ -537,7 +539,7 @@ fn laid(
     notes: &mut Vec<String>,
 ) -> Preset {
     let mut laid = preset.clone();
-    // What was known before stays so: the next fit has the same points, which count once.
+    // What was known before stays so: the next fit has the same points, which must count once.
     let known = uncertain(preset, problem.abscissa, &preset.data.uncertain).unwrap_or_default();
     let known: Vec<String> = problem
         .priors
@@ -548,7 +550,7 @@ fn laid(
         .collect();
     laid.data.uncertain = known.join(",");
     let opening = found.material.work_of_adhesion;
-    // A closing edge gains at most what an opening one costs: that must be there before.
+    // A closing edge gains at most what an opening one costs, so the opening value must be set first.
     let is_closing = |of: &&FreeParameter| of.target == Target::Adhesion(Segment::Approach);
     let all = || problem.parameters.iter();
     for parameter in all().filter(|of| !is_closing(of)).chain(all().filter(is_closing)) {
@@ -559,7 +561,7 @@ fn laid(
                 (edge::CLOSING_ADHESION, closing.filter(|closing| *closing <= opening).map(Value::from))
             }
             Target::Offset => (OFFSET, Some(instrument.offset.into())),
-            // One that no rows show is known no better by the next fit: it stays as it was given.
+            // A baseline that no rows show is known no better by the next fit: it stays as it was given.
             Target::Baseline if !problem.data.iter().any(|datum| datum.free) => continue,
             Target::Baseline => (BASELINE, Some(instrument.baseline.into())),
             Target::Tilt => (TILT, Some(instrument.tilt.into())),

@@ -1,4 +1,4 @@
-//! The noise of the rows as neighbours show it, which says nothing of the model and so can judge it.
+//! The noise of the rows as neighbours show it; it says nothing about the model and so can judge it.
 //!
 //! ```text
 //! d_i = (r_{i−1} − 2 r_i + r_{i+1})/√6         of the residuals of one branch in contact, along the path; s² their robust variance
@@ -6,10 +6,10 @@
 //! τ = 1 + 2 a ρ/(1 − ρ)                         how many rows count as one: the variance of a mean is s² τ/n
 //! ```
 //!
-//! Second differences leave out what varies slowly along the path: s is the noise of the rows whatever the model is. Noise that is
-//! correlated from row to row varies slowly too. How much it does is told by the rows apart alone, where the model is a constant: in
-//! contact the noise cannot be told from what a wrong model leaves.
-//! J. von Neumann, Ann. Math. Stat. 12, 367 (1941), is the same with first differences.
+//! Second differences leave out what varies slowly along the path: s is the noise of the rows whatever the model is.
+//! Noise that is correlated from row to row varies slowly too. How much it does so is known only from the rows apart,
+//! where the model is a constant: in contact this noise cannot be told from what a wrong model leaves.
+//! J. von Neumann, Ann. Math. Stat. 12, 367 (1941), does the same with first differences.
 
 use super::problem::{Datum, FitProblem};
 use super::solve::SolvedFit;
@@ -19,17 +19,17 @@ pub(super) use crate::measured::noise::{CLIPPED, LEFT, variance};
 use crate::measured::{Abscissa, Segment};
 use nalgebra::{DMatrix, DVector};
 
-/// Rows farther off than so many times the scale of all are outliers, and left out.
+/// Rows farther off than this many times the scale of all are outliers, and left out.
 const OUTLIER: f64 = 4.0;
-/// Fewer rows of a branch say nothing of neighbours.
+/// Fewer rows on a branch say nothing about neighbours.
 const FEWEST: usize = 5;
-/// Rows apart by which a correlation is looked for, at least.
+/// The fewest rows apart in which a correlation is sought.
 const FEWEST_APART: usize = 20;
-/// Of so many rows apart one belongs to the farthest, in which a correlation must be seen too.
+/// One in this many rows apart belongs to the farthest, in which a correlation must be seen too.
 const OUTER: usize = 2;
 /// Rows apart that scatter by less than this share of σ are rounding, in which there is always some order.
 const ROUNDING: f64 = 0.1;
-/// The correlation of neighbours in white noise is beyond so many times 1/√n once in a thousand times.
+/// The correlation of neighbours in white noise lies beyond this many times 1/√n once in a thousand times.
 const CORRELATED: f64 = 3.1;
 
 /// One row, with its residual in σ.
@@ -41,7 +41,7 @@ pub struct ScatterRow {
     pub residual: f64,
 }
 
-/// How the noise of neighbours hangs together.
+/// How the noise of neighbours is correlated.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Correlation {
     /// a.
@@ -51,7 +51,7 @@ pub struct Correlation {
 }
 
 impl Correlation {
-    /// Between rows that are `k` rows apart.
+    /// The correlation of rows that are `k` rows apart.
     #[must_use]
     pub fn at(&self, k: f64) -> f64 {
         if self.share > 0.0 { self.share * exp(k * ln(self.decay)) } else { 0.0 }
@@ -63,7 +63,7 @@ impl Correlation {
         1.0 + 2.0 * self.share * self.decay / (1.0 - self.decay)
     }
 
-    /// The variance of the mean of `n` rows, in that of one.
+    /// The variance of the mean of `n` rows, in units of that of one.
     #[must_use]
     pub fn of_mean(&self, n: usize) -> f64 {
         let count = n as f64;
@@ -74,8 +74,8 @@ impl Correlation {
         (1.0 + 2.0 * sum) / count
     }
 
-    /// By how much the variance of second differences is off, as a share, where the decay is told by so many rows: var ρ = (1 − ρ²)/n;
-    /// M. S. Bartlett, J. R. Stat. Soc. Suppl. 8, 27 (1946). The variance of that share.
+    /// By how much the variance of second differences is off, as a share, where the decay is found from this many rows:
+    /// var ρ = (1 − ρ²)/n; M. S. Bartlett, J. R. Stat. Soc. Suppl. 8, 27 (1946). Returns the variance of that share.
     fn of_few(&self, rows: usize) -> f64 {
         if self.share <= 0.0 {
             return 0.0;
@@ -84,7 +84,7 @@ impl Correlation {
         slope * slope * (1.0 - self.decay * self.decay) / rows as f64 / self.of_differences().powi(2)
     }
 
-    /// The variance of second differences, in that of white noise.
+    /// The variance of second differences, in units of that of white noise.
     fn of_differences(&self) -> f64 {
         1.0 - (8.0 * self.at(1.0) - 2.0 * self.at(2.0)) / 6.0
     }
@@ -93,25 +93,27 @@ impl Correlation {
 /// The noise of the rows, in σ of the problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scatter {
-    /// s of the rows in contact; `None` of too few.
+    /// s of the rows in contact; `None` where they are too few.
     pub contact: Option<f64>,
     /// The degrees of freedom of s².
     pub degrees: f64,
-    /// The variance of s², as a share of its square, that the correlation has in it: it is known from the rows apart alone.
+    /// The part of the variance of s², as a share of its square, that comes from the correlation: this is known from
+    /// the rows apart alone.
     pub of_correlation: f64,
-    /// The scale of the residuals of the same rows, which has in it what the model leaves.
+    /// The scale of the residuals of the same rows, which includes what the model leaves.
     pub residuals: f64,
     /// Their number.
     pub rows: usize,
-    /// How neighbours hang together.
+    /// How neighbours are correlated.
     pub correlation: Correlation,
-    /// The rows apart in which it was looked for.
+    /// The rows apart in which the correlation was sought.
     pub apart: usize,
 }
 
 impl FitProblem {
-    /// The residuals of one branch, in contact along the path or apart in the order of measurement, without outliers. Radii that go
-    /// one way in it are in that order: the noise of a radius would shuffle rows whose forces differ.
+    /// The residuals of one branch, in contact along the path or apart in the order of measurement, without outliers.
+    /// Radii that go one way in that order are kept in it: the noise of a radius would shuffle rows whose forces
+    /// differ.
     pub(super) fn rows(&self, solved: &SolvedFit, branch: usize, free: bool, part: usize) -> Vec<ScatterRow> {
         let per = self.per_point();
         let residuals = &solved.minimum.at.residuals;
@@ -155,7 +157,8 @@ impl FitProblem {
             apart.iter().map(outer).filter(|rows| rows.len() >= FEWEST).collect::<Vec<_>>()
         };
         let (apart, outer) = (of(1), of(OUTER));
-        // Noise hangs together everywhere; what only the rows near the contact have in common is the contact, which begins before it is seen.
+        // Noise is correlated everywhere. What only the rows near the contact have in common is the contact, which
+        // begins before it is seen.
         let is_told = outer.iter().map(Vec::len).sum::<usize>() >= FEWEST_APART;
         let is_noise = !is_told || correlation(&outer).share > 0.0;
         let correlation = if is_noise { correlation(&apart) } else { Correlation::default() };
@@ -176,7 +179,7 @@ impl FitProblem {
         let contact = variance(&differences).map(|found| (found / correlation.of_differences()).sqrt());
         let rows_apart = apart.iter().map(Vec::len).sum();
         let of_correlation = correlation.of_few(rows_apart);
-        // Of two independent variances; F. E. Satterthwaite, Biom. Bull. 2, 110 (1946).
+        // For two independent variances; F. E. Satterthwaite, Biom. Bull. 2, 110 (1946).
         let degrees = 1.0 / (correlation.rows() / degrees.max(1.0) + 0.5 * of_correlation);
         Scatter {
             contact: contact.filter(|s| *s > 0.0),
@@ -190,8 +193,8 @@ impl FitProblem {
     }
 }
 
-/// Whether values go on from row to row, but for some noise: by the squares of their steps over those around their mean, 2 of values
-/// without an order; J. von Neumann, Ann. Math. Stat. 12, 367 (1941).
+/// Whether values go on from row to row, except for some noise: by the squares of their steps over those around their
+/// mean, 2 for values without an order; J. von Neumann, Ann. Math. Stat. 12, 367 (1941).
 fn goes_on(values: &[f64]) -> bool {
     const MOST: f64 = 0.5;
     let mean = values.iter().sum::<f64>() / values.len() as f64;
@@ -199,7 +202,7 @@ fn goes_on(values: &[f64]) -> bool {
     values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum::<f64>() < MOST * around
 }
 
-/// Values without their mean and their slope over the order.
+/// The values without their mean and without their slope over the order.
 fn detrended(values: &[f64]) -> Vec<f64> {
     let n = values.len() as f64;
     let (mean, middle) = (values.iter().sum::<f64>() / n, 0.5 * (n - 1.0));
@@ -213,7 +216,7 @@ fn detrended(values: &[f64]) -> Vec<f64> {
 
 /// The correlation of neighbours in series without mean and slope; none where it may be by chance.
 fn correlation(series: &[Vec<f64>]) -> Correlation {
-    /// Correlations below this share of that of neighbours, or which may be by chance, say nothing of the decay.
+    /// Correlations below this share of that of neighbours, or which may be by chance, say nothing about the decay.
     const TOLD: f64 = 0.3;
     /// The slowest decay that is told from a drift, in the number of rows.
     const SLOWEST: f64 = 3.0;
@@ -247,7 +250,7 @@ fn correlation(series: &[Vec<f64>]) -> Correlation {
         found = if told.len() < 2 {
             Correlation { share: 1.0, decay: first.clamp(0.0, least) }
         } else {
-            // The correlation of rows farther apart is known worse.
+            // The correlation of rows farther apart is known less well.
             let count: f64 = told.iter().map(|(lag, _)| 1.0 / lag).sum();
             let [mean_x, mean_y] =
                 told.iter().fold([0.0; 2], |[x, y], (lag, r)| [x + 1.0 / count, y + ln(*r) / lag / count]);
@@ -256,7 +259,7 @@ fn correlation(series: &[Vec<f64>]) -> Correlation {
                 [xx + off * off / lag, xy + off * (ln(*r) - mean_y) / lag]
             });
             let decay = exp((xy / xx).min(0.0)).min(least);
-            // No more than all of the noise hangs together: then its decay is the correlation of neighbours.
+            // At most all of the noise is correlated: then its decay is the correlation of neighbours.
             if first < decay {
                 Correlation { share: first / decay, decay }
             } else {

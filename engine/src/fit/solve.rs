@@ -7,12 +7,12 @@ use crate::measured::branches::median;
 use crate::progress::Progress;
 use nalgebra::DVector;
 
-/// Residuals beyond so many times their scale count linearly.
+/// Residuals beyond this many times their scale count linearly.
 pub const HUBER: f64 = 1.5;
-/// The least scale, in σ: below it everything is rounding.
+/// The smallest scale, in σ: below it everything is rounding.
 pub const LEAST_SCALE: f64 = 1e-3;
 
-/// A way of so many standard errors along the best direction is none.
+/// A step of less than this many standard errors along the best determined direction counts as none.
 pub(super) const NOTHING: f64 = 1e-3;
 
 /// A fit.
@@ -25,7 +25,7 @@ pub struct SolvedFit {
 }
 
 impl FitProblem {
-    /// The same with at most `most` points, evenly taken from those in contact and those apart.
+    /// The same problem with at most `most` points, evenly taken from those in contact and those apart.
     pub(super) fn thinned(&self, most: usize) -> Self {
         let mut thinned = self.clone();
         let step = self.data.len().div_ceil(most).max(1);
@@ -35,14 +35,15 @@ impl FitProblem {
         thinned
     }
 
-    /// The residuals that are there: in space those of free points have no second part.
+    /// The residuals that exist: in space those of free points have no second part.
     pub(super) fn real(&self, residuals: &DVector<f64>) -> Vec<f64> {
         let per = self.per_point();
         let is_real = |i: usize| per == 1 || i.is_multiple_of(per) || !self.data[i / per].free;
         residuals.iter().enumerate().filter(|(i, _)| is_real(*i)).map(|(_, r)| *r).collect()
     }
 
-    /// The scale of normal residuals, whatever their outliers: of the points in contact, which alone say how near the curve is.
+    /// The scale of normal residuals, whatever their outliers: of the points in contact, which alone tell how near the
+    /// curve is.
     pub(super) fn scale(&self, residuals: &DVector<f64>) -> f64 {
         let per = self.per_point();
         let sizes = residuals.iter().enumerate().filter(|(i, _)| !self.data[i / per].free);
@@ -51,11 +52,11 @@ impl FitProblem {
     }
 }
 
-/// Of more rows than this a part is fitted first.
+/// With more rows than this a part is fitted first.
 const MANY: usize = 4000;
 
-/// Fits from `start`: rounds of a minimization and a new scale, until the scale stays. Of many rows a part, evenly taken, leads next to
-/// the end.
+/// Fits from `start`: rounds of a minimization and a new scale, until the scale stays the same. Where there are many
+/// rows, an evenly taken part leads close to the end first.
 pub fn solve(
     problem: &FitProblem,
     start: &[f64],
@@ -82,15 +83,15 @@ fn solve_all(
     /// A scale changed by less than this share is the same.
     const SAME: f64 = 1e-3;
     const SCALES: usize = 12;
-    /// The tolerance until then, and in the end where there are many rows, or a pull is known to a share of the noise: a ten-thousandth
-    /// of an error.
+    /// The tolerance until then, and also at the end where there are many rows, or where a pull is known only to a
+    /// share of the noise: a ten-thousandth of an error.
     const ROUGH: f64 = 1e-4;
     const FINE_OF_MANY: f64 = 1e-7;
     let mut at = problem.evaluate(start)?;
     let mut scale = problem.scale(&at.residuals);
     let mut u = start.to_vec();
     let mut left = rounds;
-    // Nothing is known better than the scale: only once that has settled the end is found to all digits.
+    // Nothing is known better than the scale: only once that has settled is the end found to all digits.
     let is_rough = problem.data.len() > MANY || is_pulled(&problem.preset);
     let fine = if is_rough { FINE_OF_MANY } else { MinimizationSettings::default().tolerance };
     let mut tolerance = if robust { ROUGH } else { fine };

@@ -1,13 +1,14 @@
-//! How the noise of a residual goes with the slope of the curve: that of x matters where it is steep, that of P where it is level.
+//! How the noise of a residual varies with the slope of the curve: that of x matters where the curve is steep, that of
+//! P where it is level.
 //!
 //! ```text
 //! var r_i = (1 − h_i) (a n_x² + b n_P²),     n the normal of the curve in σ,     (a, b) by the largest likelihood
 //! h_i = J_i (JᵀJ + K)⁻¹ J_iᵀ                 what the fit takes of a row
 //! ```
 //!
-//! Where few rows decide a value the fit takes most of them: J. G. `MacKinnon` and H. White, J. Econometrics 29, 305 (1985). a and b are 1
-//! where σ of x and of P are what they are said to be. The least σ of x is no noise: a is 0 there, and the residuals of a steep curve are
-//! smaller than those of rows apart.
+//! Where few rows decide a value the fit takes up most of them: J. G. `MacKinnon` and H. White, J. Econometrics 29, 305
+//! (1985). a and b are 1 where σ of x and of P are what they are said to be. The smallest σ of x is not noise: a is 0
+//! there, and the residuals of a steep curve are smaller than those of rows apart.
 
 use super::distance::Nearest;
 use super::problem::FitProblem;
@@ -16,12 +17,12 @@ use super::solve::{LEAST_SCALE, SolvedFit};
 use crate::measured::branches::median;
 use nalgebra::DVector;
 
-/// What a fit leaves of the variance of a row is at least this share: less says nothing of it.
+/// A fit leaves at least this share of the variance of a row: less would say nothing about it.
 pub(super) const LEAST_LEFT: f64 = 0.1;
-/// Fewer rows say nothing of two variances.
+/// Fewer rows say nothing about two variances.
 const FEWEST: usize = 20;
 
-/// `n_x²` and `n_P²` of a foot; of a row apart, whose residual is that of P, none and all.
+/// `n_x²` and `n_P²` of a foot; for a row apart, whose residual is that of P, 0 and 1.
 fn normal(foot: Option<&Nearest>) -> [f64; 2] {
     foot.map_or([0.0, 1.0], |foot| [0, 1].map(|k| foot.normals[0][k].powi(2)))
 }
@@ -30,7 +31,7 @@ fn normal(foot: Option<&Nearest>) -> [f64; 2] {
 pub(super) struct Spread {
     /// The standard deviation of each residual in σ.
     pub of_rows: DVector<f64>,
-    /// `n_x²` and `n_P²` of each, where the variances of x and of P are told by the residuals.
+    /// `n_x²` and `n_P²` of each, where the residuals tell the variances of x and of P.
     pub components: Option<Vec<[f64; 2]>>,
 }
 
@@ -42,8 +43,8 @@ impl FitProblem {
         Some(feet.iter().map(|foot| normal(foot.as_ref())).collect())
     }
 
-    /// By how much σ of x and of P are off where neither was known, (√a, √b) of second differences of the rows in contact. `None` of too
-    /// few rows.
+    /// By how much σ of x and of P are off where neither was known, (√a, √b) from second differences of the rows in
+    /// contact. `None` where there are too few rows.
     pub(super) fn off(&self, solved: &SolvedFit) -> Option<[f64; 2]> {
         let normals = self.normals(solved)?;
         let normal = |row: &ScatterRow| normals[row.index];
@@ -58,8 +59,8 @@ impl FitProblem {
         components(&rows).map(|found| found.map(f64::sqrt))
     }
 
-    /// The spread of the residuals, of which the fit has taken the shares `leverage`: one of all rows where there are too few, or two
-    /// residuals of each.
+    /// The spread of the residuals, of which the fit has taken up the shares `leverage`: the same for all rows where
+    /// there are too few, or where each has two residuals.
     pub(super) fn spread(&self, solved: &SolvedFit, leverage: &DVector<f64>) -> Spread {
         let residuals = &solved.minimum.at.residuals;
         let whole = residuals.zip_map(leverage, |r, h| r / (1.0 - h).max(LEAST_LEFT).sqrt());
@@ -80,7 +81,7 @@ impl FitProblem {
     }
 }
 
-/// a and b of squares, each beside `n_x²` and `n_P²` of its row. `None` of too few rows.
+/// a and b from squares, each beside `n_x²` and `n_P²` of its row. `None` where there are too few rows.
 fn components(rows: &[([f64; 2], f64)]) -> Option<[f64; 2]> {
     const TIMES: usize = 50;
     const SAME: f64 = 1e-4;
@@ -104,7 +105,7 @@ fn components(rows: &[([f64; 2], f64)]) -> Option<[f64; 2]> {
         }
         let whole = xx * pp - xp * xp;
         let both = [(x * pp - p * xp) / whole, (p * xx - x * xp) / whole];
-        // None is below 0: the other has it all.
+        // Neither is below 0: the other then has it all.
         let next = if both[0] <= 0.0 {
             [0.0, p / pp]
         } else if both[1] <= 0.0 {

@@ -1,7 +1,7 @@
 //! Where a fit starts: the preset's values and a scan around them.
 //!
-//! E* over five decades; at each γ such that the smallest force is that of the points, δ₀ the median offset. Other free keys are
-//! tried at a few shares of their values.
+//! E* runs over five decades; at each value γ is such that the smallest force is that of the points, and δ₀ is the
+//! median offset. Other free keys are tried at a few multiples of their values.
 
 use super::least_squares::LeastSquares;
 use super::problem::{ADHESION, Datum, FitProblem, START, Target};
@@ -22,13 +22,13 @@ const MODULI: usize = 31;
 const DECADES: f64 = 5.0;
 /// Factors at which another free key is tried.
 const FACTORS: [f64; 5] = [1.0, 0.577_350_269_189_625_8, 1.732_050_807_568_877_2, 1.0 / 3.0, 3.0];
-/// Candidates at most.
+/// The most candidates.
 const MOST: usize = 400;
-/// Points by which candidates are compared, and those on which the best are run.
+/// The number of points by which candidates are compared, and of those on which the best are run.
 const COMPARED: usize = 60;
 const RUN: usize = 240;
-/// On waves a candidate is judged by where a few rounds lead it: so many of the best, not farther off than so many times the nearest,
-/// and so many rounds.
+/// On waves a candidate is judged by where a few rounds lead it: how many of the best are run, how many times as far
+/// off as the nearest they may be, and for how many rounds.
 const POOL: usize = 12;
 const NEAR: f64 = 3.0;
 const FEW_ROUNDS: usize = 4;
@@ -36,7 +36,8 @@ const FEW_ROUNDS: usize = 4;
 pub const BEST: usize = 5;
 const ROUNDS: usize = 40;
 
-/// Ends of which no value differs by more than this are one, and starts of which one does by more than that are two.
+/// Ends count as one if no value differs by more than the first of these, and starts as two if some value differs by
+/// more than the second.
 const ONE: f64 = 0.01;
 const OTHER: f64 = 0.2;
 
@@ -61,8 +62,8 @@ impl FitProblem {
         (0..self.parameters.len()).filter(|j| is(&self.parameters[*j].target)).collect()
     }
 
-    /// Lets γ have the smallest force of the points, and δ₀ their median offset; on waves, where several states have one force, also that
-    /// of the pull-off.
+    /// Sets γ so that the smallest force is that of the points, and δ₀ to their median offset; on waves, where several
+    /// states have the same force, also to that of the pull-off.
     fn settled(&self, mut u: Vec<f64>, least: f64) -> Option<Vec<Vec<f64>>> {
         const TIMES: usize = 6;
         let adhesions =
@@ -76,7 +77,7 @@ impl FitProblem {
             if !(ratio > 0.0 && ratio.is_finite()) || (ratio - 1.0).abs() < 0.01 {
                 break;
             }
-            // A cone's grows with the square of γ.
+            // The smallest force of a cone grows with the square of γ.
             for &j in &adhesions {
                 u[j] += 0.7 * ln(ratio);
             }
@@ -108,8 +109,8 @@ impl FitProblem {
         Some(vec![u])
     }
 
-    /// Candidates where adhesion has a range: the best without one, which is found soon, with some ranges where that is free. `None` where
-    /// it has none, or nothing is found without.
+    /// Candidates where adhesion has a range: the best ones without a range, which are found quickly, with some ranges
+    /// where that is free. `None` where adhesion has no range, or where nothing is found without one.
     fn of_ranges(&self, robust: bool, progress: &dyn Progress) -> Option<Vec<Vec<f64>>> {
         /// Maugis' `λ_M`.
         const MAUGIS: [f64; 4] = [0.15, 0.5, 1.2, 3.0];
@@ -142,8 +143,8 @@ impl FitProblem {
         Some(std::iter::once(own).chain(strengths.map(with)).collect())
     }
 
-    /// Candidates of a pull at a rate: the best of a quasi-static retraction, stiffer than the bodies are, with laws slow and fast. `None`
-    /// where it is none.
+    /// Candidates for a pull at a rate: the best ones of a quasi-static retraction, whose moduli are too large, with
+    /// slow and fast laws. `None` where there is no such pull.
     fn of_rates(&self, robust: bool, progress: &dyn Progress) -> Option<Vec<Vec<f64>>> {
         /// E* over that of the quasi-static fit, v₀ over the rate of the device, n.
         const SOFTER: [f64; 3] = [1.0, 0.7, 0.45];
@@ -170,7 +171,7 @@ impl FitProblem {
         let [modulus, speed, exponent] =
             ["material.effective_modulus", edge::REFERENCE_SPEED, edge::EXPONENT]
                 .map(|key| self.index(|target| target.key() == key).first().copied());
-        // The rate of a force is no speed: there the guess of the preset stands in its place.
+        // The rate of a force is not a speed: there the guess of the preset takes its place.
         let is_force = self.preset.path.control == Control::Force;
         let unit = self.preset.edge.rate.filter(|_| !is_force).or(self.preset.edge.reference_speed)?;
         let mut list = vec![own];
@@ -196,7 +197,8 @@ impl FitProblem {
         Some(list)
     }
 
-    /// The contact radius at which a pull begins, or an edge is pinned, where that is free, as the values have it at the first points.
+    /// Sets the contact radius at which a pull begins, or an edge is pinned, where that is free, to what the values
+    /// give at the first points.
     fn begun(&self, u: &mut [f64]) {
         let Some(&j) = self.index(|target| target.key() == START).first() else { return };
         let at = self.instrument_at(u);
@@ -236,7 +238,7 @@ impl FitProblem {
                 })
                 .collect();
         }
-        // On waves a smaller step is needed not to miss the right count of snaps.
+        // On waves a smaller step is needed so as not to miss the right count of snaps.
         let fine = self.preset.gap.feature_length().is_some() && grid.len() == 1;
         let count = if fine { 2 * MODULI - 1 } else { MODULI };
         for u in grid {
@@ -311,7 +313,7 @@ pub fn start(
         });
         let snaps = run.paths(&end.1).map_or(0, |paths| paths.of(Segment::Retraction).snaps);
         tried.push(Tried { distance: end.0, snaps });
-        // Each step of a pull is one more pull: what two starts far from each other lead to is the end.
+        // Each step of a pull is one more pull, so an end that is reached from two starts far from each other is final.
         let apart = |u: &[f64], v: &[f64]| u.iter().zip(v).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let is_end = |best: &(f64, Vec<f64>)| {
             apart(&best.1, &end.1) < ONE && from.iter().any(|u| apart(u, &begun) > OTHER)

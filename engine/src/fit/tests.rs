@@ -30,7 +30,7 @@ impl Normal {
     }
 }
 
-/// A loading device with a body: δ and P by s.
+/// A loading device with a body: δ and P as functions of s.
 pub(super) struct Body<'a> {
     pub(super) state: &'a dyn Fn(f64) -> (f64, f64),
     pub(super) compliance: f64,
@@ -67,7 +67,8 @@ impl Body<'_> {
         Some(0.5 * (lo + hi))
     }
 
-    /// `n` samples of an approach to the radius `most` and of the retraction, evenly by the way, both from as far apart.
+    /// `n` samples of an approach to the radius `most` and of the retraction, evenly spaced in the way, both from
+    /// equally far apart.
     pub(super) fn samples(&self, n: usize) -> Points {
         let (top, fold) = (self.way(self.most), self.way(self.fold()));
         let bottom = fold - 0.4 * (top - fold);
@@ -169,7 +170,7 @@ fn a_spring_is_part_of_the_way_and_can_be_fitted() {
     assert!(told.contains("; with k 10 % smaller: E* +"), "{told}");
     let fit = run(&preset(SPHERE, 1.5, 0.015, "control={stiffness=0.9}"), &points, &[E, W, "k"]);
     close(&fit, &[1.3, 0.02, 0.8], 1e-8);
-    // Held at a wrong value it shows in χ², where the noise is known.
+    // A stiffness held at a wrong value shows in χ², where the noise is known.
     let mut noisy = points;
     let mut normal = Normal::new(1);
     noisy.force.iter_mut().for_each(|p| *p += 5e-4 * normal.next());
@@ -197,7 +198,7 @@ fn what_cannot_be_told_apart_is_refused_and_named() {
          E*·√R can be told)"
             .replace("w ", "γ ")
     );
-    // With the radius measured all three are there: P, δ and s together.
+    // With the radius measured, P, δ and s are all there together.
     let truth = sphere(1.3, 0.02, 2.0);
     let radii: Vec<f64> = (0..200).map(|i| 1.6 - 0.005 * f64::from(i)).collect();
     let (x, force): (Vec<f64>, Vec<f64>) = radii.iter().map(|s| truth(*s)).unzip();
@@ -214,14 +215,14 @@ fn what_cannot_be_told_apart_is_refused_and_named() {
     let fit = run(&preset(&SPHERE.replace("2.0", "1.5"), 3.9, 0.007, ""), &three, &["R", E, W]);
     close(&fit, &[2.0, 1.3, 0.02], 1e-7);
     assert!(fit.direction.is_none());
-    // P over s alone says E*/R and γ E*.
+    // P over s alone gives E*/R and γ E*.
     let two = Points { abscissa: Abscissa::Radius, x: three.radius.clone().unwrap(), radius: None, ..three };
     close(&run(&preset(SPHERE, 3.9, 0.007, ""), &two, &[E, W]), &[1.3, 0.02], 1e-8);
     let fit = run(&preset(SPHERE, 1.3, 0.02, ""), &two, &["R", E, W]);
     assert!(fit.direction.unwrap().starts_with("R +10 %, E* +10 %, γ −9.1 % together"));
 }
 
-/// The sphere of the trials with noise: P by 0.5 % of its range.
+/// The sphere of the trials, with noise in P of 0.5 % of its range.
 fn noisy(seed: u64, outliers: bool) -> Points {
     let body = Body { state: &sphere(1.0, 0.02, 1.0), compliance: 0.0, most: 1.1 };
     let mut points = body.samples(600);
@@ -234,10 +235,10 @@ fn noisy(seed: u64, outliers: bool) -> Points {
     points
 }
 
-/// The shares of 95 % intervals that hold the truth, and the mean errors in σ.
+/// The shares of 95 % intervals that contain the truth, and the mean errors in σ.
 fn coverage(seeds: std::ops::Range<u64>, outliers: bool) -> [[f64; 2]; 2] {
     let count = (seeds.end - seeds.start) as f64;
-    // The starts are tried elsewhere; here one is near.
+    // The starts are tested elsewhere; here one is near.
     let start = preset("shape='sphere'\nradius_of_curvature=1.0", 1.1, 0.018, "");
     let free = [E, W, "data.offset"].map(str::to_owned).to_vec();
     // A single row that is off can begin a fit at the wrong end.
@@ -312,7 +313,7 @@ fn order_and_units_change_nothing() {
     let free = free.map(str::to_owned).to_vec();
     let options = Options { free, asked, ..Options::default() };
     same(&fit(&start, &order(&mixed), &options, &Unwatched).unwrap());
-    // Lengths in 1e-3 and forces in 1e-6 of before: E* stays, γ is a thousandth.
+    // Lengths scaled by 1e-3 and forces by 1e-6: E* stays, γ becomes a thousandth.
     let scaled = Points {
         x: points.x.iter().map(|x| 1e-3 * x).collect(),
         force: points.force.iter().map(|p| 1e-6 * p).collect(),
@@ -357,10 +358,10 @@ fn an_edge_is_pinned_between_two_works_of_adhesion() {
     // The fitted preset has the dead band.
     let closing = fit.preset.edge.closing_work_of_adhesion.unwrap();
     assert!((closing / 0.01 - 1.0).abs() < 0.02, "{closing}");
-    // One alone does not describe it.
+    // One work of adhesion alone does not describe it.
     let one = run(&preset(SPHERE, 1.5, 0.02, ""), &points, &[E, W]);
     assert_eq!(one.verdict, Verdict::DoesNotDescribe);
-    // Where both are one nothing is pinned.
+    // Where both are equal nothing is pinned.
     let start = preset("shape='sphere'\nradius_of_curvature=1.0", 1.4, 0.015, "");
     let same = super::fit(&start, &noisy(3, false), &options, &Unwatched).unwrap();
     close(&same, &[1.0, 0.02, 0.02], 0.1);

@@ -47,7 +47,7 @@ fn the_error_of_a_spring_is_in_those_of_the_values() {
     assert_eq!((&*given.key, given.value), (STIFFNESS, 0.8));
     assert!((given.standard_error - 0.08).abs() < 1e-15);
     assert!(given.shares.iter().all(|share| (0.0..=1.0).contains(share)), "{:?}", given.shares);
-    // As sharp as a spring that is held, and as wide as one that is free.
+    // As sharp as with a spring that is held, and as wide as with one that is free.
     let [_, sharp] = off(&found(&start(0.8, "k=1e-6%"), &points).unwrap(), E, 1.3);
     let [_, of_held] = off(&held, E, 1.3);
     assert!((sharp / of_held - 1.0).abs() < 1e-3, "{sharp} {of_held}");

@@ -25,7 +25,7 @@ fn a_wavy_sphere_is_found_through_its_snaps() {
     close(&fit, &[1.0, 0.004, 0.0025], 1e-8);
 }
 
-/// Our own unloading of a preset under fixed grips, evenly by the approach, with a free part.
+/// Our own unloading of a preset under fixed grips, evenly spaced in the approach, with a free part.
 fn unloaded(preset: &Preset, n: usize) -> Points {
     let case = Case::new(preset).unwrap();
     let curve = case.curve(&Unwatched).unwrap();
@@ -52,7 +52,8 @@ fn unloaded(preset: &Preset, n: usize) -> Points {
     Points { abscissa: Abscissa::Approach, x, force, radius: None, steps: [1e-30; 3], segments, time: None }
 }
 
-/// Our own loop of a preset up to the control value `top`, `n` samples each way, evenly by δ or by the way of the device, both from apart.
+/// Our own loop of a preset up to the control value `top`, `n` samples each way, evenly spaced in δ or in the way of
+/// the device, both starting apart.
 fn looped(preset: &Preset, top: f64, n: usize) -> Points {
     let control = preset.path.control;
     let case = Case::new(preset).unwrap();

@@ -1,13 +1,14 @@
-//! One law fitted to several curves: the values of material, gap, edge and device are those of all, what lies between instrument and model is each
-//! curve's own.
+//! One law fitted to several curves: the values of material, gap, edge and device are shared by all; what lies between
+//! instrument and model is each curve's own.
 //!
 //! ```text
 //! D = Σ_i (C_i − C_i⁰) 2/(τ_i κ_i²)     F = D/q     q = Σ p_i⁰ − p     ν = Σ n_i/τ_i − p
 //! ```
 //!
-//! with `C_i` the cost of the rows of curve i under one law and `C_i⁰` under its own, τ rows that count as one, κ the noise
-//! of its residuals beside its own law, by what they count, and p⁰ the values that a curve alone determines. Runs that do not collapse on one law have a D that
-//! chance hardly has: F beyond its quantile. The covariance is that of `determined`, its sums taken over all curves.
+//! with `C_i` the cost of the rows of curve i under one law and `C_i⁰` under its own, τ the rows that count as one, κ
+//! the noise of its residuals about its own law, by what they count, and p⁰ the number of values that a curve
+//! determines alone. Runs that do not collapse on one law have a D that chance hardly gives: F is beyond its quantile.
+//! The covariance is that of `determined`, with its sums taken over all curves.
 
 use super::chance::beyond_f;
 use super::degrees::LOST;
@@ -45,7 +46,7 @@ pub struct Together {
     pub direction: Option<String>,
     /// Whether they follow one law.
     pub collapse: Collapse,
-    /// The fit of each curve under the one law, its errors those of all curves.
+    /// The fit of each curve under the one law, with the errors from all curves.
     pub runs: Vec<CurveFits>,
     /// The preset of the first with the law.
     pub preset: Preset,
@@ -66,17 +67,17 @@ pub struct CurveFits {
 pub struct Collapse {
     /// By how much χ² is larger under one law than with one of each run.
     pub chi_squared: f64,
-    /// The values that the laws of all runs have more.
+    /// How many more values the laws of all runs have.
     pub values: usize,
-    /// How likely so much is by chance where there is one law.
+    /// How likely such an increase is by chance if there is one law.
     pub chance: f64,
-    /// Whether there is one.
+    /// Whether there is one law.
     pub collapses: bool,
     /// The same in words.
     pub sentence: String,
 }
 
-/// The curves as one problem, the residuals of each in the noise that it has beside its own law.
+/// The curves as one problem, with the residuals of each in units of its noise about its own law.
 struct Joint<'a> {
     curves: Vec<JoinedCurve<'a>>,
     count: usize,
@@ -103,13 +104,13 @@ impl JoinedCurve<'_> {
         DMatrix::from_fn(places.len(), places.len(), |i, j| of[(places[i], places[j])])
     }
 
-    /// Its values, of those of all.
+    /// Its values, out of those of all curves.
     fn own(&self, u: &[f64]) -> Vec<f64> {
         self.places.iter().map(|place| u[*place]).collect()
     }
 }
 
-/// Whether a value is that of all curves.
+/// Whether a value is shared by all curves.
 fn is_of_law(key: &str) -> bool {
     !key.starts_with("data.") && key != START
 }
@@ -144,7 +145,7 @@ impl<'a> Joint<'a> {
         if self.robust { HUBER } else { f64::INFINITY }
     }
 
-    /// The values, each as the first curve that has it does.
+    /// The values, each as in the first curve that has it.
     fn parameters(&self) -> Vec<FreeParameter> {
         let of_place = |place: usize| {
             let has = |curve: &JoinedCurve| {
@@ -156,7 +157,7 @@ impl<'a> Joint<'a> {
         (0..self.count).filter_map(of_place).collect()
     }
 
-    /// What is known before of the values, each once: of a value of all, as the first curve has it.
+    /// What is known before of the values, each once; of a shared value, as the first curve has it.
     fn priors(&self) -> Vec<(usize, f64, f64)> {
         let mut priors: Vec<(usize, f64, f64)> = Vec::new();
         for JoinedCurve { problem, places, .. } in &self.curves {
@@ -230,7 +231,7 @@ impl LeastSquares for Joint<'_> {
 /// Fits the free keys of `presets`, each with its own measured curve, device and rate, to all curves at once.
 ///
 /// # Errors
-/// The number of the curve, and its [`FitError`]; [`FitError::NoStart`] of the first where no law reaches all points.
+/// The number of the curve, and its [`FitError`]; [`FitError::NoStart`] for the first where no law reaches all points.
 pub fn fit_together(
     presets: &[Preset],
     options: &Options,
@@ -243,7 +244,7 @@ pub fn fit_together(
     for run in 0..presets.len() {
         belongs(presets, run).map_err(numbered(run))?;
     }
-    // What is asked of the errors of one curve says nothing of those of all.
+    // Options for the errors of one curve do not apply to those of all.
     let options = &Options { profile: false, bootstrap: None, ..options.clone() };
     let branches = |(run, preset)| branches_of(preset, options).map_err(numbered(run));
     let branches: Vec<Branches> = presets.iter().enumerate().map(branches).collect::<Result<_, _>>()?;
@@ -306,7 +307,8 @@ fn belongs(presets: &[Preset], run: usize) -> Result<(), FitError> {
     Ok(())
 }
 
-/// The minimum of all curves, from the law of each and the own values that each has alone: the two best are run to their ends.
+/// The minimum of all curves, starting from the law of each and the own values that each has alone; the two best starts
+/// are run to their ends.
 fn least(joint: &Joint, progress: &dyn Progress) -> Option<Minimum> {
     const STARTS: usize = 2;
     const ROUNDS: usize = 100;
@@ -375,7 +377,7 @@ fn known(
     for (curve, (solved, scatter)) in all() {
         let own = curve.part(&inner) * curve.weight().powi(2);
         let sandwich = sandwich(curve.problem, solved, &own, &scatter.correlation, joint.robust);
-        // Rows and columns each are so many times smaller, and so is the noise of the points.
+        // Rows and columns are each smaller by this factor, and so is the noise of the points.
         let (of_points, of_bread) = (curve.weight().powi(4), curve.weight().powi(2));
         for (i, a) in curve.places.iter().enumerate() {
             for (j, b) in curve.places.iter().enumerate() {
@@ -394,7 +396,7 @@ fn known(
 }
 
 impl JointUncertainty {
-    /// As one curve has it.
+    /// The same for one curve.
     fn of(&self, curve: &JoinedCurve) -> Determined {
         let [covariance, inner] = match &self.covariance {
             Some(both) => both.each_ref().map(|of| Some(curve.part(of))),

@@ -25,7 +25,8 @@ const MARGIN: f64 = 1.15;
 /// Halvings of the outermost edge of a zone.
 const HALVINGS: usize = 40;
 
-/// Beyond this `λ_M` the zone is so thin that the pull-off force is that of none to 0.0007 of it, and no fit goes.
+/// Beyond this `λ_M` the zone is so thin that the pull-off force is that without a zone to 0.0007 of it, and no fit
+/// goes there.
 pub(super) const LARGEST_MAUGIS: f64 = 15.0;
 
 /// What a path must reach.
@@ -35,11 +36,11 @@ pub struct Reach {
     pub most: [f64; 3],
     /// x and P where the retraction begins.
     pub turn: [f64; 2],
-    /// Where it begins, whatever the points are: of two paths beside each other the pieces are then the same.
+    /// Where the path begins, whatever the points are: two neighbouring paths then have the same pieces.
     pub radius: Option<f64>,
     /// The length by which a gap without one of its own is reduced.
     pub length: f64,
-    /// The noise of the points as a share of their range: a path that is off by much less is as good.
+    /// The noise of the points as a share of their range: a path that is off by much less than this is good enough.
     pub noise: f64,
 }
 
@@ -48,7 +49,7 @@ pub struct Reach {
 pub(super) struct Eye {
     pub(super) units: Units,
     pub(super) abscissa: Abscissa,
-    /// 1/k; 0 where x is no way of a spring.
+    /// 1/k; 0 where x is not the way of a spring.
     pub(super) compliance: f64,
 }
 
@@ -82,7 +83,7 @@ pub(super) enum Track {
         monotone: Arc<Monotone>,
         ends: [f64; 2],
         law: Cohesion,
-        /// Whether its range stays as it is when γ changes, not its tension.
+        /// Whether its range, not its tension, stays as it is when γ changes.
         holds_range: bool,
     },
     /// A pull at a rate.
@@ -90,7 +91,8 @@ pub(super) enum Track {
 }
 
 impl Track {
-    /// That of a preset that reaches as far as the points, its stretches under `held` known; `None` where there is none.
+    /// The track of a preset, reaching as far as the points, with its stretches under `held` known; `None` where there
+    /// is none.
     pub(super) fn new(
         preset: &Preset,
         reduced: Reduced,
@@ -186,7 +188,8 @@ impl Track {
         }
     }
 
-    /// The step of the logarithm of a value by which the derivatives of paths are taken: what is integrated is known to fewer digits.
+    /// The step of the logarithm of a value over which the derivatives of paths are taken: what is integrated is known
+    /// to fewer digits.
     pub(super) fn step(&self) -> f64 {
         const OF_EQUILIBRIA: f64 = 1e-5;
         const OF_PULLS: f64 = 3e-4;
@@ -202,7 +205,7 @@ impl Track {
         }
     }
 
-    /// Makes it reach so many times as far; false where it cannot.
+    /// Makes it reach this many times as far; false where it cannot.
     pub(super) fn longer(&mut self, by: f64) -> bool {
         match self {
             Self::Edge(curve) => curve.reach(by * curve.solution.reach()),
@@ -236,7 +239,7 @@ impl Track {
         }
     }
 
-    /// States to draw it by, running inward, as far as it is connected.
+    /// States to draw it with, running inward, as far as it is connected.
     pub(super) fn drawn(&self) -> Vec<TrackState> {
         match self {
             Self::Pull(trail) => trail.states().to_vec(),
@@ -275,7 +278,8 @@ impl Track {
         zones.fault(place, &Unwatched).unwrap_or_else(Some)
     }
 
-    /// How s, δ and P change for each unit of the logarithm of a value, what runs along held; `None` where no closed form says it.
+    /// How s, δ and P change per unit of the logarithm of a value, with what runs along held; `None` where there is no
+    /// closed form.
     pub(super) fn moves(&self, mover: Mover, along: f64) -> Option<[f64; 3]> {
         let (zones, law, holds_range) = match self {
             Self::Edge(_) => return None,
@@ -305,7 +309,8 @@ impl Track {
     }
 }
 
-/// The contact radius of the outermost equilibrium of `preset` at x, in the user's units: where a retraction that begins there has its edge.
+/// The contact radius of the outermost equilibrium of `preset` at x, in the user's units: where the edge is when a
+/// retraction begins there.
 pub(super) fn begins(preset: &Preset, abscissa: Abscissa, x: f64, length: f64) -> Option<f64> {
     if abscissa == Abscissa::Radius {
         return Some(x);
@@ -349,7 +354,7 @@ fn outermost(reduced: &Reduced, basis: &ExactBasis, reach: &Reach, eye: &Eye) ->
         let at = basis.equilibrium(reduced, s)?;
         let state = [s, at.approach, at.force];
         let here = [eye.x(state), at.force * eye.units.force];
-        // Small contacts have an approach and a force near zero too: only beyond the pull-off both rise.
+        // Small contacts have an approach and a force near zero too: only beyond the pull-off do both rise.
         let rises = here[0] > before[0] && here[1] > before[1];
         if rises && eye.is_enough(state, reach) {
             return Some((MARGIN * s).min(largest));

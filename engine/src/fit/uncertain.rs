@@ -12,7 +12,7 @@ use crate::text::quote;
 
 /// The signs between a value and its error; the first is written.
 const BETWEEN: [&str; 2] = ["+-", "±"];
-/// The largest error in units of the value: more is no knowledge of what must be positive.
+/// The largest error in units of the value: a larger one says nothing about what must be positive.
 const MOST: f64 = 1.0;
 
 /// A value that is given with an error.
@@ -29,8 +29,8 @@ pub(super) struct Uncertain {
 /// The values that `text` gives with an error.
 ///
 /// # Errors
-/// [`FitError::Uncertain`]: a key that cannot be fitted or stands twice, no number, an error of zero, below it or above the value
-/// of what must be positive.
+/// [`FitError::Uncertain`]: a key that cannot be fitted or occurs twice, something that is not a number, an error that
+/// is zero or negative, or larger than a value that must be positive.
 pub(super) fn uncertain(preset: &Preset, abscissa: Abscissa, text: &str) -> Result<Vec<Uncertain>, FitError> {
     let mut all: Vec<Uncertain> = Vec::new();
     for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
@@ -57,7 +57,7 @@ pub(super) fn uncertain(preset: &Preset, abscissa: Abscissa, text: &str) -> Resu
             Some((mean, error)) => (number(mean)?, error),
             None => match preset.get(&name) {
                 Some(Value::Number(value)) => (value, error),
-                // What lies between model and instrument is nothing unless it is said.
+                // What lies between model and instrument is zero unless it is given.
                 _ => (0.0, error),
             },
         };
@@ -83,7 +83,7 @@ pub(super) fn uncertain(preset: &Preset, abscissa: Abscissa, text: &str) -> Resu
 }
 
 impl Uncertain {
-    /// What it says of the parameter number `at`; an error of a logarithm is a share.
+    /// What it says about parameter number `at`; an error of a logarithm is a share.
     pub(super) fn prior(&self, parameter: &FreeParameter, at: usize) -> Prior {
         let sigma = self.sigma / parameter.slope(self.mean).abs();
         Prior { parameter: at, mean: parameter.inner(self.mean), sigma }

@@ -1,6 +1,6 @@
 //! What a fit comes to, in one word, and why.
 //!
-//! Every test of this has a false-alarm rate of its own, and all of them together flag at most one right fit in a hundred.
+//! Every test here has a false-alarm rate of its own, and all of them together flag at most one right fit in a hundred.
 
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ use serde::Serialize;
 pub enum Verdict {
     /// Nothing speaks against the model: values and errors may be believed.
     Describes,
-    /// Something does; the values are those of a model that does not hold.
+    /// Something speaks against it; the values are those of a model that does not hold.
     DoesNotDescribe,
     /// The points do not tell the values apart.
     NotDetermined,
@@ -20,7 +20,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// The word of documents.
+    /// The word used in documents.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {

@@ -13,11 +13,11 @@ use crate::quasistatic::jump::Landing;
 pub enum Way {
     /// Up from the first touch until the points are reached.
     Up,
-    /// Down from the state in which the points begin: at one way of the device there are several.
+    /// Down from the state in which the points begin: several states can have one way of the device.
     Down,
 }
 
-/// What the points say of a way.
+/// What the points say about a way.
 pub struct WayEvidence<'a> {
     /// x of a state.
     pub x_of: &'a dyn Fn(&Local) -> f64,
@@ -36,15 +36,15 @@ pub enum Leg {
     Jump([Place; 2]),
 }
 
-/// A curve that does not reach far enough is made longer by this factor, so often.
+/// A curve that does not reach far enough is made longer by this factor, this many times at most.
 const LONGER: f64 = 1.1;
 const TIMES: usize = 8;
 
 /// The legs of the way under `control`, running inward. `track` is made longer where its end is not stable. Empty where there is no
 /// such way.
 ///
-/// With the stable legs comes the unstable stretch at the end that is nearer to the axis: so a point just beyond a pull-off or a first
-/// touch has a curve on both sides.
+/// The stable legs are followed by the unstable stretch at the end nearer to the axis, so that a point just beyond a
+/// pull-off or a first touch has a curve on both sides.
 pub(super) fn legs(track: &mut Track, control: Control, way: Way, seen: &WayEvidence<'_>) -> Vec<Leg> {
     for _ in 0..TIMES {
         let (Some(solution), Some(monotone)) = (track.solution(), track.monotone(control)) else { break };
@@ -64,7 +64,8 @@ pub(super) fn legs(track: &mut Track, control: Control, way: Way, seen: &WayEvid
     Vec::new()
 }
 
-/// The outer end of the stable stretch on which the points begin: of those with a state at their x that whose force is nearest.
+/// The outer end of the stable stretch on which the points begin: of those with a state at their x, the one whose force
+/// is nearest.
 fn turned(seen: &WayEvidence<'_>, solution: &dyn Solution, monotone: &Monotone) -> Option<Landing> {
     const HALVINGS: usize = 50;
     let [x, force] = seen.turn;

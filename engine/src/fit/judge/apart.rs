@@ -1,4 +1,4 @@
-//! Whether the force is a constant where the bodies are apart, but for its noise.
+//! Whether the force is constant, except for its noise, where the bodies are apart.
 //!
 //! The noise there may be correlated from row to row: n rows count as n/τ. False alarms: 1 in 1000.
 
@@ -12,9 +12,10 @@ use crate::units::number::short;
 
 /// The share of right fits that are flagged.
 const FALSE_ALARM: f64 = 1e-3;
-/// Rows apart of a branch, at least.
+/// The fewest rows apart on a branch.
 const FEWEST: usize = 8;
-/// Rows apart that count as fewer are a drift, not noise: it is the same in contact, and nothing says how large.
+/// Rows apart that count as fewer than this are a drift, not noise: it is there in contact too, and nothing says how
+/// large.
 const COUNTED: f64 = 4.0;
 
 /// What the rows apart say against the fit.

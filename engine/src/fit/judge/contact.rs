@@ -6,9 +6,9 @@
 //! ln(R²/s²) √n < 4.4 + 9/√n            R the scale of the residuals, s that of neighbours; in quadrature 3.1 deviations of the correlation
 //! ```
 //!
-//! v is 1/n in white noise. What a fit of the same points takes out of a mean is left out by the second term. False alarms, each of
-//! white noise on the right model: F 1 in 1000, the largest bin 1 in 1000, the scale 1 in 1000 (its limit by 20 000 simulated
-//! series of 8 to 300 rows), runs 1 in 1000.
+//! v is 1/n for white noise. The second term removes what a fit of the same points takes out of a mean. False alarms,
+//! each for white noise on the right model: F 1 in 1000, the largest bin 1 in 1000, the scale 1 in 1000 (its limit from
+//! 20 000 simulated series of 8 to 300 rows), runs 1 in 1000.
 
 use super::super::chance::{beyond_f, beyond_t};
 use super::super::problem::FitProblem;
@@ -24,15 +24,15 @@ use nalgebra::{DMatrix, DVector};
 
 /// The share of right fits that each test flags.
 const FALSE_ALARM: f64 = 1e-3;
-/// A normal value is beyond so many of its deviations, on one side, once in a thousand times.
+/// A normal value lies beyond this many of its deviations, on one side, once in a thousand times.
 const ONE_IN_THOUSAND: f64 = 3.1;
-/// Rows in a bin, at least, and bins of a branch.
+/// The fewest rows in a bin, and the numbers of bins on a branch.
 const ROWS: usize = 5;
 const BINS: [usize; 2] = [6, 12];
-/// Runs are counted in so many rows at least, and fewer by so many of their deviations are no chance.
+/// Runs are counted in at least this many rows, and fewer runs by this many of their deviations are not chance.
 const RUNS_OF: usize = 20;
 const FEWER_RUNS: f64 = -3.3;
-/// What a mean leaves of its variance is at least this share: a bin that decides a value alone says nothing.
+/// A mean must keep at least this share of its variance: a bin that decides a value alone says nothing.
 const LEAST_LEFT: f64 = 0.05;
 
 /// The mean of some neighbouring rows.
@@ -44,7 +44,7 @@ struct Bin {
     x: [f64; 2],
     /// The mean of their residuals.
     mean: f64,
-    /// Its variance in s².
+    /// The variance of the mean in s².
     variance: f64,
 }
 
@@ -78,7 +78,7 @@ pub(super) fn of_contact(
     reasons
 }
 
-/// Whether the means along the path are off.
+/// Whether the means along the path are off the curve.
 fn of_bins(
     problem: &FitProblem,
     solved: &SolvedFit,

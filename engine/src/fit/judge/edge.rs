@@ -1,16 +1,16 @@
-//! The edge of the points in contact: how fast it goes at each.
+//! The edge of the points in contact: how fast it moves at each.
 
 use super::super::problem::FitProblem;
 use crate::elementary::hypot;
 use crate::measured::speed::{Speed, noise, speeds};
 use crate::measured::{Abscissa, Segment};
 
-/// What says when a row was measured.
+/// How it is known when a row was measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Clock {
     /// A column of times.
     Times,
-    /// The number of the row: rows that are even in time.
+    /// The number of the row: rows that are evenly spaced in time.
     Rows,
     /// The approach that the measured force and radius have in the fitted model: bodies that are pulled apart at an even rate.
     Approach,
@@ -29,17 +29,17 @@ impl Clock {
 
 /// What is known of the edge at the points of a problem.
 pub(super) struct EdgeMotion {
-    /// −ds/dt, by the number of the point; nothing but for retractions in contact.
+    /// −ds/dt, by the number of the point; none except for retractions in contact.
     pub(super) speeds: Vec<Option<Speed>>,
-    /// The number of the row in its retraction, over their number.
+    /// The number of the row in its retraction, divided by the number of rows there.
     pub(super) order: Vec<f64>,
-    /// What the speeds go by.
+    /// The clock that the speeds are taken by.
     pub(super) clock: Clock,
 }
 
 impl EdgeMotion {
-    /// Of the retractions of `problem`, whose values are `u`, by each clock there is: the column of times, or without one all others. None where
-    /// radii are not measured.
+    /// The edges in the retractions of `problem`, at the values `u`, by each clock available: the column of times or,
+    /// without one, all the others. Empty where radii are not measured.
     pub(super) fn all(problem: &FitProblem, u: &[f64]) -> Vec<Self> {
         if problem.abscissa != Abscissa::Radius && !problem.space {
             return Vec::new();
@@ -75,7 +75,7 @@ impl EdgeMotion {
         self.clock == Clock::Times
     }
 
-    /// The speed at a point; one within its error is that: nothing says how much slower the edge is.
+    /// The speed at a point, never less than its error: nothing says how much slower the edge is.
     pub(super) fn speed(&self, i: usize) -> Option<f64> {
         self.speeds[i].map(|speed| hypot(speed.value.max(0.0), speed.error))
     }
@@ -95,7 +95,8 @@ pub(super) fn retractions(problem: &FitProblem) -> Vec<Vec<usize>> {
     (0..problem.branches()).map(of_branch).filter(|rows| !rows.is_empty()).collect()
 }
 
-/// δ of a row by its force and radius: at a held contact radius δ goes with P as at a punch, at the stiffness 2E*s.
+/// δ of a row from its force and radius: at a held contact radius δ follows P as under a punch, with the stiffness
+/// 2E*s.
 fn approach<'a>(problem: &'a FitProblem, u: &[f64]) -> Option<impl Fn(usize) -> Option<f64> + 'a> {
     let paths = problem.paths(u)?;
     let modulus = problem.preset_at(u, Segment::Retraction)?.material.effective_modulus;

@@ -1,4 +1,4 @@
-//! What a fit of adhesion with a range cannot tell, and where one disc in one zone is not all of it.
+//! What a fit of adhesion with a range cannot tell, and where one disc in one zone is not the whole state.
 
 use super::super::determined::Determined;
 use super::super::options::letter;
@@ -17,23 +17,25 @@ use crate::units::Quantity;
 use crate::units::number::{said, short};
 use nalgebra::DVector;
 
-/// The largest error of the logarithm of a tension or a range that is one: its 95 % interval goes from a quarter of it to four times.
+/// The largest error of the logarithm of a tension or a range that still counts as found: its 95 % interval goes from a
+/// quarter of the value to four times it.
 const MOST: f64 = 0.7;
-/// A `λ_M` beyond this share of the largest is at it.
+/// A `λ_M` beyond this share of the largest counts as the largest.
 const AT_END: f64 = 0.8;
-/// By so much χ² is larger where a range is told from none: the bound of two models beside each other, with one value more.
+/// χ² must be larger by this much for a range to be told from none: the bound for comparing two models, with one more
+/// value.
 const WORSE: f64 = 12.0;
-/// Residuals count as so many s at most.
+/// Residuals count as at most this many s.
 const CLIPPED: f64 = 4.0;
 /// Rounds of the fit without a range.
 const ROUNDS: usize = 100;
-/// Places of a path at which it is looked whether one disc in one zone is all of the state.
+/// Places on a path at which it is checked that one disc in one zone is the whole state.
 const LOOKED: u32 = 12;
 
-/// Why the points do not tell how far the adhesion reaches, where that is free; nothing where they do.
+/// Why the points do not tell how far the adhesion reaches, where that is free; none where they do.
 ///
-/// The errors are those next to the minimum. Farther off, where the range goes to nothing, there may be another that is as deep: it is looked
-/// for anew.
+/// The errors hold next to the minimum. Farther off, where the range vanishes, there may be another minimum as deep,
+/// which is sought separately.
 pub(in super::super) fn unseen(
     problem: &FitProblem,
     solved: &SolvedFit,
@@ -55,7 +57,7 @@ pub(in super::super) fn unseen(
             .and_then(|(start, _)| solve(&sharp, &start, robust, ROUNDS, progress));
         let s = scatter.contact.unwrap_or(solved.scale).max(1.0);
         match found {
-            // Nothing was found to compare with: no claim, either.
+            // There is nothing to compare with, so this makes no claim.
             None => "no fit of adhesion at the edge alone was found to compare it with".to_owned(),
             Some(found) => {
                 let worse = cost(&found.minimum.at.residuals, s) - cost(&solved.minimum.at.residuals, s);
@@ -79,12 +81,12 @@ pub(in super::super) fn unseen(
     ))
 }
 
-/// χ² of residuals in s, of which none counts as more than a few.
+/// χ² of residuals in s, none of which counts as more than a few.
 fn cost(residuals: &DVector<f64>, s: f64) -> f64 {
     residuals.iter().map(|r| (r / s).clamp(-CLIPPED, CLIPPED).powi(2)).sum()
 }
 
-/// A state between those of the points that one disc in one zone does not hold: the values are those of another problem.
+/// A state among those of the points that is not one disc in one zone: the values are then those of another problem.
 pub(super) fn of_zone(problem: &FitProblem, solved: &SolvedFit) -> Option<Reason> {
     let u = &solved.minimum.parameters;
     let paths = problem.paths(u)?;

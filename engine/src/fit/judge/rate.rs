@@ -5,12 +5,14 @@
 //! G = γ (v/v_max)ⁿ          v = −ds/dt of a retraction
 //! ```
 //!
-//! An edge that rests has a work of adhesion too: below a share of the largest speed, or within the error of a speed, all speeds are one.
-//! The noise of a row's own radius has no weight in the speed of that row but at the ends, so it does not enter residual and speed at once.
+//! An edge at rest has a work of adhesion too: below a share of the largest speed, or within the error of a speed, all
+//! speeds count as one. The noise of a row's own radius has no weight in the speed of that row except at the ends, so
+//! it does not enter residual and speed at once.
 //!
-//! A fit takes most of what a speed does: what is left shows in few rows. So here the false alarm is one in two hundred. Where no column has the
-//! times, two clocks stand for one: rows that are even in time, and bodies that are pulled apart at an even rate. A work of adhesion that grows
-//! from row to row is looked for too, as √(number of the row); the three share that alarm.
+//! A fit takes up most of the effect of a speed: what is left shows in few rows. So here the false-alarm rate is one in
+//! two hundred. Where no column has the times, two clocks stand in: rows that are evenly spaced in time, and bodies
+//! that are pulled apart at an even rate. A work of adhesion that grows from row to row, as √(number of the row), is
+//! also tested for; the three share that false-alarm rate.
 
 use super::super::chance::beyond_t;
 use super::super::problem::FitProblem;
@@ -29,10 +31,10 @@ use nalgebra::DMatrix;
 pub(super) const KINDS: [&str; 2] = ["rate", "speed"];
 /// The share of right fits that the test flags.
 const FALSE_ALARM: f64 = 5e-3;
-/// Points lean to a work of adhesion that grows by so many standard errors, by any clock or by the number of the row. Of a thousand pulls at a
-/// speed those that are not found out lean by 1.6 at least.
+/// Points lean to a work of adhesion that grows if they do so by this many standard errors, by any clock or by the
+/// number of the row. Of a thousand pulls at a speed, those that are not detected lean by at least 1.6.
 const LEANING: f64 = 1.4;
-/// Speeds below this share of the largest are this share.
+/// Speeds below this share of the largest count as this share.
 const SLOWEST: f64 = 1.0 / 400.0;
 
 /// What speaks for a work of adhesion that grows, or against telling it from one that does not.
@@ -47,24 +49,26 @@ pub(super) fn of_rate(
         .iter()
         .filter_map(|edge| Some((edge, tested(problem, solved, scatter, inner, edge)?)))
         .collect();
-    // The speed by each clock, and where none is a column of times the number of the row.
+    // The speed by each clock and, where none is a column of times, the number of the row.
     let tests = if edges.iter().any(EdgeMotion::is_timed) { 1.0 } else { 1.0 + edges.len() as f64 };
     let found = tested.iter().find_map(|(edge, tested)| grows(problem, scatter, edge, (*tested, tests)));
-    // What fits take up of a law by one clock is left by another, or by the number of the row.
+    // What a fit takes up of a law by one clock is left in the law by another, or by the number of the row.
     let all = tested.iter().flat_map(|(edge, [[_, by_speed], [_, by_row]])| {
         [*by_speed, if edge.is_timed() { f64::NEG_INFINITY } else { *by_row }]
     });
     let lean = all.fold(f64::NEG_INFINITY, f64::max);
     found.or_else(|| {
         tested.iter().find_map(|(edge, _)| {
-            // Without times nothing says that the edge moves at all: where the points do not lean to it, that is a doubt, and no reason.
+            // Without times nothing says that the edge moves at all: where the points do not lean to it, that is a
+            // doubt and not a reason.
             let may = edge.is_timed() || lean >= LEANING;
             may.then(|| untold(problem, solved, scatter, inner, (edge, lean))).flatten()
         })
     })
 }
 
-/// What is to be doubted where no column has the times and nothing else was found: whether the edge rests is not in the points.
+/// What is doubtful where no column has the times and nothing else was found: the points do not say whether the edge is
+/// at rest.
 pub(super) fn of_untimed(
     problem: &FitProblem,
     solved: &SolvedFit,
@@ -96,14 +100,15 @@ fn tested(
     let u = &solved.minimum.parameters;
     let of = |share: &dyn Fn(usize) -> f64| {
         let z = problem.changed(u, Mover::Adhesion, share)?;
-        // A law that values take up whole says nothing.
+        // A law that the values take up completely says nothing.
         Some(score(problem, solved, scatter, inner?, &z, Some(&alone)).unwrap_or([0.0; 2]))
     };
     let by_speed = of(&|i| edge.speed(i).map_or(0.0, |speed| ln((speed / most).max(SLOWEST))))?;
     Some([by_speed, of(&|i| edge.order[i].sqrt())?])
 }
 
-/// A work of adhesion that grows with the speed of the edge, or where no column has the times with the number of the row.
+/// A work of adhesion that grows with the speed of the edge or, where no column has the times, with the number of the
+/// row.
 fn grows(
     problem: &FitProblem,
     scatter: &Scatter,
@@ -134,8 +139,8 @@ fn grows(
     Some(Reason::new("rate", n, sentence))
 }
 
-/// Marks the rows, in the order of measurement, which are off by more than `limit` to a side where neither of the rows beside them is. The
-/// first and the last have one such row: nothing says that they are off alone.
+/// Marks the rows, in the order of measurement, that are off by more than `limit` to a side to which neither neighbour
+/// is off. The first and the last row have one neighbour: nothing says that they are off alone.
 fn off_alone(problem: &FitProblem, solved: &SolvedFit, limit: f64, rows: &[usize], alone: &mut [bool]) {
     let per = problem.per_point();
     for part in 0..per {

@@ -1,13 +1,14 @@
-//! Whether another law would fit better: a baseline with a slope, a gap that is no paraboloid, an adhesion that has a range.
+//! Whether another law would fit better: a baseline with a slope, a gap that is not a paraboloid, an adhesion with a
+//! range.
 //!
 //! ```text
 //! r(n) = r + z n,     n = −z⊥ᵀr/|z⊥|²,     t = n |z⊥|/s,     |z⊥|² = zᵀz − (Jᵀz)ᵀ (JᵀJ)⁻¹ Jᵀz
 //! ```
 //!
-//! n is what the law has more than the model, 0 where the model holds; z is how the residuals change with it. What the free values take
-//! of it is left out by z⊥, so the test sees what a trend in fitted values does not. s is the noise of neighbours, or that of the rows by
-//! which z is told, whichever is more. C. R. Rao, Proc.
-//! Camb. Phil. Soc. 44, 50 (1948). False alarms: 1 in 1000, of slopes 3.
+//! n is what the law has beyond the model, 0 where the model holds; z is how the residuals change with it. z⊥ leaves
+//! out what the free values take up of z, so the test sees what a trend in fitted values does not. s is the noise of
+//! neighbours, or that of the rows that determine z, whichever is larger. C. R. Rao, Proc. Camb. Phil. Soc. 44, 50
+//! (1948). False alarms: 1 in 1000, for slopes 3.
 
 use super::super::chance::beyond_t;
 use super::super::least_squares::LeastSquares;
@@ -28,14 +29,14 @@ use nalgebra::{DMatrix, DVector};
 
 /// The share of right fits that each test flags.
 const FALSE_ALARM: f64 = 1e-3;
-/// That of slopes, which move the work of adhesion by more of its errors than they have themselves.
+/// The same for slopes, which move the work of adhesion by more of its errors than of their own.
 const FALSE_SLOPES: f64 = 3e-3;
-/// Residuals count as so many s at most.
+/// Residuals count as at most this many s.
 const MOST: f64 = 3.0;
 pub(super) const MOST_OF_NEIGHBOURS: f64 = 4.0;
 
-/// n and t of the residuals that change by `z`. Where `alone` says which rows are off alone, these say nothing, and the noise of neighbours is
-/// taken for that of all others: what the rows differ by beside z is then no noise.
+/// n and t of residuals that change by `z`. Rows that `alone` marks as off alone say nothing, and the noise of
+/// neighbours is then taken for all others: what these differ by apart from z is not noise.
 pub(super) fn score(
     problem: &FitProblem,
     solved: &SolvedFit,
@@ -54,14 +55,14 @@ pub(super) fn score(
     for (i, _) in alone.unwrap_or_default().iter().enumerate().filter(|(_, alone)| **alone) {
         clipped[i] = 0.0;
     }
-    // A robust fit leaves other residuals orthogonal to J than these, and one with priors none.
+    // A robust fit leaves other residuals than these orthogonal to J, and one with priors leaves none.
     let mut slope = at.jacobian.tr_mul(&clipped);
     for prior in &problem.priors {
         slope[prior.parameter] +=
             (solved.minimum.parameters[prior.parameter] - prior.mean) / prior.sigma.powi(2);
     }
     let n = -(z.dot(&clipped) - along.dot(&slope)) / left;
-    // Of noise that differs from row to row; H. White, Econometrica 48, 817 (1980).
+    // For noise that differs from row to row; H. White, Econometrica 48, 817 (1980).
     let used = z.iter().filter(|z| **z != 0.0).count() as f64;
     let own: f64 = across.iter().zip(&clipped).map(|(z, r)| (z * (r + z * n)).powi(2)).sum();
     let own = own * used / (used - along.len() as f64 - 1.0).max(1.0);
@@ -71,7 +72,7 @@ pub(super) fn score(
     (left > 1e-9 * z.norm_squared() && t.is_finite()).then_some([n, t])
 }
 
-/// A force with a slope over x. Rows apart alone would tell it by a short lever.
+/// A force with a slope over x. Rows apart alone would determine it by a short lever.
 pub(super) fn of_tilt(
     problem: &FitProblem,
     solved: &SolvedFit,
@@ -93,7 +94,7 @@ pub(super) fn of_tilt(
     })
 }
 
-/// A gap that is no paraboloid: h goes with r^(2 + n).
+/// A gap that is not a paraboloid: h goes as r^(2 + n).
 pub(super) fn of_shape(
     problem: &FitProblem,
     solved: &SolvedFit,
@@ -128,14 +129,14 @@ pub(super) fn of_shape(
     })
 }
 
-/// An adhesion that has a range: the edge is no longer sharp, by the first order in it.
+/// An adhesion with a range: the edge is no longer sharp, to first order in the range.
 pub(super) fn of_range(
     problem: &FitProblem,
     solved: &SolvedFit,
     scatter: &Scatter,
     inner: Option<&DMatrix<f64>>,
 ) -> Option<Reason> {
-    /// The separation that the tension reaches to, over the z₀ of Tabor's number, by the usual match.
+    /// The separation to which the tension reaches, over the z₀ of Tabor's number, by the usual match.
     const OF_EQUILIBRIUM: f64 = 0.97;
     let u = &solved.minimum.parameters;
     let z = problem.changed(u, Mover::Range, |_| 1.0)?;

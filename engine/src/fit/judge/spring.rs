@@ -13,7 +13,7 @@ use crate::progress::Progress;
 /// Rows of the part, and rounds of each fit.
 const ROWS: usize = 240;
 const ROUNDS: usize = 40;
-/// A change of a value, of its logarithm where it is positive, that is none.
+/// A change of a value, or of its logarithm where it is positive, that counts as none.
 const STILL: f64 = 1e-9;
 
 /// `k 10 % larger: E* -8.0 %, γ +7.1 %; …`: what the fit would be with another spring; `None` where there is none, or it is free.
@@ -28,7 +28,8 @@ pub(in crate::fit) fn of_spring(
     if problem.parameters.iter().any(|p| p.target == Target::Key(KEY.to_owned())) {
         return None;
     }
-    // What a spring changes is told to a tenth of a per cent by a part of the rows, if that is compared with a fit to the same part.
+    // A part of the rows gives the effect of a spring to a tenth of a per cent, if it is compared with a fit to the
+    // same part.
     let problem = &problem.thinned(ROWS);
     let own = solve(problem, &solved.minimum.parameters, robust, ROUNDS, progress)?.minimum.parameters;
     let mut told = Vec::new();

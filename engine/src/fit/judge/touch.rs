@@ -1,7 +1,7 @@
 //! Whether the bodies pull before they touch: at an edge without a range the first contact is at δ = 0, and the force before it is that of
 //! bodies apart.
 //!
-//! A median of m rows is known to 1.2533 s/√m; beyond five of these it is no chance.
+//! A median of m rows is known to 1.2533 s/√m; a deviation beyond five of these is not chance.
 
 use super::super::problem::{FitProblem, Target};
 use super::super::scatter::Scatter;
@@ -14,11 +14,11 @@ use crate::units::Quantity;
 use crate::units::number::{said, short};
 use nalgebra::DMatrix;
 
-/// Rows that pull, at least.
+/// The fewest rows that pull.
 const FEWEST: usize = 2;
-/// The standard error of a median, in that of a mean.
+/// The standard error of a median, in units of that of a mean.
 const OF_MEDIAN: f64 = 1.2533;
-/// Errors of the force beyond which it is no chance, and those of the place of the first touch.
+/// Errors of the force beyond which it is not chance, and errors of the place of the first touch.
 const NO_CHANCE: f64 = 5.0;
 const BEFORE: f64 = 3.0;
 
@@ -46,7 +46,7 @@ pub(super) fn of_touch(
                 datum.branch == branch && datum.free == free && datum.segment == Segment::Approach
             })
         };
-        // One that begins in contact has touched before.
+        // An approach that begins in contact has touched before.
         of(true).next()?;
         let early: Vec<_> = of(false).filter(|datum| apart(datum.point.x) > margin).collect();
         if early.len() < FEWEST {

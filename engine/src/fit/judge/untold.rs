@@ -4,16 +4,17 @@
 //! G = γ (1 + √(v/v₀))         v₀ = 3 times the median speed of the rows:     G is 1.6 γ there
 //! ```
 //!
-//! after A. N. Gent and J. Schultz, J. Adhesion 3, 281 (1972), with their exponent near ½. A modulus takes up much of such a law: of force over
-//! radius all that goes as s^{3/2} in √G. The law is fitted, and where it fits as well as none, within one and a half standard errors and those by
-//! which the points lean to such a law, the values are those of a guess. Laws that are steeper are told more easily, and those that are weaker
-//! move the values by less. A point is moved to where its state would be with γ alone, at its own radius:
+//! after A. N. Gent and J. Schultz, J. Adhesion 3, 281 (1972), with their exponent near ½. A modulus takes up much of
+//! such a law: for force over radius, all of √G that goes as s^{3/2}. The law is fitted. Where it fits as well as none,
+//! within one and a half standard errors plus those by which the points lean to such a law, the values are only a
+//! guess. Steeper laws are told more easily, and weaker ones move the values by less. A point is moved to where its
+//! state would be with γ alone, at its own radius:
 //!
 //! ```text
 //! P + 2E* s T (√(G/γ) − 1)     δ + T (√(G/γ) − 1)     T = √(2πγs/E*)
 //! ```
 //!
-//! Each row counts as far as its speed is known: a speed that is off changes its G.
+//! Each row counts as far as its speed is known: an error in the speed changes its G.
 
 use super::super::options::letter;
 use super::super::problem::FitProblem;
@@ -34,23 +35,26 @@ use std::f64::consts::TAU;
 
 /// v₀ over the median speed.
 const REFERENCE: f64 = 3.0;
-/// A law that is off by no more than so many standard errors is as good; by as many more as those by which the points lean to one, up to three.
+/// A law that is off by no more than this many standard errors is as good; the limit is larger by the standard errors
+/// by which the points lean to such a law, up to three.
 const AS_GOOD: f64 = 1.5;
 const MOST_LEANING: f64 = 3.0;
-/// A value that such a law moves by no more than so many of its errors is told all the same.
+/// A value that such a law moves by no more than this many of its errors counts as determined all the same.
 const MOVED: f64 = 3.0;
 /// Rows of the fits; where there are more, a part stands for all.
 const ROWS: usize = 400;
-/// Rounds of each fit, and how often the points are moved anew.
+/// Rounds of each fit, and how often the points are moved again.
 const ROUNDS: usize = 40;
 const TIMES: usize = 30;
-/// Residuals count as so many s at most.
+/// Residuals count as at most this many s.
 const MOST: f64 = 4.0;
-/// Of a speed that may be any within ± its bend: the standard deviation, in the bend. More than so much of its logarithm says nothing.
+/// The standard deviation, in units of the bend, of a speed that may be anything within ± its bend. A logarithm that is
+/// less certain than this says nothing.
 const OF_BEND: f64 = 0.577_35;
 const NOTHING: f64 = 3.0;
 
-/// A law that grows with the speed and fits as well; `lean` is by how many standard errors the points lean to one.
+/// A law that grows with the speed and fits as well; `lean` is the number of standard errors by which the points lean
+/// to one.
 pub(super) fn untold(
     problem: &FitProblem,
     solved: &SolvedFit,
@@ -86,11 +90,11 @@ pub(super) fn untold(
     Some(Reason::new("speed", worse, sentence))
 }
 
-/// A work of adhesion that grows, at each row by its place: √(G/γ) − 1, and how much its residuals count.
+/// A work of adhesion that grows: √(G/γ) − 1 at each row, by its place, and how much the residuals of the row count.
 struct AdhesionGrowth(BTreeMap<usize, (f64, Vec<f64>)>);
 
 impl AdhesionGrowth {
-    /// With v₀, the derivatives of the residuals by ln γ, and s.
+    /// With v₀, the derivatives of the residuals with respect to ln γ, and s.
     fn of(
         problem: &FitProblem,
         edge: &EdgeMotion,
@@ -109,7 +113,7 @@ impl AdhesionGrowth {
         Self(rows)
     }
 
-    /// By how much the values of `problem` move with it, from `u`, and by how much its χ² is larger than that of no law.
+    /// How far the values of `problem` move with it, from `u`, and by how much its χ² is larger than that of no law.
     fn against_none(&self, problem: &FitProblem, u: &[f64], s: f64) -> Option<(DVector<f64>, f64)> {
         let mut part = problem.thinned(ROWS);
         let times = problem.data.len() as f64 / part.data.len() as f64;
@@ -124,7 +128,7 @@ impl AdhesionGrowth {
     }
 }
 
-/// χ² of points that count as they do, in s².
+/// χ² of the points with their counts, in s².
 fn cost(problem: &FitProblem, residuals: &DVector<f64>, s: f64) -> f64 {
     let counts = problem.counts.as_deref().unwrap_or_default();
     let of = |(i, r): (usize, &f64)| counts.get(i).unwrap_or(&1.0) * (r / s).clamp(-MOST, MOST).powi(2);
@@ -138,7 +142,7 @@ fn grown(
     growth: &dyn Fn(usize) -> f64,
     s: f64,
 ) -> Option<(Vec<f64>, f64)> {
-    /// A χ² that changes by no more has settled.
+    /// A χ² that changes by no more than this has settled.
     const SETTLED: f64 = 0.02;
     let compliance = match (problem.abscissa, problem.preset.path.control) {
         (Abscissa::Position, Control::Stiffness(k)) => 1.0 / k,
