@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// The name, the SI unit and the meaning of every quantity.
+/// The name, the SI unit and the meaning of every quantity, and whether it depends on the control.
 #[pyfunction]
 pub fn quantities() -> Vec<(&'static str, &'static str, &'static str, bool)> {
     let row = |quantity: &'static pulloff_engine::sweep::SweepQuantity| {

@@ -134,7 +134,7 @@ fn shifted(preset: &Preset, key: &str, value: Option<Value>, share: f64) -> Resu
 /// Stiffnesses over the contact's own; beyond them, the device is displacement or force control to a few thousandths.
 const STIFFNESSES: RangeInclusive<f64> = 1e-3..=1e3;
 
-/// `control` made stiffer or softer: force, a spring of stiffness k by its logarithm, displacement.
+/// `control` made stiffer or softer: force, a spring whose stiffness k is turned by its digits, displacement.
 ///
 /// `contact` is the stiffness of the contact itself, in the user's units.
 fn stiffened(control: Control, up: bool, amount: Amount, contact: f64) -> Result<Control, String> {
@@ -178,7 +178,7 @@ pub fn next_control(preset: &Preset, last: Option<f64>) -> Control {
     }
 }
 
-/// `x` rounded to six significant digits: nudged values stay readable, and a nudge back comes close.
+/// `x` rounded to six significant digits: a stiffness derived from the problem stays readable.
 fn tidy(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
 }

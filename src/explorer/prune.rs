@@ -31,7 +31,7 @@ pub(super) fn staying(nodes: &[&Node], is_held: impl Fn(usize) -> bool) -> Vec<b
         if surplus == 0 || plain.is_empty() {
             break;
         }
-        // If one is left over, the first goes.
+        // Every second one goes, so that what stays is spread evenly.
         for at in plain.into_iter().step_by(2).take(surplus) {
             stays[at] = false;
             surplus -= 1;

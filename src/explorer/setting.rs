@@ -38,7 +38,7 @@ impl Setting {
     }
 }
 
-/// Whether two presets have the same curve: everything but the title and the control is equal.
+/// Whether two presets have the same equilibrium curve: material, gap, basis, start and end are equal.
 pub(super) fn same_curve(a: &Preset, b: &Preset) -> bool {
     let closing = |preset: &Preset| preset.edge.closing_work_of_adhesion;
     (a.material, closing(a), &a.gap, a.basis, a.path.start, a.path.end_contact_radius)

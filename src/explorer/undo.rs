@@ -122,8 +122,8 @@ impl Undo {
         }
     }
 
-    /// Takes the place before the last command (or after the next one), for which `swap` gives what is kept the other
-    /// way. Places like `here` are skipped: their commands changed nothing.
+    /// Takes the place before the last command (or after the next one); the caller keeps the present one for the
+    /// other way. Places like `here` are skipped: their commands changed nothing.
     pub(super) fn take(&mut self, back: bool, here: &SessionPlace) -> Option<Arc<SessionPlace>> {
         (self.begun, self.gesture) = (None, None);
         let from = if back { &mut self.past } else { &mut self.future };

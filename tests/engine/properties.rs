@@ -27,7 +27,7 @@ fn any<T: Copy>(random: &mut fastrand::Rng, of: &[T]) -> T {
     of[random.usize(..of.len())]
 }
 
-/// Unit systems: the reduced problem (E* = R = 1), a soft sphere in SI, a tip in SI.
+/// Unit systems: the reduced problem (E* = R = 1), a soft sphere in SI, a tip in SI, and numbers far from all of them.
 const UNITS: [(f64, f64); 4] = [(1.0, 1.0), (2.0e6, 5.0e-3), (7.0e10, 2.0e-8), (3.0e-4, 7.0e5)];
 
 /// A problem; a wild one is far beyond what rings resolve, where only the bookkeeping must hold.

@@ -168,7 +168,7 @@ fn the_force_is_the_integral_of_the_pressure_and_gaps_vanish_in_contact() {
         }
     }
     assert!((sum / state.force_at(0.0063) - 1.0).abs() < 1e-5, "{sum} {}", state.force_at(0.0063));
-    // Between the contacts and outside them one formula gives the gap; it is positive beside the edges in equilibrium.
+    // Between the contacts and outside them, the gap is the same with and without a g that is entire.
     for r in [0.025, 0.07, 0.1] {
         let gap = around.gap(r);
         let again = Around::new(&Ground { entire: None, ..ground.clone() }, &state, 0.0063).gap(r);
@@ -228,7 +228,7 @@ fn a_graded_angle_converges() {
             assert!((a - b).abs() < 1e-8, "{text} {inner} {a} {b}");
         }
     }
-    // The pressure of a graded ring sums up to its force, that of the disc added.
+    // A graded ring has a pressure on both of its sides.
     let state = ground.state(&contacts, Wanted::Values).unwrap();
     let around = Around::new(&ground, &state, 0.02);
     assert!(around.pressure(0.15).is_finite() && around.pressure(0.19).is_finite());

@@ -42,7 +42,7 @@ fn the_error_of_a_spring_is_in_those_of_the_values() {
         let ([_, of_held], [is_off, of_known]) = (off(&held, key, truth), off(&known, key, truth));
         assert!(is_off < 3.0 * of_known && of_known > 1.1 * of_held, "{key}: {of_held} {of_known}");
     }
-    // A tenth of it is known better than from the points, and said to be.
+    // The given error of a tenth is smaller than the one from the points, and the fit reports what it was given.
     let [given] = &known.priors[..] else { panic!("{:?}", known.priors) };
     assert_eq!((&*given.key, given.value), (STIFFNESS, 0.8));
     assert!((given.standard_error - 0.08).abs() < 1e-15);

@@ -124,8 +124,8 @@ impl Angles {
         let mut angles = Self::default();
         let mut from = 0.0;
         if breaks.axis == Parity::Broken && !breaks.cubic {
-            let first = asin(breaks.knots.first().map_or(1.0, |knot| knot / s).min(1.0));
-            from = angles.graded(first, frequency);
+            from = asin(breaks.knots.first().map_or(1.0, |knot| knot / s).min(1.0));
+            angles.graded(from, frequency);
         }
         for knot in breaks.between(s * sin(from), s) {
             let to = asin(knot / s);
@@ -144,8 +144,8 @@ impl Angles {
         }
     }
 
-    /// Adds the rules from the axis as far as broken powers matter, at most to `to`; returns how far that is.
-    fn graded(&mut self, to: f64, frequency: f64) -> f64 {
+    /// Adds the rules from the axis to `to`, graded towards the axis for broken powers.
+    fn graded(&mut self, to: f64, frequency: f64) {
         let inner = to.min(GRADED_PHASE / frequency);
         self.add(GRADED_NODES, |x| {
             let u = 0.5 * (1.0 + x);
@@ -157,7 +157,6 @@ impl Angles {
             self.piece(from, next, frequency, NEAR_NODES);
             from = next;
         }
-        to
     }
 
     /// Adds nodes at the θ that `at` maps those on (−1, 1) to, with dθ/dx.

@@ -5,8 +5,8 @@
 //! P = P* − E*s*T* (V s*/(T* v₀))ⁿ,    T* = √(2πγs*/E*)
 //! ```
 //!
-//! At a smooth minimum of P the edge passes the state of the smallest force at the speed V s/T of its equilibria,
-//! and at this speed it costs γ (vs/T v₀)ⁿ more. This holds for any gap, under fixed grips or a spring.
+//! At a smooth minimum of P the edge passes the state of the smallest force at the speed V s*/T* of its equilibria,
+//! and at this speed it costs γ (V s*/(T* v₀))ⁿ more. This holds for any gap, under fixed grips or a spring.
 
 use super::pull::{PullError, law};
 use crate::case::Case;

@@ -17,7 +17,7 @@ use crate::progress::Progress;
 use crate::root;
 
 /// Radii at which a line is sampled: this many per half wave.
-const PER_PANEL: f64 = 24.0;
+const PER_HALF_WAVE: f64 = 24.0;
 /// The most samples in all.
 const MOST: f64 = 40_000.0;
 /// Neighbours on a line are nearer to each other than this, in shares of the axes, unless this many halvings are not
@@ -212,7 +212,7 @@ impl Family {
     pub fn sampled_radii(&self) -> Vec<f64> {
         let [from, to] = self.radii;
         let wave = self.wave().unwrap_or(0.1 * to);
-        let step = (0.5 * wave / PER_PANEL).max((to - from) / MOST);
+        let step = (0.5 * wave / PER_HALF_WAVE).max((to - from) / MOST);
         let mut radii = Vec::new();
         let mut s = from;
         while s < to {

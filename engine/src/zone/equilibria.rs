@@ -92,7 +92,7 @@ impl Equilibria {
         self.at
     }
 
-    /// Whether the gap is known no further out.
+    /// Whether there is nothing further out: the gap is not known there, or it would take too many panels.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.at >= self.end() || self.panels.len() > MOST

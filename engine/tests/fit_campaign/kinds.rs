@@ -345,7 +345,7 @@ fn converted(random: &mut Random) -> Made {
     digitized(&ball, filled, random)
 }
 
-/// Twelve bits of which the loop fills one part in fifty: some eighty steps.
+/// Twelve bits of which the loop fills one part in 200: about twenty steps.
 fn coarse(random: &mut Random) -> Made {
     let ball = Ball::draw(random);
     digitized(&ball, 0.005, random)

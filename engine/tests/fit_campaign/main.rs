@@ -4,7 +4,7 @@
 //! `record` the faults of an instrument and the text of its file, `kinds` the kinds of curves.
 //!
 //! `cargo test -p pulloff-engine --test fit_campaign` tries a few seeds of each kind. For a thousand seeds of each of
-//! nine kinds, and a hundred of each of the others:
+//! eleven kinds, and a hundred of each of the others:
 //!
 //! ```text
 //! cargo test --release -p pulloff-engine --test fit_campaign -- --ignored --nocapture

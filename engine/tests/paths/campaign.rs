@@ -5,7 +5,7 @@
 //! the problem, or `c` for the loop that turns at its radius, followed by the number of the problem. Then comes each
 //! event as the first letter of its kind with the outermost edge before and after, in 1e-5 of the start radius; then
 //! the number of events, the sum of the losses and the smallest force in reduced units. A refusal is its sentence
-//! without numbers. `FREEZE=0..100 cargo test -p pulloff-engine --test paths campaign::as_they_were -- --ignored`
+//! without numbers. `FREEZE=0..100 cargo test -p pulloff-engine --test paths all_paths_are_as_they_were -- --ignored`
 //! rewrites the lines of these problems; do so only after looking into every difference.
 //!
 //! **Loops with rings.** No event gains energy, and recomputed states are in equilibrium and overlap nowhere.

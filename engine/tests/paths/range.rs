@@ -244,7 +244,6 @@ fn what_one_zone_does_not_hold_is_refused_by_name() {
     assert!(matches!(error, Err(PathError::BeyondZone { .. })), "{error:?}");
 }
 
-/// The median of what each of some runs takes, in seconds.
 /// The gap r⁸ is so flat that its zone is 10⁻⁸ of the contact: even where s and c are known to only half of their
 /// digits, the slopes keep all of theirs.
 #[test]
@@ -290,6 +289,7 @@ fn a_start_without_contact_says_why_there_is_none() {
     assert!(matches!(known, Err(StartError::NotKnown { known: 1.0, .. })), "{known:?}");
 }
 
+/// The median of what each of some runs takes, in seconds.
 fn median(runs: usize, mut run: impl FnMut()) -> f64 {
     let mut times: Vec<f64> = (0..runs)
         .map(|_| {

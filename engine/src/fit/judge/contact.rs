@@ -26,9 +26,9 @@ use nalgebra::{DMatrix, DVector};
 const FALSE_ALARM: f64 = 1e-3;
 /// A normal value lies beyond this many of its deviations, on one side, once in a thousand times.
 const ONE_IN_THOUSAND: f64 = 3.1;
-/// The fewest rows in a bin, and the numbers of bins on a branch.
+/// The fewest rows in a bin, and the most bins on a branch.
 const ROWS: usize = 5;
-const BINS: [usize; 2] = [6, 12];
+const BINS: usize = 12;
 /// Runs are counted in at least this many rows, and fewer runs by this many of their deviations are not chance.
 const RUNS_OF: usize = 20;
 const FEWER_RUNS: f64 = -3.3;
@@ -149,7 +149,7 @@ fn bins(
     for branch in 0..problem.branches() {
         for part in 0..per {
             let rows = problem.rows(solved, branch, false, part);
-            let most = (rows.len() / ROWS).min(BINS[1]).max(1);
+            let most = (rows.len() / ROWS).clamp(1, BINS);
             let count = if rows.len() < ROWS { 0 } else { most };
             for b in 0..count {
                 let of = &rows[b * rows.len() / count..(b + 1) * rows.len() / count];

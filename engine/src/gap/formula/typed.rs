@@ -76,7 +76,7 @@ impl TypedGap {
     /// The gap of the formula `text`. Up to the radius `start` it must be finite, and its waves are looked for there;
     /// without a `start`, up to its own length. Beyond that, it is known as far as it stays finite.
     ///
-    /// What is wrong with the text or the parameters, or the first radius where the gap is not finite.
+    /// # Errors
     /// What is wrong with the text or the parameters, or the first radius where the gap is not finite.
     pub fn new(
         text: &str,

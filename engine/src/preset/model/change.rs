@@ -26,7 +26,7 @@ impl Preset {
     /// The word `none` removes the value of an [optional](Parameter::is_optional) key.
     ///
     /// A start replaces another start, and a turn another turn; `path.control.stiffness` makes the device a spring. A
-    /// `gap.shape` drops the keys of the old shape, and gives its waves the proportions of the paper's Fig. 9. A
+    /// `gap.shape` drops the keys of the old shape, and keeps the old waves, or takes the proportions of the paper's Fig. 9. A
     /// `gap.formula` keeps the parameters it has in common with the old one; its others begin with the value of an old
     /// one with a similar name, or with 1. A `basis.kind` drops the keys of the old basis and takes the defaults of the
     /// new one. A group (see [`groups`]) changes the values it follows from. The rows of a `gap.file` come from the
