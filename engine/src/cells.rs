@@ -70,7 +70,7 @@ impl<F: fmt::Display> fmt::Display for Faults<F> {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum LineFault {
     /// The line is far too long.
-    #[error("has {0} bytes, more than the {LONGEST_LINE} of a row")]
+    #[error("has {0} bytes, more than the {LONGEST_LINE} allowed")]
     Long(usize),
     /// Characters that cannot be seen.
     #[error("holds control or invisible characters")]
@@ -84,7 +84,10 @@ pub enum CellFault {
     #[error("the {0} is missing")]
     Missing(&'static str),
     /// Not a number.
-    #[error("the {what} \"{text}\" is no number{}", if text.contains(',') { " (decimals have a point)" } else { "" })]
+    #[error(
+        "the {what} \"{text}\" is not a number{}",
+        if text.contains(',') { " (use a decimal point)" } else { "" }
+    )]
     Number {
         /// What the cell should hold.
         what: &'static str,

@@ -296,8 +296,8 @@ fn the_coefficient_of_a_power_law_has_the_dimension_its_exponent_gives() {
             "expected an inverse power of a length such as m^-4, got 2 um^-3, an inverse volume",
         ),
         ("1", "2 um", "expected a pure number, got 2 um, a length"),
-        ("2.5", "2 um^-1", "with n = 2.5 it is a length to the power -1.5, which no unit here is"),
-        ("20", "2 um^-9", "with n = 20.0 it is a length to the power -19, which no unit here is"),
+        ("2.5", "2 um^-1", "with n = 2.5 it is a length to the power -1.5, for which there is no unit"),
+        ("20", "2 um^-9", "with n = 20.0 it is a length to the power -19, for which there is no unit"),
         ("2", "2 furlong^-1", "unknown unit furlong"),
         ("2", "-2 um^-1", "gap.coefficient = -2.0 um^-1 is out of range"),
     ] {
@@ -547,7 +547,7 @@ fn what_stops_a_curve_and_what_a_gap_cannot_be_is_told_in_units() {
                 start_contact_radius = \"1 mm\"\n[gap]\n";
     let mistake = |gap: &str| mistake(&format!("{base}{gap}"), &[]);
     let formula = mistake("shape = \"formula\"\nformula = \"sqrt(5e-4 - r)\"");
-    assert!(formula.contains("not finite at r = 500 um (up to r = 1000 um it must be"), "{formula}");
+    assert!(formula.contains("not finite at r = 500 um (it must be up to r = 1000 um"), "{formula}");
     let waves = mistake(
         "shape = \"random-waves\"\nradius_of_curvature = 0.005\nrms = 0\nlongest_wavelength = \"1 um\"\n\
          shortest_wavelength = \"2 um\"",

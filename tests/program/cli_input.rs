@@ -299,7 +299,7 @@ fn a_profile_without_units_in_si_is_taken_in_metres_with_a_warning() {
     home.file("scan.csv", &format!("r, h\n{}", rows(1e-6)));
     let bare = home.run(&["unload", &preset, "--format", "json"]);
     assert!(
-        bare.err.contains("scan.csv: names no unit of length, so its columns are taken in m"),
+        bare.err.contains("scan.csv: names no unit of length, so its columns are taken to be in m"),
         "{}",
         bare.err
     );

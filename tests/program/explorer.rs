@@ -664,7 +664,7 @@ fn a_profile_is_found_in_a_folder_read_and_saved_with_its_preset() {
     assert_eq!(listed.files, ["bad.csv", "good.csv", "mixed.txt"]);
     let (before, curve) = (session.model.preset.clone(), session.model.curve.clone().unwrap());
     session.set("gap.file", &listed.name_of("bad.csv"));
-    assert!(session.status().contains("line 101: the gap \"much\" is no number"), "{}", session.status());
+    assert!(session.status().contains("line 101: the gap \"much\" is not a number"), "{}", session.status());
     assert_eq!(session.model.preset, before);
     assert_eq!(session.model.curve.as_ref().unwrap().setting.preset, curve.setting.preset);
     session.set("gap.file", &listed.name_of("mixed.txt"));

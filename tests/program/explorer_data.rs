@@ -78,7 +78,7 @@ fn points_lie_behind_every_view_that_has_their_columns_and_go_again() {
     std::fs::write(&path, "delta,force\n1,2\n3,x\n").unwrap();
     says(&mut session, &format!("data {}", path.display()));
     assert!(
-        session.status().contains("line 3: column 2: the force \"x\" is no number"),
+        session.status().contains("line 3: column 2: the force \"x\" is not a number"),
         "{}",
         session.status()
     );
@@ -243,7 +243,7 @@ fn free_keys_are_marked_in_the_panel_and_what_is_not_determined_is_not_taken() {
     select(&mut session, "material.effective_modulus");
     assert_eq!(free(&session), ["gamma", "data.offset"]);
     select(&mut session, "basis.kind");
-    assert!(session.status().contains("which alone can be fitted"), "{}", session.status());
+    assert!(session.status().contains("only those can be fitted"), "{}", session.status());
     session.set(data::FREE, "").does(Id::Fit);
     assert!(session.status().starts_with("nothing is free to be fitted: free lets"), "{}", session.status());
     says(&mut session, "data none");

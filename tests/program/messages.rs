@@ -24,7 +24,7 @@ fn rounding_on_the_axis_is_no_news() {
         let set = format!("gap.formula={formula}");
         let ended = home.run(&["unload", "formula", "--set", &set]);
         assert_eq!(ended.status, 0, "{formula}: {}", ended.err);
-        ended.err.contains("on the axis: subtracted")
+        ended.err.contains("on the axis: this is subtracted")
     };
     assert!(of("r^2/2 + 1e-3"));
     assert!(!of("r^2/2 - 1.03e-204"));

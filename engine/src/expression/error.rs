@@ -92,7 +92,7 @@ pub enum SyntaxProblem {
         opened: usize,
     },
     /// A character beyond ASCII.
-    #[error("the character {character} cannot stand in a formula{}", hint(*instead))]
+    #[error("the character {character} cannot occur in a formula{}", hint(*instead))]
     NotAscii {
         /// The character, quoted.
         character: String,

@@ -108,7 +108,7 @@ fn after_operand(rest: &str, expected: &'static str) -> SyntaxProblem {
     match rest.chars().next() {
         Some(c) if c.is_ascii_alphanumeric() || c == '(' => SyntaxProblem::Juxtaposed { found },
         Some(c) if !c.is_ascii() => SyntaxProblem::not_ascii(c),
-        Some(',') => SyntaxProblem::Operator { expected, found: format!("{found} (decimals have a point)") },
+        Some(',') => SyntaxProblem::Operator { expected, found: format!("{found} (use a decimal point)") },
         _ => SyntaxProblem::Operator { expected, found },
     }
 }
@@ -336,16 +336,16 @@ mod tests {
             ("2*(r", "column 5: the '(' at column 3 is never closed"),
             ("(r]", "column 3: expected an operator or ')', found ']'"),
             ("r)", "column 2: expected an operator or the end, found ')'"),
-            ("1,5", "column 2: expected an operator or the end, found ',' (decimals have a point)"),
+            ("1,5", "column 2: expected an operator or the end, found ',' (use a decimal point)"),
             ("1.2.3", "column 4: expected an operator or the end, found '.'"),
             ("cos r", "column 1: cos is a function: write cos(...)"),
             ("sin()", "column 5: expected a number, a name or '(', found ')'"),
             ("sin(1, 2)", "column 1: sin takes 1 argument, not 2"),
             ("1+min(1)", "column 3: min takes 2 arguments, not 1"),
-            ("2*π*r", "column 3: the character 'π' cannot stand in a formula: write pi"),
-            ("r²", "column 2: the character '²' cannot stand in a formula: write ^2"),
-            ("(é)", "column 2: the character 'é' cannot stand in a formula"),
-            ("r\u{202e}", "column 2: the character '\\u{202e}' cannot stand in a formula"),
+            ("2*π*r", "column 3: the character 'π' cannot occur in a formula: write pi"),
+            ("r²", "column 2: the character '²' cannot occur in a formula: write ^2"),
+            ("(é)", "column 2: the character 'é' cannot occur in a formula"),
+            ("r\u{202e}", "column 2: the character '\\u{202e}' cannot occur in a formula"),
             ("r + \u{7}", "column 5: expected a number, a name or '(', found '\\u{7}'"),
             ("1e999", "column 1: the number 1e999 is too large"),
         ] {

@@ -288,10 +288,10 @@ pub(super) fn words(
     let moved = &at.jacobian * DVector::from_vec(moves.clone());
     let noise = match moved.amax() {
         most if most < 1.0 => "by less than its noise".to_owned(),
-        most => format!("by {} times its noise at most", significant(most, 2)),
+        most => format!("by at most {} times its noise", significant(most, 2)),
     };
     let only = lead.and_then(|lead| products(&order, &moves, lead, parameters, &name));
-    let only = only.map_or_else(String::new, |only| format!(" ({only} can be told)"));
+    let only = only.map_or_else(String::new, |only| format!(" ({only} can be found)"));
     if let [alone] = told.as_slice() {
         return format!("{alone} moves the curve {noise}: fix it");
     }

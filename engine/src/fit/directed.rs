@@ -56,7 +56,7 @@ pub(super) fn branches_of(preset: &Preset, options: &Options) -> Result<Branches
     let mut branches = points.branches(&asked)?;
     if branches.or.is_some() {
         branches.notes.push(format!(
-            "the points leave in doubt which way their columns run: {} is taken. --signs, or data.signs, says it",
+            "the points leave it open which way their columns run: {} is assumed. Set --signs or data.signs",
             signs_text(branches.turned)
         ));
     }
@@ -111,8 +111,8 @@ pub fn fit(
         along(other, options.asked.sigma, &ProgressPart::new(progress, [0.6, 1.0]))?
     };
     found.notes.push(format!(
-        "the points leave in doubt which way their columns run: with {} chi squared is {}, with {} it is {}. --signs, or data.signs, \
-         says it",
+        "the points leave it open which way their columns run: with {} chi squared is {}, with {} it is {}. \
+         Set --signs or data.signs",
         signs_text(taken),
         short(here.min(there), 4),
         signs_text(left),

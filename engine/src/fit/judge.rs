@@ -110,8 +110,8 @@ pub(super) fn of_sparse(branches: &Branches, preset: &Preset) -> Option<Reason> 
     }
     let most = branches.list.iter().map(|branch| branch.attached.len()).max()?;
     let sentence = format!(
-        "of branches of {most} rows at most nothing tells whether some are apart: give data.baseline, the force where they are, or \
-         --free-part"
+        "branches of at most {most} rows do not show whether any rows are apart: give data.baseline, the \
+         force of such rows, or --free-part"
     );
     (most < SPARSE).then(|| Reason::new("sparse", most as f64, sentence))
 }
@@ -119,7 +119,8 @@ pub(super) fn of_sparse(branches: &Branches, preset: &Preset) -> Option<Reason> 
 /// Rows at the end of the range of a converter.
 fn of_clipped(preset: &Preset, clipped: Clipped) -> Reason {
     let sentence = format!(
-        "{} rows in contact have exactly the {} force, {}: the instrument goes no further. Leave them out with --range force=LO..HI",
+        "{} rows in contact have exactly the {} force, {}: the instrument is saturated. Leave them out with \
+         --range force=LO..HI",
         clipped.rows,
         if clipped.is_low { "smallest" } else { "largest" },
         said(&preset.units, Quantity::Force, clipped.force)
@@ -159,7 +160,7 @@ fn unlikely(problem: &FitProblem, solved: &SolvedFit, preset: &Preset) -> Vec<Re
     }
     let modulus = preset.material.effective_modulus;
     if !(MODULI[0]..=MODULI[1]).contains(&modulus) {
-        unit(modulus, format!("E* = {} Pa is that of nothing people press", significant(modulus, 3)));
+        unit(modulus, format!("E* = {} Pa is that of no real material", significant(modulus, 3)));
     }
     reasons
 }
@@ -187,11 +188,12 @@ pub(super) fn doubts(
         let more = approach.value > retraction.value;
         doubts.push(
             if more {
-                "the approach has the larger work of adhesion, by more than the errors: a closing edge gains at most what an opening \
-                 one costs"
+                "the work of adhesion is larger on approach, by more than the errors: a closing edge gains \
+                 at most what an opening one costs"
             } else {
-                "the works of adhesion of approach and retraction differ by more than their errors: between them the edge is pinned \
-                 (material.closing_work_of_adhesion), or it has a speed, or the bodies age"
+                "the works of adhesion of approach and retraction differ by more than their errors: between \
+                 them the edge is pinned (material.closing_work_of_adhesion), or its speed matters, or the \
+                 bodies age"
             }
             .to_owned(),
         );
@@ -199,7 +201,7 @@ pub(super) fn doubts(
     for fitted in adhesions {
         if let Some(error) = fitted.standard_error.filter(|error| fitted.value < FROM_NONE * error) {
             doubts.push(format!(
-                "{} is {} of its errors above 0: the points hardly tell it from no adhesion",
+                "{} is only {} standard errors above 0: the points hardly distinguish it from no adhesion",
                 fitted.key,
                 short(fitted.value / error, 2)
             ));
@@ -208,8 +210,8 @@ pub(super) fn doubts(
     let free = problem.data.iter().filter(|datum| datum.free).count().max(1) as f64;
     if let Some(s) = scatter.contact.filter(|s| is_known && *s > NOISIER + OF_FEW / free.sqrt()) {
         doubts.push(format!(
-            "neighbouring points in contact differ by {} times the noise of x and of the force as it is known: there is more noise \
-             than that",
+            "neighbouring points in contact differ by {} times the known noise of x and of the force: there \
+             is more noise than that",
             short(s, 2)
         ));
     }

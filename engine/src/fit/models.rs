@@ -244,19 +244,20 @@ fn pair(fits: &[FittedModel], scores: &[f64], [best, other]: [usize; 2]) -> Opti
     let says = |i: usize| fits[i].fit.as_ref().is_ok_and(|fit| fit.verdict == Verdict::Describes);
     let sentence = match (told_apart, says(best)) {
         (true, true) => format!(
-            "the points speak for {} and against {}: A is larger by {} there",
+            "the points favour {} over {}, whose A is larger by {}",
             one.name(),
             two.name(),
             short(difference, 3)
         ),
         (true, false) => format!(
-            "{} is nearer to the points than {}, whose A is larger by {}; but its own verdict is not that it describes them",
+            "{} is nearer to the points than {}, whose A is larger by {}, but its own verdict is not that it \
+             describes them",
             one.name(),
             two.name(),
             short(difference, 3)
         ),
         (false, _) => format!(
-            "the points do not tell {} from {}: A differs by {}, and {APART} would be wanted",
+            "the points do not distinguish {} from {}: A differs by {}, and {APART} would be needed",
             one.name(),
             two.name(),
             short(difference, 3).replace('-', "−")

@@ -70,7 +70,8 @@ pub enum FitError {
     },
     /// An edge with a speed, but a device without one.
     #[error(
-        "{0} is fitted to a retraction at an even rate: set path.rate, or give times beside the way of the device, {1}"
+        "{0} is fitted to a retraction at a constant rate: set path.rate, or give times with the position of \
+         the device, {1}"
     )]
     NoRate(String, &'static str),
     /// The points give no branches.
@@ -84,7 +85,7 @@ pub enum FitError {
     Data(String),
     /// Fewer points than parameters ask for.
     #[error(
-        "{points} points in contact are too few for {parameters} free keys: at least {needed} are wanted"
+        "{points} points in contact are too few for {parameters} free keys: at least {needed} are needed"
     )]
     Few {
         /// How many there are.
@@ -96,12 +97,14 @@ pub enum FitError {
     },
     /// Loading with rings of contact; in words, when they begin.
     #[error(
-        "loading on this gap takes rings of contact, which are not fitted: {0}. Use the retraction, without --separate"
+        "loading on this gap forms rings of contact, which are not fitted: {0}. Use the retraction, without \
+         --separate"
     )]
     Loading(String),
     /// Two directions of the columns that fit alike.
     #[error(
-        "the points do not show which way their columns run: {one} and {other} fit them alike. Say it with --signs, or in data.signs"
+        "the points do not show which way their columns run: {one} and {other} fit them equally well. Set \
+         --signs or data.signs"
     )]
     Direction {
         /// The signs of one, as `--signs` writes them.
@@ -143,7 +146,7 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
         let known = rows.iter().filter(applies).map(|row| (&*row.key, &*row.label));
         let meant = closest_key(name, known);
         return Err(refused(format!(
-            "is no key of this preset{}",
+            "is not a key of this preset{}",
             meant.map_or_else(String::new, |key| format!("; did you mean {key}?"))
         )));
     };
@@ -162,16 +165,16 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
     };
     if !fits || !is_positive {
         return Err(refused(
-            "is no positive number of the bodies, the gap, the adhesion or the spring, which alone can be fitted"
+            "is not a positive number of the bodies, gap, adhesion or spring; only those can be fitted"
                 .to_owned(),
         ));
     }
     match preset.get(&row.key) {
         Some(Value::Number(value)) if value > 0.0 => Ok(Target::Key(row.key.to_string())),
         Some(_) => {
-            Err(refused("begins at 0, which has no logarithm: give it a first guess with --set".to_owned()))
+            Err(refused("starts at 0, which has no logarithm: give it a first guess with --set".to_owned()))
         }
-        None => Err(refused("has no value in this preset to begin with".to_owned())),
+        None => Err(refused("has no value in this preset to start from".to_owned())),
     }
 }
 

@@ -117,7 +117,7 @@ fn pulled(
     data.retain(|datum| datum.segment == Segment::Retraction);
     if data.len() < before {
         notes.push(format!(
-            "the {} points of the approach are left out: an edge that has a speed is fitted to the retraction",
+            "the {} points of the approach are left out: an edge with a speed is fitted to the retraction alone",
             before - data.len()
         ));
     }
@@ -132,10 +132,10 @@ fn pulled(
         || bare.path.control == Control::Displacement && branches.abscissa == Abscissa::Approach;
     let timed = if is_way { even_rate(&attached) } else { None };
     match (timed, bare.edge.rate) {
-        (None, None) if is_way => return Err(refused("which go at an even rate")),
-        (None, None) => return Err(refused("which this file has not")),
+        (None, None) if is_way => return Err(refused("which advance at a constant rate")),
+        (None, None) => return Err(refused("which this file does not have")),
         (None, Some(_)) if is_way && attached.iter().any(|point| point.time.is_finite()) => {
-            notes.push("the times do not say one even rate: path.rate is taken as it is given".to_owned());
+            notes.push("the times do not give one constant rate: path.rate is used as given".to_owned());
         }
         (None, Some(_)) => {}
         (Some(rate), stated) => {
@@ -144,7 +144,7 @@ fn pulled(
                 Some(stated) => format!(", not {}", text(stated)),
                 None => String::new(),
             };
-            notes.push(format!("the times say path.rate = {}{instead}", text(rate)));
+            notes.push(format!("the times give path.rate = {}{instead}", text(rate)));
             bare.edge.rate = Some(rate);
         }
     }
@@ -215,7 +215,7 @@ fn targets(preset: &Preset, branches: &Branches, options: &Options) -> Result<Ve
     };
     let has = |segment| branches.list.iter().any(|branch| branch.segment == segment);
     if !(has(Segment::Approach) && has(Segment::Retraction)) {
-        return refused("--separate needs both an approach and a retraction that are fitted");
+        return refused("--separate needs both an approach and a retraction to fit");
     }
     targets.splice(at..=at, [Target::Adhesion(Segment::Approach), Target::Adhesion(Segment::Retraction)]);
     Ok(targets)
@@ -230,7 +230,7 @@ fn known(preset: &Preset, branches: &Branches, options: &Options) -> Result<Vec<
     let splits =
         options.separate && known.iter().any(|known| known.target == Target::Key(ADHESION.to_owned()));
     if splits {
-        let why = "--separate makes two values of it, of which neither is given".to_owned();
+        let why = "--separate makes two values of it, and neither is given".to_owned();
         return Err(FitError::Uncertain { given: ADHESION.to_owned(), why });
     }
     Ok(known)
@@ -267,12 +267,12 @@ fn instrument(
         None if is_known => {}
         None if branches.abscissa == Abscissa::Radius && is_asked => {
             let off = said(&preset.units, Quantity::Force, tare(branches));
-            too(&format!("known to {off} before, since there is no free part"));
+            too(&format!("known to within {off} beforehand, since there is no free part"));
         }
         None if targets.contains(&Target::Baseline) => {
             return Err(FitError::Key {
                 key: BASELINE.to_owned(),
-                why: "there is no free part, which alone says where the baseline is".to_owned(),
+                why: "there is no free part, and nothing else shows where the baseline is".to_owned(),
             });
         }
         _ => {}

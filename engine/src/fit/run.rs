@@ -195,7 +195,7 @@ impl<'a> Posed<'a> {
             problem = problem.holding(j, u.remove(j)).ok_or(FitError::NoStart)?;
             solved =
                 last(&mut problem, &u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))?;
-            notes.push("no rows tell that the edge is pinned between approach and retraction".to_owned());
+            notes.push("no rows show that the edge is pinned between approach and retraction".to_owned());
         }
         if branches.noise.from[1] == Origin::Apart {
             solved = of_correlated(&mut problem, solved, options.robust, progress);
@@ -205,7 +205,7 @@ impl<'a> Posed<'a> {
         }
         if branches.baseline.is_none() {
             notes.push(
-                "there is no free part: the baseline is held, and neighbouring rows tell sigma of the force"
+                "there is no free part: the baseline is held, and sigma of the force is taken from neighbouring rows"
                     .to_owned(),
             );
         }
@@ -350,7 +350,7 @@ fn given(problem: &FitProblem, shares: &[Vec<f64>], notes: &mut Vec<String>) -> 
             })
             .collect();
         if !told.is_empty() {
-            notes.push(format!("the error that {key} is given with makes up {} (variance)", told.join(", ")));
+            notes.push(format!("the given error of {key} makes up {} (variance)", told.join(", ")));
         }
     }
     given
@@ -472,7 +472,7 @@ fn of_tare(
     let parameter = &problem.parameters[j];
     let wider = parameter.slope(parameter.value(prior.mean)).abs() * prior.sigma;
     notes.push(format!(
-        "the points contradict that: the tare is taken to be off by {}",
+        "the points contradict that: the tare is assumed to be off by {}",
         said(&problem.preset.units, Quantity::Force, wider)
     ));
     solve(problem, &solved.minimum.parameters, robust, ROUNDS, progress).unwrap_or(solved)
@@ -567,7 +567,7 @@ fn laid(
             Target::Tilt => (TILT, Some(instrument.tilt.into())),
         };
         if let Some(Err(invalid)) = value.map(|value| laid.set(key, value)) {
-            notes.push(format!("{key} could not be laid over the preset: {invalid}"));
+            notes.push(format!("{key} could not be set in the preset: {invalid}"));
         }
     }
     laid

@@ -195,7 +195,7 @@ fn what_cannot_be_told_apart_is_refused_and_named() {
     assert_eq!(
         fit.direction.unwrap(),
         "R +10 %, E* −4.7 %, γ −9.1 % together move the curve by less than its noise: fix one of them (only γ·R and \
-         E*·√R can be told)"
+         E*·√R can be found)"
             .replace("w ", "γ ")
     );
     // With the radius measured, P, δ and s are all there together.

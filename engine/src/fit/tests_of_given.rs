@@ -95,16 +95,16 @@ fn what_cannot_be_given_is_refused_with_its_reason() {
     let points = noisy();
     for (uncertain, why) in [
         ("k", "expected KEY=ERROR"),
-        ("stifness=10%", "is no key of this preset"),
-        ("k=10%,path.control.stiffness=5%", "stands twice"),
+        ("stifness=10%", "is not a key of this preset"),
+        ("k=10%,path.control.stiffness=5%", "is given twice"),
         ("k=0", "is out of range: it must be a number from 1e-30"),
-        ("k=-3%", "is above 0"),
-        ("k=101%", "at most its value"),
+        ("k=-3%", "must be above 0"),
+        ("k=101%", "at most that value"),
         ("k=x%", "expected a number before %"),
         ("k=NaN", "k=NaN"),
         ("k=1 um", "k=1 um"),
-        ("path.end_contact_radius=1%", "is no positive number of the bodies"),
-        ("data.offset=10%", "is above 0"),
+        ("path.end_contact_radius=1%", "is not a positive number of the bodies"),
+        ("data.offset=10%", "must be above 0"),
     ] {
         let error = found(&start(0.8, uncertain), &points).unwrap_err().to_string();
         assert!(error.starts_with("data.uncertain") && error.contains(why), "{uncertain}: {error}");

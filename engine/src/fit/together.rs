@@ -439,14 +439,17 @@ fn collapse(joint: &Joint, together: &[SolvedFit], scatters: &[Scatter]) -> Coll
     let chance = if values > 0 { beyond_f(chi_squared / values as f64, values as f64, below) } else { 1.0 };
     let collapses = chance >= CHANCE;
     let much = format!(
-        "one law for each of {} runs, {values} values more, makes chi squared smaller by {}",
+        "one law for each of {} runs, with {values} more values, lowers chi squared by {}",
         joint.curves.len(),
         short(chi_squared, 3)
     );
     let sentence = if collapses {
-        format!("the runs follow one law: {much}, as chance does (p = {})", short(chance, 2))
+        format!("the runs follow one law: {much}, as chance would (p = {})", short(chance, 2))
     } else {
-        format!("the runs do NOT follow one law: {much}, which chance hardly does (p = {})", short(chance, 2))
+        format!(
+            "the runs do NOT follow one law: {much}, which chance hardly would (p = {})",
+            short(chance, 2)
+        )
     };
     Collapse { chi_squared, values, chance, collapses, sentence }
 }

@@ -46,7 +46,7 @@ pub(super) fn uncertain(preset: &Preset, abscissa: Abscissa, text: &str) -> Resu
             other => other,
         })?;
         if all.iter().any(|other| other.target == target) {
-            return Err(refused("stands twice".to_owned()));
+            return Err(refused("is given twice".to_owned()));
         }
         let name = target.key();
         let row = preset.row(&name).ok_or_else(|| refused("has no value".to_owned()))?;
@@ -70,11 +70,11 @@ pub(super) fn uncertain(preset: &Preset, abscissa: Abscissa, text: &str) -> Resu
             None => number(error)?,
         };
         if !(sigma > 0.0 && sigma.is_finite()) {
-            return Err(refused("a standard deviation is above 0".to_owned()));
+            return Err(refused("a standard deviation must be above 0".to_owned()));
         }
         if matches!(target, Target::Key(_)) && sigma > MOST * mean {
             return Err(refused(
-                "a standard deviation of what is positive is at most its value, 100 %".to_owned(),
+                "the standard deviation of a positive value is at most that value, 100 %".to_owned(),
             ));
         }
         all.push(Uncertain { target, mean, sigma });

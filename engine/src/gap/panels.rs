@@ -98,8 +98,8 @@ impl Unresolved {
     pub fn words(&self, length: impl Fn(f64) -> String) -> String {
         let [radius, largest] = [self.radius, self.largest].map(length);
         format!(
-            "the gap is too rough: its slope is not resolved by {} panels, which end at r = {radius} (up to r = {largest} \
-             it must be)",
+            "the gap is too rough: its slope is not resolved by {} panels, which end at r = {radius} (it \
+             must be up to r = {largest})",
             self.panels
         )
     }

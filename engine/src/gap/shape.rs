@@ -133,7 +133,7 @@ impl Shape {
                 .shift()
                 .map(|shift| {
                     format!(
-                        "the formula is {} on the axis: subtracted, since the gap is zero there",
+                        "the formula is {} on the axis: this is subtracted, since the gap is zero there",
                         said(units, Quantity::Length, shift)
                     )
                 })
@@ -146,8 +146,8 @@ impl Shape {
                 let unit = rows.unit.as_ref().filter(|_| *units == UnitSystem::Reduced && !rows.is_shipped());
                 notes.extend(unit.map(|unit| {
                     format!(
-                        "{}: names {} as the unit of its radii, which is that of all lengths here: the preset is in reduced \
-                         units; units = \"SI\" converts them",
+                        "{}: names {} as the unit of its radii, which is the unit of all lengths here: the \
+                         preset is in reduced units; units = \"SI\" converts them",
                         rows.name,
                         unit.ascii()
                     )

@@ -100,7 +100,7 @@ impl FreePart {
     /// # Errors
     /// [`AskedError`].
     pub fn parse(text: &str, number: Number<'_>) -> Result<Self, AskedError> {
-        const EXPECTED: &str = "x=LO..HI, or none where all rows are in contact";
+        const EXPECTED: &str = "x=LO..HI, or none if all rows are in contact";
         match text.trim() {
             "" => Ok(Self::Found),
             "none" => Ok(Self::None),
@@ -119,8 +119,8 @@ impl FreePart {
 /// # Errors
 /// [`AskedError::Form`] unless each sign is given exactly once.
 pub fn signs(text: &str) -> Result<Turned, AskedError> {
-    const EXPECTED: &str = "the signs of both columns, as x=-,force=+: minus turns one, so that x grows as the bodies approach and \
-         the force is positive where they are pressed together";
+    const EXPECTED: &str = "the signs of both columns, as in x=-,force=+: minus reverses one, so that x \
+        grows as the bodies approach and the force is positive where they are pressed together";
     let wrong = || form(text, EXPECTED);
     let mut turned = [None; 2];
     for part in text.split(',') {

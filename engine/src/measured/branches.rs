@@ -62,13 +62,13 @@ pub struct Branches {
 pub enum BranchError {
     /// Too few rows are left.
     #[error(
-        "only {0} rows are left after the range, the segment and the rows to skip; {END_ROWS} are the fewest"
+        "only {0} rows are left after the range, the segment and the rows to skip; at least {END_ROWS} are needed"
     )]
     Few(usize),
     /// The rows have no order.
     #[error(
-        "the rows are in no order: x goes to and fro by {share:.0} % of its range from row to row. Sort them, or name a \
-         segment column, the range and the sigmas"
+        "the rows are not in order: x jumps back and forth by {share:.0} % of its range from row to row. \
+         Sort them, or name a segment column, the range and the sigmas"
     )]
     Unordered {
         /// The median step of x, in per cent of its range.
@@ -76,8 +76,8 @@ pub enum BranchError {
     },
     /// x and P are swapped.
     #[error(
-        "the column of the force goes on where x stands still at one end, as the way does where bodies are apart: the columns \
-         of x and force look swapped"
+        "the force column keeps changing where x stands still at one end, as the position does where bodies \
+         are apart: the columns of x and force look swapped"
     )]
     Swapped,
     /// A contact radius among the rows used is negative.
@@ -89,15 +89,15 @@ pub enum BranchError {
         radius: f64,
     },
     /// A contact radius cannot change sign.
-    #[error("a contact radius has no other sign: leave x as it is, x=+")]
+    #[error("a contact radius cannot be negative: leave x as it is, x=+")]
     TurnedRadius,
     /// A free part of contact radii cannot be chosen.
     #[error(
-        "rows are apart where the contact radius is 0, and no other part of it can be named: none leaves these rows out"
+        "rows are apart where the contact radius is 0, and no other part can be named: none leaves these rows out"
     )]
     FreeRadius,
     /// No row lies in the free part requested.
-    #[error("no row lies in the free part that is asked for: x is that of the file, with its sign")]
+    #[error("no row lies in the requested free part: x is as in the file, with its sign")]
     NothingFree,
     /// The branch requested is not there.
     #[error("there is no {0} in the file")]
@@ -123,7 +123,7 @@ impl Points {
         let step = quantum(&points.iter().map(|point| point.force).collect::<Vec<_>>());
         let repeated = without_repeats(&mut points);
         if repeated > 0 {
-            notes.push(format!("{repeated} rows are the row before again, and are left out"));
+            notes.push(format!("{repeated} rows repeat the row before and are left out"));
         }
         let of_radius = self.abscissa == Abscissa::Radius;
         let Orientation { turned, or } = self.directed(&mut points, asked, &mut notes)?;
@@ -192,9 +192,7 @@ impl Points {
         };
         let by_time = self.time.as_deref().and_then(|times| by_time(times, &self.x));
         if by_time.is_some() {
-            notes.push(
-                "the rows are not in the order of their times: they are taken in that order".to_owned(),
-            );
+            notes.push("the rows are not in the order of their times: they are sorted by time".to_owned());
         }
         let in_order = by_time.unwrap_or_else(|| (0..self.x.len()).collect());
         let numbered = in_order.into_iter().enumerate();
@@ -309,10 +307,10 @@ impl Points {
         match (&self.segments, counts) {
             (Some(_), [0 | 1, 0 | 1]) => None,
             (None, [1, 0]) => {
-                Some("no column names the branches: by the order of x it is an approach".to_owned())
+                Some("no column names the branches: by the order of x this is an approach".to_owned())
             }
             (None, [0, 1]) => {
-                Some("no column names the branches: by the order of x it is a retraction".to_owned())
+                Some("no column names the branches: by the order of x this is a retraction".to_owned())
             }
             (None, [1, 1]) if parts[0].0 == Segment::Approach => Some(format!(
                 "no column names the branches: approach up to the largest x in row {}, retraction from there",
@@ -323,7 +321,8 @@ impl Points {
                 first(1)
             )),
             (_, [approaches, retractions]) => Some(format!(
-                "the rows are of several loops: {approaches} approaches and {retractions} retractions are fitted together"
+                "the rows form several loops: {approaches} approaches and {retractions} retractions are \
+                 fitted together"
             )),
         }
     }

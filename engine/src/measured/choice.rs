@@ -109,7 +109,7 @@ pub(super) fn wanted(
         Some(header) => of_header(header, notes, &mut refused),
         None if cells == 2 => {
             notes.push(
-                "there is no header: the first column is taken for the approach, the second for the force"
+                "there is no header: the first column is taken as the approach, the second as the force"
                     .to_owned(),
             );
             let of = |(at, role)| WantedColumn { role, at, unit: None, is_said: false };
@@ -122,8 +122,8 @@ pub(super) fn wanted(
         return Err(CurveReadError::Profile { line, names: known() });
     }
     for (is, missing) in [
-        (&is_force as &dyn Fn(ColumnRole) -> bool, "force, or of the deflection"),
-        (&is_way, "approach, of the position or of the contact radius"),
+        (&is_force as &dyn Fn(ColumnRole) -> bool, "force or the deflection"),
+        (&is_way, "approach, the position or the contact radius"),
     ] {
         // If a column of that name has a unit of another quantity, that is the reason.
         if let (false, Some((_, error))) = (has(is), refused.iter().find(|(role, _)| is(*role))) {

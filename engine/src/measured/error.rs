@@ -34,7 +34,7 @@ pub enum CurveFault {
     },
     /// A comma and a point in one number.
     #[error(
-        "column {number}: \"{text}\" has more than one comma or point: write numbers without marks between thousands"
+        "column {number}: \"{text}\" has more than one comma or point: write numbers without thousands separators"
     )]
     Thousands {
         /// The column, from 1.
@@ -44,11 +44,11 @@ pub enum CurveFault {
     },
     /// A decimal point in a file with decimal commas, or the reverse.
     #[error(
-        "column {number}: \"{text}\" has {}: one of them parts thousands; write all decimals alike",
+        "column {number}: \"{text}\" has {}: one of them separates thousands; write all decimals alike",
         if text.contains(',') {
-            format!("a comma, and line {line} a number with a point")
+            format!("a comma, and line {line} has a number with a point")
         } else {
-            format!("a point, and line {line} a number with a comma")
+            format!("a point, and line {line} has a number with a comma")
         }
     )]
     Marks {
@@ -76,8 +76,8 @@ pub enum CurveFault {
 pub enum CurveReadError {
     /// Bytes that are not text.
     #[error(
-        "{0}; a force curve of an instrument's own format is read in Python with pulloff.read_afm(path), or exported as \
-         text by its program"
+        "{0}; a force curve in an instrument's own format can be read in Python with pulloff.read_afm(path), \
+         or exported as text by its software"
     )]
     NotText(NotText),
     /// Lines that contain faults.
@@ -98,12 +98,12 @@ pub enum CurveReadError {
     },
     /// Commas that may separate cells, mark decimals, or both.
     #[error(
-        "line {0}: some commas are followed by a space and some by a digit, and no header tells which part the columns: part \
-         them by semicolons or tabs"
+        "line {0}: some commas are followed by a space and some by a digit, and no header shows which \
+         separate the columns: separate them by semicolons or tabs"
     )]
     Commas(usize),
     /// Waves of an Igor text file that are not columns of one table.
-    #[error("its waves have {least} to {most} rows: export those of one curve alone")]
+    #[error("its waves have {least} to {most} rows: export the waves of one curve only")]
     Waves {
         /// The number of rows of the shortest wave.
         least: usize,
@@ -151,8 +151,8 @@ pub enum CurveReadError {
     },
     /// Two columns of lengths.
     #[error(
-        "line {line}: the columns {names} are lengths, as of a profile: a profile belongs in gap.file; of a measured curve say \
-         what they are, as in --columns x=1,force=2"
+        "line {line}: the columns {names} are lengths, like those of a profile: a profile belongs in \
+         gap.file; for a measured curve, say what they are, as in --columns x=1,force=2"
     )]
     Profile {
         /// The header.
@@ -161,7 +161,14 @@ pub enum CurveReadError {
         names: String,
     },
     /// A column that is needed is not there.
-    #[error("line {line}: there is no column of the {missing}{}", if known.is_empty() { String::new() } else { format!("; there is {known}: say what they are, as in --columns x=1,force=2") })]
+    #[error(
+        "line {line}: there is no column for the {missing}{}",
+        if known.is_empty() {
+            String::new()
+        } else {
+            format!("; the columns are {known}: say what they are, as in --columns x=1,force=2")
+        }
+    )]
     Lacks {
         /// The header, or the first row.
         line: usize,
@@ -171,7 +178,10 @@ pub enum CurveReadError {
         known: String,
     },
     /// A column that the user names is missing.
-    #[error("line {line}: there is no column {place}{}", if known.is_empty() { String::new() } else { format!("; there is {known}") })]
+    #[error(
+        "line {line}: there is no column {place}{}",
+        if known.is_empty() { String::new() } else { format!("; the columns are {known}") }
+    )]
     NoColumn {
         /// The header, or the first row.
         line: usize,

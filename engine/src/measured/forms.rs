@@ -236,7 +236,7 @@ fn what_cannot_be_read_is_refused_in_a_sentence() {
         (
             "points and commas",
             format!("{head}{body}1,5;2\n"),
-            "\"1,5\" has a comma, and line 3 a number with a point",
+            "\"1,5\" has a comma, and line 3 has a number with a point",
         ),
         ("thousands", format!("{head}{body}1.234,5;2\n"), "\"1.234,5\" has more than one comma or point"),
         ("commas that part all", "0,5, 1,5\n".repeat(20), "line 1: some commas are followed by a space"),
@@ -265,12 +265,12 @@ fn what_cannot_be_read_is_refused_in_a_sentence() {
         (
             "a first row with a fault",
             format!("{head}x1;2\n{body}"),
-            "line 2: column 1: the approach \"x1\" is no number",
+            "line 2: column 1: the approach \"x1\" is not a number",
         ),
         (
             "words among rows",
             format!("{head}{body}oops;2\n{body}"),
-            "line 22: column 1: the approach \"oops\" is no number",
+            "line 22: column 1: the approach \"oops\" is not a number",
         ),
     ] {
         let message = refused(bytes.as_bytes());
@@ -330,7 +330,7 @@ fn settings_are_found_in_every_usual_form() {
     let sentence = stated("R = 1 mm, E* = 1 MPa, work of adhesion 50 mJ/m^2");
     assert!(sentence.radius.is_some_and(|found| (found.value - 1e-3).abs() < 1e-15), "{:?}", sentence.notes);
     let uncalibrated = stated("Spring constant (N/m): 1.0");
-    assert!(uncalibrated.stiffness.is_none() && uncalibrated.notes[0].contains("not calibrated"));
+    assert!(uncalibrated.stiffness.is_none() && uncalibrated.notes[0].contains("uncalibrated"));
     let unknown = stated("Tip radius: 20");
     assert!(
         unknown.radius.is_none() && unknown.notes[0].contains("without a known unit"),

@@ -200,7 +200,7 @@ pub(super) fn same_free_force(
         let whole = range(branch.attached.iter().map(|point| point.force));
         if off > SAME * error && off > SHARE * whole && 2 * branch.free.len() < most {
             notes.push(format!(
-                "the last {} rows of the {} are taken for rows in contact: their force is not that of the rows apart",
+                "the last {} rows of the {} are taken to be in contact: their force is not that of the rows apart",
                 branch.free.len(),
                 branch.segment.name()
             ));

@@ -81,8 +81,8 @@ pub struct Points {
 pub enum PointsError {
     /// Units in a problem without units.
     #[error(
-        "{}the {role} has a unit, {unit}, and the problem is in reduced units, where columns are pure numbers: write them \
-         without, or set units = \"SI\"",
+        "{}the {role} has a unit, {unit}, and the problem is in reduced units, where columns are pure \
+         numbers: remove the unit, or set units = \"SI\"",
         header.map_or_else(String::new, |line| format!("line {line}: "))
     )]
     Reduced {
@@ -95,8 +95,8 @@ pub enum PointsError {
     },
     /// A file that states its instrument in SI, in a problem without units.
     #[error(
-        "the file states {what}, and the problem is in reduced units: set units = \"SI\", or data.settings = \"preset\" to \
-         leave the file's out"
+        "the file states {what}, and the problem is in reduced units: set units = \"SI\", or data.settings = \
+         \"preset\" to ignore the file's"
     )]
     ReducedSetting {
         /// What it states, safe to show.
@@ -104,8 +104,8 @@ pub enum PointsError {
     },
     /// Two stiffnesses, or two tip radii, that differ.
     #[error(
-        "the file states {what} of {file}, and {key} is {preset}: set {key} to that of the file, or data.settings = \"preset\" \
-         if the file's is wrong"
+        "the file states {what} of {file}, and {key} is {preset}: set {key} to the value in the file, or \
+         data.settings = \"preset\" if the file's is wrong"
     )]
     Contradicts {
         /// What is stated.

@@ -85,13 +85,14 @@ pub fn parse(bytes: &[u8], spec: &ColumnSpec) -> Result<Measured, CurveReadError
     }
     let rows = measured.columns.first().map_or(0, |column| column.values.len());
     if state.has_commas() {
-        measured.notes.push("decimals have a comma: 0,1 is read as 0.1".to_owned());
+        measured.notes.push("decimals are written with a comma: 0,1 is read as 0.1".to_owned());
     }
     if let Some(line) = state.skipped {
         let skipped = measured.skipped;
         let rows = if skipped == 1 { "1 row has" } else { &format!("{skipped} rows have") };
         measured.notes.push(format!(
-            "{rows} no number in a column that is used, being empty, NaN or out of range; left out, the first in line {line}"
+            "{rows} no number in a column that is used (empty, NaN or out of range); left out, the first in \
+             line {line}"
         ));
     }
     if !ROW_RANGE.contains(&rows) {
@@ -203,7 +204,7 @@ impl<'a> Pieces<'a> {
         }
         if self.tables.len() > 1 && self.chosen().iter().any(|table| segment(table).is_none()) {
             let count = self.tables.len();
-            self.notes.push(format!("the rows stand in {count} tables, which are read one behind the other"));
+            self.notes.push(format!("the rows are in {count} tables, which are read one after the other"));
         }
     }
 
@@ -246,7 +247,8 @@ impl<'a> Pieces<'a> {
                     numbers.join(" and ")
                 };
                 measured.notes.push(format!(
-                    "columns {} are the approach, {} the retraction, whose rows are counted on from its own",
+                    "columns {} are the approach, {} the retraction, whose rows are numbered on from those \
+                     of the approach",
                     listed(&approach),
                     listed(&retraction)
                 ));

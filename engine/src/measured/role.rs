@@ -190,7 +190,7 @@ pub enum ColumnSpecError {
     Form(String),
     /// An unknown role.
     #[error(
-        "\"{text}\" is no role of a column: expected x, approach, position, deflection, force, radius, diameter, area, \
+        "\"{text}\" is not a column role: expected x, approach, position, deflection, force, radius, diameter, area, \
          segment or time{}",
         meant.map_or_else(String::new, |word| format!("; did you mean {word}?"))
     )]
@@ -204,7 +204,7 @@ pub enum ColumnSpecError {
     #[error("column 0: columns are counted from 1")]
     Zero,
     /// A role given twice.
-    #[error("{0} is said twice")]
+    #[error("{0} is given twice")]
     Twice(&'static str),
     /// A unit that does not fit its quantity.
     #[error("the unit \"{unit}\" of {role} is not {expected}")]

@@ -196,7 +196,8 @@ impl Measured {
         };
         if let Some(at) = self.columns.iter().position(is_left) {
             let Column { number, .. } = self.columns.remove(at);
-            self.notes.push(format!("column {number} is a time, but no number in each row: it is left out"));
+            self.notes
+                .push(format!("column {number} is a time, but not a number in every row: it is left out"));
         }
     }
 

@@ -19,8 +19,8 @@ const SHARES: [f64; 2] = [0.08, 0.16];
 const LIKELY: f64 = 0.5;
 /// The notes for a reversed sign of the force.
 const PULLED: &str =
-    "the force is positive before the jump to the free part, where bodies pull: its sign is turned";
-const FALLS: &str = "the force falls as the bodies are pressed together: its sign is turned";
+    "the force is positive before the jump to the free part, where bodies attract: its sign is reversed";
+const FALLS: &str = "the force falls as the bodies are pressed together: its sign is reversed";
 
 /// Whether the curve is free at its low end and at its high end: where y stays constant while x changes.
 pub(super) fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
@@ -134,7 +134,7 @@ impl UnsignedPoints<'_> {
                 // Without a free end, the direction of a position depends on the instrument, but the sign of a force
                 // does not.
                 turned[0] = self.abscissa == Abscissa::Position && rises(&x, &force) == Some(false);
-                notes.push("there is no free part: the signs are taken as they are in the file".to_owned());
+                notes.push("there is no free part: the signs are taken as in the file".to_owned());
             }
         }
         if turned[0] {
@@ -145,7 +145,7 @@ impl UnsignedPoints<'_> {
     }
 
     fn turned_x(&self) -> String {
-        format!("the {} grows as the bodies go apart: its sign is turned", self.abscissa.name())
+        format!("the {} grows as the bodies move apart: its sign is reversed", self.abscissa.name())
     }
 
     /// Sets the sign of the force once that of x is right. The force rises where the bodies are pressed together; its

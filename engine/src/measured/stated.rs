@@ -81,7 +81,7 @@ impl FileSettings {
     fn takes_json(&mut self, text: &str) {
         self.is_si = true;
         let Ok(value) = serde_json::from_str::<serde_json::Value>(text) else {
-            self.notes.push("the block of metadata is no JSON, and nothing is taken from it".to_owned());
+            self.notes.push("the metadata block is not JSON, and nothing is taken from it".to_owned());
             return;
         };
         for key in ["spring constant", "tip radius"] {
@@ -169,7 +169,7 @@ impl FileSettings {
             return;
         }
         if setting == InstrumentValue::Stiffness && stated.value.total_cmp(&1.0).is_eq() {
-            let note = "the file states a spring of 1 N/m, as instruments do that are not calibrated: it is not used";
+            let note = "the file states a spring of 1 N/m, as uncalibrated instruments do: it is not used";
             if self.notes.iter().all(|known| known != note) {
                 self.notes.push(note.to_owned());
             }

@@ -177,7 +177,7 @@ fn what_a_person_says_of_columns_is_read_or_refused() {
     let text = "a b c\n".to_owned() + &"1 2 3\n2 3 5\n".repeat(6);
     let unknown = parse(text.as_bytes(), &ColumnSpec::default()).unwrap_err().to_string();
     // b and c mean nothing; a alone is a radius.
-    assert!(unknown.starts_with("line 1: there is no column of the force"), "{unknown}");
+    assert!(unknown.starts_with("line 1: there is no column for the force"), "{unknown}");
     let spec = ColumnSpec::parse("x=c, force=2 [nN]").unwrap();
     let measured = parse(text.as_bytes(), &spec).unwrap();
     assert_eq!(measured.columns[0].values[..2], [3.0, 5.0]);
@@ -186,15 +186,16 @@ fn what_a_person_says_of_columns_is_read_or_refused() {
         ("x", "\"x\" is not of the form ROLE=COLUMN"),
         ("forse=1", "did you mean force?"),
         ("x=0", "columns are counted from 1"),
-        ("x=1,approach=2", "approach is said twice"),
+        ("x=1,approach=2", "approach is given twice"),
         ("force=1 [um]", "the unit \"um\" of force is not a unit of force"),
     ] {
         let message = ColumnSpec::parse(said).unwrap_err().to_string();
         assert!(message.contains(expected), "{said}: {message}");
     }
-    for (said, expected) in
-        [("x=9,force=1", "no column 9: a row has 3"), ("x=q,force=1", "no column \"q\"; there is \"a\"")]
-    {
+    for (said, expected) in [
+        ("x=9,force=1", "no column 9: a row has 3"),
+        ("x=q,force=1", "no column \"q\"; the columns are \"a\""),
+    ] {
         let message = parse(text.as_bytes(), &ColumnSpec::parse(said).unwrap()).unwrap_err().to_string();
         assert!(message.contains(expected), "{said}: {message}");
     }
@@ -204,16 +205,16 @@ fn what_a_person_says_of_columns_is_read_or_refused() {
 fn two_hundred_broken_files_are_a_sentence_each() {
     let good = csv(&jkr(1e-4)[..40]);
     let damage: [(&str, &str); 10] = [
-        ("x", "column 1: the approach \"x\" is no number"),
+        ("x", "column 1: the approach \"x\" is not a number"),
         ("1,5e", "has 4 cells, and the first row has 3"),
-        ("1.5e", "is no number"),
-        ("1..5", "is no number"),
-        ("5 V", "is no number"),
-        ("+-1", "is no number"),
+        ("1.5e", "is not a number"),
+        ("1..5", "is not a number"),
+        ("5 V", "is not a number"),
+        ("+-1", "is not a number"),
         ("1\u{202e}2", "holds control or invisible characters"),
-        ("1;2", "is no number"),
-        ("0x10", "is no number"),
-        ("--3", "is no number"),
+        ("1;2", "is not a number"),
+        ("0x10", "is not a number"),
+        ("--3", "is not a number"),
     ];
     let mut told = 0;
     for line in 0..20 {
@@ -320,7 +321,7 @@ fn a_profile_that_is_offered_as_a_curve_is_told_where_it_belongs() {
     // A contact radius and no force lacks the force.
     let text = "time [s], contact radius [um]\n".to_owned() + &"1, 2\n".repeat(10);
     let refused = parse(text.as_bytes(), &ColumnSpec::default()).unwrap_err().to_string();
-    assert!(refused.contains("no column of the force"), "{refused}");
+    assert!(refused.contains("no column for the force"), "{refused}");
 }
 
 #[test]
@@ -331,7 +332,11 @@ fn decimals_with_a_comma_and_units_below_the_header_are_read() {
     });
     let measured = parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
     let same = measured.columns[1].values.iter().zip(&rows).all(|(p, row)| p.total_cmp(&row.1).is_eq());
-    assert!(same && measured.notes == ["decimals have a comma: 0,1 is read as 0.1"], "{:?}", measured.notes);
+    assert!(
+        same && measured.notes == ["decimals are written with a comma: 0,1 is read as 0.1"],
+        "{:?}",
+        measured.notes
+    );
     assert_eq!(measured.columns[1].unit.as_ref().unwrap().ascii(), "nN");
     let deflection = "Z position [nm]\tvDeflection [nN]\n".to_owned() + &"1\t2\n".repeat(10);
     let measured = parse(deflection.as_bytes(), &ColumnSpec::default()).unwrap();
@@ -534,7 +539,10 @@ fn times_that_tell_nothing_are_left_out() {
     ] {
         let measured = read(&timed(0..602, clock));
         assert!(
-            measured.notes.iter().any(|note| note.contains("column 3 is a time, but no number in each row"))
+            measured
+                .notes
+                .iter()
+                .any(|note| note.contains("column 3 is a time, but not a number in every row"))
         );
         assert_eq!(measured.lines.len(), 602, "no row is lost");
         assert_eq!(measured.points(&si(), None).unwrap().time, None);
@@ -548,7 +556,7 @@ fn times_that_tell_nothing_are_left_out() {
     let spec = ColumnSpec::parse("x=1,force=2,time=3 [ms]").unwrap();
     let gap = timed(0..602, |i| if i == 7 { "x".to_owned() } else { i.to_string() });
     let refused = parse(gap.as_bytes(), &spec).unwrap_err().to_string();
-    assert!(refused.contains("line 9: column 3: the time \"x\" is no number"), "{refused}");
+    assert!(refused.contains("line 9: column 3: the time \"x\" is not a number"), "{refused}");
     let wrong = ColumnSpec::parse("x=1,force=2,time=3 [nm]").unwrap_err().to_string();
     assert!(wrong.contains("is not a unit of time"), "{wrong}");
     // In reduced units a time with a unit is dropped, and one without is used.

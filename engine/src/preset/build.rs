@@ -113,14 +113,15 @@ fn across(preset: &Preset) -> Vec<Invalid> {
     let Material { adhesion, work_of_adhesion, .. } = preset.material;
     if adhesion != Adhesion::ShortRange && preset.cohesion().is_none() {
         let needs = if work_of_adhesion > 0.0 {
-            "material.cohesive_strength or material.cohesive_range, either of which chooses it too, or material.range_of_action"
+            "material.cohesive_strength or material.cohesive_range, either of which selects it too, or \
+             material.range_of_action"
         } else {
             "a material.work_of_adhesion above 0"
         };
         faults.push(Invalid::Rangeless { word: adhesion.name(), needs });
     }
     if adhesion != Adhesion::ShortRange && preset.basis != BasisSpec::Exact {
-        let needs = "basis.kind = \"exact\": ring elements know no range";
+        let needs = "basis.kind = \"exact\": ring elements have no range";
         faults.push(Invalid::Rangeless { word: adhesion.name(), needs });
     }
     let end = preset.path.end_contact_radius;
@@ -219,7 +220,7 @@ mod tests {
             lines,
             [
                 "gap.amplitude belongs to wavy-sphere, and the gap is a sphere",
-                "path.start_force and path.start_approach both say where the path starts: give exactly one",
+                "path.start_force and path.start_approach both set where the path starts: give exactly one",
                 "gap.radius_of_curvature is missing: it must be a number from 1e-30 to 1e30",
                 "the table [material] is missing: it needs effective_modulus, work_of_adhesion",
             ]

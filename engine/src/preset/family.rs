@@ -137,7 +137,7 @@ pub(super) fn limit(name: &str, part: &str) -> Option<Parameter> {
         "max" => ("max", "its largest value", Kind::Finite),
         "unit" => (
             "unit",
-            "its unit: in an SI preset bare numbers of value, min and max count in it; in reduced units a remark",
+            "its unit: in an SI preset bare numbers of value, min and max are in it; in reduced units a remark",
             Kind::Text { max_chars: 20 },
         ),
         _ => return None,

@@ -34,7 +34,7 @@ pub enum Invalid {
     #[error("an assignment is KEY=VALUE, as in gap.amplitude=0.002")]
     Assignment,
     /// The name of a table used for a value.
-    #[error("{table} is a table, not {found}; set one of its keys, as {example}")]
+    #[error("{table} is a table, not {found}; set one of its keys, such as {example}")]
     NotTable {
         /// The table.
         table: Key,
@@ -98,7 +98,7 @@ pub enum Invalid {
         allowed: String,
     },
     /// A parameter of a newly chosen formula that has not been given a value.
-    #[error("the formula needs a value for {key}, as {key}=1{}", hint(.meant.as_ref()))]
+    #[error("the formula needs a value for {key}, as in {key}=1{}", hint(.meant.as_ref()))]
     Unset {
         /// The key.
         key: Key,
@@ -134,7 +134,7 @@ pub enum Invalid {
         key: Key,
     },
     /// More than one start, or more than one turn.
-    #[error("{second} and {first} both say {does}: give exactly one")]
+    #[error("{second} and {first} both set {does}: give exactly one")]
     Rivals {
         /// One of them.
         first: Key,
@@ -199,7 +199,7 @@ pub enum Invalid {
         meant: Option<Key>,
     },
     /// A contact radius where the gap is not known.
-    #[error("{key} = {value} is out of range: the gap is known up to the radius {largest} only")]
+    #[error("{key} = {value} is out of range: the gap is known only up to the radius {largest}")]
     Beyond {
         /// The key.
         key: Key,

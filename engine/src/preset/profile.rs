@@ -59,13 +59,14 @@ pub enum ProfileFault {
     Cells(usize),
     /// A negative radius.
     #[error(
-        "the radius {0:?} is negative: radii count from the axis, so fold a scan over the whole diameter there first"
+        "the radius {0:?} is negative: radii are measured from the axis, so first fold a scan over the whole \
+         diameter there"
     )]
     Negative(f64),
     /// The first row is not at the axis.
     #[error(
-        "the smallest radius is {first:?}, and the rows behind it are at most {spacing:?} apart: measure the centre too, or \
-         shift the radii so that they count from it"
+        "the smallest radius is {first:?}, and the rows after it are at most {spacing:?} apart: measure the \
+         centre too, or shift the radii so that they start there"
     )]
     Hollow {
         /// The smallest radius.
@@ -74,7 +75,7 @@ pub enum ProfileFault {
         spacing: f64,
     },
     /// A radius for which an earlier line gives another gap.
-    #[error("the radius {radius:?} has another gap in line {line}")]
+    #[error("the radius {radius:?} has a different gap in line {line}")]
     Twice {
         /// The radius.
         radius: f64,
@@ -97,7 +98,7 @@ pub enum TextError {
     Faults(ProfileFaults),
     /// The columns are swapped.
     #[error(
-        "line {line}: the header names the gap \"{first}\" first and the radius \"{second}\" behind it: a profile has \
+        "line {line}: the header names the gap \"{first}\" first and the radius \"{second}\" after it: a profile has \
          the radius first"
     )]
     Swapped {
@@ -125,7 +126,7 @@ pub enum TextError {
     },
     /// A unit for one column only.
     #[error(
-        "line {line}: the header gives the {named} in {unit} and names no unit of the {other}: write both, as in \
+        "line {line}: the header gives the {named} in {unit} but no unit for the {other}: write both, as in \
          r [um], h [nm]"
     )]
     OneUnit {
@@ -325,7 +326,7 @@ fn gather(mut rows: Vec<ProfileRow>, columns: &mut ProfileColumns, faults: &mut 
     }
     if repeated > 0 {
         let rows = if repeated == 1 { "1 row was" } else { &format!("{repeated} rows were") };
-        columns.notes.push(format!("{rows} there twice and counted once"));
+        columns.notes.push(format!("{rows} listed twice and counted once"));
     }
     // If the radii are uneven, one distance says little: the widest of the first ones is used.
     let inner = columns.radii.windows(2).take(*ROW_RANGE.start() - 1).map(|pair| pair[1] - pair[0]);

@@ -58,8 +58,8 @@ pub(super) fn in_units(values: &Values, units: &UnitSystem, key: &Key, text: &st
         (Some(quantity), _) => typed.in_si(quantity, None).map_err(fault),
         (None, Some(n)) => {
             let cause = format!(
-                "with n = {n:?} it is a length to the power {}, which no unit here is: expected a bare number in SI, \
-                 got {typed}",
+                "with n = {n:?} it is a length to the power {}, for which there is no unit: expected a bare \
+                 number in SI, got {typed}",
                 number::short(1.0 - n, 6)
             );
             Err(Invalid::Made { key: key.clone(), cause })

@@ -13,7 +13,7 @@ use crate::text::quote;
 use crate::units::{Quantity, UnitSystem, parse_quantity};
 
 /// What a part of [`STEPS`] may be.
-const PARTS: &str = "to VALUE at RATE, hold TIME or apart at RATE, with ; between two";
+const PARTS: &str = "to VALUE at RATE, hold TIME or apart at RATE, separated by ;";
 
 impl GivenValues<'_> {
     /// The edge.
@@ -53,7 +53,7 @@ impl EdgeSpec {
         let adhesion = preset.material.adhesion;
         let short = [
             (self.exponent, EXPONENT, "an edge with a speed"),
-            (self.closing_work_of_adhesion, CLOSING_ADHESION, "an edge that gains less in closing"),
+            (self.closing_work_of_adhesion, CLOSING_ADHESION, "an edge that gains less on closing"),
         ];
         for (_, key, what) in short.into_iter().filter(|(set, ..)| set.is_some()) {
             if adhesion != Adhesion::ShortRange {
@@ -85,7 +85,7 @@ impl Preset {
     }
 
     fn step(&self, text: &str) -> Result<Part, String> {
-        let wrong = || format!("\"{}\" is no part of a test: expected {PARTS}", quote(text));
+        let wrong = || format!("\"{}\" is not a part of a test: expected {PARTS}", quote(text));
         let is_force = self.path.control == Control::Force;
         let (word, rest) = text.split_once(char::is_whitespace).ok_or_else(wrong)?;
         let value = if is_force { Quantity::Force } else { Quantity::Length };

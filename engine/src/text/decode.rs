@@ -22,15 +22,15 @@ pub enum NotText {
     #[error("line {0}: holds a zero byte: the file is binary or damaged, not text")]
     Zero(usize),
     /// A byte order mark that names an encoding which the bytes behind it do not have.
-    #[error("is damaged: its byte order mark says {0}, and its bytes are not")]
+    #[error("is damaged: its byte order mark says {0}, but its bytes are not")]
     Damaged(&'static str),
 }
 
 /// The first bytes of files that people mistake for tables.
 const KNOWN: [(&[u8], &str); 5] = [
-    (b"PK\x03\x04", "a ZIP archive, such as an Excel workbook (.xlsx) or a force curve of JPK (.jpk-force)"),
+    (b"PK\x03\x04", "a ZIP archive, such as an Excel workbook (.xlsx) or a JPK force curve (.jpk-force)"),
     (b"\x89HDF\r\n", "an HDF5 file"),
-    (b"\xd0\xcf\x11\xe0", "a binary file of Microsoft Office"),
+    (b"\xd0\xcf\x11\xe0", "a binary Microsoft Office file"),
     (b"\x1f\x8b", "a compressed file (gzip)"),
     (b"%PDF-", "a PDF file"),
 ];

@@ -57,7 +57,11 @@ pub enum UnitError {
         found: String,
     },
     /// The expression continues after its unit.
-    #[error("column {}: found {found} behind a unit, which stands once behind the whole expression, as in (1+1/2) um", place.column)]
+    #[error(
+        "column {}: found {found} after a unit, which is written once after the whole expression, as in \
+         (1+1/2) um",
+        place.column
+    )]
     Behind {
         /// Where.
         place: TextPlace,
@@ -321,11 +325,12 @@ mod tests {
             ("3 1/", "column 5: expected a unit such as um, mN, kPa or mJ/m^2, found the end"),
             (
                 "3 um/75",
-                "column 6: found 75 behind a unit, which stands once behind the whole expression, as in (1+1/2) um",
+                "column 6: found 75 after a unit, which is written once after the whole expression, as in (1+1/2) um",
             ),
             (
                 "3 um+1um",
-                "column 5: found '+' behind a unit, which stands once behind the whole expression, as in (1+1/2) um",
+                "column 5: found '+' after a unit, which is written once after the whole expression, as in \
+                 (1+1/2) um",
             ),
             ("3 1 m", "column 3: expected a unit such as um, mN, kPa or mJ/m^2, found 1"),
             ("3 2/m", "column 3: expected a unit such as um, mN, kPa or mJ/m^2, found 2"),

@@ -60,7 +60,7 @@ fn adhesion_that_grows_with_the_speed_of_the_edge_is_said() {
 fn an_adhesion_that_is_none_is_not_trusted_without_a_doubt() {
     for outcome in outcomes("Hertz") {
         assert!(outcome.off() < MOST || !outcome.is_trusted(), "{outcome:#?}");
-        let is_of_none = |warning: &String| warning.contains("hardly tell it from no adhesion");
+        let is_of_none = |warning: &String| warning.contains("hardly distinguish it from no adhesion");
         assert!(!outcome.is_trusted() || outcome.warnings.iter().any(is_of_none), "{outcome:#?}");
     }
 }

@@ -28,7 +28,8 @@ pub(super) fn of_apart(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatt
             "drift",
             counted,
             format!(
-                "the force is no constant where the bodies are apart: {} rows hang together so that they count as {}. It drifts",
+                "the force is not constant where the bodies are apart: {} correlated rows count as only {}. \
+                 It drifts",
                 scatter.apart,
                 short(counted, 2)
             ),
@@ -60,8 +61,8 @@ fn levels(problem: &FitProblem, solved: &SolvedFit, tau: f64) -> Option<Reason> 
     let t = (last[0] - first[0]) / (variance * tau * (1.0 / first[2] + 1.0 / last[2])).sqrt();
     (beyond_t(t, degrees) < FALSE_ALARM).then(|| {
         let sentence = format!(
-            "where the bodies are apart the force of the first branch differs from that of the last by {} standard errors: it \
-             drifts, or one of the two is not apart",
+            "where the bodies are apart, the force of the first branch differs from that of the last by {} \
+             standard errors: it drifts, or one of the two is in contact",
             short(t.abs(), 2)
         );
         Reason::new("levels", t, sentence)

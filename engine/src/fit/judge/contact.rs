@@ -66,8 +66,8 @@ pub(super) fn of_contact(
             "scatter",
             ratio,
             format!(
-                "in contact the residuals are {} times the noise of neighbouring points: the model does not describe this, \
-                 or a value that is held is wrong (the stiffness of the device above all)",
+                "in contact the residuals are {} times the noise of neighbouring points: the model does not \
+                 describe this, or a held value is wrong (most likely the stiffness of the device)",
                 short(ratio, 3)
             ),
         ));
@@ -104,8 +104,8 @@ fn of_bins(
             "bins",
             off(worst),
             format!(
-                "the curve passes beside the points: over {} rows of the {}, from {} = {} to {}, the mean residual is {} of its \
-                 standard errors",
+                "the curve misses the points: over {} rows of the {}, from {} = {} to {}, the mean residual \
+                 is {} standard errors",
                 worst.count,
                 worst.segment.name(),
                 if problem.abscissa == crate::measured::Abscissa::Radius { "s" } else { "x" },
@@ -128,8 +128,8 @@ fn of_bins(
     if sides.iter().all(|side| has_one_side(*side)) && (sides[0][0] > 0) != (sides[1][0] > 0) {
         reasons.push(Reason {
             kind: "branches",
-            sentence: "approach and retraction lie on different sides of the curve: they may differ in their works of adhesion, \
-                       which --separate work_of_adhesion tells"
+            sentence: "approach and retraction lie on different sides of the curve: their works of adhesion \
+                may differ, which --separate work_of_adhesion tests"
                 .to_owned(),
             value: None,
         });
@@ -204,11 +204,11 @@ fn of_runs(problem: &FitProblem, solved: &SolvedFit) -> Vec<Reason> {
         let name = rows.first().map_or("", |row| problem.data[row.index].segment.name());
         let fewer = if found.is_finite() {
             format!(
-                "keep their sign for long runs ({} standard deviations fewer than by chance)",
+                "keep their sign over long runs ({} standard deviations fewer than by chance)",
                 short(-found, 2)
             )
         } else {
-            "have all one sign".to_owned()
+            "all have one sign".to_owned()
         };
         reasons.push(Reason::new(
             "runs",

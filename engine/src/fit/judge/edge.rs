@@ -12,7 +12,7 @@ pub(super) enum Clock {
     Times,
     /// The number of the row: rows that are evenly spaced in time.
     Rows,
-    /// The approach that the measured force and radius have in the fitted model: bodies that are pulled apart at an even rate.
+    /// The approach that the measured force and radius have in the fitted model: bodies that are pulled apart at a constant rate.
     Approach,
 }
 
@@ -21,8 +21,8 @@ impl Clock {
     pub(super) fn condition(self) -> &'static str {
         match self {
             Self::Times => "",
-            Self::Rows => ", if the rows are even in time",
-            Self::Approach => ", if the bodies are pulled apart at an even rate",
+            Self::Rows => ", if the rows are evenly spaced in time",
+            Self::Approach => ", if the bodies are pulled apart at a constant rate",
         }
     }
 }

@@ -66,17 +66,17 @@ pub(in super::super) fn unseen(
                     return None;
                 }
                 format!(
-                    "adhesion at the edge alone fits as well, its chi squared is larger by {}",
+                    "adhesion at the edge alone fits as well, with a chi squared larger by {}",
                     short(worse, 2)
                 )
             }
         }
     } else {
-        format!("its error{at} is {} of itself", short(error, 2))
+        format!("its error{at} is {} times its value", short(error, 2))
     };
     Some(format!(
-        "{}: {why}, so the points do not tell how far the adhesion reaches: hold it, or take material.adhesion = \"short-range\", and \
-         compare both with --model short-range,dugdale",
+        "{}: {why}, so the points do not show how far the adhesion reaches: hold it, or set \
+         material.adhesion = \"short-range\", and compare both with --model short-range,dugdale",
         letter(&problem.preset, &problem.parameters[j].key()),
     ))
 }
@@ -102,8 +102,8 @@ pub(super) fn of_zone(problem: &FitProblem, solved: &SolvedFit) -> Option<Reason
         let (radius, why) = places.filter(|_| lo <= hi).find_map(|at| paths.of(segment).fault(at))?;
         let shown = said(&problem.preset.units, Quantity::Length, radius);
         let sentence = format!(
-            "the fitted path has a state that one disc in one zone does not hold ({}): its values are no result",
-            why.map_or_else(|| format!("none at r = {shown}"), |kind| kind.words(&shown))
+            "the fitted path has a state that is not one disc in one zone ({}): its values are not valid",
+            why.map_or_else(|| format!("no state at r = {shown}"), |kind| kind.words(&shown))
         );
         Some(Reason::new("zone", radius, sentence))
     })

@@ -11,7 +11,7 @@
 //!
 //! A fit takes up most of the effect of a speed: what is left shows in few rows. So here the false-alarm rate is one in
 //! two hundred. Where no column has the times, two clocks stand in: rows that are evenly spaced in time, and bodies
-//! that are pulled apart at an even rate. A work of adhesion that grows from row to row, as √(number of the row), is
+//! that are pulled apart at a constant rate. A work of adhesion that grows from row to row, as √(number of the row), is
 //! also tested for; the three share that false-alarm rate.
 
 use super::super::chance::beyond_t;
@@ -78,7 +78,7 @@ pub(super) fn of_untimed(
     let edges = EdgeMotion::all(problem, &solved.minimum.parameters);
     let mut untimed = edges.iter().filter(|edge| !edge.is_timed());
     let reason = untimed.find_map(|edge| untold(problem, solved, scatter, inner, (edge, 0.0)))?;
-    Some(format!("no column has the times: {}", reason.sentence))
+    Some(format!("there is no column of times: {}", reason.sentence))
 }
 
 /// n and t of the speed, and of the number of the row.
@@ -122,8 +122,9 @@ fn grows(
             .filter_map(|i| edge.speed(i))
             .fold([f64::INFINITY, 0.0], |[lo, hi], speed| [lo.min(speed), hi.max(speed)]);
         let sentence = format!(
-            "a work of adhesion that grows with the speed of the edge describes the points better{}: that of the fastest rows is near {} \
-             times that of the slowest ({} standard errors). No quasi-static curve has such an edge",
+            "a work of adhesion that grows with the speed of the edge describes the points better{}: that of \
+             the fastest rows is about {} times that of the slowest ({} standard errors). No quasi-static \
+             curve has such an edge",
             edge.clock.condition(),
             short(pow((least / most).max(SLOWEST), -n.min(1.0)), 2),
             short(t, 2)
@@ -132,8 +133,8 @@ fn grows(
     }
     let [n, t] = Some(by_row).filter(|of| !edge.is_timed() && is_found(*of))?;
     let sentence = format!(
-        "a work of adhesion that grows along the retraction describes the points better ({} standard errors), as one does that grows with \
-         the speed of the edge: a column of times would tell",
+        "a work of adhesion that grows along the retraction describes the points better ({} standard \
+         errors), and so does one that grows with the speed of the edge: a column of times would decide",
         short(t, 2)
     );
     Some(Reason::new("rate", n, sentence))

@@ -120,8 +120,8 @@ pub(super) fn of_shape(
     let [n, t] = score(problem, solved, scatter, inner?, &z, None)?;
     (beyond_t(t, scatter.degrees) < FALSE_ALARM).then(|| {
         let sentence = format!(
-            "a gap that grows as r^n describes the points better than r^2: n near {} ({} standard errors from 2). The gap is no \
-             sphere, or something else goes with the radius",
+            "a gap that grows as r^n describes the points better than r^2: n is about {} ({} standard errors \
+             from 2). The gap is not a sphere, or something else depends on the radius",
             short((2.0 + n).clamp(1.0, 8.0), 3),
             short(t.abs(), 2)
         );
@@ -146,8 +146,9 @@ pub(super) fn of_range(
     let tabor = Groups::of(&preset.problem(), Some(reach / OF_EQUILIBRIUM), None).tabor?;
     (n > 0.0 && 0.5 * beyond_t(t, scatter.degrees) < FALSE_ALARM).then(|| {
         let sentence = format!(
-            "adhesion with a range describes the points better than one at the edge alone: it acts up to a separation near {}, Tabor's mu \
-             near {} ({} standard errors). The JKR limit of this method does not hold",
+            "adhesion with a range describes the points better than adhesion at the edge alone: it acts up \
+             to a separation of about {}, with Tabor's mu about {} ({} standard errors). The JKR limit of \
+             this method does not hold",
             said(&preset.units, Quantity::Length, reach),
             short(tabor, 2),
             short(t, 2)

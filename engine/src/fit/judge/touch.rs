@@ -60,8 +60,9 @@ pub(super) fn of_touch(
         let units = &problem.preset.units;
         (t < -NO_CHANCE).then(|| {
             let sentence = format!(
-                "on the approach the bodies pull before they touch: {} rows up to {} before the first contact of the model have the force \
-                 {} ({} standard errors). The adhesion has a range, or the force comes late",
+                "on the approach the bodies attract before they touch: {} rows, up to {} before the first \
+                 contact of the model, have the force {} ({} standard errors). The adhesion has a range, or \
+                 the force lags",
                 early.len(),
                 said(units, Quantity::Length, most),
                 said(units, Quantity::Force, pull),

@@ -81,8 +81,9 @@ pub(super) fn untold(
         })
         .collect();
     let sentence = format!(
-        "the points do not tell whether the work of adhesion grows with the speed of the edge{}: one that is {} times that at rest at the \
-         median speed fits as well, with {}. Rows of slower edges, or of a wider range of speeds, would tell",
+        "the points do not show whether the work of adhesion grows with the speed of the edge{}: one that is \
+         {} times its value at rest at the median speed fits as well, with {}. Slower edges, or a wider \
+         range of speeds, would decide",
         edge.clock.condition(),
         short(1.0 + REFERENCE.recip().sqrt(), 2),
         told.join(", ")

@@ -53,7 +53,7 @@ impl NotFinite {
     pub fn words(&self, units: &UnitSystem) -> String {
         let [radius, largest] = [self.radius, self.largest].map(|r| said(units, Quantity::Length, r));
         format!(
-            "the formula is not finite at r = {radius} (up to r = {largest} it must be, with its slope and curvature)"
+            "the formula is not finite at r = {radius} (it must be up to r = {largest}, with its slope and curvature)"
         )
     }
 }

@@ -53,7 +53,8 @@ impl ProfileRows {
         let mut notes = self.notes.clone();
         if unit.is_none() {
             notes.push(format!(
-                "{}: names no unit of length, so its columns are taken in m; a header such as r [um], h [nm] names them",
+                "{}: names no unit of length, so its columns are taken to be in m; a header such as r [um], \
+                 h [nm] names units",
                 self.name
             ));
         }

@@ -72,7 +72,7 @@ pub enum RandomWavesError {
         longest: f64,
     },
     /// The number of waves is out of range.
-    #[error("{0} waves are out of range, allowed are 1 to {MOST_WAVES}")]
+    #[error("{0} waves are out of range: 1 to {MOST_WAVES} are allowed")]
     Count(usize),
 }
 
@@ -252,7 +252,7 @@ mod tests {
         assert!(refused(RandomWaves { rms: f64::NAN, ..ROUGH }).contains("rms amplitude"));
         assert!(refused(RandomWaves { shortest: 0.5, ..ROUGH }).contains("must be below the longest"));
         for count in [0, 1001] {
-            assert!(refused(RandomWaves { count, ..ROUGH }).contains("allowed are 1 to 1000"));
+            assert!(refused(RandomWaves { count, ..ROUGH }).contains("1 to 1000 are allowed"));
         }
     }
 }

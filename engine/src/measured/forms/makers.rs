@@ -163,7 +163,7 @@ pub(super) fn of_indenters() -> Vec<FileForm> {
         form("Hysitron, in UTF-8", hysitron("Depth (nm)\tLoad (\u{3bc}N)\tTime (s)\tDepth (V)\tLoad (V)")),
         form("Chiaro", western(&chiaro)).spring(0.018).tip(27.5e-6),
         form("Chiaro, in UTF-8", chiaro).spring(0.018).tip(27.5e-6),
-        form("LabVIEW, decimal commas", lvm(',', false)).position().says("decimals have a comma"),
+        form("LabVIEW, decimal commas", lvm(',', false)).position().says("decimals are written with a comma"),
         form("LabVIEW, decimal points", lvm('.', false)).position(),
         form("LabVIEW, a heading for each segment", lvm(',', true)).position().says("2 tables"),
     ]

@@ -121,9 +121,9 @@ fn units_that_are_no_lengths_and_missing_ones_are_refused_by_name_with_their_lin
         ("r [foo], h [nm]", "line 1: the unit \"foo\" of the radius is not known"),
         ("# mine\nr [um], h [um^2]", "line 2: the unit \"um^2\" of the gap is an area, not a length"),
         ("\n# r [s], h [nm]", "line 2: the unit \"s\" of the radius is a time, not a length"),
-        ("r [um], h", "line 1: the header gives the radius in um and names no unit of the gap: write both"),
-        ("r, h [nm]", "line 1: the header gives the gap in nm and names no unit of the radius: write both"),
-        ("r / um, h", "line 1: the header gives the radius in um and names no unit of the gap: write both"),
+        ("r [um], h", "line 1: the header gives the radius in um but no unit for the gap: write both"),
+        ("r, h [nm]", "line 1: the header gives the gap in nm but no unit for the radius: write both"),
+        ("r / um, h", "line 1: the header gives the radius in um but no unit for the gap: write both"),
     ] {
         let error = good(&format!("{header}\n{}", rows(","))).in_one_unit().unwrap_err().to_string();
         assert!(error.starts_with(said), "{header}: {error}");
@@ -142,7 +142,7 @@ fn a_profile_without_its_centre_is_refused() {
         good(&at(radii(first)));
     }
     let said = refused(&format!("r,h\n{}", at(radii(0.15))));
-    let expected = "line 2: the smallest radius is 0.15, and the rows behind it are at most 0.1";
+    let expected = "line 2: the smallest radius is 0.15, and the rows after it are at most 0.1";
     assert!(said.starts_with(expected), "{said}");
     // The line is that of the smallest radius, wherever that is.
     let said = refused(&at((3..23).rev().map(f64::from)));
@@ -160,9 +160,9 @@ fn order_and_repetition_are_put_right_with_a_note() {
     assert_eq!(sorted.notes.len(), 1);
     let twice = good(&format!("{}{}", rows(","), rows(",")));
     assert_eq!((&twice.radii, &twice.gaps), (&reference.radii, &reference.gaps));
-    assert_eq!(twice.notes[1], "10 rows were there twice and counted once");
+    assert_eq!(twice.notes[1], "10 rows were listed twice and counted once");
     let once = good(&format!("{}{}\n", rows(","), rows(",").lines().next().unwrap()));
-    assert_eq!(once.notes.last().unwrap(), "1 row was there twice and counted once");
+    assert_eq!(once.notes.last().unwrap(), "1 row was listed twice and counted once");
 }
 
 #[test]
@@ -172,7 +172,7 @@ fn every_fault_has_its_line() {
     assert_eq!(with(",9"), "line 11: the radius is missing");
     assert_eq!(with("9"), "line 11: the gap is missing");
     assert_eq!(with("9,9,9"), "line 11: has 3 cells, and a row has two: radius and gap");
-    assert_eq!(with("9,abc"), "line 11: the gap \"abc\" is no number");
+    assert_eq!(with("9,abc"), "line 11: the gap \"abc\" is not a number");
     assert_eq!(
         with("nan,1"),
         "line 11: the radius \"nan\" is out of range: it must be a number from -1e30 to 1e30"
@@ -180,13 +180,14 @@ fn every_fault_has_its_line() {
     assert!(with("9,-inf").contains("out of range") && with("9,1e31").contains("out of range"));
     assert_eq!(
         with("-1,1"),
-        "line 11: the radius -1.0 is negative: radii count from the axis, so fold a scan over the whole diameter there first"
+        "line 11: the radius -1.0 is negative: radii are measured from the axis, so first fold a scan over \
+         the whole diameter there"
     );
-    assert_eq!(with("1,7"), "line 11: the radius 1.0 has another gap in line 3");
+    assert_eq!(with("1,7"), "line 11: the radius 1.0 has a different gap in line 3");
     assert_eq!(with("1\u{1b}[2J,7"), "line 11: holds control or invisible characters");
-    assert_eq!(with(&"1".repeat(3000)), "line 11: has 3000 bytes, more than the 2048 of a row");
+    assert_eq!(with(&"1".repeat(3000)), "line 11: has 3000 bytes, more than the 2048 allowed");
     assert!(
-        refused("0;0\n1,5;2\n").contains("line 2: the radius \"1,5\" is no number (decimals have a point)")
+        refused("0;0\n1,5;2\n").contains("line 2: the radius \"1,5\" is not a number (use a decimal point)")
     );
     // A first line that was meant to be a row is not swallowed as a header.
     assert!(refused(&format!("1.0, abc\n{}", rows(","))).starts_with("line 1: "));
@@ -200,7 +201,7 @@ fn faults_are_listed_in_order_up_to_a_number() {
     let error = refused(&format!("r,h\n{text}"));
     let lines: Vec<&str> = error.lines().collect();
     assert_eq!(lines.len(), FAULTS_SHOWN + 1);
-    assert!(lines[0].starts_with("line 3: the radius 0.0 has another gap in line 2"), "{error}");
+    assert!(lines[0].starts_with("line 3: the radius 0.0 has a different gap in line 2"), "{error}");
     assert!(lines[1].starts_with("line 13: "));
     assert_eq!(lines[FAULTS_SHOWN], "and 29 more");
 }

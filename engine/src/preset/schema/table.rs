@@ -116,7 +116,7 @@ pub static PARAMETERS: &[Parameter] = &[
     measured(
         edge::CLOSING_ADHESION,
         "gamma_a",
-        "work of adhesion that a closing edge gains, at most that which an opening one costs",
+        "work of adhesion that a closing edge gains, at most what an opening one costs",
         Kind::Positive,
         ("stress x length", Quantity::EnergyPerArea),
     )
@@ -124,7 +124,8 @@ pub static PARAMETERS: &[Parameter] = &[
     length(
         "material.range_of_action",
         "z0",
-        "range of action of the adhesion, for Tabor's number, and for the range of a tension where nothing else says it",
+        "range of action of the adhesion, for Tabor's number, and for the range of a tension where nothing \
+         else sets it",
         Kind::Positive,
     )
     .or(Fallback::Described("0.3 nm in SI; in reduced units none, and no Tabor number")),
@@ -155,7 +156,7 @@ pub static PARAMETERS: &[Parameter] = &[
         ("stress x length", Quantity::EnergyPerArea),
     )
     .only(Applies::With { key: ADHESION, words: &[Adhesion::NAMES[2]] }),
-    length(LIQUID_KEYS[1], "r_K", "Kelvin radius: that of the meniscus at the humidity there is", Kind::Positive)
+    length(LIQUID_KEYS[1], "r_K", "Kelvin radius: that of the meniscus at the given humidity", Kind::Positive)
         .only(Applies::With { key: ADHESION, words: &[Adhesion::NAMES[2]] }),
     row(
         LIQUID_KEYS[2],
@@ -222,7 +223,7 @@ pub static PARAMETERS: &[Parameter] = &[
     row(
         "gap.seed",
         "seed",
-        "which of all surfaces with these numbers",
+        "which of the surfaces with these numbers",
         Kind::Integer { min: 0, max: i64::MAX },
     )
     .or(Fallback::Integer(1))
@@ -236,13 +237,13 @@ pub static PARAMETERS: &[Parameter] = &[
     .of_shape(&["formula"]),
     row("gap.file", "file", "file with the columns r and h; relative to the preset's own folder", Kind::File)
         .of_shape(&["profile"]),
-    length("gap.smoothing", "smoothing", "wavelength that passes the smoothing by half", Kind::Smoothing)
+    length("gap.smoothing", "smoothing", "wavelength at which smoothing passes half", Kind::Smoothing)
         .or(Fallback::Text(NONE))
         .of_shape(&["profile"]),
     row(
         "basis.kind",
         "basis",
-        "how the contact pressure is sought: exactly, or in the ring elements of the paper",
+        "how the contact pressure is found: exactly, or with the ring elements of the paper",
         Kind::Choice(&[EXACT, "rings"]),
     )
     .or(Fallback::Text(EXACT)),
@@ -342,7 +343,7 @@ pub static PARAMETERS: &[Parameter] = &[
         Kind::Positive,
         ("length / time", Quantity::Speed),
     )
-    .or(Fallback::Described("none: it is to be slow")),
+    .or(Fallback::Described("none: infinitely slow")),
     row(
         edge::STEPS,
         "steps",
@@ -370,14 +371,14 @@ pub static PARAMETERS: &[Parameter] = &[
     row(
         data::FILE,
         "data",
-        "file with a measured curve, laid behind the chart and fitted; relative to the preset's own folder",
+        "file with a measured curve, drawn behind the chart and fitted; relative to the preset's own folder",
         Kind::Points,
     )
     .or(Fallback::Text(NONE)),
     row(
         data::COLUMNS,
         "columns",
-        "what its columns are, where its header does not say it: x=1,force=2",
+        "what its columns are, where its header does not say: x=1,force=2",
         Kind::Text { max_chars: 200 },
     )
     .or(Fallback::Text("")),
@@ -391,38 +392,38 @@ pub static PARAMETERS: &[Parameter] = &[
     row(
         data::UNCERTAIN,
         "uncertain",
-        "values that are known with an error, and may change in a fit as far as it lets them: path.control.stiffness=10%",
+        "values known with an error, which a fit may change as far as that allows: path.control.stiffness=10%",
         Kind::Text { max_chars: 300 },
     )
     .or(Fallback::Text("")),
-    row(data::SEGMENT, "segment", "the branch of it that is used alone", Kind::Choice(&data::SEGMENTS))
+    row(data::SEGMENT, "segment", "the only branch that is used", Kind::Choice(&data::SEGMENTS))
         .or(Fallback::Described("none: both are used")),
     row(
         data::FREE_PART,
         "apart",
-        "which rows are apart: x=LO..HI as the file has x, in SI or with units, or none",
+        "which rows are apart: x=LO..HI as in the file, in SI or with units, or none",
         Kind::Text { max_chars: 100 },
     )
     .or(Fallback::Text("")),
     row(
         data::SIGNS,
         "signs",
-        "which way its columns run: x=-,force=+ turns the sign of x alone; x is to grow as the bodies approach, and the force to be \
-         positive where they are pressed together",
+        "which way its columns run: x=-,force=+ reverses x alone; x must grow as the bodies approach, and \
+         the force must be positive where they are pressed together",
         Kind::Text { max_chars: 40 },
     )
     .or(Fallback::Text("")),
     row(
         data::SKIP,
         "skip",
-        "so many of its first rows are left out",
+        "how many first rows are left out",
         Kind::Integer { min: 0, max: 1_000_000 },
     )
     .or(Fallback::Integer(0)),
     row(
         data::SETTINGS,
         "settings",
-        "whether the stiffness and the tip radius that the file states count, which must agree with the preset",
+        "whether the stiffness and the tip radius that the file states count; they must agree with the preset",
         Kind::Choice(&data::SETTINGS_OF),
     )
     .or(Fallback::Described("file")),
@@ -431,7 +432,7 @@ pub static PARAMETERS: &[Parameter] = &[
     measured(
         data::BASELINE,
         "P0",
-        "force of the measured curve that is none",
+        "measured force that counts as zero",
         Kind::Finite,
         ("force", Quantity::Force),
     )

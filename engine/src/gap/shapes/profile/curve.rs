@@ -60,7 +60,10 @@ impl ProfileGap {
         });
         let passed = self.cutoff.map(|cutoff| {
             let [cutoff, removed] = [cutoff, self.removed].map(|x| length(units, x));
-            format!("smoothing: waves of {cutoff} pass by half, shorter ones less; what it takes away has the rms {removed}")
+            format!(
+                "smoothing: waves of {cutoff} are halved, shorter ones reduced more; what it removes has \
+                an rms of {removed}"
+            )
         });
         averaged.into_iter().chain(passed).collect()
     }

@@ -41,7 +41,7 @@ pub enum InvalidProfile {
     #[error("row {0} of the profile is not finite")]
     NotFinite(usize),
     /// A radius is negative.
-    #[error("row {row} of the profile has the radius {radius:e}: radii count from the axis")]
+    #[error("row {row} of the profile has the radius {radius:e}: radii are measured from the axis")]
     Negative {
         /// The row.
         row: usize,
@@ -95,8 +95,8 @@ pub(super) fn length(units: &UnitSystem, x: f64) -> String {
 fn not_ascending(units: &UnitSystem, row: usize, radii: [f64; 2]) -> String {
     let [radius, before] = radii.map(|r| length(units, r));
     format!(
-        "row {row} of the profile has the radius {radius}, which is not above the one before, {before}, by {CLOSEST:e} of \
-         the largest"
+        "row {row} of the profile has the radius {radius}, which does not exceed the one before, {before}, \
+         by {CLOSEST:e} of the largest"
     )
 }
 
@@ -105,7 +105,7 @@ fn far_cutoff(units: &UnitSystem, lengths: [f64; 3], rows: usize) -> String {
     let why = if lengths[1] > 0.0 {
         let rows = grouped(rows);
         format!(
-            "{rows} rows are averaged in cells of an eighth of it, of which there are at most {MOST_KNOTS}, so it must be \
+            "{rows} rows are averaged in cells an eighth as wide, at most {MOST_KNOTS} of them, so it must be \
              from {least} to {most}, the last radius"
         )
     } else {
@@ -121,23 +121,25 @@ fn empty(units: &UnitSystem, [before, behind]: [f64; 2], cells: &Cells, works: O
         // A value with a unit is written as text.
         Some(works) => {
             let works = if *units == UnitSystem::Reduced { works } else { format!("\"{works}\"") };
-            format!("gap.smoothing = {works} averages in cells wide enough")
+            format!("gap.smoothing = {works} gives cells that are wide enough")
         }
         None => {
-            format!("no gap.smoothing has cells wide enough, but at most {MOST_KNOTS} rows need no cells")
+            format!(
+                "no gap.smoothing gives cells that are wide enough, but up to {MOST_KNOTS} rows need no cells"
+            )
         }
     };
     format!(
-        "no row lies between the radii {before} and {behind}, and of the {count} cells of {width} in which {rows} rows are \
-         averaged none may be empty: {way}"
+        "no row lies between the radii {before} and {behind}, but none of the {count} cells of {width} in \
+         which {rows} rows are averaged may be empty: {way}"
     )
 }
 
 fn unsolved(units: &UnitSystem, cutoff: f64) -> String {
     let cutoff = length(units, cutoff);
     format!(
-        "no smooth curve was found for the profile: its radii are too uneven for the cutoff {cutoff}; gap.smoothing = \
-         \"none\" takes any"
+        "no smooth curve was found for the profile: its radii are too uneven for the cutoff {cutoff}; \
+         gap.smoothing = \"none\" accepts any"
     )
 }
 

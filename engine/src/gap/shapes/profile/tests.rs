@@ -195,7 +195,10 @@ fn averaging_takes_noise_away_and_leaves_the_wave() {
     assert!(error(&given, 0.55) < 0.05 * 0.157, "{}", error(&given, 0.55));
     let said = given.remarks(&UnitSystem::Reduced);
     assert_eq!(said[0], "200 001 rows averaged in 120 cells of 0.005");
-    assert!(said[1].starts_with("smoothing: waves of 0.04 pass by half, shorter ones less"), "{said:?}");
+    assert!(
+        said[1].starts_with("smoothing: waves of 0.04 are halved, shorter ones reduced more"),
+        "{said:?}"
+    );
     // The same cutoff in cells of twice the width.
     let coarser = given.coarser(&radii, &gaps).unwrap();
     assert_eq!((coarser.cells().unwrap().count, coarser.cutoff()), (60, given.cutoff()));
@@ -267,7 +270,7 @@ fn empty_cells_are_refused_with_their_radius_and_a_cutoff_that_works() {
     let radii: Vec<f64> = even(50_000, 0.5).into_iter().filter(|r| !(0.2..0.4).contains(r)).collect();
     let said = ProfileGap::new(&radii, &noisy(&radii, 1e-5), Smoothing::None).unwrap_err().to_string();
     assert!(
-        said.contains("no gap.smoothing has cells wide enough, but at most 4000 rows need no cells"),
+        said.contains("no gap.smoothing gives cells that are wide enough, but up to 4000 rows need no cells"),
         "{said}"
     );
     // Few rows stay knots instead.

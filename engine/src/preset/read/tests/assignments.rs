@@ -92,7 +92,7 @@ fn a_wrong_assignment_is_named() {
             "gap.wavelenght=1",
             "--set gap.wavelenght=1: unknown key gap.wavelenght; did you mean gap.wavelength?",
         ),
-        ("gap=1", "--set gap=1: gap is a table, not \"1\"; set one of its keys, as gap.shape"),
+        ("gap=1", "--set gap=1: gap is a table, not \"1\"; set one of its keys, such as gap.shape"),
         ("=1", "--set =1: unknown key "),
         (
             "path.start_contact_radius=0.001",

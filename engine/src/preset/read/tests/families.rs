@@ -52,10 +52,10 @@ fn formulas_and_waves_read() {
     assert_eq!(other.get("gap.parameters.R"), Some(2.0.into()));
     // No value is guessed for a name without one.
     for (set, message) in [
-        (formula, "the formula needs a value for gap.parameters.b, as gap.parameters.b=1"),
+        (formula, "the formula needs a value for gap.parameters.b, as in gap.parameters.b=1"),
         (
             "gap.formula=r^2/(2*R) + A*cos(r/lamda)",
-            "the formula needs a value for gap.parameters.lamda, as gap.parameters.lamda=1; did you mean \
+            "the formula needs a value for gap.parameters.lamda, as in gap.parameters.lamda=1; did you mean \
              gap.parameters.lambda?",
         ),
     ] {
@@ -101,7 +101,7 @@ fn mistakes_in_formulas_and_waves_are_named() {
             "r^2/(2*R)",
             "R - sqrt(0.09*R^2 - r^2)",
             "",
-            "f.toml:6: gap.formula: the formula is not finite at r = 0.3 (up to r = 0.5",
+            "f.toml:6: gap.formula: the formula is not finite at r = 0.3 (it must be up to r = 0.5",
         ),
         (FORMULA, "", "", "gap.parameters=3", "--set gap.parameters=3: gap.parameters is a table"),
         (FORMULA, "", "", "gap.parameters.x=3", "--set gap.parameters.x=3: the formula has no parameter"),

@@ -48,7 +48,8 @@ fn each_mistake_names_file_line_key_and_what_was_meant() {
         (
             "[path]",
             "[path]\nstart_force = 1",
-            "w.toml:15: path.start_force and path.start_contact_radius both say where the path starts: give exactly one",
+            "w.toml:15: path.start_force and path.start_contact_radius both set where the path starts: give \
+             exactly one",
         ),
         (
             "end_contact_radius = 0.002",
@@ -84,7 +85,7 @@ fn each_mistake_names_file_line_key_and_what_was_meant() {
     );
     assert!(
         messages("gap = 3", &[])[0]
-            .starts_with("w.toml:1: gap is a table, not \"3\"; set one of its keys, as gap.shape")
+            .starts_with("w.toml:1: gap is a table, not \"3\"; set one of its keys, such as gap.shape")
     );
     assert!(messages("[[gap]]", &[])[0].starts_with("w.toml:1: gap is a table, not an array"));
 }
