@@ -107,8 +107,8 @@ pub enum CaseError {
     },
     /// Adhesion with a range, in a computation that does not support it.
     #[error(
-        "material.adhesion = \"{word}\": the explorer, trace, unload, cycle, fit and sweeps compute adhesion with a range, this does not; \
-         \"short-range\" is computed everywhere"
+        "material.adhesion = \"{word}\": the explorer, trace, unload, cycle, fit and sweeps support adhesion with a \
+         range, this does not; \"short-range\" works everywhere"
     )]
     HasRange {
         /// The word for that adhesion.
@@ -468,8 +468,8 @@ impl Case {
     pub fn warning_of_dead_band(&self) -> Option<String> {
         self.closing?;
         Some(
-            "these are states of an opening edge: a closing one gains only material.closing_work_of_adhesion, and rests \
-             in between; paths and pulls have both"
+            "these are states of an opening edge: a closing one gains only material.closing_work_of_adhesion, and in \
+             between the edge rests; paths and pulls include both"
                 .to_owned(),
         )
     }
@@ -481,19 +481,20 @@ impl Case {
         let sphere = Maugis::of(tabor / TABOR_OVER_MAUGIS, work_of_adhesion / (effective_modulus * radius));
         let change = 100.0 * (sphere.largest_pull() / 1.5 - 1.0);
         format!(
-            ": of the smooth sphere it makes the largest pull {change:.1} % larger; material.adhesion = \"dugdale\" computes it"
+            ": for the smooth sphere, its range makes the largest pull {change:.1} % larger; material.adhesion = \
+             \"dugdale\" includes it"
         )
     }
 
     /// Other remarks worth knowing, for a largest contact of radius `largest` (reduced).
     pub fn notes(&self, largest: f64) -> Vec<String> {
         let text = if self.reduced.work_of_adhesion > 0.0 {
-            "the gap falls within the contact: without adhesion it would not be one connected disc. Whether the bodies stay \
-             apart outside the disc is checked; tension inside it is not, for in the JKR limit any adhesion, however weak, \
-             bears it"
+            "the gap decreases within the contact: without adhesion it would not be one connected disc. Whether the \
+             bodies stay apart outside the disc is checked; tension inside is not: in the JKR limit any adhesion, \
+             however weak, bears it"
         } else {
-            "the gap falls within the contact, and there is no adhesion: of a connected disc it is checked that the bodies \
-             stay apart outside it and that nothing pulls inside it"
+            "the gap decreases within the contact, and there is no adhesion: for a connected disc it is checked that \
+             the bodies stay apart outside it and that nothing pulls inside it"
         };
         let mut notes = self.problem.shape.remarks(&self.shown);
         notes.extend(falls(&self.reduced.gap, largest).then(|| text.to_owned()));

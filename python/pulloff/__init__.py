@@ -8,8 +8,8 @@ True
 >>> problem.unload(control="force").kind[-1]
 'last-contact'
 
-Numbers are in the units of the problem: SI, or any consistent units where a problem is in reduced units. Long work lets
-other threads run, shows a bar where tqdm is installed, and ends on Ctrl-C.
+Numbers are in the units of the problem: SI, or any consistent units if a problem is in reduced units. Long work lets
+other threads run, shows a bar if tqdm is installed, and stops on Ctrl-C.
 """
 
 from __future__ import annotations
@@ -100,14 +100,14 @@ def presets() -> Dict[str, str]:
 
 
 class Quantity(NamedTuple):
-    """What a sweep can compute of a problem."""
+    """What a sweep can compute for a problem."""
 
     name: str
     unit: str
-    """That of SI problems."""
+    """The unit for SI problems."""
     meaning: str
     of_control: bool
-    """Whether ``NAME_displacement`` and ``NAME_force`` are quantities as well."""
+    """Whether ``NAME_displacement`` and ``NAME_force`` are quantities too."""
 
 
 def quantities() -> List[Quantity]:
@@ -123,15 +123,15 @@ def fit_together(
     scan: bool = True,
     progress: Progress = None,
 ) -> Together:
-    """One law for several measured curves: the free values of material, gap, edge and path are those of all.
+    """One law for several measured curves: the free values of material, gap, edge and path are common to all.
 
     Parameters
     ----------
     problems : sequence of Problem
-        Two or more, each with its own measured curve in ``data.file`` and, where the edge has a speed, its own ``path.rate`` unless
-        the times of the curve say it. What ``data.*`` says is each one's own.
+        Two or more, each with its own measured curve in ``data.file`` and, if the edge has a speed, its own ``path.rate`` unless
+        the times of the curve give it. The values of ``data.*`` are separate for each.
     free : sequence of str, optional
-        The keys to fit; those of the first problem's ``data.free`` when left out.
+        The keys to fit; by default those of the first problem's ``data.free``.
     robust : bool
         Whether points far away count linearly, not squared.
     scan : bool
@@ -140,9 +140,9 @@ def fit_together(
     Raises
     ------
     NotDetermined
-        The curves do not determine the values together; the sentence says which, and ``result`` is the fit.
+        The curves together do not determine the values; the sentence says which, and ``result`` is the fit.
     FitError, DataError
-        It came to nothing; the points, or what is asked of them, are refused.
+        The fit gives no result; the points, or what is asked of them, are refused.
     """
     keys = [free] if isinstance(free, str) else None if free is None else list(free)
     natives = [problem._native for problem in problems]
@@ -172,37 +172,38 @@ def sweep(
     ----------
     spec : dict, path or str
         What the program's ``sweep`` takes: a dict with the keys of the TOML, whose ``preset`` may be a
-        :class:`Problem`; a file; or its text, of more than one line.
+        :class:`Problem`; a file; or its text, if it has more than one line.
     jobs : int, optional
-        Threads, 1 to 1024; as many as cores where none is given.
+        Threads, 1 to 1024; by default as many as there are cores.
     out : path, optional
-        A file for the rows, the very one that the program's ``sweep`` writes, with a file beside it that says what it is of: the
-        program goes on with it, checks it, joins shards and plots it.
+        A file for the rows, the same that the program's ``sweep`` writes, with a file beside it that describes the sweep: the
+        program can continue it, check it, join its shards and plot it.
     shard : (i, n) or "i/n", optional
-        The part i of n alone, i from 1 to n.
+        Only part i of n, i from 1 to n.
     resume : bool
-        Whether it goes on with the rows that ``out`` has of this very sweep; where not, a file that is there is refused.
+        Whether to continue with the rows that ``out`` already has of this sweep; if not, an existing file is refused.
     overwrite : bool
-        Whether a file that is there is replaced.
+        Whether an existing file is replaced.
     row_limit : float, optional
-        A row is given up after so many seconds; its error says so.
+        A row is given up after this many seconds; its error says so.
 
     Returns
     -------
     Sweep
         Columns ``row``, the keys of the axes, the quantities and ``error``, each of the shape (rows,). A row that cannot be
-        computed has NaN and its error; the others are computed all the same. Of an ensemble there is a row for each point, with
-        ``NAME.mean``, ``NAME.q50`` and the other statistics of every quantity; ``of_members`` has the members. A part of one has
-        its members alone.
+        computed has NaN and its error; the others are computed all the same. An ensemble has a row for each point, with
+        ``NAME.mean``, ``NAME.q50`` and the other statistics of every quantity; ``of_members`` has the members. A part of an
+        ensemble has only members.
 
     Raises
     ------
     SpecError
         The spec is refused.
     OutputError
-        ``out`` is of another sweep, or cannot be written.
+        ``out`` belongs to another sweep, or cannot be written.
     Interrupted
-        Ctrl-C, a ``KeyboardInterrupt``; ``result`` is the :class:`Sweep` of the rows that are done, the first ones without a gap.
+        Ctrl-C, a ``KeyboardInterrupt``; ``result`` is the :class:`Sweep` of the rows that are done, the
+        first ones without a gap.
     """
     folder, problem = os.curdir, None
     if isinstance(spec, Mapping):
@@ -226,7 +227,7 @@ def sweep(
     if not 1 <= jobs <= 1024:
         raise SpecError(f"jobs = {jobs} is out of range: it must be from 1 to 1024")
     if row_limit is not None and not 0.0 < row_limit < float("inf"):
-        raise SpecError(f"row_limit = {row_limit!r} is out of range: it is a time in seconds above 0")
+        raise SpecError(f"row_limit = {row_limit!r} is out of range: it must be a time in seconds above 0")
     wanted = {
         "jobs": jobs,
         "shard": shard if shard is None or isinstance(shard, str) else "/".join(str(index(n)) for n in shard),
@@ -241,7 +242,7 @@ def sweep(
     if statistics is not None:
         swept = Sweep(statistics[0], tuple(statistics[1]), of_members=swept)
     if interrupt is not None:
-        kept = "" if out is None else f"; {os.fspath(out)} has them, and the same call goes on from there"
+        kept = "" if out is None else f"; {os.fspath(out)} has them, and the same call continues from there"
         raise Interrupted(f"stopped with {swept.row_count} rows{kept}", result=swept) from interrupt
     return swept
 
@@ -252,13 +253,13 @@ def merge(
     *,
     overwrite: bool = False,
 ) -> None:
-    """Joins the parts of a sweep, each made with ``shard=(i, n)``, in any order: to the very bytes of a single run.
+    """Joins the parts of a sweep, each made with ``shard=(i, n)``, in any order: the result has the same bytes as a single run.
 
     ``sweep(spec, out=out)`` reads the whole, and computes nothing again.
 
     Raises
     ------
     OutputError
-        A part is missing, doubled, unfinished or of another sweep; ``out`` exists and ``overwrite`` is not set.
+        A part is missing, duplicated, unfinished or from another sweep; ``out`` exists and ``overwrite`` is not set.
     """
     _engine.merge([os.fspath(part) for part in parts], out, overwrite)

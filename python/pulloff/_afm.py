@@ -1,4 +1,4 @@
-"""Force curves of atomic force microscopes in their makers' own formats, read by afmformats."""
+"""Force curves of atomic force microscopes in vendor formats, read by afmformats."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ _SEGMENTS = ("approach", "retraction")
 class AfmCurve(Dict[str, Any]):
     """A force curve as :meth:`pulloff.Problem.fit` takes it.
 
-    A dict of arrays of shape (points,): ``"force"`` in N, ``"position"`` in m (the way of the piezo, behind the cantilever) or
-    ``"approach"`` in m where the file has the way of the tip alone, and ``"segment"``, ``"approach"`` or ``"retraction"``.
+    A dict of arrays of shape (points,): ``"force"`` in N, ``"position"`` in m (the travel of the piezo, behind the cantilever) or
+    ``"approach"`` in m where the file has only the travel of the tip, and ``"segment"``, ``"approach"`` or ``"retraction"``.
 
     Attributes
     ----------
     metadata : dict
         What the file states of the measurement, as afmformats has it, in SI.
     settings : dict
-        What a fit compares with the problem: ``"spring constant"`` in N/m and ``"tip radius"`` in m, as far as they are known.
+        What a fit compares with the problem: ``"spring constant"`` in N/m and ``"tip radius"`` in m, where they are known.
     """
 
     def __init__(self, *columns: Any, **more: Any) -> None:
@@ -45,13 +45,13 @@ def read_afm(
 ) -> AfmCurve:
     """A force curve from a file in the format of its instrument: ``.jpk-force``, ``.jpk-force-map``, ``.ibw``, ``.h5`` and others.
 
-    The files are read by afmformats, which is installed apart: ``pip install afmformats``. Text is read without it, by
-    ``Problem.fit(path)``.
+    The files are read by afmformats, which is installed separately: ``pip install afmformats``. Text files need no afmformats:
+    ``Problem.fit(path)`` reads them.
 
     Parameters
     ----------
     path : path
-        The file; its ending says the format.
+        The file; its extension gives the format.
     index : int, optional
         Which curve, from 0; needed where there are several, as in a map.
     metadata : mapping, optional
@@ -97,11 +97,11 @@ def read_afm(
     except refused as error:
         missing = ", ".join(getattr(error, "meta_keys", ()))
         way = f"; give metadata={{...}} with {missing}" if missing else ""
-        raise DataError(f"{name}: afmformats does not read it: {error}{way}") from error
+        raise DataError(f"{name}: afmformats cannot read it: {error}{way}") from error
     if not curves:
-        raise DataError(f"{name}: there is no force-distance curve in it")
+        raise DataError(f"{name}: it has no force-distance curve")
     if index is None and len(curves) > 1:
-        raise DataError(f"{name}: there are {len(curves)} curves in it: choose one with index=0 to {len(curves) - 1}")
+        raise DataError(f"{name}: it has {len(curves)} curves: choose one with index=0 to {len(curves) - 1}")
     if index is not None and not 0 <= index < len(curves):
         raise DataError(f"{name}: index = {index} is out of range: it must be from 0 to {len(curves) - 1}")
     try:
@@ -109,7 +109,7 @@ def read_afm(
     except refused as error:
         if isinstance(error, DataError):
             raise
-        raise DataError(f"{name}: afmformats does not read it: {error}") from error
+        raise DataError(f"{name}: afmformats cannot read it: {error}") from error
 
 
 def _curve(name: str, of: Any, given: Mapping[str, Any], radius: Optional[float]) -> AfmCurve:
@@ -119,13 +119,13 @@ def _curve(name: str, of: Any, given: Mapping[str, Any], radius: Optional[float]
     columns = set(of.columns)
     if "force" not in columns:
         there = ", ".join(sorted(columns))
-        raise DataError(f"{name}: there is no force in it, only {there}: calibrate it with metadata={{\"spring constant\": ...}}")
+        raise DataError(f"{name}: it has no force, only {there}: calibrate it with metadata={{\"spring constant\": ...}}")
     # What Optics11's files call height (measured) here is the indentation, with its sign turned.
     is_chiaro = "Chiaro" in str(metadata.get("format", ""))
     ways = [("height (measured)", "position"), ("height (piezo)", "position"), ("tip position", "approach")]
     way = next(((column, role) for column, role in ways if column in columns and not (is_chiaro and column == ways[0][0])), None)
     if way is None:
-        raise DataError(f"{name}: there is no height in it, only {', '.join(sorted(columns))}")
+        raise DataError(f"{name}: it has no height, only {', '.join(sorted(columns))}")
     curve = AfmCurve()
     curve["force"] = np.array(of["force"], dtype=float)
     curve[way[1]] = np.array(of[way[0]], dtype=float)

@@ -1,4 +1,4 @@
-"""The compiled half: not for use by itself, names and signatures may change."""
+"""The compiled half: not for direct use, names and signatures may change."""
 
 from os import PathLike
 from typing import Any, Callable, Dict, List, Optional, Tuple, Union

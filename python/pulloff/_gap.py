@@ -1,4 +1,4 @@
-"""A gap of one's own: arrays, or a function sampled until a smooth curve gives it back."""
+"""A gap of your own: arrays, or a function sampled until a smooth curve reproduces it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SAMPLES = (65, 3841)
 
 
 def plain(values: ArrayLike) -> NDArray[np.float64]:
-    """An array as the engine takes it: a field of a record, or what came from another process, may lie between two addresses."""
+    """An array as the engine takes it: a field of a record, or what came from another process, may be misaligned."""
     return np.require(values, np.float64, ["C", "A"])
 
 
@@ -33,9 +33,9 @@ def column(name: str, values: ArrayLike) -> NDArray[np.float64]:
 def sampled(
     h: Callable[[NDArray[np.float64]], ArrayLike], radius: float, tolerance: float
 ) -> Tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Samples of a function out to ``radius``: as many as give it back between them."""
+    """Samples of a function out to ``radius``: enough of them to reproduce it in between."""
     if not (np.isfinite(radius) and radius > 0.0):
-        raise PresetError(f"r = {radius!r} is out of range: a function is known to a radius above 0", key="gap.file")
+        raise PresetError(f"r = {radius!r} is out of range: the largest radius of a function must be above 0", key="gap.file")
     if not 0.0 < tolerance < 1.0:
         raise PresetError(f"tolerance = {tolerance!r} is out of range: it must be above 0 and below 1")
 
@@ -46,7 +46,7 @@ def sampled(
             raise PresetError(f"h returned the shape {gaps.shape} for radii of the shape {radii.shape}", key="gap.file")
         wrong = np.flatnonzero(~np.isfinite(gaps))
         if wrong.size:
-            raise PresetError(f"h({radii[wrong[0]]!r}) is {gaps[wrong[0]]!r}, no number", key="gap.file")
+            raise PresetError(f"h({radii[wrong[0]]!r}) is {gaps[wrong[0]]!r}, not a number", key="gap.file")
         return gaps
 
     count, most = _SAMPLES
@@ -65,7 +65,7 @@ def sampled(
             at = int(missed.argmax())
             raise NotCertified(
                 f"the gap is not resolved: a smooth curve through {count} samples misses it by {missed[at]:.3g} at "
-                f"r = {between[at]:.6g}, more than {allowed:.3g}; a corner or a finer wave needs a formula, or arrays",
+                f"r = {between[at]:.6g}, more than {allowed:.3g}; corners and finer waves need a formula or arrays",
                 radius=float(between[at]),
                 difference=float(missed[at]),
             )

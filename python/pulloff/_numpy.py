@@ -1,4 +1,4 @@
-"""numpy when it is first used: to import it takes several times as long as all the rest."""
+"""numpy, imported when it is first used: importing it takes several times as long as all the rest."""
 
 from typing import Any
 

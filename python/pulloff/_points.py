@@ -1,4 +1,4 @@
-"""What a fit is asked for, as the engine takes it: points as the text of a table, ranges, draws."""
+"""What is asked of a fit, as the engine takes it: points as the text of a table, ranges, draws."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 else:
     from ._numpy import np
 
-#: The units of what a curve states of its instrument.
+#: The units of what a curve says about its instrument.
 _STATED = {"spring constant": "N/m", "tip radius": "m"}
 
 Range = Tuple[Optional[float], Optional[float]]
@@ -27,7 +27,7 @@ def points_of(data: Any, in_si: bool) -> Tuple[str, bytes]:
     stated = []
     if isinstance(data, AfmCurve):
         if not in_si:
-            raise DataError("the curve is in SI, and the problem is in reduced units: set units = 'SI'")
+            raise DataError("the curve is in SI, but the problem is in reduced units: set units = 'SI'")
         stated = [f"# {name}: {value!r} {_STATED[name]}" for name, value in data.settings.items()]
     if isinstance(data, Mapping):
         columns = dict(data)
@@ -37,12 +37,12 @@ def points_of(data: Any, in_si: bool) -> Tuple[str, bytes]:
         name = os.fsdecode(data)
         return name, _engine.read_file(name)
     else:
-        raise DataError(f"data is of the type {type(data).__name__}: it is a file, a DataFrame or a dict of columns")
+        raise DataError(f"data is of the type {type(data).__name__}: it must be a file, a DataFrame or a dict of columns")
     arrays = {str(name): np.asarray(values) for name, values in columns.items()}
     lengths = {array.size for array in arrays.values() if array.ndim == 1}
     if len(lengths) != 1 or any(array.ndim != 1 for array in arrays.values()):
         shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
-        raise DataError(f"the columns must have one dimension and one length: {shapes or 'there are none'}")
+        raise DataError(f"the columns must be one-dimensional and equally long: {shapes or 'there are none'}")
     units = {name: _engine.unit_of(name) if in_si else "" for name in arrays}
     header = ",".join(_bare(name) + (f" [{units[name]}]" if units[name] else "") for name in arrays)
     cells = [_cells(array) for array in arrays.values()]
@@ -51,7 +51,7 @@ def points_of(data: Any, in_si: bool) -> Tuple[str, bytes]:
 
 
 def _bare(text: str) -> str:
-    """A text without what parts cells and lines."""
+    """A text without what separates cells and lines."""
     return " ".join(text.translate(dict.fromkeys(map(ord, ',;"\t\r\n'), " ")).split())
 
 
@@ -69,14 +69,14 @@ def range_of(name: str, given: Optional[Range]) -> Optional[Tuple[float, float]]
         lo, hi = given
         lo, hi = (float("-inf") if lo is None else float(lo)), (float("inf") if hi is None else float(hi))
     except (TypeError, ValueError) as error:
-        raise DataError(f"{name} = {given!r}: a range is (from, to)") from error
+        raise DataError(f"{name} = {given!r}: a range must be (from, to)") from error
     if not lo < hi:
-        raise DataError(f"{name} = {given!r} is empty: a range is (from, to), from below to")
+        raise DataError(f"{name} = {given!r} is empty: a range must be (from, to), from below to")
     return lo, hi
 
 
 def free_part_of(given: Union[Range, str, None]) -> Optional[str]:
-    """The rows that are apart as ``data.free_part`` says it."""
+    """The rows that are apart, as ``data.free_part`` writes them."""
     if given is None or isinstance(given, str):
         return given
     lo, hi = range_of("free_part", given) or (float("-inf"), float("inf"))
@@ -87,7 +87,7 @@ def skip_of(given: int) -> int:
     try:
         skip = index(given)
     except TypeError as error:
-        raise DataError(f"skip = {given!r}: it is a number of rows") from error
+        raise DataError(f"skip = {given!r}: it must be a number of rows") from error
     if not 0 <= skip <= 1_000_000:
         raise DataError(f"skip = {skip} is out of range: it must be from 0 to 1000000")
     return skip

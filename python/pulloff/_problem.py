@@ -1,4 +1,4 @@
-"""A problem, and all that is computed of it."""
+"""A problem, and all that is computed from it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Control = Union[str, float]
 Axis = Union[Tuple[str, float, float], Tuple[str, float, float, str]]
 
 class PresetText(str):
-    """The text of a preset, and with it what the files that it names hold: :class:`Problem` takes it without those files."""
+    """The text of a preset, with the contents of the files that it names: :class:`Problem` takes it without those files."""
 
     _held: Tuple[Any, Any] = (None, None)
 
@@ -38,8 +38,8 @@ class PresetText(str):
 
     @property
     def files(self) -> Dict[str, bytes]:
-        """The files by the names that the text has for them, to be written beside it; those that come with the package are
-        none."""
+        """The files by the names that the text has for them, to be written beside it, without those that come with the
+        package."""
         rows, points = self._held
         files = {}
         if rows is not None:
@@ -54,16 +54,16 @@ class PresetText(str):
 
 class Problem:
     """One problem of adhesive contact: two bodies, their gap, a loading device, a start. It never changes, so it can be a key of a
-    dict; it can be pickled, and two are equal where all their values and data are.
+    dict; it can be pickled, and two are equal if all their values and data are.
 
     Parameters
     ----------
     source : str or path
-        The name of a preset that comes with the package (see :func:`pulloff.presets`); a file: a path object, or a text
-        with a ``/`` or ending in ``.toml``; or the text of a preset, of more than one line, as :meth:`to_toml` gives it.
+        The name of a preset that comes with the package (see :func:`pulloff.presets`); a file: a path object, or a string
+        with a ``/`` or ending in ``.toml``; or the text of a preset, more than one line, as :meth:`to_toml` gives it.
     changes : dict, optional
-        Other values by their keys, as ``{"gap.amplitude": 3e-3}``. A text is read as the program's ``--set`` reads it, with
-        its unit where the problem has units: ``{"gap.amplitude": "2 um"}``.
+        Changed values by their keys, as ``{"gap.amplitude": 3e-3}``. A string is read as the program's ``--set`` reads it, with
+        its unit if the problem has units: ``{"gap.amplitude": "2 um"}``.
 
     Raises
     ------
@@ -74,7 +74,7 @@ class Problem:
     __slots__ = ("_base", "_native", "_source")
     _native: _engine.Problem
     _source: str
-    """As ``repr`` says it."""
+    """As ``repr`` shows it."""
     _base: Union[_engine.Problem, Dict[str, Value]]
     """The source itself, or its values."""
 
@@ -115,7 +115,7 @@ class Problem:
         return self._base if isinstance(self._base, dict) else self._base.values()
 
     def _changed(self) -> Dict[str, Value]:
-        """The values that are others than those of the source."""
+        """The values that differ from those of the source."""
         if self._base is self._native:
             return {}
         before = self._base_values()
@@ -134,7 +134,7 @@ class Problem:
         tolerance: float = 1e-6,
         changes: Optional[Mapping[str, Value]] = None,
     ) -> "Problem":
-        """A gap of one's own.
+        """A problem with a gap of your own.
 
         Parameters
         ----------
@@ -142,8 +142,8 @@ class Problem:
             Radii from the axis, ascending, a length. With a function ``h``: the largest radius at which it is known.
         h : array, shape (n,), or function
             The gap between the undeformed bodies, a length. A function is called with an array of radii and returns as
-            many gaps. It is sampled once, on a grid that is refined until a smooth curve through the samples gives the
-            function back between them; where that is not reached it is refused.
+            many gaps. It is sampled once, on a grid that is refined until a smooth curve through the samples reproduces the
+            function between them; if that fails, the function is refused.
         effective_modulus, work_of_adhesion : float
             E* (Pa in SI) and γ (J/m² in SI).
         start_contact_radius : float
@@ -153,7 +153,7 @@ class Problem:
         tolerance : float
             How far the curve may miss the function between samples, as a share of the range of its values.
         changes : dict, optional
-            As of :class:`Problem`.
+            As for :class:`Problem`.
 
         Raises
         ------
@@ -167,7 +167,7 @@ class Problem:
         else:
             radii, gaps = column("r", r), column("h", h)
             if radii.shape != gaps.shape:
-                raise PresetError(f"r has {radii.size} values and h has {gaps.size}: they must be as many", key="gap.file")
+                raise PresetError(f"r has {radii.size} values and h has {gaps.size}: the numbers must be equal", key="gap.file")
         text = "\n".join(
             [
                 f"units = {json.dumps(str(units))}",
@@ -185,12 +185,12 @@ class Problem:
         return cls._of(native.replace(dict(changes)) if changes else native, "from_gap", native)
 
     def replace(self, changes: Optional[Mapping[str, Value]] = None, **more: Value) -> "Problem":
-        """The same problem with other values, checked as a whole."""
+        """The same problem with changed values, checked as a whole."""
         return self._of(self._native.replace({**(changes or {}), **more}), self._source, self._base)
 
     @property
     def title(self) -> str:
-        """One line that says what it shows."""
+        """One line that says what the problem shows."""
         return self._native.title
 
     def to_dict(self) -> Dict[str, Value]:
@@ -198,18 +198,18 @@ class Problem:
         return self._native.values()
 
     def to_toml(self) -> PresetText:
-        """As the text of a preset. It opens again, ``Problem(problem.to_toml()) == problem``: arrays and measured curves travel with
-        the text; :meth:`save` writes both to the disk."""
+        """The text of a preset. It can be read back, ``Problem(problem.to_toml()) == problem``: arrays and measured curves
+        travel with the text; :meth:`save` writes both to disk."""
         return PresetText._of(self._native)
 
     def save(self, path: Union[str, "os.PathLike[str]"], *, overwrite: bool = False) -> None:
-        """Writes the preset to a file, and beside it the gap and the measured curve that it reads: ``NAME.gap.csv`` and
-        ``NAME.data.csv`` beside ``NAME.toml``. The program opens it, and so does :class:`Problem`.
+        """Writes the preset to a file, and beside it the gap and the measured curve that it needs: ``NAME.gap.csv`` and
+        ``NAME.data.csv`` beside ``NAME.toml``. The program and :class:`Problem` can open it.
 
         Raises
         ------
         OutputError
-            One of them exists and is not to be overwritten, or cannot be written; nothing is replaced then.
+            One of them exists and must not be overwritten, or cannot be written; then nothing is replaced.
         """
         path = os.fspath(path)
         stem = os.path.basename(path)
@@ -223,7 +223,7 @@ class Problem:
     def __getitem__(self, key: str) -> Value:
         values = self._native.values()
         if key not in values:
-            raise KeyError(f"{key!r} is no key of this problem; there is {', '.join(values)}")
+            raise KeyError(f"{key!r} is not a key of this problem; there are {', '.join(values)}")
         return values[key]
 
     def __contains__(self, key: object) -> bool:
@@ -255,12 +255,12 @@ class Problem:
         Parameters
         ----------
         theory : bool
-            Whether the exact solution at the same contact radii stands beside it, as ``exact_force`` and such.
+            Whether to add the exact solution at the same contact radii, as ``exact_force`` and so on.
 
         Raises
         ------
         ComputationError
-            It cannot be computed; :class:`StartError` where there is no equilibrium at the start.
+            The curve cannot be computed; :class:`StartError` if there is no equilibrium at the start.
         """
         with told(progress, "trace") as tell:
             return Trace(self._native.trace(bool(theory), tell))
@@ -281,10 +281,10 @@ class Problem:
         control : {"displacement", "force"} or float, optional
             What the loading device prescribes; a number is the stiffness of a spring, a force per length.
         one_disc : bool
-            Whether one disc of contact is followed alone, as by ``path.contact = "one-disc"``.
+            Whether only one disc of contact is followed, as with ``path.contact = "one-disc"``.
         areas, admissibility : bool
-            Whether losses are computed in a second way, and whether it is found where one disc alone would let the bodies
-            overlap. Each takes longer than all the rest; without both it costs what a row of a sweep costs.
+            Whether losses are computed in a second way, and whether states are found in which one disc alone would let the
+            bodies overlap. Each takes longer than all the rest; without both it costs as much as a row of a sweep.
         """
         problem = _following(self._under(control), one_disc)
         with told(progress, "unload") as tell:
@@ -302,18 +302,19 @@ class Problem:
         areas: bool = True,
         progress: Progress = None,
     ) -> Path:
-        """The whole loop: from apart to the first touch, up to a turn and back until apart, with rings of contact.
+        """The whole loop: from apart to the first touch, up to a turn and back until apart again, with rings of contact.
 
         Parameters
         ----------
         control : {"displacement", "force"} or float, optional
-            As of :meth:`unload`.
+            As for :meth:`unload`.
         to_approach, to_force, to_radius : float, optional
-            It turns round at the first stable state with at least this much; one of them, or ``to_control``, at most.
+            The loop turns round at the first stable state with at least this value; at most one of them or ``to_control``.
         to_control : float, optional
-            It turns round at this value of what is controlled: an approach, a force, or the way of the spring's other end.
+            The loop turns round at this value of what is controlled: an approach, a force, or the position of
+            the spring's other end.
         one_disc, areas : bool
-            As of :meth:`unload`.
+            As for :meth:`unload`.
         """
         turns = {
             "path.turn_approach": to_approach,
@@ -323,11 +324,11 @@ class Problem:
         given = {key: value for key, value in turns.items() if value is not None}
         named = [*given, *([] if to_control is None else ["to_control"])]
         if len(named) > 1:
-            raise PresetError(f"a loop turns round once: {' and '.join(named)} are too many", key=named[1])
+            raise PresetError(f"a loop turns round once: give only one of {' and '.join(named)}", key=named[1])
         if to_control is not None:
             to_control = float(to_control)
             if not abs(to_control) < float("inf"):
-                raise PresetError(f"to_control = {to_control!r} is no number at which a loop could turn round")
+                raise PresetError(f"to_control = {to_control!r} is not a number at which a loop could turn round")
         problem = self._under(control)
         if given:
             problem = problem.replace(given)
@@ -343,15 +344,15 @@ class Problem:
         hold_force: Union[float, Sequence[float]] = (),
         progress: Progress = None,
     ) -> Pull:
-        """Pulls of one disc whose edge has a speed; ``edge.exponent`` must be set.
+        """Pulls on one disc whose edge has a speed; ``edge.exponent`` must be set.
 
         Parameters
         ----------
         rate : float or sequence of float, optional
-            The rate of what is controlled, above 0, in SI or reduced units: a speed, or a force in a time. Without it the problem's
-            ``path.steps`` or ``path.rate`` says what is done.
+            The rate of what is controlled, above 0, in SI or reduced units: a speed, or a force per time. Without it,
+            ``path.steps`` or ``path.rate`` of the problem says what is done.
         control : {"displacement", "force"} or float, optional
-            As of :meth:`unload`.
+            As for :meth:`unload`.
         hold_force : float or sequence of float
             Dead loads, negative for a pull; ``failures`` of the result says how long each is borne.
         """
@@ -362,7 +363,7 @@ class Problem:
                 raise PullError(f"rate = {value} is out of range: it must be above 0")
         for value in loads:
             if not np.isfinite(value):
-                raise PullError(f"hold_force = {value} is no number")
+                raise PullError(f"hold_force = {value} is not a number")
         problem = self._under(control)
         with told(progress, "pull") as tell:
             return Pull(problem.pull(rates, loads, tell))
@@ -375,9 +376,9 @@ class Problem:
         Parameters
         ----------
         control : {"displacement", "force"} or float, optional
-            As of :meth:`unload`.
+            As for :meth:`unload`.
         samples : int
-            Radii of equal distance from the end of the path to its start, 2 to 1000000; cusps and corners come between them.
+            The number of equally spaced radii from the end of the path to its start, 2 to 1000000; cusps and corners are added.
         """
         samples = index(samples)
         if not 2 <= samples <= 1_000_000:
@@ -395,25 +396,25 @@ class Problem:
         cells: Tuple[int, int] = (48, 36),
         progress: Progress = None,
     ) -> Map:
-        """Where snaps begin, as lines in two numbers, or the limit points over one.
+        """Where snaps begin, as lines in two numbers; or the limit points over one number.
 
         Parameters
         ----------
         x : (key, from, to) or (key, from, to, "log")
-            A key of the problem, a group as ``"groups.adhesion"``, or ``"compliance"``, which is 1/k from 0 (displacement) to
+            A key of the problem, a group such as ``"groups.adhesion"``, or ``"compliance"``: 1/k from 0 (displacement) to
             ``math.inf`` (a dead load).
         y : the same, or {"control", "approach", "force"}
-            Another number; or, of the limit points over x, what is wanted of them.
+            Another number; or what to give of the limit points over x.
         control : {"displacement", "force"} or float, optional
-            As of :meth:`unload`.
+            As for :meth:`unload`.
         cells : (columns, rows)
-            At the corners of how many cells the snaps are counted, where both axes are numbers.
+            The snaps are counted at the corners of this many cells, if both axes are numbers.
         """
         if isinstance(y, str) and y not in ("control", "approach", "force"):
             raise MapError(f"y = {y!r} is not known: it must be 'control', 'approach', 'force', or (key, from, to)")
         columns, rows = (index(count) for count in cells)
         if not (1 <= columns <= 1000 and 1 <= rows <= 1000):
-            raise MapError(f"cells = {cells!r} is out of range: from 1 to 1000 columns and rows")
+            raise MapError(f"cells = {cells!r} is out of range: columns and rows must be from 1 to 1000")
         problem = self._under(control)
         ordinate, other = (y, None) if isinstance(y, str) else ("control", _axis(y))
         with told(progress, "map") as tell:
@@ -444,69 +445,69 @@ class Problem:
         poisson: Optional[float] = None,
         progress: Progress = None,
     ) -> Fit:
-        """The values of some keys that a measured curve gives, with their standard errors.
+        """Fits the values of some keys to a measured curve, with their standard errors.
 
         Parameters
         ----------
         data : path, DataFrame or mapping of arrays, shape (points,), optional
             A file that the program's ``fit`` reads; or columns by their names, ``"force"`` with ``"approach"``,
-            ``"position"`` (of the other end of a spring) or ``"contact radius"``, and ``"segment"`` where it is known; in the unit
-            that stands in the name, as in ``"force [nN]"``, else in SI or, where the problem is in reduced units, in those.
-            Or what :func:`pulloff.read_afm` returns. The measured curve of the problem itself, ``data.file``, when left out.
+            ``"position"`` (of the other end of a spring) or ``"contact radius"``, and ``"segment"`` if it is known; in the unit
+            given in the name, as in ``"force [nN]"``, otherwise in SI or, if the problem is in reduced units, in those.
+            Or what :func:`pulloff.read_afm` returns. By default the measured curve of the problem itself, ``data.file``.
         free : sequence of str, optional
-            The keys to fit, and ``data.offset``, ``data.baseline``, ``data.tilt`` of the instrument; those of the problem's
-            ``data.free`` when left out.
+            The keys to fit, and ``data.offset``, ``data.baseline``, ``data.tilt`` of the instrument; by default those of the
+            problem's ``data.free``.
         uncertain : mapping, optional
             Values that are known with an error, as ``{"path.control.stiffness": "10 %", "gap.radius_of_curvature": 1e-6}``: they
-            change as far as their standard deviations let them, which are then in those of the others; those of the problem's
-            ``data.uncertain`` when left out.
+            change as far as their standard deviations allow, which then count in the errors of the others; by default those of
+            the problem's ``data.uncertain``.
         columns : str, optional
-            What the columns are where their names do not say it, as ``"x=1,force=2"`` or ``"position=Z,force=F"``.
+            What the columns are, if their names do not say it, as ``"x=1,force=2"`` or ``"position=Z,force=F"``.
         segment : {"approach", "retraction"}, optional
-            The branch that is used alone.
+            The only branch that is used.
         free_part : (from, to) or "none", optional
-            Which rows are apart, by x as it is in the data, in SI or reduced units; None leaves an end open. ``"none"`` where all
-            rows are in contact; found where it is not given.
+            Which rows are apart, by x as it is in the data, in SI or reduced units; None leaves an end open. ``"none"`` if all
+            rows are in contact; found automatically if not given.
         signs : str, optional
-            Which way the columns run: ``"x=-,force=+"`` turns the sign of x alone; found where it is not given.
+            Which way the columns run: ``"x=-,force=+"`` flips only the sign of x; found automatically if not given.
         skip : int
-            So many rows at the beginning are left out.
+            The number of rows left out at the beginning.
         x_range, force_range : (from, to), optional
-            Rows in this range alone are used, as they are in the data; None leaves an end open.
+            Only rows in this range are used, with values as they are in the data; None leaves an end open.
         separate : bool
-            Whether approach and retraction have a work of adhesion each.
+            Whether approach and retraction each have their own work of adhesion.
         model : {"short-range", "dugdale", "rate"} or a sequence of them, optional
-            How the adhesion acts: at the edge of contact alone, within a range, whose ``material.cohesive_strength`` is then free
-            too, or so that it grows with the speed of the edge, the keys of ``edge`` free; ``material.adhesion`` of the problem when left out. Of several models the best fit is returned, and
-            :attr:`Fit.models` says how the others compare.
+            How the adhesion acts: only at the edge of the contact; within a range, whose ``material.cohesive_strength`` is then
+            free too; or growing with the speed of the edge, with the keys of ``edge`` free. By default ``material.adhesion`` of
+            the problem. With several models the best fit is returned, and :attr:`Fit.models` says how the others compare.
         robust : bool
-            Whether points far away count linearly, not squared.
+            Whether points far away count linearly instead of squared.
         sigma_x, sigma_force : float, optional
-            Standard deviations; found where they are not given.
+            Standard deviations; estimated if not given.
         scan : bool
             Whether starts other than the problem's own values are tried.
         profile : bool
-            Whether 95 % intervals are found by the profile of χ²; ``to_dict()`` has them.
+            Whether 95 % intervals are computed from the profile of χ²; ``to_dict()`` has them.
         bootstrap, seed : int, optional
-            Fits to so many sets of blocks of rows drawn at random, 10 to 100000; 200 below 40 degrees of freedom and none else, when
-            left out.
+            The number of fits to sets of blocks of rows drawn at random, 10 to 100000; by default 200 below 40 degrees of
+            freedom, otherwise none.
         poisson : float, optional
-            Poisson's ratio of the soft body, -1 to 0.5: tells its E beside E*, as ``youngs_modulus``.
+            Poisson's ratio of the soft body, -1 to 0.5: gives its E beside E*, as ``youngs_modulus``.
 
         Raises
         ------
         NotDetermined
             The points do not determine the values; the sentence says which, and ``result`` is the fit.
         NotConverged, FitError
-            It did not come to its end, or to nothing.
+            The fit did not converge, or gives no result.
         DataError
             The points, or what is asked of them, are refused.
         """
         for what, sigma in (("sigma_x", sigma_x), ("sigma_force", sigma_force)):
             if sigma is not None and not 0.0 < sigma < float("inf"):
-                raise DataError(f"{what} = {sigma!r} is out of range: a standard deviation is above 0")
+                raise DataError(f"{what} = {sigma!r} is out of range: a standard deviation must be above 0")
         if poisson is not None and not -1.0 <= poisson <= 0.5:
-            raise DataError(f"poisson = {poisson!r} is out of range: Poisson's ratio is from -1 to 0.5")
+            raise DataError(f"poisson = {poisson!r} is out of range: Poisson's ratio must be from -1 to 0.5")
         wanted = {
             "columns": columns,
             "segment": segment,
@@ -553,9 +554,9 @@ class Problem:
         Parameters
         ----------
         data, columns, segment, free_part, signs, skip
-            As of :meth:`fit`; the speed needs a column ``"time"``.
+            As for :meth:`fit`; the speed needs a column ``"time"``.
         of : {"force-radius", "approach-radius", "force-approach"}, optional
-            What G is computed from: force and radius when left out, or force and approach of points without contact radii.
+            What G is computed from; by default force and radius, or force and approach for points without contact radii.
 
         Raises
         ------
@@ -571,7 +572,8 @@ class Problem:
         """The contact pressure at the radii ``r`` in equilibrium at the contact radius ``s``, compression positive.
 
         It has the shape of ``r`` and is a stress: ``-inf`` at the edge, ``r`` equal to ``s`` to rounding, where adhesion makes
-        it infinite, and 0 there without adhesion; NaN outside. By the exact solution, whatever the basis of the problem.
+        it infinite, and 0 there without adhesion; NaN outside. It comes from the exact solution, whatever the basis of
+        the problem.
         """
         return self._across(s, r)[1]
 
@@ -579,7 +581,8 @@ class Problem:
         """The gap between the deformed bodies at the radii ``r`` in equilibrium at the contact radius ``s``.
 
         It has the shape of ``r`` and is a length: 0 inside the contact, NaN only where the undeformed gap is not known, beyond
-        the last row of a profile, and negative where a crest would overlap. By the exact solution, whatever the basis of the problem.
+        the last row of a profile, and negative where a crest would overlap. It comes from the
+        exact solution, whatever the basis of the problem.
         """
         return self._across(s, r)[2]
 
@@ -593,7 +596,8 @@ class Problem:
         if control is None:
             return self._native
         if isinstance(control, bool):
-            raise PresetError(f"control = {control!r} is none: it is 'displacement', 'force' or a stiffness", key="path.control")
+            words = f"control = {control!r} is not a control: give 'displacement', 'force' or a stiffness"
+            raise PresetError(words, key="path.control")
         given = control if isinstance(control, str) else f"stiffness={float(control)!r}"
         return self._native.replace({"path.control": given})
 
@@ -611,7 +615,7 @@ def _of_state(text: str, rows: Any, points: Any) -> _engine.Problem:
 
 
 def _axis(axis: Axis) -> Tuple[str, float, float, bool]:
-    words = "an axis is (key, from, to) or (key, from, to, 'log')"
+    words = "an axis must be (key, from, to) or (key, from, to, 'log')"
     if isinstance(axis, str) or not 3 <= len(axis) <= 4 or (len(axis) == 4 and axis[3] != "log"):
         raise MapError(f"{axis!r}: {words}")
     key, lo, hi = axis[:3]

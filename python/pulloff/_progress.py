@@ -1,4 +1,4 @@
-"""Progress of long computations: a bar of tqdm where there is one, or a function of the caller."""
+"""Progress of long computations: a bar if tqdm is installed, or a function of the caller."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from typing import Callable, Iterator, Optional, Union
 
 Progress = Union[None, bool, Callable[[float], object]]
-"""``None``: a bar where tqdm is installed and it takes longer than a second; ``True`` and ``False``: a bar always or never;
-a function is told the share that is done, 0 to 1, some times a second, and ends the computation by an exception."""
+"""``None``: a bar if tqdm is installed and the work takes longer than a second; ``True`` and ``False``: a bar always or never;
+a function is called with the fraction done, 0 to 1, a few times a second, and stops the computation by raising an exception."""
 
 # What takes less shows no bar.
 _PATIENCE = 1.0
@@ -16,7 +16,7 @@ _PATIENCE = 1.0
 
 @contextmanager
 def told(progress: Progress, what: str) -> Iterator[Optional[Callable[[float], object]]]:
-    """The function that the engine tells its progress."""
+    """The function to which the engine reports its progress."""
     if callable(progress):
         yield progress
         return

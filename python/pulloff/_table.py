@@ -1,4 +1,4 @@
-"""Columns under their names, and a document with such columns: what every result is."""
+"""Columns by name, and a document with such columns: what every result is."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 else:
     from ._numpy import np
 
-# So many rows of a table are shown in a notebook.
+# The most rows of a table shown in a notebook.
 _SHOWN = 12
 
 
 class Table(Mapping):  # type: ignore[type-arg]
-    """Columns of one length by their names, a mapping: ``table["force"]``, ``"force" in table``, ``list(table)``, ``dict(table)``;
-    also ``table.force``. ``len(table)`` is the number of columns, ``table.row_count`` that of the rows."""
+    """Columns of equal length by name, a mapping: ``table["force"]``, ``"force" in table``, ``list(table)``, ``dict(table)``;
+    also ``table.force``. ``len(table)`` is the number of columns, ``table.row_count`` the number of rows."""
 
     def __init__(self, columns: "Mapping[str, Any]") -> None:
         self._arrays: Dict[str, NDArray[Any]] = {
-            # Texts, and what is not known, are objects; None is nothing.
+            # Strings, and what is not known, are objects; None means missing.
             name: np.array(values, dtype=object) if isinstance(values, list) else values
             for name, values in columns.items()
         }
@@ -48,7 +48,7 @@ class Table(Mapping):  # type: ignore[type-arg]
         try:
             return self._column(name)
         except (KeyError, TypeError):
-            raise KeyError(f"no column is called {name!r}; there is {', '.join(self.columns)}") from None
+            raise KeyError(f"no column is called {name!r}; there are {', '.join(self.columns)}") from None
 
     def __contains__(self, name: object) -> bool:
         return name in self.columns
@@ -148,8 +148,8 @@ class _Kept:
 
 
 class Result(Table):
-    """What was computed of one problem: a document with rows. Numbers are in the units of the problem. It can be pickled and
-    copied, and two are equal where their documents are."""
+    """What was computed from one problem: a document with rows. Numbers are in the units of the problem. It can be pickled and
+    copied, and two are equal if their documents are."""
 
     def __init__(self, document: Union[_engine.Document, _Kept]) -> None:
         super().__init__({})
@@ -185,7 +185,7 @@ class Result(Table):
         return self._document.warnings()
 
     def to_dict(self) -> Dict[str, Any]:
-        """The whole document, of the very schema of the program's JSON; a new dict each time."""
+        """The whole document, in the schema of the program's JSON; a new dict each time."""
         return dict(json.loads(self._document.json()))
 
     def to_json(self) -> str:

@@ -17,12 +17,12 @@ def written(document: Mapping[str, Any]) -> str:
 
 def _key(key: Any) -> str:
     if not isinstance(key, str):
-        raise SpecError(f"{key!r} is no key: keys are texts")
+        raise SpecError(f"{key!r} is not a key: keys must be strings")
     return _text(key)
 
 
 def _text(text: str) -> str:
-    # What JSON escapes TOML reads, but for the one that JSON leaves as it is.
+    # TOML reads the escapes of JSON; it needs one more, which JSON does not write.
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
@@ -40,4 +40,4 @@ def _value(value: Any, name: str) -> str:
         return f"{{ {inner} }}"
     if isinstance(value, (list, tuple, np.ndarray)):
         return f"[{', '.join(_value(item, name) for item in value)}]"
-    raise SpecError(f"{name} is of the type {type(value).__name__}: a spec has numbers, texts, lists and dicts")
+    raise SpecError(f"{name} is of the type {type(value).__name__}: a spec takes numbers, strings, lists and dicts")

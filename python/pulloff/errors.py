@@ -1,6 +1,7 @@
 """What can go wrong, each with the engine's own sentence.
 
-Every exception of the package is a :class:`Error`, except :class:`Interrupted`, and goes from one process to another. Values that are refused are a ``ValueError`` as well.
+Every exception of the package is an :class:`Error`, except :class:`Interrupted`, and can be passed between processes. Refused
+values are a ``ValueError`` as well.
 """
 
 from __future__ import annotations
@@ -16,26 +17,26 @@ def _rebuilt(kind: Type[BaseException], sentence: Tuple[Any, ...], attributes: D
 
 
 class _Portable(BaseException):
-    """An exception that comes out of another process as it went in: its arguments by name would be lost otherwise, and a pool of
-    processes waits for ever for one that cannot be read."""
+    """An exception that comes out of another process as it went in: otherwise its keyword arguments would be lost, and a pool of
+    processes would wait for ever for one that cannot be read."""
 
     def __reduce__(self) -> Tuple[Any, ...]:
         return _rebuilt, (type(self), self.args, self.__dict__)
 
 
 class Error(_Portable, Exception):
-    """Whatever the engine says no to."""
+    """Anything that the engine refuses."""
 
 
 class PresetError(Error, ValueError):
-    """A preset or a value that is refused.
+    """A preset or a value is refused.
 
     Attributes
     ----------
     key : str or None
         The key of the first mistake, such as ``"gap.amplitude"``.
     line : int or None
-        Its line, where there is a text; the first line is 1.
+        Its line, if there is a text; the first line is 1.
     mistakes : sequence of (line, key, sentence)
         All mistakes that were found.
     """
@@ -55,7 +56,7 @@ class PresetError(Error, ValueError):
 
 
 class SpecError(Error, ValueError):
-    """A spec of a sweep that is refused; ``line`` says where, in the text or in what a dict was written as."""
+    """The spec of a sweep is refused; ``line`` says where, in the text or in the TOML made from a dict."""
 
     def __init__(self, sentence: str = "", *, line: Optional[int] = None) -> None:
         super().__init__(sentence)
@@ -63,11 +64,11 @@ class SpecError(Error, ValueError):
 
 
 class OutputError(Error, OSError):
-    """Results of a sweep that cannot be begun, gone on with or written."""
+    """Results of a sweep that cannot be begun, continued or written."""
 
 
 class ComputationError(Error):
-    """A problem that is in order and cannot be computed."""
+    """A valid problem that cannot be computed."""
 
 
 class GapError(ComputationError):
@@ -95,11 +96,11 @@ class PullError(ComputationError, ValueError):
 
 
 class DataError(Error, ValueError):
-    """Measured points, or what is asked of them, that are refused."""
+    """Measured points, or what is asked of them, are refused."""
 
 
 class FitError(ComputationError):
-    """A fit that comes to nothing."""
+    """A fit that gives no result."""
 
 
 class _Unfinished(FitError):
@@ -109,14 +110,14 @@ class _Unfinished(FitError):
 
 
 class NotDetermined(_Unfinished):
-    """The points do not determine the values that were asked for; the sentence says which can only be had together.
+    """The points do not determine the values that were asked for; the sentence says which can only be determined together.
 
-    ``result`` is the fit all the same: its values are one choice of many.
+    ``result`` is the fit all the same: its values are one choice among many.
     """
 
 
 class NotConverged(_Unfinished):
-    """A fit that did not come to its end; ``result`` has the best values so far."""
+    """A fit that did not converge; ``result`` has the best values so far."""
 
 
 class NoState(ComputationError, ValueError):
@@ -124,12 +125,12 @@ class NoState(ComputationError, ValueError):
 
 
 class NotCertified(Error, ValueError):
-    """A function that samples do not resolve: nothing is computed of it.
+    """A function that samples do not resolve: nothing is computed from it.
 
     Attributes
     ----------
     radius : float
-        Where the curve through the samples misses it most.
+        Where the curve through the samples misses the function most.
     difference : float
         By how much, in the unit of the gap.
     """
@@ -141,11 +142,11 @@ class NotCertified(Error, ValueError):
 
 
 class Cancelled(Error):
-    """It was stopped; Ctrl-C raises ``KeyboardInterrupt`` instead."""
+    """The computation was stopped; Ctrl-C raises ``KeyboardInterrupt`` instead."""
 
 
 class Interrupted(_Portable, KeyboardInterrupt):
-    """A sweep that Ctrl-C has ended, a ``KeyboardInterrupt``; ``result`` is a :class:`pulloff.Sweep` of the rows that are done."""
+    """A sweep stopped by Ctrl-C, a ``KeyboardInterrupt``; ``result`` is a :class:`pulloff.Sweep` of the rows that are done."""
 
     def __init__(self, sentence: str = "", *, result: Any = None) -> None:
         super().__init__(sentence)

@@ -33,14 +33,14 @@ class Trace(Result):
     force: Floats
     """P, negative where the bodies are pulled."""
     energy: Floats
-    """U: the elastic energy less γ times the contact area."""
+    """U: the elastic energy minus γ times the contact area."""
     newton_iterations: Counts
     stable_displacement: Flags
     stable_force: Flags
     stable_chosen: Flags
     """Whether the state is stable under the problem's own control."""
     contact_stiffness: Floats
-    """∂P/∂δ at the contact radius held fast, a force per length."""
+    """∂P/∂δ at fixed contact radius, a force per length."""
     tangent_stiffness: Floats
     """dP/dδ along the curve, a force per length; NaN at a limit point of displacement."""
     area_slope: Floats
@@ -48,7 +48,7 @@ class Trace(Result):
     admissible: Flags
     """Whether the bodies stay apart outside the disc."""
     exact_approach: Floats
-    """With ``theory=True`` alone: δ of the exact solution at the same contact radius."""
+    """Only with ``theory=True``: δ of the exact solution at the same contact radius."""
     exact_force: Floats
     exact_energy: Floats
     exact_relative_difference: Floats
@@ -75,7 +75,7 @@ class Trace(Result):
 
 
 class Path(Result):
-    """What happens on the way of the device, an unloading or a whole loop: its events in order; each column has the shape
+    """What happens as the device moves, in an unloading or a whole loop: the events in order; each column has the shape
     (events,)."""
 
     number: Counts
@@ -85,21 +85,21 @@ class Path(Result):
     direction: Texts
     """``loading`` or ``unloading``."""
     control: Floats
-    """δ, P, or Δ = δ + P/k at which it happens."""
+    """δ, P, or Δ = δ + P/k at the event."""
     radius: Floats
-    """Where a crest touches, contacts merge or split, one vanishes, or a held edge begins to move, a length; NaN else."""
+    """Where a crest touches, contacts merge or split, one vanishes, or a held edge begins to move, a length; otherwise NaN."""
     before_contact_radius: Floats
-    """The outermost edge, a length; NaN while the bodies are apart, as all that begins with ``before_``."""
+    """The outermost edge, a length; NaN while the bodies are apart, as for all columns that begin with ``before_``."""
     before_approach: Floats
     before_force: Floats
     before_wave: Floats
-    """The crest of the edge; NaN for a gap without waves."""
+    """The crest at the edge; NaN for a gap without waves."""
     before_rings: Floats
-    """How many rings of contact there are, the disc not counted."""
+    """The number of rings of contact, not counting the disc."""
     before_area: Floats
     before_energy: Floats
     after_contact_radius: Floats
-    """NaN once the bodies are apart, as all that begins with ``after_``."""
+    """NaN once the bodies are apart, as for all columns that begin with ``after_``."""
     after_approach: Floats
     after_force: Floats
     after_wave: Floats
@@ -109,9 +109,9 @@ class Path(Result):
     dissipated: Floats
     """Energy lost; NaN where a dead load leaves no bound."""
     dissipated_by_area: Floats
-    """The same by the area between curve and control line; NaN where it was not asked for."""
+    """The same from the area between curve and control line; NaN where it was not requested."""
     admissible: NDArray[Any]
-    """With one disc: whether the states before and after are admissible; None where it was not asked for."""
+    """With one disc: whether the states before and after are admissible; None where it was not requested."""
 
     @property
     def largest_pull(self) -> float:
@@ -125,20 +125,20 @@ class Path(Result):
 
     @property
     def events(self) -> List[Dict[str, Any]]:
-        """What happened, in order, as the program's JSON has it."""
+        """The events in order, as in the program's JSON."""
         return list(self._said()["events"])
 
     @property
     def totals(self) -> Dict[str, Any]:
         """The sums and the states at the extremes: ``largest_pull``, ``farthest``, ``last_contact``, ``dissipated``,
-        ``work_of_loading`` and so on, as the program's JSON has them."""
+        ``work_of_loading`` and so on, as in the program's JSON."""
         return dict(self._said()["totals"])
 
     @property
     def states(self) -> Table:
         """The stable states in order; each column has the shape (states,). ``contacts`` is a list of [inner, outer] for each
-        state, from the axis outward; a disc is [0, s]. Adhesion with a range has ``zone_radius``, the outer edge of the zone of
-        tension, too."""
+        state, from the axis outward; a disc is [0, s]. With adhesion with a range there is also ``zone_radius``, the outer edge of
+        the zone of tension."""
         states = self._said()["states"]
         arrays: Dict[str, Any] = {}
         for name in ("piece", "direction", "control", "approach", "force", "contact_radius", "held_stiffness", "area", "energy"):
@@ -177,7 +177,7 @@ class Path(Result):
 
 
 class Pull(Result):
-    """Pulls at a rate, a row for each; each column has the shape (rates,). Where no rate was asked for but dead loads, the columns are
+    """Pulls at a rate, a row for each; each column has the shape (rates,). If only dead loads were requested, the columns are
     ``force`` and ``time``."""
 
     rate: Floats
@@ -186,7 +186,7 @@ class Pull(Result):
     peak_contact_radius: Floats
     peak_approach: Floats
     peak_force: Floats
-    """The smallest force on the way."""
+    """The smallest force of the pull."""
     tension_peaks: Counts
     snaps: Counts
     last_contact_time: Floats
@@ -196,7 +196,7 @@ class Pull(Result):
     """What the edge dissipates, an energy; NaN where a dead load falls without end."""
     top_edge_speed: Floats
     balance: Floats
-    """What is missing in the balance of work and energy, over the work."""
+    """The error in the balance of work and energy, over the work."""
 
     @property
     def runs(self) -> List[Dict[str, Any]]:
@@ -205,7 +205,7 @@ class Pull(Result):
 
     @property
     def failures(self) -> List[Dict[str, Any]]:
-        """Dead loads with the time for which each is borne; ``None`` where an equilibrium bears it."""
+        """Dead loads with the time for which each is borne; ``None`` if an equilibrium bears it."""
         return list(self._said()["failures"])
 
     def _title(self) -> str:
@@ -224,21 +224,21 @@ class Speeds(Result):
     """The energy release rate of measured rows beside the speed of their edge; each column has the shape (rows,)."""
 
     time: Floats
-    """In seconds, or in reduced units; NaN where no column says it."""
+    """In seconds, or in reduced units; NaN if no column gives it."""
     contact_radius: Floats
-    """s, measured or of force and approach."""
+    """s, measured or from force and approach."""
     speed: Floats
     """−ds/dt, positive where the contact recedes; NaN without times."""
     energy_release_rate: Floats
     """G, negative where the edge is pressed."""
     error: Floats
-    """The standard deviation of G, by the noise of the columns."""
+    """The standard deviation of G, from the noise of the columns."""
     speed_error: Floats
     window: Floats
-    """The rows by which the speed is told."""
+    """The number of rows from which the speed is found."""
     segment: Texts
     row: Counts
-    """The number among the rows that are read, from 1."""
+    """The number among the rows read, from 1."""
 
     def _title(self) -> str:
         return f"{self.row_count} rows in contact"
@@ -272,7 +272,7 @@ class Stability(Result):
 
     @property
     def work_of_adhesion(self) -> float:
-        """That of the problem, an energy per area."""
+        """The work of adhesion of the problem, an energy per area."""
         return float(self._said()["work_of_adhesion"])
 
     def _title(self) -> str:
@@ -308,7 +308,7 @@ class Map(Result):
     control: Floats
     stable: Texts
     changes: NDArray[Any]
-    """Of a line of a map, whether the number of snaps differs on its two sides."""
+    """For a line of a map, whether the number of snaps differs on its two sides."""
 
     @property
     def counts(self) -> Optional[Dict[str, NDArray[np.float64]]]:
@@ -325,18 +325,18 @@ class Map(Result):
         return super()._column(name)
 
     def _middle(self, name: str) -> Optional[float]:
-        """What stands in the middle of an axis that goes on to infinity."""
+        """The value in the middle of an axis that goes to infinity."""
         axis = self._said().get(name)
         return axis["middle"] if isinstance(axis, dict) else None
 
     def _with_end(self, name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The values of an axis, of which JSON has no infinity."""
+        """The values of an axis; JSON cannot write infinity."""
         if self._middle(name) is not None:
             values[np.isnan(values)] = np.inf
         return values
 
     def _drawn(self, name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Where values stand on an axis: of one that goes on to infinity c/(c + c₀), c₀ in the middle."""
+        """Where values are drawn on an axis: at c/(c + c₀) if it goes to infinity, with c₀ in the middle."""
         middle = self._middle(name)
         if middle is None:
             return values
@@ -348,8 +348,8 @@ class Map(Result):
         return f"{said['y']['key']} over {said['x']['key']}, {self.row_count} points"
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws the lines, over the number of snaps where it was counted, and returns the axes of matplotlib. An axis of
-        compliances that goes on to infinity has equal steps in c/(c + c₀)."""
+        """Draws the lines, over the number of snaps if it was counted, and returns the axes of matplotlib. An axis of
+        compliances that goes to infinity has equal steps in c/(c + c₀)."""
         ax = self._axes(ax)
         said, counts = self._said(), self.counts
         if counts is not None:
@@ -374,9 +374,9 @@ class _Fitted(Result):
 
     key: Texts
     value: Floats
-    """In SI or, where the problem is in reduced units, in those."""
+    """In SI or, if the problem is in reduced units, in those."""
     standard_error: Floats
-    """NaN where it is not determined. It holds only where :attr:`verdict` is ``"describes"``."""
+    """NaN where it is not determined. It holds only if :attr:`verdict` is ``"describes"``."""
     start: Floats
     unit: Texts
 
@@ -388,7 +388,7 @@ class _Fitted(Result):
         self.problem = problem
 
     def __getattr__(self, name: str) -> Any:
-        # What else the document says: chi_squared, correlations, sigma.
+        # Whatever else the document has: chi_squared, correlations, sigma.
         if not name.startswith("_") and name not in self.columns:
             said = self._said()
             if name in said:
@@ -402,7 +402,7 @@ class _Fitted(Result):
 
     @property
     def errors(self) -> Dict[str, float]:
-        """Their standard errors, which hold only where :attr:`verdict` is ``"describes"``."""
+        """Their standard errors, which hold only if :attr:`verdict` is ``"describes"``."""
         return dict(zip(self.key.tolist(), self.standard_error.tolist()))
 
     @property
@@ -426,7 +426,7 @@ class Together(_Fitted):
 
     @property
     def runs(self) -> List[Dict[str, Any]]:
-        """Each curve: its ``fit`` under the one law, as :class:`Fit` says it, and the values that it has ``alone``."""
+        """Each curve: its ``fit`` under the one law, as in :class:`Fit`, and the values that it has ``alone``."""
         return list(self._said()["runs"])
 
     def _title(self) -> str:
@@ -437,8 +437,8 @@ class Fit(_Fitted):
     """A problem fitted to a measured curve."""
 
     models: Optional[Dict[str, Any]]
-    """Where several models were fitted: ``best``, the ``fits`` of all, ``pairs`` of the best and each other with what tells them apart,
-    and ``refused``, those that could not be fitted. None where one was."""
+    """If several models were fitted: ``best``, the ``fits`` of all, ``pairs`` of the best and each other with what tells them apart,
+    and ``refused``, those that could not be fitted. Otherwise None."""
 
     def __init__(self, document: _engine.Document, problem: Any, points: str, models: Optional[str] = None) -> None:
         super().__init__(document, problem)
@@ -447,29 +447,29 @@ class Fit(_Fitted):
 
     @property
     def rows(self) -> Dict[str, Any]:
-        """How many rows there are by branch, ``"approach"`` and ``"retraction"``, and part: ``"contact"``, ``"free"``, within the
-        ``"jump"``, and ``"dropped"``; and of ``"pause"``."""
+        """The number of rows by branch, ``"approach"`` and ``"retraction"``, and part: ``"contact"``, ``"free"``, within the
+        ``"jump"``, and ``"dropped"``; and those of ``"pause"``."""
         return dict(self._said()["rows"])
 
     @property
     def residuals(self) -> Table:
         """The points beside the fit: ``row``, ``line`` of the file, ``segment``, ``part``, ``x``, ``force``, ``residual`` in standard deviations, ``outlier``,
-        each of the shape (points,). x and the force are in SI or reduced units, their signs put right."""
+        each of the shape (points,). x and the force are in SI or reduced units, with their signs corrected."""
         return Table(_columns_of(self._points))
 
     @property
     def intervals(self) -> Dict[str, Optional[List[float]]]:
-        """Their 95 % intervals by Student's t; None where they are not determined, or the model does not describe the points."""
+        """Their 95 % intervals from Student's t; None where they are not determined, or the model does not describe the points."""
         return {of["key"]: of["interval"] if of["error_holds"] else None for of in self._said()["parameters"]}
 
     @property
     def reasons(self) -> List[Dict[str, Any]]:
-        """What speaks against the fit: ``kind``, ``sentence`` and ``value`` each."""
+        """What speaks against the fit: each with ``kind``, ``sentence`` and ``value``."""
         return list(self._said()["reasons"])
 
     @property
     def notes(self) -> List[str]:
-        """What was found, assumed and held, in sentences."""
+        """What was found, assumed and held fixed, in sentences."""
         return list(self._said()["notes"])
 
     def plot(self, ax: Any = None) -> Any:
@@ -504,7 +504,7 @@ class Fit(_Fitted):
 
 
 def _columns_of(text: str) -> Dict[str, Any]:
-    """The columns of a CSV of the engine: numbers, flags or texts."""
+    """The columns of a CSV of the engine: numbers, flags or strings."""
     names, *rows = csv.reader(io.StringIO(text))
     columns: Dict[str, Any] = {}
     for name, cells in zip(names, zip(*rows) if rows else ((),) * len(names)):
@@ -527,7 +527,7 @@ class Sweep(Table):
 
     row: Counts
     error: Texts
-    """Why a row has not all of its quantities; None where it has."""
+    """Why some quantities of a row are missing; otherwise None."""
 
     def __init__(
         self, columns: Mapping[str, Any], axes: Tuple[str, ...], of_members: Optional["Sweep"] = None
@@ -536,7 +536,7 @@ class Sweep(Table):
         self.axes = axes
         """The keys of the axes, which are names of columns: ``sweep["gap.amplitude"]``."""
         self.of_members = of_members
-        """Of an ensemble, whose rows are statistics: a row for each member at each point. None else."""
+        """For an ensemble, whose rows are statistics: a row for each member at each point. Otherwise None."""
 
     def to_dict(self) -> Dict[str, List[Any]]:
         """All columns as lists."""
@@ -547,9 +547,9 @@ class Sweep(Table):
         return f"{self.row_count} rows, {wrong} with an error"
 
     def plot(self, quantity: Optional[str] = None, ax: Any = None) -> Any:
-        """Draws a quantity, the first where none is named, over the first axis, and returns the axes of matplotlib.
+        """Draws a quantity, by default the first, over the first axis, and returns the axes of matplotlib.
 
-        Of an ensemble it is the median, with areas in which 50 and 90 % of the members are.
+        For an ensemble it is the median, with areas that hold 50 and 90 % of the members.
         """
         if quantity is None:
             quantity = self.columns[1 + len(self.axes)]

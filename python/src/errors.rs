@@ -175,6 +175,6 @@ pub fn of_state(py: Python<'_>, sentence: &str) -> PyErr {
 /// A panic, which is a fault of the engine itself.
 pub fn of_panic(py: Python<'_>, payload: &(dyn Any + Send)) -> PyErr {
     let words = payload.downcast_ref::<String>().map(String::as_str);
-    let words = words.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("no words");
+    let words = words.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("no message");
     plain(py, "InternalError", &format!("a fault of the engine itself, please report it: {words}"))
 }

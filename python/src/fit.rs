@@ -164,7 +164,10 @@ pub fn speeds(
     let names = MeasuredPair::ALL.map(MeasuredPair::name);
     let pair = MeasuredPair::ALL.into_iter().find(|pair| of.as_deref() == Some(pair.name()));
     if let Some(of) = of.filter(|_| pair.is_none()) {
-        return Err(errors::of_data(py, &format!("of = \"{}\" is none of {}", quote(&of), names.join(", "))));
+        return Err(errors::of_data(
+            py,
+            &format!("of = \"{}\" is not one of {}", quote(&of), names.join(", ")),
+        ));
     }
     let made = long(py, progress, |progress| SpeedsReport::compute(&preset, pair, progress))?;
     made.map(Document::new).map_err(|error| match error {
@@ -193,7 +196,7 @@ pub fn fitted(
     let model = |word: &String| {
         Model::of(word).ok_or_else(|| {
             let known = Model::ALL.map(Model::name).join(", ");
-            errors::of_data(py, &format!("model = \"{}\" is none of {known}", quote(word)))
+            errors::of_data(py, &format!("model = \"{}\" is not one of {known}", quote(word)))
         })
     };
     let models = wanted.models.iter().map(model).collect::<PyResult<Vec<Model>>>()?;
@@ -240,7 +243,8 @@ pub fn fitted_together(
 ) -> PyResult<(Document, Problem, Option<String>)> {
     let presets: Vec<Preset> = problems.iter().map(|problem| problem.get().preset.clone()).collect();
     let Some(first) = presets.get(1).and(presets.first()) else {
-        let text = format!("one law is fitted to two problems or more, and {} is given", presets.len());
+        let text =
+            format!("one law is fitted to two problems or more: the number given is {}", presets.len());
         return Err(errors::of_data(py, &text));
     };
     let free = free.unwrap_or_else(|| first.data.free().map(str::to_owned).collect());

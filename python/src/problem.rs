@@ -50,7 +50,7 @@ fn find(py: Python<'_>, name: &str) -> PyResult<Preset> {
     let names = || shipped::SHIPPED.iter().map(|shipped| shipped.name);
     let Some(found) = shipped::find(name) else {
         let meant = closest(name, names()).map_or_else(
-            || format!("there is {}", names().collect::<Vec<_>>().join(", ")),
+            || format!("there are {}", names().collect::<Vec<_>>().join(", ")),
             |meant| format!("did you mean {meant}?"),
         );
         return Err(errors::of_source(py, &format!("no preset is called \"{}\"; {meant}", quote(name))));
@@ -67,7 +67,11 @@ fn value(preset: &Preset, key: &str, given: &Bound<'_, PyAny>) -> PyResult<Value
     let py = given.py();
     let other = || {
         let kind = given.get_type().name().map_or_else(|_| "an object".to_owned(), |name| name.to_string());
-        errors::of_type(py, key, &format!("{} must be a number or a text, not {}", quote(key), quote(&kind)))
+        errors::of_type(
+            py,
+            key,
+            &format!("{} must be a number or a string, not {}", quote(key), quote(&kind)),
+        )
     };
     if given.is_instance_of::<PyBool>() {
         return Err(other());
@@ -93,7 +97,10 @@ fn changed(mut preset: Preset, changes: Option<&Bound<'_, PyDict>>) -> PyResult<
     let mut values = Vec::new();
     for (key, given) in changes {
         let Ok(key) = key.extract::<String>() else {
-            return Err(errors::of_source(py, "the keys of changes are texts, such as \"gap.amplitude\""));
+            return Err(errors::of_source(
+                py,
+                "the keys of changes must be strings, such as \"gap.amplitude\"",
+            ));
         };
         let given = value(&preset, &key, &given)?;
         values.push((key, given));
@@ -361,17 +368,22 @@ impl Problem {
         let radii = r.as_slice()?.to_vec();
         if !RADII.contains(&s) {
             let [lo, hi] = [RADII.start(), RADII.end()];
-            let sentence = format!("s = {s:?} is out of range: a contact radius is from {lo:?} to {hi:?}");
+            let sentence =
+                format!("s = {s:?} is out of range: a contact radius must be from {lo:?} to {hi:?}");
             return Err(errors::of_state(py, &sentence));
         }
         if let Some(wrong) = radii.iter().find(|r| !(**r >= 0.0 && r.is_finite())) {
-            return Err(errors::of_state(py, &format!("r = {wrong} is out of range: radii are not below 0")));
+            return Err(errors::of_state(
+                py,
+                &format!("r = {wrong} is out of range: a radius must be 0 or above"),
+            ));
         }
         let state = long(py, None, |progress| Across::of(&self.preset, s, &radii, progress))?;
         let state = state.map_err(|error| errors::of_case(py, &error))?;
         let Some(state) = state else {
-            let sentence =
-                format!("there is no equilibrium at the contact radius {s}: the gap is not known so far out");
+            let sentence = format!(
+                "there is no equilibrium at the contact radius {s}: the gap is not known that far out"
+            );
             return Err(errors::of_state(py, &sentence));
         };
         arrays_ready(py)?;
@@ -388,7 +400,7 @@ impl Problem {
             let sentence = match self.preset.clone().set(key, 1.0.into()) {
                 Err(invalid) => invalid.to_string(),
                 Ok(()) => {
-                    format!("{}: an axis is a number of the preset, a group, or compliance", quote(key))
+                    format!("{}: an axis must be a number of the preset, a group, or compliance", quote(key))
                 }
             };
             return Err(errors::of_axis(py, &sentence));
@@ -420,7 +432,7 @@ pub fn write_files(py: Python<'_>, files: &Bound<'_, PyDict>, overwrite: bool) -
         all.push((path.extract()?, content.extract()?));
     }
     if let Some((path, _)) = all.iter().find(|(path, _)| !overwrite && path.symlink_metadata().is_ok()) {
-        let sentence = format!("{}: exists already; overwrite=True replaces it", show_path(path));
+        let sentence = format!("{}: already exists; overwrite=True replaces it", show_path(path));
         return Err(errors::of_output(py, &sentence));
     }
     let overwrite = if overwrite { Overwrite::Always } else { Overwrite::Never };

@@ -57,7 +57,7 @@ fn assigned(problem: &Preset, set: &[&str]) -> Result<Preset, String> {
     let mut preset = problem.clone();
     for assignment in set {
         let (key, text) =
-            assignment.split_once('=').ok_or_else(|| "an assignment is KEY=VALUE".to_owned())?;
+            assignment.split_once('=').ok_or_else(|| "an assignment must be KEY=VALUE".to_owned())?;
         preset.assign(key.trim(), text.trim()).map_err(|error| error.to_string())?;
     }
     Ok(preset)
@@ -186,14 +186,14 @@ fn to_file(
 ) -> Result<Rows, String> {
     let words = |error: OutputError| error.to_string();
     if is_stream(out) {
-        return Err(format!("{}: results are read back, so they go to a file", show_path(out)));
+        return Err(format!("{}: results are read back, so they must go to a file", show_path(out)));
     }
     let is_there = ensemble::file_of_rows(out, spec)
         .metadata()
         .is_ok_and(|metadata| metadata.is_file() && metadata.len() > 0);
     if is_there && !wanted.resume && !wanted.overwrite {
         return Err(format!(
-            "{}: exists already; resume=True goes on with it, overwrite=True replaces it",
+            "{}: already exists; resume=True continues it, overwrite=True replaces it",
             show_path(out)
         ));
     }
@@ -218,7 +218,7 @@ fn read_back(spec: &Spec, out: &Path) -> Result<Rows, String> {
     let names: Vec<String> = spec.columns.iter().map(pulloff_engine::sweep::QuantityColumn::name).collect();
     let names = std::iter::once("row").chain(names.iter().map(String::as_str)).chain(["error"]);
     let mut texts = results.texts(&names.collect::<Vec<_>>()).map_err(|error| error.to_string())?;
-    let wrong = || format!("{}: was changed while it was written", show_path(out));
+    let wrong = || format!("{}: changed while it was being written", show_path(out));
     let faults = texts.pop().ok_or_else(wrong)?;
     let mut columns = texts.into_iter();
     let numbers = columns.next().ok_or_else(wrong)?;

@@ -93,7 +93,7 @@ def test_what_contradicts_the_problem_is_refused_with_both(file):
 
 def test_a_map_wants_an_index_and_bad_files_are_refused(file, tmp_path):
     path = file(3)
-    with pytest.raises(pulloff.DataError, match="3 curves in it: choose one with index=0 to 2"):
+    with pytest.raises(pulloff.DataError, match="3 curves: choose one with index=0 to 2"):
         pulloff.read_afm(path)
     assert pulloff.read_afm(path, 2).metadata["enum"] == 2
     for index in (-1, 3):

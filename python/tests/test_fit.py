@@ -126,7 +126,7 @@ def test_models_are_compared():
     (pair,) = both.models["pairs"]
     assert pair["models"] == ["short-range", "dugdale"] and isinstance(pair["told_apart"], bool)
     for wrong in ("dmt", ["short-range", "dmt"]):
-        with pytest.raises(pulloff.DataError, match="dmt.* is none of short-range, dugdale"):
+        with pytest.raises(pulloff.DataError, match="dmt.* is not one of short-range, dugdale"):
             afar.fit(data, FREE, model=wrong)
 
 

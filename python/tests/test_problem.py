@@ -79,7 +79,7 @@ def test_changes_are_checked_as_a_whole(fig_9):
         ({"gap.amplitude": [1.0]}, "gap.amplitude", "not list"),
         ({"gap.amplitud": 1.0}, None, "did you mean gap.amplitude"),
         ({"path.control": "sideways"}, "path.control", "sideways"),
-        ({1: 1.0}, None, "texts"),
+        ({1: 1.0}, None, "strings"),
     ],
 )
 def test_refused_values_say_their_key(fig_9, changes, key, words):

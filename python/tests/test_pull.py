@@ -60,7 +60,7 @@ def test_speeds_of_a_made_edge():
     assert found.to_dict()["from"] == "force and contact radius"
     with pytest.raises(pulloff.DataError, match="no approach"):
         problem.speeds(points, of="approach-radius")
-    with pytest.raises(pulloff.DataError, match="is none of force-radius"):
+    with pytest.raises(pulloff.DataError, match="is not one of force-radius"):
         problem.speeds(points, of="radius")
     with pytest.raises(pulloff.DataError, match="no measured curve"):
         pulloff.Problem("wavy-sphere").speeds()

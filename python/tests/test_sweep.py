@@ -69,7 +69,7 @@ def test_a_row_that_cannot_be_computed_says_why():
         ({"preset": "fig9", "axis": [AXIS]}, "fig9"),
         ({"preset": "fig-9", "axis": [AXIS], "quantities": ["snap"]}, "did you mean snaps"),
         ({"preset": "fig-9", "axis": [{"key": "gap.amplitude", "values": [object()]}]}, "type object"),
-        ({"preset": "fig-9", "axis": [AXIS], 3: 4}, "keys are texts"),
+        ({"preset": "fig-9", "axis": [AXIS], 3: 4}, "keys must be strings"),
         ({"preset": "fig-9", "axis": [{"key": "gap.amplitude", "values": [-1.0]}]}, "out of range"),
         ("none.toml", "No such file"),
     ],
@@ -111,7 +111,7 @@ def test_rows_go_to_the_file_of_the_program(tmp_path):
     other = {**SPEC, "quantities": ["snaps"]}
     with pytest.raises(pulloff.OutputError, match="another sweep.*overwrite=True replaces"):
         pulloff.sweep(other, out=out)
-    with pytest.raises(pulloff.OutputError, match="resume=True goes on with it, overwrite=True replaces it"):
+    with pytest.raises(pulloff.OutputError, match="resume=True continues it, overwrite=True replaces it"):
         pulloff.sweep(SPEC, out=out, resume=False)
     assert out.read_bytes() == before
     assert pulloff.sweep(other, out=out, overwrite=True).columns == [c for c in wanted if c != "last_contact_force"]

@@ -139,7 +139,7 @@ fn a_start_by_approach_or_force_stays_where_the_gap_is_known() {
                 &[("path.end_contact_radius", (0.01 * s).into()), (key, (1e4 * value.abs()).into())],
             );
             let refused = Case::new(&far).unwrap_err().to_string();
-            assert!(refused.contains("the gap is known up to the radius"), "{name}, {key}: {refused}");
+            assert!(refused.contains("the gap is known only up to the radius"), "{name}, {key}: {refused}");
         }
     }
 }

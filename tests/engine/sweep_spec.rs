@@ -114,7 +114,7 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
         ("preset = 'cone'", "s.toml:1: axis is missing: it must be one or more tables [[axis]]"),
         (
             "preset = 'cone'\n[ensemble]\nmembers = 9\nseed = 1",
-            "s.toml:2: the members would all be the same: the preset has no gap.seed that may differ, and no axis has a distribution",
+            "s.toml:2: the members would all be the same: the preset has no gap.seed that could differ, and no axis has a distribution",
         ),
         (
             "preset = 'random-waves'\nset = ['gap.seed=1']\n[ensemble]\nmembers = 9\nseed = 1",
@@ -130,7 +130,7 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
         ),
         (
             "preset = 'random-waves'\nensemble = { members = 9, seed = 1 }\nrandom = { draws = 9, seed = 1 }",
-            "s.toml:2: [ensemble] draws its members itself: it goes with no [random]",
+            "s.toml:2: [ensemble] draws its members itself: it cannot be combined with [random]",
         ),
         (
             "preset = 'random-waves'\nensemble = { members = 99999, seed = 1 }\n[[axis]]\nkey = 'gap.rms'\n\
@@ -156,7 +156,7 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
         ),
         (
             &axis("key = 'title'\nvalues = ['a']"),
-            "s.toml:3: title is no quantity of the problem: it cannot be swept",
+            "s.toml:3: title is not a quantity of the problem: it cannot be swept",
         ),
         (
             &axis("key = 'gap.slope'\nvalues = [1]"),
@@ -188,7 +188,7 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
         ),
         (
             &axis("key = 'gap.amplitude'\nvalues = [true]"),
-            "s.toml:4: axis.values: gap.amplitude is the boolean true; write a number or a text",
+            "s.toml:4: axis.values: gap.amplitude is the boolean true; write a number or a string",
         ),
         (
             &axis("key = 'path.control'\nvalues = ['forse']"),
@@ -217,11 +217,11 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
         ),
         (
             &axis("key = 'basis.rings'\nlinear = { from = 10, to = 15, count = 4 }"),
-            "s.toml:4: basis.rings takes whole numbers: 4 values in equal steps from 10 to 15 are none",
+            "s.toml:4: basis.rings takes whole numbers: 4 values in equal steps from 10 to 15 are not whole",
         ),
         (
             &axis("key = 'basis.rings'\nlogarithmic = { from = 10, to = 15, count = 4 }"),
-            "s.toml:4: axis.logarithmic.from: basis.rings = 10 is no real number",
+            "s.toml:4: axis.logarithmic.from: basis.rings = 10 is not a real number",
         ),
         (
             &axis("key = 'gap.amplitude'\ndistribution = { uniform = [1, 2] }"),
@@ -236,7 +236,7 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
                 "combine = 'grid'\nrandom = {{ draws = 3, seed = 1 }}\n{}",
                 axis("key = 'gap.amplitude'\nvalues = [1]")
             ),
-            "s.toml:1: combine is of a grid or of pairs: [random] has neither",
+            "s.toml:1: combine is for a grid or for pairs: [random] has neither",
         ),
         (
             &format!(
@@ -278,7 +278,7 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
         ),
         (
             &axis("key = 'basis.rings'\ndistribution = { uniform = [10, 20] }"),
-            "s.toml:4: axis.distribution.uniform: basis.rings = 10 is no real number",
+            "s.toml:4: axis.distribution.uniform: basis.rings = 10 is not a real number",
         ),
         (
             &axis("key = 'gap.amplitude'\ndistribution = { integers = [3, 2] }"),
@@ -289,21 +289,21 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
                 "{}\n[[axis]]\nkey = 'gap.amplitude'\nvalues = [2]",
                 axis("key = 'gap.amplitude'\nvalues = [1]")
             ),
-            "s.toml:5: the axis gap.amplitude is at odds with the axis gap.amplitude",
+            "s.toml:5: the axis gap.amplitude conflicts with the axis gap.amplitude",
         ),
         (
             &format!(
                 "{}\n[[axis]]\nkey = 'path.start_force'\nvalues = [2]",
                 axis("key = 'path.start_approach'\nvalues = [1]")
             ),
-            "s.toml:5: the axis path.start_force is at odds with the axis path.start_approach",
+            "s.toml:5: the axis path.start_force conflicts with the axis path.start_approach",
         ),
         (
             &format!(
                 "combine = 'pairs'\n{}\n[[axis]]\nkey = 'gap.wavelength'\nvalues = [2]",
                 axis("key = 'gap.amplitude'\nvalues = [1, 2]")
             ),
-            "s.toml:6: pairs need axes of one length: gap.wavelength has 1 values, gap.amplitude has 2",
+            "s.toml:6: pairs need axes of equal length: gap.wavelength has 1 values, gap.amplitude has 2",
         ),
         (
             &format!(
@@ -322,7 +322,7 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
         ),
         (
             &format!("quantities = ['snaps',\n'snaps']\n{}", axis("key = 'gap.amplitude'\nvalues = [1]")),
-            "s.toml:2: quantities: snaps stands there twice",
+            "s.toml:2: quantities: snaps is listed twice",
         ),
     ] {
         let found = match read(text) {
@@ -364,7 +364,7 @@ fn a_value_of_set_that_no_row_has_is_refused() {
         (
             "gap.amplitude=0.001",
             "gap.amplitude",
-            "set gives gap.amplitude a value that no row has: the axis gap.amplitude",
+            "set gives gap.amplitude a value that no row uses: the axis gap.amplitude",
         ),
         ("gap={amplitude=0.001}", "gap.amplitude", "set gives gap.amplitude a value"),
         ("path.start_approach=0.1", "path.start_contact_radius", "set gives path.start_approach a value"),

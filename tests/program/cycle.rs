@@ -171,7 +171,7 @@ fn a_table_and_csv_say_the_same() {
         "touch 0.097929  0.018459 [0.032749, 0.062483]  0.063614 [0.087999, 0.10611]",
         "turn: asked for the approach 0.140000, reached 0.140000",
         "most rings at a time: 1",
-        "energy lost: 1.298e-4, of it 1.242e-4 before the last contact",
+        "energy lost: 1.298e-4, including 1.242e-4 before the last contact",
     ] {
         assert!(table.contains(words), "{words}: {table}");
     }

@@ -42,7 +42,7 @@ fn the_groups_are_these() {
     JKR at approach 0.1 R, uniform rings
     Hertz at approach 0.1 R, rings crowded towards the edge
     JKR at approach 0.1 R, rings crowded towards the edge
-    Newton-Raphson from a threefold contact radius, JKR sphere
+    Newton-Raphson from three times the contact radius, JKR sphere
     Fig. 8, extreme values, exact basis
     Fig. 8, extreme values, 200 rings
     Fig. 9, extreme values, exact basis
@@ -54,19 +54,19 @@ fn the_groups_are_these() {
     Fig. 9 under force control, 200 rings
     Fig. 9 under stiffness=0.15 control, 200 rings
     Adhesion with a range: a sphere against Maugis
-    Pulls at a rate against the laws of slow ones
+    Pulls at a rate against the laws of slow pulls
     Fig. 9, the law of stability, exact
     Rigid flat annulus, force over 2E*δb
     Fig. 9: the loop up to δ = 0.14
     Fig. 9, γ = 1e-4: the loop up to δ = 0.14
-    Two of our own numbers: Fig. 9 under displacement control, exact basis
-    Two of our own numbers: Fig. 9 under force control, exact basis
-    Two of our own numbers: Fig. 9 under stiffness=0.15 control, exact basis
-    Two of our own numbers: Fig. 9 under displacement control, 200 rings
-    Two of our own numbers: Fig. 9 under force control, 200 rings
-    Two of our own numbers: Fig. 9 under stiffness=0.15 control, 200 rings
-    Two of our own numbers: whole loops
-    Two of our own numbers: Fig. 9, a slow pull
+    Self-consistency: Fig. 9 under displacement control, exact basis
+    Self-consistency: Fig. 9 under force control, exact basis
+    Self-consistency: Fig. 9 under stiffness=0.15 control, exact basis
+    Self-consistency: Fig. 9 under displacement control, 200 rings
+    Self-consistency: Fig. 9 under force control, 200 rings
+    Self-consistency: Fig. 9 under stiffness=0.15 control, 200 rings
+    Self-consistency: whole loops
+    Self-consistency: Fig. 9, a slow pull
     ");
     for group in GROUPS.iter() {
         let heading = group.title.chars().count() + group.measure.chars().count() + 3;
@@ -80,7 +80,7 @@ fn the_groups_are_these() {
 /// Numbers that the program finds in two of its own ways agree, and are marked as not compared with theory.
 #[test]
 fn two_of_our_own_numbers_stand_apart() {
-    let own = |group: &&Group| group.title.starts_with("Two of our own numbers: ");
+    let own = |group: &&Group| group.title.starts_with("Self-consistency: ");
     for group in GROUPS.iter() {
         let is_own = own(&group);
         assert!(

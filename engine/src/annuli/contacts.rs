@@ -27,7 +27,7 @@ pub struct Edge {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ContactsError {
     /// More than [`MOST_CONTACTS`].
-    #[error("{contacts} contacts at once are more than {most}")]
+    #[error("{contacts} contacts at once are more than the limit of {most}")]
     TooMany {
         /// How many there are.
         contacts: usize,

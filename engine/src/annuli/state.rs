@@ -71,23 +71,21 @@ impl AnnuliError {
     pub fn words(&self, printer: &Printer) -> String {
         match *self {
             Self::Contacts(ContactsError::NotAscending { before, .. }) => format!(
-                "at r = {} the edges of a contact are closer to each other than numbers can tell apart: the gap is too high or \
-                 too steep there",
+                "at r = {} the edges of a contact are too close to be told apart in floating point: the gap is too \
+                 high or too steep there",
                 printer.length(before)
             ),
             Self::Contacts(ref error) => error.to_string(),
             Self::TooManyPoints { points, most } => {
-                format!("the rings take {points} points, more than {most}")
+                format!("the rings need {points} points, more than the limit of {most}")
             }
             Self::BeyondGap { radius, known } => {
                 let (radius, known) = (printer.length(radius), printer.length(known));
-                format!("an edge at r = {radius} lies beyond r = {known}, up to where the gap is known")
+                format!("an edge at r = {radius} lies beyond the gap, which is known only up to r = {known}")
             }
             Self::Singular { narrowest } => {
                 let narrowest = printer.length(narrowest);
-                format!(
-                    "the equations of the rings are singular to rounding: the narrowest width is {narrowest}"
-                )
+                format!("the ring equations are singular to rounding: the narrowest ring is {narrowest} wide")
             }
         }
     }

@@ -12,7 +12,7 @@ use super::tracer::Tracer;
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum StepFailure {
     /// The corrector failed at every length.
-    #[error("no step of at least {shortest:.1e} could be corrected: {cause}")]
+    #[error("no step of at least {shortest:.1e} converged: {cause}")]
     Corrector {
         /// The shortest length allowed.
         shortest: f64,
@@ -20,7 +20,7 @@ pub enum StepFailure {
         cause: NewtonFailure,
     },
     /// The orientation flips however short the step: the curve branches or ends here.
-    #[error("the curve changes its orientation within {shortest:.1e}: it branches or ends here")]
+    #[error("the curve changes orientation within {shortest:.1e}: it branches or ends here")]
     Orientation {
         /// The shortest length allowed.
         shortest: f64,

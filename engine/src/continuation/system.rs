@@ -87,7 +87,7 @@ pub enum SizeError {
     #[error("a curve needs 2 unknowns, the system has {0}")]
     TooFew(usize),
     /// There is no unknown of this index.
-    #[error("there is no unknown {unknown} (from 0) among {unknowns}")]
+    #[error("there is no unknown {unknown} (counted from 0) among {unknowns}")]
     NoUnknown {
         /// The index.
         unknown: usize,

@@ -255,7 +255,8 @@ impl Basis for ExactBasis {
         let digits = self.trusted_digits(problem, s);
         if digits < DIGITS_WANTED {
             cautions.push(format!(
-                "the gap is tabulated to {digits:.1} digits only: at a few radii the table does not give the gap itself back"
+                "the gap is tabulated to only {digits:.1} digits: at a few radii the table does not reproduce the \
+                 gap itself"
             ));
         }
         cautions

@@ -66,8 +66,8 @@ impl StartError {
             Self::NotKnown { name, value, searched, known } => {
                 let (value, searched, known) = (of(name, value), radius(searched), radius(known));
                 format!(
-                    "no contact up to the radius {searched} has the {name} {value}, and the gap is known up to the \
-                     radius {known} only"
+                    "no contact up to the radius {searched} has the {name} {value}, and the gap is known only up to \
+                     the radius {known}"
                 )
             }
             Self::NotReached { name, value, largest } => {

@@ -54,13 +54,13 @@ impl RateError {
             Self::Pressed { contact_radius } => {
                 let radius = length(contact_radius);
                 format!(
-                    "the closing edge is pressed at the contact radius {radius}: the bodies touch ahead of it, and a pull \
-                     follows one disc"
+                    "the closing edge is pressed at the contact radius {radius}: the bodies touch ahead of it, and a \
+                     pull follows only one disc"
                 )
             }
             Self::TooManySteps { steps, contact_radius } => {
                 let radius = length(contact_radius);
-                format!("the moving edge was given up after {steps} steps, at the contact radius {radius}")
+                format!("the moving edge was abandoned after {steps} steps, at the contact radius {radius}")
             }
             Self::Beyond { radius } => {
                 let radius = length(radius);

@@ -463,7 +463,7 @@ impl FitReport {
         text.push_str(&aligned(&rows, 2));
         if self.parameters.iter().any(|of| of.standard_error.is_some() && !of.error_holds) {
             text.push_str(
-                "errors in parentheses do not hold: they are those of a model that describes the points\n",
+                "errors in parentheses do not hold: they assume that the model describes the points\n",
             );
         }
         for parameter in &self.parameters {
@@ -505,7 +505,7 @@ impl FitReport {
             let from = match self.sigma_from[axis] {
                 Origin::Given => " (given)",
                 Origin::Apart => "",
-                Origin::Neighbours => " (of neighbouring points)",
+                Origin::Neighbours => " (from neighbouring points)",
                 Origin::Assumed => " (assumed)",
             };
             format!("{told}{from}")
@@ -525,10 +525,10 @@ impl FitReport {
         let parts = [part("in contact", self.chi_squared_in_contact), part("apart", self.chi_squared_apart)];
         let parts: Vec<String> = parts.into_iter().flatten().collect();
         let neighbours = self.noise_of_neighbours.map_or_else(String::new, |s| {
-            format!("; neighbours in contact differ as by a noise of {} sigma", short(s, 3))
+            format!("; neighbouring points in contact show a noise of {} sigma", short(s, 3))
         });
         let correlated = if self.rows_that_count_as_one > 1.0 {
-            format!("; {} rows of the noise count as one", short(self.rows_that_count_as_one, 2))
+            format!("; {} rows of noise count as one", short(self.rows_that_count_as_one, 2))
         } else {
             String::new()
         };
@@ -538,11 +538,8 @@ impl FitReport {
             .iter()
             .map(|start| format!("{} ({})", short(start.distance, 3), start.snaps))
             .collect();
-        let _ = writeln!(
-            text,
-            "starts, by the mean distance at their end in sigma (snaps): {}",
-            starts.join(", ")
-        );
+        let _ =
+            writeln!(text, "starts, by their final mean distance in sigma (snaps): {}", starts.join(", "));
         if let Some(direction) = &self.direction {
             let _ = writeln!(text, "not determined: {direction}");
         }

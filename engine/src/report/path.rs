@@ -377,7 +377,7 @@ impl PathReport {
         notes.extend(note_of_range(preset, case));
         if is_loop && matches!(preset.basis, BasisSpec::Rings { .. }) {
             notes.push(
-                "a loop is followed by exact states, without ring elements, whatever the basis".to_owned(),
+                "a loop is computed with exact states, without ring elements, whatever the basis".to_owned(),
             );
         }
         let states = path.states.iter().map(|state| PathStateReport {
@@ -547,8 +547,8 @@ pub(super) fn note_of_range(preset: &Preset, case: &Case) -> Option<String> {
         format!("; Maugis' lambda_M = {}, Tabor's mu = {}", significant(maugis, 4), significant(tabor, 4))
     });
     Some(format!(
-        "the adhesion has a range: a tension of {} where the bodies are nearer than {}{}; every state is one disc of contact in one \
-         zone of tension",
+        "the adhesion has a range: a tension of {} where the bodies are closer than {}{}; every state is one disc of \
+         contact in one zone of tension",
         said(Quantity::Stress, law.strength),
         said(Quantity::Length, law.range),
         groups.unwrap_or_default()
@@ -562,7 +562,7 @@ fn start_note(case: &Case, path: &Path, asked: &AskedState) -> String {
         |s: f64| with_unit(&case.shown, Quantity::Length, s * units.length, true, |s| significant(s, 6));
     let State { contact_radius, .. } = asked.state;
     let reached = length(path.start().map_or(f64::NAN, |start| start.contact_radius));
-    let asked_for = format!("the state asked for (contact radius {})", length(contact_radius));
+    let asked_for = format!("the requested state (contact radius {})", length(contact_radius));
     let control = control_name(path.control);
     match asked.why {
         WhyNot::Unstable { falls: true } => {
@@ -571,17 +571,17 @@ fn start_note(case: &Case, path: &Path, asked: &AskedState) -> String {
             )
         }
         WhyNot::Unstable { falls: false } => format!(
-            "{asked_for} is unstable under {control} control: the path starts at the next stable state outward, {reached}, to \
-             which the edge would not run by itself (the potential rises on the way)"
+            "{asked_for} is unstable under {control} control: the path starts at the next stable state outward, \
+             {reached}, which the edge would not reach by itself (the potential rises on the way)"
         ),
         WhyNot::Overlaps(radius) => format!(
-            "{asked_for} is no contact of its own: outside it the bodies would overlap at r = {}; the path starts from the \
+            "{asked_for} cannot exist alone: outside it the bodies would overlap at r = {}; the path starts from the \
              contact at the same control in which they do not, out to {reached}",
             length(radius)
         ),
         WhyNot::Pulls(radius) => format!(
-            "{asked_for} is no contact without adhesion: the bodies would pull at each other at r = {}; the path starts from \
-             the contact at the same control in which they do not, out to {reached}",
+            "{asked_for} cannot exist without adhesion: the bodies would pull on each other at r = {}; the path \
+             starts from the contact at the same control in which they do not, out to {reached}",
             length(radius)
         ),
     }

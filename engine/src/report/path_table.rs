@@ -182,14 +182,14 @@ fn outcome(report: &PathReport) -> String {
     let last = if has_zone { "the snap-off" } else { "the last contact" };
     let is_apart = report.events.last().is_some_and(|event| event.after.is_none());
     let _ = match totals.dissipated {
-        None if !is_apart => writeln!(text, "energy lost until there: {}", energy(before)),
+        None if !is_apart => writeln!(text, "energy lost up to there: {}", energy(before)),
         Some(lost) => {
-            writeln!(text, "energy lost: {}, of it {} before {last}", energy(lost), energy(before))
+            writeln!(text, "energy lost: {}, including {} before {last}", energy(lost), energy(before))
         }
         None => writeln!(
             text,
-            "energy lost before {last}: {}; under a dead load {last} loses without bound: the bodies fall \
-             apart for ever",
+            "energy lost before {last}: {}; under a dead load the loss at {last} has no bound: the bodies fall apart \
+             for ever",
             energy(before)
         ),
     };

@@ -30,7 +30,8 @@ pub enum PullError {
     Case(#[from] CaseError),
     /// Nothing says how fast an edge is.
     #[error(
-        "{key} is not set: an edge has a speed where edge.exponent and edge.reference_speed are given (in reduced units the speed is 1 if it is not)"
+        "{key} is not set: an edge has a speed if edge.exponent and edge.reference_speed are given (in reduced units \
+         the reference speed defaults to 1)"
     )]
     NoLaw {
         /// The key.
@@ -583,7 +584,8 @@ fn limits(
         .fold(0.0, f64::max);
     if let Some(bound) = spec.highest_ratio.filter(|bound| highest > *bound) {
         warnings.push(format!(
-            "{at}G/gamma reaches {} before the largest pull is over, above edge.highest_ratio = {bound}: the law of the edge has no such values",
+            "{at}G/gamma reaches {} before the largest pull is over, above edge.highest_ratio = {bound}: the law of \
+             the edge does not extend that far",
             significant(highest, 4)
         ));
     }
@@ -593,7 +595,8 @@ fn limits(
         let rate = rate.map(|rate| rate / factors.control * factors.time());
         if let Some(rate) = rate.filter(|rate| rate * tau > RELAXED * way) {
             warnings.push(format!(
-                "{at}in edge.relaxation_time the control goes {} of its value at the last contact; above {RELAXED} the bodies are not relaxed, and the force is larger than this",
+                "{at}within edge.relaxation_time the control moves by {} of its value at the last contact; above \
+                 {RELAXED} the bodies are not relaxed, and the force is larger than computed",
                 significant(rate * tau / way, 3)
             ));
         }
@@ -602,7 +605,8 @@ fn limits(
             let (zone, room) = (snap.top_speed * tau, length.min(snap.to.max(f64::MIN_POSITIVE)));
             if zone > room {
                 warnings.push(format!(
-                    "{at}in the snap from {} the edge goes {} times min(s, wavelength) in edge.relaxation_time: its zone of dissipation does not fit there",
+                    "{at}in the snap from {} the edge moves {} times min(s, wavelength) within edge.relaxation_time: \
+                     its zone of dissipation does not fit there",
                     shown(&case.shown, Quantity::Length, snap.from * factors.length),
                     significant(zone / room, 3)
                 ));
@@ -614,7 +618,8 @@ fn limits(
         let judge = Judge::new(&case.reduced, &case.table);
         if let Some(crest) = judge.verdict(s, delta, progress).overlapping() {
             warnings.push(format!(
-                "{at}while the edge closes to {}, the bodies would touch ahead of it, at {}: a pull follows one disc",
+                "{at}while the edge closes to {}, the bodies would touch ahead of it, at {}: a pull follows only one \
+                 disc",
                 shown(&case.shown, Quantity::Length, s * factors.length),
                 shown(&case.shown, Quantity::Length, crest.radius * factors.length)
             ));

@@ -256,8 +256,7 @@ impl SpeedsReport {
         let units = *case.units();
         let mut notes = branches.notes.clone();
         let baseline = preset.data.baseline.or(branches.baseline).unwrap_or_else(|| {
-            notes
-                .push("no row is apart and data.baseline is not set: the force is taken as it is".to_owned());
+            notes.push("no row is apart and data.baseline is not set: the force is used as it is".to_owned());
             0.0
         });
         let mut reach = wanted(&case, &branches);
@@ -312,12 +311,12 @@ impl SpeedsReport {
         let mut warnings = case.warnings_of_problem();
         if rows.len() < of_file.len() {
             warnings.push(format!(
-                "{} rows in contact are left out: no contact that pulls at its edge has their force there",
+                "{} rows in contact are left out: no contact with tension at its edge has their force there",
                 of_file.len() - rows.len()
             ));
         }
         if rows.iter().all(|row| row.speed.is_none()) {
-            notes.push("no column has the times, so no row has a speed".to_owned());
+            notes.push("no column gives the times, so no row has a speed".to_owned());
         }
         let of_radius = if branches.abscissa == Abscissa::Radius { None } else { Some(sigma_x) };
         Ok(Self {

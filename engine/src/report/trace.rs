@@ -336,7 +336,7 @@ impl TraceReport {
     pub fn beside(mut self, exact: &Exact) -> Self {
         if self.points.iter().any(|point| point.zone_radius.is_some()) {
             self.warnings.push(
-                "the exact solutions are those of short-range adhesion: of adhesion with a range none stands beside the points"
+                "the exact solutions are those of short-range adhesion: none is given for adhesion with a range"
                     .to_owned(),
             );
             return self;
@@ -349,8 +349,8 @@ impl TraceReport {
         }
         if unresolved > 0 {
             self.warnings.push(format!(
-                "the integrals of the exact solution are not resolved at {unresolved} of {} points: its waves are too \
-                 many, and its digits there uncertain",
+                "the integrals of the exact solution are not resolved at {unresolved} of {} points: it has too many \
+                 waves, and its digits there are uncertain",
                 self.points.len()
             ));
         }

@@ -30,7 +30,7 @@ pub const COMPLIANCE: &str = "compliance";
 
 /// A range that no axis can have.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{range:?} is no range of {key}: {expected}")]
+#[error("{range:?} is not a range of {key}: {expected}")]
 pub struct AxisError {
     key: String,
     range: [f64; 2],
@@ -46,21 +46,19 @@ impl MapAxis {
     pub fn new(key: &str, [lo, hi]: [f64; 2], logarithmic: bool, unit: f64) -> Result<Self, AxisError> {
         let refused = |expected| AxisError { key: key.to_owned(), range: [lo, hi], expected };
         if !(lo.is_finite() && lo < hi) {
-            return Err(refused("it goes from a number to a larger one"));
+            return Err(refused("it must go from a number to a larger one"));
         }
         if key == COMPLIANCE && lo < 0.0 {
-            return Err(refused("a compliance is 0 (displacement) or above, up to inf (a dead load)"));
+            return Err(refused("a compliance is from 0 (displacement) to inf (a dead load)"));
         }
         let spacing = if hi.is_finite() {
             if logarithmic && lo <= 0.0 {
-                return Err(refused("a logarithmic axis begins above zero"));
+                return Err(refused("a logarithmic axis must begin above zero"));
             }
             if logarithmic { Spacing::Logarithmic } else { Spacing::Linear }
         } else {
             if key != COMPLIANCE || logarithmic {
-                return Err(refused(
-                    "only a compliance goes on to infinity, on an axis that is not logarithmic",
-                ));
+                return Err(refused("only a compliance may go to infinity, and only on a linear axis"));
             }
             Spacing::Share(unit)
         };

@@ -284,8 +284,9 @@ impl MapLine {
 /// The note on changes that are on no line of cusps, landings or starts.
 fn words(count: usize) -> String {
     format!(
-        "between {count} pairs of neighbouring cells the number of snaps changes at no cusp, landing or limit point at the start: \
-         where the path ends or begins elsewhere, or at a corner of the law; lines of kind change join these places from cell to cell"
+        "between {count} pairs of neighbouring cells the number of snaps changes without a cusp, landing or limit \
+         point at the start: the path ends or begins elsewhere there, or the law has a corner; lines of kind change \
+         join these places from cell to cell"
     )
 }
 

@@ -98,11 +98,11 @@ pub enum FamilyError {
     #[error(transparent)]
     Stopped(#[from] Stopped),
     /// The key holds no number.
-    #[error("{0}: an axis of a map is a number of the preset, a group, or compliance")]
+    #[error("{0}: an axis of a map must be a number of the preset, a group, or compliance")]
     NoNumber(String),
     /// The gap is too fine at an end of an axis.
     #[error(
-        "{axis}: at {value:?} the disc at the start holds {count} waves, a map takes up to {MOST_FEATURES}"
+        "{axis}: at {value:?} the disc at the start holds {count} waves; a map takes at most {MOST_FEATURES}"
     )]
     TooFine {
         /// The axis.
@@ -113,7 +113,7 @@ pub enum FamilyError {
         count: f64,
     },
     /// Both axes are the same.
-    #[error("{0}: the two axes of a map are two keys")]
+    #[error("{0}: the two axes of a map must be different keys")]
     Twice(String),
 }
 
@@ -351,7 +351,8 @@ impl Family {
         if start > most {
             let [start, most] = [start, most].map(|s| s * self.length);
             return Err(format!(
-                "a path starts at the contact radius {start:?}; lines are followed up to {most:?}, {MOST_FEATURES} waves"
+                "a path starts at the contact radius {start:?}; lines are followed only up to {most:?}, \
+                 {MOST_FEATURES} waves"
             ));
         }
         Ok(())

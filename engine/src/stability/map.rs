@@ -87,8 +87,8 @@ impl Family {
         let corners = self.member(&[0.5; 2]).and_then(|member| member.law(&[0.5; 2]));
         if corners.is_ok_and(|law| !law.cusps(self.radii).1.is_empty()) {
             map.notes.push(
-                "the second derivative of the gap jumps: there the law has corners, which are no cusps, and pairs of limit \
-                 points that begin at them are not on a line of cusps"
+                "the second derivative of the gap jumps: there the law has corners, which are not cusps, and pairs \
+                 of limit points that begin at them are not on a line of cusps"
                     .to_owned(),
             );
         }

@@ -92,7 +92,7 @@ impl SweepAxis {
         let entry = section.need("key", wanted)?;
         let key = entry.text(wanted)?;
         if model::is_of_units(key) || ["format", "title"].contains(&key) {
-            return Err(entry.fault(&format!("{key} is no quantity of the problem: it cannot be swept")));
+            return Err(entry.fault(&format!("{key} is not a quantity of the problem: it cannot be swept")));
         }
         // Unknown keys are reported here, whatever the values are.
         if let Err(unknown @ (Invalid::UnknownKey { .. } | Invalid::UnknownGroup { .. })) =
@@ -299,7 +299,7 @@ impl KeyReader<'_> {
     fn value(&self, entry: &SpecEntry<'_>) -> Result<Value, SpecError> {
         let of_toml = || {
             Value::from_toml(entry.value).map_err(|found| {
-                entry.fault(&format!("{}: {} is {found}; write a number or a text", entry.name, self.key))
+                entry.fault(&format!("{}: {} is {found}; write a number or a string", entry.name, self.key))
             })
         };
         let Some(preset) = self.preset else {
@@ -329,7 +329,9 @@ impl KeyReader<'_> {
                 "{}: sweep path.control.stiffness instead, whose values are numbers",
                 entry.name
             ))),
-            other => Err(entry.fault(&format!("{}: {} = {other} is no real number", entry.name, self.key))),
+            other => {
+                Err(entry.fault(&format!("{}: {} = {other} is not a real number", entry.name, self.key)))
+            }
         }
     }
 
@@ -339,7 +341,7 @@ impl KeyReader<'_> {
                 Ok(i64::from_str_radix(n.as_str(), n.radix()).unwrap_or_default())
             }
             (_, Value::Integer(n)) => Ok(n),
-            (_, other) => Err(entry.fault(&format!("{}: {other} is no whole number", entry.name))),
+            (_, other) => Err(entry.fault(&format!("{}: {other} is not a whole number", entry.name))),
         }
     }
 
@@ -359,7 +361,7 @@ impl KeyReader<'_> {
             let way = i128::from(last) - i128::from(first);
             if way % steps != 0 {
                 let what = format!(
-                    "{} takes whole numbers: {count} values in equal steps from {first} to {last} are none",
+                    "{} takes whole numbers: {count} values in equal steps from {first} to {last} are not whole",
                     self.key
                 );
                 return Err(entry.fault(&what));

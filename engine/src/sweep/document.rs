@@ -83,7 +83,7 @@ impl<'a> SpecSection<'a> {
             if !keys.contains(&name) {
                 let meant = closest(name, keys.iter().copied());
                 let hint = meant.map_or_else(
-                    || format!(": there is {}", keys.join(", ")),
+                    || format!("; the keys are {}", keys.join(", ")),
                     |meant| format!("; did you mean {meant}?"),
                 );
                 let what = format!("unknown key {}{hint}", quote(&self.full(name)));

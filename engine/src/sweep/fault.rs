@@ -126,7 +126,7 @@ impl Fault {
     pub fn small_start() -> Self {
         Self::new(
             REASONS[5],
-            "a contact larger than the start's has, or may have, a smaller one: start further out",
+            "a contact larger than that at the start has, or may have, a smaller value: start further out",
         )
     }
 
@@ -135,7 +135,7 @@ impl Fault {
     pub fn of_panic(payload: &(dyn Any + Send)) -> Self {
         let words = payload.downcast_ref::<String>().map(String::as_str);
         let words = words.or_else(|| payload.downcast_ref::<&str>().copied());
-        Self::new(REASONS[6], words.unwrap_or("no words"))
+        Self::new(REASONS[6], words.unwrap_or("no message"))
     }
 
     /// The reason that a written fault begins with.

@@ -62,33 +62,36 @@ quantities! {
         Stage::Unloading(|path| path.last_contact(|state| state.contact_radius));
     "snaps" "" Number "jumps inward before the last contact": Stage::Unloading(|path| Some(path.snaps()));
     "snap_loss" "" Energy "energy lost in all of them": Stage::Unloading(|path| Some(path.snap_loss()));
-    "last_contact_loss" "" Energy "energy lost at the last contact; none under a dead load":
+    "last_contact_loss" "" Energy "energy lost at the last contact; empty under a dead load":
         Stage::Unloading(OnPath::last_contact_loss);
-    "snap_off_approach" "δ" Length "approach at which the zone of adhesion with a range ends; none of short-range adhesion":
+    "snap_off_approach" "δ" Length "approach at which the zone of adhesion with a range ends; empty for short-range \
+                                    adhesion":
         Stage::Unloading(|path| path.snap_off(|state| state.approach));
     "inadmissible_share" "" Number "share of the unloading of one disc, by contact radius, on which the next crest would already touch":
         Stage::Passed;
-    "cycle_loss" "" Energy "energy lost in the loop of loading and unloading; none under a dead load": Stage::Loop(OnPath::loss);
-    "jump_in_force" "P" Force "force after the jump into the zone of adhesion with a range; none of short-range adhesion":
+    "cycle_loss" "" Energy "energy lost in the loop of loading and unloading; empty under a dead load":
+        Stage::Loop(OnPath::loss);
+    "jump_in_force" "P" Force "force after the jump into the zone of adhesion with a range; empty for short-range \
+                               adhesion":
         Stage::Loop(|whole| whole.jump_in(|state| state.force));
     "jump_in_approach" "δ" Length "approach after that jump": Stage::Loop(|whole| whole.jump_in(|state| state.approach));
     "first_touch_force" "P" Force "force after the jump into contact at the first touch":
         Stage::Loop(|whole| whole.first_touch(|state| state.force));
     "first_touch_radius" "s" Length "outermost edge of the contact after that jump":
         Stage::Loop(|whole| whole.first_touch(|state| state.contact_radius));
-    "touches" "" Number "crests that touched apart from the contact on the way up, after the first touch":
+    "touches" "" Number "crests that touched outside the contact on the way up, after the first touch":
         Stage::Loop(|whole| Some(whole.touches()));
-    "rings_at_most" "" Number "rings of contact at most at a time in the stable states of the loop, a disc not counted":
+    "rings_at_most" "" Number "most rings of contact at a time in the stable states of the loop, not counting a disc":
         Stage::Loop(|whole| Some(whole.rings_at_most()));
-    "contact_share" "" Number "contact area at the turn over that of the circle in its outermost edge":
+    "contact_share" "" Number "contact area at the turn over that of the circle within its outermost edge":
         Stage::Loop(OnPath::contact_share);
     "peak_force" "P" Force "smallest force of the pull at path.rate, or by path.steps":
         Stage::Pull(|run| Some(Cell::Number(run.peak.force)));
     "last_contact_time" "t" Time "time of that pull at which the bodies come apart":
         Stage::Pull(|run| run.last_contact.map(|last| Cell::Number(last.time)));
-    "dissipated" "" Energy "what the edge dissipates in that pull; none under a dead load":
+    "dissipated" "" Energy "what the edge dissipates in that pull; empty under a dead load":
         Stage::Pull(|run| run.dissipated.map(Cell::Number));
-    "tension_peaks" "" Number "least forces of that pull with a fall and a rise of more than 1 % of P_c":
+    "tension_peaks" "" Number "force minima of that pull with a fall and a rise of more than 1 % of P_c":
         Stage::Pull(|run| Some(Cell::Count(run.tension_peaks.len())));
     "top_edge_speed" "v" Speed "largest speed of the edge in the snaps of that pull":
         Stage::Pull(|run| Some(Cell::Number(run.top_edge_speed)));
@@ -99,14 +102,16 @@ quantities! {
     "least_force_radius" "s" Length "contact radius at the smallest force":
         Stage::Curve(|line| line.least(|s| s.contact_radius));
     "least_approach" "δ" Length "smallest approach of the curve": Stage::Curve(CurveMinima::least_approach);
-    "enhancement" "P_min/P_c" Number "smallest force over that of the smooth sphere, P_min/P_c in size":
+    "enhancement" "P_min/P_c" Number "smallest force over that of the smooth sphere, P_min/P_c in magnitude":
         Stage::Curve(CurveMinima::enhancement);
     "waves" "s/λ" Number "waves in the disc at the smallest force, s/lambda": Stage::Curve(CurveMinima::waves);
     "critical_force" "P_c" Force "P_c = 3/2 pi gamma R, the pull-off force of the smooth sphere":
         Stage::Preset(PresetValues::critical_force);
-    "kesari_lew" "P_min/P_c" Number "estimate (1 + 1/(sqrt(pi) alpha))^2 of the enhancement, good for many waves; of several waves the sum, a bound":
+    "kesari_lew" "P_min/P_c" Number "estimate (1 + 1/(sqrt(pi) alpha))^2 of the enhancement, good for many waves; \
+                                     for several waves the sum, a bound":
         Stage::Preset(PresetValues::kesari_lew);
-    "guduru" "P_min/P_c" Number "bound of the enhancement of one disc: Guduru's force with every wave in its worst phase":
+    "guduru" "P_min/P_c" Number "bound on the enhancement of one disc: Guduru's force with every wave in its worst \
+                                 phase":
         Stage::Preset(PresetValues::guduru);
     "johnson" "α" Number "alpha = sqrt(2 gamma lambda/(pi^2 E* A^2))":
         Stage::Preset(|ground| ground.groups.johnson.map(Cell::Number));
@@ -115,46 +120,50 @@ quantities! {
         Stage::Preset(|ground| ground.groups.connectivity.map(Cell::Number));
     "tabor" "μ" Number "Tabor's mu, where the range of action is known":
         Stage::Preset(|ground| ground.groups.tabor.map(Cell::Number));
-    "fitted_modulus" "E*" Stress "effective modulus that the measured curve gives; none where it is not free":
+    "fitted_modulus" "E*" Stress "effective modulus fitted to the measured curve; empty where it is not free":
         Stage::Fit(|fit| fit.value("material.effective_modulus"));
     "fitted_modulus_error" "" Stress "its standard error":
         Stage::Fit(|fit| fit.error("material.effective_modulus"));
-    "fitted_adhesion" "γ" EnergyPerArea "work of adhesion that the measured curve gives; none where it is not free":
+    "fitted_adhesion" "γ" EnergyPerArea "work of adhesion fitted to the measured curve; empty where it is not free":
         Stage::Fit(|fit| fit.value("material.work_of_adhesion"));
     "fitted_adhesion_error" "" EnergyPerArea "its standard error":
         Stage::Fit(|fit| fit.error("material.work_of_adhesion"));
-    "fitted_radius" "R" Length "radius of curvature that the measured curve gives; none where it is not free":
+    "fitted_radius" "R" Length "radius of curvature fitted to the measured curve; empty where it is not free":
         Stage::Fit(|fit| fit.value("gap.radius_of_curvature"));
     "fitted_radius_error" "" Length "its standard error":
         Stage::Fit(|fit| fit.error("gap.radius_of_curvature"));
-    "fitted_amplitude" "A" Length "amplitude that the measured curve gives; none where it is not free":
+    "fitted_amplitude" "A" Length "amplitude fitted to the measured curve; empty where it is not free":
         Stage::Fit(|fit| fit.value("gap.amplitude"));
     "fitted_amplitude_error" "" Length "its standard error":
         Stage::Fit(|fit| fit.error("gap.amplitude"));
-    "fitted_wavelength" "λ" Length "wavelength that the measured curve gives; none where it is not free":
+    "fitted_wavelength" "λ" Length "wavelength fitted to the measured curve; empty where it is not free":
         Stage::Fit(|fit| fit.value("gap.wavelength"));
     "fitted_wavelength_error" "" Length "its standard error":
         Stage::Fit(|fit| fit.error("gap.wavelength"));
-    "fitted_stiffness" "k" ForcePerLength "stiffness of the device that the measured curve gives; none where it is not free":
+    "fitted_stiffness" "k" ForcePerLength "stiffness of the device fitted to the measured curve; empty where it is \
+                                           not free":
         Stage::Fit(|fit| fit.value("path.control.stiffness"));
     "fitted_stiffness_error" "" ForcePerLength "its standard error":
         Stage::Fit(|fit| fit.error("path.control.stiffness"));
-    "fitted_offset" "δ₀" Length "offset of x that the measured curve gives; none where it is not free":
+    "fitted_offset" "δ₀" Length "offset of x fitted to the measured curve; empty where it is not free":
         Stage::Fit(|fit| fit.value("data.offset"));
     "fitted_offset_error" "" Length "its standard error":
         Stage::Fit(|fit| fit.error("data.offset"));
-    "fitted_baseline" "P₀" Force "baseline of the force that the measured curve gives; none where it is not free":
+    "fitted_baseline" "P₀" Force "baseline of the force fitted to the measured curve; empty where it is not free":
         Stage::Fit(|fit| fit.value("data.baseline"));
     "fitted_baseline_error" "" Force "its standard error":
         Stage::Fit(|fit| fit.error("data.baseline"));
-    "fitted_tilt" "" ForcePerLength "tilt of the baseline that the measured curve gives; none where it is not free":
+    "fitted_tilt" "" ForcePerLength "tilt of the baseline fitted to the measured curve; empty where it is not free":
         Stage::Fit(|fit| fit.value("data.tilt"));
     "fitted_tilt_error" "" ForcePerLength "its standard error":
         Stage::Fit(|fit| fit.error("data.tilt"));
     "fit_chi_squared" "" Number "chi squared per point of the fit": Stage::Fit(|fit| Some(fit.chi_squared()));
     "fit_outliers" "" Number "points far from the fitted curve": Stage::Fit(|fit| Some(fit.outliers()));
-    "fit_verdict" "" Number "0 where the model describes the points, 4 where it does not; no value is to be believed then": Stage::Fit(|fit| Some(fit.verdict()));
-    "fit_warnings" "" Number "reasons and warnings of the fit; pulloff fit says which": Stage::Fit(|fit| Some(fit.warnings()));
+    "fit_verdict" "" Number "0 where the model describes the points, 4 where it does not; then no value can be \
+                             trusted":
+        Stage::Fit(|fit| Some(fit.verdict()));
+    "fit_warnings" "" Number "number of reasons and warnings of the fit; pulloff fit lists them":
+        Stage::Fit(|fit| Some(fit.warnings()));
 }
 
 /// The quantities of a spec that does not name any.

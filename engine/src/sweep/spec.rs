@@ -73,7 +73,7 @@ pub struct Spec {
 }
 
 /// What `set` must be.
-const ASSIGNMENTS: &str = "an array of texts \"KEY=VALUE\"";
+const ASSIGNMENTS: &str = "an array of strings \"KEY=VALUE\"";
 /// The possible values of `combine`.
 const DESIGNS: [&str; 2] = ["grid", "pairs"];
 /// The key that tells one random surface from another.
@@ -109,11 +109,11 @@ impl Spec {
         for table in &tables {
             let axis = SweepAxis::read(table, &preset, fixed)?;
             if let Some(other) = rival(&axis.key, read.iter().map(|axis| &*axis.key)) {
-                return Err(table.fault(&format!("the axis {} is at odds with the axis {other}", axis.key)));
+                return Err(table.fault(&format!("the axis {} conflicts with the axis {other}", axis.key)));
             }
             if let Some((entry, key)) = assigned.iter().find(|(_, key)| overrides(&axis.key, key)) {
                 let what = format!(
-                    "set gives {} a value that no row has: the axis {} gives every row its own; remove one of them",
+                    "set gives {} a value that no row uses: the axis {} gives every row its own; remove one of them",
                     quote(key),
                     axis.key
                 );
@@ -255,7 +255,8 @@ fn drawn(axes: Vec<SweepAxis>, preset: &Preset, fixed: bool) -> Result<Vec<Sweep
     }
     if own.is_empty() {
         return Err(format!(
-            "the members would all be the same: the preset has no {SEED} that may differ, and no axis has a distribution"
+            "the members would all be the same: the preset has no {SEED} that could differ, and no axis has a \
+             distribution"
         ));
     }
     all.append(&mut own);
@@ -322,14 +323,14 @@ fn design(section: &SpecSection<'_>) -> Result<Design, SpecError> {
     };
     let in_pairs = match section.get("combine") {
         Some(combine) if section.get("random").is_some() => {
-            return Err(combine.fault("combine is of a grid or of pairs: [random] has neither"));
+            return Err(combine.fault("combine is for a grid or for pairs: [random] has neither"));
         }
         Some(combine) => is_pairs(&combine)?,
         None => false,
     };
     match (section.get("random"), section.get("ensemble")) {
         (Some(_), Some(ensemble)) => {
-            Err(ensemble.fault("[ensemble] draws its members itself: it goes with no [random]"))
+            Err(ensemble.fault("[ensemble] draws its members itself: it cannot be combined with [random]"))
         }
         (Some(random), None) => {
             let random = random.section("a table with draws and seed")?;
@@ -386,7 +387,7 @@ fn rows(design: Design, axes: &[SweepAxis], tables: &[SpecSection<'_>]) -> Resul
             (_, Design::Pairs, Some(count)) => {
                 if let Some((other, first)) = first.filter(|(_, first)| first != count) {
                     let what = format!(
-                        "pairs need axes of one length: {key} has {count} values, {} has {first}",
+                        "pairs need axes of equal length: {key} has {count} values, {} has {first}",
                         other.key
                     );
                     return Err(table.fault(&what));
@@ -408,13 +409,13 @@ fn columns(section: &SpecSection<'_>) -> Result<Vec<QuantityColumn>, SpecError> 
     let Some(entry) = section.get("quantities") else {
         return Ok(USUAL.iter().filter_map(|name| QuantityColumn::named(name).ok()).collect());
     };
-    let wanted = "an array of names of quantities";
+    let wanted = "an array of quantity names";
     let mut columns = Vec::new();
     for name in entry.array(wanted)? {
         let column = QuantityColumn::named(name.text(wanted)?)
             .map_err(|what| name.fault(&format!("quantities: {what}")))?;
         if columns.contains(&column) {
-            return Err(name.fault(&format!("quantities: {} stands there twice", column.name())));
+            return Err(name.fault(&format!("quantities: {} is listed twice", column.name())));
         }
         columns.push(column);
     }

@@ -166,7 +166,7 @@ pub fn groups() -> Result<Vec<Group>, VerifyError> {
         groups.push(of_loop(&known, found.as_ref()));
         balances.push(balance(&known, found.as_ref()));
     }
-    let title = "Two of our own numbers: whole loops".to_owned();
+    let title = "Self-consistency: whole loops".to_owned();
     groups.push(Group { title, measure: super::balance::OWN_MEASURE, rows: balances });
     Ok(groups)
 }

@@ -41,6 +41,6 @@ pub fn group(settings: &VerifySettings) -> Result<Group, VerifyError> {
             rows.push(VerifyRow::new(format!("{name}: delta = {place}"), rounds, ROUNDS.0, 1.0, ROUNDS.1));
         }
     }
-    let title = "Newton-Raphson from a threefold contact radius, JKR sphere".to_owned();
+    let title = "Newton-Raphson from three times the contact radius, JKR sphere".to_owned();
     Ok(Group { title, measure: "in rounds; the paper reports 5 to 6", rows })
 }

@@ -35,7 +35,7 @@ impl Group {
     pub fn apart(self, own_measure: &'static str) -> [Self; 2] {
         let Self { title, measure, rows } = self;
         let (own, exact) = rows.into_iter().partition(|row| row.other.is_some());
-        let own_title = format!("Two of our own numbers: {title}");
+        let own_title = format!("Self-consistency: {title}");
         [Self { title, measure, rows: exact }, Self { title: own_title, measure: own_measure, rows: own }]
     }
 }
@@ -107,6 +107,6 @@ mod tests {
         };
         let [exact, own] = group.apart("over all");
         assert_eq!((&*exact.title, exact.rows.len()), ("A", 1));
-        assert_eq!((&*own.title, own.measure, own.rows.len()), ("Two of our own numbers: A", "over all", 1));
+        assert_eq!((&*own.title, own.measure, own.rows.len()), ("Self-consistency: A", "over all", 1));
     }
 }

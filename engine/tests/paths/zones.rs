@@ -281,7 +281,7 @@ fn judged(number: u64) -> (Came, String) {
         Ok(found) => found,
         Err(error) => {
             let words = error.to_string();
-            let further = words.contains("one disc of contact in one zone alone");
+            let further = words.contains("only for one disc of contact in one zone");
             let came = if further { Came::Further } else { Came::Refused };
             // The preset helps whoever looks for the reason.
             let of = if further { String::new() } else { pulloff_engine::preset::write(&preset) };

@@ -84,7 +84,7 @@ pub enum NotFound {
     #[error("the edges are at a limit point")]
     Singular,
     /// The iteration did not end.
-    #[error("Newton's method did not end: its last step was {step} waves")]
+    #[error("Newton's method did not converge: its last step was {step} waves")]
     Unfinished {
         /// The largest part of the last step, in waves.
         step: f64,

@@ -143,15 +143,15 @@ impl PathError {
                 let (start, searched) = (length(contact_radius), length(searched));
                 let under = printer.under_control();
                 format!(
-                    "the start state (contact radius {start}) is unstable{under} and no stable state lies outward up to the \
-                     contact radius {searched}"
+                    "the start state (contact radius {start}) is unstable{under}, and there is no stable state \
+                     further out, up to the contact radius {searched}"
                 )
             }
             Self::BeyondGap { radius, approach, force: load } => {
                 let (radius, approach, load) = (length(radius), length(approach), force(load));
                 format!(
-                    "the contact grew to r = {radius}, up to where the gap is known, at the approach {approach} and the force \
-                     {load}: turn before"
+                    "the contact grew to r = {radius}, where the known gap ends, at the approach {approach} and the \
+                     force {load}: turn earlier"
                 )
             }
             Self::RadiusBeyondGap { radius, known } => {
@@ -161,21 +161,21 @@ impl PathError {
                 )
             }
             Self::TooMany { ref error, approach } => {
-                format!("{error}, at the approach {}: turn before", length(approach))
+                format!("{error}, at the approach {}: turn earlier", length(approach))
             }
             Self::BeyondZone { kind, radius, approach, force } => {
                 beyond_zone(kind, radius, [approach, force], printer)
             }
-            Self::Unseen { radius } => format!("what lies up to r = {} is not known", length(radius)),
+            Self::Unseen { radius } => format!("the gap is not known up to r = {}", length(radius)),
             Self::NeverTouches { searched } => {
                 let searched = length(searched);
-                format!("the gap has no least value up to r = {searched}: the bodies never touch")
+                format!("the gap has no minimum up to r = {searched}: the bodies never touch")
             }
-            Self::BadTurn(turn) => format!("a turn at {turn} is none"),
+            Self::BadTurn(turn) => format!("{turn} is not a valid turn"),
             Self::State(ref error) => error.words(printer),
             Self::NoLanding { control_value, steps } => {
                 let value = at(control_value);
-                format!("at the control value {value} the edges did not land after {steps} steps")
+                format!("at the control value {value} the edges did not land within {steps} steps")
             }
             Self::Lost { control_value } => {
                 let value = at(control_value);
@@ -202,12 +202,12 @@ pub(super) fn beyond_zone(
 ) -> String {
     let (radius, approach, force) = (printer.length(radius), printer.length(approach), printer.force(force));
     let what = kind.map_or_else(
-        || format!("no zone that ends at r = {radius} or a little beyond holds one disc of contact"),
+        || format!("no zone that ends at r = {radius} or slightly beyond holds one disc of contact"),
         |kind| kind.words(&radius),
     );
     format!(
-        "at the approach {approach} and the force {force} {what}: adhesion with a range is computed for one disc of contact in \
-         one zone alone; a larger material.cohesive_strength, or less of a gap, keeps it so"
+        "at the approach {approach} and the force {force} {what}: adhesion with a range is computed only for one \
+         disc of contact in one zone; a larger material.cohesive_strength, or a flatter gap, keeps it so"
     )
 }
 
@@ -258,13 +258,15 @@ impl Warning {
         match *self {
             Self::Digits { digits, control_value } => {
                 let value = printer.control_value(control_value);
-                format!("at the control value {value} edges are known to {digits:.1} digits only")
+                format!("at the control value {value} edges are known to only {digits:.1} digits")
             }
             Self::Balance { share } => format!(
-                "energies and areas differ by {share:.1e} of the losses or the work of loading, whichever is more"
+                "energies and areas differ by {share:.1e} of the losses or the work of loading, whichever is larger"
             ),
             Self::Area { event, share } => {
-                format!("the loss of event {event} by area differs by {share:.1e} of it from that by energy")
+                format!(
+                    "the losses of event {event} by area and by energy differ by a fraction of {share:.1e}"
+                )
             }
         }
     }

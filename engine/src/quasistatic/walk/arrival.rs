@@ -75,13 +75,13 @@ pub enum WalkFailure {
     #[error("the edge cannot run to the next stable state: on the way the potential rises")]
     Rises,
     /// The edge runs outward and finds no stable state.
-    #[error("no stable state lies outward at this control value")]
+    #[error("no stable state further out at this control value")]
     NothingOutward,
     /// The edge runs inward beyond what the basis can tell.
     #[error("the basis has no equilibrium further in: the landing is not known")]
     NothingInward,
     /// There is no first touch.
-    #[error("the gap has no least value: the bodies never touch")]
+    #[error("the gap has no minimum: the bodies never touch")]
     NeverTouches,
     /// Nothing runs from here.
     #[error("this state is stable: its edges do not run")]
