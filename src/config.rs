@@ -179,7 +179,7 @@ impl ConfigSheet<'_> {
         let meant = closest(word, known.iter().copied());
         let hint = match meant {
             Some(meant) => format!("; did you mean {meant}?"),
-            None if known.len() <= FEW => format!("; there is {}", known.join(", ")),
+            None if known.len() <= FEW => format!("; expected {}", known.join(", ")),
             None => String::new(),
         };
         self.wrong(at, format!("no {what} is called \"{}\"{hint}", quote(word)));
@@ -228,7 +228,7 @@ fn look(config: &mut Config, table: &DeTable<'_>, sheet: &mut ConfigSheet<'_>) {
         };
         match words.iter().find(|known| word.as_deref() == Some(**known)) {
             Some(word) => config.look.push((row, word)),
-            None => sheet.wrong(at, format!("{row} is one of {}", words.join(", "))),
+            None => sheet.wrong(at, format!("{row} must be one of {}", words.join(", "))),
         }
     }
 }
@@ -264,13 +264,13 @@ mod tests {
     fn what_is_wrong_is_said_with_its_line_and_the_nearest_name() {
         for (text, expected) in [
             ("[keys]\nstepp = \"x\"", "config.toml:2: no command is called \"stepp\"; did you mean step?"),
-            ("[look]\ntheme = \"drak\"", "config.toml:2: theme is one of any, dark, light, mono"),
+            ("[look]\ntheme = \"drak\"", "config.toml:2: theme must be one of any, dark, light, mono"),
             (
                 "[look]\nthemes = 3",
                 "config.toml:2: no part of [look] is called \"themes\"; did you mean theme?",
             ),
             ("[kys]", "config.toml:1: no table is called \"kys\"; did you mean keys?"),
-            ("theme = \"light\"", "config.toml:1: no table is called \"theme\"; there is keys, look"),
+            ("theme = \"light\"", "config.toml:1: no table is called \"theme\"; expected keys, look"),
             ("\nkeys = 3", "config.toml:2: keys is a table: [keys]"),
             ("[keys]\nstep = 3", "config.toml:2: step takes a key in quotes"),
             ("[keys]\nstep = [\"a\", 3]", "config.toml:2: step takes a key in quotes"),

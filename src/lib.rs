@@ -7,7 +7,7 @@
 #![allow(
     missing_docs,
     clippy::missing_errors_doc,
-    reason = "nobody builds on these rooms but what stands in this repository"
+    reason = "only code in this repository uses these modules"
 )]
 
 #[cfg(feature = "program")]

@@ -134,7 +134,7 @@ def lose_a_worker(cluster, program, outcome):
         if outcome == "running":
             assert Path(f"/proc/{lost}/exe").resolve() == program, "it does not go on"
             log = Path(f"{tasks[lost]}.log")
-            until("its shard was not started again beside it", lambda: "waiting for its end" in log.read_text())
+            until("its shard was not started again beside it", lambda: "waiting for it to end" in log.read_text())
     finally:
         for pid in tasks:
             resume(pid)

@@ -13,7 +13,7 @@ pub struct Messages {
     /// Write nothing to standard error except why the command failed: no warnings, no notes, no progress
     #[arg(long, short)]
     quiet: bool,
-    /// Exit with status 3 after a warning; the result is written all the same
+    /// Exit with status 3 after a warning; the result is still written
     #[arg(long)]
     strict: bool,
 }
@@ -90,7 +90,7 @@ impl Console {
 /// Asks on standard error; any answer but `y` or `yes` is no.
 pub(super) fn ask(question: &str) -> Result<(), Failure> {
     if !std::io::stdin().is_terminal() {
-        return Err(Failure::Usage("nobody can be asked: --yes deletes without a question".to_owned()));
+        return Err(Failure::Usage("nobody can answer here: --yes deletes without asking".to_owned()));
     }
     let _ = write!(std::io::stderr(), "{question} [y/N] ");
     let mut answer = String::new();

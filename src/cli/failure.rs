@@ -76,16 +76,16 @@ impl Status {
         match self {
             Self::Done => "done",
             Self::Failed => {
-                "something failed: a full disk, a curve or a fit that did not come to its end, a row of verify, every row of a sweep"
+                "something failed: a full disk, a curve or fit that did not finish, a row of verify, every row of a sweep"
             }
             Self::Mendable => {
-                "what you can mend: a bad value, option or file, a path that leads nowhere or must not be written, a file that exists already"
+                "what you can fix: a bad value, option or file, a path that leads nowhere or must not be written, a file that already exists"
             }
             Self::Doubtful => {
                 "the result is written, but has a warning that --strict forbids, or a fit whose points do not determine its values"
             }
             Self::NotDescribed => "the result is written, but the model does not describe the measured curve",
-            Self::Fault => "a fault of the program, with a message and a report",
+            Self::Fault => "a fault in the program, with a message and a report",
             Self::HungUp => "the explorer lost its terminal",
             Self::Cancelled => "stopped by Ctrl-C; a sweep, and the table of a fit, keep what is done",
             Self::Terminated => "stopped by SIGTERM, likewise",

@@ -65,7 +65,7 @@ pub fn run(arguments: &FiguresArguments) -> Result<ExitCode, Failure> {
     let mut captions = String::from("# The figures of the paper, computed again\n");
     let mut write = |sheets: &[PaperSheet]| -> Result<(), Failure> {
         for sheet in sheets {
-            let missing = || Failure::Incomplete(format!("{}: its files were not looked at", sheet.name));
+            let missing = || Failure::Incomplete(format!("{}: its files were not checked", sheet.name));
             let files = files.get(sheet.name).ok_or_else(missing)?;
             files.numbers.write(table::csv(&sheet.figure)?)?;
             let picture = svg::svg(&sheet.figure, Width::ONE_COLUMN);

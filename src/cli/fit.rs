@@ -51,7 +51,7 @@ pub struct FitArguments {
     free: Option<Vec<String>>,
     #[command(flatten)]
     changes: Changes,
-    /// Values that are known with an error and may change within it: path.control.stiffness=10%,R=1um; those of the
+    /// Values known with an error, which may change within it: path.control.stiffness=10%,R=1um; those of the
     /// preset's data.uncertain when left out
     #[arg(long, value_name = "KEY=ERROR,...", value_delimiter = ',', allow_hyphen_values = true)]
     uncertain: Option<Vec<String>>,
@@ -68,7 +68,7 @@ pub struct FitArguments {
     several: Several,
     #[command(flatten)]
     reading: ReadingArguments,
-    /// Use only rows in this range, in the numbers of the file: x=LO..HI or force=LO..HI (repeatable)
+    /// Use only rows in this range, in the file's own numbers: x=LO..HI or force=LO..HI (repeatable)
     #[arg(long, value_name = "x=LO..HI", allow_hyphen_values = true)]
     range: Vec<String>,
     /// Standard deviation of x; that of the free part, or the last digit, when left out
@@ -83,7 +83,7 @@ pub struct FitArguments {
     /// Start only from the preset's values
     #[arg(long)]
     no_scan: bool,
-    /// Poisson's ratio of the soft body; the report then gives its E beside E*
+    /// Poisson's ratio of the soft body; the report then gives its E as well as E*
     #[arg(long, value_name = "NU", allow_hyphen_values = true)]
     poisson: Option<f64>,
     /// Find 95 % intervals by the profile of chi squared
@@ -104,7 +104,7 @@ pub struct FitArguments {
     /// Write the points with their residuals to this file; for one file of points only
     #[arg(long, value_name = "FILE")]
     residuals: Option<PathBuf>,
-    /// Write one row per file to this table; a rerun continues where it ended, and starts again with --overwrite
+    /// Write one row per file to this table; a rerun continues where it stopped, or starts again with --overwrite
     #[arg(long, value_name = "RESULTS.csv")]
     table: Option<PathBuf>,
     #[command(flatten)]
@@ -233,13 +233,13 @@ impl FitArguments {
         }
         if files.len() > 1 && self.model.len() > 1 {
             return Err(Failure::Usage(format!(
-                "--model: several models are compared on one file of points, and {} are given",
+                "--model: several models are compared on one file of points, but {} are given",
                 files.len()
             )));
         }
         if self.several.together && (files.len() < 2 || self.model.len() > 1) {
             return Err(Failure::Usage(format!(
-                "--together: one law and one model is fitted to two files or more, and {} files and {} models are given",
+                "--together: one law and one model are fitted to two or more files, but {} files and {} models are given",
                 files.len(),
                 self.model.len().max(1)
             )));
@@ -251,13 +251,13 @@ impl FitArguments {
             ));
         }
         if let Some(nu) = self.poisson.filter(|nu| !(-1.0..=0.5).contains(nu)) {
-            return Err(Failure::Usage(format!("--poisson {nu}: Poisson's ratio is from -1 to 0.5")));
+            return Err(Failure::Usage(format!("--poisson {nu}: Poisson's ratio must be from -1 to 0.5")));
         }
         let options = self.options(&loaded.preset)?;
         Ok((files, loaded, options))
     }
 
-    /// What the command line says of the files, with the keys.
+    /// What the command line says about the files, with the keys.
     fn said(&self) -> Result<Vec<(&'static str, Value)>, Failure> {
         let uncertain = self.uncertain.as_ref().map(|given| (data::UNCERTAIN, Value::Text(given.join(","))));
         Ok(self.reading.said()?.into_iter().chain(uncertain).collect())
@@ -275,7 +275,7 @@ impl FitArguments {
             [(OUTPUT, is_fitted && !self.several.together), ("--residuals", self.residuals.is_some())];
         if let Some((option, _)) = of_one.into_iter().find(|(_, is_given)| *is_given && files.len() > 1) {
             return Err(Failure::Usage(format!(
-                "{option}: is of one file of points, and {} are given",
+                "{option}: is for one file of points, but {} are given",
                 files.len()
             )));
         }
@@ -290,7 +290,7 @@ impl FitArguments {
         let residuals = self.residuals.as_ref().map(|file| outputs.file("--residuals", file)).transpose()?;
         let table = match &self.table {
             Some(file) if stream::is_stream(file) => {
-                let what = "is written again after each fit; name a file";
+                let what = "is rewritten after each fit; name a file";
                 return Err(Failure::Usage(format!("--table {}: {what}", shown(file))));
             }
             Some(file) => {
@@ -319,7 +319,7 @@ impl FitArguments {
             let sigma = number(what, key, text)?;
             if sigma.is_nan() || sigma <= 0.0 {
                 return Err(Failure::Usage(format!(
-                    "{what} {}: a standard deviation is above 0",
+                    "{what} {}: a standard deviation must be above 0",
                     quote(text)
                 )));
             }

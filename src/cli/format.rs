@@ -56,7 +56,7 @@ impl FormatArgument {
             Some(_) => {
                 return Err(Failure::Usage(format!(
                     "{OUTPUT} {}: a result is written as table, csv or json, and its file ends in .csv, .json or .txt, or has \
-                     no ending{figures}",
+                     no extension{figures}",
                     shown(file)
                 )));
             }
@@ -86,7 +86,10 @@ impl FormatArgument {
     fn contradicts(self, file: &Path) -> Failure {
         let ending = ending(file).unwrap_or_default();
         let asked = self.format.map_or("", Format::name);
-        Failure::Usage(format!("{OUTPUT} {}: its ending says {ending}, --format says {asked}", shown(file)))
+        Failure::Usage(format!(
+            "{OUTPUT} {}: its extension says {ending}, --format says {asked}",
+            shown(file)
+        ))
     }
 }
 
@@ -97,7 +100,7 @@ pub fn only(option: &str, file: &Path, format: Format) -> Result<(), Failure> {
         None | Some("" | TEXT) => Ok(()),
         Some(ending) if ending == name || stream::is_stream(file) => Ok(()),
         Some(_) => Err(Failure::Usage(format!(
-            "{option} {}: is written as {}, and its file ends in .{name} or .txt, or has no ending",
+            "{option} {}: is written as {}, and its file ends in .{name} or .txt, or has no extension",
             shown(file),
             name.to_uppercase()
         ))),

@@ -68,7 +68,7 @@ fn statuses() -> Roff {
 fn commands() -> Roff {
     let (mut roff, keys) = (Roff::new(), keys());
     roff.control("SH", ["COMMANDS OF THE EXPLORER"]);
-    roff.text([roman("Their names in scripts, in the settings and behind the key of command-line.")]);
+    roff.text([roman("Their names in scripts, in the settings and after the key of command-line.")]);
     for row in ROWS {
         let argument = Some(row.takes.what).filter(|what| !what.is_empty());
         let argument = argument.map_or_else(String::new, |what| format!(" [{what}]"));

@@ -85,8 +85,7 @@ pub fn run(arguments: &MapArguments) -> Result<ExitCode, Failure> {
         (None, Some(MapOrdinate::Force)) => Ordinate::Force,
         (None, Some(MapOrdinate::Control)) => Ordinate::Control,
         (None, None) => {
-            let what =
-                "map needs what stands over it: --y-key KEY=FROM..TO, or --y control, approach or force";
+            let what = "map needs a y axis: --y-key KEY=FROM..TO, or --y control, approach or force";
             return Err(Failure::Usage(what.to_owned()));
         }
     };
@@ -97,7 +96,7 @@ pub fn run(arguments: &MapArguments) -> Result<ExitCode, Failure> {
     if let Some(onset) = &report.onset {
         let smallest = onset.amplitude_over_wavelength;
         console.note(Some(&format!(
-            "under {} control this preset snaps from A/lambda = {smallest:.6} on",
+            "under {} control this preset snaps from A/lambda = {smallest:.6} upwards",
             onset.control
         )));
     }
@@ -176,14 +175,14 @@ fn axis(flag: &str, text: &str, preset: &Preset) -> Result<MapAxis, Failure> {
             return text
                 .trim()
                 .parse()
-                .map_err(|_| wrong(&"a compliance goes from a number to a number or inf"));
+                .map_err(|_| wrong(&"a compliance ranges from a number to a number or inf"));
         }
         let row = preset.row(key).ok_or_else(|| match preset.clone().set(key, 1.0.into()) {
             Err(invalid) => wrong(&invalid),
             Ok(()) => wrong(&expected),
         })?;
         if !row.kind.is_number() {
-            return Err(wrong(&"an axis is a number of the preset, a group, or compliance"));
+            return Err(wrong(&"an axis must be a number of the preset, a group, or compliance"));
         }
         preset.number(&row, text.trim()).map_err(|invalid| wrong(&invalid))
     };

@@ -34,16 +34,16 @@ pub(super) fn attach(
 /// What the user says about the columns and rows of a measured curve.
 #[derive(Debug, Clone, Args)]
 pub(super) struct ReadingArguments {
-    /// What the columns are, by number or name, where the header does not say it: x=1,force=2 or position=Z [nm],force=F [nN]
+    /// What the columns are, by number or name, where the header does not say: x=1,force=2 or position=Z [nm],force=F [nN]
     #[arg(long, value_name = "ROLE=COLUMN,...")]
     columns: Option<String>,
     /// Use only one branch of the curve
     #[arg(long, value_enum)]
     segment: Option<BranchChoice>,
-    /// Which rows are out of contact, as a range of x in the numbers of the file: x=LO..HI, or none where all are in contact
+    /// Which rows are out of contact, as a range of x in the file's own numbers: x=LO..HI, or none where all are in contact
     #[arg(long, value_name = "x=LO..HI", allow_hyphen_values = true)]
     free_part: Option<String>,
-    /// The direction of the columns, where the points do not show it: x=-,force=+ turns the sign of x alone
+    /// The direction of the columns, where the points do not show it: x=-,force=+ reverses the sign of x only
     #[arg(long, value_name = "x=-,force=+", allow_hyphen_values = true)]
     signs: Option<String>,
     /// Leave out this many rows at the start

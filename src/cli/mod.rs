@@ -50,7 +50,7 @@ struct Cli {
     command: Option<ProgramCommand>,
     #[command(flatten)]
     problem: ProblemArguments,
-    /// Go on with a session that was left or cut off: the newest, or the one of this name
+    /// Go on with a session that was left or cut off: the newest, or the one with this name
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "",
           conflicts_with_all = ["preset", "assignments", "control"])]
     resume: Option<String>,
@@ -75,7 +75,7 @@ enum ProgramCommand {
     Map(map::MapArguments),
     /// Fit values of a preset to measured curves
     Fit(fit::FitArguments),
-    /// Compute the energy release rate of a measured curve beside the speed of its edge
+    /// Compute the energy release rate of a measured curve along with the speed of its edge
     Speeds(speeds::SpeedsArguments),
     /// Draw a view as a figure for print
     Plot(plot::PlotArguments),

@@ -138,7 +138,7 @@ impl Outputs {
         let refused = |what: &str| Failure::Usage(format!("{} {what}", sink.name()));
         if let Some(place) = FilePlace::written(path) {
             if let Some((what, _)) = self.inputs.iter().find(|(_, input)| *input == place) {
-                return Err(refused(&format!("is the file of {what} that is read; write to another")));
+                return Err(refused(&format!("is also read, as {what}; write to another file")));
             }
             // What is discarded may be discarded twice.
             let is_null = FilePlace::written(Path::new("/dev/null")).as_ref() == Some(&place);
@@ -196,7 +196,7 @@ impl OutputSink {
     fn failure(&self, error: WriteError) -> Failure {
         match error {
             WriteError::Exists { .. } => {
-                Failure::Usage(format!("{} exists already; --overwrite replaces it", self.name()))
+                Failure::Usage(format!("{} already exists; --overwrite replaces it", self.name()))
             }
             error => error.into(),
         }

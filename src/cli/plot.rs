@@ -141,7 +141,7 @@ pub fn run(arguments: &PlotArguments) -> Result<ExitCode, Failure> {
         return console.end();
     }
     if arguments.quantity.is_some() {
-        let what = "--quantity: is a column of the results of a sweep, which --sweep RESULTS.csv names";
+        let what = "--quantity: is a column of a sweep's results; give them with --sweep RESULTS.csv";
         return Err(Failure::Usage(what.to_owned()));
     }
     let loaded = arguments.problem.load(&console)?;
@@ -209,7 +209,10 @@ pub fn run(arguments: &PlotArguments) -> Result<ExitCode, Failure> {
     }
     let is_drawn = figure.marks.iter().any(|mark| matches!(mark.sign, Sign::Measured { .. }));
     if arguments.measured.is_some() && !is_drawn {
-        return Err(Failure::Usage(format!("--measured: the file has not the columns of {}", view.name())));
+        return Err(Failure::Usage(format!(
+            "--measured: the file does not have the columns of {}",
+            view.name()
+        )));
     }
     let figure = arguments.part(figure)?;
     let picture = svg::svg(&figure, arguments.width);
@@ -247,7 +250,7 @@ impl PlotArguments {
         let quantity = self.quantity.as_deref().unwrap_or(QUANTITY);
         let axis = match &results.axes[..] {
             [] => {
-                let what = "--sweep: an ensemble without an axis has one row of statistics, and nothing to draw it over";
+                let what = "--sweep: an ensemble without an axis has one row of statistics and nothing to draw it over";
                 return Err(Failure::Usage(what.to_owned()));
             }
             [axis] => axis,
@@ -306,7 +309,7 @@ impl PlotArguments {
         let path = self.destination.path();
         let figure = outputs.file(OUTPUT, path)?;
         if self.data && stream::is_stream(path) {
-            let what = "--data: the data stand beside the file of the figure, which -o FILE names";
+            let what = "--data: the data go beside the figure's file; name it with -o FILE";
             return Err(Failure::Usage(what.to_owned()));
         }
         let beside = self.data.then(|| outputs.file("--data", &path.with_extension("csv")));

@@ -44,10 +44,10 @@ pub struct ProblemArguments {
 /// Other values for keys of a preset.
 #[derive(Debug, Clone, Default, Args)]
 pub struct Changes {
-    /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable; the last of one key holds)
+    /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable; for one key the last holds)
     ///
     /// In an SI preset a bare number is SI, and a value may have a unit: "gap.amplitude=2 um". A dimensionless group
-    /// changes the values that it is made of: `groups.amplitude_over_wavelength`, `groups.wavelength_over_radius`,
+    /// changes the values that it is made from: `groups.amplitude_over_wavelength`, `groups.wavelength_over_radius`,
     /// `groups.adhesion`. An SI preset is shown in the units of its display keys: display.force=mN.
     #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]
     pub assignments: Vec<String>,

@@ -25,7 +25,7 @@ pub struct PullArguments {
     /// path.steps); log:FROM..TO:COUNT for logarithmically spaced rates
     #[arg(long, value_name = "RATE")]
     rate: Vec<String>,
-    /// Find how long this dead load is borne, a negative force for a pull (repeatable)
+    /// Find how long the contact bears this dead load, a negative force for a pull (repeatable)
     #[arg(long, value_name = "FORCE", allow_hyphen_values = true)]
     hold_force: Vec<String>,
     /// What the rows of a table or of CSV are; JSON has the runs
@@ -83,7 +83,7 @@ fn rates(preset: &Preset, text: &str) -> Result<Vec<f64>, Failure> {
     let one = |text: &str| {
         let rate = number(preset, "--rate", RATE, text)?;
         let usable = rate > 0.0 && rate.is_finite();
-        usable.then_some(rate).ok_or_else(|| wrong(text, "a rate is above 0"))
+        usable.then_some(rate).ok_or_else(|| wrong(text, "a rate must be above 0"))
     };
     let Some(range) = text.strip_prefix("log:") else { return Ok(vec![one(text)?]) };
     let expected = "expected log:FROM..TO:COUNT, as in log:1e-6..1e2:100";
@@ -91,7 +91,7 @@ fn rates(preset: &Preset, text: &str) -> Result<Vec<f64>, Failure> {
     let (from, to) = ends.split_once("..").ok_or_else(|| wrong(text, expected))?;
     let count: usize = count.trim().parse().map_err(|_| wrong(text, expected))?;
     if !(2..=RATES).contains(&count) {
-        return Err(wrong(text, &format!("the count is a whole number from 2 to {RATES}")));
+        return Err(wrong(text, &format!("the count must be a whole number from 2 to {RATES}")));
     }
     let (from, to) = (one(from)?, one(to)?);
     let factor = pulloff_engine::elementary::ln(to / from);

@@ -24,7 +24,7 @@ use std::process::ExitCode;
 /// The arguments of `pulloff run`.
 #[derive(Debug, Args)]
 pub struct RunArguments {
-    /// The script, one command a line; - reads standard input
+    /// The script, one command per line; - reads standard input
     script: PathBuf,
     /// The preset to start with, by name or file; - reads standard input; the wavy sphere when left out
     #[arg(long, value_name = "PRESET|FILE.toml")]

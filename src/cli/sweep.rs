@@ -88,7 +88,7 @@ struct Sweep {
     /// Compute only part I of N, such as 3/8
     #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
     shard: Shard,
-    /// Give up a row after this time, such as 10s or 2min; its error says so
+    /// Give up on a row after this time, such as 10s or 2min; its error says so
     #[arg(long, value_name = "TIME", value_parser = time)]
     row_limit: Option<Duration>,
     /// Report the progress in this file: JSON, replaced as a whole about every second
@@ -122,7 +122,7 @@ pub fn run(arguments: &SweepArguments) -> Result<ExitCode, Failure> {
 
 /// A time such as 10s, 500ms or 2min; a bare number counts seconds.
 fn time(text: &str) -> Result<Duration, String> {
-    let wrong = || format!("\"{}\" is no time above 0 such as 10s, 500ms or 2min", quote(text));
+    let wrong = || format!("\"{}\" is not a time above 0, such as 10s, 500ms or 2min", quote(text));
     let end = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
     let (number, unit) = text.split_at(end);
     let factor = match unit {
@@ -199,7 +199,7 @@ fn checked(results: &Path, console: &Console) -> Result<ExitCode, Failure> {
     output::print(text)?;
     with_an_error(&found.faults, console);
     if found.rows < found.of {
-        return Err(Failure::Incomplete(format!("{} of {} rows are there", found.rows, found.of)));
+        return Err(Failure::Incomplete(format!("{} of {} rows are present", found.rows, found.of)));
     }
     fruitful(!found.is_failure(), console)
 }
@@ -212,7 +212,7 @@ impl ResultsArguments {
     /// Refuses an output that cannot hold the two files of an ensemble.
     fn two_files(&self) -> Result<(), Failure> {
         if stream::is_stream(&self.output) {
-            let what = "an ensemble has two files, the members and what they say together: name one";
+            let what = "an ensemble writes two files, the members and their statistics: name a file";
             return Err(Failure::Usage(format!("{OUTPUT} {}: {what}", stream::shown(&self.output))));
         }
         Ok(())
@@ -230,7 +230,7 @@ fn quantities() -> String {
         let _ = writeln!(text, "{name:<width$} {control} {unit:<2} {}", quantity.meaning);
     }
     text.push_str(
-        "\n* under path.control; with _displacement or _force behind the name, under that control\n\
+        "\n* under path.control; with _displacement or _force after the name, under that control\n\
          Units are those of SI presets.\n",
     );
     text
@@ -275,7 +275,7 @@ impl Sweep {
         let summary = summary?;
         status.end(&summary);
         if let Some(trouble) = &status.trouble {
-            console.warn(&[format!("the status is not that of the end: {trouble}")]);
+            console.warn(&[format!("the final status could not be written: {trouble}")]);
         }
         let took = begun.elapsed();
         if has_statistics {
@@ -335,7 +335,7 @@ impl Sweep {
             match Output::open(rows_in, spec, self.shard, self.results.existing()) {
                 Err(OutputError::Busy { path }) if self.wait => {
                     if !has_told {
-                        console.say(&format!("{path}: another pulloff is writing it; waiting for its end"));
+                        console.say(&format!("{path}: another pulloff is writing it; waiting for it to end"));
                         has_told = true;
                     }
                     sleep(PAUSE);

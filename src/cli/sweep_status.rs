@@ -63,13 +63,13 @@ impl StatusSubject {
         let refused = |what: &str| Failure::Usage(format!("--status {}: {what}", shown(file)));
         format::only("--status", file, Format::Json)?;
         if stream::is_stream(file) {
-            return Err(refused("is replaced as a whole again and again; name a file"));
+            return Err(refused("is replaced as a whole repeatedly; name a file"));
         }
         let sink = outputs.kept("--status", file)?;
         let is_ours = || read_text(file, LARGEST).is_ok_and(|(text, _)| self.is_of(&text));
         if file.exists() && !replacing.overwrite && !is_ours() {
             return Err(refused(
-                "exists already, and is not the status of this sweep; --overwrite replaces it",
+                "already exists, and is not the status of this sweep; --overwrite replaces it",
             ));
         }
         Ok(sink)

@@ -45,7 +45,7 @@ fn verdict(report: &VerifyReport) -> Result<ExitCode, Failure> {
     if report.passed == report.total {
         return Ok(ExitCode::SUCCESS);
     }
-    Err(Failure::Disagreement(format!("not as theory says: only {}", report.verdict())))
+    Err(Failure::Disagreement(format!("disagrees with theory: only {}", report.verdict())))
 }
 
 #[cfg(test)]

@@ -36,7 +36,7 @@ impl Background for AdmissibilityData {
 
     fn says(model: &Model) -> Option<String> {
         let is_under_way = model.results.under_way::<Self>().is_some() && !model.is_computing();
-        is_under_way.then(|| format!("checking admissibility; {} gives up", Id::Cancel.named()))
+        is_under_way.then(|| format!("checking admissibility; {} cancels", Id::Cancel.named()))
     }
 
     fn given_up(model: &mut Model) -> Option<String> {

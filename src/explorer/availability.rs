@@ -22,7 +22,7 @@ fn no_curve(model: &Model) -> String {
 }
 
 /// Requires nothing.
-#[expect(clippy::unnecessary_wraps, reason = "all that is needed has one form")]
+#[expect(clippy::unnecessary_wraps, reason = "every requirement has the same signature")]
 pub(super) fn always(_: &Model) -> Available {
     Ok(())
 }
@@ -36,7 +36,7 @@ pub(super) fn walker(model: &Model) -> Available {
 pub(super) fn turns(model: &Model) -> Available {
     walker(model)?;
     when(model.curve.as_ref().is_none_or(|curve| curve.along.is_none()), || {
-        format!("the walk goes along the path, which turns by itself; {} takes steps back", Id::Undo.named())
+        format!("the walk follows the path, which turns by itself; {} takes steps back", Id::Undo.named())
     })
 }
 
@@ -69,7 +69,7 @@ pub(super) fn redo(model: &Model) -> Available {
 /// Requires a second branch of the walk.
 pub(super) fn branches(model: &Model) -> Available {
     when(walk_branches::are_several(&model.history), || {
-        format!("the walk has one branch: {} goes back, and another step begins a second", Id::Undo.named())
+        format!("the walk has one branch: {} goes back, and a new step starts a second", Id::Undo.named())
     })
 }
 

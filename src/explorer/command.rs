@@ -165,7 +165,7 @@ pub enum Command {
     },
     /// Save although somebody else has changed the file meanwhile.
     SaveAnyway,
-    /// Write the screen to a file ending in `.txt`, or a figure to one whose ending chooses its format.
+    /// Write the screen to a file ending in `.txt`, or a figure to one whose extension chooses its format.
     ExportPage {
         page: super::export::Page,
         path: String,

@@ -198,7 +198,7 @@ fn script_text(store: &Store, start: &Beginning, lines: &[String]) -> Result<Str
 
 /// Why a preset cannot be expressed by its name and assignments.
 fn lost(source: &Source) -> String {
-    format!("its preset does not come of {} by values that can be assigned", source.shown())
+    format!("its preset cannot be reached from {} by assigning values", source.shown())
 }
 
 /// How to refer to a preset: its name or path, and the values that differ from its file.

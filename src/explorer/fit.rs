@@ -95,7 +95,7 @@ impl Background for FitProgress {
     fn came(model: &mut Model, found: Arc<Self>) -> Vec<Effect> {
         let Self::Done(result) = &*found else { return Vec::new() };
         if asked::<Self>(model) != Some(&model.preset) {
-            return model.refuse("the values were changed while the fit ran: what it found is not taken");
+            return model.refuse("the values changed while the fit ran: its result is discarded");
         }
         match result {
             Ok(found) => taken(model, found),
@@ -119,8 +119,7 @@ pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
         return vec![stops];
     }
     if model.preset.data.source.is_some() && model.preset.data.free().next().is_none() {
-        let text =
-            format!("nothing is free to be fitted: {} lets the selected value change", Id::Free.named());
+        let text = format!("no value is free to fit: {} lets the selected value change", Id::Free.named());
         return model.refuse(text);
     }
     let preset = model.preset.clone();
@@ -130,7 +129,7 @@ pub(super) fn fit(model: &mut Model) -> Vec<Effect> {
 /// Adopts what a fit found.
 fn taken(model: &mut Model, found: &Arc<Fit>) -> Vec<Effect> {
     if let Some(direction) = &found.direction {
-        return model.refuse(format!("not determined, and not taken: {direction}"));
+        return model.refuse(format!("not determined, so not taken: {direction}"));
     }
     model.tell(if found.verdict == Verdict::Describes { Level::Info } else { Level::Error }, told(found));
     model.fit = Some(Arc::clone(found));

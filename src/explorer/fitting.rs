@@ -8,7 +8,7 @@ use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{Preset, data};
 
 /// The message where there are no points to look at.
-pub const NO_POINTS: &str = "no measured curve: :data FILE lays one behind the chart";
+pub const NO_POINTS: &str = "no measured curve: :data FILE puts one behind the chart";
 
 /// The distances of the points from the curve of a preset, in σ.
 #[derive(Debug, Clone)]

@@ -254,7 +254,7 @@ impl Journal {
         if replay.preset != *preset {
             match changes(&replay.preset, preset) {
                 Some(all) => self.write_line(may_fail, &Command::Assign(all)),
-                None => self.broken = Some("a value that was given up cannot be said in a script".to_owned()),
+                None => self.broken = Some("a value that was dropped cannot be put in a script".to_owned()),
             }
             replay.preset = preset.clone();
         }
@@ -294,12 +294,12 @@ impl Journal {
             return;
         }
         let Some(line) = script::line(command) else {
-            self.broken = Some("a value of the session cannot be written in a line".to_owned());
+            self.broken = Some("a value of the session cannot be written on one line".to_owned());
             return;
         };
         let line = if may_fail { format!("try {line}") } else { line };
         if self.lines.len() >= LINES || self.bytes + line.len() > BYTES || line.len() > script::LONGEST {
-            self.broken = Some("the session is longer than a script can be".to_owned());
+            self.broken = Some("the session is longer than a script may be".to_owned());
             return;
         }
         self.bytes += line.len();

@@ -29,7 +29,7 @@ pub(super) fn map(model: &mut Model) {
     let Some((row, _)) = model.selected_knob().filter(|(row, _)| can_be_axis(row)) else {
         let text = match model.selected_knob() {
             // Problem is where the value is selected.
-            Some((row, _)) => format!("{} is no number: select one in Problem, or the control", row.label),
+            Some((row, _)) => format!("{} is not a number: pick one in Problem or the control", row.label),
             None => {
                 format!("select a number first, or the control: {} goes to Problem", Id::NextPanel.named())
             }
@@ -47,7 +47,7 @@ pub(super) fn map_of(model: &mut Model, x: &Key, y: Option<Key>) {
     let over = MapAxes::over(x);
     let axes = MapAxes { y: y.map_or(over.y, Key::into_owned), x: over.x };
     if axes.x == axes.y {
-        return model.tell(Level::Error, "the two axes of a map are two keys");
+        return model.tell(Level::Error, "the two axes of a map must differ");
     }
     show_map(model, axes);
 }
@@ -67,7 +67,7 @@ pub(super) fn zoom(model: &mut Model, view: View, closer: bool, about: (f64, f64
     let times = if closer { CLOSER } else { 1.0 / CLOSER };
     match model.window(view).zoomed(times, about) {
         Some(window) => model.set_window(view, window),
-        None if closer => model.tell(Level::Info, "no closer: there is nothing more to tell apart"),
+        None if closer => model.tell(Level::Info, "no closer: there is no more detail to show"),
         None => {
             model.tell(Level::Info, format!("no further away: {} shows the whole chart", Id::Whole.named()));
         }
@@ -85,7 +85,7 @@ pub(super) fn whole(model: &mut Model) {
 
 pub(super) fn cross_hair(model: &mut Model) {
     if model.view.is_table() && model.cross.is_none() {
-        model.tell(Level::Info, "a table has no cross-hair: the arrows go through its lines");
+        model.tell(Level::Info, "a table has no cross-hair: arrows move through its lines");
         return;
     }
     model.cross = if model.cross.is_some() { None } else { Some(MIDDLE) };

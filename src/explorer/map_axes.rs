@@ -102,10 +102,10 @@ fn range(preset: &Preset, key: &str) -> Result<MapAxis, String> {
     let Some(row) = preset.row(key) else {
         // The error suggests the nearest name.
         let unknown = preset.clone().set(key, 1.0.into()).err();
-        return Err(unknown.map_or_else(|| format!("{key} is no number of this preset"), |e| e.to_string()));
+        return Err(unknown.map_or_else(|| format!("this preset has no number {key}"), |e| e.to_string()));
     };
     let value = preset.get(key).and_then(|value| value.as_number()).filter(|_| row.kind.is_number());
-    let Some(x) = value else { return Err(format!("{key} has no number here to be an axis")) };
+    let Some(x) = value else { return Err(format!("{key} has no number here for an axis")) };
     if ADHESIONS.contains(&key) && x > 0.0 {
         let factor = 10f64.powf(DECADES);
         return axis([x / factor, x * factor], true);
@@ -114,7 +114,7 @@ fn range(preset: &Preset, key: &str) -> Result<MapAxis, String> {
     let ends = match (key, row.kind) {
         (AMPLITUDE, _) if x == 0.0 => [0.0, FROM_ZERO],
         ("gap.amplitude", _) if x == 0.0 => [0.0, FROM_ZERO * wavelength],
-        _ if x == 0.0 => return Err(format!("{key} is 0 and has no scale to be an axis by")),
+        _ if x == 0.0 => return Err(format!("{key} is 0 and has no scale for an axis")),
         (_, Kind::NonNegative) => [0.0, 2.0 * x],
         (_, Kind::Finite) => [x - x.abs(), x + x.abs()],
         _ => [0.5 * x, 2.0 * x],

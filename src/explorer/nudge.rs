@@ -104,7 +104,7 @@ pub fn nudge(
         (Kind::Control, Some(Value::Control(control))) => {
             Value::Control(stiffened(control, up, amount, contact)?)
         }
-        _ => return Err(format!("{} is a text; {} types it", row.label, Id::Edit.named())),
+        _ => return Err(format!("{} is text; {} types it", row.label, Id::Edit.named())),
     };
     changed.set(&row.key, value).map_err(|invalid| invalid.to_string())?;
     Ok(changed)

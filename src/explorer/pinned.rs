@@ -72,7 +72,7 @@ impl Background for PinCurve {
             1 => "a pinned curve".to_owned(),
             count => format!("{count} pinned curves"),
         };
-        Some(format!("computing {curves}; {} gives up", Id::Cancel.named()))
+        Some(format!("computing {curves}; {} cancels", Id::Cancel.named()))
     }
 
     fn given_up(model: &mut Model) -> Option<String> {
@@ -82,6 +82,6 @@ impl Background for PinCurve {
             _ => "the pinned curves",
         };
         model.pins.give_up();
-        Some(format!("cancelled: {curves} on the way will not be shown"))
+        Some(format!("cancelled: {curves} will not be shown"))
     }
 }

@@ -151,7 +151,7 @@ impl Pins {
     fn free(&self) -> Result<usize, String> {
         let free = (1..=MOST).find(|number| !self.numbers().any(|taken| taken == *number));
         free.ok_or_else(|| {
-            format!("{MOST} curves are pinned, which is the most: {} takes one away", Id::Pins.named())
+            format!("{MOST} curves are pinned, which is the most: {} removes one", Id::Pins.named())
         })
     }
 
@@ -326,7 +326,7 @@ mod tests {
             assert_eq!(pins.add(&curve(amplitude)), Ok(number));
         }
         let refused = pins.add(&curve("0.0016")).unwrap_err();
-        assert!(by_name(&refused).contains("pins takes one away"), "{refused}");
+        assert!(by_name(&refused).contains("pins removes one"), "{refused}");
         assert!(pins.remove(Some(3)) && !pins.remove(Some(3)));
         assert_eq!(pins.add(&curve("0.0016")), Ok(3));
         assert!(pins.remove(None) && pins.is_empty() && !pins.remove(None));

@@ -92,7 +92,7 @@ impl PullData {
         let over = |x: f64| format!("{} v₀", three(x / speed));
         let shown = |rate: f64| with_unit(units, quantity, rate, false, three);
         let rate = match run.rate {
-            None => "as path.steps say".to_owned(),
+            None => "as in path.steps".to_owned(),
             Some(rate) if of_force => format!("at {}", shown(rate)),
             Some(rate) if *units == UnitSystem::Reduced => format!("at {}", over(rate)),
             Some(rate) => format!("at {} ({})", shown(rate), over(rate)),

@@ -12,8 +12,8 @@ use pulloff_engine::problem::Control;
 use pulloff_engine::report::pull::missing;
 
 /// Why adhesion with a range has no such view.
-pub const OF_SHORT_RANGE: &str = "with a range of the adhesion one radius does not say which state it is: this is drawn of short-range \
-                                  adhesion alone";
+pub const OF_SHORT_RANGE: &str = "with a range of the adhesion one radius does not fix the state: this is drawn for short-range \
+                                  adhesion only";
 
 /// Why a view has nothing to show now; `None` if it has, or will have once it is computed.
 pub fn why_not(model: &Model, view: View) -> Option<String> {
@@ -50,7 +50,7 @@ pub fn why_not(model: &Model, view: View) -> Option<String> {
         }),
         View::Study => study_range(model).err(),
         View::Walk => (model.history.len() < 2)
-            .then(|| format!("nothing is walked yet: {} runs to the first event", Id::NextEvent.named())),
+            .then(|| format!("nothing walked yet: {} runs to the first event", Id::NextEvent.named())),
     }
 }
 
@@ -58,8 +58,7 @@ pub fn why_not(model: &Model, view: View) -> Option<String> {
 pub fn no_spring(preset: &Preset) -> Option<String> {
     let is_spring = matches!(preset.path.control, Control::Stiffness(_));
     (!is_spring).then(|| {
-        "the device has no spring, and its way is the approach: path.control has the stiffness of one"
-            .to_owned()
+        "the device has no spring, so its way is the approach: path.control gives it a stiffness".to_owned()
     })
 }
 

@@ -20,7 +20,7 @@ pub(super) fn back_or_anew() -> String {
 /// Why nothing can be walked on a curve that stayed when a newer one was given up.
 pub(super) fn of_before() -> String {
     format!(
-        "the curve shown is of the values before; {} takes them back, {} computes it again",
+        "the curve shown is for the old values; {} restores them, {} computes it again",
         Id::Undo.named(),
         Id::Restart.named()
     )
@@ -28,7 +28,7 @@ pub(super) fn of_before() -> String {
 
 fn progress(model: &Model) -> String {
     let Some(stage) = model.stage else { return String::new() };
-    format!(": {}; {} gives up", stage.text(), Id::Cancel.named())
+    format!(": {}; {} cancels", stage.text(), Id::Cancel.named())
 }
 
 impl Model {
@@ -134,7 +134,7 @@ fn next(model: &Model) -> String {
         let turn = Id::Reverse.named();
         return match model.preset.path.begin {
             Begin::Touch => {
-                format!("Here the control turns round: {next} goes on down, {step} further out, off the path")
+                format!("Here the control turns round: {next} goes on down, {step} goes out, off the path")
             }
             Begin::Disc => {
                 format!("Here the path begins: {turn} turns round, {step} goes on outward, off the path")
@@ -150,7 +150,7 @@ fn next(model: &Model) -> String {
             format!("The held value lies beyond the path: this is its start; {next} runs to the next event")
         }
         (_, NodeKind::Solved) if node.on_path.is_some() => {
-            format!("Nearest of the new path to the {held} held; {next} runs to the next event")
+            format!("Nearest on the new path to the {held} held; {next} runs to the next event")
         }
         (true, NodeKind::Solved) => {
             format!("Solved again {kept}, stable. {next} runs to the next event")
@@ -183,12 +183,12 @@ fn happened(model: &Model, node: &Node) -> Option<String> {
         let next = Id::NextEvent.named();
         return Some(match event.kind {
             EventKind::Turn => format!("Here the control turns round: {next} goes on down"),
-            EventKind::Depin => format!("Here the edge, which rested, begins to move: {next} goes on"),
+            EventKind::Depin => format!("Here the resting edge begins to move: {next} goes on"),
             EventKind::FirstTouch if event.before == event.after => {
                 format!("The bodies touch within the zone: {next} goes on")
             }
             EventKind::LastContact if event.after.is_some() => {
-                format!("Contact has ended, and the zone still holds: {next} goes on")
+                format!("Contact has ended, but the zone still holds: {next} goes on")
             }
             EventKind::LastContact | EventKind::SnapOff => {
                 let what = if event.kind == EventKind::SnapOff { "Snap-off" } else { "Last contact" };

@@ -82,8 +82,8 @@ pub fn range(preset: &Preset, row: &Row) -> Result<(Key, Vec<Value>), String> {
         (Kind::Control, Some(Value::Control(Control::Stiffness(k)))) => {
             (Key::Borrowed(STIFFNESS), by_factors(k, STIFFNESS_FACTOR))
         }
-        (Kind::Control, _) => return Err("the device has no stiffness to vary: it is no spring".to_owned()),
-        (_, None) => return Err(format!("{label} follows from other values and has none to vary")),
+        (Kind::Control, _) => return Err("no stiffness to vary: the device is not a spring".to_owned()),
+        (_, None) => return Err(format!("{label} follows from other values: nothing to vary")),
         (Kind::Positive | Kind::Smoothing, Some(Value::Number(x))) if x > 0.0 => {
             let factor = if row.key == RATE { RATE_FACTOR } else { FACTOR };
             (row.key.clone(), by_factors(x, factor))
@@ -99,7 +99,7 @@ pub fn range(preset: &Preset, row: &Row) -> Result<(Key, Vec<Value>), String> {
         }
         (_, Some(Value::Number(_))) => return Err(format!("{label} is 0 and has no scale to vary it by")),
         (Kind::Integer { min, max }, Some(Value::Integer(n))) => (row.key.clone(), whole(n, min, max)),
-        _ => return Err(format!("{label} is no number: there is nothing to vary")),
+        _ => return Err(format!("{label} is not a number: nothing to vary")),
     };
     Ok((key, values))
 }
@@ -342,8 +342,8 @@ mod tests {
         let flat = preset(&[("gap.amplitude", "0")]);
         for (preset, key, said) in [
             (&flat, "gap.amplitude", "A is 0 and has no scale"),
-            (&flat, "gap.shape", "is no number"),
-            (&flat, "path.control", "it is no spring"),
+            (&flat, "gap.shape", "is not a number"),
+            (&flat, "path.control", "is not a spring"),
         ] {
             assert!(range(preset, &row(preset, key)).unwrap_err().contains(said), "{key}");
         }

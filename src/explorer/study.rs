@@ -43,10 +43,10 @@ impl Background for StudyData {
     fn says(model: &Model) -> Option<String> {
         let study = model.results.so_far::<Self>()?;
         (study.done() == study.outcomes.len())
-            .then(|| format!("computing other surfaces; {} keeps those there are", Id::Cancel.named()))
+            .then(|| format!("computing other surfaces; {} keeps those done", Id::Cancel.named()))
     }
 
     fn given_up(model: &mut Model) -> Option<String> {
-        Self::says(model).map(|_| "the study keeps the surfaces that are there".to_owned())
+        Self::says(model).map(|_| "the study keeps the surfaces it has".to_owned())
     }
 }

@@ -148,10 +148,10 @@ impl View {
             Self::Stability => "the adhesion at which each state is a limit point",
             Self::Map => "where snaps begin, over two numbers",
             Self::Residuals => "how far each measured point is from the curve",
-            Self::ForceTime => "the force P over the time, pulled at path.rate",
+            Self::ForceTime => "the force P over time, pulled at path.rate",
             Self::Speeds => "the energy release rate of measured rows over the speed of the edge",
             Self::Differences => "P minus that of pins and theory",
-            Self::Walk => "the states walked, as a table",
+            Self::Walk => "the walked states, as a table",
             Self::Study => "a quantity over the range of the selected value",
         }
     }

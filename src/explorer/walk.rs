@@ -151,7 +151,7 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(MadeState) -> bool) -> WalkO
         Action::MoveTo(s) => walk.move_to(*s, &mut arrive),
         Action::MoveToEvent { limit, .. } => match request.curve.limits.get(*limit) {
             Some(limit) => walk.move_to_limit(limit.contact_radius, &mut arrive),
-            None => return WalkOutcome::Stopped("the curve has changed meanwhile".to_owned()),
+            None => return WalkOutcome::Stopped("the curve has since changed".to_owned()),
         },
         Action::MoveToState { .. } => WalkEnd::Failed(WalkFailure::NoEquilibrium("on a path")),
         Action::Begin => walk.first_touch(&mut arrive),

@@ -25,11 +25,11 @@ pub enum RangeError {
     Order(String, String),
     /// The ends are so close that the numbers beside the axis would be the same.
     #[error(
-        "the range is too narrow to draw, the numbers beside the axis could not be told apart: it must be at least {0} wide"
+        "the range is too narrow to draw: the numbers along the axis would all look alike; it must be at least {0} wide"
     )]
     Narrow(String),
     /// No part of the figure is in it.
-    #[error("shows nothing of the figure, where {title} goes from {from} to {to}")]
+    #[error("shows none of the figure, where {title} goes from {from} to {to}")]
     Empty { title: String, from: String, to: String },
 }
 
@@ -180,7 +180,7 @@ mod tests {
         assert!(matches!(ends("3.."), Err(RangeError::Order(..))));
         for text in ["4..5", "..-3", "-3..0"] {
             let said = ends(text).unwrap_err().to_string();
-            assert_eq!(said, "shows nothing of the figure, where s/λ goes from 0 to 4", "{text}");
+            assert_eq!(said, "shows none of the figure, where s/λ goes from 0 to 4", "{text}");
         }
     }
 }

@@ -98,7 +98,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     figure.notes.extend(case.warning_of_dead_band());
     if !corners.is_empty() {
         figure.notes.push(
-            "the second derivative of the gap jumps: the law has corners there, which are no cusps"
+            "the second derivative of the gap jumps: the law has corners there, which are not cusps"
                 .to_owned(),
         );
     }

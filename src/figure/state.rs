@@ -36,7 +36,7 @@ pub fn figure(subject: &Subject<'_>, view: View) -> Figure {
     let Some(inside) = subject.inside else {
         figure.missing = Some(match subject.walk.last() {
             Some(node) if node.is_apart() => "the bodies are apart: there is no contact".to_owned(),
-            Some(node) if !subject.is_on_curve(node) => "the state is not of these values".to_owned(),
+            Some(node) if !subject.is_on_curve(node) => "the state is for other values".to_owned(),
             _ => "computing".to_owned(),
         });
         return figure;

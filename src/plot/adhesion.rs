@@ -68,7 +68,7 @@ pub fn sheets() -> Result<[PaperSheet; 2], PaperError> {
         let (last, name) = (over.ends?, over.name);
         let first = over.points.first()?[0];
         Some(format!(
-            " For the {name} λ_M = {} is the smallest shown, at {} the contact is no longer one disc in one zone.",
+            " For the {name} λ_M = {} is the smallest shown; at {} the contact is no longer one disc in one zone.",
             significant(first, 3),
             significant(last, 3)
         ))
@@ -100,9 +100,9 @@ pub fn sheets() -> Result<[PaperSheet; 2], PaperError> {
         sheet(
             NAMES[0],
             1,
-            "loss over that of short range",
+            "loss over short-range loss",
             vec![level(1.0)],
-            format!("What adhesion with a range loses, over what short-range adhesion does: {what}"),
+            format!("What adhesion with a range loses, over what short-range adhesion loses: {what}"),
         ),
         sheet(
             NAMES[1],

@@ -394,7 +394,7 @@ fn errors() -> Result<PaperSheet, PaperError> {
     // The last two curves are those of JKR: contact radius, force.
     let behind = match ends[..] {
         [.., radius, force] if force[1] > radius[1] => format!(
-            " With adhesion our force converges slower than the contact radius here: its error is {} times as large in {fewest} \
+            " With adhesion our force converges more slowly than the contact radius here: its error is {} times as large in {fewest} \
              rings and {} times in {most}; the paper finds the force the more accurate of the two.",
             significant(force[0] / radius[0], 2),
             significant(force[1] / radius[1], 2)

@@ -8,7 +8,7 @@ pub enum FormatError {
     #[error("{0}: a figure's file ends in .svg, .png or .pdf")]
     Ending(String),
     /// This build does not include the format.
-    #[error("this build writes no {name} (feature `{feature}` is off); use .svg")]
+    #[error("this build cannot write {name} (feature `{feature}` is off); use .svg")]
     Missing { name: &'static str, feature: &'static str },
 }
 

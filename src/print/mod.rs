@@ -86,8 +86,10 @@ mod tests {
             match format {
                 Ok(_) => assert!(has),
                 Err(error) => {
-                    let words =
-                        format!("this build writes no {} (feature `{feature}` is off)", name.to_uppercase());
+                    let words = format!(
+                        "this build cannot write {} (feature `{feature}` is off)",
+                        name.to_uppercase()
+                    );
                     assert!(!has && error.to_string().starts_with(&words), "{error}");
                 }
             }

@@ -35,13 +35,13 @@ pub enum Overwrite {
 #[derive(Debug, Error)]
 pub enum WriteError {
     /// The file exists and must not be replaced.
-    #[error("{path}: exists already")]
+    #[error("{path}: already exists")]
     Exists { path: String },
     /// The file is no longer the one that was loaded.
     #[error("{path}: was changed by someone else since it was read")]
     Changed { path: String },
     /// The file is read-only: its owner does not want it changed, or we may not change it.
-    #[error("{path}: is read-only, and is not replaced")]
+    #[error("{path}: is read-only and is not replaced")]
     ReadOnly { path: String },
     /// A folder, a pipe, a device.
     #[error("{path}: is {what}, not a regular file")]
@@ -106,11 +106,11 @@ pub fn write_verified(
     temporary.read_to_end(&mut back).map_err(failed("read back"))?;
     let refused = |why| WriteError::NotReadBack { path: show_path(path), why };
     if back != bytes {
-        return Err(refused("the disk gives other bytes".to_owned()));
+        return Err(refused("the disk returns different bytes".to_owned()));
     }
     verify(&back).map_err(refused)?;
     let file = begun.put()?;
-    let metadata = file.metadata().map_err(failed("look at what was written"))?;
+    let metadata = file.metadata().map_err(failed("examine what was written"))?;
     Ok(Fingerprint::new(&metadata, bytes))
 }
 
@@ -209,7 +209,7 @@ fn guard(path: &Path, target: &Path, overwrite: Overwrite) -> Result<Option<Meta
         Ok(metadata) => metadata,
         // Writing a file that is gone again overwrites nothing.
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-        Err(cause) => return Err(WriteError::Io { path: shown(), doing: "look at it", cause }),
+        Err(cause) => return Err(WriteError::Io { path: shown(), doing: "examine it", cause }),
     };
     if !metadata.is_file() {
         return Err(WriteError::NotRegular { path: shown(), what: kind_of(&metadata) });
@@ -352,7 +352,7 @@ mod tests {
         let marked = write_atomically(&path, b"six", Overwrite::IfUnchanged(print)).unwrap_err();
         assert!(matches!(marked, WriteError::ReadOnly { .. }), "{marked}");
         let asked = write_atomically(&path, b"six", Overwrite::Always).unwrap_err();
-        assert_eq!(asked.to_string(), format!("{}: is read-only, and is not replaced", show_path(&path)));
+        assert_eq!(asked.to_string(), format!("{}: is read-only and is not replaced", show_path(&path)));
         assert_eq!(
             (fs::read(&path).unwrap(), names(folder.path())),
             (b"five".to_vec(), vec!["a".to_owned()])

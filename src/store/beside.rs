@@ -74,13 +74,13 @@ pub fn copy_beside(folder: &Path, preset: &Preset) -> Result<Preset, DataError> 
 }
 
 fn others(path: &Path) -> DataError {
-    format!("{}: holds other rows than were read; choose the file again first", show_path(path)).into()
+    format!("{}: holds other rows than those read; choose the file again first", show_path(path)).into()
 }
 
 /// Copies `bytes`, the content of `from`, into `folder` under the name of `from`, which is returned.
 fn copied(folder: &Path, from: &Path, bytes: &[u8]) -> Result<String, DataError> {
     let Some(name) = from.file_name().and_then(|name| name.to_str()) else {
-        return Err(format!("{}: is no name of a file", show_path(from)).into());
+        return Err(format!("{}: is not a file name", show_path(from)).into());
     };
     let to = folder.join(name);
     match write_atomically(&to, bytes, Overwrite::Never) {

@@ -71,7 +71,7 @@ fn points(folder: Option<&Path>, name: &str) -> Result<Vec<u8>, String> {
 /// The path of the file `name`.
 fn place(folder: Option<&Path>, name: &str) -> Result<PathBuf, String> {
     if name.is_empty() || name.chars().any(is_unsafe) {
-        return Err(format!("\"{}\" is no name of a file", quote(name)));
+        return Err(format!("\"{}\" is not a file name", quote(name)));
     }
     Ok(folder.map_or_else(|| PathBuf::from(name), |folder| folder.join(name)))
 }

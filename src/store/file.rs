@@ -55,7 +55,7 @@ pub enum FileError {
     /// A pipe or device that yields more than any preset could.
     #[error("{path}: has more than the {limit} bytes that are read")]
     Endless { path: String, limit: u64 },
-    #[error("{path}: is not UTF-8 text (byte {at} on)")]
+    #[error("{path}: is not UTF-8 text (from byte {at})")]
     NotText {
         path: String,
         /// The first invalid byte, counted from 0.
@@ -168,7 +168,7 @@ mod tests {
         let error = |path: &Path| read_text(path, 100).unwrap_err().to_string();
         assert_eq!(read_text(&at("good"), 100).unwrap().0, "héllo");
         assert_eq!(read_text(&at("link"), 100).unwrap().0, "héllo");
-        assert!(error(&at("bytes")).ends_with("is not UTF-8 text (byte 2 on)"));
+        assert!(error(&at("bytes")).ends_with("is not UTF-8 text (from byte 2)"));
         assert!(error(&at("large")).ends_with("has 101 bytes, more than the 100 that are read"));
         assert!(error(&at("pipe")).ends_with("is a pipe, not a regular file"));
         assert!(error(&at("link-to-pipe")).ends_with("is a pipe, not a regular file"));

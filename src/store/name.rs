@@ -12,7 +12,7 @@ const LONGEST: usize = 64;
 pub enum NameError {
     /// It contains other characters, or too many.
     #[error(
-        "\"{name}\" is no preset name: use a-z, 0-9, - and _, first a letter or digit, at most {LONGEST} \
+        "\"{name}\" is not a preset name: use a-z, 0-9, - and _, first a letter or digit, at most {LONGEST} \
          characters (a file's path has a / or ends in .toml)"
     )]
     Malformed { name: String },

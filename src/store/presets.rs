@@ -493,8 +493,8 @@ mod tests {
         assert_eq!(message("fig9"), "no preset is called \"fig9\"; did you mean fig-9?");
         assert_eq!(message("zzz"), "no preset is called \"zzz\"");
         assert!(message("trace").contains("is a command"));
-        assert!(message("Fig-9\u{1b}").contains("is no preset name"));
-        assert!(message("").contains("is no preset name"));
+        assert!(message("Fig-9\u{1b}").contains("is not a preset name"));
+        assert!(message("").contains("is not a preset name"));
     }
 
     #[test]
@@ -635,7 +635,7 @@ mod tests {
         };
         assert_eq!(listing.presets.len(), SHIPPED.len() + 6);
         assert!(reason("bad").contains("bad.toml:1:"), "{}", reason("bad"));
-        assert!(reason("Odd Name.toml").contains("is no preset name"));
+        assert!(reason("Odd Name.toml").contains("is not a preset name"));
         assert!(reason("fig-9.toml").contains("comes with the program"));
         assert!(reason("pipe").contains("is a pipe"));
         assert!(reason("dangling").contains("No such file"));

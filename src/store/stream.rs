@@ -132,7 +132,7 @@ mod tests {
             read
         };
         assert_eq!(through("héllo".as_bytes()).unwrap(), "héllo");
-        assert!(through(b"ab\xff").unwrap_err().to_string().ends_with("is not UTF-8 text (byte 2 on)"));
+        assert!(through(b"ab\xff").unwrap_err().to_string().ends_with("is not UTF-8 text (from byte 2)"));
         let error = through(&[b' '; 101]).unwrap_err().to_string();
         assert!(error.ends_with("has more than the 100 bytes that are read"), "{error}");
     }

@@ -42,7 +42,7 @@ pub fn check(path: &Path) -> Result<Checked, OutputError> {
     let (sidecar, text) = Sidecar::read(path).map_err(not_ours)?;
     let layout = sidecar.layout(path, &text).map_err(not_ours)?;
     if hash(&text).as_ref() != Some(&sidecar.identity) {
-        let what = "the sweep in it has not the hash that stands there: it was changed by hand".to_owned();
+        let what = "the sweep in it does not have the hash given there: it was changed by hand".to_owned();
         let path = show_path(&sidecar::path(path));
         return Err(not_ours(SidecarError::Unknown { path, what }));
     }

@@ -18,12 +18,12 @@ use thiserror::Error;
 pub enum MergeError {
     #[error(transparent)]
     Output(#[from] OutputError),
-    #[error("{path}: exists already; --overwrite replaces it")]
+    #[error("{path}: already exists; --overwrite replaces it")]
     Exists { path: String },
     /// No file beside the part says what it is.
     #[error("{path}: is not known to be a part of a sweep ({cause})")]
     NotOurs { path: String, cause: SidecarError },
-    #[error("{path}: is of another sweep than {first}")]
+    #[error("{path}: belongs to a different sweep from {first}")]
     OtherSweep { path: String, first: String },
     #[error("{path}: is shard {found}, while {first} is one of {of}")]
     OtherDivision {

@@ -43,17 +43,19 @@ pub enum OutputError {
     #[error("{path}: another pulloff is writing it")]
     Busy { path: String },
     /// A file exists, and nothing beside it says that it belongs to a sweep.
-    #[error("{path}: exists already, and is not known to be of a sweep ({cause}); --overwrite replaces it")]
+    #[error(
+        "{path}: already exists, and is not known to belong to a sweep ({cause}); --overwrite replaces it"
+    )]
     NotOurs { path: String, cause: SidecarError },
     /// The file beside the results exists without them.
-    #[error("{path}: exists already, and does not describe this sweep; --overwrite replaces it")]
+    #[error("{path}: already exists, and does not describe this sweep; --overwrite replaces it")]
     Described { path: String },
     #[error("{path}: holds the results of another sweep: {what}; --overwrite replaces them")]
     OtherSweep { path: String, what: String },
     #[error("{path}: holds shard {found}, not {wanted}; --overwrite replaces it")]
     OtherShard { path: String, found: Shard, wanted: Shard },
     /// A complete line that differs from what this sweep writes there.
-    #[error("{path}:{line}: {what}: the file was changed; --overwrite begins anew")]
+    #[error("{path}:{line}: {what}: the file was changed; --overwrite starts afresh")]
     Changed {
         path: String,
         /// The line, from 1.
@@ -151,7 +153,7 @@ impl Output {
         if existing == Existing::Overwrite {
             file.set_len(0).map_err(failed("empty"))?;
         }
-        if file.metadata().map_err(failed("look at"))?.len() > 0 {
+        if file.metadata().map_err(failed("examine"))?.len() > 0 {
             check(path, spec, shard)?;
         } else {
             begins(path, &description, existing)?;

@@ -15,7 +15,7 @@ pub const ERROR: &str = "error";
 
 /// The columns that count the rows at a point of an ensemble and those of them with an error, with their meanings.
 pub const COUNTS: [(&str, &str); 2] =
-    [("members", "members computed"), ("refused", "members with an error, of whose values some are missing")];
+    [("members", "members computed"), ("refused", "members with an error, some of whose values are missing")];
 
 /// The name of a statistic of a quantity.
 #[must_use]
@@ -152,7 +152,7 @@ impl Layout {
     pub fn outcome(&self, row: u64, line: &[u8]) -> Result<RowOutcome, Wrong> {
         let known = known(&self.axes, self.design, row);
         let wrong = |what: &str| Wrong(format!("row {row}: {what}"));
-        let fields = fields(line).ok_or_else(|| wrong("is no CSV"))?;
+        let fields = fields(line).ok_or_else(|| wrong("is not CSV"))?;
         let wrong_field = |at: usize, expected: &str| {
             let column = self.columns.get(at).map_or("", String::as_str);
             let found = fields.get(at).unwrap_or_default();

@@ -122,7 +122,7 @@ impl SweepResults {
         let mut reader = csv::Reader::from_reader(BufReader::new(file.take(whole)));
         let header = reader.headers().map_err(|error| wrong(&error.to_string()))?;
         if !header.iter().eq(self.columns.iter().map(|column| column.name.as_str())) {
-            return Err(wrong("its columns are not those that stand beside it"));
+            return Err(wrong("its columns are not those in the file beside it"));
         }
         let mut columns: Vec<Vec<T>> = places.iter().map(|_| Vec::new()).collect();
         let mut record = csv::StringRecord::new();
@@ -130,7 +130,7 @@ impl SweepResults {
             for ((column, &place), name) in columns.iter_mut().zip(&places).zip(names) {
                 let cell = record.get(place).unwrap_or_default();
                 let line = record.position().map_or(0, csv::Position::line);
-                let refused = || wrong(&format!("line {line}: {name} = \"{}\" is no number", quote(cell)));
+                let refused = || wrong(&format!("line {line}: {name} = \"{}\" is not a number", quote(cell)));
                 column.push(value(cell).ok_or_else(refused)?);
             }
         }

@@ -117,7 +117,7 @@ pub fn text(spec: &Spec, shard: Shard) -> String {
 
 fn written(identity: &str, shard: Shard, rows: &str, canonical: &str, columns: &[ColumnInfo]) -> String {
     let mut text = format!(
-        "# What the results beside this file are of. `pulloff sweep` reads it, to go on and to join shards.\n\
+        "# What the results beside this file belong to. `pulloff sweep` reads it to continue and to join shards.\n\
          identity = \"{identity}\"\nshard = \"{shard}\"\n{rows}\n\n{canonical}"
     );
     for ColumnInfo { name, symbol, unit, shown, meaning } in columns {
@@ -175,7 +175,7 @@ pub fn differences(text: &str, spec: &Spec) -> String {
         }
     });
     let named: Vec<String> = named.collect();
-    if named.is_empty() { "in another form".to_owned() } else { named.join(", ") }
+    if named.is_empty() { "a different form".to_owned() } else { named.join(", ") }
 }
 
 /// The values of a preset by their dotted keys.
@@ -241,7 +241,7 @@ fn columns(spec: &Spec) -> Vec<ColumnInfo> {
         measured(info, quantity.unit, units.unit(quantity.unit))
     });
     let row = plain(record::ROW, "number of the row, from 0");
-    let error = plain(record::ERROR, "why a quantity could not be had; empty where all is well");
+    let error = plain(record::ERROR, "why a quantity could not be computed; empty if there is no error");
     std::iter::once(row).chain(axes).chain(quantities).chain([error]).collect()
 }
 

@@ -50,8 +50,8 @@ const NAMES: [(&str, Keystroke); 25] = [
 /// Keys no command can have, and why.
 const RESERVED: [(Keystroke, &str); 8] = [
     (Keystroke::Ctrl('s'), "a terminal stops its output on it"),
-    (Keystroke::Ctrl('q'), "a terminal goes on with its output on it"),
-    (Keystroke::Ctrl('z'), "it leads back to the shell"),
+    (Keystroke::Ctrl('q'), "a terminal resumes its output on it"),
+    (Keystroke::Ctrl('z'), "it returns to the shell"),
     (Keystroke::Ctrl('i'), "terminals send it as Tab"),
     (Keystroke::Ctrl('m'), "terminals send it as Enter"),
     (Keystroke::Ctrl('j'), "terminals send it as Enter"),
@@ -88,7 +88,7 @@ impl Keystroke {
                 let names: Vec<&str> = NAMES.iter().map(|(name, _)| *name).collect();
                 let quoted = quote(label);
                 let names = names.join(", ");
-                return Err(format!("\"{quoted}\" is no key: it is a character, Ctrl-A to Ctrl-Z, {names}"));
+                return Err(format!("\"{quoted}\" is not a key: use a character, Ctrl-A to Ctrl-Z, {names}"));
             }
         };
         match RESERVED.iter().find(|(reserved, _)| *reserved == key) {
@@ -176,9 +176,9 @@ impl Keymap {
                 let (first, second) = if line(*second).is_some() { (first, second) } else { (second, first) };
                 let (a, b) = (second.name(), first.name());
                 let what = if first == second {
-                    format!("{} stands twice for {a}", key.label())
+                    format!("{} is given twice for {a}", key.label())
                 } else {
-                    format!("{} would be the key of {a} and of {b}: give {b} another", key.label())
+                    format!("{} would be the key for both {a} and {b}: give {b} another", key.label())
                 };
                 Some(ConfigMistake { line: line(*second).unwrap_or(1), what })
             })
@@ -301,17 +301,17 @@ mod tests {
     #[test]
     fn clashes_and_keys_that_cannot_be_are_refused_with_line_and_reason() {
         for (text, said) in [
-            ("[keys]\nstep = \"x\"", "c:2: x would be the key of step and of jump: give jump another"),
-            ("[keys]\njump = \"F2\"\nundo = \"F2\"", "F2 would be the key of "),
-            ("[keys]\nstep = [\"F2\", \"f2\"]", "c:2: F2 stands twice for step"),
+            ("[keys]\nstep = \"x\"", "c:2: x would be the key for both step and jump: give jump another"),
+            ("[keys]\njump = \"F2\"\nundo = \"F2\"", "F2 would be the key for both "),
+            ("[keys]\nstep = [\"F2\", \"f2\"]", "c:2: F2 is given twice for step"),
             ("[keys]\nstep = \"Ctrl-S\"", "c:2: Ctrl-S cannot be bound: a terminal stops"),
             ("[keys]\nstep = \"ctrl-q\"", "Ctrl-Q cannot be bound"),
-            ("[keys]\nstep = \"Ctrl-Z\"", "Ctrl-Z cannot be bound: it leads back to the shell"),
+            ("[keys]\nstep = \"Ctrl-Z\"", "Ctrl-Z cannot be bound: it returns to the shell"),
             ("[keys]\nstep = \"Ctrl-i\"", "terminals send it as Tab"),
             ("[keys]\nstep = \"3\"", "3 cannot be bound: digits go to events"),
-            ("[keys]\nstep = \"Hyper-x\"", "\"Hyper-x\" is no key"),
-            ("[keys]\nstep = \"\"", "\"\" is no key"),
-            ("[keys]\nstep = \"\u{e9}\u{e9}\"", "is no key"),
+            ("[keys]\nstep = \"Hyper-x\"", "\"Hyper-x\" is not a key"),
+            ("[keys]\nstep = \"\"", "\"\" is not a key"),
+            ("[keys]\nstep = \"\u{e9}\u{e9}\"", "is not a key"),
             ("[keys]\ncommand-line = []", "command-line needs a key"),
         ] {
             let error = of(text).unwrap_err();

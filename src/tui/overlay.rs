@@ -318,8 +318,8 @@ impl Excerpt {
     /// What it is.
     pub fn meaning(self) -> &'static str {
         match self {
-            Self::State => "the walker's state: δ, P, s and what belongs to them",
-            Self::Events => "the events listed, with tabs, as a spreadsheet takes them",
+            Self::State => "the walker's state: δ, P, s and what goes with them",
+            Self::Events => "the events listed, tab-separated, for a spreadsheet",
             Self::Chart => "the first chart as text",
             Self::Screen => "the whole screen as text",
         }

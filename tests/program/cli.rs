@@ -600,7 +600,7 @@ fn a_result_goes_to_a_file_whole() {
     fs::write(&file, "old").unwrap();
     home.refused(
         &short("trace", &["-o", "curve.csv"]),
-        &["pulloff: -o curve.csv: exists already; --overwrite replaces it"],
+        &["pulloff: -o curve.csv: already exists; --overwrite replaces it"],
     );
     assert_eq!(fs::read_to_string(&file).unwrap(), "old");
     assert_eq!(home.quiet(&short("trace", &["-o", "curve.csv", "--overwrite"])), "");
@@ -627,7 +627,7 @@ fn what_is_read_is_not_written_over() {
     home.file("scan.csv", &rows);
     std::os::unix::fs::symlink("mine.toml", home.path("mine.csv")).unwrap();
     for (command, file) in [("trace", "./mine.csv"), ("unload", "mine.csv"), ("trace", "scan.csv")] {
-        home.refused(&[command, "mine.toml", "-o", file, "--overwrite"], &["that is read"]);
+        home.refused(&[command, "mine.toml", "-o", file, "--overwrite"], &["is also read"]);
     }
     assert_eq!((home.text("mine.toml"), home.text("scan.csv")), (preset.to_owned(), rows));
 }

@@ -271,7 +271,7 @@ fn a_preset_of_ones_own_is_deleted_and_no_other() {
     home.refused(&["presets", "delete", "mine"], &["--yes"]);
     home.refused(&["presets", "delete", "fig-9", "--yes"], &["fig-9 comes with the program"]);
     home.refused(&["presets", "delete", "mime", "--yes"], &["did you mean mine?"]);
-    home.refused(&["presets", "delete", "./mine.toml", "--yes"], &["is no preset name"]);
+    home.refused(&["presets", "delete", "./mine.toml", "--yes"], &["is not a preset name"]);
     assert!(Path::new(&file).exists());
     let ended = home.run(&["presets", "delete", "mine", "--yes"]);
     assert_eq!((ended.status, ended.out.as_str()), (0, ""));

@@ -634,10 +634,10 @@ fn a_gap_of_other_lengths_is_told_of() {
         let mut session = Session::new(preset);
         session.set("gap.shape", shape);
         let (_, said) = session.model.message.clone().unwrap_or((Level::Info, String::new()));
-        said.contains("lengths are counted otherwise here").then_some(said)
+        said.contains("lengths have another scale here").then_some(said)
     };
     let said = told("profile", "wavy-sphere").unwrap();
-    assert!(said.contains("that before had 1: E*, γ and the path keep their numbers"), "{said}");
+    assert!(said.contains("1 for the last: E*, γ and the path keep their numbers"), "{said}");
     // Gaps with a single length, and metres in both.
     assert_eq!([told("sphere", "wavy-sphere"), told("sphere", "fig-9-si")], [None, None]);
 }

@@ -116,7 +116,7 @@ fn steps_wait_for_a_jump_and_the_way_is_not_turned_round() {
     let here = session.model.walker().unwrap().state;
     session.does(Id::Step);
     assert_eq!(session.model.walker().unwrap().state, here);
-    assert!(session.status().contains("behind the jump"), "{}", session.status());
+    assert!(session.status().contains("after the jump"), "{}", session.status());
     session.does(Id::Reverse);
     assert!(session.model.inward && session.status().contains("turns by itself"), "{}", session.status());
     session.does(Id::Jump);

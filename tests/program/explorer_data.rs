@@ -245,7 +245,7 @@ fn free_keys_are_marked_in_the_panel_and_what_is_not_determined_is_not_taken() {
     select(&mut session, "basis.kind");
     assert!(session.status().contains("only those can be fitted"), "{}", session.status());
     session.set(data::FREE, "").does(Id::Fit);
-    assert!(session.status().starts_with("nothing is free to be fitted: free lets"), "{}", session.status());
+    assert!(session.status().starts_with("no value is free to fit: free lets"), "{}", session.status());
     says(&mut session, "data none");
     session.does(Id::Fit);
     assert!(

@@ -116,7 +116,7 @@ fn how_far_a_curve_is_belongs_to_the_newest_one() {
     assert!(answer(&mut session.model, far(id - 1)).is_empty());
     assert_eq!(session.model.stage, None);
     answer(&mut session.model, far(id));
-    assert!(session.status().ends_with("point 70; cancel gives up"), "{}", session.status());
+    assert!(session.status().ends_with("point 70; cancel cancels"), "{}", session.status());
     session.driver.settle(&mut session.model, effects);
     // A late answer, as from a thread: the computation is no longer running.
     answer(&mut session.model, far(id));
@@ -181,7 +181,7 @@ fn nothing_is_walked_on_a_curve_of_other_values() {
     for id in [Id::Step, Id::NextEvent, Id::Run] {
         session.does(id);
         assert_eq!(session.model.history.len(), steps, "{id:?}");
-        assert!(session.status().contains("the curve shown is of the values before"), "{}", session.status());
+        assert!(session.status().contains("the curve shown is for the old values"), "{}", session.status());
     }
     session.does(Id::Undo).does(Id::Step);
     assert_eq!(session.model.history.len(), steps + 1);
@@ -273,5 +273,5 @@ fn a_rate_without_a_law_of_the_edge_says_that_it_changes_nothing() {
     let both =
         [("edge.exponent", "0.5"), ("path.rate", "0.01")].map(|(key, text)| (key.into(), text.to_owned()));
     session.does(Command::Assign(both.to_vec()));
-    assert!(!session.status().contains("changes nothing"), "{}", session.status());
+    assert!(!session.status().contains("has no effect"), "{}", session.status());
 }

@@ -193,7 +193,7 @@ fn three_speeds_are_fitted_together() {
     assert_eq!(ended.status, 4, "{}", ended.err);
     assert!(ended.out.contains("the runs do NOT follow one law"), "{}", ended.out);
     let ended = fit(&["slow.csv"], &[]);
-    assert!(ended.status == 2 && ended.err.contains("two files or more"), "{}", ended.err);
+    assert!(ended.status == 2 && ended.err.contains("two or more files"), "{}", ended.err);
     let ended = fit(&["slow.csv", "fast.csv"], &["--rate", "1um/s,2um/s,3um/s"]);
     assert!(ended.status == 2 && ended.err.contains("3 rates are given for 2 files"), "{}", ended.err);
     let ended = fit(&["slow.csv", "fast.csv"], &["--residuals", "r.csv"]);
@@ -312,7 +312,7 @@ fn a_table_goes_on_where_it_ended() {
     // The bad file, once corrected, is fitted; the good one is skipped.
     home.file("b.csv", LENS);
     let ended = home.run(&arguments);
-    assert!(ended.status == 0 && ended.err.contains("a.csv: is in the table already"), "{}", ended.err);
+    assert!(ended.status == 0 && ended.err.contains("a.csv: is already in the table"), "{}", ended.err);
     let second = home.text("t.csv");
     assert_eq!((second.lines().count(), second.matches(",describes,").count()), (3, 2), "{second}");
 }
@@ -336,7 +336,7 @@ fn what_fits_wrote_is_not_fitted() {
     for said in [
         "note: rest.csv: is the residuals of a fit, not a measured curve; it is left out",
         "note: results.csv: is a table of fits, not a measured curve; it is left out",
-        "note: a.csv: is in the table already: describes",
+        "note: a.csv: is already in the table: describes",
     ] {
         assert!(again.err.contains(said), "{}", again.err);
     }
@@ -347,7 +347,7 @@ fn what_fits_wrote_is_not_fitted() {
     );
     home.refused(
         &[&["fit", "a.csv", "b.csv", "lens", "--table", "b.csv"], &free[..]].concat(),
-        &["--table", "b.csv: is the file of the points"],
+        &["--table", "b.csv: is also read, as the points"],
     );
     assert_eq!(home.text("b.csv"), LENS);
 }
@@ -375,7 +375,7 @@ fn a_table_has_no_row_that_was_cut_off() {
     assert_eq!(ended.status, 143, "{}", ended.err);
     assert!(ended.err.contains("pulloff: stopped: "), "{}", ended.err);
     let ended = home.run(&[&["fit", "a.csv", "b.csv"], &common[..]].concat());
-    assert!(ended.status == 0 && ended.err.contains("a.csv: is in the table already"), "{}", ended.err);
+    assert!(ended.status == 0 && ended.err.contains("a.csv: is already in the table"), "{}", ended.err);
     assert_eq!(home.text("t.csv").matches(",describes,").count(), 2);
 }
 
@@ -566,5 +566,9 @@ fn measured_points_lie_behind_a_curve() {
             && data.matches("measured retraction").count() == 350
     );
     let ended = home.run(&["plot", "lens", "--measured", &path, "--view", "force-radius"]);
-    assert!(ended.status == 2 && ended.err.contains("has not the columns of force-radius"), "{}", ended.err);
+    assert!(
+        ended.status == 2 && ended.err.contains("does not have the columns of force-radius"),
+        "{}",
+        ended.err
+    );
 }

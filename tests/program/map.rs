@@ -128,7 +128,7 @@ fn files_are_replaced_only_when_told_and_figures_are_of_their_format() {
         assert!(fs::read(home.path().join("a.pdf")).unwrap().starts_with(b"%PDF"));
     } else {
         let said = String::from_utf8_lossy(&pdf.stderr).into_owned();
-        assert!(pdf.status.code() == Some(2) && said.contains("writes no PDF"), "{said}");
+        assert!(pdf.status.code() == Some(2) && said.contains("cannot write PDF"), "{said}");
         assert!(!home.path().join("a.pdf").exists());
     }
 }
@@ -174,7 +174,7 @@ fn refusals_name_what_is_wrong_and_keep_files() {
         (over("path.start_contact_radius=0.2..20"), "at most 10 x the radius of curvature"),
         (
             [over("groups.adhesion=0.01..0.02"), vec!["-o".into(), "there.csv".into()]].concat(),
-            "-o there.csv: exists already; --overwrite replaces it",
+            "-o there.csv: already exists; --overwrite replaces it",
         ),
         (
             [over("groups.adhesion=0.01..0.02"), vec!["-o".into(), "there.gif".into()]].concat(),

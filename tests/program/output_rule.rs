@@ -157,7 +157,7 @@ fn what_is_read_is_not_written_over_through_links_neither() {
                 if is_hard { fs::hard_link(home.path(&input), &link) } else { symlink(&input, &link) }
                     .unwrap();
                 let arguments = [&words(&line)[..], &["--overwrite"]].concat();
-                home.refused(&arguments, &["is read; write to another", &name]);
+                home.refused(&arguments, &["write to another file", &name]);
                 fs::remove_file(&link).unwrap();
                 assert_eq!(files(home.folder()), all, "{line}: {input}");
             }
@@ -167,10 +167,7 @@ fn what_is_read_is_not_written_over_through_links_neither() {
     assert_eq!(files(home.folder()), before);
     // What is generated beside the results is an output too; a spec must not be that file.
     home.file("x.csv.spec.toml", &home.text("free.toml"));
-    home.refused(
-        &words("sweep x.csv.spec.toml -o x.csv --overwrite"),
-        &["is the file of the spec that is read"],
-    );
+    home.refused(&words("sweep x.csv.spec.toml -o x.csv --overwrite"), &["is also read, as the spec"]);
     // There are files behind standard input and output.
     let mut trace = home.command(&words("trace - -o mine.toml --overwrite"));
     let ended = crate::support::home::Ended::of(
@@ -228,7 +225,7 @@ fn a_status_is_replaced_unasked_only_by_its_own_sweep() {
     ] {
         home.refused(
             &words(other),
-            &["--status state.json: exists already, and is not the status of this sweep"],
+            &["--status state.json: already exists, and is not the status of this sweep"],
         );
         assert_eq!(home.text("state.json"), status);
     }
@@ -256,12 +253,12 @@ fn a_name_says_the_format_or_is_refused() {
         for (name, format) in [("x.csv", "json"), ("x.json", "csv"), ("X.JSON", "table"), ("x.csv", "table")]
         {
             let line = format!("{command} -o {name} --format {format}");
-            home.refused(&words(&line), &["its ending says", &format!("--format says {format}")]);
+            home.refused(&words(&line), &["its extension says", &format!("--format says {format}")]);
         }
     }
     home.refused(
         &words(&format!("{MAP} -o x.svg --format csv")),
-        &["its ending says svg, --format says csv"],
+        &["its extension says svg, --format says csv"],
     );
     home.refused(&words(&format!("{MAP} -o x.gif")), &[".csv, .json or .txt", ".svg, .png or .pdf"]);
     for line in ["fit lens --residuals x.json", "fit lens --table x.toml", "sweep s.toml -o x.svg"] {

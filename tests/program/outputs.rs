@@ -81,7 +81,7 @@ fn results_go_straight_into_standard_output_pipes_and_devices() {
     assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
     assert!(!home.path("-").exists() && !home.path("-.spec.toml").exists());
     home.refused(&["figures", "-o", "-"], &["-o -: the figures are many files; name a folder"]);
-    home.refused(&["plot", "--data", "-o", "/dev/stdout"], &["--data: the data stand beside the file"]);
+    home.refused(&["plot", "--data", "-o", "/dev/stdout"], &["--data: the data go beside the figure's file"]);
 }
 
 #[test]
@@ -118,9 +118,9 @@ fn the_ending_of_a_file_is_its_format() {
         home.quiet(&[command, "fig-3-jkr", "-o", "none", "--format=csv", "--overwrite"]);
         home.refused(
             &[command, "fig-3-jkr", "-o", "x.json", "--format", "csv"],
-            &["-o x.json: its ending says json, --format says csv"],
+            &["-o x.json: its extension says json, --format says csv"],
         );
-        home.refused(&[command, "fig-3-jkr", "-o", "x.csv", "--format=json"], &["its ending says csv"]);
+        home.refused(&[command, "fig-3-jkr", "-o", "x.csv", "--format=json"], &["its extension says csv"]);
         // No extension, or one that says nothing.
         home.quiet(&[command, "fig-3-jkr", "-o", "r.txt", "--format=json", "--overwrite"]);
         assert!(home.text("r.txt").starts_with('{'));
@@ -220,7 +220,7 @@ fn read_only_files_are_not_replaced() {
         "run export.pulloff --overwrite",
     ] {
         let ended = shell(&home, &format!("$pulloff {line}"));
-        assert!(ended.err.contains("is read-only, and is not replaced"), "{line}: {}", ended.err);
+        assert!(ended.err.contains("is read-only and is not replaced"), "{line}: {}", ended.err);
         assert_ne!(ended.status, 0, "{line}");
     }
     for file in &kept[..3] {

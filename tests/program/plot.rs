@@ -92,7 +92,7 @@ fn what_cannot_be_drawn_is_refused_with_its_reason() {
     for (arguments, words) in [
         (&["-o", "a.gif"][..], "ends in .svg, .png or .pdf"),
         #[cfg(not(feature = "pdf"))]
-        (&["-o", "a.pdf"][..], "this build writes no PDF (feature `pdf` is off); use .svg"),
+        (&["-o", "a.pdf"][..], "this build cannot write PDF (feature `pdf` is off); use .svg"),
         (&["--width", "3"], "from 50 to 500 mm"),
         (&["--contact-radius", "0.2"], "shows the whole curve"),
         (&["--view", "gap", "--contact-radius", "7"], "outside the curve"),
@@ -129,17 +129,17 @@ fn a_figure_and_its_data_replace_nothing_unasked() {
     let with_data = ["fig-3-jkr", "--data", "-o", "jkr.svg"];
     std::fs::write(file("jkr.csv"), "r,h\n0,0\n").unwrap();
     let (status, said) = refused(folder.path(), &with_data);
-    assert!(status == Some(2) && said.contains("--data jkr.csv: exists already; --overwrite"), "{said}");
+    assert!(status == Some(2) && said.contains("--data jkr.csv: already exists; --overwrite"), "{said}");
     assert_eq!(std::fs::read_to_string(file("jkr.csv")).unwrap(), "r,h\n0,0\n");
     assert!(!file("jkr.svg").exists(), "nothing is drawn before");
     // Without --data, that file is none of our business.
     assert_eq!(refused(folder.path(), &["fig-3-jkr", "-o", "jkr.svg"]).0, Some(0));
     let (status, said) = refused(folder.path(), &with_data);
-    assert!(status == Some(2) && said.contains("-o jkr.svg: exists already; --overwrite"), "{said}");
+    assert!(status == Some(2) && said.contains("-o jkr.svg: already exists; --overwrite"), "{said}");
     assert_eq!(refused(folder.path(), &[&with_data[..], &["--overwrite"]].concat()).0, Some(0));
     assert!(std::fs::read_to_string(file("jkr.csv")).unwrap().starts_with("name,curve,"));
     let (status, said) = refused(folder.path(), &["fig-3-jkr", "--data", "-o", "-"]);
-    assert!(status == Some(2) && said.contains("--data: the data stand beside the file"), "{said}");
+    assert!(status == Some(2) && said.contains("--data: the data go beside the figure's file"), "{said}");
     std::fs::create_dir(file("folder.csv")).unwrap();
     let (status, said) = refused(folder.path(), &["fig-3-jkr", "--data", "-o", "folder.svg"]);
     assert!(
@@ -160,12 +160,12 @@ fn neither_the_figure_nor_its_data_replace_what_is_read() {
     let line = preset.lines().find(|line| line.trim_start().starts_with("file = ")).unwrap();
     std::fs::write(file("mine.toml"), preset.replace(line, "file = \"rows.csv\"")).unwrap();
     let (status, said) = refused(folder.path(), &["./mine.toml", "--data", "-o", "rows.svg", "--overwrite"]);
-    assert!(status == Some(2) && said.contains("is the file of the profile that is read"), "{said}");
+    assert!(status == Some(2) && said.contains("is also read, as the profile"), "{said}");
     assert!(!file("rows.svg").exists());
     std::os::unix::fs::symlink("mine.toml", file("mine.svg")).unwrap();
     let (status, said) = refused(folder.path(), &["./mine.toml", "-o", "mine.svg", "--overwrite"]);
     assert!(
-        status == Some(2) && said.contains("-o ") && said.contains("is the file of the preset that"),
+        status == Some(2) && said.contains("-o ") && said.contains("is also read, as the preset"),
         "{said}"
     );
 }
@@ -201,7 +201,7 @@ fn a_range_of_an_axis_is_shown_in_its_own_units() {
         (&["--x", "0.02..0.0200001"], "--x <LO..HI>': the range is too narrow to draw"),
         (&["--y", "0.9999999..1"], "it must be at least 0.0001 wide"),
         (&["--x", "2..1"], "a number up to a larger one, not from 2 to 1"),
-        (&["--y", "1000.."], "--y 1000..: shows nothing of the figure, where P/Pc goes from "),
+        (&["--y", "1000.."], "--y 1000..: shows none of the figure, where P/Pc goes from "),
     ] {
         let (status, said) = refused(folder.path(), range);
         assert!(status == Some(2) && said.contains(words), "{range:?}: {said}");
@@ -364,9 +364,10 @@ fn a_sweep_over_one_axis_is_a_curve_with_gaps() {
     std::fs::write(&path, results.replace(row, &empty)).unwrap();
     let gap = svg(folder.path(), &["--sweep", "r.csv", "--quantity", "kesari_lew"]);
     assert_eq!(shapes(&gap), (4, shapes(&whole).1 + 1));
-    for (column, words) in
-        [("error", "error = \"start not reached\" is no number"), ("kesari_low", "did you mean kesari_lew?")]
-    {
+    for (column, words) in [
+        ("error", "error = \"start not reached\" is not a number"),
+        ("kesari_low", "did you mean kesari_lew?"),
+    ] {
         let (status, said) = refused(folder.path(), &["--sweep", "r.csv", "--quantity", column]);
         assert!(status == Some(2) && said.contains(words), "{column}: {said}");
     }
@@ -380,9 +381,6 @@ fn a_column_is_of_a_sweep() {
     let folder = tempfile::tempdir().unwrap();
     for arguments in [&["--quantity", "snaps"][..], &["wavy-sphere", "--quantity", "snaps"]] {
         let (status, said) = refused(folder.path(), arguments);
-        assert!(
-            status == Some(2) && said.contains("--quantity: is a column of the results of a sweep"),
-            "{said}"
-        );
+        assert!(status == Some(2) && said.contains("--quantity: is a column of a sweep's results"), "{said}");
     }
 }

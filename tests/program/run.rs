@@ -190,7 +190,7 @@ fn a_script_writes_below_the_current_folder_and_replaces_nothing_unless_told() {
     assert!(outside.exists() && home.at("y.csv").exists());
     // Replacing files.
     fs::write(here.join("a.csv"), "mine").unwrap();
-    home.fails("export walk a.csv", &[], 2, "a.csv: exists already; --overwrite replaces it");
+    home.fails("export walk a.csv", &[], 2, "a.csv: already exists; --overwrite replaces it");
     home.fails("export walk a.csv replace", &[], 2, "--overwrite replaces it");
     assert_eq!(fs::read(here.join("a.csv")).unwrap(), b"mine");
     home.quiet("export walk a.csv\nexport walk a.csv replace", &["--overwrite"]);

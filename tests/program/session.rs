@@ -399,7 +399,7 @@ fn sessions_are_listed_shown_and_deleted() {
     assert_eq!(back.preset, session.model.preset);
 
     let (status, _, said) = home.run(&["sessions", "delete", "wavy-sphere-1"]);
-    assert_eq!((status, &*said), (2, "pulloff: nobody can be asked: --yes deletes without a question\n"));
+    assert_eq!((status, &*said), (2, "pulloff: nobody can answer here: --yes deletes without asking\n"));
     let held = home.archive().load("wavy-sphere-1").unwrap();
     let (status, _, said) = home.run(&["sessions", "delete", "wavy-sphere-1", "--yes"]);
     assert!(status == 2 && said.contains("is running in another pulloff"), "{said}");

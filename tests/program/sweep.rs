@@ -327,7 +327,7 @@ fn two_at_once_do_not_write_one_file() {
     let mut said = BufReader::new(waiting.stderr.take().unwrap());
     let mut line = String::new();
     said.read_line(&mut line).unwrap();
-    assert_eq!(line, "pulloff: r.csv: another pulloff is writing it; waiting for its end\n");
+    assert_eq!(line, "pulloff: r.csv: another pulloff is writing it; waiting for it to end\n");
     child.kill().unwrap();
     child.wait().unwrap();
     line.clear();
@@ -358,7 +358,7 @@ fn shards_join_to_the_single_run() {
     assert!(home.sweep("s.toml", "all.csv", &[]).contains("(10 from before)"));
     home.refused(
         &["sweep", "merge", "1.csv", "2.csv", "3.csv", "-o", "all.csv"],
-        "all.csv: exists already; --overwrite replaces it",
+        "all.csv: already exists; --overwrite replaces it",
     );
 
     let merge = |parts: &[&'static str]| [&["sweep", "merge"], parts, &["-o", "no.csv"]].concat();
@@ -370,7 +370,10 @@ fn shards_join_to_the_single_run() {
     home.refused(&merge(&["1.csv", "half.csv"]), "half.csv: is shard 1/2, while 1.csv is one of 3");
     home.file("t.toml", &GRID.replace("0.001,", "0.0011,"));
     home.sweep("t.toml", "other.csv", &["--shard", "2/3"]);
-    home.refused(&merge(&["1.csv", "other.csv", "3.csv"]), "other.csv: is of another sweep than 1.csv");
+    home.refused(
+        &merge(&["1.csv", "other.csv", "3.csv"]),
+        "other.csv: belongs to a different sweep from 1.csv",
+    );
     // A part with a changed row, and one that was stopped.
     let text = home.text("2.csv");
     let row = text.lines().nth(2).unwrap();
@@ -488,7 +491,7 @@ fn results_of_something_else_are_not_touched() {
     home.file("r.csv", &whole.replace("\n3,0.001,", "\n3,0.002,"));
     home.refused(
         &["sweep", "s.toml", "-o", "r.csv"],
-        "r.csv:5: row 3: column gap.amplitude is 0.002, expected 0.001: the file was changed; --overwrite begins anew",
+        "r.csv:5: row 3: column gap.amplitude is 0.002, expected 0.001: the file was changed; --overwrite starts afresh",
     );
     // A row that lost a field, or that is not a valid row.
     let row = whole.lines().nth(4).unwrap();
@@ -505,7 +508,7 @@ fn results_of_something_else_are_not_touched() {
     home.file("mine.csv", "a,b\n");
     home.refused(
         &["sweep", "s.toml", "-o", "mine.csv"],
-        "mine.csv: exists already, and is not known to be of a sweep",
+        "mine.csv: already exists, and is not known to belong to a sweep",
     );
     assert_eq!(home.text("mine.csv"), "a,b\n");
     home.refused(&["sweep", "s.toml", "-o", "."], "is a folder, not a regular file");

@@ -61,7 +61,7 @@ fn a_row_that_takes_too_long_has_an_error_that_says_so() {
     assert!(out.contains("12 of 12 rows, complete") && out.contains("12 row limit"), "{out}");
     for wrong in ["0s", "-1s", "10 parsecs", "nan", "1e40h"] {
         let (_, err) = said(&home, &["sweep", "s.toml", "-o", "x.csv", &format!("--row-limit={wrong}")], 2);
-        assert!(err.contains("is no time above 0 such as 10s"), "{wrong}: {err}");
+        assert!(err.contains("is not a time above 0, such as 10s"), "{wrong}: {err}");
     }
     // A limit that no row reaches changes nothing.
     said(&home, &["sweep", "s.toml", "-o", "a.csv"], 0);

@@ -140,9 +140,9 @@ fn shards_join_to_the_single_run() {
     // By the given names, or by those of the files.
     done(&home, &["sweep", "merge", "2.csv", "1.members.csv", "-o", "all.csv"]);
     assert_eq!(files(&home, "all"), files(&home, "whole"));
-    home.refused(&["sweep", "merge", "1.csv", "2.csv", "-o", "all.csv"], &["all.csv: exists already"]);
-    home.refused(&["sweep", "merge", "1.csv", "2.csv", "-o", "-"], &["an ensemble has two files"]);
-    home.refused(&["sweep", "s.toml", "-o", "-"], &["an ensemble has two files"]);
+    home.refused(&["sweep", "merge", "1.csv", "2.csv", "-o", "all.csv"], &["all.csv: already exists"]);
+    home.refused(&["sweep", "merge", "1.csv", "2.csv", "-o", "-"], &["an ensemble writes two files"]);
+    home.refused(&["sweep", "s.toml", "-o", "-"], &["an ensemble writes two files"]);
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn results_of_something_else_are_not_touched() {
     home.file("r.csv", "mine\n");
     home.refused(
         &["sweep", "s.toml", "-o", "r.csv"],
-        &["r.csv: exists already, and is not known to be of a sweep"],
+        &["r.csv: already exists, and is not known to belong to a sweep"],
     );
     assert!(home.text("r.csv") == "mine\n" && !home.path("r.members.csv").exists());
     done(&home, &["sweep", "s.toml", "-o", "r.csv", "--overwrite"]);

@@ -296,7 +296,7 @@ fn keys_come_from_the_settings_and_bad_settings_are_said_and_left_alone() {
     assert_eq!(fs::read_to_string(&file).expect("the file"), bad);
     // A file requested explicitly must be valid.
     for (path, said) in [
-        (file.as_path(), "config.toml:2: x would be the key of step and of jump"),
+        (file.as_path(), "config.toml:2: x would be the key for both step and jump"),
         (&folder.join("none.toml"), "none.toml: cannot read: No such file"),
     ] {
         let mut pty = Pty::spawn(&program(), &["--config", path.to_str().expect("a path")], &env, 160, 24);

@@ -39,7 +39,7 @@ impl<'a> FinishedFits<'a> {
                 left.push(path.clone());
                 continue;
             };
-            self.console.note(Some(&format!("{}: is in the table already: {state}", show_path(path))));
+            self.console.note(Some(&format!("{}: is already in the table: {state}", show_path(path))));
             self.worst = self.worst.max(status_of(state));
         }
         left
@@ -137,7 +137,8 @@ pub(super) fn ended(worst: Status, accepts: bool, console: &Console) -> Result<E
         }
         Status::NotDescribed if accepts => Ok(ExitCode::SUCCESS),
         Status::NotDescribed => {
-            let text = "the model does not describe all points; the result says why, and --accept takes it all the same";
+            let text =
+                "the model does not describe all points; the result says why, and --accept takes it anyway";
             Err(Failure::NotDescribed(text.to_owned()))
         }
         Status::Mendable => {
@@ -145,7 +146,7 @@ pub(super) fn ended(worst: Status, accepts: bool, console: &Console) -> Result<E
             Err(Failure::Usage(text.to_owned()))
         }
         _ => {
-            let text = "not every fit came to its end; the result has the best values so far";
+            let text = "not every fit finished; the result has the best values so far";
             Err(Failure::Incomplete(text.to_owned()))
         }
     }

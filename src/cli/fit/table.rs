@@ -45,7 +45,7 @@ impl FitTable {
         let (text, _) = crate::store::file::read_text(path, pulloff_engine::cells::LARGEST)?;
         let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
         let wrong = |what: &str| Failure::Usage(format!("--table {}: {what}", shown(path)));
-        let other = "exists already and holds something else than fits; --overwrite replaces it";
+        let other = "already exists and holds something other than fits; --overwrite replaces it";
         for record in reader.records() {
             let record = record.map_err(|_| wrong(other))?;
             table.rows.push(record.iter().map(str::to_owned).collect());

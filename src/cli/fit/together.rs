@@ -21,11 +21,11 @@ use std::process::ExitCode;
 /// The options for fitting several files at once.
 #[derive(Debug, Args)]
 pub(super) struct Several {
-    /// Fit one law to all files: the free values of material, gap, edge and path are shared, what data.* says belongs
-    /// to each file; the report says whether the files follow one law
+    /// Fit one law to all files: the free values of material, gap, edge and path are shared, those of data.* are each
+    /// file's own; the report says whether the files follow one law
     #[arg(long, conflicts_with_all = ["residuals", "table", "profile", "bootstrap", "poisson"])]
     pub(super) together: bool,
-    /// The rate of the device in each file, in their order, or one for all; path.rate when left out. A file with times
+    /// The rate of the device in each file, in order, or one for all; path.rate when left out. A file with times
     /// and the position of the device gives its own rate
     #[arg(long, value_name = "RATE,...", value_delimiter = ',')]
     pub(super) rate: Vec<String>,

@@ -87,7 +87,7 @@ impl Autosave {
     /// Errors: Why it was not written. The file is unchanged.
     pub fn finish(&self, ended: Ended, patience: Duration) -> Result<(), String> {
         let until = Instant::now() + patience;
-        let busy = || "the one before is still being written".to_owned();
+        let busy = || "the last one is still being written".to_owned();
         let (newest, left) = {
             let mut desk = patiently(&self.0.desk, until).ok_or_else(busy)?;
             desk.is_over = true;
@@ -129,7 +129,7 @@ impl Autosave {
             let failure =
                 result.err().map(|error| format!("the session is not being saved: {}", error.brief()));
             if failure != told {
-                tell(failure.clone().unwrap_or_else(|| "the session is saved again".to_owned()));
+                tell(failure.clone().unwrap_or_else(|| "session saving works again".to_owned()));
                 told = failure;
             }
             thread::sleep(PAUSE.max(begun.elapsed() * SHARE));

@@ -100,7 +100,7 @@ impl Data {
     pub(super) fn bytes(&self, session: &Path, hash: &str, name: &str) -> Result<Vec<u8>, ArchiveError> {
         let lost = |why: String| ArchiveError::Data { path: show_path(session), name: quote(name), why };
         if !is_hash(hash) {
-            return Err(lost(format!("\"{}\" is no SHA-256", quote(hash))));
+            return Err(lost(format!("\"{}\" is not a SHA-256", quote(hash))));
         }
         let path = self.path(hash);
         let bytes = match read_bytes(&path, LARGEST) {
@@ -111,7 +111,10 @@ impl Data {
             Err(error) => return Err(error.into()),
         };
         if sha256(&bytes) != hash {
-            return Err(lost(format!("{} was changed: its SHA-256 is not its name", show_path(&path))));
+            return Err(lost(format!(
+                "{} was changed: its SHA-256 does not match its name",
+                show_path(&path)
+            )));
         }
         Ok(bytes)
     }

@@ -129,7 +129,7 @@ fn data_that_are_gone_or_altered_are_named() {
     assert!(
         error().contains("scan-1.json: the rows of its profile \"")
             && error().contains("scan.csv\" are lost: ")
-            && error().ends_with(".csv was changed: its SHA-256 is not its name"),
+            && error().ends_with(".csv was changed: its SHA-256 does not match its name"),
         "{}",
         error()
     );
@@ -142,7 +142,7 @@ fn data_that_are_gone_or_altered_are_named() {
     let text = fs::read_to_string(&session).unwrap();
     let hash = file.file_stem().unwrap().to_str().unwrap();
     fs::write(&session, text.replace(hash, "../../scan")).unwrap();
-    assert!(error().ends_with("\"../../scan\" is no SHA-256"), "{}", error());
+    assert!(error().ends_with("\"../../scan\" is not a SHA-256"), "{}", error());
     fs::write(&session, text).unwrap();
     fs::write(&file, whole).unwrap();
     bench.archive().load("scan-1").unwrap();

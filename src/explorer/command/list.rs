@@ -20,29 +20,29 @@ macro_rules! each_command {
             "let edges run at constant control to the next stable state; from a touch, with the new contact"
             { run: |model| walk(model, Action::Jump) }
         Run "run" "r" "run" walker Curve Yes
-            "run at a pace one can watch, to the next limit point or touch; any key but those of the pace pauses"
+            "run at a watchable pace to the next limit point or touch; any key but the pace keys pauses"
             { words: "animate play", run: run_or_stop,
             takes: takes("number of states", |rest| Ok(Command::RunOf(rest.count("a number of states", MOST_STEPS)?))) }
-        Slower "slower" "(" "slower" always Nothing Screen "half as many states a second in a run, at first 20"
+        Slower "slower" "(" "slower" always Nothing Screen "halve the states a second of a run, at first 20"
             { run: |model| scale_pace(model, 0.5) }
         Faster "faster" ")" "faster" always Nothing Screen "twice as many" { run: |model| scale_pace(model, 2.0) }
         MoveTo "move-to" "L" "to A" curve Curve Yes
-            "the walker to A, the largest pull of the path, where a dead load lets go; or to a contact radius, or to an event by its number, as a digit does"
+            "move to A, the largest pull of the path, where a dead load lets go; or to a contact radius, or to an event by number, as a digit does"
             { words: "largest pull peak", run: to_largest_pull,
             takes: takes("A, event N, or a contact radius", destination).offering(|_| words(["A", "event"])) }
-        Reverse "reverse" "b" "back" turns InOrder Yes "turn round: steps and events are then those of the other way"
+        Reverse "reverse" "b" "back" turns InOrder Yes "turn round: steps and events then go the other way"
             { words: "turn direction", look: |model| model.inward = !model.inward }
         Halve "halve-step" "[" "half step" always InOrder Yes "halve the step length" { look: |model| scale_length(model, 0.5) }
         Double "double-step" "]" "double step" always InOrder Yes "double the step length"
             { look: |model| scale_length(model, 2.0) }
         StepLength "step-length" "" "step length" always InOrder Yes "the longest step, as a share of every quantity's range"
             { takes: takes("length", |rest| Ok(Command::StepLength(rest.length()?))).always() }
-        Undo "undo" "u" "undo" undo InOrder Yes "take back the last change of a value or walk; no state is erased"
+        Undo "undo" "u" "undo" undo InOrder Yes "undo the last change of a value or the walk; no state is erased"
             { words: "back take revert", run: |model| travel(model, Id::Undo, 1), takes: takes("number", |rest| travelled(rest, Id::Undo)) }
-        Redo "redo" "Ctrl-R" "redo" redo InOrder Yes "do again what was taken back" { run: |model| travel(model, Id::Redo, 1),
+        Redo "redo" "Ctrl-R" "redo" redo InOrder Yes "redo what was undone" { run: |model| travel(model, Id::Redo, 1),
             takes: takes("number", |rest| travelled(rest, Id::Redo)) }
         Branches "branches" "B" "branches" branches InOrder Needs("the reduced approach, force and contact radius of a state")
-            "the branches of the walk: what each ended with, and back to it"
+            "the branches of the walk: how each ended, and a way back"
             { takes: takes("branch", branch).listing(branches_of) }
         Restart "restart" "Home" "start" walker_or_no_curve Curve Yes "start again" { words: "reset beginning", run: restart }
         Control "control" "c" "control" always Curve Yes "what the device prescribes: displacement, force, or stiffness"
@@ -51,27 +51,27 @@ macro_rules! each_command {
     }
     "Change the problem" {
         Less "less" "<" "less" parameter InOrder Selected("KEY=VALUE")
-            "the selected value less, by its second digit: 0.0025, 0.0024" { run: |model| turn(model, Id::Less, None) }
-        More "more" ">" "more" parameter InOrder Selected("KEY=VALUE") "the selected value more, by its second digit"
+            "decrease the selected value by its second digit: 0.0025, 0.0024" { run: |model| turn(model, Id::Less, None) }
+        More "more" ">" "more" parameter InOrder Selected("KEY=VALUE") "increase the selected value by its second digit"
             { run: |model| turn(model, Id::More, None) }
-        MuchLess "much-less" "{" "much less" parameter InOrder Selected("KEY=VALUE") "the same by its first digit: 0.003, 0.002"
+        MuchLess "much-less" "{" "much less" parameter InOrder Selected("KEY=VALUE") "decrease it by its first digit: 0.003, 0.002"
             { run: |model| turn(model, Id::MuchLess, None) }
-        MuchMore "much-more" "}" "much more" parameter InOrder Selected("KEY=VALUE") "more by its first digit"
+        MuchMore "much-more" "}" "much more" parameter InOrder Selected("KEY=VALUE") "increase it by its first digit"
             { run: |model| turn(model, Id::MuchMore, None) }
         FineLess "fine-less" "," "a bit less" parameter InOrder Selected("KEY=VALUE")
-            "the same by its third digit: 0.00250, 0.00249" { run: |model| turn(model, Id::FineLess, None) }
-        FineMore "fine-more" "." "a bit more" parameter InOrder Selected("KEY=VALUE") "more by its third digit"
+            "decrease it by its third digit: 0.00250, 0.00249" { run: |model| turn(model, Id::FineLess, None) }
+        FineMore "fine-more" "." "a bit more" parameter InOrder Selected("KEY=VALUE") "increase it by its third digit"
             { run: |model| turn(model, Id::FineMore, None) }
         Free "free" "*" "free" parameter InOrder Selected("data.free=KEY,...")
-            "let a fit change the selected value, or no longer" { run: mark }
+            "let a fit change the selected value, or hold it" { run: mark }
         Fit "fit" "F" "fit" always Nothing Yes "fit the free values to the measured curve; Esc takes the best so far"
             { words: "regression report result", run: fit }
         Edit "edit" "Enter =" "type" always Nothing Selected("KEY=VALUE")
-            "type the selected value, or choose it; in the log: go to the selected event; at the cross-hair: go there; in a study its quantity, on a map its axes" {}
+            "type the selected value, or choose it; in the log: go to the selected event; at the cross-hair: go there; in a study: its quantity; on a map: its axes" {}
         Data "data" "" "data" always Nothing Needs("a file, or none")
-            "a measured curve behind the chart, to compare and to fit; none takes it away"
+            "a measured curve behind the chart, to compare and to fit; none removes it"
             { words: "measured experiment csv file remove", takes: takes("file, or none", |rest| rest.assigned("a file", data::FILE)).offering(curves) }
-        Assign "set" "" "set" always InOrder Yes "other values for some keys, as one change; KEY=none takes an optional one away"
+        Assign "set" "" "set" always InOrder Yes "other values for some keys, as one change; KEY=none removes an optional one"
             { words: "unset remove default", takes: takes("KEY=VALUE ...", assigned).going_on(assignments_of).always() }
     }
     "Look" {
@@ -79,7 +79,7 @@ macro_rules! each_command {
             { look: |model| arrow(model, (0.0, 1.0), false) }
         Down "down" "Down j" "down" always Nothing Screen "the line below; in Charts: move down"
             { look: |model| arrow(model, (0.0, -1.0), true) }
-        Left "left" "Left h" "left" always Nothing Screen "the value before; in Charts: move left"
+        Left "left" "Left h" "left" always Nothing Screen "the previous value; in Charts: move left"
             { look: |model| arrow(model, (-1.0, 0.0), false) }
         Right "right" "Right l" "right" always Nothing Screen "the next value; in Charts: move right"
             { look: |model| arrow(model, (1.0, 0.0), true) }
@@ -93,15 +93,15 @@ macro_rules! each_command {
             { words: "result", takes: takes("curve, inside, map or data", place).offering(places) }
         NextView "next-view" "t" "chart" always Nothing Screen "the next chart of the place"
             { look: |model| model.look_at(reach::next(model, true)) }
-        PreviousView "previous-view" "T" "chart back" always Nothing Screen "the chart before"
+        PreviousView "previous-view" "T" "chart back" always Nothing Screen "the previous chart"
             { look: |model| model.look_at(reach::next(model, false)) }
         ChooseView "view" "" "charts" always Nothing Screen "any chart by its name; those with nothing to show say why"
             { takes: takes("chart", view).listing(views) }
         Study "study" "" "study" curve Nothing Screen "a quantity over the range of the selected value"
             { words: "sweep dependence parameter", takes: takes("quantity", quantity).listing(quantities) }
-        ZoomIn "zoom-in" "+" "closer" curve Nothing Screen "the chart closer, about the cross-hair or the walker"
+        ZoomIn "zoom-in" "+" "closer" curve Nothing Screen "zoom in, about the cross-hair or the walker"
             { look: |model| look::zoom(model, model.view, true, model.cross.unwrap_or(look::MIDDLE)) }
-        ZoomOut "zoom-out" "-" "wider" curve Nothing Screen "further away"
+        ZoomOut "zoom-out" "-" "wider" curve Nothing Screen "zoom out"
             { look: |model| look::zoom(model, model.view, false, model.cross.unwrap_or(look::MIDDLE)) }
         Whole "whole" "f" "whole" zoomed Nothing Screen "the whole chart again" { look: look::whole }
         CrossHair "cross-hair" "i" "cross-hair" curve Nothing Screen "a cross-hair that reads the chart; arrows move it"
@@ -115,9 +115,9 @@ macro_rules! each_command {
             { takes: takes("theory", theory).listing(theories) }
         Pin "pin" "p" "pin" curve Curve Yes "keep this curve to compare the next ones with" { words: "compare keep", look: look::pin }
         Rings "rings" "#" "rings" curve Nothing Screen
-            "the same problem in the ring elements of the paper over the chart, or its exact solution over those; again: away"
+            "over the chart: the same problem in the ring elements of the paper, or its exact solution over those; again: remove"
             { words: "elements", look: look::in_rings }
-        Pins "pins" "P" "pins" pins Nothing Needs("the number of a pin, or all") "remove a pinned curve: the list says what each is of"
+        Pins "pins" "P" "pins" pins Nothing Needs("the number of a pin, or all") "remove a pinned curve; the list says what each shows"
             { words: "remove unpin", takes: takes("number", pin).listing(pins_of) }
     }
     "Presets and files" {
@@ -131,17 +131,17 @@ macro_rules! each_command {
             "write curve, walk or events as CSV or JSON, the session as a script, the screen as text"
             { words: "figure plot picture svg pdf csv json image script replay", takes: takes("WHAT FILE", exported).going_on(documents) }
         Copy "copy" "Y" "copy" always Nothing Screen
-            "the state, the events, the chart or the screen into the terminal's clipboard" { words: "clipboard yank" }
+            "copy the state, the events, the chart or the screen to the terminal's clipboard" { words: "clipboard yank" }
     }
     "Program" {
         CommandLine "command-line" ":" "all" always Nothing Screen
-            "everything that can be done, of which what is typed keeps what has it; Tab takes a line, Enter runs it" { run: |_| vec![file(Job::Names)] }
+            "everything that can be done; typing keeps the lines that match; Tab takes a line, Enter runs it" { run: |_| vec![file(Job::Names)] }
         Mouse "mouse" "m" "mouse" always Nothing Screen
             "take the mouse (click, wheel), or leave it to the terminal to select text" {}
-        About "about" "I" "about" always Nothing Screen "what the preset says of itself, and what was changed since" { words: "original" }
+        About "about" "I" "about" always Nothing Screen "what the preset says about itself, and what has changed since" { words: "original" }
         Help "help" "?" "keys" always Nothing Screen "what can be done here, by key and name; Tab: how to read the screen" { words: "manual keys" }
-        Cancel "cancel" "Esc" "back" always Nothing Screen "take typed text back, close, stop a run or a curve" { run: cancel }
-        Quit "quit" "q Ctrl-C" "quit" always Nothing Yes "quit; --resume comes back; asks if changes are unsaved"
+        Cancel "cancel" "Esc" "back" always Nothing Screen "discard typed text, close, stop a run or a curve" { run: cancel }
+        Quit "quit" "q Ctrl-C" "quit" always Nothing Yes "quit; --resume comes back; asks about unsaved changes"
             { words: "exit leave wq close bye session resume", look: |model| model.quit = true }
     }
         }

@@ -39,7 +39,7 @@ pub const fn takes(what: &'static str, read: fn(&mut Rest<'_>) -> Result<Command
 
 impl Takes {
     /// A command takes nothing.
-    pub const NOTHING: Self = takes("", |rest| Err(ScriptFault::new(rest.end, "nothing stands here")));
+    pub const NOTHING: Self = takes("", |rest| Err(ScriptFault::new(rest.end, "nothing goes here")));
 
     /// The same, with what can be typed there.
     pub const fn offering(self, offers: fn(&Typing<'_>) -> Vec<Offer>) -> Self {
@@ -107,13 +107,13 @@ impl<'a> Rest<'a> {
 
     /// A whole number from 1.
     pub fn count(&mut self, what: &str, most: usize) -> Result<usize, ScriptFault> {
-        let allowed = format!("number from 1 to {most}");
+        let allowed = format!("a number from 1 to {most}");
         number(self.need(what)?, &allowed, |count| (1..=most).contains(count))
     }
 
     /// The longest step.
     pub fn length(&mut self) -> Result<f64, ScriptFault> {
-        let allowed = format!("length from {:?} to {:?}", LENGTHS.start(), LENGTHS.end());
+        let allowed = format!("a length from {:?} to {:?}", LENGTHS.start(), LENGTHS.end());
         number(self.need("a length")?, &allowed, |length| LENGTHS.contains(length))
     }
 
@@ -148,7 +148,7 @@ fn number<T: std::str::FromStr>(
     allowed: &str,
     may_be: impl Fn(&T) -> bool,
 ) -> Result<T, ScriptFault> {
-    let refused = || ScriptFault::new(word.column, format!("\"{}\" is no {allowed}", quote(&word.text)));
+    let refused = || ScriptFault::new(word.column, format!("\"{}\" is not {allowed}", quote(&word.text)));
     word.text.parse().ok().filter(may_be).ok_or_else(refused)
 }
 
@@ -173,14 +173,14 @@ pub(in crate::explorer) fn destination(rest: &mut Rest<'_>) -> Result<Command, S
     if rest.takes("event") {
         return Ok(Command::SelectEvent(rest.count("the number of an event", MOST_STEPS)?));
     }
-    let allowed = "contact radius: a positive number in the preset's units";
+    let allowed = "a contact radius: a positive number in the preset's units";
     let is_radius = |radius: &f64| radius.is_finite() && *radius > 0.0;
     Ok(Command::MoveTo(number(rest.need("a contact radius")?, allowed, is_radius)?))
 }
 
 /// A state by its reduced numbers.
 pub(in crate::explorer) fn branch(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
-    let mut finite = |what| number(rest.need(what)?, "finite number", |x: &f64| x.is_finite());
+    let mut finite = |what| number(rest.need(what)?, "a finite number", |x: &f64| x.is_finite());
     Ok(Command::GoToState([finite("an approach")?, finite("a force")?, finite("a contact radius")?]))
 }
 
@@ -271,7 +271,7 @@ type ReadKey = fn(&str, usize) -> Result<Key, ScriptFault>;
 fn assignment(word: &Word, read: ReadKey) -> Result<Assignment, ScriptFault> {
     let Some((key, text)) = word.text.split_once('=') else {
         let what = format!(
-            "\"{}\" is no KEY=VALUE, as in gap.amplitude=0.002; a value with spaces stands in quotes",
+            "\"{}\" is not KEY=VALUE, as in gap.amplitude=0.002; put a value with spaces in quotes",
             quote(&word.text)
         );
         return Err(ScriptFault::new(word.column, what));

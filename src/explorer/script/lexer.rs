@@ -35,10 +35,7 @@ pub(super) fn split(line: &str) -> Result<Vec<Word>, ScriptFault> {
                     ('\\', Some(_)) => match chars.next() {
                         Some((c @ ('"' | '\\'), _)) => word.text.push(c),
                         _ => {
-                            return Err(ScriptFault::new(
-                                column,
-                                "in quotes a \\ stands before \" or \\ only",
-                            ));
+                            return Err(ScriptFault::new(column, "in quotes \\ may only precede \" or \\"));
                         }
                     },
                     (c, _) => word.text.push(c),

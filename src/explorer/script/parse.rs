@@ -21,7 +21,7 @@ pub(super) fn script_line(line: &str) -> Result<Option<(bool, Command)>, ScriptF
     let words = split(line)?;
     let may_fail = words.first().is_some_and(|word| word.text == TRY);
     let Some((name, rest)) = words[usize::from(may_fail)..].split_first() else {
-        return if may_fail { Err(ScriptFault::new(1, "try stands before a command")) } else { Ok(None) };
+        return if may_fail { Err(ScriptFault::new(1, "try needs a command")) } else { Ok(None) };
     };
     let command = command(name, Rest { words: rest, end: line.trim_end().chars().count() + 2 })?;
     match for_script(&command) {
@@ -47,7 +47,7 @@ pub fn for_script(command: &Command) -> Result<(), String> {
 
 fn command(name: &Word, mut rest: Rest<'_>) -> Result<Command, ScriptFault> {
     if name.text == TRY {
-        return Err(ScriptFault::new(name.column, "try stands in a script, once, before a command"));
+        return Err(ScriptFault::new(name.column, "try is for scripts, once, before a command"));
     }
     let Some(row) = called(&name.text) else {
         let names: Vec<&str> = ROWS.iter().map(|row| row.name).chain([TRY]).collect();

@@ -106,25 +106,25 @@ fn a_script_is_read_with_comments_quotes_and_synonyms() {
 fn a_fault_names_line_column_word_and_what_is_allowed() {
     for (text, expected) in [
         ("step\n stepp 3", "t:2:2: no command is called \"stepp\"; did you mean step?"),
-        ("step 0", "t:1:6: \"0\" is no number from 1 to 9999"),
+        ("step 0", "t:1:6: \"0\" is not a number from 1 to 9999"),
         ("step 3 4", "t:1:8: step takes no \"4\" here"),
         ("set", "t:1:5: KEY=VALUE is missing"),
         ("set gap.amplitud=1", "t:1:5: unknown key gap.amplitud; did you mean gap.amplitude?"),
         ("set amplitud=1", "t:1:5: unknown key amplitud; did you mean gap.amplitude?"),
         ("open fig-9 amplitude=1", "t:1:12: unknown key amplitude; did you mean gap.amplitude?"),
-        ("set gap.wavelength=3 um", "t:1:22: \"um\" is no KEY=VALUE"),
+        ("set gap.wavelength=3 um", "t:1:22: \"um\" is not KEY=VALUE"),
         (
             "export curv x.csv",
             "t:1:8: no document is called \"curv\": it is curve, walk, events, script, study, figure, screen; did you mean curve?",
         ),
         ("export curve", "t:1:14: a file is missing"),
         ("open", "t:1:1: open needs a preset"),
-        ("step-length 1", "t:1:13: \"1\" is no length from 0.0001 to 0.2"),
+        ("step-length 1", "t:1:13: \"1\" is not a length from 0.0001 to 0.2"),
         ("save-as \"x", "t:1:9: the quote is not closed"),
-        ("save-as \"x\\n\"", "t:1:11: in quotes a \\ stands before"),
+        ("save-as \"x\\n\"", "t:1:11: in quotes \\ may only precede"),
         ("help", "t:1:1: help only changes what a screen shows"),
         ("more", "t:1:1: more needs a selection on the screen; a script says set KEY=VALUE"),
-        ("try", "t:1:1: try stands before a command"),
+        ("try", "t:1:1: try needs a command"),
         ("step \u{1b}[2J", "t:1:6: a control or invisible character"),
     ] {
         let said = fault(text);

@@ -241,7 +241,7 @@ impl Document {
             found.ok_or_else(|| Unreadable::Damaged("a preset is missing".to_owned()))
         };
         let history = tree::history(self.nodes, self.cursor, &settings)
-            .ok_or_else(|| Unreadable::Damaged("the states make no walk".to_owned()))?;
+            .ok_or_else(|| Unreadable::Damaged("the states do not form a walk".to_owned()))?;
         let pins = self.pins.iter().map(|(number, at)| Ok((*number, preset(*at)?)));
         let undo = self.undo.back(preset)?;
         Ok(Snapshot {

@@ -56,7 +56,7 @@ impl Visitor<'_> for NumberReader {
             NEGATIVE_INFINITY => Some(f64::NEG_INFINITY),
             _ => nan().filter(|x: &f64| x.is_nan()),
         };
-        x.map(Real).ok_or_else(|| E::custom("no number"))
+        x.map(Real).ok_or_else(|| E::custom("not a number"))
     }
 }
 

@@ -118,7 +118,7 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         }
         Done::Conflict => {
             model.question = Some(Question::SaveAnyway);
-            model.tell(Level::Error, "the file was changed by somebody else since it was read: not saved");
+            model.tell(Level::Error, "the file was changed by someone else since it was read: not saved");
         }
         Done::NameTaken(name, with_data) => {
             model.tell(Level::Error, format!("a preset called {name} exists: not saved"));

@@ -13,7 +13,7 @@ use pulloff_engine::report::path::EventReport;
 use pulloff_engine::units::Quantity;
 
 /// Why the walker does not go to some events.
-const WITH_RINGS: &str = "that state has rings of contact, and the walker is on the curve of one disc";
+const WITH_RINGS: &str = "that state has rings of contact, but the walker is on the curve of one disc";
 
 /// Radii of one limit point that were found in two ways agree to this accuracy.
 const SAME: f64 = 1e-6;
@@ -31,7 +31,7 @@ pub(super) fn move_to(model: &mut Model, radius: f64) -> Vec<Effect> {
             ));
     }
     if curve.along.is_some() {
-        model.tell(Level::Info, "the walk goes along the path: this is the nearest state of it");
+        model.tell(Level::Info, "the walk follows the path: this is its nearest state");
     }
     walk(model, Action::MoveTo(reduced))
 }
@@ -45,7 +45,7 @@ pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
             (Err(why), _) => why.clone(),
             _ => "it is being computed".to_owned(),
         };
-        return model.refuse(format!("there is no path, and so no largest pull of it: {why}"));
+        return model.refuse(format!("there is no path, so it has no largest pull: {why}"));
     };
     if let Some(Ok(along)) = &curve.along {
         let least = along.largest_pull();
@@ -89,7 +89,7 @@ pub(super) fn go_to_event(model: &mut Model) -> Vec<Effect> {
     let log = model.log();
     let Some(entry) = log.entries.get(model.event) else {
         if !model.shown_inadmissible().is_empty() {
-            model.tell(Level::Info, "no state to go to: the next crest would touch before");
+            model.tell(Level::Info, "no state to go to: the next crest would touch first");
         }
         return Vec::new();
     };

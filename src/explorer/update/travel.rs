@@ -168,7 +168,7 @@ fn to_node(model: &mut Model, node: usize) {
 /// To the end of a branch, with its parameters.
 pub(super) fn go_to(model: &mut Model, node: usize, numbering: u64) -> Vec<Effect> {
     if model.history.numbering() != numbering || model.history.node(node).is_none() {
-        return model.refuse("the walk has changed meanwhile: ask for its branches again");
+        return model.refuse("the walk has since changed: ask for its branches again");
     }
     let mut effects = abandon(model);
     to_node(model, node);

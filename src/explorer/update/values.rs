@@ -70,11 +70,11 @@ fn tell_effect(model: &mut Model, key: &str, changed: &Preset) {
 fn tell_idle(model: &mut Model, key: &str, changed: &Preset) {
     let is_given = changed.get(key).is_some();
     if matches!(key, "path.rate" | "path.steps") && is_given && changed.edge.exponent.is_none() {
-        model.tell(Level::Info, format!("{key} changes nothing until edge.exponent gives the edge a speed"));
+        model.tell(Level::Info, format!("{key} has no effect until edge.exponent gives the edge a speed"));
     }
     if key == "path.begin" {
         let start = Id::Restart.named();
-        model.tell(Level::Info, format!("the walker stays; {start} goes to where the path begins now"));
+        model.tell(Level::Info, format!("the walker stays; {start} goes to where the path now begins"));
     }
 }
 
@@ -160,7 +160,7 @@ fn other_lengths(before: &Preset, changed: &Preset) -> Option<String> {
     let apart = (is / was).max(was / is);
     (changed.units == UnitSystem::Reduced && apart > LIKE).then(|| {
         format!(
-            "lengths are counted otherwise here, this gap's is {}, that before had {}: E*, γ and the path keep their numbers",
+            "lengths have another scale here, {} for this gap, {} for the last: E*, γ and the path keep their numbers",
             short(is, 4),
             short(was, 4)
         )
@@ -205,7 +205,7 @@ fn set_in_range(preset: &mut Preset, key: &str, value: Value) -> Result<Option<S
     changed.set(START_KEYS[0], Value::Number(moved))?;
     let shown = |s| with_unit(&changed.units, Quantity::Length, s, false, |s| short(s, 4));
     let told = format!(
-        "the start s {} is not on the profile, known up to {}: it is {} now",
+        "the start s {} is not on the profile, known up to {}: it is now {}",
         shown(start),
         shown(largest),
         shown(moved)

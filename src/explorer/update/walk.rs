@@ -39,7 +39,7 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
         }
         let is_stale = |node: &Node| !model.is_on_curve(node) && matches!(node.kind, NodeKind::Stale(_));
         if node.is_some_and(is_stale) {
-            let text = format!("this state is not solved for the values as they are: {}", back_or_anew());
+            let text = format!("this state is not solved for the current values: {}", back_or_anew());
             return model.refuse(text);
         }
     }
@@ -47,8 +47,7 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
     let from = node.map(|node| node.point.clone());
     let on_path = node.and_then(|node| node.on_path);
     if curve.along.is_some() && matches!(action, Action::Steps(_)) && model.can_jump() {
-        return model
-            .refuse(format!("the path goes on behind the jump: {} lets it happen", Id::Jump.named()));
+        return model.refuse(format!("the path goes on after the jump: {} lets it happen", Id::Jump.named()));
     }
     let begins = node.is_some_and(|node| node.begins && !node.is_limit(control));
     let id = model.number();
@@ -136,8 +135,8 @@ fn tell_of_fold(model: &mut Model, before: f64) {
     }
     let length = |s| with_unit(&model.preset.units, Quantity::Length, s, false, |s| significant(s, 4));
     let text = format!(
-        "the part of the curve on which the walker stood has no such state now: it is on the next stable one, \
-         s {} in place of {}",
+        "the walker's part of the curve has no such state now: it is on the next stable one, \
+         s {} instead of {}",
         length(after),
         length(before)
     );
@@ -154,9 +153,9 @@ pub(in crate::explorer) fn scale_pace(model: &mut Model, by: f64) -> Vec<Effect>
     let pace = (model.pace * by).clamp(*PACES.start(), *PACES.end());
     if pace.total_cmp(&model.pace).is_eq() {
         let word = if by < 1.0 { "slowest" } else { "fastest" };
-        model.tell(Level::Info, format!("{} states a second are the {word}", short(pace, 3)));
+        model.tell(Level::Info, format!("{} states a second is the {word}", short(pace, 3)));
     } else if !model.is_running() {
-        model.tell(Level::Info, format!("runs make {} states a second", short(pace, 3)));
+        model.tell(Level::Info, format!("runs at {} states a second", short(pace, 3)));
     }
     model.pace = pace;
     vec![Effect::Pace(pace)]
@@ -188,7 +187,7 @@ pub(super) fn walked(
     }
     model.history.shorten(&model.undo.nodes());
     if numbering == 0 && model.history.numbering() > 0 {
-        model.tell(Level::Info, "a long walk: of plain steps far back only every second one is kept");
+        model.tell(Level::Info, "a long walk: only every second plain step far back is kept");
     }
     let Some(outcome) = outcome else { return Some(Vec::new()) };
     model.walking = None;

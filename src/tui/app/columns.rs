@@ -84,7 +84,7 @@ impl App {
             ColumnQuestion::Segment => "Does a column name the branch",
         };
         if choosing.step == ColumnQuestion::Segment {
-            let text = "none: approach and retraction are found by the turn".to_owned();
+            let text = "none: the turn separates approach and retraction".to_owned();
             items.insert(0, Item::new(text, Choice::Command(choosing.done())));
             selected = selected.map(|at| at + 1);
         }

@@ -91,7 +91,7 @@ impl App {
             (Level::Error, told)
         } else {
             let told = format!(
-                "{} of {} bytes sent to the terminal's clipboard; if it takes none, {} exports to a file",
+                "{} of {} bytes sent to the terminal's clipboard; if none arrive, {} exports to a file",
                 content.name(),
                 text.len(),
                 Id::Export.named()

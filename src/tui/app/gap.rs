@@ -22,7 +22,7 @@ const SHAPES: [(&str, &str); 9] = [
     ("harmonics", "paraboloid with any waves"),
     ("random-waves", "waves drawn from a power law"),
     ("formula", "an expression you write"),
-    ("profile", "measured rows of a file"),
+    ("profile", "measured rows in a file"),
 ];
 
 fn set(key: &Key, text: impl Into<String>) -> Choice {
@@ -43,7 +43,7 @@ impl App {
 
     pub(super) fn ask_formula(&mut self, key: Key, value: Option<Value>) -> Vec<Effect> {
         let text = value.map_or_else(String::new, |value| value.to_string());
-        let note = "r, pi, e, parameters; + - * / ^ and functions as sqrt(), exp(), cos(), min(,)";
+        let note = "r, pi, e, parameters; + - * / ^; functions like sqrt(), exp(), cos(), min(,)";
         self.prompt("h(r) as a formula: the curve follows", note, text, Purpose::Formula(key))
     }
 
@@ -80,7 +80,7 @@ impl App {
         let selected =
             usize::from(up.is_some()) + if folder.files.is_empty() { 0 } else { folder.folders.len() };
         let has_curve = is_curve && self.model.preset.data.source.is_some();
-        let none = has_curve.then(|| Item::new("none: take the curve away", set(key, NONE)));
+        let none = has_curve.then(|| Item::new("none: remove the curve", set(key, NONE)));
         let items = up.into_iter().chain(below).chain(files).chain(shipped).chain([path]).chain(none);
         self.choose(&format!("{title} {}", show_path(&folder.path)), items.collect(), selected);
     }

@@ -13,7 +13,7 @@ use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
 
 /// The note below an empty line.
-const NOTE: &str = "type what you look for; Tab takes a line, Enter runs it, Up brings lines back";
+const NOTE: &str = "type to search; Tab takes a line, Enter runs it, Up brings earlier lines back";
 /// Lines per page.
 const PAGE: usize = 8;
 
@@ -120,7 +120,7 @@ impl App {
     /// Puts the selected entry, or the first, in place of the text before the cursor.
     fn take_entry(&mut self, prompt: &mut Prompt) {
         let Some(entry) = prompt.entries.get(prompt.selected.unwrap_or(0)) else {
-            "nothing has that".clone_into(&mut prompt.note);
+            "nothing matches".clone_into(&mut prompt.note);
             return;
         };
         let takes_more = entry.id.is_some_and(|id| !row_of(id).takes.what.is_empty());

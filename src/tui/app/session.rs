@@ -16,7 +16,7 @@ impl App {
 
     /// Offers to resume a session.
     pub fn offer(&mut self, what: &str, snapshot: Snapshot) {
-        let question = format!("{what} Enter goes on with it, Esc begins anew.");
+        let question = format!("{what} Enter resumes it, Esc starts afresh.");
         self.overlay = Some(Dialog::Offer(ResumeOffer { question, snapshot: Box::new(snapshot) }));
     }
 

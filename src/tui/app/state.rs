@@ -206,7 +206,7 @@ impl App {
             Some(Question::Columns(foreign)) => self.choose_columns(*foreign),
             Some(Question::Preset(listing)) => self.choose_preset(&listing),
             Some(Question::SaveAnyway) => {
-                let question = "The file was changed by somebody else. y saves over it, Esc goes back.";
+                let question = "The file was changed by someone else. y saves over it, Esc goes back.";
                 self.ask(question.to_owned(), Command::SaveAnyway);
             }
             Some(Question::ReplacePreset(name, with_data)) => {
@@ -412,11 +412,11 @@ impl App {
             other => other.to_string(),
         });
         let note = match row.unit_in(units) {
-            Some(unit) => format!("a value with a unit; a bare number counts in {}", unit.ascii()),
+            Some(unit) => format!("a value with a unit; a bare number is in {}", unit.ascii()),
             None => row.allowed(),
         };
         let can_go = row.is_optional() && self.model.preset.get(&row.key).is_some();
-        let note = if can_go { format!("{note}; {NONE} takes it away") } else { note };
+        let note = if can_go { format!("{note}; {NONE} removes it") } else { note };
         let title = format!("{}: {}", row.label, row.meaning);
         Prompt::new(title, &note, text, Purpose::Value(row.key.clone()))
     }

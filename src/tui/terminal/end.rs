@@ -140,7 +140,7 @@ fn describe(info: &PanicHookInfo<'_>) -> String {
     let place = info.location().map_or_else(|| "an unknown place".to_owned(), ToString::to_string);
     let thread = thread::current();
     report::visible(&format!(
-        "{name} panicked at {place} (thread {thread}):\n{what}\nThis is a fault of {name} {version}. Please report it.",
+        "{name} panicked at {place} (thread {thread}):\n{what}\nThis is a fault in {name} {version}. Please report it.",
         name = env!("CARGO_PKG_NAME"),
         thread = thread.name().unwrap_or("without a name"),
         version = env!("CARGO_PKG_VERSION"),

@@ -69,7 +69,7 @@ fn without_curve(app: &App) -> Figure {
         "computing".to_owned()
     } else {
         let key = app.keymap.first(Id::Restart);
-        format!("no curve: {key} computes it again, and so does another value")
+        format!("no curve: {key} or another value computes it again")
     };
     let axis = || Axis::pure(String::new());
     Figure { missing: Some(missing), ..Figure::empty("Curve".to_owned(), axis(), axis()) }

@@ -16,11 +16,11 @@ use ratatui::widgets::{Clear, Paragraph};
 /// Commands in it are named in the form of [`Id::named`](crate::explorer::Id::named).
 const FIRST_STEPS: &[&str] = &[
     "The walker @ stands at the start of the path. \u{1}next-event\u{1} runs to the first event: there the edge lets go.",
-    "\u{1}next-event\u{1} again lets it happen, and the energy lost is said; so on, down to the last contact. \u{1}step\u{1} follows the equilibrium instead, past limit points too. \u{1}undo\u{1} takes the last command back, whatever it was.",
+    "\u{1}next-event\u{1} again lets it happen and shows the energy lost; and so on, down to the last contact. \u{1}step\u{1} follows the equilibrium instead, past limit points too. \u{1}undo\u{1} takes the last command back, whatever it was.",
     "Select A with the arrow keys and press \u{1}more\u{1} a few times: the curve follows. \u{1}edit\u{1} types a value, with its unit where the preset has units.",
     "\u{1}pin\u{1} keeps the curve to compare the next ones with; \u{1}control\u{1} holds the force, or a spring, instead of the displacement.",
     "\u{1}go\u{1} and i shows the inside of the state: gap, pressure, energy; \u{1}go\u{1} and m how it depends on the values; \u{1}next-view\u{1} is the next chart; \u{1}cross-hair\u{1} reads numbers off it.",
-    "\u{1}save-as\u{1} keeps the preset under a name of yours, \u{1}export\u{1} writes curve, walk, events or a figure, and \u{1}open\u{1} lists the presets. A session is kept without asking: pulloff --resume goes on with it.",
+    "\u{1}save-as\u{1} keeps the preset under a name of your own, \u{1}export\u{1} writes curve, walk, events or a figure, and \u{1}open\u{1} lists the presets. Sessions are kept without asking: pulloff --resume goes on with one.",
 ];
 
 /// The same.
@@ -29,8 +29,8 @@ const READING: &[&str] = &[
      radius s. On its unstable parts (broken lines) the contact would not stay under the control chosen.",
     "A number marks an event of the log: there the edge lets go and runs, at constant control, to the next stable part, \
      and the energy between is lost. A is the largest pull, B the farthest state. A dot is a limit point off the path.",
-    "States that cannot be have the colour of a warning, or ! without colours: outside the disc the next crest would \
-     touch. They stand behind the events. \
+    "Inadmissible states have the colour of a warning, or ! without colours: outside the disc the next crest would \
+     touch. The log lists them after the events. \
      The real path has rings of contact there: its loop is drawn too, loading and unloading in colours of their own; with begin = touch it is the path.",
     "\u{1}go\u{1} and a letter leads to one of four places, \u{1}next-view\u{1} through the charts there. \
      In the potential m and M are its stable and unstable states, B the barrier before the edge lets go; ^ marks the \
@@ -50,11 +50,14 @@ const SHORT: &[(&str, &str)] = &[
     ("γ'", "2πγ/(E*R): adhesion against stiffness"),
     ("λ²/AR", "above 8.58 the gap rises all the way out; below, it has valleys around the axis"),
     ("α", "Johnson's √(2γλ/(π²E*A²)): large where adhesion flattens the waves"),
-    ("μ", "Tabor's number: from 5 on the adhesion acts at the edge alone, as computed here"),
+    ("μ", "Tabor's number: from 5 up the adhesion acts at the edge only, as computed here"),
     ("crest 8", "the crest nearest to the edge, counted from the axis; 8>7: from one to the next"),
     ("digits 13", "of force and contact radius, how many can be trusted, by the state's own check"),
-    ("off exact", "the force less that of the exact solution at this radius, as a share of it"),
-    ("stable δ yes", "whether the state stays with the displacement (δ), the force (P), the spring (k) held"),
+    ("off exact", "the force minus that of the exact solution at this radius, as a share of it"),
+    (
+        "stable δ yes",
+        "whether the state is stable with the displacement (δ), the force (P), the spring (k) held",
+    ),
     ("step 0.02", "the longest step by hand, as a share of the range of δ, P and s of the curve"),
     ("dP/dδ", "the slope of the curve; with s held: that of a punch of this radius"),
     ("dA/dδ", "how fast the area of contact grows with the approach along the curve"),
@@ -62,7 +65,7 @@ const SHORT: &[(&str, &str)] = &[
     ("snap", "a jump of the edge, at constant control, before the bodies come apart"),
     (
         "-2",
-        "an event that lies behind and did not happen: a jump off the path went round it, or a value was changed",
+        "an event left behind without happening: a jump off the path went round it, or a value was changed",
     ),
     ("last contact", "the event from which nothing stable is left: the bodies come apart"),
     ("A  B", "largest pull: where a dead load lets go; farthest: where fixed grips let go"),
@@ -73,12 +76,12 @@ const SHORT: &[(&str, &str)] = &[
         "soft ones snap earlier; none is stiffer than DISPLACEMENT: what snaps there snaps with all of them, alone or within a larger jump",
     ),
     ("W", "beside a pin: the energy lost"),
-    ("lost 3e-4", "energy lost in jumps; with a + behind it, a jump without bound comes on top"),
-    ("no bound", "a dead load falls for ever: what is lost at the last contact has no end"),
+    ("lost 3e-4", "energy lost in jumps; with a + after it, plus that of a jump without bound"),
+    ("no bound", "a dead load falls for ever: the loss at the last contact has no limit"),
     ("by area agrees", "the same loss as the area between the curve and the way of the device"),
     ("admissible", "whether the bodies stay apart outside the contact"),
     ("Ctrl-Z", "back to the shell; fg returns"),
-    ("modified", "the title was given to other values than those shown; * unsaved: they are in no file"),
+    ("modified", "the title was given to values other than those shown; * unsaved: they are in no file"),
 ];
 
 /// The names of the pages, in order.
@@ -191,7 +194,7 @@ fn about(app: &App) -> Vec<HelpLine> {
     section(&mut entries, theme, &theme.text(&model.preset.title));
     entries.extend(model.comment.lines().map(line));
     if model.comment.is_empty() {
-        entries.push(line("its file says nothing before the first key"));
+        entries.push(line("its file has no comment before the first key"));
     }
     let changes = changes(&model.saved, &model.preset);
     if !changes.is_empty() {

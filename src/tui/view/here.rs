@@ -38,7 +38,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     if stale {
         let style = theme.dim();
         lines = lines.into_iter().map(|line| Line::styled(line.to_string(), style)).collect();
-        lines.insert(0, Line::styled(" not of these values", theme.error()));
+        lines.insert(0, Line::styled(" for other values", theme.error()));
     }
     let room = usize::from(inner.width);
     let lines: Vec<Line> = lines.into_iter().filter_map(|line| fitting(theme, line, room)).collect();
@@ -60,7 +60,7 @@ pub fn line(app: &App, room: usize) -> Line<'static> {
     };
     parts.push(vec![Span::styled(format!("@ {}", node.step), theme.strong())]);
     if matches!(node.kind, NodeKind::Stale(_)) || !model.is_on_curve(node) {
-        parts.push(vec![Span::styled("not of these values", theme.error())]);
+        parts.push(vec![Span::styled("for other values", theme.error())]);
     }
     if node.is_apart() {
         parts.push(vec![Span::styled("apart, last contact", theme.strong())]);

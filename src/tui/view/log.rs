@@ -120,7 +120,7 @@ fn part(part: &Inadmissible, units: &UnitSystem, ascii: bool) -> String {
 fn title(model: &Model, log: &Log, theme: Theme, width: usize) -> String {
     let is_old = model.preset.path.begin == Begin::Touch
         && model.cycle().is_some_and(|cycle| !cycle.is_of_preset(&model.preset));
-    let old = if is_old { ", of the values before" } else { "" };
+    let old = if is_old { ", for the old values" } else { "" };
     let is_left = log.entries.iter().any(|entry| entry.mark == EventMark::PassedBy);
     let passed =
         if is_left { format!(" {} passed by", mark(theme, EventMark::PassedBy)) } else { String::new() };

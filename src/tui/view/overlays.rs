@@ -101,7 +101,7 @@ fn entries(app: &App, prompt: &Prompt, rows: usize, width: usize) -> Vec<Line<'s
         .collect();
     if lines.is_empty() && rows > 0 {
         // A line that can be run needs no list.
-        let said = if parse(prompt.input.value()).is_ok() { "Enter runs it" } else { "nothing has that" };
+        let said = if parse(prompt.input.value()).is_ok() { "Enter runs it" } else { "nothing matches" };
         lines.push(Line::styled(format!("  {said}"), theme.dim()));
     }
     lines.resize(rows, Line::default());
@@ -206,7 +206,7 @@ fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose)
         })
         .collect();
     if shown.is_empty() {
-        lines.push(Line::styled("  no line has that; Backspace takes a letter back", theme.dim()));
+        lines.push(Line::styled("  no line matches; Backspace deletes a letter", theme.dim()));
     }
     frame.render_widget(Paragraph::new(lines), inner);
 }

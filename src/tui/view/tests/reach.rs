@@ -283,7 +283,7 @@ fn the_first_view_is_exported_as_a_figure_with_its_zoom() {
         let drawn = figure(&mut screen, &format!("b.{}", name.to_lowercase()));
         assert_eq!(drawn.starts_with(begins), is_there, "{name}");
         if !is_there {
-            assert!(screen.text(120, 40).contains(&format!("this build writes no {name}")));
+            assert!(screen.text(120, 40).contains(&format!("this build cannot write {name}")));
             screen.press(KeyCode::Esc);
         }
     }
@@ -324,7 +324,7 @@ fn the_states_walked_are_a_table_that_scrolls_and_leads_back() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys(":view\r");
     let text = screen.text(80, 24);
-    assert!(text.contains("walk            - nothing is walked yet: n runs"), "{text}");
+    assert!(text.contains("walk            - nothing walked yet: n runs"), "{text}");
     // What was walked, with its losses and the changes on the way.
     screen.keys("\x1bnx>nx  :view walk\r");
     let text = screen.text(100, 70);
@@ -424,8 +424,8 @@ fn what_cannot_be_studied_says_why_at_the_view_and_at_the_value() {
         screen.press(KeyCode::Up);
     }
     let text = screen.text(100, 30);
-    assert!(text.contains("is no number: there is nothing to vary"), "{text}");
+    assert!(text.contains("is not a number: nothing to vary"), "{text}");
     screen.keys(":view\r");
     let text = screen.text(100, 40);
-    assert!(text.contains("study           - gap is no number"), "{text}");
+    assert!(text.contains("study           - gap is not a number"), "{text}");
 }
