@@ -199,5 +199,5 @@ def test_parts_of_an_ensemble_are_joined(tmp_path):
     for ending in (".csv", ".csv.spec.toml", ".members.csv", ".members.csv.spec.toml"):
         assert (tmp_path / f"all{ending}").read_bytes() == (tmp_path / f"whole{ending}").read_bytes()
     assert pulloff.sweep(ENSEMBLE, out=tmp_path / "all.csv") == whole
-    with pytest.raises(pulloff.OutputError, match="exists already"):
+    with pytest.raises(pulloff.OutputError, match="already exists"):
         pulloff.merge(parts, tmp_path / "all.csv")

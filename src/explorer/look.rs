@@ -47,7 +47,7 @@ pub(super) fn map_of(model: &mut Model, x: &Key, y: Option<Key>) {
     let over = MapAxes::over(x);
     let axes = MapAxes { y: y.map_or(over.y, Key::into_owned), x: over.x };
     if axes.x == axes.y {
-        return model.tell(Level::Error, "the two axes of a map must differ");
+        return model.tell(Level::Error, "the two axes of a map must be different keys");
     }
     show_map(model, axes);
 }

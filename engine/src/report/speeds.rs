@@ -466,7 +466,7 @@ mod tests {
             assert!((row.energy_release_rate / energy - 1.0).abs() < 1e-6, "{row:?} {energy}");
             assert!(row.speed.is_none() && row.time.is_none());
         }
-        assert!(found.notes.iter().any(|note| note.contains("no column has the times")));
+        assert!(found.notes.iter().any(|note| note.contains("no column gives the times")));
     }
 
     #[test]

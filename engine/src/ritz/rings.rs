@@ -54,7 +54,7 @@ const SAMPLES: usize = 4;
 pub enum RingsError {
     /// The number of rings is out of range.
     #[error(
-        "rings = {rings} is out of range, allowed are {lo} to {hi} with {grading} spacing",
+        "rings = {rings} is out of range: {lo} to {hi} are allowed with {grading} spacing",
         lo = grading.ring_range().start(), hi = grading.ring_range().end(), grading = grading.name()
     )]
     OutOfRange {
@@ -564,7 +564,7 @@ mod tests {
             assert_eq!(shared(rings, grading).unwrap_err(), RingsError::OutOfRange { rings, grading });
         }
         let words = RingsError::OutOfRange { rings: 401, grading: Grading::Edge }.to_string();
-        assert_eq!(words, "rings = 401 is out of range, allowed are 4 to 400 with edge spacing");
+        assert_eq!(words, "rings = 401 is out of range: 4 to 400 are allowed with edge spacing");
         let (uniform, edge) = (shared(9, Grading::Uniform).unwrap(), shared(9, Grading::Edge).unwrap());
         assert!(!Arc::ptr_eq(&uniform, &edge));
         for (made, grading) in [(uniform, Grading::Uniform), (edge, Grading::Edge)] {
