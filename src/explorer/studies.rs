@@ -392,7 +392,7 @@ mod tests {
         assert!(bits(&one) == bits(&three) && one.outcomes == three.outcomes);
         assert!(one.is_whole() && one.surfaces() == OTHERS);
         assert!(one.others[1].windows(2).all(|pair| pair[0].to_bits() != pair[1].to_bits()));
-        let figure = crate::figure::study::of(&one, &preset);
+        let figure = crate::figure::study::of(&one, &preset, None);
         assert_eq!(figure.areas.len(), 2);
         let median = figure.lines.iter().find(|line| line.name.starts_with("median")).unwrap();
         let mut sorted = one.others[1].clone();

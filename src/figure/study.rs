@@ -2,6 +2,7 @@
 
 use super::bounds::Bounds;
 use super::parts::{Area, Axis, AxisScale, Figure, Line, Mark, Meaning, Role, Sign};
+use super::scale::Scale;
 use super::subject::Subject;
 use crate::explorer::studies::{StudyData, StudyOutcome, number};
 use pulloff_engine::preset::{Preset, Row};
@@ -32,10 +33,16 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         ..Figure::empty("study".to_owned(), none(), none())
     };
     match &subject.study {
-        Some(Ok(data)) => of(data, subject.preset),
+        Some(Ok(data)) => of(data, subject.preset, critical_force(subject)),
         Some(Err(why)) => empty(why),
         None => empty("the study is being computed"),
     }
+}
+
+/// `P_c` of the present values, by which forces are divided in a study as in the charts of the curve; `None` where those
+/// have the unit of the force.
+pub fn critical_force(subject: &Subject<'_>) -> Option<f64> {
+    Scale::of(subject.curve, subject.axes).force
 }
 
 /// The row of the value that is varied.
@@ -43,8 +50,9 @@ fn row(data: &StudyData, preset: &Preset) -> Option<Row> {
     preset.row(&data.wish.key).or_else(|| data.wish.preset.row(&data.wish.key))
 }
 
-/// The figure of a study, with `preset` marked on it.
-pub fn of(data: &StudyData, preset: &Preset) -> Figure {
+/// The figure of a study, with `preset` marked on it; its forces are divided by `critical`, in the user's units, if that is
+/// given.
+pub fn of(data: &StudyData, preset: &Preset, critical: Option<f64>) -> Figure {
     let (wish, units) = (&data.wish, &data.wish.preset.units);
     let quantity = wish.column.quantity.unit;
     let row = row(data, preset);
@@ -52,11 +60,16 @@ pub fn of(data: &StudyData, preset: &Preset) -> Figure {
     let label = row.as_ref().map_or_else(|| wish.key.to_string(), |row| row.label.to_string());
     let unit = row.as_ref().and_then(|row| row.unit_in(units)).map_or_else(String::new, ToString::to_string);
     let x = Axis { shown: unit, ..Axis::pure(label) };
-    let unit = units.unit(quantity).map_or_else(String::new, ToString::to_string);
+    let critical = critical.filter(|_| quantity == Quantity::Force);
+    let in_unit = |y: f64| critical.map_or_else(|| units.shown(quantity, y).number, |critical| y / critical);
+    let unit = match critical {
+        Some(_) => "P/Pc".to_owned(),
+        None => units.unit(quantity).map_or_else(String::new, ToString::to_string),
+    };
     let y = Axis { shown: unit, ..Axis::pure(words(wish.column)) };
     let mut figure = Figure::empty(format!("{} over {}", y.title(), x.title()), x, y);
     let value = |cell: &Cell| match cell {
-        Cell::Number(y) => units.shown(quantity, *y).number,
+        Cell::Number(y) => in_unit(*y),
         // Exact for every count.
         #[expect(clippy::cast_precision_loss)]
         Cell::Count(n) => *n as f64,
@@ -82,11 +95,8 @@ pub fn of(data: &StudyData, preset: &Preset) -> Figure {
             figure.lines.push(Line::new(Role::Body, words(wish.column), drawn(points)));
         }
     }
-    slow_pulls(&mut figure, data, shown, |force| units.shown(quantity, force).number);
-    let bands = bands(&mut figure, data, &places, |y| match data.wish.column.quantity.unit {
-        _ if is_counted => y,
-        quantity => units.shown(quantity, y).number,
-    });
+    slow_pulls(&mut figure, data, shown, in_unit);
+    let bands = bands(&mut figure, data, &places, |y| if is_counted { y } else { in_unit(y) });
     let found = places.iter().filter_map(|(x, y)| Some((*x, (*y)?)));
     let ends = [places.first(), places.last()].into_iter().flatten();
     let found: Vec<(f64, f64)> = found.collect();
@@ -208,8 +218,9 @@ fn drawn(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points
 }
 
-/// The study's result nearest to `x` on its axis: the value and the quantity, or why there is none.
-pub fn reading(data: &StudyData, preset: &Preset, x: f64) -> Option<String> {
+/// The study's result nearest to `x` on its axis: the value and the quantity, or why there is none; a force over `critical`
+/// as in [`of`].
+pub fn reading(data: &StudyData, preset: &Preset, critical: Option<f64>, x: f64) -> Option<String> {
     let units = &data.wish.preset.units;
     let row = row(data, preset)?;
     let (at, value) = taken(data, preset, x)?;
@@ -221,7 +232,10 @@ pub fn reading(data: &StudyData, preset: &Preset, x: f64) -> Option<String> {
         StudyOutcome::Found(Cell::Count(n)) => n.to_string(),
         StudyOutcome::Found(Cell::Number(y)) => {
             let quantity: Quantity = data.wish.column.quantity.unit;
-            with_unit(units, quantity, *y, false, |y| significant(y, 5))
+            match critical.filter(|_| quantity == Quantity::Force) {
+                Some(critical) => format!("{} Pc", significant(*y / critical, 5)),
+                None => with_unit(units, quantity, *y, false, |y| significant(y, 5)),
+            }
         }
     };
     Some(format!("{} {value}: {} {found}", row.label, words(data.wish.column)))

@@ -339,7 +339,7 @@ fn many_rows_are_averaged_with_a_note_and_holes_refused_with_a_smoothing_that_wo
     );
     let said = notes(&smooth);
     assert_eq!(said[0], "20 001 rows averaged in 240 cells of 2.5 um");
-    assert!(said[1].starts_with("smoothing: waves of 20 um pass by half"), "{said:?}");
+    assert!(said[1].starts_with("smoothing: waves of 20 um are halved"), "{said:?}");
     home.file("scan.csv", &rows(|r| !(200.0..202.0).contains(&r)));
     let hole =
         ["scan.csv: no row lies between the radii 199.98 um and 202.02 um", "gap.smoothing = \"19 um\""];

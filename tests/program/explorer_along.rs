@@ -83,7 +83,7 @@ fn an_edge_that_rests_answers_as_the_contact_does_until_its_g_is_that_of_opening
     assert_eq!(free.contact_radius.to_bits(), s.to_bits());
     let slope = (free.force - state.force) / (free.approach - state.approach);
     assert!((slope - 2.0 * s).abs() <= 1e-9 * s, "{slope} {s}");
-    assert!(session.status().contains("rested"), "{}", session.status());
+    assert!(session.status().contains("the resting edge"), "{}", session.status());
 }
 
 #[test]

@@ -234,7 +234,7 @@ fn free_keys_are_marked_in_the_panel_and_what_is_not_determined_is_not_taken() {
     let before = session.model.preset.clone();
     session.does(Id::Fit);
     assert!(
-        session.status().starts_with("not determined, and not taken: R +10 %, E* −4.7 %, γ −9.1 %"),
+        session.status().starts_with("not determined, so not taken: R +10 %, E* −4.7 %, γ −9.1 %"),
         "{}",
         session.status()
     );

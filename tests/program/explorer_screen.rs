@@ -125,7 +125,7 @@ fn every_view_a_closer_look_and_a_pin() {
         ("t", "contact, s/λ"),
         ("t", "U over s/λ"),
         ("t", "contacts over"),
-        ("gm", "largest pull over A"),
+        ("gm", "largest pull (P/Pc) over A"),
         ("t", "where snaps begin"),
         ("t", "limit points under"),
         ("gc", "ΔP/Pc over"),

@@ -166,7 +166,7 @@ fn refusals_name_what_is_wrong_and_keep_files() {
         (over("gap.amplitude"), "KEY=FROM..TO"),
         (over("groups.adhesion=1..0.5"), "from a number to a larger one"),
         (over("groups.adhesion=log:0..1"), "must begin above zero"),
-        (over("basis.kind=1..2"), "an axis is a number"),
+        (over("basis.kind=1..2"), "an axis must be a number"),
         (over("gap.wavelength=1e-9..1"), "waves; a map takes at most 3000"),
         (over("gap.amplitude=nan..1"), "gap.amplitude = NaN is out of range"),
         (over("gap.amplitude=0..inf"), "gap.amplitude = inf is out of range"),

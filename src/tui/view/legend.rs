@@ -92,7 +92,7 @@ pub fn reading(model: &Model) -> Option<String> {
     let at = bounds.at(share);
     let here = reading::coordinates(&bounds, [&figure.x, &figure.y], at);
     if let (View::Study, Some(Ok(data))) = (view, &subject.study) {
-        return study::reading(data, subject.preset, at.0);
+        return study::reading(data, subject.preset, study::critical_force(&subject), at.0);
     }
     Some(match nearest(&subject, view, &bounds, at) {
         // The state comes first: it is new information, and narrow screens cut off the end.

@@ -17,7 +17,7 @@ type Job = (&'static str, &'static [&'static str], &'static [&'static str]);
 
 /// `FOLDER` stands for a folder of the test, in which `own.csv` is a walk.
 const JOBS: &[Job] = &[
-    ("the largest pull over the amplitude", &["g", "m"], &["largest pull over A", "now"]),
+    ("the largest pull over the amplitude", &["g", "m"], &["largest pull (P/Pc) over A", "now"]),
     ("two snaps by hand with their losses", &["n", "n", "n", "n"], &["✓1", "✓2", "1.217e-4", "1.149e-4"]),
     (
         "A 0.002 against 0.003 by eye and number",

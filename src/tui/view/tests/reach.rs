@@ -367,7 +367,7 @@ fn a_study_is_looked_at_read_taken_over_and_exported() {
     // The amplitude is selected: its largest pull is two keys away.
     screen.keys("gm");
     let text = screen.text(100, 30);
-    for said in ["largest pull over A", "now"] {
+    for said in ["largest pull (P/Pc) over A", "now"] {
         assert!(text.contains(said), "{said}: {text}");
     }
     // The cross-hair reads a computed value, and Enter sets it.
