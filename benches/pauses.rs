@@ -75,7 +75,7 @@ fn main() {
             let stop = |_| progress.stop();
             drop(CurveData::compute(&preset, &Staged::new(&stop)).map(|curve| curve.checked(progress)));
         });
-        measure("trace", &|progress| drop(TraceReport::compute_while(&preset, progress)));
+        measure("trace", &|progress| drop(TraceReport::compute(&preset, progress)));
         measure("unload", &|progress| drop(PathReport::unload(&preset, Extent::default(), progress)));
         measure("stability", &|progress| drop(StabilityReport::compute(&preset, 101, progress)));
         measure("cycle", &|progress| drop(PathReport::cycle(&preset, None, Extent::default(), progress)));

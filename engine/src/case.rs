@@ -305,20 +305,9 @@ impl Case {
     /// The same stretch of `curve` by arc-length continuation, with the reason why it ends.
     ///
     /// # Errors
-    /// [`CaseError::Start`] if there is no equilibrium at the start.
-    pub fn trace(&self, curve: &Curve) -> Result<(Branch, CurveStop), CaseError> {
-        self.trace_while(curve, &Unwatched)
-    }
-
-    /// The same; `progress` is asked before each point.
-    ///
-    /// # Errors
-    /// As [`Case::trace`], and [`CaseError::Stopped`] if `progress` said stop.
-    pub fn trace_while(
-        &self,
-        curve: &Curve,
-        progress: &dyn Progress,
-    ) -> Result<(Branch, CurveStop), CaseError> {
+    /// [`CaseError::Start`] if there is no equilibrium at the start, [`CaseError::Stopped`] if `progress`, which is asked
+    /// before each point, said stop.
+    pub fn trace(&self, curve: &Curve, progress: &dyn Progress) -> Result<(Branch, CurveStop), CaseError> {
         let traced = curve.traced(|settings| settings.points = TRACE_POINTS, progress);
         progress.go_on()?;
         traced.ok_or_else(|| self.no_start())

@@ -274,7 +274,7 @@ impl Problem {
     /// The equilibrium curve, with `theory` beside the exact solution.
     fn trace(&self, py: Python<'_>, theory: bool, progress: Option<Py<PyAny>>) -> PyResult<Document> {
         let made = long(py, progress, |progress| {
-            let report = TraceReport::compute_while(&self.preset, progress)?;
+            let report = TraceReport::compute(&self.preset, progress)?;
             Ok(if theory { report.beside(&theory::Exact::of(&self.preset.problem())) } else { report })
         })?;
         made.map(Document::new).map_err(|error| errors::of_case(py, &error))

@@ -24,7 +24,7 @@ pub struct TraceArguments {
 pub fn run(arguments: &TraceArguments) -> Result<ExitCode, Failure> {
     let Opened { console, format, preset, sink } = arguments.computed.open(Format::Csv)?;
     let stop = StopSignal::catch()?;
-    let mut report = TraceReport::compute_while(&preset, &console.bar(Some(&stop)))?;
+    let mut report = TraceReport::compute(&preset, &console.bar(Some(&stop)))?;
     if arguments.theory {
         report = report.beside(&Exact::of(&preset.problem()));
     }

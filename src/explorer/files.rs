@@ -14,6 +14,7 @@ use crate::store::{Fingerprint, Listed, Overwrite, Source, Store, StoreError, Wr
 use pulloff_engine::preset::changes::{changes, differences};
 use pulloff_engine::preset::{Invalid, Preset, Value, data as data_keys};
 use pulloff_engine::progress::Unwatched;
+use pulloff_engine::report::columns;
 use pulloff_engine::report::path::{EventReport, events_table};
 use pulloff_engine::report::walk::{WALK_COLUMNS, WalkReport, WalkRow};
 use pulloff_engine::report::{Head, TraceReport, json, rows};
@@ -108,7 +109,7 @@ pub fn run(store: &Store, job: Job) -> Done {
         Job::Write { page, path, replace } => match page.bytes(&path) {
             Ok(bytes) => match put(&path, &bytes, replace) {
                 Err(WriteError::Exists { .. }) => Done::PageExists(page, path),
-                result => exported(path, result),
+                result => exported(path, None, result),
             },
             Err(reason) => Done::Failed(WordedFault::of("not exported: ", &reason)),
         },
@@ -157,7 +158,7 @@ fn export(store: &Store, content: &Content, path: String, replace: bool) -> Done
     };
     match put(&path, text.as_bytes(), replace) {
         Err(WriteError::Exists { .. }) => Done::FileExists(content.document(), path),
-        result => exported(path, result),
+        result => exported(path, units(content, &text).filter(|_| !as_json), result),
     }
 }
 
@@ -166,9 +167,19 @@ fn put(path: &str, bytes: &[u8], replace: bool) -> Result<Fingerprint, WriteErro
     write_atomically(&target(path), bytes, overwrite)
 }
 
-fn exported(path: String, result: Result<Fingerprint, WriteError>) -> Done {
+/// The units of the columns of `csv`, as the commands note them.
+fn units(content: &Content, csv: &str) -> Option<String> {
+    let (Content::Curve(curve) | Content::Walk(curve, _) | Content::Events(curve, _)) = content else {
+        return None;
+    };
+    let preset = &curve.setting.preset;
+    let columns: Vec<&str> = csv.lines().next()?.split(',').collect();
+    columns::units(&columns, preset.path.control, &preset.units)
+}
+
+fn exported(path: String, units: Option<String>, result: Result<Fingerprint, WriteError>) -> Done {
     match result {
-        Ok(_) => Done::Exported(path),
+        Ok(_) => Done::Exported(path, units),
         Err(error) => Done::Failed(WordedFault::of("not exported: ", &error)),
     }
 }
@@ -246,7 +257,7 @@ fn text(content: &Content, as_json: bool) -> Result<String, Box<dyn std::error::
             let points: Vec<_> = own.filter_map(|at| of.explicit(at.contact_radius)).collect();
             let (preset, case) = (&curve.setting.preset, &curve.case);
             let report = if drawn.is_of_zones() {
-                TraceReport::compute(preset)?
+                TraceReport::compute(preset, &Unwatched)?
             } else {
                 TraceReport::new(preset, case, drawn, &points, drawn.stop, &Unwatched)?
             };

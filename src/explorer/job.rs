@@ -118,7 +118,8 @@ pub enum Done {
     Conflict,
     /// A preset of this name exists: not saved. Says whether its data were to be copied.
     NameTaken(String, bool),
-    Exported(String),
+    /// A document is in this file; the units of its columns, where it is CSV of a preset in SI.
+    Exported(String, Option<String>),
     FileExists(ExportKind, String),
     PageExists(Page, String),
     Failed(WordedFault),

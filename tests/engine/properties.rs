@@ -274,7 +274,7 @@ fn faults(preset: &Preset) -> (usize, Vec<String>) {
     if json(&report).unwrap().contains("\"largest_pull\": null") {
         faults.push("largest_pull is null".to_owned());
     }
-    match TraceReport::compute(preset) {
+    match TraceReport::compute(preset, &Unwatched) {
         Err(error) => faults.push(format!("trace: {error}")),
         Ok(trace) => {
             if trace.stop != "the end contact radius was reached" {

@@ -499,7 +499,7 @@ fn both(si: &[&str], reduced: &[&str], lines: impl Fn(&Preset) -> Vec<String>) -
 #[test]
 fn the_lines_of_a_document_have_units_in_si_and_none_in_reduced_units() {
     let traced = |preset: &Preset| {
-        let report = TraceReport::compute(preset).unwrap();
+        let report = TraceReport::compute(preset, &Unwatched).unwrap();
         [report.warnings, report.notes, vec![report.stop]].concat()
     };
     let unloaded = |preset: &Preset| {

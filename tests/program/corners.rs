@@ -50,7 +50,7 @@ fn a_trace_lands_on_the_corner_and_goes_on_behind_it() {
             assert!((delta - exact.approach).abs() < 1e-9 * unit.recip(), "{height} {s}");
             assert!((force - exact.force).abs() < 1e-9, "{height} {s}");
         }
-        let report = TraceReport::compute(&preset).unwrap();
+        let report = TraceReport::compute(&preset, &Unwatched).unwrap();
         let at = report.points.iter().find(|point| (point.contact_radius - 0.12).abs() < 1e-12).unwrap();
         // There are two slopes here, so none is given.
         assert!(at.tangent_stiffness.is_none() && at.area_slope.is_none() && at.contact_stiffness > 0.0);

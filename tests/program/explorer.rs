@@ -370,6 +370,21 @@ fn exports_hold_what_is_on_the_screen_and_never_replace_a_file_unasked() {
 }
 
 #[test]
+fn an_export_in_si_tells_the_units_of_its_columns() {
+    for (name, units) in [("fig-8", ""), ("fig-9-si", "approach in m; force")] {
+        let mut session = Session::new(name);
+        session.does(Id::Step);
+        for (file, expected) in [("walk.csv", units), ("walk.json", "")] {
+            let path = session.folder.path().join(file).to_str().unwrap().to_owned();
+            session.does(Command::Export { what: ExportKind::Walk, path, replace: false });
+            let has_units = session.status().contains("units of the CSV");
+            assert_eq!(has_units, !expected.is_empty(), "{name} {file}: {}", session.status());
+            assert!(session.status().contains(expected), "{}", session.status());
+        }
+    }
+}
+
+#[test]
 fn walking_selecting_and_views_are_not_unsaved_changes() {
     let mut session = Session::new("wavy-sphere");
     session.all(&[

@@ -152,7 +152,7 @@ fn every_view_a_closer_look_and_a_pin() {
     pty.keys("}");
     pty.wait_for(|screen| screen.contains("1 A 0.001"), "the pin by what differs");
     pty.keys("P");
-    pty.wait_for(|screen| screen.contains("The pinned curves"), "the list of pins");
+    pty.wait_for(|screen| screen.contains("Remove a pinned curve"), "the list of pins");
     pty.keys("\r");
     pty.wait_for(|screen| !screen.contains("1 A 0.001"), "the pin taken away");
     pty.keys("y\r\x1b");

@@ -134,7 +134,7 @@ fn export(model: &mut Model, driver: &Inline, what: ExportKind, path: &Path) {
     let path = path.to_string_lossy().into_owned();
     for effect in update(model, Command::Export { what, path, replace: true }) {
         if let Some(Reply::File(done)) = driver.run(effect) {
-            assert!(matches!(*done, Done::Exported(_)), "{done:?}");
+            assert!(matches!(*done, Done::Exported(..)), "{done:?}");
         }
     }
 }

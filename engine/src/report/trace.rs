@@ -11,7 +11,7 @@ use crate::disc::{Edges, Place};
 use crate::gap::{Gap, wave_index};
 use crate::preset::Preset;
 use crate::problem::Control;
-use crate::progress::{Progress, ProgressPart, Unwatched};
+use crate::progress::{Progress, ProgressPart};
 use crate::quasistatic::overlap::overlaps;
 use crate::quasistatic::path::Zones;
 use crate::quasistatic::{Curve, CurveStop, Equilibrium, Monotone, Overlap, State, StatePoint, Stiffness};
@@ -249,10 +249,10 @@ impl TraceReport {
     /// Traces `preset` by arc length and reports it.
     ///
     /// ```
-    /// use pulloff_engine::{TraceReport, preset};
+    /// use pulloff_engine::{TraceReport, Unwatched, preset};
     ///
     /// let wavy = preset::read_shipped("fig-9").ok_or("no such preset")?;
-    /// let curve = TraceReport::compute(&wavy)?;
+    /// let curve = TraceReport::compute(&wavy, &Unwatched)?;
     /// let critical = 1.5 * std::f64::consts::PI * wavy.material.work_of_adhesion;
     /// let least = curve.curve_min_force.ok_or("no force")?;
     /// assert!((least / critical + 1.48).abs() < 0.01);
@@ -260,22 +260,14 @@ impl TraceReport {
     /// ```
     ///
     /// # Errors
-    /// [`CaseError`] when it cannot be computed.
-    pub fn compute(preset: &Preset) -> Result<Self, CaseError> {
-        Self::compute_while(preset, &Unwatched)
-    }
-
-    /// The same; `progress` is asked often.
-    ///
-    /// # Errors
-    /// As [`TraceReport::compute`], and [`CaseError::Stopped`] when `progress` said stop.
-    pub fn compute_while(preset: &Preset, progress: &dyn Progress) -> Result<Self, CaseError> {
+    /// [`CaseError`] when it cannot be computed; [`CaseError::Stopped`] when `progress`, which is asked often, said stop.
+    pub fn compute(preset: &Preset, progress: &dyn Progress) -> Result<Self, CaseError> {
         let case = Case::with_range(preset, &ProgressPart::new(progress, [0.0, 0.4]))?;
         if case.cohesion.is_some() {
             return Self::in_zone(preset, &case, &ProgressPart::new(progress, [0.4, 1.0]));
         }
         let curve = case.curve(&ProgressPart::new(progress, [0.4, 0.6]))?;
-        let (branch, stop) = case.trace_while(&curve, &ProgressPart::new(progress, [0.6, 0.8]))?;
+        let (branch, stop) = case.trace(&curve, &ProgressPart::new(progress, [0.6, 0.8]))?;
         Self::new(preset, &case, &curve, &branch.points, stop, &ProgressPart::new(progress, [0.8, 1.0]))
     }
 
@@ -446,7 +438,7 @@ mod tests {
     use crate::progress::{Stopped, until};
     use crate::report::PathReport;
     use crate::report::path::Extent;
-    use crate::{Adhesion, Material, Shape, Start};
+    use crate::{Adhesion, Material, Shape, Start, Unwatched};
     use std::cell::Cell;
 
     /// A document that asks whether it is still wanted.
@@ -462,7 +454,7 @@ mod tests {
             adhesion: Adhesion::ShortRange,
         };
         let preset = Preset::new(material, gap, Start::ContactRadius(0.3));
-        let trace = |progress: &dyn Progress| TraceReport::compute_while(&preset, progress).err();
+        let trace = |progress: &dyn Progress| TraceReport::compute(&preset, progress).err();
         let of = Extent::default();
         let unload = |progress: &dyn Progress| PathReport::unload(&preset, of, progress).err();
         let cycle = |progress: &dyn Progress| PathReport::cycle(&preset, None, of, progress).err();

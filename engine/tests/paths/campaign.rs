@@ -319,7 +319,7 @@ fn every_report_stops(times: usize) {
         let preset = preset::read(name, text).unwrap();
         let extent = Extent::default();
         stops(&format!("trace {name}"), times, &|progress| {
-            of_case(TraceReport::compute_while(&preset, progress).map(drop))
+            of_case(TraceReport::compute(&preset, progress).map(drop))
         });
         stops(&format!("unload {name}"), times, &|progress| {
             of_case(PathReport::unload(&preset, extent, progress).map(drop))

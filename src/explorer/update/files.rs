@@ -124,7 +124,10 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
             model.tell(Level::Error, format!("a preset called {name} exists: not saved"));
             model.question = Some(Question::ReplacePreset(name, with_data));
         }
-        Done::Exported(path) => model.tell(Level::Info, format!("exported to {path}")),
+        Done::Exported(path, units) => {
+            let units = units.map_or_else(String::new, |units| format!("; {units}"));
+            model.tell(Level::Info, format!("exported to {path}{units}"));
+        }
         Done::FileExists(what, path) => {
             model.tell(Level::Error, format!("{path} exists: not exported"));
             model.question = Some(Question::ReplaceFile(what, path));
