@@ -76,7 +76,7 @@ fn curve(bencher: Bencher, rings: usize) {
 fn trace(bencher: Bencher, rings: usize) {
     let case = fig_9(rings);
     let curve = case.curve(&Unwatched).unwrap();
-    bencher.bench_local(|| case.trace(&curve).unwrap());
+    bencher.bench_local(|| case.trace(&curve, &Unwatched).unwrap());
 }
 
 /// Every jump of the curve with its two losses.
@@ -182,7 +182,7 @@ fn exact_curve(bencher: Bencher) {
 fn exact_trace(bencher: Bencher) {
     let case = fig_9_exact();
     let curve = case.curve(&Unwatched).unwrap();
-    bencher.bench_local(|| case.trace(&curve).unwrap());
+    bencher.bench_local(|| case.trace(&curve, &Unwatched).unwrap());
 }
 
 #[divan::bench(max_time = 5)]

@@ -31,7 +31,7 @@ fn counts(name: &str, basis: BasisSpec) -> Counts {
     preset.basis = basis;
     let case = Case::new(&preset).unwrap();
     let curve = case.curve(&Unwatched).unwrap();
-    let (branch, _) = case.trace(&curve).unwrap();
+    let (branch, _) = case.trace(&curve, &Unwatched).unwrap();
     Counts {
         points: branch.points.len(),
         rejections: branch.work.rejections,

@@ -34,7 +34,7 @@ fn a_trace_lands_on_the_corner_and_goes_on_behind_it() {
         let unit = case.units().length;
         let curve = case.curve(&Unwatched).unwrap();
         assert_eq!(curve.corners().len(), 1, "{height}");
-        let (branch, stop) = case.trace(&curve).unwrap();
+        let (branch, stop) = case.trace(&curve, &Unwatched).unwrap();
         assert_eq!(stop, CurveStop::End, "{height}");
         let corner = curve.corners()[0];
         assert!((corner * unit - 0.12).abs() < 1e-15);
