@@ -106,10 +106,10 @@ fn the_curve_a_pin_and_theory_are_all_seen() {
 #[test]
 fn every_theme_draws_every_view_and_mono_has_no_colour() {
     let mut screen = full("wavy-sphere");
-    for theme in themes() {
-        screen.app.theme = theme;
-        for view in View::ALL {
-            screen.keys(&format!(":view {}\r", view.name()));
+    for view in View::ALL {
+        screen.keys(&format!(":view {}\r", view.name()));
+        for theme in themes() {
+            screen.app.theme = theme;
             for (width, height) in [(80, 24), (200, 60)] {
                 let buffer = screen.draw(width, height);
                 for cell in buffer.content() {

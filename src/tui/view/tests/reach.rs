@@ -373,7 +373,8 @@ fn a_study_is_looked_at_read_taken_over_and_exported() {
     // The cross-hair reads a computed value, and Enter sets it.
     screen.keys("illll");
     let text = screen.text(120, 30);
-    assert!(text.contains("A 0.00") && text.contains(": largest pull -0."), "{text}");
+    assert!(text.contains("A 0.00") && text.contains(": largest pull -1."), "{text}");
+    assert!(text.contains(" Pc "), "{text}");
     let before = screen.app.model.preset.get("gap.amplitude");
     screen.keys("\r");
     let after = screen.app.model.preset.get("gap.amplitude");
