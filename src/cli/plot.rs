@@ -132,12 +132,7 @@ pub fn run(arguments: &PlotArguments) -> Result<ExitCode, Failure> {
     let console = arguments.messages.open();
     let format = format(arguments.destination.path())?;
     if let Some(path) = &arguments.sweep {
-        let sinks = arguments.sinks(Inputs::default().with_results(path))?;
-        let (picture, data) = arguments.of_sweep(path)?;
-        sinks.figure.write(format.bytes(&picture)?)?;
-        if let Some((sink, data)) = sinks.data.zip(data) {
-            sink.write(data)?;
-        }
+        arguments.draw_sweep(path, format)?;
         return console.end();
     }
     if arguments.quantity.is_some() {
@@ -155,66 +150,7 @@ pub fn run(arguments: &PlotArguments) -> Result<ExitCode, Failure> {
     let curve = CurveData::compute(&preset, &Staged::unwatched())?;
     let curve = Arc::new(curve.checked(&Unwatched).unwrap_or(curve));
     console.warn(&curve.base.warnings);
-    let view = arguments.view.0;
-    if view.is_state() || view == View::Stability {
-        console.warn(&curve.case.warning_of_dead_band().into_iter().collect::<Vec<_>>());
-    }
-    let inside = if view.is_state() {
-        Some(inside(&curve, arguments.contact_radius.as_deref(), arguments.theory)?)
-    } else if arguments.contact_radius.is_some() {
-        return Err(Failure::Usage(format!(
-            "--contact-radius: {} shows the whole curve; pressure, gap and energy show a state",
-            view.name()
-        )));
-    } else {
-        None
-    };
-    let cycle = if view.is_cycle() {
-        Some(PathReport::cycle(
-            &preset,
-            None,
-            Extent { losses: Losses::Once, admissibility: true },
-            &Unwatched,
-        )?)
-    } else {
-        None
-    };
-    console.warn(cycle.as_ref().map_or(&[][..], |cycle| &cycle.warnings));
-    let map = || MapData::of(&preset, &MapAxes::usual(&preset), &Unwatched);
-    let found = (view == View::Map).then(map).flatten();
-    let map = found.as_ref().map(MapData::report);
-    let shows_pull = view.is_curve() || view == View::ForceTime;
-    let pull =
-        (shows_pull && missing(&preset).is_none()).then(|| PullData::of(&preset, &Unwatched)).flatten();
-    let overlays = Overlays { smooth: true, exact: arguments.theory, envelope: arguments.theory };
-    let axes = if arguments.raw { Axes::Raw } else { Axes::Reduced };
-    let measured = MeasuredMarks::of(&preset).and_then(Result::ok);
-    let distances =
-        (view == View::Residuals && preset.data.source.is_some()).then(|| Distances::of(&preset).found);
-    let speeds = (view == View::Speeds).then(|| SpeedsData::of(&preset, &Unwatched)).flatten();
-    let subject = Subject {
-        measured,
-        distances: distances.as_ref(),
-        speeds: speeds.as_ref(),
-        inside: inside.as_ref(),
-        cycle: cycle.as_ref(),
-        pull: pull.as_ref(),
-        map,
-        axes,
-        ..Subject::alone(&curve, overlays)
-    };
-    let figure = subject.figure(view);
-    if let Some(why) = &figure.missing {
-        return Err(Failure::Usage(format!("--view {}: {why}", view.name())));
-    }
-    let is_drawn = figure.marks.iter().any(|mark| matches!(mark.sign, Sign::Measured { .. }));
-    if arguments.measured.is_some() && !is_drawn {
-        return Err(Failure::Usage(format!(
-            "--measured: the file does not have the columns of {}",
-            view.name()
-        )));
-    }
-    let figure = arguments.part(figure)?;
+    let figure = arguments.part(arguments.figure(&curve, &preset, &console)?)?;
     let picture = svg::svg(&figure, arguments.width);
     sinks.figure.write(format.bytes(&picture)?)?;
     if let Some(sink) = sinks.data {
@@ -224,6 +160,81 @@ pub fn run(arguments: &PlotArguments) -> Result<ExitCode, Failure> {
 }
 
 impl PlotArguments {
+    /// Draws the results of a sweep, and writes them as they are drawn where they are wanted.
+    fn draw_sweep(&self, path: &Path, format: PictureFormat) -> Result<(), Failure> {
+        let sinks = self.sinks(Inputs::default().with_results(path))?;
+        let (picture, data) = self.of_sweep(path)?;
+        sinks.figure.write(format.bytes(&picture)?)?;
+        if let Some((sink, data)) = sinks.data.zip(data) {
+            sink.write(data)?;
+        }
+        Ok(())
+    }
+
+    /// The view of a curve as a figure, with what the view needs besides.
+    fn figure(&self, curve: &Arc<CurveData>, preset: &Preset, console: &Console) -> Result<Figure, Failure> {
+        let view = self.view.0;
+        if view.is_state() || view == View::Stability {
+            console.warn(&curve.case.warning_of_dead_band().into_iter().collect::<Vec<_>>());
+        }
+        let inside = if view.is_state() {
+            Some(inside(curve, self.contact_radius.as_deref(), self.theory)?)
+        } else if self.contact_radius.is_some() {
+            return Err(Failure::Usage(format!(
+                "--contact-radius: {} shows the whole curve; pressure, gap and energy show a state",
+                view.name()
+            )));
+        } else {
+            None
+        };
+        let cycle = if view.is_cycle() {
+            Some(PathReport::cycle(
+                preset,
+                None,
+                Extent { losses: Losses::Once, admissibility: true },
+                &Unwatched,
+            )?)
+        } else {
+            None
+        };
+        console.warn(cycle.as_ref().map_or(&[][..], |cycle| &cycle.warnings));
+        let map = || MapData::of(preset, &MapAxes::usual(preset), &Unwatched);
+        let found = (view == View::Map).then(map).flatten();
+        let map = found.as_ref().map(MapData::report);
+        let shows_pull = view.is_curve() || view == View::ForceTime;
+        let pull =
+            (shows_pull && missing(preset).is_none()).then(|| PullData::of(preset, &Unwatched)).flatten();
+        let overlays = Overlays { smooth: true, exact: self.theory, envelope: self.theory };
+        let axes = if self.raw { Axes::Raw } else { Axes::Reduced };
+        let measured = MeasuredMarks::of(preset).and_then(Result::ok);
+        let distances =
+            (view == View::Residuals && preset.data.source.is_some()).then(|| Distances::of(preset).found);
+        let speeds = (view == View::Speeds).then(|| SpeedsData::of(preset, &Unwatched)).flatten();
+        let subject = Subject {
+            measured,
+            distances: distances.as_ref(),
+            speeds: speeds.as_ref(),
+            inside: inside.as_ref(),
+            cycle: cycle.as_ref(),
+            pull: pull.as_ref(),
+            map,
+            axes,
+            ..Subject::alone(curve, overlays)
+        };
+        let figure = subject.figure(view);
+        if let Some(why) = &figure.missing {
+            return Err(Failure::Usage(format!("--view {}: {why}", view.name())));
+        }
+        let is_drawn = figure.marks.iter().any(|mark| matches!(mark.sign, Sign::Measured { .. }));
+        if self.measured.is_some() && !is_drawn {
+            return Err(Failure::Usage(format!(
+                "--measured: the file does not have the columns of {}",
+                view.name()
+            )));
+        }
+        Ok(figure)
+    }
+
     /// Gives the preset the requested measured curve, and reports what was found in its own.
     fn lay_points(&self, console: &Console, preset: &mut Preset) -> Result<(), Failure> {
         attach(preset, self.measured.as_deref(), &self.reading.said()?)?;

@@ -44,8 +44,10 @@ fn move_selection(model: &mut Model, down: bool) {
     match model.panel {
         ScreenPanel::Problem => {
             let knobs = model.knobs();
-            model.parameter = moved(model.parameter, knobs.len());
-            let selected = knobs.into_iter().nth(model.parameter);
+            let to = moved(model.parameter, knobs.len());
+            // At the end of the list an arrow says nothing anew.
+            let selected = knobs.into_iter().nth(to).filter(|_| to != model.parameter);
+            model.parameter = to;
             if let Some(text) = selected
                 .and_then(|(row, value)| group_effect(&row).or_else(|| long_text(&row, value.as_ref())))
             {
