@@ -146,7 +146,7 @@ pub(super) fn pin(model: &mut Model) {
         Ok(number) => {
             model.tell(
                 Level::Info,
-                format!("pinned as {number}: change a value to compare; {} lists the pins", Id::Pins.named()),
+                format!("pinned as {number}: change a value to compare; {} removes it", Id::Pins.named()),
             );
         }
         Err(reason) => model.tell(Level::Error, reason),

@@ -12,6 +12,7 @@ use pulloff_engine::report::number::{difference, short};
 use pulloff_engine::ritz::{NewtonSettings, solve};
 use pulloff_engine::units::UnitSystem;
 use std::collections::HashSet;
+use std::mem::discriminant;
 use std::sync::Arc;
 
 /// The most curves that can be pinned: each has its own digit and colour.
@@ -72,6 +73,11 @@ impl Pin {
     /// The preset the curve was computed from.
     pub fn preset(&self) -> &Preset {
         &self.curve.setting.preset
+    }
+
+    /// Whether both are in reduced units or both in SI: only then do their numbers belong on the same axes.
+    pub fn shares_units(&self, now: &Preset) -> bool {
+        discriminant(&self.preset().units) == discriminant(&now.units)
     }
 
     /// The differences from `now`, as labels and values; for ring elements, their accuracy too.

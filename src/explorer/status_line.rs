@@ -147,7 +147,7 @@ fn next(model: &Model) -> String {
             format!("Start, stable under {held} control. {next} runs to the first event, {help} helps")
         }
         (true, NodeKind::Solved) if model.is_at_start() => {
-            format!("The held value lies beyond the path: this is its start; {next} runs to the next event")
+            format!("The path does not reach the held value: its start; {next} runs to the next event")
         }
         (_, NodeKind::Solved) if node.on_path.is_some() => {
             format!("Nearest on the new path to the {held} held; {next} runs to the next event")

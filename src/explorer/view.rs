@@ -135,7 +135,7 @@ impl View {
     pub fn meaning(self) -> &'static str {
         match self {
             Self::ForceApproach => "the force P over the approach",
-            Self::ForcePosition => "the force P over the way of the device's far end",
+            Self::ForcePosition => "the force P over the position of the device's far end",
             Self::ForceRadius => "the force P over the contact radius s",
             Self::RadiusApproach => "the contact radius s over the approach",
             Self::Pressure => "the contact pressure of the walker's state",

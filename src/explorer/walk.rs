@@ -199,7 +199,7 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(MadeState) -> bool) -> WalkO
                 Action::Solve { rings: Some(_), .. } => {
                     format!("no equilibrium of these contacts at this {held} near the old edges")
                 }
-                _ => format!("no equilibrium at this {held} near the old contact radius"),
+                _ => format!("no equilibrium at this {held} near the old radius"),
             })
         }
         WalkEnd::Failed(failure) => WalkOutcome::Stopped(failure.to_string()),

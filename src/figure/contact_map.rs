@@ -26,7 +26,7 @@ fn blank(control: Control, scale: Scale<'_>) -> Figure {
         Control::Force => scale.force_axis(),
         Control::Stiffness(_) => scale.length_axis("Δ"),
     };
-    x = Axis { symbol: format!("way of {}", x.symbol), ..x };
+    x = Axis { symbol: format!("travel of {}", x.symbol), ..x };
     Figure::empty(format!("contacts over the {}", x.symbol), x, scale.radius_axis("r"))
 }
 

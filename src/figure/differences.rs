@@ -12,7 +12,6 @@ use pulloff_engine::disc::solution::Solution;
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::significant;
 use pulloff_engine::theory::Exact;
-use std::mem::discriminant;
 
 /// Bisection steps on a stretch of the curve: enough to go far below what is drawn, and below rounding.
 const HALVINGS: usize = 50;
@@ -102,7 +101,7 @@ fn others<'a>(subject: &Subject<'a>, notes: &mut Vec<String>) -> Vec<OtherCurve<
             notes.push(format!("{} has a range of adhesion", pin.number));
             continue;
         }
-        if discriminant(&pin.preset().units) != discriminant(&subject.preset.units) {
+        if !pin.shares_units(subject.preset) {
             notes.push(format!("{} has other units", pin.number));
             continue;
         }

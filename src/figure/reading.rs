@@ -7,10 +7,9 @@ use super::scale::Scale;
 use super::subject::Subject;
 use crate::explorer::{CurveData, View};
 use pulloff_engine::problem::Control;
-use pulloff_engine::report::number::{significant, with_unit};
+use pulloff_engine::report::number::significant;
 use pulloff_engine::report::path::EventReport;
 use pulloff_engine::report::problem::control_name;
-use pulloff_engine::units::{Quantity, UnitSystem};
 
 /// Within this share of the window, a mark is preferred to a nearer state of the curve.
 const NEAR: f64 = 0.025;
@@ -50,14 +49,18 @@ pub struct NearestState {
 }
 
 impl NearestState {
-    /// The state in words.
-    pub fn text(&self, units: &UnitSystem) -> String {
-        let shown = |quantity, x| with_unit(units, quantity, x, false, |x| significant(x, 5));
+    /// The state in words, on the axes of the charts.
+    pub fn text(&self, scale: Scale<'_>) -> String {
+        let shown = |axis: &Axis, x: f64| {
+            let space = if axis.shown.is_empty() { "" } else { " " };
+            format!("{} {}{space}{}", axis.symbol, significant(x, 5), axis.shown)
+        };
+        let [length, force, radius] = scale.state_axes();
         format!(
-            "δ {} P {} s {} {}",
-            shown(Quantity::Length, self.approach),
-            shown(Quantity::Force, self.force),
-            shown(Quantity::Length, self.contact_radius),
+            "{} {} {} {}",
+            shown(&length, scale.length(self.approach)),
+            shown(&force, scale.force(self.force)),
+            shown(&radius, scale.radius(self.contact_radius)),
             self.what.text()
         )
     }
@@ -102,7 +105,7 @@ pub fn nearest(subject: &Subject<'_>, view: View, bounds: &Bounds, at: (f64, f64
     let mark = marks.filter(|mark| away(mark.at) <= NEAR).min_by(by_distance);
     let own = subject.curve.points.iter();
     let own = own.map(|point| state(scale, place(point), What::Curve { stable: point.stable }));
-    let pinned = subject.pins.iter().flat_map(|pin| {
+    let pinned = subject.pins.iter().filter(|pin| pin.shares_units(subject.preset)).flat_map(|pin| {
         let scale = pinned_scale(subject, pin);
         pin.curve.points.iter().map(move |point| state(scale, place(point), What::Pin(pin.number)))
     });

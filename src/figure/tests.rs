@@ -11,7 +11,6 @@ use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::Losses;
 use pulloff_engine::report::PathReport;
 use pulloff_engine::report::path::Extent;
-use pulloff_engine::units::UnitSystem;
 
 /// A session in which every effect is done inline, with room for every view.
 struct Session {
@@ -325,7 +324,7 @@ fn the_nearest_state_is_on_the_curve_and_coordinates_have_digits_enough() {
     let at = subject.scale().place(View::ForceApproach, [point.approach, point.force, point.contact_radius]);
     let found = nearest(&subject, View::ForceApproach, &figure.bounds, at).unwrap();
     assert_eq!((found.at, found.contact_radius), (at, point.contact_radius));
-    assert!(found.text(&UnitSystem::Reduced).contains("stable"));
+    assert!(found.text(subject.scale()).contains("stable"));
     assert!(nearest(&subject, View::Pressure, &figure.bounds, at).is_none());
     let axes = [&figure.x, &figure.y];
     let deep = Bounds { x: [0.5, 0.5 + 1e-9], y: [-1.0, 1.0] };
@@ -512,4 +511,20 @@ fn differences_are_those_of_the_curves_at_equal_radius_and_at_equal_approach() {
     session.does(Command::Unpin(None)).does(Command::Overlay(Overlay::Exact));
     session.does(Command::Overlay(Overlay::Smooth));
     assert!(session.figure(View::Differences).missing.is_some());
+}
+
+#[test]
+fn a_pin_in_other_units_is_not_drawn_on_axes_to_which_it_does_not_belong() {
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::Pin).does(Command::OpenWith { name: "fig-9-si".to_owned(), assignments: Vec::new() });
+    assert_eq!(session.model.pins.all().len(), 1);
+    for view in [View::ForceApproach, View::ForceRadius, View::Differences] {
+        let figure = session.figure(view);
+        assert!(!figure.lines.iter().any(|line| matches!(line.role, Role::Pin(_))), "{view:?}");
+        let is_told = figure.notes.iter().any(|note| note.contains("1 has other units"));
+        assert!(is_told || figure.missing.is_some(), "{view:?}: {:?}", figure.notes);
+    }
+    // It is back beside a preset in its own units.
+    session.does(Command::OpenWith { name: "fig-9".to_owned(), assignments: Vec::new() });
+    assert!(count(&session.figure(View::ForceApproach), Role::Pin(1)) > 0);
 }

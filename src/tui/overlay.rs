@@ -166,8 +166,12 @@ impl Choose {
         let items = self.items.iter().enumerate();
         let mut found: Vec<_> =
             items.filter(|(_, item)| item.text.to_lowercase().contains(&wanted)).collect();
-        // Lines that begin with the text come before those that only contain it.
-        found.sort_by_key(|(_, item)| !item.text.to_lowercase().starts_with(&wanted));
+        // Lines that begin with the text come first, then those whose name contains it.
+        found.sort_by_key(|(_, item)| {
+            let text = item.text.to_lowercase();
+            let is_in_name = text.split_whitespace().next().is_some_and(|name| name.contains(&wanted));
+            (!text.starts_with(&wanted), !is_in_name)
+        });
         found
     }
 

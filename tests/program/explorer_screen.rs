@@ -141,9 +141,9 @@ fn every_view_a_closer_look_and_a_pin() {
     pty.keys("++");
     pty.wait_for(|screen| screen.contains("zoom 4x"), "a closer look");
     pty.keys("i");
-    pty.wait_for(|screen| screen.contains("* δ "), "the cross-hair");
+    pty.wait_for(|screen| screen.contains("* δ/R "), "the cross-hair");
     pty.keys("\x1bf");
-    pty.wait_for(|screen| !screen.contains("zoom") && !screen.contains("* δ "), "all of it");
+    pty.wait_for(|screen| !screen.contains("zoom") && !screen.contains("* δ/R "), "all of it");
 
     // Back to the Problem panel, where > turns the amplitude.
     pty.keys("\t\t");

@@ -96,7 +96,7 @@ pub fn reading(model: &Model) -> Option<String> {
     }
     Some(match nearest(&subject, view, &bounds, at) {
         // The state comes first: it is new information, and narrow screens cut off the end.
-        Some(nearest) => format!("* {}; + {here}", nearest.text(&subject.curve.setting.preset.units)),
+        Some(nearest) => format!("* {}; + {here}", nearest.text(subject.scale())),
         None => format!("+ {here}"),
     })
 }

@@ -278,7 +278,7 @@ fn views_follow_each_other_and_three_fit_on_a_wide_screen() {
         ),
         (
             "gi",
-            &["gap/R over r/λ", "p/E* over r/λ", "contact, s/λ", "U over s/λ", "contacts over the way of δ"],
+            &["gap/R over r/λ", "p/E* over r/λ", "contact, s/λ", "U over s/λ", "contacts over the travel of δ"],
         ),
         ("gm", &["largest pull (P/Pc) over A", "snaps", "limit points under displacement"]),
         ("gd", &["distances of the points"]),
@@ -355,7 +355,7 @@ fn the_cross_hair_reads_the_chart_and_the_curve() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("i");
     let text = screen.text(120, 40);
-    assert!(text.contains("* δ ") && text.contains("; + δ/R ") && text.contains("stable"), "{text}");
+    assert!(text.contains("* δ/R ") && text.contains("; + δ/R ") && text.contains("stable"), "{text}");
     let before = screen.app.model.cross;
     screen.press(KeyCode::Up);
     screen.press(KeyCode::Right);
@@ -368,7 +368,7 @@ fn the_cross_hair_reads_the_chart_and_the_curve() {
     // On a view of the state, only its own coordinates.
     screen.keys("gi");
     let text = screen.text(120, 40);
-    assert!(text.contains("+ r/λ ") && !text.contains("* δ "), "{text}");
+    assert!(text.contains("+ r/λ ") && !text.contains("* δ/R "), "{text}");
     screen.keys("\x1b");
     assert!(screen.app.model.cross.is_none());
 }
