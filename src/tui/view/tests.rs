@@ -278,7 +278,13 @@ fn views_follow_each_other_and_three_fit_on_a_wide_screen() {
         ),
         (
             "gi",
-            &["gap/R over r/λ", "p/E* over r/λ", "contact, s/λ", "U over s/λ", "contacts over the travel of δ"],
+            &[
+                "gap/R over r/λ",
+                "p/E* over r/λ",
+                "contact, s/λ",
+                "U over s/λ",
+                "contacts over the travel of δ",
+            ],
         ),
         ("gm", &["largest pull (P/Pc) over A", "snaps", "limit points under displacement"]),
         ("gd", &["distances of the points"]),
