@@ -92,7 +92,7 @@ def test_ctrl_c_leaves_the_rows_that_are_done(out, tmp_path):
     assert words.startswith(f"stopped with {count} rows") and process.returncode == 0
     if out:
         assert (tmp_path / out).read_text().count("\n") == int(count) + 1
-        assert "the same call goes on from there" in words
+        assert "the same call continues from there" in words
 
 
 def test_an_exception_of_progress_ends_it(fig_9):

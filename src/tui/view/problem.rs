@@ -156,7 +156,8 @@ pub(super) fn shown(app: &App) -> Vec<ShownValue> {
         match value {
             None => ShownValue::word(label, "auto".to_owned()),
             Some(Value::Number(x)) => number(label, x, &errors(theme, error)),
-            Some(Value::Control(Control::Stiffness(k))) => number(format!("{label} k"), k, &[String::new()]),
+            // Its stiffness has a cell of its own.
+            Some(Value::Control(Control::Stiffness(_))) => ShownValue::word(label, "spring".to_owned()),
             Some(value) => ShownValue::word(label, theme.text(&value.to_string())),
         }
     });
