@@ -157,7 +157,7 @@ pub(super) fn shown(app: &App) -> Vec<ShownValue> {
             None => ShownValue::word(label, "auto".to_owned()),
             Some(Value::Number(x)) => number(label, x, &errors(theme, error)),
             // Its stiffness has a cell of its own.
-            Some(Value::Control(Control::Stiffness(_))) => ShownValue::word(label, "spring".to_owned()),
+            Some(Value::Control(Control::Stiffness(_))) => ShownValue::word(label, "stiffness".to_owned()),
             Some(value) => ShownValue::word(label, theme.text(&value.to_string())),
         }
     });
