@@ -231,9 +231,8 @@ fn knob_line(
     let text = match value {
         None => "auto".to_owned(),
         Some(Value::Number(x)) => shown(*x, 7, &errors(theme, error)),
-        Some(Value::Control(Control::Stiffness(k))) => {
-            format!("k {}", shown(*k, 5, &errors(theme, None)))
-        }
+        // It has a line of its own.
+        Some(Value::Control(Control::Stiffness(_))) => "stiffness".to_owned(),
         Some(value) => theme.text(&value.to_string()),
     };
     // A word matters more than the sign that it can be turned.
