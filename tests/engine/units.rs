@@ -4,6 +4,8 @@
 
 use pulloff::store::{read, read_with, shipped};
 use pulloff_engine::case::Case;
+use pulloff_engine::disc::TableError;
+use pulloff_engine::gap::panels::Unresolved;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::changes::changes;
 use pulloff_engine::preset::{Preset, Value, write};
@@ -539,6 +541,10 @@ fn what_stops_a_curve_and_what_a_gap_cannot_be_is_told_in_units() {
     assert!(words.contains("below the contact radius 40 um (a finer"), "{words}");
     assert!(stop.to_string().contains("below the contact radius 2e-5 (a finer"), "{stop}");
     let unstable = PathError::UnstableStart { contact_radius: 2e-5, searched: 1e-3 };
+    // A gap too fine for a table beyond the start, found while a path is followed.
+    let fine = Unresolved { radius: 1e-5, largest: 2e-3, panels: 20_000.0 };
+    let words = PathError::Table(TableError::TooFine(fine)).words(&printer);
+    assert!(words.contains("at r = 20 um (it must be up to r = 4000 um)"), "{words}");
     let words = unstable.words(&printer.under(Control::Stiffness(1.0)));
     assert!(words.contains("(contact radius 40 um)") && words.contains("stiffness=5 N/m control"), "{words}");
     assert!(words.ends_with("up to the contact radius 2000 um"), "{words}");
