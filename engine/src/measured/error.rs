@@ -152,7 +152,7 @@ pub enum CurveReadError {
     /// Two columns of lengths.
     #[error(
         "line {line}: the columns {names} are lengths, like those of a profile: a profile belongs in \
-         gap.file; for a measured curve, say what they are, as in --columns x=1,force=2"
+         gap.file, with gap.shape=profile; for a measured curve, say what they are, as in --columns x=1,force=2"
     )]
     Profile {
         /// The header.
