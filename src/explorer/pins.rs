@@ -75,11 +75,6 @@ impl Pin {
         &self.curve.setting.preset
     }
 
-    /// Whether both are in reduced units or both in SI: only then do their numbers belong on the same axes.
-    pub fn shares_units(&self, now: &Preset) -> bool {
-        discriminant(&self.preset().units) == discriminant(&now.units)
-    }
-
     /// The differences from `now`, as labels and values; for ring elements, their accuracy too.
     pub fn name(&self, now: &Preset) -> String {
         let elements = self.elements.filter(|_| self.preset().basis != now.basis);
@@ -131,6 +126,14 @@ impl Pins {
     /// All pinned curves.
     pub fn all(&self) -> &[Pin] {
         &self.shown
+    }
+
+    /// The pinned curves whose numbers belong on the axes of `now`, reduced like its own or in SI like them; then the
+    /// numbers of the others.
+    pub fn beside(&self, now: &Preset) -> (Vec<&Pin>, Vec<usize>) {
+        let is_like = |pin: &&Pin| discriminant(&pin.preset().units) == discriminant(&now.units);
+        let (like, others): (Vec<&Pin>, Vec<&Pin>) = self.shown.iter().partition(is_like);
+        (like, others.into_iter().map(|pin| pin.number).collect())
     }
 
     /// Whether there are none.
@@ -253,7 +256,7 @@ pub fn changed(after: &Preset, before: &Preset) -> Option<String> {
 }
 
 /// The name of `now` among the pins: its values that differ from those of some pin; `None` if there are none.
-pub fn name_among(now: &Preset, pins: &[Pin]) -> Option<String> {
+pub fn name_among(now: &Preset, pins: &[&Pin]) -> Option<String> {
     let keys: HashSet<String> = pins
         .iter()
         .flat_map(|pin| differences(now, pin.preset()))

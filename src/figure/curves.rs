@@ -152,11 +152,9 @@ pub fn pinned_scale<'a>(subject: &Subject<'a>, pin: &Pin) -> Scale<'a> {
 /// Draws the pinned curves; returns their points for the bounds.
 fn pins(subject: &Subject<'_>, view: View, figure: &mut Figure) -> Vec<(f64, f64)> {
     let mut all = Vec::new();
-    for pin in subject.pins {
-        if !pin.shares_units(subject.preset) {
-            figure.notes.push(format!("pin {} has other units", pin.number));
-            continue;
-        }
+    let others = subject.other_pins.iter();
+    figure.notes.extend(others.map(|number| format!("pin {number} has other units")));
+    for pin in &subject.pins {
         let scale = pinned_scale(subject, pin);
         let points: Vec<(f64, f64)> =
             pin.curve.points.iter().map(|point| scale.place(view, place(point))).collect();

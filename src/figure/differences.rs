@@ -96,13 +96,10 @@ fn others<'a>(subject: &Subject<'a>, notes: &mut Vec<String>) -> Vec<OtherCurve<
         add(Role::Exact, theory.exact_name, &theory.exact, Box::new(move |s| Some(exact.force(s))));
     }
     let mut pinned = Vec::new();
-    for pin in subject.pins {
+    notes.extend(subject.other_pins.iter().map(|number| format!("{number} has other units")));
+    for pin in &subject.pins {
         if pin.curve.case.cohesion.is_some() {
             notes.push(format!("{} has a range of adhesion", pin.number));
-            continue;
-        }
-        if !pin.shares_units(subject.preset) {
-            notes.push(format!("{} has other units", pin.number));
             continue;
         }
         let state = |at: &CurvePoint| [at.approach, at.force, at.contact_radius];

@@ -105,7 +105,7 @@ pub fn nearest(subject: &Subject<'_>, view: View, bounds: &Bounds, at: (f64, f64
     let mark = marks.filter(|mark| away(mark.at) <= NEAR).min_by(by_distance);
     let own = subject.curve.points.iter();
     let own = own.map(|point| state(scale, place(point), What::Curve { stable: point.stable }));
-    let pinned = subject.pins.iter().filter(|pin| pin.shares_units(subject.preset)).flat_map(|pin| {
+    let pinned = subject.pins.iter().flat_map(|pin| {
         let scale = pinned_scale(subject, pin);
         pin.curve.points.iter().map(move |point| state(scale, place(point), What::Pin(pin.number)))
     });

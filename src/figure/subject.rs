@@ -47,7 +47,10 @@ pub struct Subject<'a> {
     pub speeds: Option<&'a SpeedsData>,
     /// The study of the selected value, or why there is none, where it is known.
     pub study: Option<Result<&'a StudyData, String>>,
-    pub pins: &'a [Pin],
+    /// The pinned curves on the same axes.
+    pub pins: Vec<&'a Pin>,
+    /// The numbers of those in other units.
+    pub other_pins: Vec<usize>,
     pub preset: &'a Preset,
     /// The theory to draw.
     pub overlays: Overlays,
@@ -58,6 +61,7 @@ pub struct Subject<'a> {
 impl<'a> Subject<'a> {
     /// What the screen of a session shows; `None` before its first curve.
     pub fn of(model: &'a Model) -> Option<Self> {
+        let (pins, other_pins) = model.pins.beside(&model.preset);
         Some(Self {
             curve: model.curve.as_deref()?,
             walk: model.history.path().into_iter().map(|(_, node)| node).collect(),
@@ -73,7 +77,8 @@ impl<'a> Subject<'a> {
             distances: model.results.found::<Distances>().map(|distances| &distances.found),
             speeds: model.results.found(),
             study: study(model),
-            pins: model.pins.all(),
+            pins,
+            other_pins,
             preset: &model.preset,
             overlays: model.overlays,
             axes: model.axes,
@@ -97,7 +102,8 @@ impl<'a> Subject<'a> {
             distances: None,
             speeds: None,
             study: None,
-            pins: &[],
+            pins: Vec::new(),
+            other_pins: Vec::new(),
             preset: &curve.setting.preset,
             overlays,
             axes: Axes::Reduced,
@@ -117,7 +123,7 @@ impl<'a> Subject<'a> {
 
     /// A name that distinguishes the curve from the pinned ones beside it, in their style; `None` without any.
     pub fn own_name(&self) -> Option<String> {
-        name_among(&self.curve.setting.preset, self.pins)
+        name_among(&self.curve.setting.preset, &self.pins)
     }
 
     /// Whether a state solves the problem of this curve.

@@ -139,12 +139,15 @@ pub(super) fn wanted(
     Ok(wanted)
 }
 
-/// Whether two columns are a profile of the gap: a radius, or any length, and a length.
+/// Whether two columns are a profile of the gap: a radius, or any length, and a length. A name that can only be of a
+/// measured curve, such as `contact radius`, says that they are not.
 fn is_profile(header: &Header) -> bool {
     let is_length =
         |head: &ColumnHead| head.1.as_ref().is_some_and(|unit| unit_of(ColumnRole::Approach, unit).is_ok());
     let is_radius = |head: &ColumnHead| ["r", "radius"].contains(&&*squashed(&head.0));
+    let is_measured = |head: &ColumnHead| named(&head.0).is_some_and(|name| name.rank == 0);
     match &header.heads[..] {
+        heads if heads.iter().any(is_measured) => false,
         [first, second] => is_length(first) && is_length(second) || is_radius(first) && second.1.is_none(),
         _ => false,
     }

@@ -319,9 +319,11 @@ fn a_profile_that_is_offered_as_a_curve_is_told_where_it_belongs() {
         assert!(is_read, "{header}");
     }
     // A contact radius and no force lacks the force.
-    let text = "time [s], contact radius [um]\n".to_owned() + &"1, 2\n".repeat(10);
-    let refused = parse(text.as_bytes(), &ColumnSpec::default()).unwrap_err().to_string();
-    assert!(refused.contains("no column for the force"), "{refused}");
+    for header in ["time [s], contact radius [um]", "approach [um], contact radius [um]"] {
+        let text = format!("{header}\n") + &"1, 2\n".repeat(10);
+        let refused = parse(text.as_bytes(), &ColumnSpec::default()).unwrap_err().to_string();
+        assert!(refused.contains("no column for the force"), "{refused}");
+    }
 }
 
 #[test]

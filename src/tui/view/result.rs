@@ -22,7 +22,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let block = panel(theme, "Result", is_selected(app, ScreenPanel::Result));
     let inner = block.inner(area);
     frame.render_widget(block, area);
-    let pinned = model.pins.all().iter().rfind(|pin| pin.shares_units(&model.preset));
+    let pinned = model.pins.beside(&model.preset).0.pop();
     let pinned = pinned.and_then(|pin| Some((pin, pin.curve.report.as_ref()?)));
     let lines = match (model.path(), pinned) {
         (Some(path), Some(pinned)) => beside(theme, model, path, pinned),
