@@ -147,24 +147,26 @@ fn told(fit: &Fit) -> String {
     let holds = (fit.verdict == Verdict::Describes).then(|| fit.verdict.sentence());
     let reasons = fit.reasons.iter().map(|reason| &*reason.sentence);
     let reasons = holds.into_iter().chain(reasons).chain(fit.warnings.iter().map(String::as_str));
-    let begins = format!("{ended}: χ² {}", short(fit.chi_squared, 3));
+    let begins = format!("{ended}: χ² {} ({}: the report)", short(fit.chi_squared, 3), Id::About.named());
     let parts: Vec<&str> = std::iter::once(&*begins).chain(reasons).collect();
     greek(&parts.join("; "))
 }
 
 impl Model {
-    /// What the fit found, if the present values are still its values.
+    /// The last fit that was adopted, if the present values are still its values.
+    pub fn fitted(&self) -> Option<&Fit> {
+        self.fit.as_deref().filter(|fit| fit.holds_for(&self.preset))
+    }
+
+    /// What it found, in one line.
     pub(super) fn fit_said(&self) -> Option<String> {
-        self.fit.as_deref().filter(|fit| fit.holds_for(&self.preset)).map(told)
+        self.fitted().map(told)
     }
 
     /// The standard error of the value of `key`, as long as everything is as the fit found it: for another file,
     /// another R or another column nothing is known. There is none if the model does not describe the points.
     pub fn standard_error(&self, key: &str) -> Option<f64> {
-        let fit = self.fit.as_deref().filter(|fit| fit.verdict == Verdict::Describes)?;
-        if !fit.holds_for(&self.preset) {
-            return None;
-        }
+        let fit = self.fitted().filter(|fit| fit.verdict == Verdict::Describes)?;
         fit.parameters.iter().find(|fitted| fitted.key == key)?.standard_error
     }
 }

@@ -176,11 +176,14 @@ impl Model {
         // How many events lie behind the last state that no event of the path led to.
         let mut passed = 0;
         if let Some((_, node)) = of_curve.first() {
-            let behind = self.passed_before(events, node);
+            let (behind, is_event) = self.passed_before(events, node);
+            let happened = &mut done[..behind];
             match node.kind {
                 // Bodies in contact have come together at some point.
-                NodeKind::Start => done.iter_mut().take(behind).for_each(|done| *done = Some(None)),
-                // Sent there, or solved again in place for other values: what lies behind did not happen.
+                NodeKind::Start => happened.fill(Some(None)),
+                // The state in which an event begins is reached through the events before it.
+                NodeKind::Moved | NodeKind::Limit if is_event => happened.fill(Some(None)),
+                // Sent elsewhere, or solved again in place for other values: what lies behind did not happen.
                 NodeKind::Moved | NodeKind::Solved | NodeKind::Limit if !self.is_start(node) => {
                     passed = behind;
                 }
@@ -258,19 +261,21 @@ impl Model {
         node.begins && start.is_some_and(|start| is_near(node.state.contact_radius, start))
     }
 
-    /// How many events of the path lie before the state with which a walk begins.
-    fn passed_before(&self, events: &[EventReport], node: &Node) -> usize {
+    /// How many events of the path lie before the state with which a walk begins, and whether an event begins in it.
+    fn passed_before(&self, events: &[EventReport], node: &Node) -> (usize, bool) {
         let s = node.state.in_units(node.setting.units()).contact_radius;
         let direction =
             if self.inward || self.preset.path.begin == Begin::Disc { "unloading" } else { "loading" };
         if let NodeKind::Start = node.kind {
             let landed =
                 events.iter().position(|event| radius(event.after.as_ref()).is_some_and(|r| is_near(r, s)));
-            return landed.filter(|_| self.preset.path.begin == Begin::Touch).map_or(0, |at| at + 1);
+            let landed = landed.filter(|_| self.preset.path.begin == Begin::Touch);
+            return (landed.map_or(0, |at| at + 1), false);
         }
         let begins_here = |event: &EventReport| {
             event.direction == direction && radius(event.before.as_ref()).is_some_and(|r| is_near(r, s))
         };
-        events.iter().position(begins_here).unwrap_or_else(|| behind(events, s, direction))
+        let begins = events.iter().position(begins_here);
+        (begins.unwrap_or_else(|| behind(events, s, direction)), begins.is_some())
     }
 }

@@ -33,7 +33,7 @@ use super::walk::Action;
 use super::{look, reach};
 use crate::store::{Loaded, Overwrite};
 use curve::curve_came;
-use files::{export, export_page, file_done, save};
+use files::{export, export_page, file_done, save, save_as};
 use places::{go_to_event, move_to, select_event};
 use selection::pick;
 use travel::{by_states, go_to, go_to_state, travel};
@@ -144,10 +144,7 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::Open(name) => return vec![file(Job::Open { name, assignments: Vec::new() })],
         Command::OpenWith { name, assignments } => return vec![file(Job::Open { name, assignments })],
         Command::Delete(name) => return vec![file(Job::Delete(name))],
-        Command::SaveAs { name, replace, with_data } => {
-            let preset = Box::new(model.preset.clone());
-            return vec![file(Job::SaveAs { name, preset, replace, with_data, from: model.source.clone() })];
-        }
+        Command::SaveAs { name, replace, with_data } => return save_as(model, name, replace, with_data),
         Command::SaveAnyway => return save(model, Overwrite::Always),
         Command::Export { what, path, replace } => return export(model, what, path, replace),
         Command::ExportPage { page, path, replace } => return export_page(model, page, path, replace),

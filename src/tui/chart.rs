@@ -64,8 +64,10 @@ fn legend_count(legend: &[LegendRow], room: usize) -> usize {
     legend.iter().enumerate().take_while(fits).count()
 }
 
-/// A chart with fewer rows inside has no row for its legend.
+/// A chart with fewer rows inside has no row for its legend,
 const LEGEND_ROWS: u16 = 8;
+/// and one more has a further row for each of these.
+const ROWS_PER_LEGEND_ROW: u16 = 5;
 
 impl Chart<'_> {
     /// Draws the chart with its frame into `area`.
@@ -75,7 +77,7 @@ impl Chart<'_> {
         let mut block: Block<'_> = theme.block(selected).title(Span::styled(title, theme.title(selected)));
         let note = self.note();
         if self.legend_fits(area) {
-            let mut spans = self.legend_spans(usize::MAX);
+            let mut spans = self.legend_spans(&self.legend, 0);
             if !note.is_empty() && !spans.is_empty() {
                 spans.push(Span::raw("  "));
             }
@@ -94,9 +96,13 @@ impl Chart<'_> {
             return;
         }
         let Some(plot) = self.plot(area) else { return };
-        if self.has_legend_row(area, inner) {
-            let line = Line::from(self.legend_spans(usize::from(plot.width)));
-            buffer.set_line(plot.x, inner.y, &line, plot.width);
+        let rows = self.legend_rows(area, inner, plot.width);
+        let mut left = self.legend.len();
+        for (y, row) in (inner.y..).zip(&rows) {
+            left -= row.len();
+            let is_last = usize::from(y - inner.y) + 1 == rows.len();
+            let line = Line::from(self.legend_spans(row, if is_last { left } else { 0 }));
+            buffer.set_line(plot.x, y, &line, plot.width);
         }
         if self.has_note_row(area, inner) {
             let note = theme.whole_words(&self.note(), usize::from(inner.width - 2));
@@ -166,26 +172,37 @@ impl Chart<'_> {
         }
     }
 
-    /// As many entries as fit; an ellipsis if some are left out.
-    fn legend_spans(&self, room: usize) -> Vec<Span<'static>> {
+    /// These entries of the legend; an ellipsis if some are `left` out.
+    fn legend_spans(&self, entries: &[LegendRow], left: usize) -> Vec<Span<'static>> {
         let theme = self.theme;
         let mut spans = Vec::new();
-        let count = legend_count(&self.legend, room);
-        for (at, entry) in self.legend.iter().take(count).enumerate() {
+        for (at, entry) in entries.iter().enumerate() {
             spans.push(Span::raw(if at == 0 { "" } else { "  " }));
             spans.push(Span::styled(entry.glyph.clone(), entry.style));
             spans.push(Span::styled(format!(" {}", theme.text(&entry.meaning)), theme.dim()));
         }
-        let used: usize = spans.iter().map(Span::width).sum();
-        if count < self.legend.len() && used + 2 <= room {
+        if left > 0 {
             spans.push(Span::styled(theme.glyph(" …", " ."), theme.dim()));
         }
         spans
     }
 
-    /// Whether one of the rows inside is used for the legend.
-    fn has_legend_row(&self, area: Rect, inner: Rect) -> bool {
-        inner.height >= LEGEND_ROWS && !self.legend.is_empty() && !self.legend_fits(area)
+    /// The entries of the legend in each of the rows inside that are used for it, which are this wide. Curves have one
+    /// row: their lines are the same in every chart, and rows are what they need.
+    fn legend_rows(&self, area: Rect, inner: Rect, width: u16) -> Vec<&[LegendRow]> {
+        if inner.height < LEGEND_ROWS || self.legend.is_empty() || self.legend_fits(area) {
+            return Vec::new();
+        }
+        let most =
+            if self.is_paired || self.compares { 1 } else { usize::from(inner.height / ROWS_PER_LEGEND_ROW) };
+        let mut rows = Vec::new();
+        let mut rest = &self.legend[..];
+        while !rest.is_empty() && rows.len() < most {
+            let (row, others) = rest.split_at(legend_count(rest, usize::from(width)).max(1));
+            rows.push(row);
+            rest = others;
+        }
+        rows
     }
 
     /// Whether one of the rows inside is used for the note, which does not fit into the wall; the plots of a pair have
@@ -208,7 +225,8 @@ impl Chart<'_> {
         }
         let gutter = self.y_ticks(inner).iter().map(|(_, label)| label.len()).max().unwrap_or(0);
         let gutter = u16::try_from(gutter + 1).unwrap_or(u16::MAX).min(inner.width / 3);
-        let above = u16::from(self.has_legend_row(area, inner)) + u16::from(self.has_note_row(area, inner));
+        let legend = self.legend_rows(area, inner, inner.width - gutter).len();
+        let above = u16::try_from(legend).unwrap_or(0) + u16::from(self.has_note_row(area, inner));
         Some(Rect {
             x: inner.x + gutter,
             y: inner.y + above,
@@ -323,10 +341,16 @@ impl Chart<'_> {
         buffer.set_stringn(x, below, title, usize::from(inner.width), theme.strong());
     }
 
-    /// Draws the marks; a mark that stands beside its point takes a free cell there, if there is one.
+    /// Draws the marks; a mark that stands beside its point takes a free cell there, if there is one. The label of a
+    /// region or a line is left out where it would touch another mark.
     fn draw_marks(&self, buffer: &mut Buffer, plot: Rect, taken: &[Option<usize>]) {
         let mut marked: Vec<Position> = Vec::new();
-        for (number, mark) in self.figure.marks.iter().enumerate() {
+        let is_label = |sign| matches!(sign, Sign::OfCrest(_) | Sign::Snaps(_));
+        let all = || self.figure.marks.iter().enumerate();
+        let labels_last = all()
+            .filter(|(_, mark)| !is_label(mark.sign))
+            .chain(all().filter(|(_, mark)| is_label(mark.sign)));
+        for (number, mark) in labels_last {
             let Some(own) = self.place(mark.at, plot) else { continue };
             let is_free = |at: &Position| {
                 let index = usize::from(at.y - plot.y) * usize::from(plot.width) + usize::from(at.x - plot.x);
@@ -351,15 +375,20 @@ impl Chart<'_> {
             if is_beside && marked.contains(&at) {
                 continue;
             }
-            marked.push(at);
-            let mut style = style(mark.sign, self.theme);
-            if self.selected == Some(number) {
-                style = style.add_modifier(Modifier::REVERSED);
-            }
             // One letter per cell; a longer label stays inside the plot.
             let label = letter(mark.sign, self.theme);
             let width = u16::try_from(label.chars().count()).unwrap_or(1);
             let first = at.x.min(plot.right().saturating_sub(width)).max(plot.x);
+            let touches =
+                |other: &Position| other.y == at.y && (first..first + width + 2).contains(&(other.x + 1));
+            if is_label(mark.sign) && marked.iter().any(touches) {
+                continue;
+            }
+            marked.extend((first..first + width).map(|x| Position::new(x, at.y)));
+            let mut style = style(mark.sign, self.theme);
+            if self.selected == Some(number) {
+                style = style.add_modifier(Modifier::REVERSED);
+            }
             for (x, letter) in (first..plot.right()).zip(label.chars()) {
                 put(buffer, (x, at.y), letter.encode_utf8(&mut [0; 4]), style);
             }

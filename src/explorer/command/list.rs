@@ -138,7 +138,7 @@ macro_rules! each_command {
             "everything that can be done; typing keeps the lines that match; Tab takes a line, Enter runs it" { run: |_| vec![file(Job::Names)] }
         Mouse "mouse" "m" "mouse" always Nothing Screen
             "take the mouse (click, wheel), or leave it to the terminal to select text" {}
-        About "about" "I" "about" always Nothing Screen "what the preset says about itself, and what has changed since" { words: "original" }
+        About "about" "I" "about" always Nothing Screen "what the preset says about itself, what has changed since, and the report of a fit" { words: "original correlations errors" }
         Help "help" "?" "keys" always Nothing Screen "what can be done here, by key and name; Tab: how to read the screen" { words: "manual keys" }
         Cancel "cancel" "Esc" "back" always Nothing Screen "discard typed text, close, stop a run or a curve" { run: cancel }
         Quit "quit" "q Ctrl-C" "quit" always Nothing Yes "quit; --resume comes back; asks about unsaved changes"

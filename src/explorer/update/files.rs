@@ -9,6 +9,7 @@ use crate::explorer::job::{Content, Done, Job};
 use crate::explorer::journal::Beginning;
 use crate::explorer::look;
 use crate::explorer::model::{Level, Model, Question};
+use crate::explorer::pins::changed;
 use crate::explorer::requests::{change, file, want_curve};
 use crate::explorer::studies::StudyData;
 use crate::explorer::undo::SessionPlace;
@@ -16,6 +17,7 @@ use crate::print::PictureFormat;
 use crate::store::{Overwrite, Source};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::Preset;
+use pulloff_engine::text::{greek, sanitize};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -36,6 +38,25 @@ pub(in crate::explorer) fn save_back(model: &mut Model) -> Vec<Effect> {
 pub(super) fn save(model: &mut Model, overwrite: Overwrite) -> Vec<Effect> {
     let (source, preset) = (model.source.clone(), Box::new(model.preset.clone()));
     vec![file(Job::Save { source, preset, overwrite })]
+}
+
+/// The longest title made here, in characters.
+const TITLE: usize = 80;
+
+/// Saves under a name. A title that was given to other values would not be true of these: they get one that says what
+/// they are.
+pub(super) fn save_as(model: &mut Model, name: String, replace: bool, with_data: bool) -> Vec<Effect> {
+    let (from, mut preset) = (model.source.clone(), Box::new(model.preset.clone()));
+    if let Some(changed) = changed(&preset, &model.saved).filter(|_| preset.title == model.saved.title) {
+        let of = match &from {
+            Source::File(path) => {
+                path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into())
+            }
+            other => other.shown(),
+        };
+        preset.title = sanitize(&format!("{of}, {}", greek(&changed)), TITLE);
+    }
+    vec![file(Job::SaveAs { name, preset, replace, with_data, from })]
 }
 
 pub(super) fn export(model: &mut Model, what: ExportKind, path: String, replace: bool) -> Vec<Effect> {
@@ -112,7 +133,7 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         }
         Done::Saved { source, fingerprint, preset } => {
             model.tell(Level::Info, format!("saved as {}", source.shown()));
-            let copied = with_copied_data(&model.preset, &preset);
+            let copied = as_saved(&model.preset, &model.saved, &preset);
             (model.source, model.fingerprint, model.saved) = (source, Some(fingerprint), *preset);
             return copied.map_or_else(Vec::new, |preset| change(model, preset));
         }
@@ -141,10 +162,13 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
     Vec::new()
 }
 
-/// `preset` with the rows of the profile at the place they were copied to, if `saved` names another file with the same
-/// rows.
-fn with_copied_data(preset: &Preset, saved: &Preset) -> Option<Preset> {
+/// `preset` with the title under which it was saved, if it still has that of the file it was read from, `before`, and
+/// with the rows of the profile at the place they were copied to, if `saved` names another file with the same rows.
+fn as_saved(preset: &Preset, before: &Preset, saved: &Preset) -> Option<Preset> {
     let mut copied = preset.clone();
+    if preset.title == before.title {
+        copied.title.clone_from(&saved.title);
+    }
     if let (Shape::Profile(now), Shape::Profile(then)) = (&preset.gap, &saved.gap)
         && (&now.rows().radii, &now.rows().gaps) == (&then.rows().radii, &then.rows().gaps)
         && now.smoothing() == then.smoothing()

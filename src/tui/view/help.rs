@@ -7,6 +7,7 @@ use crate::explorer::{Home, Id};
 use crate::tui::app::App;
 use crate::tui::overlay::Help;
 use crate::tui::theme::Theme;
+use pulloff_engine::report::FitReport;
 use ratatui::Frame;
 use ratatui::layout::{Margin, Rect};
 use ratatui::style::Style;
@@ -85,7 +86,7 @@ const SHORT: &[(&str, &str)] = &[
     ("by area agrees", "the same loss as the area between the curve and the way of the device"),
     ("admissible", "whether the bodies stay apart outside the contact"),
     ("Ctrl-Z", "back to the shell; fg returns"),
-    ("modified", "the title was given to values other than those shown; * unsaved: they are in no file"),
+    ("*  unsaved", "beside the name: the values shown are in no file"),
 ];
 
 /// The names of the pages, in order.
@@ -190,11 +191,17 @@ fn steps(app: &App) -> Vec<HelpLine> {
     entries
 }
 
-/// What the preset says about itself, and what was changed since it was read.
+/// The report of a fit whose values these are, what the preset says about itself, and what was changed since it was
+/// read.
 fn about(app: &App) -> Vec<HelpLine> {
     let (theme, model) = (app.theme, &app.model);
     let mut entries = Vec::new();
     let line = |text: &str| HelpLine::new("  ", theme.text(text), Style::new());
+    if let Some(fit) = model.fitted() {
+        let file = fit.preset.data.source.as_ref().map_or("", |source| &source.name);
+        section(&mut entries, theme, "What the fit found");
+        entries.extend(FitReport::new(file, fit, None).text().lines().map(line));
+    }
     section(&mut entries, theme, &theme.text(&model.preset.title));
     entries.extend(model.comment.lines().map(line));
     if model.comment.is_empty() {

@@ -79,11 +79,13 @@ pub fn entry_at(prompt: &Prompt, area: Rect, at: Position) -> Option<usize> {
 
 /// The entries of a line, in this many rows.
 fn entries(app: &App, prompt: &Prompt, rows: usize, width: usize) -> Vec<Line<'static>> {
-    /// The columns of the keys and of the lines.
+    /// The columns of the keys, and at most those of the lines.
     const KEYS: usize = 11;
     const LINES: usize = 28;
     let theme = app.theme;
     let shown = prompt.entries.iter().enumerate().skip(first(prompt.selected.unwrap_or(0), rows)).take(rows);
+    // Short lines leave more room for what they do.
+    let longest = prompt.entries.iter().map(|entry| entry.line.chars().count()).max().unwrap_or(0).min(LINES);
     let mut lines: Vec<Line<'static>> = shown
         .map(|(at, entry)| {
             let keys = entry.id.map_or_else(String::new, |id| app.keymap.keys_of(id));
@@ -91,7 +93,7 @@ fn entries(app: &App, prompt: &Prompt, rows: usize, width: usize) -> Vec<Line<'s
             let is_selected = prompt.selected == Some(at);
             let mark = if is_selected { '>' } else { ' ' };
             let text =
-                theme.whole_words(&format!("{mark} {keys:<KEYS$} {:<LINES$} {says}", entry.line), width);
+                theme.whole_words(&format!("{mark} {keys:<KEYS$} {:<longest$} {says}", entry.line), width);
             match is_selected {
                 true => Line::styled(text, theme.selection()),
                 false if entry.says.starts_with("- ") => Line::styled(text, theme.dim()),

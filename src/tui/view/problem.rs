@@ -169,9 +169,9 @@ pub(super) fn shown(app: &App) -> Vec<ShownValue> {
     values.chain(others).collect()
 }
 
-/// The amplitude from which the problem snaps, or the wave that sets its resolution, in a few words.
+/// The amplitude from which the problem snaps, or what is found of its gap, in a few words.
 pub(super) fn standing(app: &App) -> Option<String> {
-    let lines = [onset(app.theme, &app.model), shortest_wave(app.theme, &app.model)];
+    let lines = [onset(app.theme, &app.model), found(app.theme, &app.model)];
     lines.into_iter().flatten().next().map(|line| line.to_string().trim().to_owned())
 }
 
@@ -262,7 +262,7 @@ fn group_lines(
     for (name, value) in [("λ²/AR", of.connectivity), ("α", of.johnson), ("μ", of.tabor)] {
         items.extend(value.map(|value| (theme.text(name), value, false)));
     }
-    let shortest = shortest_wave(theme, model);
+    let found = found(theme, model);
     let mut lines: Vec<Line> = Vec::new();
     let mut used = usize::MAX;
     for (name, value, is_chosen) in items {
@@ -284,7 +284,7 @@ fn group_lines(
             line.spans.extend(spans);
         }
     }
-    lines.extend(shortest);
+    lines.extend(found);
     lines
 }
 
@@ -294,11 +294,18 @@ fn onset(theme: Theme, model: &Model) -> Option<Line<'static>> {
     Some(Line::from(pair(theme, " snaps from A/λ ", &text).to_vec()))
 }
 
-/// The wave by which mesh and steps are measured, if it is not a λ among the parameters: the waves of a formula or of
-/// measured rows are found, not given.
-fn shortest_wave(theme: Theme, model: &Model) -> Option<Line<'static>> {
+/// What is found of the gap, not given: the radius of curvature at the axis, by which `P_c` and the axes are divided, and
+/// the wave by which mesh and steps are measured.
+fn found(theme: Theme, model: &Model) -> Option<Line<'static>> {
     let gap = &model.preset.gap;
-    let length = gap.feature_length().filter(|_| gap.wavelength().is_none())?;
-    let text = with_unit(&model.preset.units, Quantity::Length, length, theme.ascii, |x| short(x, 4));
-    Some(Line::from(pair(theme, " shortest wave ", &text).to_vec()))
+    let has_radius = model.preset.get("gap.radius_of_curvature").is_some();
+    let radius = gap.radius_of_curvature().filter(|_| !has_radius);
+    let wave = gap.feature_length().filter(|_| gap.wavelength().is_none());
+    let shown = |name, length: Option<f64>| {
+        let text = with_unit(&model.preset.units, Quantity::Length, length?, theme.ascii, |x| short(x, 4));
+        Some(pair(theme, name, &text))
+    };
+    let pairs = [shown(" R at the axis ", radius), shown(" shortest wave ", wave)];
+    let spans: Vec<Span<'static>> = pairs.into_iter().flatten().flatten().collect();
+    (!spans.is_empty()).then(|| Line::from(spans))
 }

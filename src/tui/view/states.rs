@@ -7,6 +7,7 @@ use crate::explorer::reach::{walk_line, why_not};
 use crate::explorer::walk_table::kind_name;
 use crate::explorer::{Model, View};
 use crate::tui::app::App;
+use pulloff_engine::case::critical_force;
 use pulloff_engine::gap::{Gap, wave_index};
 use pulloff_engine::report::number::{fixed, loss, significant, with_unit};
 use pulloff_engine::units::Quantity;
@@ -15,6 +16,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
+use std::sync::Arc;
 
 /// Draws the states that led to the walker.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, selected: bool) {
@@ -35,12 +37,14 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, selected: bool) {
     let rows = usize::from(inner.height.saturating_sub(1));
     let chosen = walk_line(model);
     let first = first(path.len(), chosen, rows);
-    let mut lines = vec![Line::styled(theme.whole_words(&theme.text(&head(model)), room), theme.dim())];
+    let critical = divisor(&path);
+    let mut lines =
+        vec![Line::styled(theme.whole_words(&theme.text(&head(model, critical)), room), theme.dim())];
     lines.extend(path.iter().enumerate().skip(first).take(rows).map(|(i, (_, node))| {
         let before = i.checked_sub(1).and_then(|before| path.get(before)).map(|(_, node)| *node);
         let here = if i + 1 == path.len() { " @" } else { "" };
         let mark = if i == chosen && selected { '>' } else { ' ' };
-        let text = format!("{mark}{}{here}", row(model, node, before));
+        let text = format!("{mark}{}{here}", row(node, before, critical));
         let style = if i == chosen && selected { theme.selection() } else { Style::new() };
         Line::styled(theme.whole_words(&theme.text(&text), room), style)
     }));
@@ -63,11 +67,11 @@ pub fn line_at(model: &Model, area: Rect, row: u16) -> Option<usize> {
 }
 
 /// The column heads, with the units of the preset.
-fn head(model: &Model) -> String {
+fn head(model: &Model, critical: Option<f64>) -> String {
     let units = &model.preset.units;
     let [length, force] = [Quantity::Length, Quantity::Force]
         .map(|quantity| units.unit(quantity).map_or_else(String::new, |unit| format!(" {unit}")));
-    let force = if is_divided(model) { "P/Pc".to_owned() } else { format!("P{force}") };
+    let force = if critical.is_some() { "P/Pc".to_owned() } else { format!("P{force}") };
     format!(
         " step {:<9} {:>10} {force:>8} {:>10} {:>5}  lost, changed",
         "",
@@ -77,22 +81,24 @@ fn head(model: &Model) -> String {
     )
 }
 
-/// Whether forces are divided by `P_c`.
-fn is_divided(model: &Model) -> bool {
-    model.curve.as_ref().is_some_and(|curve| curve.base.critical_force > 0.0)
+/// `P_c`, by which forces are divided if all states have the same.
+fn divisor(path: &[(usize, &Node)]) -> Option<f64> {
+    let mut of_each = path
+        .chunk_by(|(_, a), (_, b)| Arc::ptr_eq(&a.setting, &b.setting))
+        .map(|states| critical_force(&states[0].1.setting.preset));
+    let first = of_each.next()??;
+    of_each.all(|other| other == Some(first)).then_some(first)
 }
 
-/// A state in one line; `before` is the previous state.
-fn row(model: &Model, node: &Node, before: Option<&Node>) -> String {
+/// A state in one line; `before` is the previous state, and forces are divided by `critical`.
+fn row(node: &Node, before: Option<&Node>, critical: Option<f64>) -> String {
     let setting = &node.setting;
     let state = node.state.in_units(setting.units());
     let units = &setting.preset.units;
     let length = |x| significant(units.shown(Quantity::Length, x).number, 4);
-    let critical = model.curve.as_ref().map_or(0.0, |curve| curve.base.critical_force);
-    let force = if critical > 0.0 {
-        fixed(state.force / critical, 3)
-    } else {
-        significant(units.shown(Quantity::Force, state.force).number, 3)
+    let force = match critical {
+        Some(critical) => fixed(state.force / critical, 3),
+        None => significant(units.shown(Quantity::Force, state.force).number, 3),
     };
     let (force, radius, crest) = if node.is_apart() {
         ("apart".to_owned(), "-".to_owned(), "-".to_owned())

@@ -19,6 +19,13 @@ pub fn offered(app: &App) -> Vec<(Id, &'static str)> {
     let walk = [Id::Step, Id::NextEvent, Id::Jump, Id::Reverse, Id::Undo].map(word);
     let model = &app.model;
     let own: &[(Id, &str)] = match (model.panel, model.view) {
+        (ScreenPanel::Problem, _) if model.fitted().is_some() => &[
+            (Id::Less, "less"),
+            (Id::More, "more"),
+            (Id::About, "report"),
+            (Id::Free, "free"),
+            (Id::Fit, "fit"),
+        ],
         (ScreenPanel::Problem, _) if model.preset.data.source.is_some() => &[
             (Id::Less, "less"),
             (Id::More, "more"),

@@ -328,9 +328,18 @@ fn free_values_and_their_errors_are_seen_in_the_panel() {
     assert!(after.contains(" kPa ±0.66") && after.contains("fitted: χ²"), "{after}");
     let narrow = screen.text(80, 24);
     assert!(narrow.contains("kPa ±0.66"), "{narrow}");
+    // The report of the command, as long as the values are those found.
+    screen.keys("I");
+    let report = screen.text(100, 30);
+    for said in ["correlations: E* γ", "with k 10 % larger", "chi squared per point"] {
+        assert!(report.contains(said), "{said}: {report}");
+    }
+    screen.keys("\x1b");
     screen.app.theme = PLAIN;
     assert!(screen.text(100, 30).contains(" kPa +-0.66"), "{}", screen.text(100, 30));
-    screen.keys("u");
+    screen.keys("uI");
+    assert!(!screen.text(100, 30).contains("correlations"));
+    screen.keys("\x1b");
     assert!(!screen.text(100, 30).contains(" kPa +-"));
 }
 

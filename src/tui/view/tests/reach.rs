@@ -331,6 +331,7 @@ fn the_states_walked_are_a_table_that_scrolls_and_leads_back() {
     for said in ["jumps 2", "limit", "A 0.0026", " @"] {
         assert!(text.contains(said), "{said}: {text}");
     }
+    assert!(text.contains("P/Pc"), "{text}");
     let path = screen.app.model.history.path().len();
     // To Charts, to the first line, two further on, and there; then back.
     screen.keys("\t\t\t");
@@ -344,6 +345,10 @@ fn the_states_walked_are_a_table_that_scrolls_and_leads_back() {
     assert!(text.contains("walk: 3 states, jumps 0; Enter goes there"), "{text}");
     screen.keys("u");
     assert_eq!(screen.app.model.history.path().len(), path);
+    // Forces at different adhesions are not divided by one of their scales.
+    screen.keys(":set gamma=0.005\rn");
+    let text = screen.text(100, 70);
+    assert!(text.contains("  P  ") && text.contains("γ 0.005"), "{text}");
     // A table has neither a cross-hair nor a zoom.
     screen.keys("i+");
     assert!(screen.app.model.cross.is_none() && screen.app.model.window(View::Walk).is_whole());
