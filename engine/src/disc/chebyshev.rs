@@ -98,18 +98,24 @@ pub fn sum4(series: &[f64], x: f64x4) -> f64x4 {
     series.first().map_or(f64x4::ZERO, |c| x * b1 - b2 + f64x4::splat(*c))
 }
 
-/// f at some places.
-pub fn sums<const N: usize>(series: &[f64], x: &[f64; N]) -> [f64; N] {
-    let (mut b1, mut b2) = ([0.0; N], [0.0; N]);
-    for c in series.iter().skip(1).rev() {
-        for i in 0..N {
-            let b = 2.0 * x[i] * b1[i] - b2[i] + c;
-            b2[i] = b1[i];
-            b1[i] = b;
+/// Several functions at some places, all side by side: one alone would wait for each of its terms.
+pub fn sums<const M: usize, const N: usize>(series: [&[f64]; M], x: &[f64; N]) -> [[f64; N]; M] {
+    let (mut b1, mut b2) = ([[0.0; N]; M], [[0.0; N]; M]);
+    let longest = series.iter().map(|series| series.len()).max().unwrap_or(0);
+    for k in (1..longest).rev() {
+        for (j, series) in series.iter().enumerate() {
+            let c = series.get(k).copied().unwrap_or(0.0);
+            for i in 0..N {
+                let b = 2.0 * x[i] * b1[j][i] - b2[j][i] + c;
+                b2[j][i] = b1[j][i];
+                b1[j][i] = b;
+            }
         }
     }
-    let first = series.first().copied().unwrap_or(0.0);
-    std::array::from_fn(|i| x[i] * b1[i] - b2[i] + first)
+    std::array::from_fn(|j| {
+        let first = series[j].first().copied().unwrap_or(0.0);
+        std::array::from_fn(|i| x[i] * b1[j][i] - b2[j][i] + first)
+    })
 }
 
 /// f(x) and f'(x).
@@ -354,7 +360,8 @@ mod tests {
             assert!(
                 close(sum(&series, x), f(x)) && close(sum4(&series, f64x4::splat(x)).to_array()[2], f(x))
             );
-            assert!(close(sums(&series, &[x; 8])[5], f(x)));
+            let [both, shorter] = sums([&series, &slope], &[x; 8]);
+            assert!(close(both[5], f(x)) && (shorter[7] - exact).abs() < 1e-12);
             assert!(
                 (sum(&slope, x) - exact).abs() < 1e-12
                     && (sum_and_slope(&series, x)[1] - exact).abs() < 1e-12

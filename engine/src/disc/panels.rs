@@ -187,8 +187,7 @@ impl Panels {
             });
         }
         let x = radii.map(|a| panel.place(a));
-        let [value, area, slope] =
-            [&panel.value, &panel.area, &panel.slope].map(|series| chebyshev::sums(series, &x));
+        let [value, area, slope] = chebyshev::sums([&panel.value, &panel.area, &panel.slope], &x);
         std::array::from_fn(|i| [value[i], area[i], slope[i] / panel.weight(x[i])])
     }
 
@@ -374,7 +373,7 @@ impl Panels {
             return radii.map(|a| law.slope(a));
         }
         let x = radii.map(|a| of.place(a));
-        let slopes = chebyshev::sums(&of.slope, &x);
+        let [slopes] = chebyshev::sums([&of.slope], &x);
         std::array::from_fn(|i| slopes[i] / of.weight(x[i]))
     }
 
@@ -385,7 +384,7 @@ impl Panels {
             return [radii.map(|a| law.value(a)), radii.map(|a| law.area(a))];
         }
         let x = radii.map(|a| of.place(a));
-        [chebyshev::sums(&of.value, &x), chebyshev::sums(&of.area, &x)]
+        chebyshev::sums([&of.value, &of.area], &x)
     }
 }
 

@@ -230,25 +230,26 @@ impl<'a> Equation<'a> {
         let control = self.value + self.rate * passed;
         let held = HeldDisc::of(values, self.control, s, control);
         let root = (TAU * self.adhesion * s).sqrt();
-        let kappa = held.opening / root;
-        let kappa_by_s = (held.slope - held.by_radius) / root - 0.5 * kappa / s;
-        let kappa_by_c = -held.by_control / root;
+        let over_root = 1.0 / root;
+        let kappa = held.opening * over_root;
+        let kappa_by_s = (held.slope - held.by_radius) * over_root - 0.5 * kappa / s;
+        let kappa_by_c = -held.by_control * over_root;
         let [drive, by_kappa] = match self.motion {
             // (K − T)(K + T)/T²: what is left near equilibrium keeps its digits.
-            Motion::Opening => [(held.opening - root) * (kappa + 1.0) / root, 2.0 * kappa],
+            Motion::Opening => [(held.opening - root) * (kappa + 1.0) * over_root, 2.0 * kappa],
             // An edge that is pressed closes without bound.
             Motion::Closing if kappa <= 0.0 => return None,
             Motion::Closing => {
                 let inverse = 1.0 / (kappa * kappa);
-                [(root - held.opening) * (1.0 + kappa) / root * inverse, -2.0 * inverse / kappa]
+                [(root - held.opening) * (1.0 + kappa) * over_root * inverse, -2.0 * inverse / kappa]
             }
         };
         let [speed, speed_by_drive] = self.branch.speed(drive);
         let (along, in_time) = (speed / ls, 1.0 / lt);
-        let whole = along.abs() + in_time;
-        let phi = along / whole;
+        let over_whole = 1.0 / (along.abs() + in_time);
+        let phi = along * over_whole;
         let drive_by_y = by_kappa * (kappa_by_s * sense * ls - kappa_by_c * self.rate * lt);
-        let phi_by_y = in_time / (whole * whole) / ls * speed_by_drive * drive_by_y;
+        let phi_by_y = in_time * over_whole * over_whole / ls * speed_by_drive * drive_by_y;
         let drive_rate = by_kappa * (kappa_by_s * sense * speed + kappa_by_c * self.rate);
         let force_by_s = 2.0 * (s * held.by_radius - held.opening);
         let force_rate = force_by_s * sense * speed + 2.0 * s * held.by_control * self.rate;

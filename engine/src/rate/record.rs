@@ -3,7 +3,8 @@
 use super::equation::StretchMoment;
 use super::law::Motion;
 use super::radau::{NODES, STAGES};
-use super::step::{SolvedStep, landed};
+use super::step::SolvedStep;
+use crate::root::RootBracket;
 
 /// One moment of a pull, in reduced units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,6 +41,9 @@ pub struct LeastForce {
     /// The largest force after it.
     pub then: f64,
 }
+
+/// A least force is found within this share of a step; the force itself to its square.
+const NEAR: f64 = 1e-9;
 
 /// What is kept on the way.
 #[derive(Debug, Clone, Default)]
@@ -112,11 +116,17 @@ impl Record {
         let mut before = (0.0, start.force_rate);
         for (i, node) in step.nodes.iter().enumerate() {
             if before.1 < 0.0 && node.force_rate >= 0.0 {
-                let longest =
-                    if i + 1 == STAGES { Some(Box::new(*step)) } else { again(step.length * NODES[i]) };
-                let rate: &dyn Fn(&StretchMoment) -> f64 = &|at| at.force_rate;
-                let bracket = [step.length * before.0, step.length * NODES[i]];
-                let found = longest.and_then(|longest| landed(again, bracket, before.1, longest, rate));
+                // The stages say between which of them it is; the place itself is the end of a step of its own.
+                let [from, to] =
+                    [before, (NODES[i], node.force_rate)].map(|(c, rate)| [step.length * c, rate]);
+                let mut found = None;
+                let mut rate_after = |h: f64| {
+                    let tried = found.insert(again(h)?);
+                    Some(tried.end().force_rate)
+                };
+                if let Some(mut bracket) = RootBracket::new(from, to) {
+                    bracket.find(NEAR * step.length, &mut rate_after);
+                }
                 let at = found.as_ref().map_or(*node, |found| *found.end());
                 let lost = found.map_or(lost[i], |found| found.sums(StretchMoment::dissipation)[STAGES - 1]);
                 let at = self.moment(&at, self.dissipated + lost);

@@ -41,8 +41,8 @@ type SnapMark = [f64; 2];
 struct BegunSnap {
     from: SnapMark,
     top: f64,
-    /// The slowest moment after the top.
-    low: Moment,
+    /// The slowest moment after the top, and its speed.
+    low: (Moment, f64),
 }
 
 /// The snaps among the moments of one stretch. At its beginning the edge would go at the speed `level` if it followed
@@ -56,10 +56,10 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool, unstable: &[[f64;
     let mut run: Option<BegunSnap> = None;
     for pair in moments.windows(2) {
         let [a, b] = [&pair[0], &pair[1]];
-        let speed = b.speed.abs();
+        let speed = speed_to(a, b);
         let Some(running) = &mut run else {
             if speed > FASTER * least {
-                run = Some(BegunSnap { from: crossing(a, b, FASTER * least), top: speed, low: *b });
+                run = Some(BegunSnap { from: crossing(a, b, FASTER * least), top: speed, low: (*b, speed) });
                 continue;
             }
             // The edge is slow at first because it starts from rest.
@@ -68,19 +68,19 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool, unstable: &[[f64;
             continue;
         };
         if speed > running.top {
-            (running.top, running.low) = (speed, *b);
+            (running.top, running.low) = (speed, (*b, speed));
         }
-        if speed < running.low.speed.abs() {
-            running.low = *b;
+        if speed < running.low.1 {
+            running.low = (*b, speed);
         }
-        let low = running.low.speed.abs();
+        let (at, low) = running.low;
         if speed <= FASTER * least {
             found.push(running.ended(crossing(a, b, FASTER * least)));
             (run, least, is_settled) = (None, speed.max(RESTS * level), true);
         } else if low <= slow && FASTER * low < running.top && speed > FASTER * low {
-            found.push(running.ended([running.low.contact_radius, running.low.dissipated]));
+            found.push(running.ended([at.contact_radius, at.dissipated]));
             least = low.max(RESTS * level);
-            run = Some(BegunSnap { from: crossing(a, b, FASTER * low), top: speed, low: *b });
+            run = Some(BegunSnap { from: crossing(a, b, FASTER * low), top: speed, low: (*b, speed) });
         }
     }
     if let (Some(running), Some(last)) = (run.filter(|_| !ends_apart), moments.last()) {
@@ -99,6 +99,13 @@ impl BegunSnap {
     fn ended(&self, to: SnapMark) -> Snap {
         Snap { from: self.from[0], to: to[0], top_speed: self.top, dissipated: to[1] - self.from[1] }
     }
+}
+
+/// The speed at the moment `b`, or the mean speed since `a` where that is larger: an edge that follows the equilibria to
+/// rounding can be at rest for a moment.
+fn speed_to(a: &Moment, b: &Moment) -> f64 {
+    let mean = (b.contact_radius - a.contact_radius).abs() / (b.time - a.time);
+    b.speed.abs().max(if mean.is_finite() { mean } else { 0.0 })
 }
 
 /// Where between two moments the speed is `speed`.

@@ -7,11 +7,12 @@ use super::caps::Caps;
 use super::equation::{Equation, StretchMoment};
 use super::error::RateError;
 use super::law::Motion;
-use super::radau::{NODES, STAGES, interpolated};
+use super::radau::{NODES, STAGES, WEIGHTS, dot, interpolated};
 use super::record::{Moment, Record};
 use super::settings::PullSettings;
 use super::step::{self, SolvedStep, landed};
 use super::variation::Variation;
+use crate::elementary::pow;
 use crate::progress::{Progress, Stopped};
 
 /// Why a stretch ends.
@@ -25,6 +26,10 @@ pub enum StretchEnd {
     Apart,
 }
 
+/// The error of a step grows with this power of its length.
+const ORDER: f64 = 6.0;
+/// Errors that fall by more than this say no more about the next step.
+const MOST_GAIN: f64 = 1e6;
 /// The safety factor of the next step, and the factors by which it changes at most.
 const SAFETY: f64 = 0.9;
 const CHANGE: [f64; 2] = [0.2, 4.0];
@@ -37,9 +42,11 @@ const LEAST: f64 = 1e-15;
 /// An edge slower than this, in φ, may be expected to stay so for a step of the cap divided by this.
 const SLOW: f64 = 1e-3;
 /// The energy that a step may miss, as a share of the tolerance: many steps add up.
-const OF_ENERGY: f64 = 0.3;
+const OF_ENERGY: f64 = 0.2;
 /// A closing edge with a drive above this is pressed: it closes without bound.
 const PRESSED: f64 = 1e12;
+/// How often a step is shortened by what the previous one predicts.
+const PREDICTIONS: usize = 3;
 /// Steps between two calls of `progress`.
 const ASKED: usize = 64;
 
@@ -89,6 +96,8 @@ impl MotionStretch<'_> {
         }
         let mut h = FIRST;
         let mut last: Option<Box<SolvedStep>> = None;
+        // The length and the error of the previous step that was not cut.
+        let mut before: Option<[f64; 2]> = None;
         for count in 0..self.settings.steps {
             if count % ASKED == 0 && progress.stop() {
                 return Err(RateError::Stopped(Stopped));
@@ -112,6 +121,7 @@ impl MotionStretch<'_> {
                     RateError::Lost { contact_radius: s }
                 });
             }
+            h = Self::within(cap, &here, h, last.as_deref());
             let Some(step) = self.step(&here, h, last.as_deref()) else {
                 h *= AGAIN;
                 continue;
@@ -123,8 +133,7 @@ impl MotionStretch<'_> {
             let lost = sums.map(f64::abs).into_iter().fold(0.0, f64::max) / (self.energy + record.dissipated);
             let error =
                 (step.error.abs() / self.tolerance(&here)).max(lost / (OF_ENERGY * self.settings.tolerance));
-            let factor =
-                if error > 0.0 { SAFETY * crate::elementary::pow(error, -1.0 / 6.0) } else { CHANGE[1] };
+            let factor = if error > 0.0 { SAFETY * pow(error, -1.0 / ORDER) } else { CHANGE[1] };
             let advance = (step.y - here.y).abs();
             if error > 1.0 || advance > cap {
                 let shorter = if advance > cap { SAFETY * cap / advance } else { 1.0 };
@@ -144,8 +153,15 @@ impl MotionStretch<'_> {
             if let Some(end) = end {
                 return Ok((here.at, end));
             }
-            // A step that was cut says nothing about the next one.
-            h *= if step.length < h { 1.0 } else { factor.clamp(CHANGE[0], CHANGE[1]) };
+            // A step that was cut says nothing about the next one. Where errors grow, they go on growing: K. Gustafsson,
+            // ACM Trans. Math. Softw. 20, 496 (1994), doi:10.1145/198429.198437.
+            if step.length >= h {
+                let foreseen = before.map_or(factor, |[length, error_before]| {
+                    factor * h / length * pow((error_before / error).min(MOST_GAIN), 1.0 / ORDER)
+                });
+                before = Some([h, error]);
+                h *= factor.min(foreseen).clamp(CHANGE[0], CHANGE[1]);
+            }
             last = Some(step);
         }
         Err(RateError::TooManySteps {
@@ -170,15 +186,33 @@ impl MotionStretch<'_> {
         }
     }
 
-    /// The step of the length `h` from here, with the stages that the previous step predicts.
-    fn step(&self, here: &Here, h: f64, last: Option<&SolvedStep>) -> Option<Box<SolvedStep>> {
-        let guess = match last {
+    /// The stages that the previous step predicts for one of the length `h` from here.
+    fn predicted(here: &Here, h: f64, last: Option<&SolvedStep>) -> [f64; STAGES] {
+        match last {
             Some(last) => {
                 let ahead = |c: f64| (here.xi - last.from + c * h) / last.length;
                 NODES.map(|c| interpolated(&last.slopes, ahead(c)).clamp(0.0, 0.999))
             }
             None => [here.at.phi; STAGES],
-        };
+        }
+    }
+
+    /// The length `h`, or less where the previous step predicts that the edge would go further than the cap: most steps
+    /// end there, and one that goes too far is solved for nothing.
+    fn within(cap: f64, here: &Here, mut h: f64, last: Option<&SolvedStep>) -> f64 {
+        for _ in 0..PREDICTIONS {
+            let advance = h * dot(&WEIGHTS[STAGES - 1], &Self::predicted(here, h, last));
+            if advance <= cap {
+                break;
+            }
+            h *= (SAFETY * cap / advance).max(AGAIN);
+        }
+        h
+    }
+
+    /// The step of the length `h` from here.
+    fn step(&self, here: &Here, h: f64, last: Option<&SolvedStep>) -> Option<Box<SolvedStep>> {
+        let guess = Self::predicted(here, h, last);
         let tolerance = self.tolerance(here);
         step::solve(self.equation, [here.xi, here.y], &here.at, h, guess, tolerance, self.settings)
     }
