@@ -5,8 +5,7 @@ use super::computed::{Computed, Opened};
 use super::format::Format;
 use super::watch::StopSignal;
 use clap::Args;
-use pulloff_engine::quasistatic::CurveStop;
-use pulloff_engine::report::trace::{COLUMNS, EXACT_COLUMNS, OUT_OF_RANGE, ZONE_COLUMNS};
+use pulloff_engine::report::trace::{COLUMNS, EXACT_COLUMNS, ZONE_COLUMNS};
 use pulloff_engine::report::{TraceReport, columns, json, table};
 use pulloff_engine::theory::Exact;
 use std::process::ExitCode;
@@ -42,7 +41,7 @@ pub fn run(arguments: &TraceArguments) -> Result<ExitCode, Failure> {
         Format::Json => json(&report)?,
     };
     sink.write(text)?;
-    if [&CurveStop::End.to_string(), OUT_OF_RANGE].contains(&report.stop.as_str()) {
+    if report.has_reached_its_end {
         return console.end();
     }
     Err(Failure::Incomplete(format!(

@@ -7,7 +7,7 @@
 use super::model::Model;
 use super::node::{Node, NodeKind};
 use pulloff_engine::problem::Begin;
-use pulloff_engine::quasistatic::walk::Passing;
+use pulloff_engine::quasistatic::walk::{At, Passing};
 use pulloff_engine::report::PathReport;
 use pulloff_engine::report::path::{EventReport, StateReport};
 
@@ -209,27 +209,11 @@ impl Model {
             strays.push((last, LogEntry { mark: EventMark::Done, number: None, event, node: Some(number) }));
             last = last.max(passed);
         }
-        let here = self.walker().filter(|node| {
-            !node.is_apart()
-                && self
-                    .control()
-                    .is_some_and(|control| node.at(control) != pulloff_engine::quasistatic::walk::At::Nothing)
-        });
-        let stands = here.map(|node| node.state.in_units(node.setting.units()).contact_radius);
-        let direction = if self.inward { "unloading" } else { "loading" };
-        let at = events.iter().enumerate().position(|(at, event)| {
-            let begins = radius(event.before.as_ref()).zip(stands);
-            let is_ahead =
-                done[at].is_none() || matches!(here, Some(node) if !matches!(node.kind, NodeKind::Jump(_)));
-            is_ahead && event.direction == direction && begins.is_some_and(|(a, b)| is_near(a, b))
-        });
-        if let Some(turn) = events.iter().position(|event| event.kind == "turn") {
-            let reached = radius(events[turn].before.as_ref()).unwrap_or(f64::INFINITY);
-            let radius = |node: &Node| node.state.contact_radius * node.setting.units().length;
-            let is_reached = of_curve.iter().any(|(_, node)| radius(node) >= reached * (1.0 - SAME));
-            if self.inward && is_reached {
-                done[turn] = Some(None);
-            }
+        let at = self.stands_before(events, &done);
+        if let Some(turn) = events.iter().position(|event| event.kind == "turn")
+            && self.has_turned(&events[turn], of_curve.iter().map(|(_, node)| *node))
+        {
+            done[turn] = Some(None);
         }
         let mut entries = Vec::new();
         let mut strays = strays.into_iter().peekable();
@@ -252,6 +236,30 @@ impl Model {
         }
         entries.extend(strays.map(|(_, entry)| entry));
         Log { entries }
+    }
+
+    /// The event that begins in the state of the walker, if it has not happened.
+    fn stands_before(&self, events: &[EventReport], done: &[Option<Option<usize>>]) -> Option<usize> {
+        let node = self.walker().filter(|node| !node.is_apart())?;
+        if node.at(self.control()?) == At::Nothing {
+            return None;
+        }
+        let stands = node.state.in_units(node.setting.units()).contact_radius;
+        let direction = if self.inward { "unloading" } else { "loading" };
+        let has_jumped = matches!(node.kind, NodeKind::Jump(_));
+        events.iter().zip(done).position(|(event, done)| {
+            let begins = radius(event.before.as_ref());
+            (done.is_none() || !has_jumped)
+                && event.direction == direction
+                && begins.is_some_and(|begins| is_near(begins, stands))
+        })
+    }
+
+    /// Whether a walk, whose states these are, has come as far as the turn of the path and goes back.
+    fn has_turned<'a>(&self, turn: &EventReport, mut walk: impl Iterator<Item = &'a Node>) -> bool {
+        let reached = radius(turn.before.as_ref()).unwrap_or(f64::INFINITY);
+        let radius = |node: &Node| node.state.contact_radius * node.setting.units().length;
+        self.inward && walk.any(|node| radius(node) >= reached * (1.0 - SAME))
     }
 
     /// Whether a walk begins with the disc at the preset's start; the path begins there, or further out if it is

@@ -114,12 +114,6 @@ fn next(model: &Model) -> String {
     if let Some(said) = happened(model, node) {
         return said;
     }
-    let way = if model.inward { "inward" } else { "outward" };
-    let held = control_name(control);
-    let kept = match control {
-        Control::Stiffness(_) => "with the spring's far end held".to_owned(),
-        Control::Displacement | Control::Force => format!("at the {held} held"),
-    };
     if node.is_limit(control) {
         return limit_hint(model, node);
     }
@@ -129,6 +123,17 @@ fn next(model: &Model) -> String {
     if let Some(said) = (model.view.home() == Home::Data).then(|| model.fit_said()).flatten() {
         return said;
     }
+    standing(model, node, control)
+}
+
+/// Where the walker stands and what a step or the next event does, if nothing else is to be said.
+fn standing(model: &Model, node: &Node, control: Control) -> String {
+    let way = if model.inward { "inward" } else { "outward" };
+    let held = control_name(control);
+    let kept = match control {
+        Control::Stiffness(_) => "with the spring's far end held".to_owned(),
+        Control::Displacement | Control::Force => format!("at the {held} held"),
+    };
     let [next, step] = [Id::NextEvent, Id::Step].map(Id::named);
     if !model.inward && model.is_at_outer_end() && node.stability.under(control) {
         let turn = Id::Reverse.named();

@@ -73,6 +73,31 @@ struct Here {
     at: StretchMoment,
 }
 
+/// The lengths of steps, from their errors.
+#[derive(Debug, Default)]
+struct StepLengths {
+    /// The length and the error of the previous step that was not cut.
+    before: Option<[f64; 2]>,
+}
+
+impl StepLengths {
+    /// By how much a step of this error, as a share of the tolerance, may be longer.
+    fn factor(error: f64) -> f64 {
+        if error > 0.0 { SAFETY * pow(error, -1.0 / ORDER) } else { CHANGE[1] }
+    }
+
+    /// The length after a step of the length `h` with this error. Where errors grow, they go on growing: K. Gustafsson, ACM
+    /// Trans. Math. Softw. 20, 496 (1994), doi:10.1145/198429.198437.
+    fn next(&mut self, h: f64, error: f64) -> f64 {
+        let factor = Self::factor(error);
+        let foreseen = self.before.map_or(factor, |[length, before]| {
+            factor * h / length * pow((before / error).min(MOST_GAIN), 1.0 / ORDER)
+        });
+        self.before = Some([h, error]);
+        h * factor.min(foreseen).clamp(CHANGE[0], CHANGE[1])
+    }
+}
+
 impl MotionStretch<'_> {
     /// Follows the edge and records it.
     ///
@@ -96,8 +121,7 @@ impl MotionStretch<'_> {
         }
         let mut h = FIRST;
         let mut last: Option<Box<SolvedStep>> = None;
-        // The length and the error of the previous step that was not cut.
-        let mut before: Option<[f64; 2]> = None;
+        let mut lengths = StepLengths::default();
         for count in 0..self.settings.steps {
             if count % ASKED == 0 && progress.stop() {
                 return Err(RateError::Stopped(Stopped));
@@ -133,11 +157,10 @@ impl MotionStretch<'_> {
             let lost = sums.map(f64::abs).into_iter().fold(0.0, f64::max) / (self.energy + record.dissipated);
             let error =
                 (step.error.abs() / self.tolerance(&here)).max(lost / (OF_ENERGY * self.settings.tolerance));
-            let factor = if error > 0.0 { SAFETY * pow(error, -1.0 / ORDER) } else { CHANGE[1] };
             let advance = (step.y - here.y).abs();
             if error > 1.0 || advance > cap {
                 let shorter = if advance > cap { SAFETY * cap / advance } else { 1.0 };
-                h *= factor.min(shorter).clamp(CHANGE[0], SAFETY);
+                h *= StepLengths::factor(error).min(shorter).clamp(CHANGE[0], SAFETY);
                 continue;
             }
             let Some((step, end)) = self.cut(&here, step) else {
@@ -153,14 +176,9 @@ impl MotionStretch<'_> {
             if let Some(end) = end {
                 return Ok((here.at, end));
             }
-            // A step that was cut says nothing about the next one. Where errors grow, they go on growing: K. Gustafsson,
-            // ACM Trans. Math. Softw. 20, 496 (1994), doi:10.1145/198429.198437.
+            // A step that was cut says nothing about the next one.
             if step.length >= h {
-                let foreseen = before.map_or(factor, |[length, error_before]| {
-                    factor * h / length * pow((error_before / error).min(MOST_GAIN), 1.0 / ORDER)
-                });
-                before = Some([h, error]);
-                h *= factor.min(foreseen).clamp(CHANGE[0], CHANGE[1]);
+                h = lengths.next(h, error);
             }
             last = Some(step);
         }

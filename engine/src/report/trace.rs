@@ -36,6 +36,9 @@ pub struct TraceReport {
     pub start_note: Option<String>,
     /// Why the trace ended, in words.
     pub stop: String,
+    /// Whether it went on to where it was to end, or to where bodies with a range of adhesion lose each other.
+    #[serde(skip)]
+    pub has_reached_its_end: bool,
     /// The smallest force on the curve.
     pub curve_min_force: Option<f64>,
     /// The smallest approach on the curve.
@@ -228,7 +231,7 @@ pub const EXACT_COLUMNS: &[&str] =
     &["exact_approach", "exact_force", "exact_energy", "exact_relative_difference"];
 
 /// Why a trace of adhesion with a range ends where nothing cuts it short.
-pub const OUT_OF_RANGE: &str = "the zone has shrunk to nothing: the bodies are out of range";
+const OUT_OF_RANGE: &str = "the zone has shrunk to nothing: the bodies are out of range";
 
 /// The column after them where the adhesion has a range.
 pub const ZONE_COLUMNS: &[&str] = &["zone_radius"];
@@ -308,6 +311,7 @@ impl TraceReport {
             let limits = limit_points.iter().map(|p| (p.approach, p.force));
             points.chain(limits).map(of).min_by(f64::total_cmp)
         };
+        let has_reached_its_end = fault.is_none();
         let stop = fault.map_or_else(|| OUT_OF_RANGE.to_owned(), |error| error.words(&case.printer()));
         Ok(Self {
             head: Head::new("trace", preset, case),
@@ -315,6 +319,7 @@ impl TraceReport {
             notes: note_of_range(preset, case).into_iter().collect(),
             start_note: points.first().and_then(|start| start_note(preset, case, start)),
             stop,
+            has_reached_its_end,
             curve_min_force: smallest(|(_, force)| force),
             curve_min_approach: smallest(|(approach, _)| approach),
             limit_points,
@@ -402,6 +407,7 @@ impl TraceReport {
                 .collect(),
             notes: case.notes(curve.outermost()),
             start_note: points.first().and_then(|start| start_note(preset, case, start)),
+            has_reached_its_end: stop == CurveStop::End,
             stop: stop.words(&case.printer()),
             curve_min_force: smallest(|(_, force)| force),
             curve_min_approach: smallest(|(approach, _)| approach),

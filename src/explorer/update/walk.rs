@@ -197,6 +197,28 @@ pub(super) fn walked(
     if model.history.current().is_some_and(|node| node.on_path.is_some()) {
         model.journal.turned(model.inward);
     }
+    if let WalkOutcome::Stopped(reason) = &outcome
+        && is_unsolved
+    {
+        mark_stale(model, id, reason);
+    }
+    tell_of_end(model, outcome, stepped);
+    // The problem may have changed while the walk ran.
+    let outdated = model
+        .history
+        .current()
+        .filter(|node| {
+            !model.is_on_curve(node) && !matches!(node.kind, NodeKind::Stale(_)) && !node.is_apart()
+        })
+        .map(Action::solve);
+    if let (Some(again), false) = (outdated, model.is_computing()) {
+        return Some(walk(model, again));
+    }
+    None
+}
+
+/// Says how a walk ended, and does what follows from it; `stepped` if it was of steps.
+fn tell_of_end(model: &mut Model, outcome: WalkOutcome, stepped: bool) {
     match outcome {
         WalkOutcome::Done => {}
         WalkOutcome::AtLimit => {
@@ -226,26 +248,13 @@ pub(super) fn walked(
             );
         }
         WalkOutcome::Stopped(reason) => {
-            if is_unsolved {
-                mark_stale(model, id, &reason);
-                model.tell(Level::Failure, format!("{reason}; {} starts again", Id::Restart.named()));
-            } else {
-                model.tell(Level::Failure, reason);
-            }
+            let is_stale =
+                model.history.current().is_some_and(|node| matches!(node.kind, NodeKind::Stale(_)));
+            let again =
+                if is_stale { format!("; {} starts again", Id::Restart.named()) } else { String::new() };
+            model.tell(Level::Failure, format!("{reason}{again}"));
         }
     }
-    // The problem may have changed while the walk ran.
-    let outdated = model
-        .history
-        .current()
-        .filter(|node| {
-            !model.is_on_curve(node) && !matches!(node.kind, NodeKind::Stale(_)) && !node.is_apart()
-        })
-        .map(Action::solve);
-    if let (Some(again), false) = (outdated, model.is_computing()) {
-        return Some(walk(model, again));
-    }
-    None
 }
 
 fn append(model: &mut Model, request: u64, state: MadeState) {
