@@ -185,15 +185,32 @@ pub enum AxisScale {
 }
 
 impl AxisScale {
+    /// The scale on which ascending values are spaced more evenly; a single value, or two, cannot tell.
+    pub fn of(values: &[f64]) -> Self {
+        /// Over less than this factor an axis is as easily read with steps.
+        const DECADE: f64 = 10.0;
+        let [Some(first), Some(last)] = [values.first(), values.last()] else { return Self::Linear };
+        let spread = |apart: fn(f64, f64) -> f64| {
+            let all = values.windows(2).map(|pair| apart(pair[0], pair[1]));
+            let [least, most] =
+                all.fold([f64::INFINITY, 0.0], |[least, most], x| [x.min(least), x.max(most)]);
+            most / least
+        };
+        let has_factors = *first > 0.0 && last / first >= DECADE;
+        let is_even = has_factors && spread(|a, b| (b / a).ln()) < spread(|a, b| b - a);
+        if is_even { Self::Logarithmic } else { Self::Linear }
+    }
+
     /// The position of a value on the axis, in steps of the axis; NaN where it has none.
-    fn place(self, value: f64) -> f64 {
+    pub fn place(self, value: f64) -> f64 {
         match self {
             Self::Linear | Self::Counted => value,
             Self::Logarithmic => value.log10(),
         }
     }
 
-    fn value(self, place: f64) -> f64 {
+    /// The value at a position.
+    pub fn value(self, place: f64) -> f64 {
         match self {
             Self::Linear | Self::Counted => place,
             Self::Logarithmic => 10.0_f64.powf(place),
@@ -255,18 +272,58 @@ impl Figure {
         }
     }
 
-    /// A figure of `lines` over all their points; a logarithmic axis skips values that are not positive.
+    /// A figure of `lines` over all their points.
     pub fn of(x: Axis, y: Axis, lines: Vec<Line>) -> Self {
-        let place = |(px, py): &(f64, f64)| (x.run.place(*px), y.run.place(*py));
-        let places = Bounds::of(lines.iter().flat_map(|line| &line.points).map(place));
-        let bounds = Bounds { x: places.x.map(|at| x.run.value(at)), y: places.y.map(|at| y.run.value(at)) };
-        Self { lines, bounds, ..Self::empty(String::new(), x, y) }
+        let mut figure = Self { lines, ..Self::empty(String::new(), x, y) };
+        figure.bounds = figure.around(figure.lines.iter().flat_map(|line| line.points.iter().copied()));
+        figure
+    }
+
+    /// The bounds of points on the axes of this figure; a logarithmic axis skips values that are not positive.
+    pub fn around(&self, points: impl IntoIterator<Item = (f64, f64)>) -> Bounds {
+        let places = Bounds::of(points.into_iter().map(|at| self.place(at)));
+        self.value(&places)
+    }
+
+    fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        (self.x.run.place(x), self.y.run.place(y))
+    }
+
+    fn value(&self, places: &Bounds) -> Bounds {
+        Bounds { x: places.x.map(|at| self.x.run.value(at)), y: places.y.map(|at| self.y.run.value(at)) }
+    }
+
+    /// The bounds as positions on the axes.
+    fn places(&self) -> Bounds {
+        let Bounds { x, y } = self.bounds;
+        Bounds { x: x.map(|x| self.x.run.place(x)), y: y.map(|y| self.y.run.place(y)) }
     }
 
     /// The part of the figure that `window` shows.
     #[must_use]
     pub fn in_window(self, window: &Window) -> Self {
-        Self { bounds: self.bounds.part(window), ..self }
+        let bounds = self.value(&self.places().part(window));
+        Self { bounds, ..self }
+    }
+
+    /// The figure for a screen, whose axes are linear: along a logarithmic one stand decimal logarithms.
+    #[must_use]
+    pub fn on_screen(mut self) -> Self {
+        let [x, y] = [self.x.run, self.y.run];
+        if x != AxisScale::Logarithmic && y != AxisScale::Logarithmic {
+            return self;
+        }
+        let place = |at: &mut (f64, f64)| *at = (x.place(at.0), y.place(at.1));
+        self.bounds = self.places();
+        self.lines.iter_mut().flat_map(|line| &mut line.points).for_each(place);
+        self.marks.iter_mut().for_each(|mark| place(&mut mark.at));
+        self.areas.iter_mut().flat_map(|area| &mut area.outline).for_each(place);
+        for axis in [&mut self.x, &mut self.y] {
+            if axis.run == AxisScale::Logarithmic {
+                (axis.symbol, axis.run) = (format!("log {}", axis.symbol), AxisScale::Linear);
+            }
+        }
+        self
     }
 
     /// Names the computed curve, whose stability alone does not distinguish it from the curves beside it.
@@ -311,5 +368,35 @@ impl Line {
     #[must_use]
     pub fn broken(self, is_broken: bool) -> Self {
         Self { is_broken, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_of_equal_factors_is_logarithmic_and_one_of_equal_steps_is_not() {
+        let factors: Vec<f64> = (0..9).map(|i| 10.0_f64.powf(0.25 * f64::from(i))).collect();
+        let steps: Vec<f64> = (0..9).map(|i| 1.0 + 12.0 * f64::from(i)).collect();
+        let is_logarithmic = |values: &[f64]| AxisScale::of(values) == AxisScale::Logarithmic;
+        assert!(is_logarithmic(&factors) && !is_logarithmic(&steps) && !is_logarithmic(&[0.0, 1.0, 100.0]));
+        // Few values, and two or none, which cannot tell.
+        assert!(is_logarithmic(&[0.01, 0.1, 1.0]) && !is_logarithmic(&[0.01, 0.5, 1.0]));
+        assert!(!is_logarithmic(&[0.01, 1.0]) && !is_logarithmic(&[]));
+    }
+
+    #[test]
+    fn on_a_screen_logarithms_stand_along_a_logarithmic_axis() {
+        let axis = |name: &str| Axis::pure(name.to_owned());
+        let line = Line::new(Role::Body, "", vec![(1e-4, 1.0), (1.0, 2.0), (1e2, 3.0)]);
+        let figure = Figure::of(axis("V").running(AxisScale::Logarithmic), axis("P"), vec![line]);
+        // A part of the range is one of the logarithms, on paper too.
+        let half = Window { x: [0.5, 1.0], ..Window::WHOLE };
+        let [paper, screen] = [figure.clone().in_window(&half), figure.on_screen().in_window(&half)];
+        assert_eq!((&*screen.x.symbol, screen.x.run), ("log V", AxisScale::Linear));
+        assert_eq!(screen.lines[0].points, [(-4.0, 1.0), (0.0, 2.0), (2.0, 3.0)]);
+        assert!((paper.bounds.x[0].log10() - screen.bounds.x[0]).abs() < 1e-12);
+        assert!((screen.bounds.x[0] + 1.0).abs() < 1e-12, "{:?}", screen.bounds);
     }
 }

@@ -1,6 +1,5 @@
 //! A quantity over the range of one value, with the preset's value marked.
 
-use super::bounds::Bounds;
 use super::parts::{Area, Axis, AxisScale, Figure, Line, Mark, Meaning, Role, Sign};
 use super::scale::Scale;
 use super::subject::Subject;
@@ -50,6 +49,11 @@ fn row(data: &StudyData, preset: &Preset) -> Option<Row> {
     preset.row(&data.wish.key).or_else(|| data.wish.preset.row(&data.wish.key))
 }
 
+/// How the values of a study run.
+fn scale_of(data: &StudyData) -> AxisScale {
+    AxisScale::of(&data.wish.values.iter().filter_map(number).collect::<Vec<f64>>())
+}
+
 /// The figure of a study, with `preset` marked on it; its forces are divided by `critical`, in the user's units, if that is
 /// given.
 pub fn of(data: &StudyData, preset: &Preset, critical: Option<f64>) -> Figure {
@@ -59,7 +63,7 @@ pub fn of(data: &StudyData, preset: &Preset, critical: Option<f64>) -> Figure {
     let shown = |x: f64| row.as_ref().map_or(x, |row| row.shown(units, x).number);
     let label = row.as_ref().map_or_else(|| wish.key.to_string(), |row| row.label.to_string());
     let unit = row.as_ref().and_then(|row| row.unit_in(units)).map_or_else(String::new, ToString::to_string);
-    let x = Axis { shown: unit, ..Axis::pure(label) };
+    let x = Axis { shown: unit, ..Axis::pure(label).running(scale_of(data)) };
     let critical = critical.filter(|_| quantity == Quantity::Force);
     let in_unit = |y: f64| critical.map_or_else(|| units.shown(quantity, y).number, |critical| y / critical);
     let unit = match critical {
@@ -101,7 +105,7 @@ pub fn of(data: &StudyData, preset: &Preset, critical: Option<f64>) -> Figure {
     let ends = [places.first(), places.last()].into_iter().flatten();
     let found: Vec<(f64, f64)> = found.collect();
     let level = found.first().map_or(0.0, |(_, y)| *y);
-    figure.bounds = Bounds::of(found.iter().copied().chain(ends.map(|(x, _)| (*x, level))).chain(bands));
+    figure.bounds = figure.around(found.iter().copied().chain(ends.map(|(x, _)| (*x, level))).chain(bands));
     if let Some(x) = preset.get(&wish.key).and_then(|value| number(&value)).map(shown) {
         let ends = figure.bounds.y.map(|y| (x, y));
         figure.lines.insert(0, Line::new(Role::Level, "now", ends.to_vec()));
@@ -125,7 +129,6 @@ fn slow_pulls(figure: &mut Figure, data: &StudyData, rate: impl Fn(f64) -> f64, 
     /// The first order is drawn up to this share of the quasi-static pull.
     const SHARE: f64 = 1.0;
     let Some(slow) = &data.slow else { return };
-    figure.x.run = AxisScale::Logarithmic;
     let rates: Vec<f64> = data.wish.values.iter().filter_map(number).collect();
     let level = rates.iter().map(|x| (rate(*x), force(slow.force)));
     figure.lines.push(Line::new(Role::Zero, "quasi-static", level.collect()));
@@ -218,7 +221,7 @@ fn drawn(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points
 }
 
-/// The study's result nearest to `x` on its axis: the value and the quantity, or why there is none; a force over `critical`
+/// The study's result nearest to the position `x` on its axis on the screen: the value and the quantity, or why there is none; a force over `critical`
 /// as in [`of`].
 pub fn reading(data: &StudyData, preset: &Preset, critical: Option<f64>, x: f64) -> Option<String> {
     let units = &data.wish.preset.units;
@@ -241,12 +244,13 @@ pub fn reading(data: &StudyData, preset: &Preset, critical: Option<f64>, x: f64)
     Some(format!("{} {value}: {} {found}", row.label, words(data.wish.column)))
 }
 
-/// The computed value nearest to `x` on its axis, in the units of the preset, and its index in the list.
+/// The computed value nearest to the position `x` on its axis on the screen, in the units of the preset, and its index in the list.
 pub fn taken(data: &StudyData, preset: &Preset, x: f64) -> Option<(usize, f64)> {
     let row = row(data, preset)?;
     let units = &data.wish.preset.units;
     let all = data.wish.values.iter().enumerate().filter_map(|(i, value)| Some((i, number(value)?)));
-    let away = |value: f64| (row.shown(units, value).number - x).abs();
+    let scale = scale_of(data);
+    let away = |value: f64| (scale.place(row.shown(units, value).number) - x).abs();
     all.min_by(|a, b| away(a.1).total_cmp(&away(b.1)))
 }
 

@@ -4,7 +4,7 @@
 use super::Width;
 use super::ink;
 use super::svg::{cropped, entry, filled, finish, frame, hatched, hatches, line, outline, plain};
-use crate::figure::Line;
+use crate::figure::{AxisScale, Line};
 use crate::mend::Mend;
 use crate::sweep::SweepResults;
 use crate::sweep::results::ResultsError;
@@ -26,8 +26,6 @@ const ONE_SNAP: f64 = 0.5;
 const BANDS: usize = 12;
 /// The largest number of colours for counts; more cannot be told apart.
 const COUNTS: f64 = 12.0;
-/// An axis with equal factors is logarithmic if it spans at least this factor.
-const DECADE: f64 = 10.0;
 
 /// A quantity over two axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -128,11 +126,11 @@ impl MapChart {
         let [x, y] = &self.values;
         let range = |axis: &[f64]| [axis[0], axis[axis.len() - 1]];
         let (legend, holes) = (self.legend(), self.holes());
-        let logarithmic = [is_logarithmic(x), is_logarithmic(y)];
+        let runs = [x, y].map(|values| AxisScale::of(values));
         let ranges = [range(x), range(y)];
         let counts = self.counts();
         let colors = counts.is_none().then(|| self.range());
-        let layout = frame(width, self.titles.clone(), ranges, logarithmic, colors, &legend);
+        let layout = frame(width, self.titles.clone(), ranges, runs, colors, &legend);
         let mut plots = if counts.is_some() {
             // With nothing to draw, the library draws no axes either.
             vec![LinePlot::new().into()]
@@ -297,10 +295,8 @@ fn counts(snaps: &[Vec<f64>]) -> Vec<Vec<f64>> {
 
 /// The borders of the cells of an axis: its ends, and half-way between neighbours.
 fn borders(axis: &[f64]) -> Vec<f64> {
-    let is_logarithmic = is_logarithmic(axis);
-    let half = |pair: &[f64]| {
-        if is_logarithmic { (pair[0] * pair[1]).sqrt() } else { 0.5 * (pair[0] + pair[1]) }
-    };
+    let run = AxisScale::of(axis);
+    let half = |pair: &[f64]| run.value(0.5 * (run.place(pair[0]) + run.place(pair[1])));
     let [first, last] = [axis[0], axis[axis.len() - 1]];
     std::iter::once(first).chain(axis.windows(2).map(half)).chain([last]).collect()
 }
@@ -313,30 +309,9 @@ pub(super) fn distinct(column: &[Option<f64>]) -> Vec<f64> {
     values
 }
 
-/// Whether the factors between neighbours are more alike than the steps; a single value cannot tell.
-pub(super) fn is_logarithmic(axis: &[f64]) -> bool {
-    let (first, last) = (axis[0], axis[axis.len() - 1]);
-    let spread = |apart: fn(f64, f64) -> f64| {
-        let all = axis.windows(2).map(|pair| apart(pair[0], pair[1]));
-        let [least, most] = all.fold([f64::INFINITY, 0.0], |[least, most], x| [x.min(least), x.max(most)]);
-        most / least
-    };
-    first > 0.0 && last / first >= DECADE && spread(|a, b| (b / a).ln()) < spread(|a, b| b - a)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn an_axis_of_equal_factors_is_logarithmic_and_one_of_equal_steps_is_not() {
-        let factors: Vec<f64> = (0..9).map(|i| 10.0_f64.powf(0.25 * f64::from(i))).collect();
-        let steps: Vec<f64> = (0..9).map(|i| 1.0 + 12.0 * f64::from(i)).collect();
-        assert!(is_logarithmic(&factors) && !is_logarithmic(&steps) && !is_logarithmic(&[0.0, 1.0, 100.0]));
-        // Few values, and two, which cannot tell.
-        assert!(is_logarithmic(&[0.01, 0.1, 1.0]) && !is_logarithmic(&[0.01, 0.5, 1.0]));
-        assert!(!is_logarithmic(&[0.01, 1.0]));
-    }
 
     #[test]
     fn a_map_with_holes_is_a_valid_document() {

@@ -1,7 +1,7 @@
 //! A quantity of a sweep over its one axis: a mark for every row, joined where neighbours have a value. For an
 //! ensemble, the median and the ranges of half and of nine tenths of the members.
 
-use super::map::{MapChartError, distinct, is_logarithmic};
+use super::map::{MapChartError, distinct};
 use crate::figure::{Area, Axis, AxisScale, Figure, Line, Mark, Meaning, Role, Sign};
 use crate::sweep::SweepResults;
 use crate::sweep::record::statistic;
@@ -28,7 +28,7 @@ fn bands(results: &SweepResults, axis: &str, quantity: &str) -> Result<Figure, M
     if !points.iter().flatten().any(|x| x.is_finite()) {
         return Err(MapChartError::empty(quantity));
     }
-    let run = if is_logarithmic(&distinct(along)) { AxisScale::Logarithmic } else { AxisScale::Linear };
+    let run = AxisScale::of(&distinct(along));
     let (x, y) =
         (Axis::pure(results.title(axis)).running(run), Axis::pure(results.title_of(quantity, &names[2])));
     let line = |of: usize| points.iter().map(|point| (point[0], point[of])).collect::<Vec<_>>();
@@ -65,8 +65,7 @@ pub fn figure(results: &SweepResults, axis: &str, quantity: &str) -> Result<Figu
     if !points.iter().any(is_known) {
         return Err(MapChartError::empty(quantity));
     }
-    let values = distinct(&along);
-    let run = if is_logarithmic(&values) { AxisScale::Logarithmic } else { AxisScale::Linear };
+    let run = AxisScale::of(&distinct(&along));
     let marks = points.iter().copied().filter(is_known).map(|at| Mark { sign: Sign::Value, at }).collect();
     let is_count = |(_, y): &(f64, f64)| !y.is_finite() || (*y >= 0.0 && y.fract() == 0.0);
     let counted = if points.iter().all(is_count) { AxisScale::Counted } else { AxisScale::Linear };

@@ -70,13 +70,12 @@ pub(super) fn frame(
     width: Width,
     titles: [String; 2],
     ranges: [[f64; 2]; 2],
-    logarithmic: [bool; 2],
+    runs: [AxisScale; 2],
     values: Option<[f64; 2]>,
     legend: &[LegendEntry],
 ) -> Layout {
-    let run = |is_logarithmic| if is_logarithmic { AxisScale::Logarithmic } else { AxisScale::Linear };
     let [x, y] = titles;
-    let axis = |title: String, k: usize| Axis::pure(title).running(run(logarithmic[k]));
+    let axis = |title: String, k: usize| Axis::pure(title).running(runs[k]);
     let bounds = Bounds { x: ranges[0], y: ranges[1] };
     let figure = Figure { bounds, ..Figure::of(axis(x, 0), axis(y, 1), Vec::new()) };
     let wide = width.get() * UNITS_PER_MM;

@@ -6,7 +6,7 @@ use super::marks::{letter, look, style};
 use super::raster::{self, Layer, Meets};
 use super::theme::Theme;
 use super::ticks::ticks;
-use crate::figure::{Area, Bounds, Figure, Meaning, Role, Sign};
+use crate::figure::{self, Area, Bounds, Figure, Meaning, Role, Sign};
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
@@ -131,8 +131,9 @@ impl Chart<'_> {
     /// The curves, each with all its parts; the curve of the problem comes last of those that share cells.
     fn layers(&self, plot: Rect) -> Vec<Layer> {
         let mut all: Vec<(Role, Layer)> = Vec::new();
-        // A chart draws its zero lines itself.
-        for line in self.figure.lines.iter().filter(|line| line.role != Role::Zero) {
+        // A chart draws its zero lines itself; a level with a name is another thing.
+        let is_drawn = |line: &&figure::Line| line.role != Role::Zero || !line.name.is_empty();
+        for line in self.figure.lines.iter().filter(is_drawn) {
             // The stable and the unstable parts are one curve.
             let curve = if line.role == Role::Unstable { Role::Stable } else { line.role };
             let at = all.iter().position(|(other, _)| *other == curve).unwrap_or_else(|| {

@@ -198,7 +198,7 @@ impl App {
         let (view, area) = regions.charts.iter().find(|(_, area)| area.contains(at))?;
         let subject = Subject::of(&self.model);
         let plot = subject.and_then(|subject| {
-            let figure = subject.figure(*view);
+            let figure = subject.figure(*view).on_screen();
             charts::chart(&figure, *view, &self.model.window(*view), self.theme).plot(*area)
         });
         let share = |at: u16, from: u16, count: u16| (f64::from(at - from) + 0.5) / f64::from(count);
@@ -219,7 +219,7 @@ impl App {
     /// The walker goes to the state of the curve nearest to a position in a view, if that is near in the plot.
     fn go_to(&mut self, view: View, share: (f64, f64), plot: Option<Rect>) -> Vec<Effect> {
         let Some(subject) = Subject::of(&self.model) else { return Vec::new() };
-        let bounds = subject.figure(view).bounds.part(&self.model.window(view));
+        let bounds = subject.figure(view).on_screen().bounds.part(&self.model.window(view));
         if let (View::Map, Some(Ok(report))) = (view, subject.map) {
             let taken = map::taken(report, &self.model.preset, bounds.at(share));
             return self.run(Command::Assign(taken));

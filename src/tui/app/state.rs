@@ -371,7 +371,7 @@ impl App {
             return cross;
         }
         let place = Subject::of(&self.model).and_then(|subject| {
-            let figure = subject.figure(view);
+            let figure = subject.figure(view).on_screen();
             figure.bounds.part(&self.model.window(view)).share(figure.walker()?)
         });
         place.unwrap_or(MIDDLE)

@@ -35,7 +35,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, seat: Seat
         chart(&without_curve(app), view, &Window::WHOLE, app.theme).draw(frame, area, selected);
         return;
     };
-    let figure = subject.figure(view);
+    let figure = subject.figure(view).on_screen();
     let mut chart = chart(&figure, view, &model.window(view), app.theme);
     if figure.is_even {
         chart.make_even(area);
@@ -56,7 +56,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, seat: Seat
     }
     chart.is_paired = seat.beside.is_some();
     if let Some(beside) = seat.beside.filter(|_| !first) {
-        let other = subject.figure(beside);
+        let other = subject.figure(beside).on_screen();
         let bounds = other.bounds.part(&model.window(beside));
         chart.go_on_with_legend(area, legend(&other, &bounds, app.theme));
     }

@@ -87,7 +87,7 @@ pub fn reading(model: &Model) -> Option<String> {
         return None;
     }
     let subject = Subject::of(model)?;
-    let figure = subject.figure(view);
+    let figure = subject.figure(view).on_screen();
     let bounds = figure.bounds.part(&model.window(view));
     let at = bounds.at(share);
     let here = reading::coordinates(&bounds, [&figure.x, &figure.y], at);

@@ -435,3 +435,24 @@ fn what_cannot_be_studied_says_why_at_the_view_and_at_the_value() {
     let text = screen.text(100, 40);
     assert!(text.contains("study           - gap is not a number"), "{text}");
 }
+
+#[test]
+fn a_study_over_decades_has_logarithms_along_its_axis() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":set edge.reference_speed=1 edge.exponent=0.5 path.rate=0.01\r");
+    for _ in 0..9 {
+        screen.press(KeyCode::Right);
+    }
+    screen.keys(":study peak_force\r");
+    let text = screen.text(100, 30);
+    assert!(text.contains("log rate") && text.contains("quasi-static"), "{text}");
+    // The cross-hair is at the value, whatever is drawn along the axis; so is where Enter goes.
+    screen.keys("i");
+    assert!(screen.text(100, 30).contains("rate 0.01"), "{}", screen.text(100, 30));
+    for _ in 0..6 {
+        screen.press(KeyCode::Right);
+    }
+    screen.press(KeyCode::Enter);
+    let rate = screen.app.model.preset.get("path.rate").unwrap().as_number().unwrap();
+    assert!(rate > 0.02 && rate < 1.0, "{rate}");
+}
