@@ -23,7 +23,7 @@ const RATES: usize = 10_000;
 pub struct PullArguments {
     /// Pull at this rate of what is controlled until the bodies are apart (repeatable; instead of path.rate and
     /// path.steps); log:FROM..TO:COUNT for logarithmically spaced rates
-    #[arg(long, value_name = "RATE")]
+    #[arg(long, value_name = "RATE", allow_hyphen_values = true)]
     rate: Vec<String>,
     /// Find how long the contact bears this dead load, a negative force for a pull (repeatable)
     #[arg(long, value_name = "FORCE", allow_hyphen_values = true)]
@@ -60,6 +60,9 @@ pub fn run(arguments: &PullArguments) -> Result<ExitCode, Failure> {
     let stop = StopSignal::catch()?;
     let report = PullReport::compute(preset, &asked, &console.bar(Some(&stop)))?;
     console.warn(&report.warnings);
+    if preset.edge.exponent.is_some() && preset.edge.reference_speed.is_none() {
+        console.note(Some("edge.reference_speed is not set: v0 is 1"));
+    }
     if format == Format::Csv {
         let columns = match (arguments.rows, report.runs.is_empty()) {
             (PullRows::Moments, _) => MOMENT_COLUMNS,

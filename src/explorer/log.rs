@@ -194,7 +194,12 @@ impl Model {
         let mut strays: Vec<(usize, LogEntry)> = Vec::new();
         let mut last = done.iter().rposition(Option::is_some).map_or(passed, |at| at + 1);
         for (number, event) in self.walked_events() {
-            if !of_curve.iter().any(|(of_curve, _)| *of_curve == number) {
+            let Some((_, node)) = of_curve.iter().find(|(of_curve, _)| *of_curve == number) else { continue };
+            // What happened under another control is not of this path, and no loss of it.
+            if self.control().is_some_and(|control| node.control != control) {
+                passed =
+                    radius(event.after.as_ref()).map_or(events.len(), |s| behind(events, s, event.direction));
+                last = last.max(passed);
                 continue;
             }
             if let Some(at) = events.iter().position(|other| is_same(&event, other)) {

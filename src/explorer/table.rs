@@ -17,8 +17,8 @@ use super::script::arguments::{
     takes, theory, travelled, view,
 };
 use super::script::offers::{
-    assignments_of, axes_of, branches_of, controls, curves, documents, names, pins_of, places, presets,
-    quantities, theories, views, words,
+    Offer, assignments_of, axes_of, branches_of, controls, curves, documents, names, pins_of, places,
+    presets, quantities, theories, views, words,
 };
 use super::update::files::save_back;
 use super::update::places::to_largest_pull;

@@ -178,6 +178,18 @@ pub fn taken(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Vec<(Ke
     assignment(&report.x, x).into_iter().chain(assignment(&report.y, y)).collect()
 }
 
+/// The number of snaps at a point of the figure, by the nearest cell that was counted.
+pub fn count(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Option<usize> {
+    let counts = report.counts.as_ref()?;
+    let nearest = |axis: &AxisReport, values: &[Option<f64>], place: f64| {
+        let places = Places::of(axis, preset, report.control, true);
+        let away = |value: &Option<f64>| (places.at(*value) - place).abs();
+        values.iter().map(away).enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(at, _)| at)
+    };
+    let (column, row) = (nearest(&report.x, &counts.x, x)?, nearest(&report.y, &counts.y, y)?);
+    counts.snaps[row][column]
+}
+
 /// A number rounded to four digits.
 fn rounded(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)

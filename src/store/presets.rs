@@ -16,7 +16,7 @@ use pulloff_engine::preset::edit::onto;
 use pulloff_engine::preset::invalid::Invalid;
 use pulloff_engine::preset::model::Preset;
 use pulloff_engine::preset::read::ReadError;
-use pulloff_engine::preset::write::write;
+use pulloff_engine::preset::write::{head, write};
 use pulloff_engine::text::{closest, quote, sanitize, show_path};
 use std::ffi::OsStr;
 use std::fs;
@@ -91,7 +91,7 @@ pub struct Listed {
 }
 
 impl Loaded {
-    /// The comment at the start of its text, safe to show.
+    /// The comment at the start of its text, safe to show, without the line that every preset is written with.
     #[must_use]
     pub fn comment(&self) -> String {
         let text = match &self.source {
@@ -99,6 +99,7 @@ impl Loaded {
             Source::Piped { text, .. } => text,
             Source::User { .. } | Source::File(_) => &self.text,
         };
+        let text = text.strip_prefix(head(&self.preset.units)).unwrap_or(text);
         let lines = text.lines().map_while(|line| line.strip_prefix('#')).map(str::trim);
         lines.map(|line| sanitize(line, 200)).collect::<Vec<_>>().join("\n")
     }

@@ -67,7 +67,7 @@ fn legend_count(legend: &[LegendRow], room: usize) -> usize {
 /// A chart with fewer rows inside has no row for its legend,
 const LEGEND_ROWS: u16 = 8;
 /// and one more has a further row for each of these.
-const ROWS_PER_LEGEND_ROW: u16 = 5;
+const ROWS_PER_LEGEND_ROW: u16 = 4;
 
 impl Chart<'_> {
     /// Draws the chart with its frame into `area`.
@@ -116,6 +116,11 @@ impl Chart<'_> {
         self.draw_cross(buffer, plot);
         self.draw_labels(buffer, inner, plot);
         self.draw_marks(buffer, plot, &taken);
+        let is_marked = self.figure.marks.iter().any(|mark| self.place(mark.at, plot).is_some());
+        if !is_marked && taken.iter().all(Option::is_none) && !self.figure.lines.is_empty() {
+            let text = theme.whole_words("nothing of the figure is here", usize::from(plot.width));
+            buffer.set_string(plot.x, plot.y + plot.height / 2, text, theme.dim());
+        }
     }
 
     /// The notes of the figure, shown at the right end of the title's line if they fit.

@@ -114,6 +114,21 @@ fn nothing_has_happened_at_an_unstable_start() {
 }
 
 #[test]
+fn what_was_lost_under_another_control_is_not_counted() {
+    let mut session = Session::new("wavy-sphere");
+    session.set("path.control", "force");
+    for _ in 0..4 {
+        session.does(Id::NextEvent);
+    }
+    assert!(session.model.log().lost().0 > 0.0);
+    session.set("path.control.stiffness", "0.3");
+    let log = session.model.log();
+    assert!(log.entries.iter().all(|entry| entry.number.is_some()), "{log:?}");
+    assert_eq!(log.entries[0].mark, EventMark::PassedBy, "{log:?}");
+    assert!(log.lost().0.abs() < f64::EPSILON, "{log:?}");
+}
+
+#[test]
 fn selecting_an_event_moves_the_walker_to_its_limit_point() {
     let mut session = Session::new("wavy-sphere");
     session.model.panel = ScreenPanel::Log;

@@ -300,6 +300,46 @@ fn a_model_that_does_not_describe_the_points_has_a_status_of_its_own() {
     assert_eq!((accepted.status, &accepted.out), (0, &ended.out));
 }
 
+/// A record that ends in contact, and is flat there, looks as if its last rows were apart: the fit says so, and what
+/// helps.
+#[test]
+fn rows_that_are_only_taken_to_be_apart_are_told() {
+    let home = Home::new();
+    let trace = home.run(&["trace", "wavy-sphere"]);
+    let unstable = [
+        [0.3565, 0.3920],
+        [0.3056, 0.3422],
+        [0.2545, 0.2925],
+        [0.2031, 0.2428],
+        [0.1505, 0.1931],
+        [0.0, 0.1435],
+    ];
+    let mut rows = "approach,force\n".to_owned();
+    for (k, line) in trace.out.lines().skip(1).enumerate() {
+        // As irregular as noise.
+        let noise = 2e-4 * (7919.0 * k as f64).sin();
+        let cell: Vec<f64> = line.split(',').take(4).map(|cell| cell.parse().unwrap()).collect();
+        if unstable.iter().all(|[lo, hi]| cell[1] < *lo || cell[1] > *hi) {
+            writeln!(rows, "{},{}", cell[2], cell[3] + noise).unwrap();
+        }
+    }
+    home.file("ends-in-contact.csv", &rows);
+    let fit = ["fit", "ends-in-contact.csv", "wavy-sphere", "--free", "E*,gamma", "--format=json"];
+    let found = |ended: &crate::support::home::Ended| -> Value { serde_json::from_str(&ended.out).unwrap() };
+    let document = found(&home.run(&fit));
+    let reasons = document["reasons"].as_array().unwrap();
+    let level = reasons.iter().find(|reason| reason["kind"] == "level").expect("what is off");
+    assert!(level["sentence"].as_str().unwrap().contains("--free-part none"), "{level}");
+    assert!(reasons.iter().all(|reason| reason["kind"] != "tilt"), "{reasons:?}");
+    let ended = home.run(&[&fit[..], &["--free-part", "none"]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let document = found(&ended);
+    assert_eq!(document["verdict"].as_str(), Some("describes"));
+    // Modulus and adhesion follow from one another here, which their errors do not say.
+    let notes = document["notes"].to_string();
+    assert!(notes.contains("E* and γ are known together far better than alone"), "{notes}");
+}
+
 #[test]
 fn a_table_goes_on_where_it_ended() {
     let home = Home::new();

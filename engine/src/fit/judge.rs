@@ -85,7 +85,10 @@ pub(super) fn reasons(
     let mut reasons: Vec<Reason> = clipped.map(|clipped| of_clipped(preset, clipped)).into_iter().collect();
     reasons.extend(contact::of_contact(problem, solved, scatter, inner));
     reasons.extend(apart::of_apart(problem, solved, scatter));
-    reasons.extend(scores::of_tilt(problem, solved, scatter, inner));
+    // Rows that are not apart look like a slope of the force.
+    let level = apart::of_level(problem, solved);
+    let tilt = if level.is_some() { None } else { scores::of_tilt(problem, solved, scatter, inner) };
+    reasons.extend(level.into_iter().chain(tilt));
     reasons.extend(scores::of_shape(problem, solved, scatter, inner));
     if preset.cohesion().is_some() {
         reasons.extend(range::of_zone(problem, solved));

@@ -53,7 +53,7 @@ pub enum FitError {
     )]
     NothingFree,
     /// A key that is not known, or cannot be fitted.
-    #[error("--free {key}: {why}")]
+    #[error("free key {key}: {why}")]
     Key {
         /// What was given, safe to show.
         key: String,

@@ -260,7 +260,11 @@ fn instrument(
     };
     match branches.baseline {
         Some(found) if is_asked || given.baseline.is_none() => {
-            too("since there is a free part");
+            too(if given.baseline.is_some() {
+                "since there is a free part: the value given is not used"
+            } else {
+                "since there is a free part"
+            });
             // A baseline that an earlier fit has left says less than the points.
             instrument.baseline = found;
         }

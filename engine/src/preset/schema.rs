@@ -286,7 +286,10 @@ impl Parameter {
             Kind::Choice(words) => {
                 words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(" or ")
             }
-            Kind::Control => "\"displacement\", \"force\" or { stiffness = k } with k > 0".to_owned(),
+            Kind::Control => {
+                "\"displacement\", \"force\" or stiffness=k, in a file { stiffness = k }, with k > 0"
+                    .to_owned()
+            }
         }
     }
 

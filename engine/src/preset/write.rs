@@ -43,7 +43,7 @@ pub fn write(preset: &Preset) -> String {
 }
 
 /// The first line, which says what units bare numbers have.
-pub(super) fn head(units: &UnitSystem) -> &'static str {
+pub fn head(units: &UnitSystem) -> &'static str {
     match units {
         UnitSystem::Reduced => "# A pulloff preset. Any consistent units.\n",
         UnitSystem::Si(_) => "# A pulloff preset. Numbers without a unit are SI.\n",

@@ -79,7 +79,7 @@ pub struct FitReport {
     pub youngs_modulus: Option<[Option<f64>; 2]>,
     /// The number of bootstrap fits, and the rows of each block.
     pub bootstrap: Option<[usize; 2]>,
-    /// What was found, assumed and held fixed.
+    /// What was found, assumed and held fixed, and which values are known only together.
     pub notes: Vec<String>,
     /// What should be doubted.
     pub warnings: Vec<String>,
@@ -402,7 +402,7 @@ impl FitReport {
             starts,
             youngs_modulus,
             bootstrap: fit.bootstrapped,
-            notes: fit.notes.clone(),
+            notes: fit.notes.iter().cloned().chain(fit.bound()).collect(),
             warnings: fit.warnings.clone(),
             doubts: fit.reasons.iter().map(|reason| &reason.sentence).chain(&fit.warnings).cloned().collect(),
             shown: units.clone(),

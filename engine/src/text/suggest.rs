@@ -25,8 +25,15 @@ pub fn closest_key<'a>(key: &str, known: impl IntoIterator<Item = (&'a str, &'a 
     best(known.into_iter().map(|(k, label)| {
         let whole = likeness(&lower, k);
         let part = likeness(last(&lower), last(k));
-        // A known part in the wrong table, or the symbol, counts for a little less than the key itself.
-        let symbol = if last(key) == label { 0.95 } else { 0.0 };
+        // A known part in the wrong table, the symbol, or most of it, count for a little less than the key itself.
+        let asked = last(key);
+        let symbol = if asked == label {
+            0.96
+        } else if label.starts_with(asked) && 2 * asked.len() >= label.len() {
+            0.94
+        } else {
+            0.9 * likeness(last(&lower), label)
+        };
         (whole.max(0.97 * part).max(symbol), k)
     }))
 }
@@ -57,6 +64,8 @@ mod tests {
         assert_eq!(key("material.amplitude"), Some("gap.amplitude"));
         assert_eq!(key("material.gamma"), Some("material.work_of_adhesion"));
         assert_eq!(key("gap.Amplitude"), Some("gap.amplitude"));
+        assert_eq!(key("E"), Some("material.effective_modulus"));
+        assert_eq!(key("gama"), Some("material.work_of_adhesion"));
         assert_eq!(key("gap.amp"), Some("gap.amplitude"));
         assert_eq!(key("colour"), None);
         assert_eq!(key(&"x".repeat(1000)), None);

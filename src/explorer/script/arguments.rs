@@ -224,7 +224,11 @@ pub(in crate::explorer) fn preset(rest: &mut Rest<'_>) -> Result<Command, Script
     Ok(if assignments.is_empty() { Command::Open(name) } else { Command::OpenWith { name, assignments } })
 }
 
+/// A word, or a name of one's own to save under.
 pub(in crate::explorer) fn saved(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
+    if rest.words.first().is_some_and(|word| word.text != "replace") {
+        return saved_as(rest);
+    }
     rest.one("word", |word| (word == "replace").then_some(Command::SaveAnyway), &["replace"])
 }
 

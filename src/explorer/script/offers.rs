@@ -54,7 +54,7 @@ pub struct Offer {
 }
 
 impl Offer {
-    fn new(word: impl Into<String>, says: impl Into<String>) -> Self {
+    pub(in crate::explorer) fn new(word: impl Into<String>, says: impl Into<String>) -> Self {
         Self { word: word.into(), says: says.into(), is_here: false, does: None }
     }
 }

@@ -111,7 +111,10 @@ fn of_key(wanted: &[&str], model: &Model) -> Vec<PaletteEntry> {
         _ => return Vec::new(),
     };
     let entry = |row: &Parameter| PaletteEntry::new(format!("set {}={value}", row.key), &*row.meaning);
-    rows_called(&model.preset, symbol).iter().map(entry).collect()
+    // The units of the screen are named like what they show, and are meant less often.
+    let is_meant = |row: &&Parameter| !value.is_empty() || !row.key.starts_with("display.");
+    let rows = rows_called(&model.preset, symbol);
+    rows.iter().filter(is_meant).map(entry).collect()
 }
 
 /// An event by its number: `event 3`, `snap 3`.

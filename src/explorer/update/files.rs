@@ -134,6 +134,10 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         Done::Saved { source, fingerprint, preset } => {
             model.tell(Level::Info, format!("saved as {}", source.shown()));
             let copied = as_saved(&model.preset, &model.saved, &preset);
+            // The comments of a shipped preset are not written: they describe that preset.
+            if matches!(model.source, Source::Shipped(_)) {
+                model.comment.clear();
+            }
             (model.source, model.fingerprint, model.saved) = (source, Some(fingerprint), *preset);
             return copied.map_or_else(Vec::new, |preset| change(model, preset));
         }

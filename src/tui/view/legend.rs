@@ -1,7 +1,7 @@
 //! What the lines and letters of a figure mean; and the cross-hair in words.
 
 use crate::explorer::{Model, View};
-use crate::figure::{Bounds, Figure, Role, Sign, Subject, nearest, reading, study};
+use crate::figure::{Bounds, Figure, Role, Sign, Subject, map, nearest, reading, study};
 use crate::tui::chart::LegendRow;
 use crate::tui::marks::{glyph, letter, look, style};
 use crate::tui::theme::Theme;
@@ -93,6 +93,13 @@ pub fn reading(model: &Model) -> Option<String> {
     let here = reading::coordinates(&bounds, [&figure.x, &figure.y], at);
     if let (View::Study, Some(Ok(data))) = (view, &subject.study) {
         return study::reading(data, subject.preset, study::critical_force(&subject), at.0);
+    }
+    let snaps = match (view, subject.map) {
+        (View::Map, Some(Ok(report))) => map::count(report, subject.preset, at),
+        _ => None,
+    };
+    if let Some(snaps) = snaps {
+        return Some(format!("{snaps} {}; + {here}", if snaps == 1 { "snap" } else { "snaps" }));
     }
     Some(match nearest(&subject, view, &bounds, at) {
         // The state comes first: it is new information, and narrow screens cut off the end.

@@ -8,6 +8,7 @@ use super::super::scatter::Scatter;
 use super::super::solve::SolvedFit;
 use super::super::verdict::Reason;
 use super::ROUNDING;
+use crate::measured::branches::median;
 use crate::units::number::short;
 
 /// The share of right fits that are flagged.
@@ -37,6 +38,25 @@ pub(super) fn of_apart(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatt
     }
     reasons.extend(levels(problem, solved, tau));
     reasons
+}
+
+/// Rows taken to be apart that do not have the force of bodies apart: a record that ends in contact, and is flat there,
+/// looks as if it ended apart.
+pub(super) fn of_level(problem: &FitProblem, solved: &SolvedFit) -> Option<Reason> {
+    /// The baseline goes through the rows apart, unless those in contact contradict them this far, in σ.
+    const FAR: f64 = 10.0;
+    (0..problem.branches()).find_map(|branch| {
+        let rows = problem.rows(solved, branch, true, 0);
+        let off = median(rows.iter().map(|row| row.residual.abs()).collect()).filter(|off| *off > FAR)?;
+        let sentence = format!(
+            "the {} rows of the {} that are taken to be apart are {} sigma off the force of bodies apart: if they \
+             are still in contact, say so with --free-part none or data.free_part",
+            rows.len(),
+            problem.data[rows.first()?.index].segment.name(),
+            short(off, 2)
+        );
+        Some(Reason::new("level", off, sentence))
+    })
 }
 
 /// Forces that differ between the branches.

@@ -456,3 +456,17 @@ fn a_study_over_decades_has_logarithms_along_its_axis() {
     let rate = screen.app.model.preset.get("path.rate").unwrap().as_number().unwrap();
     assert!(rate > 0.02 && rate < 1.0, "{rate}");
 }
+
+#[test]
+fn the_cross_hair_on_a_map_counts_the_snaps() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":map\r:map\r");
+    screen.keys("i");
+    let text = screen.text(100, 40);
+    let path = screen.app.model.path().unwrap();
+    let snaps = path.events.iter().filter(|event| event.kind == "snap").count();
+    assert!(text.contains(&format!("{snaps} snaps; + A 0.0025")), "{text}");
+    for said in ["swallowtail", "the count stays", "line of landings"] {
+        assert!(text.contains(said), "{said}: {text}");
+    }
+}
