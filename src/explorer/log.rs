@@ -72,6 +72,16 @@ impl Log {
     }
 }
 
+/// Whether an event of the path has happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Happened {
+    NotYet,
+    /// Before the walk began, or by turning round: no node of the walk shows it.
+    Unseen,
+    /// As the jump that this node made.
+    By(usize),
+}
+
 fn is_near(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs())
 }
@@ -172,7 +182,7 @@ impl Model {
         let first = walk.iter().rposition(|(_, node)| node.begins).unwrap_or(0);
         let walk = &walk[first..];
         let of_curve: Vec<&(usize, &Node)> = walk.iter().filter(|(_, node)| self.is_on_curve(node)).collect();
-        let mut done: Vec<Option<Option<usize>>> = vec![None; events.len()];
+        let mut done = vec![Happened::NotYet; events.len()];
         // How many events lie behind the last state that no event of the path led to.
         let mut passed = 0;
         if let Some((_, node)) = of_curve.first() {
@@ -180,9 +190,9 @@ impl Model {
             let happened = &mut done[..behind];
             match node.kind {
                 // Bodies in contact have come together at some point.
-                NodeKind::Start => happened.fill(Some(None)),
+                NodeKind::Start => happened.fill(Happened::Unseen),
                 // The state in which an event begins is reached through the events before it.
-                NodeKind::Moved | NodeKind::Limit if is_event => happened.fill(Some(None)),
+                NodeKind::Moved | NodeKind::Limit if is_event => happened.fill(Happened::Unseen),
                 // Sent elsewhere, or solved again in place for other values: what lies behind did not happen.
                 NodeKind::Moved | NodeKind::Solved | NodeKind::Limit if !self.is_start(node) => {
                     passed = behind;
@@ -192,7 +202,7 @@ impl Model {
         }
         // A jump that is not an event of the path comes after the last event that was done.
         let mut strays: Vec<(usize, LogEntry)> = Vec::new();
-        let mut last = done.iter().rposition(Option::is_some).map_or(passed, |at| at + 1);
+        let mut last = done.iter().rposition(|done| *done != Happened::NotYet).map_or(passed, |at| at + 1);
         for (number, event) in self.walked_events() {
             let Some((_, node)) = of_curve.iter().find(|(of_curve, _)| *of_curve == number) else { continue };
             // What happened under another control is not of this path, and no loss of it.
@@ -203,7 +213,7 @@ impl Model {
                 continue;
             }
             if let Some(at) = events.iter().position(|other| is_same(&event, other)) {
-                done[at] = Some(Some(number));
+                done[at] = Happened::By(number);
                 last = at + 1;
                 passed = last;
                 continue;
@@ -218,7 +228,7 @@ impl Model {
         if let Some(turn) = events.iter().position(|event| event.kind == "turn")
             && self.has_turned(&events[turn], of_curve.iter().map(|(_, node)| *node))
         {
-            done[turn] = Some(None);
+            done[turn] = Happened::Unseen;
         }
         let mut entries = Vec::new();
         let mut strays = strays.into_iter().peekable();
@@ -228,23 +238,19 @@ impl Model {
             }
             let mark = match (at == Some(index), done[index]) {
                 (true, _) => EventMark::Here,
-                (false, Some(_)) => EventMark::Done,
-                (false, None) if index < passed => EventMark::PassedBy,
-                (false, None) => EventMark::Ahead,
+                (false, Happened::NotYet) if index < passed => EventMark::PassedBy,
+                (false, Happened::NotYet) => EventMark::Ahead,
+                (false, Happened::Unseen | Happened::By(_)) => EventMark::Done,
             };
-            entries.push(LogEntry {
-                mark,
-                number: Some(index + 1),
-                event: event.clone(),
-                node: done[index].flatten(),
-            });
+            let node = if let Happened::By(node) = done[index] { Some(node) } else { None };
+            entries.push(LogEntry { mark, number: Some(index + 1), event: event.clone(), node });
         }
         entries.extend(strays.map(|(_, entry)| entry));
         Log { entries }
     }
 
     /// The event that begins in the state of the walker, if it has not happened.
-    fn stands_before(&self, events: &[EventReport], done: &[Option<Option<usize>>]) -> Option<usize> {
+    fn stands_before(&self, events: &[EventReport], done: &[Happened]) -> Option<usize> {
         let node = self.walker().filter(|node| !node.is_apart())?;
         if node.at(self.control()?) == At::Nothing {
             return None;
@@ -254,7 +260,7 @@ impl Model {
         let has_jumped = matches!(node.kind, NodeKind::Jump(_));
         events.iter().zip(done).position(|(event, done)| {
             let begins = radius(event.before.as_ref());
-            (done.is_none() || !has_jumped)
+            (*done == Happened::NotYet || !has_jumped)
                 && event.direction == direction
                 && begins.is_some_and(|begins| is_near(begins, stands))
         })
