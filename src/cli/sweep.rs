@@ -28,7 +28,7 @@ use std::time::{Duration, Instant};
 
 /// The arguments of `pulloff sweep`.
 #[derive(Debug, Args)]
-#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true, after_help = EXAMPLE)]
 pub struct SweepArguments {
     #[command(subcommand)]
     command: Option<SweepCommand>,
@@ -70,6 +70,16 @@ struct ResultsArguments {
     #[command(flatten)]
     replacing: Replacing,
 }
+
+/// A spec, for the help.
+const EXAMPLE: &str = "A spec:
+  preset = \"wavy-sphere\"
+  quantities = [\"largest_pull_force\", \"snaps\"]
+  [[axis]]
+  key = \"gap.amplitude\"
+  linear = { from = 0, to = 0.005, count = 51 }
+or logarithmic = { from, to, count }, values = [...], distribution = {...}; further axes follow in the same form.
+`pulloff sweep quantities` lists the quantities.";
 
 /// What is swept, and where to.
 // clap does not know the arguments of a struct with groups in it; this argument is always there.

@@ -152,7 +152,7 @@ fn standing(model: &Model, node: &Node, control: Control) -> String {
             format!("Start, stable under {held} control. {next} runs to the first event, {help} helps")
         }
         (true, NodeKind::Solved) if model.is_at_start() => {
-            format!("The path does not reach the held value: its start; {next} runs to the next event")
+            format!("The path does not reach the held value: back at its start; {next} runs on")
         }
         (_, NodeKind::Solved) if node.on_path.is_some() => {
             format!("Nearest on the new path to the {held} held; {next} runs to the next event")
@@ -201,7 +201,7 @@ fn happened(model: &Model, node: &Node) -> Option<String> {
             }
             _ => {
                 format!(
-                    "Landed, stable again{}. {} runs to the next event, {} undoes",
+                    "Landed{}, stable again. {} runs to the next event, {} undoes",
                     lost.unwrap_or_default(),
                     Id::NextEvent.named(),
                     Id::Undo.named()

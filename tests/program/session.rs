@@ -461,7 +461,7 @@ fn a_session_that_was_cut_off_is_offered_and_goes_on_with_the_same_numbers() {
         pty.wait_until(|pty| walker(pty) == before, "the same numbers");
         // It continues where it was, with everything before.
         pty.keys("x");
-        pty.wait_for(|screen| screen.contains("Landed, stable again, lost 1.217e-4"), "the landing");
+        pty.wait_for(|screen| screen.contains("Landed, lost 1.217e-4, stable again"), "the landing");
         pty.keys("uu");
         pty.wait_for(
             |screen| screen.contains("Stable under displacement"),

@@ -92,7 +92,7 @@ impl App {
     /// The text has changed: the error of the previous one is forgotten.
     fn changed(&self, prompt: &mut Prompt, input: Input) {
         let is_help = prompt.purpose == Purpose::Line { is_help: true } && input.value().is_empty();
-        prompt.note = if is_help { now(self).join("  ") } else { note(input.value()) };
+        prompt.note = if is_help { now(self).join(" · ") } else { note(input.value()) };
         prompt.input = input;
         prompt.error = None;
         prompt.fault = None;

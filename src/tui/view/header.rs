@@ -48,10 +48,7 @@ fn heading(app: &App, warnings: &[String]) -> Vec<Span<'static>> {
     spans.push(Span::raw("  control "));
     spans.push(Span::styled(control, theme.strong()));
     if let Some(share) = stiffness_share(model) {
-        spans.push(Span::styled(
-            theme.text(&format!(" ({} of the contact's)", significant(share, 3))),
-            theme.dim(),
-        ));
+        spans.push(Span::styled(theme.text(&format!(" ({} of 2E*s)", significant(share, 3))), theme.dim()));
     }
     // A job under way and a warning need the room more than what the Problem panel says anyway.
     if let (Some(count), true) = (model.preset.get("basis.rings"), warnings.is_empty() && app.late.is_none())

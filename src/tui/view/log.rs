@@ -177,18 +177,22 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
     .unwrap_or_default()
 }
 
+/// What to say of a path without events.
+fn nothing(path: &PathReport) -> String {
+    let what = if path.has_reached_its_end { "nothing happens" } else { "the path ends early" };
+    format!(" {what}: {}", path.stop)
+}
+
 fn empty(model: &Model, keymap: &Keymap) -> String {
     let why = match (&model.curve, model.preset.path.begin, model.cycle()) {
         (None, ..) | (Some(_), Begin::Touch, None) => " computing the path".to_owned(),
         (Some(_), Begin::Touch, Some(cycle)) => match &cycle.report {
             Err(reason) => format!(" no path: {reason}"),
-            Ok(report) => format!(" nothing happens: {}", report.stop),
+            Ok(report) => nothing(report),
         },
         (Some(curve), Begin::Disc, _) => match (&curve.unloading, &curve.report) {
             (Err(reason), _) => format!(" no path: {reason}"),
-            (Ok(_), report) => {
-                format!(" nothing happens: {}", report.as_ref().map_or("", |report| &report.stop))
-            }
+            (Ok(_), report) => report.as_ref().map_or_else(String::new, nothing),
         },
     };
     keymap.spelled(&why)

@@ -181,9 +181,10 @@ fn words(app: &App, width: u16) -> Vec<FooterWord> {
             let through = [(Id::Up, "up", KeyCode::Up), (Id::Down, "down", KeyCode::Down)];
             through.into_iter().chain([accept, back]).map(in_list).collect()
         }
-        Some(Dialog::Confirm(_)) => {
+        Some(Dialog::Confirm(confirm)) => {
             let yes = FooterWord { key: "y".to_owned(), text: "yes", does: Does::Key(KeyCode::Char('y')) };
-            vec![yes, in_list(back)]
+            let save = (confirm.yes.id() == Id::Quit).then(|| command((Id::SaveAs, "save")));
+            std::iter::once(yes).chain(save).chain([in_list(back)]).collect()
         }
     };
     let between = between(width);
