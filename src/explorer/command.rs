@@ -122,8 +122,12 @@ pub enum Command {
     Show(View),
     /// Go to this place.
     Go(Home),
-    /// Show this quantity over the range of the selected value.
-    Study(QuantityColumn),
+    /// Show a quantity over the range of a value.
+    Study {
+        column: QuantityColumn,
+        /// The key or symbol of the value that is varied; the selected one if there is none.
+        over: Option<String>,
+    },
     /// Draw this theory over the curve, or remove it.
     Overlay(Overlay),
     /// This many commands undone ([`Id::Undo`]) or redone ([`Id::Redo`]).
@@ -211,7 +215,7 @@ impl Command {
             Self::Zoom { closer: false, .. } => Id::ZoomOut,
             Self::Go(_) => Id::Go,
             Self::Show(_) => Id::ChooseView,
-            Self::Study(_) => Id::Study,
+            Self::Study { .. } => Id::Study,
             Self::Overlay(_) => Id::Overlays,
             Self::Map { .. } => Id::Map,
             Self::GoTo { .. } | Self::GoToState(_) => Id::Branches,

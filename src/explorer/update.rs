@@ -28,14 +28,14 @@ use super::job::{Done, Job};
 use super::model::{Awaits, Level, Model};
 use super::requests::{browse, file, want_curve};
 use super::table::{Waits, is_available, row_of, why_unavailable};
-use super::view::{ScreenPanel, View};
+use super::view::ScreenPanel;
 use super::walk::Action;
 use super::{look, reach};
 use crate::store::{Loaded, Overwrite};
 use curve::curve_came;
 use files::{export, export_page, file_done, save, save_as};
 use places::{go_to_event, move_to, select_event};
-use selection::pick;
+use selection::{pick, study};
 use travel::{by_states, go_to, go_to_state, travel};
 use turns::{enqueue, gesture, is_blocked, recorded, waits};
 use values::{assign, set, try_out, turn, untry};
@@ -129,10 +129,7 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::Zoom { view, closer, about } => look::zoom(model, view, closer, about),
         Command::Show(view) => reach::show(model, view),
         Command::Go(home) => reach::go(model, home),
-        Command::Study(column) => {
-            model.studied = column;
-            reach::show(model, View::Study);
-        }
+        Command::Study { column, over } => return study(model, column, over),
         Command::Overlay(overlay) => look::overlay(model, overlay),
         Command::Map { x, y } => look::map_of(model, &x, y),
         Command::GoTo { node, numbering } => return go_to(model, node, numbering),

@@ -201,7 +201,8 @@ pub(in crate::explorer) fn view(rest: &mut Rest<'_>) -> Result<Command, ScriptFa
 
 pub(in crate::explorer) fn quantity(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     let word = rest.need("a quantity")?;
-    Ok(Command::Study(QuantityColumn::named(&word.text).map_err(|what| ScriptFault::new(word.column, what))?))
+    let column = QuantityColumn::named(&word.text).map_err(|what| ScriptFault::new(word.column, what))?;
+    Ok(Command::Study { column, over: rest.next().map(|key| key.text.clone()) })
 }
 
 pub(in crate::explorer) fn theory(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {

@@ -11,6 +11,7 @@ use crate::explorer::model::Model;
 use crate::explorer::view::{Home, Overlay, View};
 use crate::explorer::{pins, reach};
 use crate::store::shipped::{self, SHIPPED};
+use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::groups::GROUPS;
 use pulloff_engine::preset::measured::SHIPPED_DATA;
 use pulloff_engine::preset::schema::{AUTO, Kind, NONE};
@@ -84,6 +85,10 @@ pub(in crate::explorer) fn views(typing: &Typing<'_>) -> Vec<Offer> {
 
 /// The quantities that can be studied.
 pub(in crate::explorer) fn quantities(typing: &Typing<'_>) -> Vec<Offer> {
+    if !typing.words.is_empty() {
+        let numbers = if typing.words.len() > 1 { Vec::new() } else { numbers(&typing.model.preset) };
+        return numbers;
+    }
     let all = QUANTITIES.iter().flat_map(SweepQuantity::columns);
     all.map(|column| {
         let name = column.name();
@@ -207,11 +212,16 @@ pub(in crate::explorer) fn axes_of(typing: &Typing<'_>) -> Vec<Offer> {
     if typing.words.len() > 1 {
         return Vec::new();
     }
-    let rows = preset.rows().filter(|row| row.kind.is_number() && preset.get(&row.key).is_some());
-    let keys = rows.map(|row| Offer::new(&*row.key, &*row.meaning));
+    let keys = numbers(preset).into_iter();
     let groups = GROUPS.iter().map(|row| Offer::new(&*row.key, &*row.meaning));
     let curves = if typing.words.is_empty() { Vec::new() } else { words(CURVES.map(|(name, _)| name)) };
     keys.chain(groups).chain(words([COMPLIANCE])).chain(curves).collect()
+}
+
+/// The keys of the preset that have numbers.
+fn numbers(preset: &Preset) -> Vec<Offer> {
+    let rows = preset.rows().filter(|row| row.kind.is_number() && preset.get(&row.key).is_some());
+    rows.map(|row| Offer::new(&*row.key, &*row.meaning)).collect()
 }
 
 /// The keys of the preset, or the words that the key being typed takes.

@@ -22,7 +22,9 @@ pub fn line(command: &Command) -> Option<String> {
         }
         Command::Go(home) => format!(" {}", home.name()),
         Command::Show(view) => format!(" {}", view.name()),
-        Command::Study(column) => format!(" {}", column.name()),
+        Command::Study { column, over } => {
+            format!(" {}{}", column.name(), over.as_ref().map_or_else(String::new, |key| format!(" {key}")))
+        }
         Command::Overlay(overlay) => format!(" {}", overlay.name()),
         Command::Unpin(None) => " all".to_owned(),
         Command::Unpin(Some(number)) => format!(" {number}"),

@@ -6,9 +6,11 @@ use crate::explorer::effect::Effect;
 use crate::explorer::fit::{FitProgress, fit};
 use crate::explorer::model::{Level, Model};
 use crate::explorer::requests::stop;
-use crate::explorer::view::ScreenPanel;
+use crate::explorer::script::key_called;
+use crate::explorer::view::{ScreenPanel, View};
 use crate::explorer::{look, reach};
 use pulloff_engine::preset::{Row, Value, groups};
+use pulloff_engine::sweep::QuantityColumn;
 use pulloff_engine::text::{greek, show_name};
 
 /// An arrow key: in Charts it moves what is shown, elsewhere it moves the selection.
@@ -29,6 +31,22 @@ pub(in crate::explorer) fn cancel(model: &mut Model) -> Vec<Effect> {
     } else {
         give_up_first(model)
     }
+}
+
+/// Shows a quantity over the range of the selected value, which becomes the one called `over` if that is given.
+pub(super) fn study(model: &mut Model, column: QuantityColumn, over: Option<String>) -> Vec<Effect> {
+    if let Some(name) = over {
+        let key = match key_called(&model.preset, &name) {
+            Ok(key) => key,
+            Err(why) => return model.refuse(why),
+        };
+        let at = model.knobs().iter().position(|(row, value)| row.key == key && value.is_some());
+        let Some(at) = at else { return model.refuse(format!("{key} has no value here: nothing to vary")) };
+        model.parameter = at;
+    }
+    model.studied = column;
+    reach::show(model, View::Study);
+    Vec::new()
 }
 
 pub(in crate::explorer) fn next_panel(model: &mut Model, by: usize) {
