@@ -6,13 +6,17 @@
 use super::bounds::Bounds;
 use super::map;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
+use super::scale::Scale;
 use super::subject::Subject;
 use crate::explorer::reach::OF_SHORT_RANGE;
-use pulloff_engine::problem::Control;
+use pulloff_engine::Case;
+use pulloff_engine::disc::Panels;
+use pulloff_engine::problem::{Control, Units};
 use pulloff_engine::stability::Law;
-use pulloff_engine::stability::law::adhesion_of;
+use pulloff_engine::stability::law::{Cusp, adhesion_of};
 use pulloff_engine::units::Quantity;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// The number of radii at which the law is drawn.
 const RADII: usize = 1500;
@@ -21,17 +25,42 @@ const RADII: usize = 1500;
 /// is stable.
 const DECADES: f64 = 3.0;
 
+/// Where contact radii and works of adhesion, both reduced, stand on the axes: the latter by the logarithm of γ', or of
+/// γ where the gap has no radius of curvature.
+struct LawPlaces<'a> {
+    scale: Scale<'a>,
+    units: Units,
+    /// γ' over γ.
+    group: Option<f64>,
+}
+
+impl LawPlaces<'_> {
+    fn radius(&self, s: f64) -> f64 {
+        self.scale.radius(s * self.units.length)
+    }
+
+    fn adhesion(&self, adhesion: f64) -> f64 {
+        let adhesion = adhesion * self.units.work_of_adhesion;
+        let shown = || self.scale.shown(Quantity::EnergyPerArea, adhesion);
+        self.group.map_or_else(shown, |group| group * adhesion).log10()
+    }
+
+    /// The law at these radii.
+    fn curve(&self, law: &Law, radii: &[f64]) -> Vec<(f64, f64)> {
+        let all = radii.iter().zip(law.over(radii));
+        all.map(|(s, adhesion)| (self.radius(*s), self.adhesion(adhesion))).collect()
+    }
+}
+
 /// Builds the view.
 pub fn figure(subject: &Subject<'_>) -> Figure {
     let scale = subject.scale();
     let case = &subject.curve.case;
-    let units = *case.units();
     let problem = &case.problem;
     let group = problem.shape.radius_of_curvature().map(|radius| TAU / (problem.effective_modulus * radius));
-    let y = if group.is_some() {
-        Axis::pure("log γ'".to_owned())
-    } else {
-        scale.axis("log γ", "energy per area", Quantity::EnergyPerArea)
+    let y = match group {
+        Some(_) => Axis::pure("log γ'".to_owned()),
+        None => scale.axis("log γ", "energy per area", Quantity::EnergyPerArea),
     };
     let is_one_disc = subject.is_one_disc();
     let under = match case.control {
@@ -50,21 +79,30 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         figure.missing = Some("the gap cannot be tabulated".to_owned());
         return figure;
     };
-    let place = |adhesion: f64| {
-        let adhesion = adhesion * units.work_of_adhesion;
-        group.map_or_else(|| scale.shown(Quantity::EnergyPerArea, adhesion), |group| group * adhesion).log10()
-    };
-    let at = |s: f64| scale.radius(s * units.length);
+    let places = LawPlaces { scale, units: *case.units(), group };
+    let level = places.adhesion(case.reduced.work_of_adhesion);
+    laws(&mut figure, case, &panels, &places, level);
+    for part in subject.curve.base.inadmissible.iter().flatten() {
+        let places = part.places.iter().map(|[_, _, s]| (scale.radius(*s), level)).collect();
+        figure.lines.push(Line::new(Role::Inadmissible, "inadmissible", places));
+    }
+    let limits = subject.curve.limits.iter().map(|limit| (places.radius(limit.contact_radius), level));
+    figure.marks.extend(limits.map(|at| Mark { sign: Sign::Limit, at }));
+    // The law is for one disc of the exact equation, not for a walker in rings of either kind.
+    if let Some(node) = subject.walk.last().filter(|node| is_one_disc && subject.is_on_curve(node)) {
+        let walker = (scale.radius(node.state.contact_radius), level);
+        figure.marks.push(Mark { sign: Sign::Walker, at: walker });
+    }
+    figure
+}
+
+/// Draws the law of the device and the one beside it, their cusps, and the preset's adhesion at this level.
+fn laws(figure: &mut Figure, case: &Case, panels: &Arc<Panels>, places: &LawPlaces<'_>, level: f64) {
+    let law = |control| Law { panels: Arc::clone(panels), control };
     let radii: Vec<f64> =
         (0..=RADII).map(|k| case.end + (case.start - case.end) * k as f64 / RADII as f64).collect();
-    let law = |control| Law { panels: panels.clone(), control };
-    let curve = |law: &Law| -> Vec<(f64, f64)> {
-        radii.iter().zip(law.over(&radii)).map(|(s, adhesion)| (at(*s), place(adhesion))).collect()
-    };
     let own = law(case.control);
-    let points = curve(&own);
-    let adhesion = case.reduced.work_of_adhesion;
-    let level = place(adhesion);
+    let points = places.curve(&own, &radii);
     let finite = || points.iter().map(|(_, y)| *y).filter(|y| y.is_finite());
     let most = finite().chain(Some(level).filter(|y| y.is_finite())).fold(f64::NEG_INFINITY, f64::max);
     let least = finite().fold(f64::INFINITY, f64::min);
@@ -73,41 +111,23 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     let down = |points: Vec<(f64, f64)>| -> Vec<(f64, f64)> {
         points.into_iter().map(|(x, y)| (x, if y.is_nan() { y } else { y.max(floor) })).collect()
     };
-    if let Control::Displacement | Control::Stiffness(_) = case.control {
-        figure.lines.push(Line::new(Role::Twin, "under force", down(curve(&law(Control::Force)))));
-    } else {
-        figure.lines.push(Line::new(
-            Role::Twin,
-            "under displacement",
-            down(curve(&law(Control::Displacement))),
-        ));
-    }
+    let (twin, name) = match case.control {
+        Control::Displacement | Control::Stiffness(_) => (Control::Force, "under force"),
+        Control::Force => (Control::Displacement, "under displacement"),
+    };
+    figure.lines.push(Line::new(Role::Twin, name, down(places.curve(&law(twin), &radii))));
     let (cusps, corners) = own.cusps([case.end, case.start]);
-    let cusps = cusps.iter().map(|cusp| (at(cusp.contact_radius), place(adhesion_of(cusp.value))));
-    figure.marks.extend(cusps.map(|at| Mark { sign: Sign::Cusp, at }));
+    let at = |cusp: &Cusp| (places.radius(cusp.contact_radius), places.adhesion(adhesion_of(cusp.value)));
+    figure.marks.extend(cusps.iter().map(|cusp| Mark { sign: Sign::Cusp, at: at(cusp) }));
     figure.lines.push(Line::new(Role::Law, "limit points; stable below", down(points)));
-    let ends = [at(case.end), at(case.start)];
+    let ends = [case.end, case.start].map(|s| places.radius(s));
     figure.lines.push(Line::new(Role::Level, "adhesion", ends.map(|x| (x, level)).to_vec()));
-    for part in subject.curve.base.inadmissible.iter().flatten() {
-        let places = part.places.iter().map(|[_, _, s]| (scale.radius(*s), level)).collect();
-        figure.lines.push(Line::new(Role::Inadmissible, "inadmissible", places));
-    }
     figure.bounds = Bounds::of([(ends[0], floor), (ends[1], most)]);
-    let limits = subject.curve.limits.iter().map(|limit| (at(limit.contact_radius), level));
-    figure.marks.extend(limits.map(|at| Mark { sign: Sign::Limit, at }));
     figure.notes.extend(case.warning_of_dead_band());
     if !corners.is_empty() {
-        figure.notes.push(
-            "the second derivative of the gap jumps: the law has corners there, which are not cusps"
-                .to_owned(),
-        );
+        let why = "the second derivative of the gap jumps: the law has corners there, which are not cusps";
+        figure.notes.push(why.to_owned());
     }
-    // The law is for one disc of the exact equation, not for a walker in rings of either kind.
-    if let Some(node) = subject.walk.last().filter(|node| is_one_disc && subject.is_on_curve(node)) {
-        let walker = (scale.radius(node.state.contact_radius), level);
-        figure.marks.push(Mark { sign: Sign::Walker, at: walker });
-    }
-    figure
 }
 
 /// The map of two parameters, where it is known.
