@@ -44,8 +44,8 @@ pub struct FitArguments {
     #[arg(required = true, value_name = "FILE... [PRESET]")]
     paths: Vec<OsString>,
     /// The keys to fit, dotted or by their letters: `material.effective_modulus,material.work_of_adhesion` or E*,gamma;
-    /// also data.offset (where x is zero), data.baseline (where P is; always fitted where there is a free part, from
-    /// which it follows) and data.tilt; those of the preset's data.free when left out. Offset, tilt and, without a free
+    /// also data.offset (where x is zero), data.baseline (where P is; where there is a free part, it is always
+    /// fitted) and data.tilt; those of the preset's data.free when left out. Offset, tilt and, without a free
     /// part, baseline are held at the values of the preset or of --set unless they are free
     #[arg(long, value_name = "KEY,...", value_delimiter = ',')]
     free: Option<Vec<String>>,

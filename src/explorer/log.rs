@@ -183,6 +183,7 @@ impl Model {
         let walk = &walk[first..];
         let of_curve: Vec<&(usize, &Node)> = walk.iter().filter(|(_, node)| self.is_on_curve(node)).collect();
         let mut done = vec![Happened::NotYet; events.len()];
+        let is_own = |node: &Node| self.control().is_none_or(|control| node.control == control);
         // How many events lie behind the last state that no event of the path led to.
         let mut passed = 0;
         if let Some((_, node)) = of_curve.first() {
@@ -192,7 +193,9 @@ impl Model {
                 // Bodies in contact have come together at some point.
                 NodeKind::Start => happened.fill(Happened::Unseen),
                 // The state in which an event begins is reached through the events before it.
-                NodeKind::Moved | NodeKind::Limit if is_event => happened.fill(Happened::Unseen),
+                NodeKind::Moved | NodeKind::Limit if is_event && is_own(node) => {
+                    happened.fill(Happened::Unseen);
+                }
                 // Sent elsewhere, or solved again in place for other values: what lies behind did not happen.
                 NodeKind::Moved | NodeKind::Solved | NodeKind::Limit if !self.is_start(node) => {
                     passed = behind;
@@ -206,9 +209,8 @@ impl Model {
         for (number, event) in self.walked_events() {
             let Some((_, node)) = of_curve.iter().find(|(of_curve, _)| *of_curve == number) else { continue };
             // What happened under another control is not of this path, and no loss of it.
-            if self.control().is_some_and(|control| node.control != control) {
-                passed =
-                    radius(event.after.as_ref()).map_or(events.len(), |s| behind(events, s, event.direction));
+            if !is_own(node) {
+                passed = self.passed_by(events, &event);
                 last = last.max(passed);
                 continue;
             }
@@ -218,9 +220,7 @@ impl Model {
                 passed = last;
                 continue;
             }
-            if let Some(lands) = radius(event.after.as_ref()) {
-                passed = behind(events, lands, event.direction);
-            }
+            passed = self.passed_by(events, &event);
             strays.push((last, LogEntry { mark: EventMark::Done, number: None, event, node: Some(number) }));
             last = last.max(passed);
         }
@@ -247,6 +247,13 @@ impl Model {
         }
         entries.extend(strays.map(|(_, entry)| entry));
         Log { entries }
+    }
+
+    /// How many events lie behind the landing of a jump that is not one of them. A path that only unloads has none that
+    /// an outward jump goes back to.
+    fn passed_by(&self, events: &[EventReport], jump: &EventReport) -> usize {
+        let direction = if self.preset.path.begin == Begin::Disc { "unloading" } else { jump.direction };
+        radius(jump.after.as_ref()).map_or(events.len(), |lands| behind(events, lands, direction))
     }
 
     /// The event that begins in the state of the walker, if it has not happened.

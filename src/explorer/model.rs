@@ -133,6 +133,8 @@ pub struct Model {
     pub results: Results,
     /// The axes of the map; `None` for the usual ones.
     pub map_axes: Option<MapAxes>,
+    /// The title that a save replaced, and the one it gave: what undo brings back has it too.
+    pub(super) retitled: Option<[String; 2]>,
     /// The last fit that was adopted; the values may have changed since.
     pub fit: Option<Arc<Fit>>,
     /// The quantity being studied.
@@ -229,6 +231,7 @@ impl Model {
             stage: None,
             results: Results::default(),
             map_axes: None,
+            retitled: None,
             fit: None,
             studied: QuantityColumn { quantity: &QUANTITIES[0], under: Under::Own },
             stiffness,

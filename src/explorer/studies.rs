@@ -85,7 +85,11 @@ pub fn range(preset: &Preset, row: &Row) -> Result<(Key, Vec<Value>), String> {
         (Kind::Control, _) => return Err("no stiffness to vary: the device is not a spring".to_owned()),
         (_, None) => return Err(format!("{label} follows from other values: nothing to vary")),
         (Kind::Positive | Kind::Smoothing, Some(Value::Number(x))) if x > 0.0 => {
-            let factor = if row.key == RATE { RATE_FACTOR } else { FACTOR };
+            let factor = match &*row.key {
+                RATE => RATE_FACTOR,
+                STIFFNESS => STIFFNESS_FACTOR,
+                _ => FACTOR,
+            };
             (row.key.clone(), by_factors(x, factor))
         }
         (Kind::NonNegative, Some(Value::Number(x))) if x > 0.0 => {

@@ -64,9 +64,9 @@ fn legend_count(legend: &[LegendRow], room: usize) -> usize {
     legend.iter().enumerate().take_while(fits).count()
 }
 
-/// A chart with fewer rows inside has no row for its legend,
+/// A chart with fewer rows inside has no row for its legend.
 const LEGEND_ROWS: u16 = 8;
-/// and one more has a further row for each of these.
+/// The legend may take one row for each of these inside.
 const ROWS_PER_LEGEND_ROW: u16 = 4;
 
 impl Chart<'_> {
@@ -193,8 +193,8 @@ impl Chart<'_> {
         spans
     }
 
-    /// The entries of the legend in each of the rows inside that are used for it, which are this wide. Curves have one
-    /// row: their lines are the same in every chart, and rows are what they need.
+    /// The entries of the legend in each of the rows that it takes in a plot of this width. Curves have one: their lines
+    /// are the same in every chart, and rows are what they need.
     fn legend_rows(&self, area: Rect, inner: Rect, width: u16) -> Vec<&[LegendRow]> {
         if inner.height < LEGEND_ROWS || self.legend.is_empty() || self.legend_fits(area) {
             return Vec::new();

@@ -256,12 +256,16 @@ fn presets_are_saved_opened_and_never_replaced_unasked() {
     assert!(!session.model.is_unsaved());
     assert!(matches!(&session.model.source, Source::User { name, .. } if name == "lab-3"));
     // A title given to other values is not kept; one of the user's own is.
-    assert_eq!(session.model.preset.title, "wavy-sphere, A 0.003");
+    assert_eq!(session.model.preset.title, "changed from wavy-sphere");
+    // What undo brings back has the new title too.
+    session.does(Id::Step).does(Id::Undo);
+    assert_eq!(session.model.preset.title, "changed from wavy-sphere");
+    assert!(!session.model.is_unsaved());
     session.set("title", "mine").set("gap.amplitude", "0.0035");
     session.does(Command::SaveAs { name: "lab-4".to_owned(), replace: false, with_data: false });
     assert_eq!((&*session.model.preset.title, session.model.is_unsaved()), ("mine", false));
     session.does(Command::Open("lab-3".to_owned()));
-    assert_eq!(session.model.preset.title, "wavy-sphere, A 0.003");
+    assert_eq!(session.model.preset.title, "changed from wavy-sphere");
     session.set("gap.amplitude", "0.004").does(Id::Save);
     assert!(!session.model.is_unsaved(), "{}", session.status());
     session.does(Command::Open("wavy-sphere".to_owned()));

@@ -129,6 +129,27 @@ fn what_was_lost_under_another_control_is_not_counted() {
 }
 
 #[test]
+fn the_largest_pull_is_no_event_that_happened() {
+    // A under displacement is where the last contact under force begins.
+    let mut session = Session::new("wavy-sphere");
+    session.does(Id::MoveTo).set("path.control", "force");
+    let log = session.model.log();
+    assert!(log.entries.iter().all(|entry| entry.mark != EventMark::Done), "{log:?}");
+    // An outward jump of a path that only unloads leaves behind what was behind.
+    let mut session = Session::new("wavy-sphere");
+    session.does(Command::SelectEvent(3)).does(Id::Reverse).does(Id::NextEvent);
+    session.set("path.control", "force").does(Id::NextEvent).set("path.control", "displacement");
+    let log = session.model.log();
+    let ahead = log.entries.iter().position(|entry| entry.mark == EventMark::Ahead);
+    let stands = session.radius();
+    let begins = |at: usize| log.entries[at].event.before.as_ref().map(|before| before.contact_radius);
+    assert!(
+        ahead.is_none_or(|at| begins(at).is_some_and(|s| s <= stands * (1.0 + 1e-6))),
+        "{stands} {log:?}"
+    );
+}
+
+#[test]
 fn selecting_an_event_moves_the_walker_to_its_limit_point() {
     let mut session = Session::new("wavy-sphere");
     session.model.panel = ScreenPanel::Log;

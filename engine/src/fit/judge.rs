@@ -85,7 +85,7 @@ pub(super) fn reasons(
     let mut reasons: Vec<Reason> = clipped.map(|clipped| of_clipped(preset, clipped)).into_iter().collect();
     reasons.extend(contact::of_contact(problem, solved, scatter, inner));
     reasons.extend(apart::of_apart(problem, solved, scatter));
-    // Rows that are not apart look like a slope of the force.
+    // Rows that are not apart can be mistaken for a tilt.
     let level = apart::of_level(problem, solved);
     let tilt = if level.is_some() { None } else { scores::of_tilt(problem, solved, scatter, inner) };
     reasons.extend(level.into_iter().chain(tilt));

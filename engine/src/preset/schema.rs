@@ -287,7 +287,7 @@ impl Parameter {
                 words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(" or ")
             }
             Kind::Control => {
-                "\"displacement\", \"force\" or stiffness=k, in a file { stiffness = k }, with k > 0"
+                "\"displacement\", \"force\" or stiffness=k (in a file: { stiffness = k }) with k > 0"
                     .to_owned()
             }
         }

@@ -119,14 +119,11 @@ impl Record {
                 // The stages say between which of them it is; the place itself is the end of a step of its own.
                 let [from, to] =
                     [before, (NODES[i], node.force_rate)].map(|(c, rate)| [step.length * c, rate]);
-                let mut found = None;
-                let mut rate_after = |h: f64| {
-                    let tried = found.insert(again(h)?);
-                    Some(tried.end().force_rate)
-                };
-                if let Some(mut bracket) = RootBracket::new(from, to) {
-                    bracket.find(NEAR * step.length, &mut rate_after);
-                }
+                let mut last = None;
+                let rate_after = |h: f64| Some(last.insert(again(h)?).end().force_rate);
+                let is_found = RootBracket::new(from, to)
+                    .is_some_and(|mut bracket| bracket.find(NEAR * step.length, rate_after).is_some());
+                let found = last.filter(|_| is_found);
                 let at = found.as_ref().map_or(*node, |found| *found.end());
                 let lost = found.map_or(lost[i], |found| found.sums(StretchMoment::dissipation)[STAGES - 1]);
                 let at = self.moment(&at, self.dissipated + lost);

@@ -13,7 +13,7 @@ const FASTER: f64 = 10.0;
 
 /// Below this share of the speed along the equilibria an edge rests: after a snap it comes to them to rounding, and
 /// becomes that slow.
-const RESTS: f64 = 0.1;
+const RESTS: f64 = 0.5;
 
 /// An edge that has run does not rest above this many times the speed along the equilibria.
 const RUNS: f64 = 100.0;
@@ -59,7 +59,8 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool, unstable: &[[f64;
         let speed = speed_to(a, b);
         let Some(running) = &mut run else {
             if speed > FASTER * least {
-                run = Some(BegunSnap { from: crossing(a, b, FASTER * least), top: speed, low: (*b, speed) });
+                let from = crossing(a, b, FASTER * least);
+                run = Some(BegunSnap { from, top: b.speed.abs(), low: (*b, speed) });
                 continue;
             }
             // The edge is slow at first because it starts from rest.
@@ -67,8 +68,8 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool, unstable: &[[f64;
             least = if is_settled { least.min(speed).max(RESTS * level) } else { least };
             continue;
         };
-        if speed > running.top {
-            (running.top, running.low) = (speed, (*b, speed));
+        if b.speed.abs() > running.top {
+            (running.top, running.low) = (b.speed.abs(), (*b, speed));
         }
         if speed < running.low.1 {
             running.low = (*b, speed);
@@ -80,7 +81,8 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool, unstable: &[[f64;
         } else if low <= slow && FASTER * low < running.top && speed > FASTER * low {
             found.push(running.ended([at.contact_radius, at.dissipated]));
             least = low.max(RESTS * level);
-            run = Some(BegunSnap { from: crossing(a, b, FASTER * low), top: speed, low: (*b, speed) });
+            let from = crossing(a, b, FASTER * low);
+            run = Some(BegunSnap { from, top: b.speed.abs(), low: (*b, speed) });
         }
     }
     if let (Some(running), Some(last)) = (run.filter(|_| !ends_apart), moments.last()) {
@@ -101,11 +103,14 @@ impl BegunSnap {
     }
 }
 
-/// The speed at the moment `b`, or the mean speed since `a` where that is larger: an edge that follows the equilibria to
-/// rounding can be at rest for a moment.
+/// The mean speed from the moment `a` to `b`: where a slow edge follows the equilibria, its speed at a moment is only known to
+/// the tolerance of the integrator, and can be nothing. In a snap of a slow pull nothing is left of the time between two
+/// moments: there it is the speed at `b`.
 fn speed_to(a: &Moment, b: &Moment) -> f64 {
-    let mean = (b.contact_radius - a.contact_radius).abs() / (b.time - a.time);
-    b.speed.abs().max(if mean.is_finite() { mean } else { 0.0 })
+    /// Times are known to rounding: shorter ones than this share give no speed.
+    const RESOLVED: f64 = 1e-6;
+    let time = b.time - a.time;
+    if time > RESOLVED * b.time { (b.contact_radius - a.contact_radius).abs() / time } else { b.speed.abs() }
 }
 
 /// Where between two moments the speed is `speed`.

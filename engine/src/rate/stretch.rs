@@ -28,7 +28,7 @@ pub enum StretchEnd {
 
 /// The error of a step grows with this power of its length.
 const ORDER: f64 = 6.0;
-/// Errors that fall by more than this say no more about the next step.
+/// A larger fall of the error tells nothing about the next step.
 const MOST_GAIN: f64 = 1e6;
 /// The safety factor of the next step, and the factors by which it changes at most.
 const SAFETY: f64 = 0.9;
@@ -90,7 +90,7 @@ impl StepLengths {
     /// Trans. Math. Softw. 20, 496 (1994), doi:10.1145/198429.198437.
     fn next(&mut self, h: f64, error: f64) -> f64 {
         let factor = Self::factor(error);
-        let foreseen = self.before.map_or(factor, |[length, before]| {
+        let foreseen = self.before.filter(|[_, before]| *before > 0.0).map_or(factor, |[length, before]| {
             factor * h / length * pow((before / error).min(MOST_GAIN), 1.0 / ORDER)
         });
         self.before = Some([h, error]);
@@ -216,7 +216,7 @@ impl MotionStretch<'_> {
     }
 
     /// The length `h`, or less where the previous step predicts that the edge would go further than the cap: most steps
-    /// end there, and one that goes too far is solved for nothing.
+    /// end there, and one that goes too far is solved in vain.
     fn within(cap: f64, here: &Here, mut h: f64, last: Option<&SolvedStep>) -> f64 {
         for _ in 0..PREDICTIONS {
             let advance = h * dot(&WEIGHTS[STAGES - 1], &Self::predicted(here, h, last));

@@ -276,3 +276,24 @@ fn pulls_beside_each_other_differ_as_their_derivatives_say() {
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
+
+/// Towards a pull without speed the snaps converge: where they begin and end, and how fast they are. Below about 1e-9 the
+/// speed along the equilibria is less than the tolerance of the integrator.
+#[test]
+fn the_snaps_of_ever_slower_pulls_converge() {
+    let table = wavy();
+    for exponent in [0.5, 1.0] {
+        let [slow, slower, slowest] = [1e-8, 1e-10, 1e-12].map(|rate| pulled(&table, exponent, rate).snaps);
+        for snaps in [&slower, &slowest] {
+            assert_eq!(snaps.len(), slow.len(), "{exponent}");
+            for (snap, like) in snaps.iter().zip(&slow) {
+                assert!((snap.from - like.from).abs() < 0.003, "{exponent}: {snap:?} {like:?}");
+                assert!((snap.to - like.to).abs() < 1e-4, "{exponent}: {snap:?} {like:?}");
+                assert!(
+                    (snap.top_speed / like.top_speed - 1.0).abs() < 0.02,
+                    "{exponent}: {snap:?} {like:?}"
+                );
+            }
+        }
+    }
+}

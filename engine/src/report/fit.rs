@@ -499,7 +499,12 @@ impl FitReport {
         let units = &self.shown;
         text.push_str(&self.rows_text());
         let (chi, fitted) = (short(self.chi_squared, 4), self.rows.fitted());
-        let _ = writeln!(text, "chi squared per point {chi}; {fitted} points, {} outliers", self.outliers);
+        let _ = writeln!(
+            text,
+            "chi squared per point {chi}; {fitted} points, {} outlier{}",
+            self.outliers,
+            if self.outliers == 1 { "" } else { "s" }
+        );
         let sigma = |quantity, axis: usize| {
             let told = super::number::with_unit(units, quantity, self.sigma[axis], true, |x| short(x, 3));
             let from = match self.sigma_from[axis] {

@@ -260,7 +260,7 @@ impl Factors {
         }
     }
 
-    fn run(&self, rate: Option<f64>, pull: &Pull) -> RunReport {
+    fn run(&self, rate: Option<f64>, pull: &Pull, control: Control) -> RunReport {
         RunReport {
             rate,
             start: self.moment(&pull.start),
@@ -282,16 +282,18 @@ impl Factors {
                 control: moment.control * self.control,
             }),
             dissipated: pull.dissipated.map(|energy| energy * self.energy),
-            top_edge_speed: top_speed(pull) * self.speed,
+            top_edge_speed: top_speed(pull, control) * self.speed,
             balance: pull.balance,
             moments: pull.moments.iter().map(|moment| self.row(rate, moment)).collect(),
         }
     }
 }
 
-/// The largest speed of the edge in a snap or at the least force.
-fn top_speed(pull: &Pull) -> f64 {
-    pull.snaps.iter().map(|snap| snap.top_speed).fold(pull.peak.speed.abs(), f64::max)
+/// The largest speed of the edge in a snap or at the least force. Under a dead load that force lasts until the bodies
+/// are apart, where the speed has no bound.
+fn top_speed(pull: &Pull, control: Control) -> f64 {
+    let at_peak = if control == Control::Force { 0.0 } else { pull.peak.speed.abs() };
+    pull.snaps.iter().map(|snap| snap.top_speed).fold(at_peak, f64::max)
 }
 
 impl PullReport {
@@ -341,7 +343,7 @@ impl PullReport {
             let part = progress::ProgressPart::new(progress, [k as f64 / count, (k + 1) as f64 / count]);
             let pull = puller.pull(&parts, &part).map_err(refused)?;
             warnings.extend(limits(preset, &case, &factors, rate.as_ref(), &pull, progress));
-            runs.push(factors.run(*rate, &pull));
+            runs.push(factors.run(*rate, &pull, case.control));
         }
         let mut failures = Vec::new();
         if !asked.loads.is_empty() {

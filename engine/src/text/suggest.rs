@@ -29,7 +29,10 @@ pub fn closest_key<'a>(key: &str, known: impl IntoIterator<Item = (&'a str, &'a 
         let asked = last(key);
         let symbol = if asked == label {
             0.96
-        } else if label.starts_with(asked) && 2 * asked.len() >= label.len() {
+        } else if label
+            .strip_prefix(asked)
+            .is_some_and(|rest| rest == "*" || asked.len() > 1 && rest.len() <= asked.len())
+        {
             0.94
         } else {
             0.9 * likeness(last(&lower), label)

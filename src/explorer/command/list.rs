@@ -124,7 +124,7 @@ macro_rules! each_command {
         Open "open" "o" "open" always Nothing Needs("a preset") "open a preset; D in the list deletes one of your own"
             { words: "load preset file", run: |_| vec![file(Job::List)], takes: takes("preset", preset).going_on(presets) }
         Save "save" "s" "save" always Nothing Yes "save the preset" { words: "w write", run: save_back,
-            takes: takes("replace, or a name", saved).offering(|_| vec![Offer::new("replace", "also over what was changed meanwhile")]) }
+            takes: takes("replace, or a name", saved).offering(|_| vec![Offer::new("replace", "overwrite the file even if it changed on disk")]) }
         SaveAs "save-as" "S" "save as" always Nothing Needs("a name") "save the preset under another name"
             { takes: takes("name", saved_as).going_on(names) }
         Export "export" "e" "export" always Nothing Needs("a document and a file")

@@ -86,8 +86,7 @@ pub(in crate::explorer) fn views(typing: &Typing<'_>) -> Vec<Offer> {
 /// The quantities that can be studied.
 pub(in crate::explorer) fn quantities(typing: &Typing<'_>) -> Vec<Offer> {
     if !typing.words.is_empty() {
-        let numbers = if typing.words.len() > 1 { Vec::new() } else { numbers(&typing.model.preset) };
-        return numbers;
+        return if typing.words.len() > 1 { Vec::new() } else { numbers(&typing.model.preset) };
     }
     let all = QUANTITIES.iter().flat_map(SweepQuantity::columns);
     all.map(|column| {

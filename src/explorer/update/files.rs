@@ -17,7 +17,7 @@ use crate::print::PictureFormat;
 use crate::store::{Overwrite, Source};
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::Preset;
-use pulloff_engine::text::{greek, sanitize};
+use pulloff_engine::text::sanitize;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -43,18 +43,18 @@ pub(super) fn save(model: &mut Model, overwrite: Overwrite) -> Vec<Effect> {
 /// The longest title made here, in characters.
 const TITLE: usize = 80;
 
-/// Saves under a name. A title that was given to other values would not be true of these: they get one that says what
-/// they are.
+/// Saves under a name. A title that was given to other values would not be true of these: they get one that says where
+/// they come from, which stays true whatever is changed next.
 pub(super) fn save_as(model: &mut Model, name: String, replace: bool, with_data: bool) -> Vec<Effect> {
     let (from, mut preset) = (model.source.clone(), Box::new(model.preset.clone()));
-    if let Some(changed) = changed(&preset, &model.saved).filter(|_| preset.title == model.saved.title) {
+    if changed(&preset, &model.saved).is_some() && preset.title == model.saved.title {
         let of = match &from {
             Source::File(path) => {
                 path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into())
             }
             other => other.shown(),
         };
-        preset.title = sanitize(&format!("{of}, {}", greek(&changed)), TITLE);
+        preset.title = sanitize(&format!("changed from {of}"), TITLE);
     }
     vec![file(Job::SaveAs { name, preset, replace, with_data, from })]
 }
@@ -134,6 +134,9 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         Done::Saved { source, fingerprint, preset } => {
             model.tell(Level::Info, format!("saved as {}", source.shown()));
             let copied = as_saved(&model.preset, &model.saved, &preset);
+            if preset.title != model.saved.title {
+                model.retitled = Some([model.saved.title.clone(), preset.title.clone()]);
+            }
             // The comments of a shipped preset are not written: they describe that preset.
             if matches!(model.source, Source::Shipped(_)) {
                 model.comment.clear();

@@ -7,6 +7,7 @@ use crate::explorer::fit::{FitProgress, fit};
 use crate::explorer::model::{Level, Model};
 use crate::explorer::requests::stop;
 use crate::explorer::script::key_called;
+use crate::explorer::studies::range;
 use crate::explorer::view::{ScreenPanel, View};
 use crate::explorer::{look, reach};
 use pulloff_engine::preset::{Row, Value, groups};
@@ -40,8 +41,13 @@ pub(super) fn study(model: &mut Model, column: QuantityColumn, over: Option<Stri
             Ok(key) => key,
             Err(why) => return model.refuse(why),
         };
-        let at = model.knobs().iter().position(|(row, value)| row.key == key && value.is_some());
-        let Some(at) = at else { return model.refuse(format!("{key} has no value here: nothing to vary")) };
+        let knobs = model.knobs();
+        let Some(at) = knobs.iter().position(|(row, _)| row.key == key) else {
+            return model.refuse(format!("{key} has no value here: nothing to vary"));
+        };
+        if let Err(why) = range(&model.preset, &knobs[at].0) {
+            return model.refuse(why);
+        }
         model.parameter = at;
     }
     model.studied = column;

@@ -34,7 +34,11 @@ fn once(model: &mut Model, back: bool) -> Option<Vec<Effect>> {
     let Some(shelved) = &place.shelved else {
         model.undo.keep(back, here);
         go_to_node(model, &place);
-        effects.extend(change(model, place.preset.clone()));
+        let mut preset = place.preset.clone();
+        if let Some([_, title]) = model.retitled.as_ref().filter(|[before, _]| preset.title == *before) {
+            preset.title.clone_from(title);
+        }
+        effects.extend(change(model, preset));
         model.is_tried = place.settled && model.is_computing();
         if !place.settled && !model.is_computing() {
             effects.extend(solve_again(model).unwrap_or_default());

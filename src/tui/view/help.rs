@@ -8,6 +8,7 @@ use crate::tui::app::App;
 use crate::tui::overlay::Help;
 use crate::tui::theme::Theme;
 use pulloff_engine::report::FitReport;
+use pulloff_engine::text::greek;
 use ratatui::Frame;
 use ratatui::layout::{Margin, Rect};
 use ratatui::style::Style;
@@ -210,7 +211,7 @@ fn about(app: &App) -> Vec<HelpLine> {
     let changes = changes(&model.saved, &model.preset);
     if !changes.is_empty() {
         section(&mut entries, theme, "Changed since");
-        entries.extend(changes.iter().map(|change| line(change)));
+        entries.extend(changes.iter().map(|change| line(&greek(change))));
     }
     entries
 }

@@ -14,7 +14,11 @@ pub fn legend(figure: &Figure, bounds: &Bounds, theme: Theme) -> Vec<LegendRow> 
             words.push((rank, entry));
         }
     };
-    let is_seen = |points: &[(f64, f64)]| points.iter().any(|at| bounds.share(*at).is_some());
+    // A line can cross the window without a point in it.
+    let meets = |[lo, hi]: [f64; 2], a: f64, b: f64| a.min(b) <= hi && a.max(b) >= lo;
+    let crosses =
+        |pair: &[(f64, f64)]| meets(bounds.x, pair[0].0, pair[1].0) && meets(bounds.y, pair[0].1, pair[1].1);
+    let is_seen = |points: &[(f64, f64)]| points.windows(2).any(crosses);
     for line in figure.lines.iter().filter(|line| !line.name.is_empty() && is_seen(&line.points)) {
         let style = look(line.role, theme).style;
         let meaning = theme.symbols(&line.name);

@@ -64,7 +64,7 @@ fn each_mistake_names_file_line_key_and_what_was_meant() {
         (
             "\"displacement\"",
             "{}",
-            "w.toml:15: path.control must be \"displacement\", \"force\" or stiffness=k, in a file { stiffness = k }, with k > 0, not an empty table",
+            "w.toml:15: path.control must be \"displacement\", \"force\" or stiffness=k (in a file: { stiffness = k }) with k > 0, not an empty table",
         ),
         (
             "\"displacement\"",
