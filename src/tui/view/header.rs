@@ -21,8 +21,8 @@ fn stiffness_share(model: &Model) -> Option<f64> {
     Some(k / node.stiffness.in_units(node.setting.units()).contact)
 }
 
-/// What there is, what is held, and what is under way.
-fn heading(app: &App, warnings: &[String]) -> Vec<Span<'static>> {
+/// What there is, what is held, and what is under way, in `room` columns.
+fn heading(app: &App, warnings: &[String], room: u16) -> Vec<Span<'static>> {
     let (model, theme) = (&app.model, app.theme);
     let name = match &model.source {
         crate::store::Source::File(path) => {
@@ -47,9 +47,7 @@ fn heading(app: &App, warnings: &[String]) -> Vec<Span<'static>> {
     };
     spans.push(Span::raw("  control "));
     spans.push(Span::styled(control, theme.strong()));
-    if let Some(share) = stiffness_share(model) {
-        spans.push(Span::styled(theme.text(&format!(" ({} of 2E*s)", significant(share, 3))), theme.dim()));
-    }
+    let after_control = spans.len();
     // A job under way and a warning need the room more than what the Problem panel says anyway.
     if let (Some(count), true) = (model.preset.get("basis.rings"), warnings.is_empty() && app.late.is_none())
     {
@@ -66,7 +64,23 @@ fn heading(app: &App, warnings: &[String]) -> Vec<Span<'static>> {
         let text = theme.text(&app.keymap.spelled(says));
         spans.push(Span::styled(format!("  {text}"), theme.key().add_modifier(Modifier::BOLD)));
     }
+    if let Some(share) = stiffness_share(model) {
+        let share = Span::styled(theme.text(&format!(" ({} of 2E*s)", significant(share, 3))), theme.dim());
+        let (room, own, beside) = (usize::from(room), width(&spans), beside(app, warnings));
+        let with_share = own + share.width();
+        // The way to the places needs the room more.
+        let takes_places = room > own + beside && room <= with_share + beside;
+        if with_share <= room && !takes_places {
+            spans.insert(after_control, share);
+        }
+    }
     spans
+}
+
+/// The columns of the places and of a warning.
+fn beside(app: &App, warnings: &[String]) -> usize {
+    let warning = warnings.first().map_or(0, |first| first.chars().count() + "  !  +9 ?: all".len());
+    width(&places(app)) + warning
 }
 
 fn width(spans: &[Span<'_>]) -> usize {
@@ -81,15 +95,14 @@ fn warnings(app: &App) -> Vec<String> {
 /// Whether there is room for the places: a job under way, and a warning, need it more.
 fn has_places(app: &App, room: u16) -> bool {
     let warnings = warnings(app);
-    let warning = warnings.first().map_or(0, |first| first.chars().count() + "  !  +9 ?: all".len());
-    usize::from(room) > width(&heading(app, &warnings)) + width(&places(app)) + warning
+    usize::from(room) > width(&heading(app, &warnings, room)) + beside(app, &warnings)
 }
 
 /// Draws the first line.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let theme = app.theme;
     let warnings = warnings(app);
-    let mut spans = heading(app, &warnings);
+    let mut spans = heading(app, &warnings, area.width);
     let (places, has_places) = (places(app), has_places(app, area.width));
     let taken = width(&spans) + if has_places { width(&places) } else { 0 };
     let room = usize::from(area.width).saturating_sub(taken + 2);
