@@ -190,7 +190,7 @@ def test_sentences_name_the_arguments_of_python():
             problem.fit(data, **arguments)
         said.append(str(caught.value))
     assert not any("--" in sentence for sentence in said), said
-    for sentence, word in zip(said, ["free=[", "data", "free nothing", "replace", "separate", "separate", "columns"]):
+    for sentence, word in zip(said, ["free=[", "data", "free key nothing", "replace", "separate", "separate", "columns"]):
         assert word in sentence, said
     assert "--" not in "".join(SPHERE.fit(points(), FREE, **SIGMA).warnings)
 
