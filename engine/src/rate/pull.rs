@@ -30,6 +30,8 @@ const EQUILIBRIUM: f64 = 1e-11;
 const CHANGES: usize = 1000;
 /// A time this near to the end of a part, as a share of its duration, is the end.
 const OVER: f64 = 1e-13;
+/// A drive along the equilibria below this many tolerances of the integrator is lost among its errors.
+const UNRESOLVED: f64 = 100.0;
 /// How far beyond the start the table may have to reach, as this many factors of [`WIDER`].
 const WIDENINGS: usize = 60;
 const WIDER: f64 = 1.3;
@@ -268,7 +270,10 @@ impl Going<'_> {
         }
         let first = self.record.moments.len();
         let (at, end) = stretch.follow(&mut self.record, progress)?;
-        self.snaps.extend(snaps(&self.record.moments[first..], level, end == StretchEnd::Apart, &unstable));
+        let [drive, _] = equation.branch.drive(level);
+        let drifting = level > 0.0 && drive < UNRESOLVED * settings.tolerance;
+        let ends_apart = end == StretchEnd::Apart;
+        self.snaps.extend(snaps(&self.record.moments[first..], (level, drifting), ends_apart, &unstable));
         let s = at.held.contact_radius;
         self.adhesion += edge.adhesion(motion) * PI * (self.s - s) * (self.s + s);
         if motion == Motion::Closing && self.closed_to.is_none_or(|[largest, _]| s > largest) {

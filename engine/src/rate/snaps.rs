@@ -12,8 +12,8 @@ use crate::elementary::ln;
 const FASTER: f64 = 10.0;
 
 /// Below this share of the speed along the equilibria an edge rests: after a snap it comes to them to rounding, and
-/// becomes that slow.
-const RESTS: f64 = 0.5;
+/// becomes that slow. Where its speeds are not resolved they are less than that for long.
+const RESTS: [f64; 2] = [0.1, 0.5];
 
 /// An edge that has run does not rest above this many times the speed along the equilibria.
 const RUNS: f64 = 100.0;
@@ -47,8 +47,15 @@ struct BegunSnap {
 
 /// The snaps among the moments of one stretch. At its beginning the edge would go at the speed `level` if it followed
 /// the equilibria; at held control that is 0. The run in which the bodies come apart is not a snap. Between the radii
-/// `unstable`, equilibria are not stable.
-pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool, unstable: &[[f64; 2]]) -> Vec<Snap> {
+/// `unstable`, equilibria are not stable. An edge is `drifting` where the drive along the equilibria is less than what the
+/// integrator resolves.
+pub fn snaps(
+    moments: &[Moment],
+    (level, drifting): (f64, bool),
+    ends_apart: bool,
+    unstable: &[[f64; 2]],
+) -> Vec<Snap> {
+    let rests = RESTS[usize::from(drifting)];
     let mut found = Vec::new();
     let slow = if level > 0.0 { RUNS * level } else { f64::INFINITY };
     let level = level.max(f64::MIN_POSITIVE);
@@ -56,7 +63,7 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool, unstable: &[[f64;
     let mut run: Option<BegunSnap> = None;
     for pair in moments.windows(2) {
         let [a, b] = [&pair[0], &pair[1]];
-        let speed = speed_to(a, b);
+        let speed = if drifting { mean_speed(a, b) } else { b.speed.abs() };
         let Some(running) = &mut run else {
             if speed > FASTER * least {
                 let from = crossing(a, b, FASTER * least);
@@ -65,7 +72,7 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool, unstable: &[[f64;
             }
             // The edge is slow at first because it starts from rest.
             is_settled |= speed >= level || speed < a.speed.abs();
-            least = if is_settled { least.min(speed).max(RESTS * level) } else { least };
+            least = if is_settled { least.min(speed).max(rests * level) } else { least };
             continue;
         };
         if b.speed.abs() > running.top {
@@ -77,10 +84,10 @@ pub fn snaps(moments: &[Moment], level: f64, ends_apart: bool, unstable: &[[f64;
         let (at, low) = running.low;
         if speed <= FASTER * least {
             found.push(running.ended(crossing(a, b, FASTER * least)));
-            (run, least, is_settled) = (None, speed.max(RESTS * level), true);
+            (run, least, is_settled) = (None, speed.max(rests * level), true);
         } else if low <= slow && FASTER * low < running.top && speed > FASTER * low {
             found.push(running.ended([at.contact_radius, at.dissipated]));
-            least = low.max(RESTS * level);
+            least = low.max(rests * level);
             let from = crossing(a, b, FASTER * low);
             run = Some(BegunSnap { from, top: b.speed.abs(), low: (*b, speed) });
         }
@@ -106,7 +113,7 @@ impl BegunSnap {
 /// The mean speed from the moment `a` to `b`: where a slow edge follows the equilibria, its speed at a moment is only known to
 /// the tolerance of the integrator, and can be nothing. In a snap of a slow pull nothing is left of the time between two
 /// moments: there it is the speed at `b`.
-fn speed_to(a: &Moment, b: &Moment) -> f64 {
+fn mean_speed(a: &Moment, b: &Moment) -> f64 {
     /// Times are known to rounding: shorter ones than this share give no speed.
     const RESOLVED: f64 = 1e-6;
     let time = b.time - a.time;
