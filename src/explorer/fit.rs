@@ -148,9 +148,9 @@ fn told(fit: &Fit) -> String {
     let reasons = fit.reasons.iter().map(|reason| &*reason.sentence);
     let reasons = holds.into_iter().chain(reasons).chain(fit.warnings.iter().map(String::as_str));
     let begins = format!("{ended}: χ² {} ({}: the report)", short(fit.chi_squared, 3), Id::About.named());
-    let bound = fit.bound();
+    let together = fit.known_together();
     let parts: Vec<&str> =
-        std::iter::once(&*begins).chain(reasons).chain(bound.iter().map(String::as_str)).collect();
+        std::iter::once(&*begins).chain(reasons).chain(together.iter().map(String::as_str)).collect();
     greek(&parts.join("; "))
 }
 

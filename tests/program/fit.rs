@@ -328,8 +328,8 @@ fn rows_that_are_only_taken_to_be_apart_are_told() {
     let found = |ended: &crate::support::home::Ended| -> Value { serde_json::from_str(&ended.out).unwrap() };
     let document = found(&home.run(&fit));
     let reasons = document["reasons"].as_array().unwrap();
-    let level = reasons.iter().find(|reason| reason["kind"] == "level").expect("what is off");
-    assert!(level["sentence"].as_str().unwrap().contains("--free-part none"), "{level}");
+    let off = reasons.iter().find(|reason| reason["kind"] == "not-apart").expect("what is off");
+    assert!(off["sentence"].as_str().unwrap().contains("--free-part none"), "{off}");
     assert!(reasons.iter().all(|reason| reason["kind"] != "tilt"), "{reasons:?}");
     let ended = home.run(&[&fit[..], &["--free-part", "none"]].concat());
     assert_eq!(ended.status, 0, "{}", ended.err);

@@ -86,9 +86,9 @@ pub(super) fn reasons(
     reasons.extend(contact::of_contact(problem, solved, scatter, inner));
     reasons.extend(apart::of_apart(problem, solved, scatter));
     // Rows that are not apart can be mistaken for a tilt.
-    let level = apart::of_level(problem, solved);
-    let tilt = if level.is_some() { None } else { scores::of_tilt(problem, solved, scatter, inner) };
-    reasons.extend(level.into_iter().chain(tilt));
+    let in_contact = apart::of_contact(problem, solved);
+    let tilt = if in_contact.is_some() { None } else { scores::of_tilt(problem, solved, scatter, inner) };
+    reasons.extend(in_contact.into_iter().chain(tilt));
     reasons.extend(scores::of_shape(problem, solved, scatter, inner));
     if preset.cohesion().is_some() {
         reasons.extend(range::of_zone(problem, solved));

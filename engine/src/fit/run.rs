@@ -115,17 +115,17 @@ pub struct Fit {
 impl Fit {
     /// The pairs of values of which one combination is known far better than each alone, in words.
     #[must_use]
-    pub fn bound(&self) -> Vec<String> {
+    pub fn known_together(&self) -> Vec<String> {
         /// Beyond this correlation the errors of two values say little about both together.
-        const BOUND: f64 = 0.98;
+        const TOGETHER: f64 = 0.98;
         let rows = self.correlations.iter().flatten().enumerate();
         let pairs = rows.flat_map(|(i, row)| row.iter().take(i).enumerate().map(move |(j, r)| ([j, i], *r)));
-        let bound = pairs.filter(|(_, r)| r.abs() > BOUND);
+        let together = pairs.filter(|(_, r)| r.abs() > TOGETHER);
         let sentence = |([j, i], r): ([usize; 2], f64)| {
             let [a, b] = [j, i].map(|k| letter(&self.preset, &self.parameters[k].key));
             format!("{a} and {b} are known together far better than alone (correlation {r:+.4})")
         };
-        bound.map(sentence).collect()
+        together.map(sentence).collect()
     }
 
     /// Whether what was found holds for `preset`: it has the same points, taken in the same way, and all the fitted and

@@ -31,7 +31,7 @@ const CHANGES: usize = 1000;
 /// A time this near to the end of a part, as a share of its duration, is the end.
 const OVER: f64 = 1e-13;
 /// A drive along the equilibria below this many tolerances of the integrator is lost among its errors.
-const UNRESOLVED: f64 = 100.0;
+const RESOLVED: f64 = 100.0;
 /// How far beyond the start the table may have to reach, as this many factors of [`WIDER`].
 const WIDENINGS: usize = 60;
 const WIDER: f64 = 1.3;
@@ -271,9 +271,9 @@ impl Going<'_> {
         let first = self.record.moments.len();
         let (at, end) = stretch.follow(&mut self.record, progress)?;
         let [drive, _] = equation.branch.drive(level);
-        let drifting = level > 0.0 && drive < UNRESOLVED * settings.tolerance;
+        let resolved = level <= 0.0 || drive >= RESOLVED * settings.tolerance;
         let ends_apart = end == StretchEnd::Apart;
-        self.snaps.extend(snaps(&self.record.moments[first..], (level, drifting), ends_apart, &unstable));
+        self.snaps.extend(snaps(&self.record.moments[first..], (level, resolved), ends_apart, &unstable));
         let s = at.held.contact_radius;
         self.adhesion += edge.adhesion(motion) * PI * (self.s - s) * (self.s + s);
         if motion == Motion::Closing && self.closed_to.is_none_or(|[largest, _]| s > largest) {

@@ -47,15 +47,15 @@ struct BegunSnap {
 
 /// The snaps among the moments of one stretch. At its beginning the edge would go at the speed `level` if it followed
 /// the equilibria; at held control that is 0. The run in which the bodies come apart is not a snap. Between the radii
-/// `unstable`, equilibria are not stable. An edge is `drifting` where the drive along the equilibria is less than what the
-/// integrator resolves.
+/// `unstable`, equilibria are not stable. The speed is not `resolved` where the drive along the
+/// equilibria is less than the integrator resolves.
 pub fn snaps(
     moments: &[Moment],
-    (level, drifting): (f64, bool),
+    (level, resolved): (f64, bool),
     ends_apart: bool,
     unstable: &[[f64; 2]],
 ) -> Vec<Snap> {
-    let rests = RESTS[usize::from(drifting)];
+    let rests = RESTS[usize::from(!resolved)];
     let mut found = Vec::new();
     let slow = if level > 0.0 { RUNS * level } else { f64::INFINITY };
     let level = level.max(f64::MIN_POSITIVE);
@@ -63,7 +63,7 @@ pub fn snaps(
     let mut run: Option<BegunSnap> = None;
     for pair in moments.windows(2) {
         let [a, b] = [&pair[0], &pair[1]];
-        let speed = if drifting { mean_speed(a, b) } else { b.speed.abs() };
+        let speed = if resolved { b.speed.abs() } else { mean_speed(a, b) };
         let Some(running) = &mut run else {
             if speed > FASTER * least {
                 let from = crossing(a, b, FASTER * least);

@@ -402,7 +402,7 @@ impl FitReport {
             starts,
             youngs_modulus,
             bootstrap: fit.bootstrapped,
-            notes: fit.notes.iter().cloned().chain(fit.bound()).collect(),
+            notes: fit.notes.iter().cloned().chain(fit.known_together()).collect(),
             warnings: fit.warnings.clone(),
             doubts: fit.reasons.iter().map(|reason| &reason.sentence).chain(&fit.warnings).cloned().collect(),
             shown: units.clone(),
