@@ -158,7 +158,7 @@ impl Journal {
         preset.path.begin = match (&walking.action, &self.replay) {
             // A path belongs to one beginning.
             _ if walking.curve.along.is_some() => preset.path.begin,
-            (Action::Begin, _) => Begin::Touch,
+            (Action::Begin, _) => Begin::Apart,
             (Action::MoveTo(s), _) if s.total_cmp(&walking.curve.case.start).is_eq() => Begin::Disc,
             (_, Some(replay)) => replay.preset.path.begin,
             (_, None) => preset.path.begin,
@@ -214,9 +214,9 @@ impl Journal {
                 self.sync(preset, None, false);
                 self.write(&command);
             }
-            Action::MoveToEvent { event, .. } => {
+            Action::MoveToLimit { command, .. } | Action::MoveToContacts { command, .. } => {
                 self.sync(preset, None, false);
-                self.write(&Command::SelectEvent(event + 1));
+                self.write(&command);
                 self.turned(walking.inward);
             }
         }

@@ -116,7 +116,7 @@ impl Model {
     /// The path of the device from its beginning; it can be that of earlier values.
     pub fn path(&self) -> Option<&PathReport> {
         match self.preset.path.begin {
-            Begin::Touch => self.cycle()?.report(),
+            Begin::Apart => self.cycle()?.report(),
             Begin::Disc => self.curve.as_ref()?.report.as_ref(),
         }
     }
@@ -187,13 +187,13 @@ impl Model {
         // How many events lie behind the last state that no event of the path led to.
         let mut passed = 0;
         if let Some((_, node)) = of_curve.first() {
-            let (behind, is_event) = self.passed_before(events, node);
+            let (behind, is_on_path) = self.passed_before(events, node);
             let happened = &mut done[..behind];
             match node.kind {
                 // Bodies in contact have come together at some point.
                 NodeKind::Start => happened.fill(Happened::Unseen),
-                // The state in which an event begins is reached through the events before it.
-                NodeKind::Moved | NodeKind::Limit if is_event && is_own(node) => {
+                // Such a state is reached through the events before it.
+                NodeKind::Moved | NodeKind::Limit | NodeKind::Touch(_) if is_on_path && is_own(node) => {
                     happened.fill(Happened::Unseen);
                 }
                 // Sent elsewhere, or solved again in place for other values: what lies behind did not happen.
@@ -259,7 +259,8 @@ impl Model {
     /// The event that begins in the state of the walker, if it has not happened.
     fn stands_before(&self, events: &[EventReport], done: &[Happened]) -> Option<usize> {
         let node = self.walker().filter(|node| !node.is_apart())?;
-        if node.at(self.control()?) == At::Nothing {
+        // Nothing runs at a turn: only a walker that was sent there stands before it.
+        if node.at(self.control()?) == At::Nothing && node.kind != NodeKind::Moved {
             return None;
         }
         let stands = node.state.in_units(node.setting.units()).contact_radius;
@@ -287,21 +288,22 @@ impl Model {
         node.begins && start.is_some_and(|start| is_near(node.state.contact_radius, start))
     }
 
-    /// How many events of the path lie before the state with which a walk begins, and whether an event begins in it.
+    /// How many events of the path lie before the state with which a walk begins, and whether it is a state of
+    /// the path: one in which an event begins, or the largest pull.
     fn passed_before(&self, events: &[EventReport], node: &Node) -> (usize, bool) {
         let s = node.state.in_units(node.setting.units()).contact_radius;
-        let direction =
-            if self.inward || self.preset.path.begin == Begin::Disc { "unloading" } else { "loading" };
+        let is_there = |state: Option<&StateReport>| radius(state).is_some_and(|r| is_near(r, s));
+        let from_disc = self.preset.path.begin == Begin::Disc;
         if let NodeKind::Start = node.kind {
-            let landed =
-                events.iter().position(|event| radius(event.after.as_ref()).is_some_and(|r| is_near(r, s)));
-            let landed = landed.filter(|_| self.preset.path.begin == Begin::Touch);
-            return (landed.map_or(0, |at| at + 1), false);
+            // A loop begins where its first touch lands; a disc that is there already is on its way apart.
+            let landed = events.iter().position(|event| is_there(event.after.as_ref()));
+            let behind = landed.map_or_else(|| behind(events, s, "unloading"), |at| at + 1);
+            return (if from_disc { 0 } else { behind }, false);
         }
-        let begins_here = |event: &EventReport| {
-            event.direction == direction && radius(event.before.as_ref()).is_some_and(|r| is_near(r, s))
-        };
-        let begins = events.iter().position(begins_here);
-        (begins.unwrap_or_else(|| behind(events, s, direction)), begins.is_some())
+        let direction = if self.inward || from_disc { "unloading" } else { "loading" };
+        let begins = events.iter().position(|event| is_there(event.before.as_ref()));
+        let pull = self.path().and_then(|path| radius(path.totals.largest_pull.as_ref()));
+        let is_on_path = begins.is_some() || pull.is_some_and(|pull| is_near(pull, s));
+        (begins.unwrap_or_else(|| behind(events, s, direction)), is_on_path)
     }
 }

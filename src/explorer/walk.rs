@@ -7,6 +7,7 @@ use super::curve::CurveData;
 use super::follow::Before;
 use super::node::{Node, NodeKind};
 use super::setting::Setting;
+use pulloff_engine::annuli::Contacts;
 use pulloff_engine::case::Case;
 use pulloff_engine::problem::{Control, Turn};
 use pulloff_engine::quasistatic::path::Direction;
@@ -41,13 +42,11 @@ pub enum Action {
     MoveTo(f64),
     /// The state with this number on the path that the walker follows, and the command that leads there.
     MoveToState { at: usize, command: Command },
-    /// The limit point of this event.
-    MoveToEvent {
-        /// The number of the event, from 0, among those of the curve.
-        event: usize,
-        /// The number of its limit point on the curve.
-        limit: usize,
-    },
+    /// The limit point of the curve with this number, where an event begins, and the command that leads there.
+    MoveToLimit { limit: usize, command: Command },
+    /// The equilibrium with these contacts at this value of the control (both reduced), where `at` waits, and the
+    /// command that leads there.
+    MoveToContacts { contacts: Contacts, value: f64, at: At, command: Command },
     /// The state of the current problem, at the control value and near the radius of the old state.
     Solve {
         /// The state before the change, in the user's units.
@@ -64,7 +63,17 @@ pub enum Action {
 impl Action {
     /// Whether it begins a new walk, wherever the walker stood.
     pub fn begins(&self) -> bool {
-        matches!(self, Self::MoveTo(_) | Self::MoveToState { .. } | Self::MoveToEvent { .. } | Self::Begin)
+        self.command().is_some() || matches!(self, Self::MoveTo(_) | Self::Begin)
+    }
+
+    /// The command that leads to a state of the path.
+    pub fn command(&self) -> Option<&Command> {
+        match self {
+            Self::MoveToState { command, .. }
+            | Self::MoveToLimit { command, .. }
+            | Self::MoveToContacts { command, .. } => Some(command),
+            _ => None,
+        }
     }
 
     /// Solves the state of a node again for other values.
@@ -149,7 +158,10 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(MadeState) -> bool) -> WalkO
         Action::Run(count) => walk.steps(*count, true, &mut arrive),
         Action::Jump => walk.jump(&mut arrive),
         Action::MoveTo(s) => walk.move_to(*s, &mut arrive),
-        Action::MoveToEvent { limit, .. } => match request.curve.limits.get(*limit) {
+        Action::MoveToContacts { contacts, value, at, .. } => {
+            walk.move_to_contacts(contacts, *value, *at, &mut arrive)
+        }
+        Action::MoveToLimit { limit, .. } => match request.curve.limits.get(*limit) {
             Some(limit) => walk.move_to_limit(limit.contact_radius, &mut arrive),
             None => return WalkOutcome::Stopped("the curve has since changed".to_owned()),
         },
@@ -176,7 +188,10 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(MadeState) -> bool) -> WalkO
             }
             _ => "the path ends here".to_owned(),
         }),
-        WalkEnd::AtEnd => WalkOutcome::Ended("the end contact radius is reached; b turns round".to_owned()),
+        WalkEnd::AtEnd => WalkOutcome::Ended(format!(
+            "the end contact radius is reached; {} turns round",
+            Id::Reverse.named()
+        )),
         WalkEnd::EdgesMeet(radius) => WalkOutcome::Ended(format!(
             "the branch ends here: two edges meet at r {}; {} turns round",
             length(radius),
@@ -187,9 +202,10 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(MadeState) -> bool) -> WalkO
             length(radius),
             Id::Reverse.named()
         )),
-        WalkEnd::OutOfRange => {
-            WalkOutcome::Ended("nothing found up to three times the start radius; b turns round".to_owned())
-        }
+        WalkEnd::OutOfRange => WalkOutcome::Ended(format!(
+            "nothing found up to three times the start radius; {} turns round",
+            Id::Reverse.named()
+        )),
         WalkEnd::Failed(WalkFailure::NotSolved) => {
             let held = match request.control {
                 Control::Stiffness(_) => "place of the spring's far end",
@@ -229,7 +245,9 @@ fn along(request: &Request, arrive: &mut Emit<'_>) -> WalkEnd {
         Action::Begin => along.move_to(0, arrive),
         Action::MoveTo(s) => along.move_near(*s, direction, arrive),
         Action::MoveToState { at, .. } => along.move_to(*at, arrive),
-        Action::MoveToEvent { .. } => WalkEnd::Failed(WalkFailure::NoEquilibrium("on a curve")),
+        Action::MoveToLimit { .. } | Action::MoveToContacts { .. } => {
+            WalkEnd::Failed(WalkFailure::NoEquilibrium("on a curve"))
+        }
         Action::Solve { state, .. } => {
             let units = case.units();
             let value = request.control.value(state.approach / units.length, state.force / units.force);

@@ -3,14 +3,14 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 use crate::support::session::Session;
+use pulloff::explorer::log::EventMark;
 use pulloff::explorer::{Command, Id, NodeKind, View};
 use pulloff::figure::{Meaning, Role, Subject};
+use pulloff_engine::report::path::EventReport;
 
 /// Weak adhesion, started at the first touch.
 fn begun() -> Session {
-    let mut session = Session::new("fig-9-weak");
-    session.set("path.begin", "touch").does(Id::Restart);
-    session
+    Session::new("fig-9-weak")
 }
 
 /// The same with a disc and a ring.
@@ -123,9 +123,56 @@ fn every_view_of_a_state_knows_its_rings() {
 }
 
 #[test]
+fn a_digit_leads_to_an_event_with_rings_too_and_the_experiment_goes_on_there() {
+    for control in ["displacement", "force", "stiffness=1"] {
+        let mut session = begun();
+        session.set("path.control", control).does(Id::Restart);
+        let events = session.model.path_events().to_vec();
+        let with_rings = |event: &EventReport| event.before.as_ref().is_some_and(|at| at.contacts.len() > 1);
+        assert!(events.iter().filter(|event| with_rings(event)).count() > 3, "{control}");
+        for event in &events[1..] {
+            session.does(Command::SelectEvent(event.number));
+            let (log, before) = (session.model.log(), event.before.as_ref().unwrap());
+            let at = event.number - 1;
+            assert!(
+                log.entries[..at].iter().all(|entry| entry.mark == EventMark::Done),
+                "{control} {event:?}"
+            );
+            assert_eq!(log.entries[at].mark, EventMark::Here, "{control} {event:?} {}", session.status());
+            let state = session.model.walker().unwrap().state;
+            let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * b.abs().max(1e-3);
+            let is_there = near(state.force, before.force) && near(state.approach, before.approach);
+            assert!(is_there && near(state.contact_radius, before.contact_radius), "{state:?} {before:?}");
+            if event.kind == "turn" {
+                continue;
+            }
+            session.does(Id::NextEvent);
+            match &event.after {
+                Some(after) => {
+                    let state = session.model.walker().unwrap().state;
+                    let lands =
+                        near(state.force, after.force) && near(state.contact_radius, after.contact_radius);
+                    assert!(lands, "{control} {event:?} {state:?}");
+                }
+                None => assert!(session.model.walker().unwrap().is_apart(), "{control} {event:?}"),
+            }
+        }
+        // The largest pull, too, with all that happened before it.
+        session.does(Id::MoveTo);
+        let pull = session.model.path().unwrap().totals.largest_pull.clone().unwrap();
+        let state = session.model.walker().unwrap().state;
+        assert!((state.force - pull.force).abs() <= 1e-9 * pull.force.abs(), "{control}");
+        assert!(
+            session.model.log().entries.iter().all(|entry| entry.mark != EventMark::PassedBy),
+            "{control}"
+        );
+    }
+}
+
+#[test]
 fn a_crater_is_first_touched_by_a_ring() {
     let mut session = Session::new("crater");
-    session.set("path.begin", "touch").does(Id::Restart);
+    session.set("path.begin", "apart").does(Id::Restart);
     let node = session.model.walker().unwrap();
     assert_eq!((node.contacts().disc, node.contacts().rings.len()), (0.0, 1));
     session.does(Command::Steps(5));
@@ -135,6 +182,6 @@ fn a_crater_is_first_touched_by_a_ring() {
 #[test]
 fn a_gap_that_is_nowhere_least_begins_with_the_disc() {
     let mut session = Session::new("formula");
-    session.set("path.begin", "touch").does(Id::Restart);
+    session.set("path.begin", "apart").does(Id::Restart);
     assert!(session.model.walker().is_some(), "{}", session.status());
 }

@@ -1,19 +1,18 @@
 //! Where the walker is sent: to a contact radius, an event, the largest pull.
 
 use super::travel::travel_to;
-use super::walk::walk;
+use super::walk::{restart, walk};
 use crate::explorer::command::{Command, Id};
 use crate::explorer::effect::Effect;
 use crate::explorer::model::{Level, Model};
 use crate::explorer::walk::{Action, ROOM};
+use pulloff_engine::annuli::Contacts;
+use pulloff_engine::case::Case;
 use pulloff_engine::problem::Begin;
-use pulloff_engine::quasistatic::walk::Passing;
+use pulloff_engine::quasistatic::walk::{At, Passing};
 use pulloff_engine::report::number::{short, with_unit};
-use pulloff_engine::report::path::EventReport;
+use pulloff_engine::report::path::{EventReport, StateReport};
 use pulloff_engine::units::Quantity;
-
-/// Why the walker does not go to some events.
-const WITH_RINGS: &str = "that state has rings of contact, but the walker is on the curve of one disc";
 
 /// Radii of one limit point that were found in two ways agree to this accuracy.
 const SAME: f64 = 1e-6;
@@ -41,7 +40,7 @@ pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
     let Some(curve) = &model.curve else { return Vec::new() };
     let Some(path) = model.path() else {
         let why = match (&curve.unloading, model.cycle().map(|cycle| &cycle.report)) {
-            (_, Some(Err(why))) if model.preset.path.begin == Begin::Touch => why.to_string(),
+            (_, Some(Err(why))) if model.preset.path.begin == Begin::Apart => why.to_string(),
             (Err(why), _) => why.clone(),
             _ => "it is being computed".to_owned(),
         };
@@ -62,16 +61,20 @@ pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
     if let Some(event) = path.events.iter().position(begins) {
         return select_event(model, event + 1);
     }
-    if pull.contacts.len() > 1 {
-        model.tell(Level::Info, WITH_RINGS);
-        return Vec::new();
-    }
-    let reduced = match &curve.unloading {
-        Ok(path) if model.preset.path.begin == Begin::Disc => path.largest_pull().map(|at| at.contact_radius),
-        _ => None,
+    let action = if pull.contacts.len() > 1 {
+        to_contacts(&curve.case, pull, At::Nothing, Id::MoveTo.into())
+    } else {
+        let reduced = match &curve.unloading {
+            Ok(path) if model.preset.path.begin == Begin::Disc => {
+                path.largest_pull().map(|at| at.contact_radius)
+            }
+            _ => None,
+        };
+        Action::MoveTo(reduced.unwrap_or(radius / curve.case.units().length))
     };
-    let reduced = reduced.unwrap_or(radius / curve.case.units().length);
-    walk(model, Action::MoveTo(reduced))
+    // Bodies are pulled hardest on their way apart.
+    model.inward = true;
+    walk(model, action)
 }
 
 /// Selects the event with this number on the path.
@@ -99,24 +102,42 @@ pub(super) fn go_to_event(model: &mut Model) -> Vec<Effect> {
         let command = Command::SelectEvent(number);
         return at.map_or_else(Vec::new, |at| walk(model, Action::MoveToState { at, command }));
     }
-    let before = entry.event.before.as_ref().filter(|before| matches!(before.contacts[..], [[0.0, _]]));
-    let (Some(number), Some(before)) = (entry.number, before) else {
+    let (Some(number), Some(before)) = (entry.number, &entry.event.before) else {
         // The state before the jump, as it was walked.
         let parent = entry.node.and_then(|node| model.history.node(node)?.parent);
         if let Some(parent) = parent {
             return travel_to(model, parent);
         }
-        let text = if entry.event.before.is_none() { "before it the bodies are apart" } else { WITH_RINGS };
-        model.tell(Level::Info, text);
-        return Vec::new();
+        // Before it the bodies are apart: the walk begins where it lands.
+        return restart(model);
     };
+    let command = Command::SelectEvent(number);
+    model.inward = entry.event.direction == "unloading";
+    let at = match (entry.event.kind, entry.event.radius) {
+        ("touch", Some(radius)) => At::Touch(radius / curve.case.units().length),
+        ("turn", _) => At::Nothing,
+        _ => At::Limit,
+    };
+    if !matches!(before.contacts[..], [[0.0, _]]) || matches!(at, At::Touch(_)) {
+        return walk(model, to_contacts(&curve.case, before, at, command));
+    }
     let radius = before.contact_radius / curve.case.units().length;
     let away = |i: &usize| (curve.limits[*i].contact_radius - radius).abs();
     let nearest = (0..curve.limits.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
-    let limit = nearest.filter(|limit| away(limit) <= SAME * radius);
-    model.inward = entry.event.direction == "unloading";
-    match limit {
-        Some(limit) => walk(model, Action::MoveToEvent { event: number - 1, limit }),
+    match nearest.filter(|limit| away(limit) <= SAME * radius) {
+        Some(limit) => walk(model, Action::MoveToLimit { limit, command }),
         None => walk(model, Action::MoveTo(radius)),
     }
+}
+
+/// Goes to a state of the path of a problem by its edges, as `command` asks; `at` waits there.
+fn to_contacts(case: &Case, state: &StateReport, at: At, command: Command) -> Action {
+    let units = case.units();
+    let edge = |radius: f64| radius / units.length;
+    let of_disc = |contact: &&[f64; 2]| contact[0].total_cmp(&0.0).is_eq();
+    let disc = state.contacts.first().filter(of_disc).map_or(0.0, |[_, outer]| edge(*outer));
+    let rings =
+        state.contacts.iter().filter(|contact| !of_disc(contact)).map(|ring| ring.map(edge)).collect();
+    let value = case.control.value(state.approach / units.length, state.force / units.force);
+    Action::MoveToContacts { contacts: Contacts { disc, rings }, value, at, command }
 }

@@ -3,7 +3,7 @@
 use super::arrival::{Arrival, Emit, Reached, WalkEnd, WalkFailure};
 use super::edges;
 use super::walker::{At, ROOM, Walk};
-use crate::annuli::{Contacts, Ground};
+use crate::annuli::{Contacts, Ground, points};
 use crate::problem::Control;
 use crate::quasistatic::StatePoint;
 use crate::quasistatic::path::{self, GROWTH, LONGEST, NotFound, PathError, SingularSide};
@@ -120,6 +120,41 @@ impl Walk<'_> {
         }
         let length = if taken.side == SingularSide::Smooth { Some(GROWTH * whole) } else { length };
         Ok(RingStep { point: edges::kept(&balance, scales, &taken.end).after(here), arrival, length })
+    }
+
+    /// Goes to the equilibrium with these contacts at this value of the control, where `at` waits, as at an event of a
+    /// path.
+    pub fn move_to_contacts(&self, contacts: &Contacts, value: f64, at: At, emit: &mut Emit<'_>) -> WalkEnd {
+        match self.try_move_to_contacts(contacts, value, at) {
+            Ok(reached) => {
+                emit(reached);
+                match at {
+                    At::Nothing => WalkEnd::Done,
+                    At::Limit => WalkEnd::AtLimit,
+                    At::Touch(_) => WalkEnd::AtTouch,
+                }
+            }
+            Err(failure) => WalkEnd::Failed(failure),
+        }
+    }
+
+    fn try_move_to_contacts(&self, contacts: &Contacts, value: f64, at: At) -> Result<Reached, WalkFailure> {
+        let delta = if self.control == Control::Displacement { value } else { 0.0 };
+        let ground = self.ground(contacts.outermost(), delta)?;
+        let balance = self.balance(&ground, self.control);
+        let held = balance.held(contacts, &points(&ground, contacts), value);
+        let held = held.map_err(|error| WalkFailure::Edges(error.to_string()))?;
+        let arrival = match at {
+            At::Nothing => Arrival::Moved,
+            At::Limit => Arrival::Limit(None),
+            At::Touch(radius) => Arrival::Touch(radius),
+        };
+        let reached = self.landed(&balance, arrival, held)?;
+        if at != At::Limit {
+            return Ok(reached);
+        }
+        let ahead = self.standing(&reached.point, at).try_rings().ok().map(|jumped| jumped.ahead());
+        Ok(Reached { arrival: Arrival::Limit(ahead), ..reached })
     }
 
     /// Goes to the state at this value of the control with the same contacts, from the edges `from` of the problem before it changed.
