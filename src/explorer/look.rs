@@ -177,8 +177,10 @@ pub(super) fn in_rings(model: &mut Model) {
 
 pub(super) fn unpin(model: &mut Model, number: Option<usize>) {
     if !model.pins.remove(number) {
-        model.tell(Level::Error, "no curve is pinned under that number");
+        return model.tell(Level::Error, "no curve is pinned under that number");
     }
+    let which = number.map_or_else(|| "all pins".to_owned(), |number| format!("pin {number}"));
+    model.tell(Level::Info, format!("removed {which}; {} brings back what was removed", Id::Undo.named()));
 }
 
 /// Carries views, overlays and pins over to another session.

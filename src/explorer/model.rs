@@ -423,6 +423,7 @@ impl Model {
             node: self.history.id(),
             inward: self.inward,
             length: self.length,
+            pins: self.pins.clone(),
             settled: self.is_settled() || self.is_tried,
             is_step: false,
             shelved: None,
@@ -435,6 +436,7 @@ impl Model {
         place.shelved.is_none()
             && own == (place.node, place.inward, place.length.to_bits())
             && self.preset == place.preset
+            && self.pins.is_like(&place.pins)
     }
 
     /// Whether any of `places` differs from where the session stands.
@@ -478,7 +480,7 @@ impl Model {
     pub fn outer_end(&self) -> Option<Turn> {
         let curve = self.curve.as_ref()?;
         let (path, units) = (&self.preset.path, curve.case.units());
-        let turn = path.turn.filter(|_| path.begin == Begin::Touch);
+        let turn = path.turn.filter(|_| path.begin == Begin::Apart);
         let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, curve.case.control));
         let start =
             curve.unloading.as_ref().ok().and_then(Path::start).map_or(0.0, |start| start.contact_radius);

@@ -12,7 +12,7 @@ use pulloff_engine::report::number::{difference, short};
 use pulloff_engine::ritz::{NewtonSettings, solve};
 use pulloff_engine::units::UnitSystem;
 use std::collections::HashSet;
-use std::mem::discriminant;
+use std::mem::{self, discriminant};
 use std::sync::Arc;
 
 /// The most curves that can be pinned: each has its own digit and colour.
@@ -136,6 +136,31 @@ impl Pins {
         (like, others.into_iter().map(|pin| pin.number).collect())
     }
 
+    /// Whether both show the same curves under the same numbers, computed or still awaited.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.numbers().count() == other.numbers().count()
+            && self.presets().all(|(number, preset)| other.number_of(preset) == Some(number))
+    }
+
+    /// Every pin's number and the preset of its curve, computed or still awaited.
+    pub fn presets(&self) -> impl Iterator<Item = (usize, &Preset)> {
+        let shown = self.shown.iter().map(|pin| (pin.number, pin.preset()));
+        shown.chain(self.awaited.iter().map(|(number, preset)| (*number, preset)))
+    }
+
+    /// Becomes `other` again; a curve that has arrived since is not awaited again.
+    pub fn go_back_to(&mut self, other: &Self) {
+        let here = mem::replace(self, other.clone());
+        for pin in here.shown {
+            let of = |(number, preset): &(usize, Preset)| (*number, preset) == (pin.number, pin.preset());
+            if let Some(at) = self.awaited.iter().position(of) {
+                self.awaited.remove(at);
+                self.shown.push(pin);
+            }
+        }
+        self.shown.sort_by_key(|pin| pin.number);
+    }
+
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.shown.is_empty() && self.awaited.is_empty()
@@ -143,12 +168,12 @@ impl Pins {
 
     /// Pins `curve` under the smallest free number, which is returned.
     pub fn add(&mut self, curve: &Arc<CurveData>) -> Result<usize, String> {
-        let same = |pin: &&Pin| {
+        let same = |(_, pinned): &(usize, &Preset)| {
             let title = curve.setting.preset.title.clone();
-            Preset { title, ..pin.preset().clone() } == curve.setting.preset
+            Preset { title, ..(*pinned).clone() } == curve.setting.preset
         };
-        if let Some(pin) = self.shown.iter().find(same) {
-            return Err(format!("this curve is pinned already, as {}", pin.number));
+        if let Some((number, _)) = self.presets().find(same) {
+            return Err(format!("this curve is pinned already, as {number}"));
         }
         let number = self.free()?;
         self.shown.push(Pin { number, curve: Arc::clone(curve), elements: None });
@@ -173,8 +198,7 @@ impl Pins {
 
     /// The number of the pin of `preset`, shown or awaited.
     pub fn number_of(&self, preset: &Preset) -> Option<usize> {
-        let shown = self.shown.iter().find(|pin| pin.preset() == preset).map(|pin| pin.number);
-        shown.or_else(|| self.awaited.iter().find(|(_, other)| other == preset).map(|(number, _)| *number))
+        self.presets().find(|(_, other)| *other == preset).map(|(number, _)| number)
     }
 
     /// Removes the pin with this number, or all; false if there is nothing to remove.
@@ -187,7 +211,7 @@ impl Pins {
     }
 
     fn numbers(&self) -> impl Iterator<Item = usize> {
-        self.shown.iter().map(|pin| pin.number).chain(self.awaited.iter().map(|(number, _)| *number))
+        self.presets().map(|(number, _)| number)
     }
 }
 

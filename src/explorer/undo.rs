@@ -1,11 +1,11 @@
 //! What undo goes back to: where the session stood before each command that changed it.
 //!
 //! A place records everything that a command of the walk or of the values can change. States are named by their number
-//! in the tree, which pruning keeps, so going back computes nothing but the curve. Views, pins and the zoom are not
-//! included.
+//! in the tree, which pruning keeps, so going back computes nothing but the curve. Views and the zoom are not included.
 
 use super::history::History;
 use super::journal::Journal;
+use super::pins::Pins;
 use crate::store::{Fingerprint, Source};
 use pulloff_engine::preset::{Key, Preset};
 use std::sync::Arc;
@@ -33,6 +33,7 @@ pub struct SessionPlace {
     pub node: Option<u64>,
     pub inward: bool,
     pub length: f64,
+    pub pins: Pins,
     /// Whether the walker had been tried on these values.
     pub settled: bool,
     /// Whether a single step led on from it, which a held key continues.
@@ -48,6 +49,7 @@ impl SessionPlace {
             && self.node == other.node
             && (self.inward, self.length.to_bits()) == (other.inward, other.length.to_bits())
             && self.preset == other.preset
+            && self.pins.is_like(&other.pins)
     }
 }
 

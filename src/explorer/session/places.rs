@@ -5,6 +5,7 @@
 use super::number::Real;
 use super::unreadable::Unreadable;
 use crate::explorer::history::History;
+use crate::explorer::pins::Pins;
 use crate::explorer::undo::{SessionPlace, Undo};
 use pulloff_engine::preset::{Key, Preset};
 use serde::{Deserialize, Serialize};
@@ -27,6 +28,9 @@ struct SavedPlace {
     node: Option<usize>,
     inward: bool,
     length: Real,
+    /// Each pin's number, and that of its preset.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pins: Vec<(usize, usize)>,
     settled: bool,
 }
 
@@ -40,6 +44,7 @@ impl SavedPlaces {
                 node: place.node.and_then(|id| history.find(id)),
                 inward: place.inward,
                 length: Real(place.length),
+                pins: place.pins.presets().map(|(number, pinned)| (number, preset(pinned))).collect(),
                 settled: place.settled,
             });
             saved.collect()
@@ -54,7 +59,9 @@ impl SavedPlaces {
         preset: impl Fn(usize) -> Result<Preset, Unreadable>,
     ) -> Result<Undo, Unreadable> {
         let place = |saved: SavedPlace| {
+            let pins = saved.pins.into_iter().map(|(number, at)| Ok((number, preset(at)?)));
             Ok(SessionPlace {
+                pins: Pins::awaiting(pins.collect::<Result<Vec<_>, Unreadable>>()?),
                 preset: preset(saved.preset)?,
                 // A tree that is read numbers its nodes afresh, from 0.
                 node: saved.node.map(|at| at as u64),

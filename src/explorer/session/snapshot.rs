@@ -94,7 +94,6 @@ impl SessionLook {
 impl Snapshot {
     /// Takes the snapshot of `model`.
     pub fn of(model: &Model) -> Self {
-        let shown = model.pins.all().iter().map(|pin| (pin.number, pin.preset().clone()));
         Self {
             session: model.session,
             preset: model.untried.as_ref().map_or(&model.preset, |before| &before.place.preset).clone(),
@@ -104,7 +103,7 @@ impl Snapshot {
             history: model.history.clone(),
             undo: model.undo.clone(),
             settled: model.is_settled() || model.is_tried,
-            pins: shown.chain(model.pins.awaited().iter().cloned()).collect(),
+            pins: model.pins.presets().map(|(number, preset)| (number, preset.clone())).collect(),
             look: SessionLook::of(model),
             journal: model.journal.kept(),
         }

@@ -8,6 +8,7 @@ use crate::explorer::effect::Effect;
 use crate::explorer::look::carry_on;
 use crate::explorer::model::{Level, Model};
 use crate::explorer::node::Node;
+use crate::explorer::pins::changes;
 use crate::explorer::requests::{adopt_parameters, change, take_back, want_curve};
 use crate::explorer::undo::{SessionPlace, Shelved};
 use crate::store::Loaded;
@@ -17,11 +18,21 @@ use std::sync::Arc;
 
 /// Undoes or redoes this many commands, as far as there are any.
 pub(in crate::explorer) fn travel(model: &mut Model, id: Id, count: usize) -> Vec<Effect> {
+    let (before, pins, session) = (model.preset.clone(), model.pins.clone(), model.session);
     let mut effects = Vec::new();
     for _ in 0..count {
         match once(model, id == Id::Undo) {
             Some(more) => effects.extend(more),
             None => break,
+        }
+    }
+    if model.session == session {
+        // Where the walker went, the sentence of its state says.
+        let pinned = (!model.pins.is_like(&pins)).then(|| "the pins".to_owned());
+        let changed: Vec<String> = changes(&before, &model.preset).into_iter().chain(pinned).collect();
+        if !changed.is_empty() {
+            let word = if id == Id::Undo { "undone" } else { "redone" };
+            model.tell(Level::Info, format!("{word}: {}", changed.join(", ")));
         }
     }
     effects
@@ -66,7 +77,7 @@ pub(super) fn shelve(model: &Model) -> Shelved {
     }
 }
 
-/// Another session takes the place of this one; the display, the pins and the undo stay.
+/// Another session takes the place of this one; the display and the undo stay.
 fn swap(model: &mut Model, shelved: Shelved) {
     let Shelved { source, saved, fingerprint, history, journal } = shelved;
     let mut other = Model::new(Loaded { source, preset: saved, text: String::new(), fingerprint });
@@ -86,9 +97,10 @@ impl Model {
     }
 }
 
-/// Gives the walker, its direction and its step length the values of `place`.
+/// Gives the walker, its direction, its step length and the pins the values of `place`.
 fn go_to_node(model: &mut Model, place: &SessionPlace) {
     (model.inward, model.length) = (place.inward, place.length);
+    model.pins.go_back_to(&place.pins);
     let (Some(from), Some(to)) = (model.history.cursor(), place.node.and_then(|id| model.history.find(id)))
     else {
         return;
