@@ -1,7 +1,6 @@
 //! The placement of the labels of a map: snap counts in their regions, crests on their lines.
 
-use super::bounds::Bounds;
-use super::parts::{Mark, Sign};
+use super::parts::{Figure, Mark, Sign};
 use super::places::Places;
 use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::RowReport;
@@ -73,13 +72,15 @@ pub fn counts(report: &MapReport, x: &Places, y: &Places) -> Vec<Mark> {
     marks
 }
 
-/// Adds the crest of each line, where there is room beside the other `marks`; lines across which the count does not
-/// change have none.
-pub fn crests(report: &MapReport, x: &Places, y: &Places, bounds: &Bounds, marks: &mut Vec<Mark>) {
+/// Adds the crest of each line of the figure, where there is room beside its other marks; lines across which the count
+/// does not change have none.
+pub fn crests(report: &MapReport, x: &Places, y: &Places, figure: &mut Figure) {
+    let bounds = figure.places();
     let is_line =
         |row: &&RowReport| matches!(row.kind, "fold" | "cusp" | "landing") && row.changes != Some(false);
     let rows: Vec<&RowReport> = report.rows.iter().filter(is_line).filter(|row| row.line.is_some()).collect();
-    let place = |row: &&RowReport| bounds.share((x.at(row.x), y.at(row.y)));
+    let share = |at: (f64, f64)| bounds.share(figure.place(at));
+    let place = |row: &&RowReport| share((x.at(row.x), y.at(row.y)));
     let of_line = |a: &&RowReport, b: &&RowReport| a.line == b.line && a.kind == b.kind;
     let mut lines: Vec<_> = rows
         .chunk_by(of_line)
@@ -89,13 +90,14 @@ pub fn crests(report: &MapReport, x: &Places, y: &Places, bounds: &Bounds, marks
         })
         .collect();
     lines.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut taken: Vec<(f64, f64)> = marks.iter().filter_map(|mark| bounds.share(mark.at)).collect();
+    let mut taken: Vec<(f64, f64)> = figure.marks.iter().filter_map(|mark| share(mark.at)).collect();
     for (whole, crest, points) in lines.into_iter().filter(|(whole, ..)| *whole >= SHORTEST) {
         let is_free =
             |at: &(f64, f64)| taken.iter().all(|other| (at.0 - other.0).hypot(at.1 - other.1) > APART);
         if let Some(at) = ALONG.into_iter().filter_map(|share| along(&points, share * whole)).find(is_free) {
             taken.push(at);
-            marks.push(Mark { sign: Sign::OfCrest(crest), at: bounds.at(at) });
+            let at = figure.values_at(bounds.at(at));
+            figure.marks.push(Mark { sign: Sign::OfCrest(crest), at });
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Lines of a map of two parameters, and limit points over one.
 //!
-//! On a screen, whose axes are linear, positions on a logarithmic axis are decimal logarithms; a compliance that
-//! extends to infinity is placed at c/(c + c₀).
+//! A compliance that extends to infinity is placed at c/(c + c₀).
 
 use super::bounds::Bounds;
 use super::labels;
@@ -61,21 +60,19 @@ fn drawn(report: &MapReport, x: &Places, y: &Places) -> (Vec<Line>, Vec<Mark>) {
 }
 
 /// Everything drawn of `report` over these axes, with `preset` at its position.
-pub fn laid(report: &MapReport, preset: &Preset, x: &Places, y: &Places) -> (Vec<Line>, Vec<Mark>, Bounds) {
-    let (lines, mut marks) = drawn(report, x, y);
-    marks.extend(labels::counts(report, x, y));
+pub fn laid(report: &MapReport, preset: &Preset, x: &Places, y: &Places) -> Figure {
+    let (lines, marks) = drawn(report, x, y);
+    let mut figure = Figure::of(x.axis.clone(), y.axis.clone(), lines);
+    figure.marks = marks;
+    figure.marks.extend(labels::counts(report, x, y));
     if let (Some(x), Some(y)) = (standing(preset, &report.x, x), standing(preset, &report.y, y)) {
-        marks.push(Mark { sign: Sign::Preset, at: (x, y) });
+        figure.marks.push(Mark { sign: Sign::Preset, at: (x, y) });
     }
-    let bounds = bounds(x, y, &lines);
-    labels::crests(report, x, y, &bounds, &mut marks);
-    (lines, marks, bounds)
-}
-
-/// The bounds of the axes, or of the drawn lines where an axis follows from them.
-fn bounds(x: &Places, y: &Places, lines: &[Line]) -> Bounds {
-    let found = Bounds::of(lines.iter().flat_map(|line| line.points.iter().copied()));
-    Bounds { x: x.ends.unwrap_or(found.x), y: y.ends.unwrap_or(found.y) }
+    // Where an axis follows from the lines, they bound it.
+    let found = figure.bounds;
+    figure.bounds = Bounds { x: x.ends.unwrap_or(found.x), y: y.ends.unwrap_or(found.y) };
+    labels::crests(report, x, y, &mut figure);
+    figure
 }
 
 /// The position of a preset on an axis.
@@ -107,50 +104,48 @@ fn events(report: &MapReport, subject: &Subject<'_>, x: &Places, y: &Places) -> 
 }
 
 /// The curve of limit points that passes through the mark of an event.
-fn through(lines: &[Line], bounds: &Bounds, (x, y): (f64, f64)) -> Option<Vec<(f64, f64)>> {
+fn through(figure: &Figure, at: (f64, f64)) -> Option<Vec<(f64, f64)>> {
     /// As a share of the axis.
     const NEAR: f64 = 0.01;
-    let height = bounds.y[1] - bounds.y[0];
+    let [from, to] = figure.places().y;
+    let (x, y) = figure.place(at);
     let off = |line: &Line| {
-        let pairs = line.points.windows(2).filter(|pair| (pair[0].0 - x) * (pair[1].0 - x) <= 0.0);
-        let at = |pair: &[(f64, f64)]| {
+        let points: Vec<(f64, f64)> = line.points.iter().map(|at| figure.place(*at)).collect();
+        let pairs = points.windows(2).filter(|pair| (pair[0].0 - x) * (pair[1].0 - x) <= 0.0);
+        let away = |pair: &[(f64, f64)]| {
             let [(a, from), (b, to)] = [pair[0], pair[1]];
             // On a vertical piece neither end is nearer.
             let share = ((x - a) / (b - a)).clamp(0.0, 1.0);
             let share = if share.is_nan() { 0.5 } else { share };
-            (from + (to - from) * share - y).abs() / height
+            (from + (to - from) * share - y).abs()
         };
-        pairs.map(at).fold(f64::INFINITY, f64::min)
+        pairs.map(away).fold(f64::INFINITY, f64::min)
     };
     // An event begins where the control is smallest, whichever way the edge then runs.
-    let lines = lines.iter().filter(|line| matches!(line.role, Role::Stable | Role::Unstable));
+    let lines = figure.lines.iter().filter(|line| matches!(line.role, Role::Stable | Role::Unstable));
     let (off, line) = lines.map(|line| (off(line), line)).min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (off <= NEAR).then(|| line.points.clone())
+    (off <= NEAR * (to - from)).then(|| line.points.clone())
 }
 
-/// The figure of `report` on a screen, with the preset at its position.
+/// The figure of `report`, with the preset at its position.
 pub fn figure(report: &MapReport, subject: &Subject<'_>) -> Figure {
     let preset = subject.preset;
-    let places = |axis| Places::of(axis, preset, report.control, true);
+    let places = |axis| Places::of(axis, preset, report.control);
     let (x, y) = (places(&report.x), places(&report.y));
-    let (mut lines, mut marks, bounds) = laid(report, preset, &x, &y);
+    let mut figure = laid(report, preset, &x, &y);
     let is_map = report.counts.is_some();
     if !is_map {
         let events = events(report, subject, &x, &y);
         if let Some((number, mark)) = subject.event.and_then(|n| Some((n, events.get(n.checked_sub(1)?)?)))
-            && let Some(points) = through(&lines, &bounds, mark.at)
+            && let Some(points) = through(&figure, mark.at)
         {
-            lines.push(Line::new(Role::Chosen, format!("event {number}"), points));
+            figure.lines.push(Line::new(Role::Chosen, format!("event {number}"), points));
         }
-        marks.extend(events);
+        figure.marks.extend(events);
     }
     let of = if subject.is_one_disc() { "" } else { ", of the exact equation of one disc" };
     let what = if is_map { "where snaps begin" } else { "each limit point" };
-    let title = format!("{what}, {} over {}{of}", y.axis.symbol, x.axis.symbol);
-    let mut figure = Figure::empty(title, x.axis, y.axis);
-    figure.lines = lines;
-    figure.marks = marks;
-    figure.bounds = bounds;
+    figure.title = format!("{what}, {} over {}{of}", y.axis.symbol, x.axis.symbol);
     figure.notes.clone_from(&report.notes);
     figure
 }
@@ -162,7 +157,7 @@ pub fn taken(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Vec<(Ke
         if axis.key != COMPLIANCE && preset.row(&axis.key).is_none() {
             return None;
         }
-        let value = Places::of(axis, preset, report.control, true).value(place);
+        let value = Places::of(axis, preset, report.control).value(place);
         // Only a few digits of the number are meaningful.
         let text = value.map(|value| format!("{:e}", rounded(value)));
         if axis.key != COMPLIANCE {
@@ -182,8 +177,9 @@ pub fn taken(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Vec<(Ke
 pub fn count(report: &MapReport, preset: &Preset, (x, y): (f64, f64)) -> Option<usize> {
     let counts = report.counts.as_ref()?;
     let nearest = |axis: &AxisReport, values: &[Option<f64>], place: f64| {
-        let places = Places::of(axis, preset, report.control, true);
-        let away = |value: &Option<f64>| (places.at(*value) - place).abs();
+        let places = Places::of(axis, preset, report.control);
+        let run = places.axis.run;
+        let away = |value: &Option<f64>| (run.place(places.at(*value)) - run.place(place)).abs();
         values.iter().map(away).enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(at, _)| at)
     };
     let (column, row) = (nearest(&report.x, &counts.x, x)?, nearest(&report.y, &counts.y, y)?);

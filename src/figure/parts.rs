@@ -285,7 +285,8 @@ impl Figure {
         self.value(&places)
     }
 
-    fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
+    /// The position of a point on the axes.
+    pub fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
         (self.x.run.place(x), self.y.run.place(y))
     }
 
@@ -293,8 +294,13 @@ impl Figure {
         Bounds { x: places.x.map(|at| self.x.run.value(at)), y: places.y.map(|at| self.y.run.value(at)) }
     }
 
+    /// The values at a position on the screen.
+    pub fn values_at(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        (self.x.run.value(x), self.y.run.value(y))
+    }
+
     /// The bounds as positions on the axes.
-    fn places(&self) -> Bounds {
+    pub(super) fn places(&self) -> Bounds {
         let Bounds { x, y } = self.bounds;
         Bounds { x: x.map(|x| self.x.run.place(x)), y: y.map(|y| self.y.run.place(y)) }
     }
@@ -306,7 +312,8 @@ impl Figure {
         Self { bounds, ..self }
     }
 
-    /// The figure for a screen, whose axes are linear: along a logarithmic one stand decimal logarithms.
+    /// The figure for a screen, whose cells are evenly spaced: points and bounds along a logarithmic axis are decimal
+    /// logarithms of the values.
     #[must_use]
     pub fn on_screen(mut self) -> Self {
         let [x, y] = [self.x.run, self.y.run];
@@ -318,11 +325,6 @@ impl Figure {
         self.lines.iter_mut().flat_map(|line| &mut line.points).for_each(place);
         self.marks.iter_mut().for_each(|mark| place(&mut mark.at));
         self.areas.iter_mut().flat_map(|area| &mut area.outline).for_each(place);
-        for axis in [&mut self.x, &mut self.y] {
-            if axis.run == AxisScale::Logarithmic {
-                (axis.symbol, axis.run) = (format!("log {}", axis.symbol), AxisScale::Linear);
-            }
-        }
         self
     }
 
@@ -393,10 +395,12 @@ mod tests {
         let figure = Figure::of(axis("V").running(AxisScale::Logarithmic), axis("P"), vec![line]);
         // A part of the range is one of the logarithms, on paper too.
         let half = Window { x: [0.5, 1.0], ..Window::WHOLE };
-        let [paper, screen] = [figure.clone().in_window(&half), figure.on_screen().in_window(&half)];
-        assert_eq!((&*screen.x.symbol, screen.x.run), ("log V", AxisScale::Linear));
+        let paper = figure.clone().in_window(&half);
+        let screen = figure.on_screen();
+        let part = screen.bounds.part(&half);
+        let (x, y) = screen.values_at((2.0, 3.0));
+        assert!((x - 100.0).abs() < 1e-12 && (y - 3.0).abs() < 1e-12, "{x} {y}");
         assert_eq!(screen.lines[0].points, [(-4.0, 1.0), (0.0, 2.0), (2.0, 3.0)]);
-        assert!((paper.bounds.x[0].log10() - screen.bounds.x[0]).abs() < 1e-12);
-        assert!((screen.bounds.x[0] + 1.0).abs() < 1e-12, "{:?}", screen.bounds);
+        assert!((paper.bounds.x[0].log10() - part.x[0]).abs() < 1e-12 && (part.x[0] + 1.0).abs() < 1e-12);
     }
 }

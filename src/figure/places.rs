@@ -1,6 +1,6 @@
 //! The positions of numbers on an axis of a map.
 
-use super::parts::Axis;
+use super::parts::{Axis, AxisScale};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::map::AxisReport;
@@ -15,14 +15,13 @@ pub struct Places {
     /// The axis itself, with its title.
     pub axis: Axis,
     factor: f64,
-    logarithmic: bool,
     middle: Option<f64>,
     pub(super) ends: Option<[f64; 2]>,
 }
 
 impl Places {
-    /// The positions on an axis of a map of `preset`; with `even`, those of a logarithmic axis are logarithms.
-    pub fn of(axis: &AxisReport, preset: &Preset, control: Control, even: bool) -> Self {
+    /// The positions on an axis of a map of `preset`.
+    pub fn of(axis: &AxisReport, preset: &Preset, control: Control) -> Self {
         let quantity = match axis.key.as_str() {
             "control" if control == Control::Force => Quantity::Force,
             "force" => Quantity::Force,
@@ -42,14 +41,13 @@ impl Places {
         let unit = own.or_else(|| preset.units.unit(quantity));
         let shown = unit.map_or_else(String::new, ToString::to_string);
         let factor = unit.map_or(1.0, |unit| unit.from_si(1.0));
-        let logarithmic = axis.logarithmic && even;
         let symbol = match axis.middle {
             Some(middle) => format!("c/(c + {}), c = 1/k", significant(middle, 3)),
-            None if logarithmic => format!("log {symbol}"),
             None => symbol,
         };
-        let axis_of = Axis { shown, ..Axis::pure(symbol) };
-        let mut places = Self { axis: axis_of, factor, logarithmic, middle: axis.middle, ends: None };
+        let run = if axis.logarithmic { AxisScale::Logarithmic } else { AxisScale::Linear };
+        let axis_of = Axis { shown, ..Axis::pure(symbol).running(run) };
+        let mut places = Self { axis: axis_of, factor, middle: axis.middle, ends: None };
         places.ends = axis.from.map(|from| [places.at(Some(from)), places.at(axis.to)]);
         places
     }
@@ -59,7 +57,6 @@ impl Places {
         match (self.middle, value) {
             (Some(_), None) => 1.0,
             (Some(middle), Some(value)) => value / (value + middle),
-            (None, Some(value)) if self.logarithmic => (value * self.factor).log10(),
             (None, Some(value)) => value * self.factor,
             (None, None) => f64::NAN,
         }
@@ -70,7 +67,6 @@ impl Places {
         match self.middle {
             Some(_) if place >= 1.0 => None,
             Some(middle) => Some(middle * place.max(0.0) / (1.0 - place)),
-            None if self.logarithmic => Some(10f64.powf(place) / self.factor),
             None => Some(place / self.factor),
         }
     }

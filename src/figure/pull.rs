@@ -54,9 +54,9 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     figure.bounds = Bounds::of(line.points.iter().copied());
     figure.lines.push(line);
     let mark = |sign, at: &MomentReport| Mark { sign, at: (time(at.time), scale.force(at.force)) };
+    // A stands for the largest pull of the quasi-static path alone, which the log and the other charts show.
     let others = run.tension_peaks.iter().filter(|peak| **peak != run.peak);
-    figure.marks.extend(others.map(|peak| mark(Sign::Minimum, peak)));
-    figure.marks.push(mark(Sign::LargestPull, &run.peak));
+    figure.marks.extend(others.chain([&run.peak]).map(|peak| mark(Sign::Minimum, peak)));
     figure.notes.push(format!("{} {}", figure.y.symbol, significant(scale.force(run.peak.force), 4)));
     figure
 }

@@ -2,7 +2,7 @@
 
 use super::bounds::Bounds;
 use super::curves::{pinned_scale, place};
-use super::parts::Axis;
+use super::parts::{Axis, AxisScale};
 use super::scale::Scale;
 use super::subject::Subject;
 use crate::explorer::{CurveData, View};
@@ -148,11 +148,16 @@ fn marks(curve: &CurveData) -> Vec<([f64; 3], What)> {
 pub fn coordinates(bounds: &Bounds, [x, y]: [&Axis; 2], at: (f64, f64)) -> String {
     /// The number of positions distinguished across a window.
     const PLACES: f64 = 1e3;
-    let shown = |[lo, hi]: [f64; 2], value: f64| {
-        let digits = (lo.abs().max(hi.abs()) / (hi - lo) * PLACES).log10().ceil().clamp(3.0, 16.0);
+    let shown = |axis: &Axis, [lo, hi]: [f64; 2], at: f64| {
+        let size = match axis.run {
+            AxisScale::Linear | AxisScale::Counted => lo.abs().max(hi.abs()),
+            // A step along the axis is a share of the value itself.
+            AxisScale::Logarithmic => std::f64::consts::LOG10_E,
+        };
+        let digits = (size / (hi - lo) * PLACES).log10().ceil().clamp(3.0, 16.0);
         // Between 3 and 16.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        significant(value, digits as usize)
+        significant(axis.run.value(at), digits as usize)
     };
-    format!("{} {}, {} {}", x.title(), shown(bounds.x, at.0), y.title(), shown(bounds.y, at.1))
+    format!("{} {}, {} {}", x.title(), shown(x, bounds.x, at.0), y.title(), shown(y, bounds.y, at.1))
 }

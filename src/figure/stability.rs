@@ -1,11 +1,10 @@
 //! The law of stability over the contact radius: the work of adhesion at which each state is a limit point.
 //!
 //! Below the curve states are stable, above it they are not; the line of the preset's adhesion crosses it at the limit
-//! points. Changing the adhesion moves that line. The ordinate is logarithmic: its positions are decimal logarithms.
+//! points. Changing the adhesion moves that line.
 
-use super::bounds::Bounds;
 use super::map;
-use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
+use super::parts::{Axis, AxisScale, Figure, Line, Mark, Role, Sign};
 use super::scale::Scale;
 use super::subject::Subject;
 use crate::explorer::reach::OF_SHORT_RANGE;
@@ -21,12 +20,12 @@ use std::sync::Arc;
 /// The number of radii at which the law is drawn.
 const RADII: usize = 1500;
 
-/// The number of decades drawn below the preset's adhesion where the law falls further: to the floor, where no adhesion
-/// is stable.
-const DECADES: f64 = 3.0;
+/// The preset's adhesion over the least one drawn where the law falls further: to the floor, where no adhesion is
+/// stable.
+const RANGE: f64 = 1e3;
 
-/// Where contact radii and works of adhesion, both reduced, stand on the axes: the latter by the logarithm of γ', or of
-/// γ where the gap has no radius of curvature.
+/// Where contact radii and works of adhesion, both reduced, stand on the axes: the latter by γ', or by γ where the gap
+/// has no radius of curvature.
 struct LawPlaces<'a> {
     scale: Scale<'a>,
     units: Units,
@@ -42,7 +41,7 @@ impl LawPlaces<'_> {
     fn adhesion(&self, adhesion: f64) -> f64 {
         let adhesion = adhesion * self.units.work_of_adhesion;
         let shown = || self.scale.shown(Quantity::EnergyPerArea, adhesion);
-        self.group.map_or_else(shown, |group| group * adhesion).log10()
+        self.group.map_or_else(shown, |group| group * adhesion)
     }
 
     /// The law at these radii.
@@ -59,9 +58,10 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
     let problem = &case.problem;
     let group = problem.shape.radius_of_curvature().map(|radius| TAU / (problem.effective_modulus * radius));
     let y = match group {
-        Some(_) => Axis::pure("log γ'".to_owned()),
-        None => scale.axis("log γ", "energy per area", Quantity::EnergyPerArea),
+        Some(_) => Axis::pure("γ'".to_owned()),
+        None => scale.axis("γ", "energy per area", Quantity::EnergyPerArea),
     };
+    let y = y.running(AxisScale::Logarithmic);
     let is_one_disc = subject.is_one_disc();
     let under = match case.control {
         Control::Force => "force",
@@ -103,10 +103,10 @@ fn laws(figure: &mut Figure, case: &Case, panels: &Arc<Panels>, places: &LawPlac
         (0..=RADII).map(|k| case.end + (case.start - case.end) * k as f64 / RADII as f64).collect();
     let own = law(case.control);
     let points = places.curve(&own, &radii);
-    let finite = || points.iter().map(|(_, y)| *y).filter(|y| y.is_finite());
-    let most = finite().chain(Some(level).filter(|y| y.is_finite())).fold(f64::NEG_INFINITY, f64::max);
-    let least = finite().fold(f64::INFINITY, f64::min);
-    let floor = if level.is_finite() { least.max(level - DECADES).min(level - 0.5) } else { least };
+    let positive = || points.iter().map(|(_, y)| *y).filter(|y| y.is_finite() && *y > 0.0);
+    let most = positive().fold(level, f64::max);
+    let least = positive().fold(f64::INFINITY, f64::min);
+    let floor = if level > 0.0 { least.max(level / RANGE).min(0.3 * level) } else { least };
     // Where no adhesion is stable, the curve runs along the floor.
     let down = |points: Vec<(f64, f64)>| -> Vec<(f64, f64)> {
         points.into_iter().map(|(x, y)| (x, if y.is_nan() { y } else { y.max(floor) })).collect()
@@ -122,7 +122,7 @@ fn laws(figure: &mut Figure, case: &Case, panels: &Arc<Panels>, places: &LawPlac
     figure.lines.push(Line::new(Role::Law, "limit points; stable below", down(points)));
     let ends = [case.end, case.start].map(|s| places.radius(s));
     figure.lines.push(Line::new(Role::Level, "adhesion", ends.map(|x| (x, level)).to_vec()));
-    figure.bounds = Bounds::of([(ends[0], floor), (ends[1], most)]);
+    figure.bounds = figure.around([(ends[0], floor), (ends[1], most)]);
     figure.notes.extend(case.warning_of_dead_band());
     if !corners.is_empty() {
         let why = "the second derivative of the gap jumps: the law has corners there, which are not cusps";

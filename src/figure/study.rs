@@ -221,8 +221,8 @@ fn drawn(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points
 }
 
-/// The study's result nearest to the position `x` on its axis on the screen: the value and the quantity, or why there is none; a force over `critical`
-/// as in [`of`].
+/// The study's result nearest to `x` on its axis: the value and the quantity, or why there is none; a force over
+/// `critical` as in [`of`].
 pub fn reading(data: &StudyData, preset: &Preset, critical: Option<f64>, x: f64) -> Option<String> {
     let units = &data.wish.preset.units;
     let row = row(data, preset)?;
@@ -244,13 +244,13 @@ pub fn reading(data: &StudyData, preset: &Preset, critical: Option<f64>, x: f64)
     Some(format!("{} {value}: {} {found}", row.label, words(data.wish.column)))
 }
 
-/// The computed value nearest to the position `x` on its axis on the screen, in the units of the preset, and its index in the list.
+/// The computed value nearest to `x` on its axis, in the units of the preset, and its index in the list.
 pub fn taken(data: &StudyData, preset: &Preset, x: f64) -> Option<(usize, f64)> {
     let row = row(data, preset)?;
     let units = &data.wish.preset.units;
     let all = data.wish.values.iter().enumerate().filter_map(|(i, value)| Some((i, number(value)?)));
     let scale = scale_of(data);
-    let away = |value: f64| (scale.place(row.shown(units, value).number) - x).abs();
+    let away = |value: f64| (scale.place(row.shown(units, value).number) - scale.place(x)).abs();
     all.min_by(|a, b| away(a.1).total_cmp(&away(b.1)))
 }
 

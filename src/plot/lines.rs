@@ -2,7 +2,7 @@
 
 use crate::figure::map::laid;
 use crate::figure::places::Places;
-use crate::figure::{Axis, AxisScale, Figure};
+use crate::figure::{Axis, Figure};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::report::MapReport;
 use pulloff_engine::report::map::AxisReport;
@@ -10,16 +10,15 @@ use pulloff_engine::text::headline;
 
 /// The figure of `report`, with `preset` at its position.
 pub fn figure(report: &MapReport, preset: &Preset) -> Figure {
-    let places = |axis: &AxisReport| Places::of(axis, preset, report.control, false);
+    let places = |axis: &AxisReport| Places::of(axis, preset, report.control);
     let (x, y) = (places(&report.x), places(&report.y));
-    let (lines, marks, bounds) = laid(report, preset, &x, &y);
-    let run = |of: &AxisReport| if of.logarithmic { AxisScale::Logarithmic } else { AxisScale::Linear };
-    let titled = |places: Places, of: &AxisReport| {
+    let figure = laid(report, preset, &x, &y);
+    let titled = |axis: Axis, of: &AxisReport| {
         let words = preset.row(&of.key).map(|row| headline(&row.meaning).to_owned());
-        let symbol = words.map(|words| format!("{words}, {}", places.axis.symbol));
-        Axis { symbol: symbol.unwrap_or(places.axis.symbol), ..places.axis }.running(run(of))
+        let symbol = words.map(|words| format!("{words}, {}", axis.symbol));
+        Axis { symbol: symbol.unwrap_or(axis.symbol), ..axis }
     };
-    let (x, y) = (titled(x, &report.x), titled(y, &report.y));
-    let missing = lines.is_empty().then(|| "no limit point is born or lost here".to_owned());
-    Figure { marks, bounds, missing, ..Figure::of(x, y, lines) }
+    let (x, y) = (titled(x.axis, &report.x), titled(y.axis, &report.y));
+    let missing = figure.lines.is_empty().then(|| "no limit point is born or lost here".to_owned());
+    Figure { x, y, missing, ..figure }
 }

@@ -4,12 +4,44 @@ use crate::figure::AxisScale;
 use pulloff_engine::report::number::{fixed, short};
 
 /// Round ticks inside `bounds`, about `most` and at least two, with labels of equal precision; on an axis of counts,
-/// only whole numbers, and no more ticks than there are of these.
+/// only whole numbers, and no more ticks than there are of these. Along a logarithmic axis the bounds and the ticks are
+/// decimal logarithms of the values, and the labels the values themselves.
 pub fn ticks(bounds: [f64; 2], run: AxisScale, most: usize) -> Vec<(f64, String)> {
+    if run == AxisScale::Logarithmic {
+        return factors(bounds, most);
+    }
     // A single number gives no scale: then the steps are halved, or nearly.
     const FINER: usize = 4;
     let found = (0..FINER).map(|halvings| spaced(bounds, run, most << halvings));
     found.reduce(|coarse, fine| if coarse.len() < 2 { fine } else { coarse }).unwrap_or_default()
+}
+
+/// Powers of ten between two decimal logarithms, all or every second, third, …; in a short range other round numbers.
+fn factors([lo, hi]: [f64; 2], most: usize) -> Vec<(f64, String)> {
+    /// The most decades: more than between the smallest and the largest number.
+    const DECADES: i32 = 700;
+    if most == 0 || !(lo..hi).contains(&lo) || hi - lo > f64::from(DECADES) {
+        return Vec::new();
+    }
+    let is_inside = |at: &f64| (lo - 1e-9..=hi + 1e-9).contains(at);
+    // The range is short.
+    #[expect(clippy::cast_possible_truncation)]
+    let powers = lo.floor() as i32..=hi.floor() as i32;
+    let of = |factors: &[f64], every: i32| -> Vec<f64> {
+        let powers = powers.clone().filter(|power| power % every == 0);
+        let all =
+            powers.flat_map(|power| factors.iter().map(move |factor| f64::from(power) + factor.log10()));
+        all.filter(is_inside).collect()
+    };
+    let series = [of(&[1.0, 2.0, 5.0], 1), of(&[1.0, 3.0], 1)].into_iter();
+    let all = series.chain((1..DECADES).map(|every| of(&[1.0], every))).find(|all| all.len() <= most);
+    match all.filter(|all| all.len() > 1) {
+        Some(all) => all.into_iter().map(|at| (at, short(10f64.powf(at), 3))).collect(),
+        None => ticks([lo, hi].map(|at| 10f64.powf(at)), AxisScale::Linear, most)
+            .into_iter()
+            .map(|(value, label)| (value.log10(), label))
+            .collect(),
+    }
 }
 
 /// The same, but at most `most` ticks, and possibly none.
@@ -60,6 +92,15 @@ mod tests {
         assert_eq!(deep, ["0.12345678", "0.12345679", "0.1234568", "0.12345681", "0.12345682"]);
         assert!(ticks([1.0, 1.0], AxisScale::Linear, 4).is_empty());
         assert!(ticks([0.0, f64::NAN], AxisScale::Linear, 4).is_empty());
+        let factors = |bounds, most| {
+            let all = ticks(bounds, AxisScale::Logarithmic, most).into_iter();
+            all.map(|(_, label)| label).collect::<Vec<_>>()
+        };
+        assert_eq!(factors([-8.0, 2.0], 6), ["1e-8", "1e-6", "0.0001", "0.01", "1", "100"]);
+        assert_eq!(factors([-1.2, 1.1], 4), ["0.1", "1", "10"]);
+        assert_eq!(factors([-0.5, 0.8], 5), ["0.5", "1", "2", "5"]);
+        assert_eq!(factors([0.35, 0.45], 4), ["2.4", "2.6", "2.8"]);
+        assert!(factors([1.0, f64::INFINITY], 4).is_empty());
         let counts =
             |bounds| ticks(bounds, AxisScale::Counted, 6).into_iter().map(|(_, l)| l).collect::<Vec<_>>();
         assert_eq!(counts([-0.1, 2.1]), ["0", "1", "2"]);

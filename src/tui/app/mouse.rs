@@ -219,13 +219,15 @@ impl App {
     /// The walker goes to the state of the curve nearest to a position in a view, if that is near in the plot.
     fn go_to(&mut self, view: View, share: (f64, f64), plot: Option<Rect>) -> Vec<Effect> {
         let Some(subject) = Subject::of(&self.model) else { return Vec::new() };
-        let bounds = subject.figure(view).on_screen().bounds.part(&self.model.window(view));
+        let figure = subject.figure(view).on_screen();
+        let bounds = figure.bounds.part(&self.model.window(view));
+        let at = figure.values_at(bounds.at(share));
         if let (View::Map, Some(Ok(report))) = (view, subject.map) {
-            let taken = map::taken(report, &self.model.preset, bounds.at(share));
+            let taken = map::taken(report, &self.model.preset, at);
             return self.run(Command::Assign(taken));
         }
         if let (View::Study, Some(Ok(data))) = (view, &subject.study) {
-            let taken = study::taken(data, subject.preset, bounds.at(share).0);
+            let taken = study::taken(data, subject.preset, at.0);
             let text = taken.map(|(at, _)| (data.wish.key.clone(), data.wish.values[at].to_string()));
             return text.map_or_else(Vec::new, |assignment| self.run(Command::Assign(vec![assignment])));
         }

@@ -96,10 +96,10 @@ pub fn reading(model: &Model) -> Option<String> {
     let at = bounds.at(share);
     let here = reading::coordinates(&bounds, [&figure.x, &figure.y], at);
     if let (View::Study, Some(Ok(data))) = (view, &subject.study) {
-        return study::reading(data, subject.preset, study::critical_force(&subject), at.0);
+        return study::reading(data, subject.preset, study::critical_force(&subject), figure.values_at(at).0);
     }
     let snaps = match (view, subject.map) {
-        (View::Map, Some(Ok(report))) => map::count(report, subject.preset, at),
+        (View::Map, Some(Ok(report))) => map::count(report, subject.preset, figure.values_at(at)),
         _ => None,
     };
     if let Some(snaps) = snaps {
