@@ -48,7 +48,7 @@ impl Background for LoopData {
         let curve = model.curve.as_ref().filter(|_| model.shows_its_curve() && !model.is_computing());
         let Some(curve) = curve.cloned() else { return Want::Later };
         // From apart, the loop is the path.
-        let is_path = model.preset.path.begin == Begin::Touch;
+        let is_path = model.preset.path.begin == Begin::Apart;
         let is_shown = is_path || model.shown_views().into_iter().any(View::is_cycle);
         if !is_shown && !has_crests(&curve) {
             return Want::Not;
@@ -76,7 +76,7 @@ impl Background for LoopData {
         let turn = turn.map(|turn| turn.in_units(1.0 / units.length, 1.0 / units.force, base.control));
         let case = Case { turn, ..base.clone() };
         // Where the walk follows the loop, the loop is already known.
-        if let (Begin::Touch, Some(Ok(along))) = (key.preset.path.begin, &key.curve.along) {
+        if let (Begin::Apart, Some(Ok(along))) = (key.preset.path.begin, &key.curve.along) {
             let report = Ok(PathReport::new(&key.preset, &case, along));
             return Some(Self { preset: key.preset.clone(), report });
         }

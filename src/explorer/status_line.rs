@@ -75,8 +75,8 @@ fn fault(model: &Model, node: &Node) -> Option<String> {
 /// What happens instead of a state that one disc cannot be in.
 fn real_path(model: &Model) -> String {
     match model.preset.path.begin {
-        Begin::Touch => format!("{} leads back to the path", Id::Undo.named()),
-        Begin::Disc => "begin = touch follows its rings".to_owned(),
+        Begin::Apart => format!("{} leads back to the path", Id::Undo.named()),
+        Begin::Disc => "begin = apart follows its rings".to_owned(),
     }
 }
 
@@ -138,7 +138,7 @@ fn standing(model: &Model, node: &Node, control: Control) -> String {
     if !model.inward && model.is_at_outer_end() && node.stability.under(control) {
         let turn = Id::Reverse.named();
         return match model.preset.path.begin {
-            Begin::Touch => {
+            Begin::Apart => {
                 format!("Here the control turns round: {next} goes on down, {step} goes out, off the path")
             }
             Begin::Disc => {

@@ -69,7 +69,7 @@ fn outward_the_next_event_ends_where_the_path_does() {
 
 #[test]
 fn from_apart_the_path_goes_up_to_its_turn_and_back() {
-    let mut session = Session::with("wavy-sphere", &["path.begin=touch"]);
+    let mut session = Session::with("wavy-sphere", &["path.begin=apart"]);
     let events = session.model.path_events().to_vec();
     let turn = events.iter().position(|event| event.kind == "turn").unwrap();
     assert!(turn > 0 && events.len() > turn + 1, "{events:?}");
@@ -228,7 +228,7 @@ fn the_control_can_change_in_mid_walk() {
     let mut session = Session::new("wavy-sphere");
     session.does(Command::Steps(4));
     let nodes = session.model.history.nodes().len();
-    session.does(Id::Control);
+    session.set("path.control", "force");
     // The state stays the same; only its stability is judged again.
     assert_eq!(session.model.history.nodes().len(), nodes);
     assert_eq!(session.model.path_events().last().unwrap().dissipated, None);
@@ -237,7 +237,7 @@ fn the_control_can_change_in_mid_walk() {
     session.does(Id::Jump);
     let NodeKind::Jump(event) = session.kind() else { panic!() };
     assert!((event.before.as_ref().unwrap().force - event.after.as_ref().unwrap().force).abs() < 1e-12);
-    session.does(Id::Control).does(Id::Control);
+    session.set("path.control", "displacement");
     assert!(!session.model.is_unsaved());
 }
 
@@ -370,7 +370,7 @@ fn exports_hold_what_is_on_the_screen_and_never_replace_a_file_unasked() {
                 let expected = match what {
                     ExportKind::Curve => session.model.curve.as_ref().unwrap().points.len(),
                     ExportKind::Walk => session.model.history.path().len(),
-                    ExportKind::Events | ExportKind::Script | ExportKind::Study => 2,
+                    _ => 2,
                 };
                 assert_eq!(rows, expected, "{what:?}");
             }
@@ -456,7 +456,7 @@ fn a_problem_without_adhesion_or_waves_can_be_walked() {
     assert_eq!(session.kind(), NodeKind::Step);
     session.does(Id::NextEvent);
     assert!(session.status().contains("end contact radius"), "{}", session.status());
-    session.does(Id::MuchMore).does(Id::Control).does(Id::Control);
+    session.does(Id::MuchMore).set("path.control", "force").set("path.control", "0.15");
     assert!(session.model.curve_error.is_none());
 }
 
@@ -524,7 +524,7 @@ fn what_is_not_admissible_is_known_after_the_curve_and_logged_behind_its_events(
     assert!(session.status().contains("crest would touch"), "{}", session.status());
     assert!((session.radius() - before).abs() < f64::EPSILON);
     // Another control keeps what is known about the curve.
-    session.does(Id::Control);
+    session.set("path.control", "force");
     assert_eq!(session.model.shown_inadmissible(), parts);
     // The curve is drawn as inadmissible exactly where the walker is reported to be.
     let part = parts[0].report;

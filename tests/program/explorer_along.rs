@@ -14,19 +14,19 @@ type Set = [(&'static str, &'static str)];
 const RESTS: &Set = &[("material.closing_work_of_adhesion", "0.002")];
 const RESTS_AFTER_LOADING: &Set = &[
     ("material.closing_work_of_adhesion", "0.002"),
-    ("path.begin", "touch"),
+    ("path.begin", "apart"),
     ("path.turn_approach", "0.05"),
 ];
 const RANGE: &Set = &[("material.adhesion", "dugdale"), ("material.cohesive_strength", "1")];
 const RANGE_FROM_APART: &Set = &[
     ("material.adhesion", "dugdale"),
     ("material.cohesive_strength", "1"),
-    ("path.begin", "touch"),
+    ("path.begin", "apart"),
     ("path.turn_approach", "0.02"),
 ];
 
 fn session(set: &Set) -> Session {
-    let mut session = Session::new("fig-9-cycle");
+    let mut session = Session::with("fig-9-cycle", &["path.begin=disc"]);
     for (key, value) in set {
         session.set(key, value);
     }
@@ -189,7 +189,7 @@ fn the_largest_pull_is_gone_to_from_anywhere() {
     let smooth: &Set = &[
         ("gap.amplitude", "0"),
         ("material.closing_work_of_adhesion", "0.0005"),
-        ("path.begin", "touch"),
+        ("path.begin", "apart"),
         ("path.turn_approach", "-0.001"),
         ("path.control", "force"),
     ];

@@ -73,7 +73,7 @@ pub fn build(values: &Values, files: Files) -> Result<Preset, Vec<Invalid>> {
             control,
             start,
             end_contact_radius: values.contains_key(end).then(|| given.number(end)),
-            begin: if given.text("path.begin") == Begin::Touch.name() { Begin::Touch } else { Begin::Disc },
+            begin: if given.text("path.begin") == Begin::Apart.name() { Begin::Apart } else { Begin::Disc },
             contact: if given.text("path.contact") == ContactKind::OneDisc.name() {
                 ContactKind::OneDisc
             } else {

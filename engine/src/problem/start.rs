@@ -28,16 +28,16 @@ pub enum Begin {
     #[default]
     Disc,
     /// With the bodies apart: at first touch and the state it jumps to, which is then pressed on.
-    Touch,
+    Apart,
 }
 
 impl Begin {
     /// The names, in the order of the variants.
-    pub const NAMES: [&'static str; 2] = ["disc", "touch"];
+    pub const NAMES: [&'static str; 2] = ["disc", "apart"];
 
     /// Its name.
     #[must_use]
     pub fn name(self) -> &'static str {
-        Self::NAMES[usize::from(self == Self::Touch)]
+        Self::NAMES[usize::from(self == Self::Apart)]
     }
 }

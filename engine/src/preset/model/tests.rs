@@ -26,7 +26,7 @@ fn another(key: &str) -> Value {
         "basis.rings" => 77.into(),
         "basis.grading" => "edge".into(),
         "path.control" => Control::Force.into(),
-        "path.begin" => "touch".into(),
+        "path.begin" => "apart".into(),
         "path.contact" => "one-disc".into(),
         "path.end_contact_radius" => 0.003.into(),
         "path.turn_approach" => 0.1.into(),
