@@ -164,18 +164,11 @@ fn stiffened(control: Control, up: bool, amount: Amount, contact: f64) -> Result
     })
 }
 
-/// The control after that of `preset`: displacement, force, a spring (of stiffness `last`), and so on in a cycle.
-pub fn next_control(preset: &Preset, last: Option<f64>) -> Control {
-    // As stiff as the paper's contacts themselves in reduced units, so that all three kinds of limit points differ.
+/// The stiffness to offer for a spring: the `last` one, or one as stiff as the paper's contacts themselves in reduced
+/// units, so that all three kinds of limit points differ.
+pub fn spring(preset: &Preset, last: Option<f64>) -> f64 {
     const STIFFNESS: f64 = 0.15;
-    match preset.path.control {
-        Control::Displacement => Control::Force,
-        Control::Force => {
-            let k = last.unwrap_or_else(|| tidy(STIFFNESS * preset.reduced().units.stiffness));
-            Control::Stiffness(k)
-        }
-        Control::Stiffness(_) => Control::Displacement,
-    }
+    last.unwrap_or_else(|| tidy(STIFFNESS * preset.reduced().units.stiffness))
 }
 
 /// `x` rounded to six significant digits: a stiffness derived from the problem stays readable.
@@ -303,12 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn controls_go_round_and_come_back_to_the_last_stiffness() {
-        let mut preset = preset();
-        for expected in [Control::Force, Control::Stiffness(0.15), Control::Displacement, Control::Force] {
-            preset.path.control = next_control(&preset, None);
-            assert_eq!(preset.path.control, expected);
-        }
-        assert_eq!(next_control(&preset, Some(0.2)), Control::Stiffness(0.2));
+    fn a_spring_is_offered_as_stiff_as_the_last_one() {
+        assert_eq!([None, Some(0.2)].map(|last| spring(&preset(), last)), [0.15, 0.2]);
     }
 }

@@ -202,10 +202,14 @@ fn the_stiffness_of_the_device_is_a_knob_from_displacement_to_force() {
     pty.keys("\x150.31\r");
     pty.wait_for(|screen| screen.contains("STIFFNESS=0.31"), "a bare number");
     pty.keys("c");
-    pty.wait_for(|screen| screen.contains("control DISPLACEMENT"), "round");
+    pty.wait_for(|screen| screen.contains("> stiffness ..."), "the same list");
+    pty.keys("kk\r");
+    pty.wait_for(|screen| screen.contains("control DISPLACEMENT"), "the choice");
     pty.wait_for(|screen| screen.contains("Event 1 of"), "the limit point again");
-    pty.keys("cc");
-    pty.wait_for(|screen| screen.contains("STIFFNESS=0.31"), "the last stiffness");
+    pty.keys("cjj\r");
+    pty.wait_for(|screen| screen.contains("stiffness=0.31"), "the last stiffness");
+    pty.keys("\r");
+    pty.wait_for(|screen| screen.contains("STIFFNESS=0.31"), "a spring again");
     pty.keys("q");
     pty.wait_for(|screen| screen.contains("y quits, Esc stays"), "the question");
     pty.keys("y");

@@ -33,7 +33,7 @@ fn any_command(rng: &mut Rng) -> Command {
         16..=18 => Id::Undo.into(),
         19 => Id::Redo.into(),
         20 => Id::Restart.into(),
-        21 => Id::Control.into(),
+        21 => set("path.control", ["displacement", "force", "0.15"][rng.usize(..3)].to_owned()),
         22..=24 => [Id::More, Id::Less, Id::MuchMore, Id::MuchLess][rng.usize(..4)].into(),
         25 => Command::SelectEvent(rng.usize(1..4)),
         26 => set("material.work_of_adhesion", format!("{:?}", rng.f64() * 0.01)),
@@ -231,7 +231,7 @@ fn the_journal_says_what_was_done_and_leaves_out_what_was_not() {
     session.all(&[Id::NextEvent, Id::Jump, Id::Undo, Id::Undo, Id::Redo]);
     session.all(&[Id::Reverse, Id::Reverse, Id::Halve]).does(Id::Step);
     // Changed four times, each with its own state; the values are exact.
-    session.all(&[Id::More, Id::More]).does(Id::Control).does(Id::Step);
+    session.all(&[Id::More, Id::More]).set("path.control", "force").does(Id::Step);
     let expected = [
         "step 6",
         "next-event",

@@ -57,7 +57,7 @@ fn story() -> Vec<Command> {
     );
     story.extend([Command::Steps(2), Id::Pin.into(), Id::NextView.into()]);
     story.push(Command::Zoom { view: View::ForceApproach, closer: true, about: (0.3, 0.6) });
-    story.extend([set("gap.amplitude", "0.002"), Command::Steps(2), Id::Control.into()]);
+    story.extend([set("gap.amplitude", "0.002"), Command::Steps(2), set("path.control", "force")]);
     story.extend([Id::NextEvent, Id::Jump, Id::More, Id::More, Id::Step, Id::Undo, Id::Undo].map(Into::into));
     story.extend([Id::Step, Id::Redo, Id::Undo, Id::Undo, Id::Undo, Id::Redo].map(Into::into));
     story.extend([Command::Overlay(Overlay::Exact), Id::Axes.into(), Id::Restart.into(), Id::Double.into()]);

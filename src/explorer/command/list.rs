@@ -37,7 +37,7 @@ macro_rules! each_command {
             { look: |model| scale_length(model, 2.0) }
         StepLength "step-length" "" "step length" always InOrder Yes "the longest step, as a share of every quantity's range"
             { takes: takes("length", |rest| Ok(Command::StepLength(rest.length()?))).always() }
-        Undo "undo" "u" "undo" undo InOrder Yes "undo the last change of a value or the walk; no state is erased"
+        Undo "undo" "u" "undo" undo InOrder Yes "undo the last change of values, pins or walk; no state is erased"
             { words: "back take revert", run: |model| travel(model, Id::Undo, 1), takes: takes("number", |rest| travelled(rest, Id::Undo)) }
         Redo "redo" "Ctrl-R" "redo" redo InOrder Yes "redo what was undone" { run: |model| travel(model, Id::Redo, 1),
             takes: takes("number", |rest| travelled(rest, Id::Redo)) }
@@ -45,8 +45,8 @@ macro_rules! each_command {
             "the branches of the walk: how each ended, and a way back"
             { takes: takes("branch", branch).listing(branches_of) }
         Restart "restart" "Home" "start" walker_or_no_curve Curve Yes "start again" { words: "reset beginning", run: restart }
-        Control "control" "c" "control" always Curve Yes "what the device prescribes: displacement, force, or stiffness"
-            { words: "device", run: change_control,
+        Control "control" "c" "control" always Curve Needs("a control")
+            "what the device prescribes: displacement, force, or stiffness" { words: "device",
             takes: takes("control", |rest| rest.assigned("a control", "path.control")).offering(controls) }
     }
     "Change the problem" {
@@ -114,10 +114,10 @@ macro_rules! each_command {
             "theory over the curve: smooth sphere, exact solution, envelope, the line of the loading device"
             { takes: takes("theory", theory).listing(theories) }
         Pin "pin" "p" "pin" curve Curve Yes "keep this curve to compare the next ones with" { words: "compare keep", look: look::pin }
-        Rings "rings" "#" "rings" curve Nothing Screen
+        Rings "rings" "#" "rings" curve InOrder Screen
             "over the chart: the same problem in the ring elements of the paper, or its exact solution over those; again: remove"
             { words: "elements", look: look::in_rings }
-        Pins "pins" "P" "pins" pins Nothing Needs("the number of a pin, or all") "remove a pinned curve; the list says what each shows"
+        Pins "pins" "P" "pins" pins InOrder Needs("the number of a pin, or all") "remove a pinned curve; the list says what each shows"
             { words: "remove unpin", takes: takes("number", pin).listing(pins_of) }
     }
     "Presets and files" {

@@ -4,7 +4,7 @@ use crate::explorer::command::{Assignment, Id};
 use crate::explorer::effect::Effect;
 use crate::explorer::job::Job;
 use crate::explorer::model::{Level, Model, Untried};
-use crate::explorer::nudge::{Amount, next_control, nudge};
+use crate::explorer::nudge::{Amount, nudge};
 use crate::explorer::pins::{labelled, labelled_with};
 use crate::explorer::requests::{change, file, read, stop};
 use crate::explorer::script::key_called;
@@ -323,10 +323,4 @@ fn tell_points(model: &mut Model, preset: &Preset) {
         }
         Err(why) => model.tell(Level::Error, format!("{name} is not drawn: {why}")),
     }
-}
-
-pub(in crate::explorer) fn change_control(model: &mut Model) -> Vec<Effect> {
-    let mut preset = model.preset.clone();
-    preset.path.control = next_control(&model.preset, model.stiffness);
-    change(model, preset)
 }

@@ -4,9 +4,10 @@ use super::state::App;
 use crate::explorer::script::offers::{DEVICES, Typing};
 use crate::explorer::script::parse;
 use crate::explorer::table::{CommandRow, row_of};
-use crate::explorer::{Command, Effect, Id, ScreenPanel, reach};
+use crate::explorer::{Command, Effect, Id, ScreenPanel, nudge, reach};
 use crate::tui::overlay::{Choice, Choose, Dialog, Item};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{Row, Value};
 use pulloff_engine::problem::Control;
 
@@ -90,20 +91,23 @@ impl App {
     }
 
     /// Asks what the device prescribes; the stiffness of a spring is typed.
-    pub(super) fn ask_control(&mut self, row: &Row, value: Option<Value>) -> Vec<Effect> {
-        let here = match value {
-            Some(Value::Control(Control::Force)) => 1,
-            Some(Value::Control(Control::Stiffness(_))) => 2,
-            _ => 0,
+    pub(super) fn ask_control(&mut self) -> Vec<Effect> {
+        let model = &self.model;
+        let Some(row) = model.preset.rows().find(|row| row.kind == Kind::Control) else { return Vec::new() };
+        let here = match model.preset.path.control {
+            Control::Displacement => 0,
+            Control::Force => 1,
+            Control::Stiffness(_) => 2,
         };
+        let spring = Value::Control(Control::Stiffness(nudge::spring(&model.preset, model.stiffness)));
         let set = |word: &str| Choice::Command(Command::Set { key: row.key.clone(), text: word.to_owned() });
-        let [grips, load, spring] = DEVICES;
+        let [grips, load, device] = DEVICES;
         let items = vec![
             Item::new(format!("displacement  {grips}"), set("displacement")),
             Item::new(format!("force         {load}"), set("force")),
             Item::new(
-                format!("stiffness ... {spring}"),
-                Choice::Prompt(Box::new(self.value_prompt(row, value))),
+                format!("stiffness ... {device}"),
+                Choice::Prompt(Box::new(self.value_prompt(&row, Some(spring)))),
             ),
         ];
         self.choose(&format!("{}: {}", row.label, row.meaning), items, here);

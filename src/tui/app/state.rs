@@ -17,9 +17,9 @@ use crate::tui::view::{cells, places};
 use crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
 use pulloff_engine::preset::data;
 use pulloff_engine::preset::schema::{Kind, NONE};
-use pulloff_engine::preset::{Row, Value};
+use pulloff_engine::preset::{Row, Value, groups};
 use pulloff_engine::problem::Control;
-use pulloff_engine::report::number::with_unit;
+use pulloff_engine::report::number::{short, with_unit};
 use pulloff_engine::text::{sanitize, show_path};
 use pulloff_engine::units::Quantity;
 use ratatui::layout::Rect;
@@ -306,6 +306,7 @@ impl App {
             Id::Export => self.ask_export(),
             Id::Data => self.browse(data::FILE.into()),
             Id::Copy => self.ask_copy(),
+            Id::Control => self.ask_control(),
             id if row_of(id).takes.is_listed && is_available(&self.model, id) => {
                 self.ask_argument(row_of(id))
             }
@@ -390,7 +391,7 @@ impl App {
             ("gap.formula", _) => return self.ask_formula(row.key.clone(), value),
             (_, Kind::File | Kind::Points) => return self.browse(row.key.clone()),
             (_, Kind::Choice(words)) => return self.ask_choice(&row, words, value.as_ref()),
-            (_, Kind::Control) => return self.ask_control(&row, value),
+            (_, Kind::Control) => return self.ask_control(),
             _ => {}
         }
         self.overlay = Some(Dialog::Prompt(self.value_prompt(&row, value)));
@@ -404,7 +405,10 @@ impl App {
             // With its unit, which also applies to a bare number typed in its place.
             Value::Number(x) => {
                 let shown = row.shown(units, x);
-                shown.text(&format!("{:?}", shown.number), true)
+                // A group is computed, so its last digit is rounding.
+                let is_group = groups::effect(&row.key).is_some();
+                let number = if is_group { short(shown.number, 15) } else { format!("{:?}", shown.number) };
+                shown.text(&number, true)
             }
             Value::Control(Control::Stiffness(k)) => {
                 with_unit(units, Quantity::ForcePerLength, k, true, |k| format!("stiffness={k}"))

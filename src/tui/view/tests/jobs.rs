@@ -29,11 +29,7 @@ const JOBS: &[Job] = &[
         &["Down", "Down", "Down", "Enter", "stiffness", "Enter", "0.31", "Enter"],
         &["STIFFNESS=0.31"],
     ),
-    (
-        "rings on approach at weak adhesion",
-        &["o", "fig-9-weak", "Enter", ":", "set path.begin=touch", "Enter", "n", "n"],
-        &["Landed"],
-    ),
+    ("rings on approach at weak adhesion", &["o", "fig-9-weak", "Enter", "n", "n"], &["Landed"]),
     ("where snaps begin", &["g", "m", "t"], &["where snaps begin"]),
     (
         "own data laid over and fitted",
@@ -128,7 +124,7 @@ fn questions_of_a_longer_way_have_their_answers() {
         // Which of two values is nearer to theory at the third snap.
         ("\r0.003\rp\r0.004\r3T", &["at @: JKR 1971 ", ", 1 A 0.003 "][..]),
         // A spring that makes the second snap vanish.
-        ("ccjjj:study snaps\rilllllllllll", &["snaps over k", "k ", ": snaps "]),
+        ("cjj\r\rjjj:study snaps\rilllllllllll", &["snaps over k", "k ", ": snaps "]),
         // The contact at the worst state.
         ("Lgi", &["contact, s/λ", "A -1.480 Pc", "/Pc -1.480"]),
         // What was done between the second and the third jump.

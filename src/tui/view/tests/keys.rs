@@ -124,11 +124,11 @@ fn choices_are_lists() {
     select(&mut screen, "path.begin");
     screen.keys("\r");
     let text = screen.text(80, 24);
-    for word in ["> disc", "touch"] {
+    for word in ["> disc", "apart"] {
         assert!(text.contains(word), "{word}: {text}");
     }
-    screen.keys("touch\r");
-    assert_eq!(screen.app.model.preset.get("path.begin").unwrap().to_string(), "touch");
+    screen.keys("apart\r");
+    assert_eq!(screen.app.model.preset.get("path.begin").unwrap().to_string(), "apart");
     // A spring is chosen, and its stiffness typed.
     select(&mut screen, "path.control");
     screen.keys("\rjj\r0.3\r");
