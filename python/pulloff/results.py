@@ -186,7 +186,7 @@ class Pull(Result):
     peak_contact_radius: Floats
     peak_approach: Floats
     peak_force: Floats
-    """The smallest force of the pull."""
+    """The largest pull, as the least force on the way."""
     tension_peaks: Counts
     snaps: Counts
     last_contact_time: Floats

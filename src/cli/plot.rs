@@ -373,7 +373,7 @@ fn length(preset: &Preset, text: &str) -> Result<f64, Failure> {
 /// The requested format; standard output and descriptors have no extension.
 fn format(path: &Path) -> Result<PictureFormat, Failure> {
     match PictureFormat::of(path) {
-        Err(FormatError::Ending(_)) if stream::is_stream(path) => Ok(PictureFormat::Svg),
+        Err(FormatError::Ending { .. }) if stream::is_stream(path) => Ok(PictureFormat::Svg),
         format => Ok(format?),
     }
 }

@@ -173,7 +173,8 @@ fn merged(parts: &[PathBuf], results: &ResultsArguments, console: &Console) -> R
 fn with_an_error(faults: &FaultCounts, console: &Console) {
     if faults.total() > 0 {
         let reasons: Vec<String> = faults.reasons.iter().map(|(reason, n)| format!("{n} {reason}")).collect();
-        console.warn(&[format!("{} with an error: {}", faults.total(), reasons.join(", "))]);
+        let reasons = reasons.join(", ");
+        console.warn(&[format!("{} with an error ({reasons}): the column error says why", faults.total())]);
     }
 }
 

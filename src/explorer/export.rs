@@ -13,13 +13,15 @@ pub enum ExportKind {
     Walk,
     Events,
     Script,
+    /// The pull at the rate of the preset.
+    Pull,
     /// The study on the screen: its values, or the spec of a sweep that repeats it.
     Study,
 }
 
 impl ExportKind {
     /// All, in the order they are offered.
-    pub const ALL: [Self; 5] = [Self::Curve, Self::Walk, Self::Events, Self::Script, Self::Study];
+    pub const ALL: [Self; 6] = [Self::Curve, Self::Walk, Self::Events, Self::Script, Self::Pull, Self::Study];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -28,6 +30,7 @@ impl ExportKind {
             Self::Walk => "walk",
             Self::Events => "events",
             Self::Script => "script",
+            Self::Pull => "pull",
             Self::Study => "study",
         }
     }
@@ -39,6 +42,7 @@ impl ExportKind {
             Self::Walk => "the states walked by hand",
             Self::Events => "the instabilities listed",
             Self::Script => "what was done, for pulloff run",
+            Self::Pull => "the pull at the preset's rate: its moments, or the whole document in a .json",
             Self::Study => "the study: its values, or in a .toml the sweep that repeats it",
         }
     }
@@ -46,7 +50,7 @@ impl ExportKind {
     /// The extensions its file may have, the usual one first.
     pub fn endings(self) -> &'static [&'static str] {
         match self {
-            Self::Curve | Self::Walk | Self::Events => &["csv", "json"],
+            Self::Curve | Self::Walk | Self::Events | Self::Pull => &["csv", "json"],
             Self::Script => &["pulloff", "txt"],
             Self::Study => &["csv", "toml"],
         }

@@ -169,10 +169,11 @@ fn put(path: &str, bytes: &[u8], replace: bool) -> Result<Fingerprint, WriteErro
 
 /// The units of the columns of `csv`, as the commands note them.
 fn units(content: &Content, csv: &str) -> Option<String> {
-    let (Content::Curve(curve) | Content::Walk(curve, _) | Content::Events(curve, _)) = content else {
-        return None;
+    let preset = match content {
+        Content::Curve(curve) | Content::Walk(curve, _) | Content::Events(curve, _) => &curve.setting.preset,
+        Content::Pull(pull) => &pull.preset,
+        Content::Script(..) | Content::Study(..) => return None,
     };
-    let preset = &curve.setting.preset;
     let columns: Vec<&str> = csv.lines().next()?.split(',').collect();
     columns::units(&columns, preset.path.control, &preset.units)
 }
@@ -279,6 +280,10 @@ fn text(content: &Content, as_json: bool) -> Result<String, Box<dyn std::error::
             } else {
                 events_table(events)?.csv()?
             }
+        }
+        Content::Pull(pull) => {
+            let report = pull.report.as_ref().map_err(|fault| fault.text.clone())?;
+            if as_json { json(report)? } else { report.moments()?.csv()? }
         }
         Content::Study(study, _) => study_table::csv(study)?,
         Content::Script(_, lines) => lines.join("\n"),

@@ -6,6 +6,7 @@ use super::data::{Folder, Foreign};
 use super::export::{ExportKind, Page};
 use super::journal::Beginning;
 use super::node::Node;
+use super::pulls::PullData;
 use super::studies::StudyData;
 use crate::mend::WordedFault;
 use crate::store::{Fingerprint, Listing, Loaded, Overwrite, Source};
@@ -24,6 +25,7 @@ pub enum Content {
     Events(Arc<CurveData>, Vec<EventReport>),
     /// Where the session began, and the lines that follow.
     Script(Box<Beginning>, Vec<String>),
+    Pull(Arc<PullData>),
     /// A study and where its preset comes from.
     Study(Arc<StudyData>, Box<Beginning>),
 }
@@ -36,6 +38,7 @@ impl Content {
             Self::Walk(..) => ExportKind::Walk,
             Self::Events(..) => ExportKind::Events,
             Self::Script(..) => ExportKind::Script,
+            Self::Pull(..) => ExportKind::Pull,
             Self::Study(..) => ExportKind::Study,
         }
     }

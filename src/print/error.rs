@@ -1,12 +1,13 @@
 //! Why a figure has no file.
 
+use super::PictureFormat;
 use crate::mend::Mend;
 
 /// Why no figure can be written to a file of this name.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FormatError {
-    #[error("{0}: a figure's file ends in .svg, .png or .pdf")]
-    Ending(String),
+    #[error("{name}: a figure's file ends in .{}", PictureFormat::ENDINGS.join(" or ."))]
+    Ending { name: String },
     /// This build does not include the format.
     #[error("this build cannot write {name} (feature `{feature}` is off); use .svg")]
     Missing { name: &'static str, feature: &'static str },

@@ -90,7 +90,7 @@ fn data_beside_a_figure_are_the_points_drawn() {
 fn what_cannot_be_drawn_is_refused_with_its_reason() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, words) in [
-        (&["-o", "a.gif"][..], "ends in .svg, .png or .pdf"),
+        (&["-o", "a.gif"][..], "ends in .svg or .png"),
         #[cfg(not(feature = "pdf"))]
         (&["-o", "a.pdf"][..], "this build cannot write PDF (feature `pdf` is off); use .svg"),
         (&["--width", "3"], "from 50 to 500 mm"),

@@ -235,7 +235,10 @@ values = [200, 200, 200, 60]
 "#,
     );
     let said = home.sweep("s.toml", "r.csv", &[]);
-    assert!(said.contains("2 with an error: 1 refused value, 1 small start"), "{said}");
+    assert!(
+        said.contains("2 with an error (1 refused value, 1 small start): the column error says why"),
+        "{said}"
+    );
     let all = home.columns("r.csv", &["kesari_lew", "enhancement", "snaps", "error"]);
     assert_eq!((&*all[0][1], &*all[1][1], &*all[3][0]), ("", "", ""));
     assert_eq!(
@@ -249,7 +252,7 @@ values = [200, 200, 200, 60]
     let again = home.sweep("s.toml", "r.csv", &[]);
     assert!(
         again.starts_with(
-            "pulloff: 4 of 4 rows in r.csv (4 from before)\npulloff: warning: 2 with an error: 1 ref"
+            "pulloff: 4 of 4 rows in r.csv (4 from before)\npulloff: warning: 2 with an error (1 ref"
         ),
         "{again}"
     );

@@ -303,7 +303,12 @@ fn change(preset: &Preset, parameter: &FreeParameter, u: f64, by: f64) -> String
     let (before, after) = (parameter.value(u), parameter.value(u + by));
     if parameter.scale.is_none() {
         let percent = 100.0 * exp_m1(by);
-        let digits = usize::from(percent.abs() < 9.95);
+        let digits = match percent.abs() {
+            0.0..0.0005 => return "0 %".to_owned(),
+            0.0005..0.095 => 3,
+            0.095..9.95 => 1,
+            _ => 0,
+        };
         return format!("{percent:+.digits$} %").replace('-', "−");
     }
     let text = said(&preset.units, super::fitted::quantity(preset, &parameter.key()), after - before);

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! with s the noise of neighbouring points in σ, k the rows of the noise that count as one and p the free values: H. Akaike, IEEE Trans.
-//! Autom. Control 19, 716 (1974). A model whose A is larger by more than 10 has no support beside the other: K. P. Burnham and
+//! Autom. Control 19, 716 (1974). A model whose AIC is larger by more than 10 has no support beside the other: K. P. Burnham and
 //! D. R. Anderson, *Model Selection and Multimodel Inference* (2002), section 2.6.
 
 use super::directed::fit_own;
@@ -25,7 +25,7 @@ use std::f64::consts::PI;
 
 /// The free keys of a law of the edge's speed.
 const LAW_KEYS: [&str; 2] = [edge::REFERENCE_SPEED, edge::EXPONENT];
-/// A difference of A that tells two models apart.
+/// A difference of AIC that tells two models apart.
 const APART: f64 = 10.0;
 /// Residuals count as at most this many s.
 const MOST: f64 = 4.0;
@@ -132,7 +132,7 @@ pub struct FittedModel {
 pub struct Pair {
     /// The better one and the other.
     pub models: [Model; 2],
-    /// By how much A of the other is larger.
+    /// By how much the AIC of the other is larger.
     pub difference: f64,
     /// Whether these points tell them apart.
     pub told_apart: bool,
@@ -217,7 +217,7 @@ pub fn fit_models(
     Ok(Models { fits, best, pairs })
 }
 
-/// A of each; infinite where there is none.
+/// The AIC of each; infinite where there is none.
 fn scores(fits: &[FittedModel]) -> Vec<f64> {
     let known = fits.iter().filter_map(|fitted| fitted.fit.as_ref().ok());
     let noise = known.clone().filter_map(|fit| fit.scatter.contact).fold(f64::INFINITY, f64::min);
@@ -244,20 +244,20 @@ fn pair(fits: &[FittedModel], scores: &[f64], [best, other]: [usize; 2]) -> Opti
     let says = |i: usize| fits[i].fit.as_ref().is_ok_and(|fit| fit.verdict == Verdict::Describes);
     let sentence = match (told_apart, says(best)) {
         (true, true) => format!(
-            "the points favour {} over {}, whose A is larger by {}",
+            "the points favour {} over {}, whose AIC is larger by {}",
             one.name(),
             two.name(),
             short(difference, 3)
         ),
         (true, false) => format!(
-            "{} is nearer to the points than {}, whose A is larger by {}, but its own verdict is not that it \
+            "{} is nearer to the points than {}, whose AIC is larger by {}, but its own verdict is not that it \
              describes them",
             one.name(),
             two.name(),
             short(difference, 3)
         ),
         (false, _) => format!(
-            "the points do not distinguish {} from {}: A differs by {}, and {APART} would be needed",
+            "the points do not distinguish {} from {}: AIC differs by {}, and {APART} would be needed",
             one.name(),
             two.name(),
             short(difference, 3).replace('-', "−")

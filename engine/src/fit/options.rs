@@ -145,10 +145,11 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
         let applies = |row: &&Row| row.fits(CHOOSERS[0], preset.gap.name());
         let known = rows.iter().filter(applies).map(|row| (&*row.key, &*row.label));
         let meant = closest_key(name, known);
-        return Err(refused(format!(
-            "is not a key of this preset{}",
-            meant.map_or_else(String::new, |key| format!("; did you mean {key}?"))
-        )));
+        let hint = meant.map_or_else(
+            || "; pulloff presets show has the keys of a preset".to_owned(),
+            |key| format!("; did you mean {key}?"),
+        );
+        return Err(refused(format!("is not a key of this preset{hint}")));
     };
     let others = [
         "material.effective_modulus",
@@ -174,7 +175,10 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
         Some(_) => {
             Err(refused("starts at 0, which has no logarithm: give it a first guess with --set".to_owned()))
         }
-        None => Err(refused("has no value in this preset to start from".to_owned())),
+        None => Err(refused(format!(
+            "has no value in this preset to start from: give it a first guess, as in --set {}=...",
+            row.key
+        ))),
     }
 }
 

@@ -64,9 +64,9 @@ impl Value {
                 Ok(n) => Ok(Self::Integer(n)),
                 Err(_) => Err(format!("the number {}", quote(n.as_str()))),
             },
-            DeValue::Float(x) => match x.as_str().parse() {
-                Ok(x) => Ok(Self::Number(x)),
-                Err(_) => Err(format!("the number {}", quote(x.as_str()))),
+            DeValue::Float(x) => match real(x.as_str()) {
+                Some(x) => Ok(Self::Number(x)),
+                None => Err(format!("the number {}", quote(x.as_str()))),
             },
             DeValue::Boolean(b) => Err(format!("the boolean {b}")),
             DeValue::Datetime(_) => Err("a date".to_owned()),
@@ -86,6 +86,13 @@ impl Value {
             Self::Control(control) => format!("the control {control}"),
         }
     }
+}
+
+/// The number that a text is; `None` also where only 0 is small enough for it.
+fn real(text: &str) -> Option<f64> {
+    let x: f64 = text.parse().ok()?;
+    let digits = text.split(['e', 'E']).next().unwrap_or(text);
+    (x != 0.0 || !digits.contains(|c| matches!(c, '1'..='9'))).then_some(x)
 }
 
 impl fmt::Display for Value {
@@ -229,7 +236,7 @@ impl Parameter {
             (
                 Kind::Positive | Kind::NonNegative | Kind::Finite | Kind::Between { .. } | Kind::Smoothing,
                 Err(_),
-            ) => text.parse::<f64>().map_or_else(|_| bare(), Value::Number),
+            ) => real(text).map_or_else(bare, Value::Number),
             (_, Err(_)) => bare(),
         };
         self.check(value)
@@ -287,6 +294,10 @@ mod tests {
         assert_eq!(parse("gap.amplitude", "0"), Ok(0.0.into()));
         assert_eq!(parse("gap.amplitude", " 2.5e-3 "), Ok(2.5e-3.into()));
         assert_eq!(parse("gap.amplitude", ".5"), Ok(0.5.into()));
+        assert_eq!(parse("gap.amplitude", "0.0e5"), Ok(0.0.into()));
+        for text in ["1e-400", ".1e-400"] {
+            assert!(parse("gap.amplitude", text).unwrap_err().to_string().contains(text));
+        }
         assert_eq!(parse("path.start_force", "-0.0"), Ok(0.0.into()));
         assert_eq!(parse("basis.rings", "400"), Ok(400.into()));
         assert_eq!(parse("gap.shape", "sphere"), Ok("sphere".into()));

@@ -440,7 +440,9 @@ impl FitReport {
             for (i, row) in correlations.iter().enumerate() {
                 for (j, r) in row.iter().enumerate().take(i) {
                     let names = [j, i].map(|k| self.parameters[k].letter.as_str());
-                    pairs.push(format!("{} {} {r:+.2}", names[0], names[1]));
+                    // What is not complete must not look so.
+                    let digits = if r.abs() < 0.99 { 2 } else { 4 };
+                    pairs.push(format!("{} {} {r:+.digits$}", names[0], names[1]));
                 }
             }
             let _ = writeln!(text, "correlations: {}", pairs.join(", "));

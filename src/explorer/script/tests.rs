@@ -115,7 +115,7 @@ fn a_fault_names_line_column_word_and_what_is_allowed() {
         ("set gap.wavelength=3 um", "t:1:22: \"um\" is not KEY=VALUE"),
         (
             "export curv x.csv",
-            "t:1:8: no document is called \"curv\": it is curve, walk, events, script, study, figure, screen; did you mean curve?",
+            "t:1:8: no document is called \"curv\": it is curve, walk, events, script, pull, study, figure, screen; did you mean curve?",
         ),
         ("export curve", "t:1:14: a file is missing"),
         ("open", "t:1:1: open needs a preset"),

@@ -2,6 +2,7 @@
 
 use super::travel::shelve;
 use super::values::{assigned, rows_came};
+use crate::explorer::background::Background;
 use crate::explorer::command::Id;
 use crate::explorer::effect::Effect;
 use crate::explorer::export::{ExportKind, Page, ends_in};
@@ -10,6 +11,7 @@ use crate::explorer::journal::Beginning;
 use crate::explorer::look;
 use crate::explorer::model::{Level, Model, Question};
 use crate::explorer::pins::changed;
+use crate::explorer::pulls::PullData;
 use crate::explorer::requests::{change, file, want_curve};
 use crate::explorer::studies::StudyData;
 use crate::explorer::undo::SessionPlace;
@@ -72,6 +74,14 @@ pub(super) fn export(model: &mut Model, what: ExportKind, path: String, replace:
             Content::Walk(curve, model.history.path().into_iter().map(|(_, node)| node.clone()).collect())
         }
         ExportKind::Events => Content::Events(curve, model.path_events().to_vec()),
+        ExportKind::Pull => {
+            let pull = model.results.share::<PullData>().filter(|pull| pull.is_of(&model.preset));
+            let Some(pull) = pull.filter(|pull| pull.run().is_some()) else {
+                return model
+                    .refuse("there is no pull to export: path.rate and the law of the edge make one");
+            };
+            Content::Pull(pull)
+        }
         ExportKind::Study => {
             let study =
                 model.results.share::<StudyData>().filter(|study| study.done() == study.outcomes.len());

@@ -312,7 +312,7 @@ pub(in crate::explorer) fn restart(model: &mut Model) -> Vec<Effect> {
         // It was given up or failed before, so it is requested again.
         return vec![want_curve(model)];
     }
-    if model.preset.path.begin == Begin::Touch {
+    if model.preset.path.begin == Begin::Apart {
         model.inward = false;
         return walk(model, Action::Begin);
     }
@@ -342,7 +342,7 @@ pub(super) fn abandon(model: &mut Model) -> Vec<Effect> {
 /// commands may go on.
 pub(super) fn begin_walk(model: &mut Model, curve: &Arc<CurveData>) -> Option<Vec<Effect>> {
     let preset = &curve.setting.preset;
-    let apart = preset.path.begin == Begin::Touch;
+    let apart = preset.path.begin == Begin::Apart;
     let (source, preset) = (model.source.clone(), preset.clone());
     let along = curve.along.is_some();
     let effects = (apart || along).then(|| {

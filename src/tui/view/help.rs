@@ -33,7 +33,7 @@ const READING: &[&str] = &[
      and the energy between is lost. A is the largest pull, B the farthest state. A dot is a limit point off the path.",
     "Inadmissible states have the colour of a warning, or ! without colours: outside the disc the next crest would \
      touch. The log lists them after the events. \
-     The real path has rings of contact there: its loop is drawn too, loading and unloading in colours of their own; with begin = touch it is the path.",
+     The real path has rings of contact there: its loop is drawn too, loading and unloading in colours of their own; with begin = apart it is the path.",
     "\u{1}go\u{1} and a letter leads to one of four places, \u{1}next-view\u{1} through the charts there. \
      In the potential m and M are its stable and unstable states, B the barrier before the edge lets go; ^ marks the \
      crests.",
@@ -74,7 +74,7 @@ const SHORT: &[(&str, &str)] = &[
         "an event left behind without happening: a jump off the path went round it, or a value was changed",
     ),
     ("last contact", "the event from which nothing stable is left: the bodies come apart"),
-    ("A  B", "largest pull: where a dead load lets go; farthest: where fixed grips let go"),
+    ("A  B", "largest pull: a dead load lets go there; farthest, the least δ: fixed grips do"),
     ("○ landing", "where a jump comes to rest"),
     ("touch", "a crest outside the disc meets the other body: a ring of contact begins"),
     (

@@ -112,7 +112,8 @@ fn stable(model: &Model, node: &Node) -> Vec<[&'static str; 2]> {
         };
         [symbol(control), word]
     };
-    [Control::Displacement, Control::Force].into_iter().chain(spring).map(word).collect()
+    // The device first: narrow panels cut the end.
+    spring.into_iter().chain([Control::Displacement, Control::Force]).map(word).collect()
 }
 
 /// A line that fits, or as many of its pairs as fit.

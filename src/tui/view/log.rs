@@ -118,7 +118,7 @@ fn part(part: &Inadmissible, units: &UnitSystem, ascii: bool) -> String {
 
 /// The meaning of the marks, and whether all of it belongs to earlier values.
 fn title(model: &Model, log: &Log, theme: Theme, width: usize) -> String {
-    let is_old = model.preset.path.begin == Begin::Touch
+    let is_old = model.preset.path.begin == Begin::Apart
         && model.cycle().is_some_and(|cycle| !cycle.is_of_preset(&model.preset));
     let old = if is_old { ", for the old values" } else { "" };
     let is_left = log.entries.iter().any(|entry| entry.mark == EventMark::PassedBy);
@@ -185,8 +185,8 @@ fn nothing(path: &PathReport) -> String {
 
 fn empty(model: &Model, keymap: &Keymap) -> String {
     let why = match (&model.curve, model.preset.path.begin, model.cycle()) {
-        (None, ..) | (Some(_), Begin::Touch, None) => " computing the path".to_owned(),
-        (Some(_), Begin::Touch, Some(cycle)) => match &cycle.report {
+        (None, ..) | (Some(_), Begin::Apart, None) => " computing the path".to_owned(),
+        (Some(_), Begin::Apart, Some(cycle)) => match &cycle.report {
             Err(reason) => format!(" no path: {reason}"),
             Ok(report) => nothing(report),
         },

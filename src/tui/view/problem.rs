@@ -294,18 +294,19 @@ fn onset(theme: Theme, model: &Model) -> Option<Line<'static>> {
     Some(Line::from(pair(theme, " snaps from A/λ ", &text).to_vec()))
 }
 
-/// What is found of the gap, not given: the radius of curvature at the axis, by which `P_c` and the axes are divided, and
-/// the wave by which mesh and steps are measured.
+/// What is found of the gap, not given: R of the paraboloid nearest to the rows of a profile, by which `P_c` and the axes
+/// are divided, and the wave by which mesh and steps are measured.
 fn found(theme: Theme, model: &Model) -> Option<Line<'static>> {
     let gap = &model.preset.gap;
-    let has_radius = model.preset.get("gap.radius_of_curvature").is_some();
-    let radius = gap.radius_of_curvature().filter(|_| !has_radius);
+    let is_given =
+        ["gap.radius_of_curvature", "gap.parameters.R"].iter().any(|key| model.preset.get(key).is_some());
+    let radius = gap.radius_of_curvature().filter(|_| !is_given);
     let wave = gap.feature_length().filter(|_| gap.wavelength().is_none());
     let shown = |name, length: Option<f64>| {
         let text = with_unit(&model.preset.units, Quantity::Length, length?, theme.ascii, |x| short(x, 4));
         Some(pair(theme, name, &text))
     };
-    let pairs = [shown(" R at the axis ", radius), shown(" shortest wave ", wave)];
+    let pairs = [shown(" R of the nearest paraboloid ", radius), shown(" shortest wave ", wave)];
     let spans: Vec<Span<'static>> = pairs.into_iter().flatten().flatten().collect();
     (!spans.is_empty()).then(|| Line::from(spans))
 }

@@ -195,7 +195,7 @@ fn nothing_is_cut_inside_a_number() {
     for preset in ["wavy-sphere", "fig-9-si", "fig-9"] {
         let mut screen = Screen::new(preset);
         screen.keys("nx");
-        for keys in ["", "c"] {
+        for keys in ["", "cj\r"] {
             screen.keys(keys);
             for (width, height) in [(60, 60), (80, 50), (40, 12), (80, 24), (100, 30), (120, 40), (45, 30)] {
                 let text = screen.text(width, height);
@@ -209,7 +209,7 @@ fn nothing_is_cut_inside_a_number() {
     }
     // Under a dead load, the approach is given before and after, and the load once.
     let mut screen = Screen::new("wavy-sphere");
-    screen.keys("c");
+    screen.keys("cj\r");
     let text = screen.text(80, 24);
     let row = text.lines().find(|line| line.contains("·1 snap")).unwrap();
     let words: Vec<&str> = row.split_whitespace().collect();

@@ -46,9 +46,11 @@ pub struct ReadError {
 }
 
 impl fmt::Display for ReadError {
-    /// The first mistake, and how many more there are.
+    /// The first mistake, of those just typed if there are any: others may follow from it. Then how many more there are.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(first) = self.mistakes.first() {
+        let is_typed = |mistake: &&Mistake| matches!(mistake.origin, ValueOrigin::Assignment(_));
+        let typed = self.mistakes.iter().find(is_typed);
+        if let Some(first) = typed.or(self.mistakes.first()) {
             write!(f, "{first}")?;
         }
         match self.mistakes.len() {

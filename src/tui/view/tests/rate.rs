@@ -45,13 +45,13 @@ fn the_pull_lies_over_the_curve_with_the_largest_pull_of_the_command() {
         assert!(figure.bounds.y[0] < -2.73, "{view:?} {:?}", figure.bounds);
     }
     let over_time = figure(&screen, View::ForceTime);
-    let peak = over_time.marks.iter().find(|mark| mark.sign == Sign::LargestPull).unwrap();
+    let peak = over_time.marks.last().unwrap();
     assert_eq!(peak.at, (report.runs[0].peak.time, report.runs[0].peak.force / critical));
-    assert_eq!(over_time.marks.iter().filter(|mark| mark.sign == Sign::Minimum).count(), 5);
+    assert_eq!(over_time.marks.iter().filter(|mark| mark.sign == Sign::Minimum).count(), 6);
     screen.keys(":view force-time\r");
     let drawn = screen.text(160, 45);
     assert!(drawn.contains("P/Pc over t") && drawn.contains("P/Pc -2.730"), "{drawn}");
-    let said = "Largest pull 2.73 P_c at 1 v₀, 1.12 × smooth; 6 peaks, 8 jumps; edge to 11.6 v₀";
+    let said = "Largest pull 2.73 P_c at 1 v₀, 1.12 × smooth; 6/8 jumps seen; edge to 11.6 v₀";
     assert!(screen.text(80, 24).contains(said), "{drawn}");
 }
 
@@ -138,4 +138,22 @@ fn measured_rows_lie_on_the_law_of_their_edge() {
     // The law does not affect what is measured.
     screen.keys(":set edge.exponent=0.6\r");
     assert_eq!(figure(&screen, View::Speeds).marks, shown.marks);
+}
+
+#[test]
+fn a_pull_is_exported_with_its_moments() {
+    let mut screen = Screen::new("wavy-sphere");
+    let path = |name: &str| screen.folder.path().join(name).display().to_string();
+    let [rows, document] = [path("p.csv"), path("p.json")];
+    screen.keys(&format!(":export pull {rows}\r"));
+    assert!(screen.text(100, 30).contains("no pull to export"));
+    let mut screen = pulled();
+    for path in [&rows, &document] {
+        screen.keys(&format!(":export pull {path}\r"));
+    }
+    let run = pull(&screen).unwrap().run().unwrap();
+    let read = |path: &str| std::fs::read_to_string(path).unwrap();
+    assert_eq!(read(&rows).lines().count(), run.moments.len() + 1);
+    let document: serde_json::Value = serde_json::from_str(&read(&document)).unwrap();
+    assert_eq!((&document["document"], document["runs"].as_array().unwrap().len()), (&"pull".into(), 1));
 }
