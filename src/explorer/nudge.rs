@@ -297,6 +297,7 @@ mod tests {
 
     #[test]
     fn a_spring_is_offered_as_stiff_as_the_last_one() {
-        assert_eq!([None, Some(0.2)].map(|last| spring(&preset(), last)), [0.15, 0.2]);
+        let offered = [None, Some(0.2)].map(|last| Control::Stiffness(spring(&preset(), last)));
+        assert_eq!(offered, [0.15, 0.2].map(Control::Stiffness));
     }
 }

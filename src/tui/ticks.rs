@@ -7,11 +7,11 @@ use pulloff_engine::report::number::{fixed, short};
 /// only whole numbers, and no more ticks than there are of these. Along a logarithmic axis the bounds and the ticks are
 /// decimal logarithms of the values, and the labels the values themselves.
 pub fn ticks(bounds: [f64; 2], run: AxisScale, most: usize) -> Vec<(f64, String)> {
+    // A single number gives no scale: then the steps are halved, or nearly.
+    const FINER: usize = 4;
     if run == AxisScale::Logarithmic {
         return factors(bounds, most);
     }
-    // A single number gives no scale: then the steps are halved, or nearly.
-    const FINER: usize = 4;
     let found = (0..FINER).map(|halvings| spaced(bounds, run, most << halvings));
     found.reduce(|coarse, fine| if coarse.len() < 2 { fine } else { coarse }).unwrap_or_default()
 }
