@@ -2,10 +2,10 @@
 
 use super::apart::{SPARSE, jump};
 use super::asked::{FreePart, ValueRange};
+use super::ends::{filtered, free_end, stands_still};
 use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, Noise, median, noise_of, range};
 use super::points::MeasuredPoint;
 use super::role::Segment;
-use super::signs::free_end;
 
 /// One branch, from the contact to the free end.
 #[derive(Debug, Clone, PartialEq)]
@@ -117,39 +117,6 @@ fn apart_within(segment: Segment, mut points: Vec<MeasuredPoint>, span: ValueRan
         within = within_jump(&behind, &behind, &force).min(rest.len());
     }
     MeasuredBranch { segment, attached: points, free, jump: within }
-}
-
-/// The running median of five rows, of fewer at the ends.
-fn filtered(values: &[f64]) -> Vec<f64> {
-    let around = |i: usize| &values[i.saturating_sub(2)..(i + 3).min(values.len())];
-    (0..values.len()).map(|i| median(around(i).to_vec()).unwrap_or(values[i])).collect()
-}
-
-/// Whether the force stays constant at the end without a jump before it, as it does where bodies without adhesion come
-/// apart. Over the last eighth of the rows it must not change, nor be the smallest of all, as in a record that ends at
-/// its smallest force.
-fn stands_still(force: &[f64]) -> bool {
-    const SHARE: usize = 8;
-    const FEWEST: usize = 10;
-    let count = (force.len() / SHARE).max(FEWEST);
-    if force.len() < 2 * count {
-        return false;
-    }
-    let (before, end) = force.split_at(force.len() - count);
-    let thirds: Vec<f64> =
-        end.chunks((count / 3).max(1)).take(3).filter_map(|part| median(part.to_vec())).collect();
-    let noise = noise_of(force);
-    let floor = FLOOR * range(force.iter().copied());
-    // The median of m rows is known to 1.25 σ/√m; the range of three such medians is below 3.3 of these errors in 95 of
-    // 100 cases, and below 5 in all but a few of 1000.
-    let error = 1.25 * noise / (count as f64 / 3.0).sqrt();
-    let goes_on = range(thirds.iter().copied()) > 5.0 * error + floor;
-    let level = median(end.to_vec()).unwrap_or(0.0);
-    let next = median(before[before.len() - count..].to_vec()).unwrap_or(0.0);
-    // The same level again before it: a smallest force is rounder than that.
-    !goes_on
-        && ((next - level).abs() <= 2.0 * error + floor
-            || filtered(before).iter().any(|p| *p < level - BEYOND * noise - floor))
 }
 
 /// The line through a free part, from the medians of its halves.

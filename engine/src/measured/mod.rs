@@ -18,7 +18,8 @@
 //! | [`branches`] | points → approach and retraction, with their parts and their noise |
 //! | `free` | a branch → the rows in contact, within the jump, and apart |
 //! | `sigma` | how well the columns are known |
-//! | `signs` | where the bodies are apart, and the signs of x and P |
+//! | `ends` | where the force stays constant |
+//! | `signs` | the signs of x and P |
 //! | `apart` | the jump behind which the bodies are apart |
 //! | `turns` | where x reverses |
 //! | [`converter`] | steps and ends of the range of a converter, rows that are recorded twice |
@@ -32,6 +33,7 @@ pub mod asked;
 pub mod branches;
 mod choice;
 pub mod converter;
+mod ends;
 pub mod error;
 mod free;
 mod header;

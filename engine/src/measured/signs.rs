@@ -1,19 +1,13 @@
-//! Where the bodies are apart, and the signs of x and P that follow from it.
+//! The signs of x and P: from contact radii, the names of the branches, the jump behind which the bodies are apart, or
+//! the end at which the force stays constant.
 
 use super::apart::jump;
 use super::asked::{FreePart, ValueRange};
+use super::ends::{free_end, still_end};
 use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, median, noise_of, range};
 use super::points::{Abscissa, MeasuredPoint, Turned, turn};
 use super::role::Segment;
 use super::turns::{one_way, runs};
-
-/// A free end varies by less than these shares of the whole range, and of the range at the other end.
-const FLAT: [f64; 2] = [0.1, 0.3];
-/// Rows at an end are at rest in x if they cover less than this share of what the same number of rows covers on
-/// average.
-const PAUSE: f64 = 0.1;
-/// The shares of the range of x over which the force is examined if it is very noisy.
-const SHARES: [f64; 2] = [0.08, 0.16];
 
 /// Jumps of this share of the clearest one are as likely.
 const LIKELY: f64 = 0.5;
@@ -21,67 +15,6 @@ const LIKELY: f64 = 0.5;
 const PULLED: &str =
     "the force is positive before the jump to the free part, where bodies attract: its sign is reversed";
 const FALLS: &str = "the force falls as the bodies are pressed together: its sign is reversed";
-
-/// Whether the curve is free at its low end and at its high end: where y stays constant while x changes.
-pub(super) fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
-    let mut order: Vec<usize> = (0..x.len()).collect();
-    order.sort_by(|&a, &b| x[a].total_cmp(&x[b]).then(y[a].total_cmp(&y[b])));
-    let spread = |ends: &[usize]| {
-        let mut y: Vec<f64> = ends.iter().map(|&i| y[i]).collect();
-        y.sort_by(f64::total_cmp);
-        // A few outliers among few rows must hide nothing.
-        let fifth = y.len() / 5;
-        y[y.len() - 1 - fifth] - y[fifth]
-    };
-    // Rows of a pause show nothing.
-    let way = range(x.iter().copied());
-    let stays = |end: &[usize], count: usize| {
-        range(end.iter().map(|&i| x[i])) < PAUSE * way * count as f64 / x.len() as f64
-    };
-    let whole = range(y.iter().copied());
-    let flat = |here: f64, there: f64| here <= FLAT[0] * whole && here <= FLAT[1] * there;
-    // Many rows tell noise from a slope; few rows tell a short free part from the contact.
-    for share in [END_SHARE / 4, END_SHARE] {
-        let count = (x.len() / share).max(END_ROWS).min(x.len());
-        let ends = [&order[..count], &order[order.len() - count..]];
-        if ends.iter().any(|end| stays(end, count)) {
-            continue;
-        }
-        let [low, high] = ends.map(spread);
-        let found = [flat(low, high), flat(high, low)];
-        if found != [false; 2] {
-            return found;
-        }
-    }
-    // With much noise, or with rows at rest in x, the medians of parts of either end are used.
-    for share in SHARES {
-        let found = trends(x, y, &order, share).map(|[low, high]| [flat(low, high), flat(high, low)]);
-        if let Some(found) = found.filter(|found| *found != [false; 2]) {
-            return found;
-        }
-    }
-    [false; 2]
-}
-
-/// By how much the force changes over the outer parts of the range of x, of this share of it, low and high, from the
-/// medians of bins; `None` if there are few rows.
-fn trends(x: &[f64], y: &[f64], order: &[usize], share: f64) -> Option<[f64; 2]> {
-    /// The bins, and the rows in each.
-    const BINS: usize = 4;
-    const ROWS: usize = 4;
-    let (first, last) = (x[*order.first()?], x[*order.last()?]);
-    let bin = share * (last - first) / BINS as f64;
-    let trend = |from: f64| {
-        let of_bin = |k: usize| {
-            let lo = from + k as f64 * bin;
-            let inside = order.iter().filter(|&&i| x[i] >= lo && x[i] <= lo + bin).map(|&i| y[i]);
-            Some(inside.collect::<Vec<f64>>()).filter(|rows| rows.len() >= ROWS).and_then(median)
-        };
-        let medians: Option<Vec<f64>> = (0..BINS).map(of_bin).collect();
-        medians.map(|medians| range(medians.into_iter()))
-    };
-    Some([trend(first)?, trend(last - BINS as f64 * bin)?])
-}
 
 /// Whether the signs of x and P are reversed, and which other signs have comparable evidence.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -109,21 +42,26 @@ impl UnsignedPoints<'_> {
         }
         let x: Vec<f64> = points.iter().map(|point| point.x).collect();
         let force: Vec<f64> = points.iter().map(|point| point.force).collect();
-        if self.is_in_order && stands_still(&x, &force) {
+        if self.is_in_order && is_swapped(&x, &force) {
             return None;
         }
+        // What contact radii or the names of the branches say is no guess.
+        let known = by_radii(points).or_else(|| self.by_segments(points));
         let end = match self.free {
             FreePart::Found => {
-                if let Some(found) = by_jumps(points, self.segments) {
+                if let Some(found) = by_jumps(points, self.segments, known) {
                     turn(points, found.turned);
                     let [x, force] = found.turned;
                     notes.extend(x.then(|| self.turned_x()));
                     notes.extend(force.then(|| PULLED.to_owned()));
                     return Some(found);
                 }
-                free_end(&x, &force)
+                match known {
+                    Some(is_turned) => [!is_turned, is_turned],
+                    None => still_end(points),
+                }
             }
-            FreePart::None => [false; 2],
+            FreePart::None => known.map_or([false; 2], |is_turned| [!is_turned, is_turned]),
             FreePart::Within(span) => end_of(&x, span),
         };
         let mut turned = [false; 2];
@@ -142,6 +80,20 @@ impl UnsignedPoints<'_> {
             notes.push(self.turned_x());
         }
         Some(self.of_force(points, turned, notes))
+    }
+
+    /// Whether the sign of x is reversed, by the branches that a column names; `None` where they disagree, x stands
+    /// still, or no times show that the file was not written backwards.
+    fn by_segments(&self, points: &[MeasuredPoint]) -> Option<bool> {
+        let is_timed = points.iter().all(|point| point.time.is_finite());
+        let of = self.segments.filter(|_| is_timed)?;
+        let ways = [Segment::Approach, Segment::Retraction].map(|segment| {
+            let way: f64 =
+                runs(points, of, segment).iter().filter_map(|run| way(run.iter().map(|p| p.x))).sum();
+            if segment == Segment::Approach { way } else { -way }
+        });
+        let [least, most] = [ways[0].min(ways[1]), ways[0].max(ways[1])];
+        (least * most >= 0.0 && least + most != 0.0).then_some(least + most < 0.0)
     }
 
     fn turned_x(&self) -> String {
@@ -164,6 +116,24 @@ impl UnsignedPoints<'_> {
     }
 }
 
+/// By how much the last third of some values lies above the first, by their medians; `None` of too few.
+fn way(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let values: Vec<f64> = values.collect();
+    let third = values.len() / 3;
+    Some(median(values[values.len() - third..].to_vec())? - median(values[..third].to_vec())?)
+}
+
+/// Whether the sign of x is reversed, by the contact radii beside it, which grow as the bodies approach; `None` without
+/// them.
+fn by_radii(points: &[MeasuredPoint]) -> Option<bool> {
+    let mut known: Vec<&MeasuredPoint> = points.iter().filter(|point| point.radius > 0.0).collect();
+    if known.len() < 2 * END_ROWS {
+        return None;
+    }
+    known.sort_by(|a, b| a.radius.total_cmp(&b.radius));
+    way(known.iter().map(|point| point.x)).filter(|way| *way != 0.0).map(|way| way < 0.0)
+}
+
 /// The end of x at which `span` lies, as (low, high).
 fn end_of(x: &[f64], span: ValueRange) -> [bool; 2] {
     let middle = |of: Vec<f64>| median(of).unwrap_or(f64::NAN);
@@ -173,8 +143,12 @@ fn end_of(x: &[f64], span: ValueRange) -> [bool; 2] {
 }
 
 /// The signs for which the force jumps up from the contact to rows apart, and rises with x where the bodies are pressed
-/// together most.
-fn by_jumps(points: &[MeasuredPoint], segments: Option<&[Segment]>) -> Option<Orientation> {
+/// together most; only those with the sign of x that is `known`, if it is.
+fn by_jumps(
+    points: &[MeasuredPoint],
+    segments: Option<&[Segment]>,
+    known: Option<bool>,
+) -> Option<Orientation> {
     let pieces = match segments {
         None => one_way(points),
         Some(of) => {
@@ -195,7 +169,8 @@ fn by_jumps(points: &[MeasuredPoint], segments: Option<&[Segment]>) -> Option<Or
         sum
     };
     let all = [[false, false], [true, false], [false, true], [true, true]];
-    let mut found: Vec<(f64, Turned)> = all.map(|turned| (sum(turned), turned)).to_vec();
+    let all = all.into_iter().filter(|[x, _]| known.is_none_or(|known| known == *x));
+    let mut found: Vec<(f64, Turned)> = all.map(|turned| (sum(turned), turned)).collect();
     // Of equals, the first: signs as in the file.
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     let (best, turned) = *found.first().filter(|(sum, _)| *sum > 0.0)?;
@@ -245,7 +220,7 @@ fn pulls(points: &[MeasuredPoint], segments: Option<&[Segment]>) -> Option<bool>
 
 /// Whether x stands still at the beginning or the end of the file while P changes. A position never does this, but the
 /// force of bodies apart does, apart from its noise.
-fn stands_still(x: &[f64], force: &[f64]) -> bool {
+fn is_swapped(x: &[f64], force: &[f64]) -> bool {
     /// The rows at either end, one in this many of all, and the shares of both ranges there.
     const ROWS: usize = 20;
     const STILL: f64 = 0.015;

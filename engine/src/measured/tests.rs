@@ -4,6 +4,8 @@ use super::points::MeasuredPoint;
 use super::*;
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::problem::Control;
+use crate::progress::Unwatched;
+use crate::report::pull::{AskedPulls, MomentRow, PullReport};
 use crate::units::{DisplayUnits, UnitSystem};
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -146,6 +148,60 @@ fn flipped_signs_are_turned_and_said_and_swapped_columns_refused() {
     // With noise, too, the force of bodies apart stays constant.
     let noisy: Vec<_> = jkr(5e-4).iter().map(|(x, p, back)| (*p, *x, *back)).collect();
     assert!(branches(&csv(&noisy)) == Err(BranchError::Swapped));
+}
+
+#[test]
+fn a_record_that_ends_at_its_last_contact_keeps_its_signs() {
+    // Pulled without a moment of rest or of bodies apart, at any speed and from any contact.
+    let text = |columns: [bool; 2], start: f64, rate: f64, reversed: bool| {
+        let preset = format!(
+            "format = 1\ntitle = \"pull\"\n[material]\neffective_modulus = 1.0\nwork_of_adhesion = 0.001\n[gap]\n\
+             shape = \"sphere\"\nradius_of_curvature = 1.0\n[edge]\nexponent = 0.5\n[path]\n\
+             start_contact_radius = {start}\nrate = {rate}\n"
+        );
+        let preset = crate::preset::read("pull", &preset).unwrap();
+        let report = PullReport::compute(&preset, &AskedPulls::default(), &Unwatched).unwrap();
+        let run = &report.runs[0];
+        let last = run.last_contact.as_ref().unwrap().time;
+        let moments: Vec<_> = run.moments.iter().filter(|at| at.contact_radius > 0.0).collect();
+        let at = |t: f64, of: fn(&MomentRow) -> f64| {
+            let next = moments.partition_point(|at| at.time < t).clamp(1, moments.len() - 1);
+            let [a, b] = [moments[next - 1], moments[next]];
+            of(a) + (of(b) - of(a)) * (t - a.time) / (b.time - a.time)
+        };
+        let [with_radius, with_segment] = columns;
+        let mut text = "time,approach,force".to_owned();
+        text += if with_radius { ",contact radius" } else { "" };
+        text += if with_segment { ",segment\n" } else { "\n" };
+        for i in 0..300 {
+            let t = last * 0.999 * f64::from(i) / 299.0;
+            let sign = if reversed { -1.0 } else { 1.0 };
+            let [x, p, s] =
+                [|at: &MomentRow| at.approach, |at: &MomentRow| at.force, |at: &MomentRow| at.contact_radius]
+                    .map(|of| at(t, of));
+            let _ = write!(text, "{t:e},{:e},{p:e}", sign * x);
+            text += &if with_radius { format!(",{s:e}") } else { String::new() };
+            text += if with_segment { ",retraction\n" } else { "\n" };
+        }
+        text
+    };
+    for start in [0.1, 0.15, 0.2, 0.4] {
+        for rate in [1e-4, 1e-2, 1.0, 10.0] {
+            for columns in [[false, false], [true, false], [false, true]] {
+                let measured = |reversed| {
+                    let text = text(columns, start, rate, reversed);
+                    let measured = parse(text.as_bytes(), &ColumnSpec::default()).unwrap();
+                    measured.points(&UnitSystem::Reduced, None).unwrap().branches(&Asked::default()).unwrap()
+                };
+                let found = measured(false);
+                assert_eq!(found.turned, [false; 2], "{start} {rate} {columns:?} {:?}", found.notes);
+                if columns != [false; 2] {
+                    let found = measured(true);
+                    assert_eq!(found.turned, [true, false], "{start} {rate} {columns:?} {:?}", found.notes);
+                }
+            }
+        }
+    }
 }
 
 #[test]
