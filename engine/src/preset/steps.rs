@@ -64,6 +64,11 @@ impl EdgeSpec {
                 faults.push(Invalid::Made { key: key.into(), cause });
             }
         }
+        if self.rate.is_some() && !self.steps.trim().is_empty() {
+            let cause =
+                format!("{STEPS} says what a pull does instead: remove one of the two, as with {STEPS}=none");
+            faults.push(Invalid::Made { key: RATE.into(), cause });
+        }
         if let Err(cause) = preset.steps() {
             faults.push(Invalid::Made { key: STEPS.into(), cause });
         }

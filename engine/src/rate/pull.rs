@@ -16,7 +16,7 @@ use super::error::RateError;
 use super::law::Motion;
 use super::record::{LeastForce, Moment, MomentSlopes, Record};
 use super::settings::PullSettings;
-use super::snaps::{Snap, snaps};
+use super::snaps::{Snap, Snaps};
 use super::stretch::{MotionStretch, StretchEnd};
 use crate::disc::{Panels, Table, TableError};
 use crate::problem::{Control, Part};
@@ -93,7 +93,7 @@ struct Going<'a> {
     panels: Arc<Panels>,
     folds: [Option<MotionFolds>; 2],
     record: Record,
-    snaps: Vec<Snap>,
+    snaps: Snaps,
     s: f64,
     t: f64,
     c: f64,
@@ -129,7 +129,7 @@ impl Puller<'_> {
             panels,
             folds: [None, None],
             record: Record::default(),
-            snaps: Vec::new(),
+            snaps: Snaps::default(),
             s,
             t: 0.0,
             c,
@@ -272,8 +272,7 @@ impl Going<'_> {
         let (at, end) = stretch.follow(&mut self.record, progress)?;
         let [drive, _] = equation.branch.drive(level);
         let resolved = level <= 0.0 || drive >= RESOLVED * settings.tolerance;
-        let ends_apart = end == StretchEnd::Apart;
-        self.snaps.extend(snaps(&self.record.moments[first..], (level, resolved), ends_apart, &unstable));
+        self.snaps.add(&self.record.moments[first..], (level, resolved), &unstable);
         let s = at.held.contact_radius;
         self.adhesion += edge.adhesion(motion) * PI * (self.s - s) * (self.s + s);
         if motion == Motion::Closing && self.closed_to.is_none_or(|[largest, _]| s > largest) {
@@ -343,6 +342,7 @@ impl Going<'_> {
                 self.record.add(apart, 0.0);
             }
         }
+        let snaps = self.snaps.end(self.is_apart, self.record.moments.last());
         let least = |a: Moment, b: &Moment| if b.force < a.force { *b } else { a };
         let peak = self.record.moments.iter().fold(start, least);
         let peak = self.record.least.iter().map(|least| &least.at).fold(peak, least);
@@ -350,8 +350,8 @@ impl Going<'_> {
             start,
             pinned_until: self.pinned_until,
             peak,
-            tension_peaks: peaks(&self.record.least, self.puller.rise.unwrap_or(0.01 * peak.force.abs())),
-            snaps: self.snaps,
+            tension_peaks: peaks(&self.record, self.puller.rise.unwrap_or(0.01 * peak.force.abs())),
+            snaps,
             last_contact,
             dissipated,
             balance,
@@ -364,13 +364,15 @@ impl Going<'_> {
     }
 }
 
-/// The least forces with a fall of more than `rise` before and a rise of more than that after: a dip that is shallower on either side is
-/// part of its neighbour.
-fn peaks(least: &[LeastForce], rise: f64) -> Vec<Moment> {
+/// The least forces with a fall of more than `rise` before and a rise of more than that after: a dip that is shallower on
+/// either side is part of its neighbour.
+fn peaks(record: &Record, rise: f64) -> Vec<Moment> {
     let mut found = Vec::new();
     let mut candidate: Option<Moment> = None;
-    let mut highest = f64::INFINITY;
-    for LeastForce { at, then } in least {
+    let first = record.least.first().map_or(0.0, |least| least.at.time);
+    let before = record.moments.iter().take_while(|moment| moment.time <= first);
+    let mut highest = before.map(|moment| moment.force).fold(f64::NEG_INFINITY, f64::max);
+    for LeastForce { at, then } in &record.least {
         candidate = match candidate {
             None if highest - at.force <= rise => {
                 highest = highest.max(*then);

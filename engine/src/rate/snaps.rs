@@ -6,7 +6,7 @@
 //! is about as slow as along the equilibria; in between, the snap goes on.
 
 use super::record::Moment;
-use crate::elementary::ln;
+use crate::elementary::{exp, ln};
 
 /// A snap is this many times as fast.
 const FASTER: f64 = 10.0;
@@ -38,76 +38,129 @@ pub struct Snap {
 type SnapMark = [f64; 2];
 
 /// A snap that has begun.
+#[derive(Debug)]
 struct BegunSnap {
     from: SnapMark,
     top: f64,
     /// The slowest moment after the top, and its speed.
     low: (Moment, f64),
+    /// The slowest speed before it.
+    least: f64,
 }
 
-/// The snaps among the moments of one stretch. At its beginning the edge would go at the speed `level` if it followed
-/// the equilibria; at held control that is 0. The run in which the bodies come apart is not a snap. Between the radii
-/// `unstable`, equilibria are not stable. The speed is not `resolved` where the drive along the
-/// equilibria is less than the integrator resolves.
-pub fn snaps(
-    moments: &[Moment],
-    (level, resolved): (f64, bool),
-    ends_apart: bool,
-    unstable: &[[f64; 2]],
-) -> Vec<Snap> {
-    let rests = RESTS[usize::from(!resolved)];
-    let mut found = Vec::new();
-    let slow = if level > 0.0 { RUNS * level } else { f64::INFINITY };
-    let level = level.max(f64::MIN_POSITIVE);
-    let (mut least, mut is_settled) = (level, false);
-    let mut run: Option<BegunSnap> = None;
-    for pair in moments.windows(2) {
-        let [a, b] = [&pair[0], &pair[1]];
-        let speed = if resolved { b.speed.abs() } else { mean_speed(a, b) };
-        let Some(running) = &mut run else {
-            if speed > FASTER * least {
-                let from = crossing(a, b, FASTER * least);
-                run = Some(BegunSnap { from, top: b.speed.abs(), low: (*b, speed) });
-                continue;
-            }
-            // The edge is slow at first because it starts from rest.
-            is_settled |= speed >= level || speed < a.speed.abs();
-            least = if is_settled { least.min(speed).max(rests * level) } else { least };
-            continue;
+/// The snaps of a pull so far.
+#[derive(Debug, Default)]
+pub struct Snaps {
+    found: Vec<Snap>,
+    /// The one that has not ended with its stretch, and where equilibria are not stable.
+    run: Option<(BegunSnap, Vec<[f64; 2]>)>,
+}
+
+impl Snaps {
+    /// The snaps, after the last stretch. The run in which the bodies come apart is not one of them.
+    pub fn end(mut self, is_apart: bool, last: Option<&Moment>) -> Vec<Snap> {
+        if let (Some((running, unstable)), Some(last), false) = (self.run.take(), last, is_apart) {
+            self.push(running.ended([last.contact_radius, last.dissipated]), &unstable);
+        }
+        self.found
+    }
+
+    /// Adds those among the moments of a stretch of one motion. At its beginning the edge would go at the speed `level`
+    /// if it followed the equilibria; at held control that is 0. Between the radii `unstable`, equilibria are not
+    /// stable. The speed is not `resolved` where the drive along the equilibria is less than the integrator resolves.
+    pub fn add(&mut self, moments: &[Moment], (level, resolved): (f64, bool), unstable: &[[f64; 2]]) {
+        let rests = RESTS[usize::from(!resolved)];
+        let slow = if level > 0.0 { RUNS * level } else { f64::INFINITY };
+        let level = level.max(f64::MIN_POSITIVE);
+        let (mut least, mut is_settled) = (level, false);
+        // Another rate does not end a snap, but an edge that rests or turns round does.
+        let goes_on = |(running, _): &(BegunSnap, Vec<[f64; 2]>)| {
+            let [before, now] = [running.low.0.speed, moments.get(1).map_or(0.0, |at| at.speed)];
+            before * now > 0.0
         };
-        if b.speed.abs() > running.top {
-            (running.top, running.low) = (b.speed.abs(), (*b, speed));
+        let mut run = match self.run.take() {
+            Some(known) if goes_on(&known) => {
+                least = known.0.least.max(rests * level);
+                is_settled = true;
+                Some(known.0)
+            }
+            Some((ended, unstable)) => {
+                let at = moments.first().unwrap_or(&ended.low.0);
+                self.push(ended.ended([at.contact_radius, at.dissipated]), &unstable);
+                None
+            }
+            None => None,
+        };
+        for (i, pair) in moments.windows(2).enumerate() {
+            let [a, b] = [&pair[0], &pair[1]];
+            let speed = if resolved { b.speed.abs() } else { mean_speed(a, b) };
+            let begun = |from, least| BegunSnap { from, top: top(moments, i + 1), low: (*b, speed), least };
+            let Some(running) = &mut run else {
+                if speed > FASTER * least {
+                    run = Some(begun(crossing(a, b, FASTER * least), least));
+                    continue;
+                }
+                // The edge is slow at first because it starts from rest.
+                is_settled |= speed >= level || speed < a.speed.abs();
+                least = if is_settled { least.min(speed).max(rests * level) } else { least };
+                continue;
+            };
+            if b.speed.abs() > running.top {
+                (running.top, running.low) = (top(moments, i + 1), (*b, speed));
+            }
+            if speed < running.low.1 {
+                running.low = (*b, speed);
+            }
+            let (at, low) = running.low;
+            if speed <= FASTER * least {
+                let ended = running.ended(crossing(a, b, FASTER * least));
+                self.push(ended, unstable);
+                (run, least, is_settled) = (None, speed.max(rests * level), true);
+            } else if low <= slow && FASTER * low < running.top && speed > FASTER * low {
+                let ended = running.ended([at.contact_radius, at.dissipated]);
+                self.push(ended, unstable);
+                least = low.max(rests * level);
+                run = Some(begun(crossing(a, b, FASTER * low), least));
+            }
         }
-        if speed < running.low.1 {
-            running.low = (*b, speed);
-        }
-        let (at, low) = running.low;
-        if speed <= FASTER * least {
-            found.push(running.ended(crossing(a, b, FASTER * least)));
-            (run, least, is_settled) = (None, speed.max(rests * level), true);
-        } else if low <= slow && FASTER * low < running.top && speed > FASTER * low {
-            found.push(running.ended([at.contact_radius, at.dissipated]));
-            least = low.max(rests * level);
-            let from = crossing(a, b, FASTER * low);
-            run = Some(BegunSnap { from, top: b.speed.abs(), low: (*b, speed) });
+        self.run = run.map(|run| (run, unstable.to_vec()));
+    }
+
+    fn push(&mut self, snap: Snap, unstable: &[[f64; 2]]) {
+        let crosses =
+            |[inner, outer]: &[f64; 2]| *inner < snap.from.max(snap.to) && *outer > snap.from.min(snap.to);
+        if (snap.from - snap.to).abs() > NO_WAY * snap.from && unstable.iter().any(crosses) {
+            self.found.push(snap);
         }
     }
-    if let (Some(running), Some(last)) = (run.filter(|_| !ends_apart), moments.last()) {
-        found.push(running.ended([last.contact_radius, last.dissipated]));
-    }
-    found.retain(|snap| {
-        (snap.from - snap.to).abs() > NO_WAY * snap.from
-            && unstable
-                .iter()
-                .any(|[inner, outer]| *inner < snap.from.max(snap.to) && *outer > snap.from.min(snap.to))
-    });
-    found
 }
 
 impl BegunSnap {
     fn ended(&self, to: SnapMark) -> Snap {
         Snap { from: self.from[0], to: to[0], top_speed: self.top, dissipated: to[1] - self.from[1] }
     }
+}
+
+/// The speed at a moment, or, if it is larger than at the moments beside it, the largest between these: that of a
+/// parabola of its logarithm over the contact radius.
+fn top(moments: &[Moment], at: usize) -> f64 {
+    let here = moments[at].speed.abs();
+    let Some([before, _, after]) =
+        at.checked_sub(1).and_then(|first| moments.get(first..at + 2)?.first_chunk::<3>())
+    else {
+        return here;
+    };
+    let beside = [before, after].map(|moment| {
+        let way = moment.contact_radius - moments[at].contact_radius;
+        (way, ln(moment.speed.abs() / here) / way)
+    });
+    let [(x, slope), (other, other_slope)] = beside;
+    // ln v = ln v₀ + b x + a x² through the three.
+    let a = (slope - other_slope) / (x - other);
+    let b = slope - a * x;
+    let rise = -b * b / (4.0 * a);
+    let is_top = slope * x <= 0.0 && other_slope * other <= 0.0 && a < 0.0 && rise.is_finite();
+    if is_top { here * exp(rise) } else { here }
 }
 
 /// The mean speed from the moment `a` to `b`: where a slow edge follows the equilibria, its speed at a moment is only known to
