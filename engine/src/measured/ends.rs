@@ -12,7 +12,7 @@ const PAUSE: f64 = 0.1;
 const SHARES: [f64; 2] = [0.08, 0.16];
 
 /// From this number of rows on, they show whether the force stands still.
-const MANY: usize = 20;
+const MANY: usize = 40;
 
 /// Whether the curve is free at its low end and at its high end: where y stays constant while x changes.
 pub(super) fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {

@@ -7,7 +7,7 @@
 //! Both are taken by the number of the row, so that noise of y enters linearly, and rows that are even in time, even in y or of any other
 //! density have their speed alike: a speed that does not change is found exactly. The window of each row is the narrowest that knows the
 //! speed well, and no wider than those windows agree with each other, by the intersection of their intervals: A. Goldenshluger and
-//! A. Nemirovski, Math. Methods Stat. 6, 135 (1997). Where a straight line would do, the quadratic has the same slope in the middle of a
+//! A. Nemirovski, Math. Methods Stat. 6, 135 (1997). What the next wider window shows beyond its noise tells the error of the quadratic. Where a straight line would do, the quadratic has the same slope in the middle of a
 //! window; at the ends of a branch it follows the bend.
 
 use super::noise::scatter_over;
@@ -29,7 +29,7 @@ const AT_ENDS: usize = 3;
 pub struct Speed {
     /// dy/dt.
     pub value: f64,
-    /// One standard deviation, by the noise of y.
+    /// One standard deviation, by the noise of y and by what the window does not follow.
     pub error: f64,
     /// Half of what the speeds of the two halves of the window differ by: how far the speed may be another at the row itself. Infinite at the
     /// ends, where there is one half alone.
@@ -61,28 +61,49 @@ pub fn noise(times: &[f64], values: &[f64]) -> f64 {
 
 /// The speed at the row `at`.
 fn of_row(times: &[f64], values: &[f64], sigma: f64, at: usize, widest: usize) -> Option<Speed> {
-    let (mut found, mut half): (Option<Speed>, usize) = (None, 1);
-    let mut agreed = [f64::NEG_INFINITY, f64::INFINITY];
-    loop {
+    let of = |half: usize| {
         // A window at an end is as wide as one in the middle.
         let begin = at.saturating_sub(half).min(values.len().saturating_sub(2 * half + 1));
         let window = begin..(begin + 2 * half + 1).min(values.len());
-        if let Some(next) = slope(&times[window.clone()], &values[window], sigma, at - begin) {
+        slope(&times[window.clone()], &values[window], sigma, at - begin)
+    };
+    let wider = |half: usize| half + 1 + half / 4;
+    let (mut found, mut half): (Option<(usize, Speed)>, usize) = (None, 1);
+    let mut agreed = [f64::NEG_INFINITY, f64::INFINITY];
+    loop {
+        if let Some(next) = of(half) {
             let margin = AGREE * next.error;
             agreed = [agreed[0].max(next.value - margin), agreed[1].min(next.value + margin)];
             if agreed[0] > agreed[1] {
-                return found;
+                break;
             }
-            found = Some(next);
+            found = Some((half, next));
             if next.error <= KNOWN * next.value.abs() {
-                return found;
+                break;
             }
         }
         if half >= widest {
-            return found;
+            break;
         }
-        half = (half + 1 + half / 4).min(widest);
+        half = wider(half).min(widest);
     }
+    let (half, found) = found?;
+    let beside = of(wider(half)).filter(|_| 2 * wider(half) < values.len());
+    let is_inside = (wider(half)..values.len().saturating_sub(wider(half))).contains(&at);
+    let bias = beside.map_or(0.0, |beside| {
+        let beyond = beyond([&found, &beside]);
+        let [own, other] = [half, wider(half)].map(|half| (half * half) as f64);
+        // The third derivative bends a speed with the square of the width. At an end nothing shows how it goes on.
+        if is_inside { beyond * own / (other - own) } else { beyond }
+    });
+    Some(Speed { error: found.error.hypot(bias), ..found })
+}
+
+/// By how much the speed in a wider window differs beyond what the noise may explain.
+fn beyond([found, wider]: [&Speed; 2]) -> f64 {
+    // The narrower window is a part of the wider.
+    let noise = (found.error * found.error - wider.error * wider.error).max(0.0).sqrt();
+    ((found.value - wider.value).abs() - AGREE * noise).max(0.0)
 }
 
 /// The speed at the row `at` of a window.
@@ -168,6 +189,21 @@ mod tests {
         let off: f64 = squares / count;
         assert!((0.7..1.6).contains(&off), "{off}");
         assert!(narrow * 2 < wide, "{narrow} {wide}");
+    }
+
+    #[test]
+    fn errors_hold_what_a_window_does_not_follow() {
+        // As the contact radius goes at its last contact: ever faster, without noise.
+        let times: Vec<f64> = (0..300).map(|i| f64::from(i) / 300.0).collect();
+        let values: Vec<f64> = times.iter().map(|t| (1.0 - t).powf(0.4)).collect();
+        let found = speeds(&times, &values, 1e-9);
+        let off = found.iter().zip(&times).map(|(speed, t)| {
+            let speed = speed.unwrap();
+            (speed.value + 0.4 * (1.0 - t).powf(-0.6)).abs() / speed.error
+        });
+        let mut off: Vec<f64> = off.collect();
+        off.sort_by(f64::total_cmp);
+        assert!(off[270] < 2.0 && off[299] < 8.0, "{:?}", &off[290..]);
     }
 
     #[test]

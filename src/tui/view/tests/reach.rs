@@ -442,7 +442,10 @@ fn a_study_over_decades_has_powers_of_ten_along_its_axis() {
     screen.keys(":set edge.reference_speed=1 edge.exponent=0.5 path.rate=0.01\r");
     screen.keys(":study peak_force rate\r");
     let text = screen.text(100, 30);
-    assert!(text.contains("0.0001          0.01            1    rate") && text.contains("quasi-static"), "{text}");
+    assert!(
+        text.contains("0.0001          0.01            1    rate") && text.contains("quasi-static"),
+        "{text}"
+    );
     // The cross-hair is at the value, whatever is drawn along the axis; so is where Enter goes.
     screen.keys("i");
     assert!(screen.text(100, 30).contains("rate 0.01"), "{}", screen.text(100, 30));
