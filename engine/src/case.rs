@@ -453,6 +453,19 @@ impl Case {
         warnings
     }
 
+    /// A warning, if a contact of radius `largest` (reduced) is larger than the bodies are round.
+    pub fn warning_of_size(&self, largest: f64) -> Option<String> {
+        let radius = self.problem.shape.radius_of_curvature()?;
+        let largest = largest * self.units().length;
+        let [shown, round] = [largest, radius].map(|r| said(&self.shown, Quantity::Length, r));
+        (largest > radius).then(|| {
+            format!(
+                "the contact grows to {shown}, beyond the radius of curvature {round}: this theory is for contacts \
+                 small beside it"
+            )
+        })
+    }
+
     /// A warning, if there is a dead band, about states that do not include it.
     pub fn warning_of_dead_band(&self) -> Option<String> {
         self.closing?;

@@ -6,6 +6,7 @@ use super::format::{Format, FormatArgument};
 use super::output::{Destination, shown};
 use super::problem::ProblemArguments;
 use super::watch::StopSignal;
+use crate::explorer::map_axes::typed;
 use crate::plot::map::{MapChart, MapChartError};
 use crate::plot::{Width, lines, svg};
 use crate::print::PictureFormat;
@@ -15,7 +16,7 @@ use clap::Args;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::report::map::Ordinate;
 use pulloff_engine::report::{MapReport, json, table};
-use pulloff_engine::stability::{COMPLIANCE, MapAxis};
+use pulloff_engine::stability::MapAxis;
 use pulloff_engine::text::quote;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -157,35 +158,7 @@ impl MapArguments {
     }
 }
 
-/// An axis as typed: KEY=FROM..TO, each end as an assignment of the key.
+/// An axis, as typed after an option.
 fn axis(flag: &str, text: &str, preset: &Preset) -> Result<MapAxis, Failure> {
-    let wrong = |what: &dyn std::fmt::Display| Failure::Usage(format!("{flag} {}: {what}", quote(text)));
-    let expected = "expected KEY=FROM..TO or KEY=log:FROM..TO, such as groups.adhesion=log:0.001..1";
-    let (key, range) = text.split_once('=').ok_or_else(|| wrong(&expected))?;
-    let (key, range) = (key.trim(), range.trim());
-    let (logarithmic, range) = match range.strip_prefix("log:") {
-        Some(rest) => (true, rest),
-        None => (false, range),
-    };
-    let (from, to) = range.split_once("..").ok_or_else(|| wrong(&expected))?;
-    let unit = preset.gap.length().unwrap_or(1.0) * preset.material.effective_modulus;
-    let number = |text: &str| -> Result<f64, Failure> {
-        if key == COMPLIANCE {
-            // In SI, the compliance is in metres per newton.
-            return text
-                .trim()
-                .parse()
-                .map_err(|_| wrong(&"a compliance ranges from a number to a number or inf"));
-        }
-        let row = preset.row(key).ok_or_else(|| match preset.clone().set(key, 1.0.into()) {
-            Err(invalid) => wrong(&invalid),
-            Ok(()) => wrong(&expected),
-        })?;
-        if !row.kind.is_number() {
-            return Err(wrong(&"an axis must be a number of the preset, a group, or compliance"));
-        }
-        preset.number(&row, text.trim()).map_err(|invalid| wrong(&invalid))
-    };
-    let range = [number(from)?, number(to)?];
-    MapAxis::new(key, range, logarithmic, 1.0 / unit).map_err(|error| wrong(&error))
+    typed(preset, text).map_err(|why| Failure::Usage(format!("{flag} {}: {why}", quote(text))))
 }

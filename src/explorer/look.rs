@@ -3,11 +3,13 @@
 use super::backgrounds::want_all;
 use super::command::Id;
 use super::effect::Effect;
-use super::map_axes::{MapAxes, can_be_axis};
+use super::map_axes::{CURVES, MapAxes, can_be_axis, key_of};
 use super::model::{Level, Model};
 use super::reach::{pick_walk_line, walk_line};
+use super::script::key_called;
 use super::view::{Axes, Overlay, ScreenPanel, View, Window};
 use pulloff_engine::preset::Key;
+use pulloff_engine::stability::COMPLIANCE;
 
 /// One press magnifies the chart by this factor.
 const CLOSER: f64 = 2.0;
@@ -43,13 +45,30 @@ pub(super) fn map(model: &mut Model) {
 }
 
 /// Shows the map of these axes; without a second one, the limit points over the first.
-pub(super) fn map_of(model: &mut Model, x: &Key, y: Option<Key>) {
-    let over = MapAxes::over(x);
-    let axes = MapAxes { y: y.map_or(over.y, Key::into_owned), x: over.x };
-    if axes.x == axes.y {
-        return model.tell(Level::Error, "the two axes of a map must be different keys");
+pub(super) fn map_of(model: &mut Model, x: &Key, y: Option<&Key>) {
+    let axis = |text: &Key, words: &[&str]| -> Result<Key, String> {
+        let key = key_of(text);
+        if key == COMPLIANCE || words.contains(&&**text) {
+            return Ok(text.clone());
+        }
+        let called = key_called(&model.preset, key)?;
+        Ok(format!("{called}{}", &text[key.len()..]).into())
+    };
+    let axes = axis(x, &[]).and_then(|x| {
+        let over = MapAxes::over(&x);
+        let y = y.map(|y| axis(y, &CURVES.map(|(name, _)| name))).transpose()?;
+        Ok(MapAxes { y: y.map_or(over.y, Key::into_owned), x: over.x })
+    });
+    match axes {
+        Err(why) => model.tell(Level::Error, why),
+        Ok(axes) if key_of(&axes.x) == key_of(&axes.y) => {
+            model.tell(Level::Error, "the two axes of a map must be different keys");
+        }
+        Ok(axes) => match axes.ranges(&model.preset) {
+            Ok(_) => show_map(model, axes),
+            Err(why) => model.tell(Level::Error, why),
+        },
     }
-    show_map(model, axes);
 }
 
 fn show_map(model: &mut Model, axes: MapAxes) {

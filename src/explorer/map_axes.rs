@@ -24,7 +24,7 @@ const HALVINGS: usize = 20;
 /// What the axes of a map show.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MapAxes {
-    /// A key, a group, or [`COMPLIANCE`].
+    /// A key, a group, or [`COMPLIANCE`], alone or with a range as in [`typed`].
     pub x: String,
     /// Another of these, or a quantity of limit points: `control`, `approach` or `force`.
     pub y: String,
@@ -70,19 +70,53 @@ impl MapAxes {
     /// The axes with their ranges around the values of `preset`.
     /// Errors: In words.
     pub(super) fn ranges(&self, preset: &Preset) -> Result<(MapAxis, Ordinate), String> {
-        let x = range(preset, &self.x)?;
+        let axis = |text: &str| if text.contains('=') { typed(preset, text) } else { range(preset, text) };
+        let x = axis(&self.x)?;
         let curve = CURVES.iter().find(|(name, _)| *name == self.y).map(|(_, curve)| curve.clone());
-        let y = curve.map_or_else(|| range(preset, &self.y).map(Ordinate::Key), Ok)?;
+        let y = curve.map_or_else(|| axis(&self.y).map(Ordinate::Key), Ok)?;
         Ok((x, y))
     }
 }
 
-fn is_device(key: &str) -> bool {
-    key.starts_with("path.control") || key == COMPLIANCE
+/// The key of an axis, without its range.
+pub fn key_of(axis: &str) -> &str {
+    axis.split('=').next().unwrap_or(axis)
 }
 
-fn axis_of(key: &Key) -> String {
-    if is_device(key) { COMPLIANCE.to_owned() } else { key.to_string() }
+fn is_device(axis: &str) -> bool {
+    axis.starts_with("path.control") || key_of(axis) == COMPLIANCE
+}
+
+fn axis_of(axis: &Key) -> String {
+    if axis.starts_with("path.control") { COMPLIANCE.to_owned() } else { axis.to_string() }
+}
+
+/// An axis as typed: KEY=FROM..TO or KEY=log:FROM..TO, each end as an assignment of the key.
+/// Errors: In words.
+pub fn typed(preset: &Preset, text: &str) -> Result<MapAxis, String> {
+    let expected =
+        || "expected KEY=FROM..TO or KEY=log:FROM..TO, such as groups.adhesion=log:0.001..1".to_owned();
+    let (key, range) = text.split_once('=').ok_or_else(expected)?;
+    let (key, range) = (key.trim(), range.trim());
+    let (logarithmic, range) = range.strip_prefix("log:").map_or((false, range), |rest| (true, rest));
+    let (from, to) = range.split_once("..").filter(|_| !key.contains(':')).ok_or_else(expected)?;
+    let unit = preset.gap.length().unwrap_or(1.0) * preset.material.effective_modulus;
+    let number = |text: &str| -> Result<f64, String> {
+        if key == COMPLIANCE {
+            // In SI, the compliance is in metres per newton.
+            let number = text.trim().parse();
+            return number.map_err(|_| "a compliance ranges from a number to a number or inf".to_owned());
+        }
+        let row = preset.row(key).ok_or_else(|| {
+            preset.clone().set(key, 1.0.into()).err().map_or_else(expected, |invalid| invalid.to_string())
+        })?;
+        if !row.kind.is_number() {
+            return Err("an axis must be a number of the preset, a group, or compliance".to_owned());
+        }
+        preset.number(&row, text.trim()).map_err(|invalid| invalid.to_string())
+    };
+    let range = [number(from)?, number(to)?];
+    MapAxis::new(key, range, logarithmic, 1.0 / unit).map_err(|error| error.to_string())
 }
 
 /// Whether a row can be an axis: a number, or the device.

@@ -126,6 +126,18 @@ fn next(model: &Model) -> String {
     standing(model, node, control)
 }
 
+/// Whether a state that was solved again has the value of the control that the one before it had.
+fn keeps_control(model: &Model, node: &Node, control: Control) -> bool {
+    let before = model.history.parent().and_then(|parent| model.history.node(parent));
+    before.is_some_and(|before| {
+        let [was, is] = [before, node].map(|node| {
+            let state = node.state.in_units(node.setting.units());
+            control.value(state.approach, state.force)
+        });
+        (was - is).abs() <= 1e-9 * was.abs().max(is.abs())
+    })
+}
+
 /// Where the walker stands and what a step or the next event does, if nothing else is to be said.
 fn standing(model: &Model, node: &Node, control: Control) -> String {
     let way = if model.inward { "inward" } else { "outward" };
@@ -151,7 +163,7 @@ fn standing(model: &Model, node: &Node, control: Control) -> String {
             let help = Id::Help.named();
             format!("Start, stable under {held} control. {next} runs to the first event, {help} helps")
         }
-        (true, NodeKind::Solved) if model.is_at_start() => {
+        (true, NodeKind::Solved) if model.is_at_start() && !keeps_control(model, node, control) => {
             format!("The path does not reach the held value: back at its start; {next} runs on")
         }
         (_, NodeKind::Solved) if node.on_path.is_some() => {

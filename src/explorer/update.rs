@@ -131,7 +131,7 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::Go(home) => reach::go(model, home),
         Command::Study { column, over } => return study(model, column, over),
         Command::Overlay(overlay) => look::overlay(model, overlay),
-        Command::Map { x, y } => look::map_of(model, &x, y),
+        Command::Map { x, y } => look::map_of(model, &x, y.as_ref()),
         Command::GoTo { node, numbering } => return go_to(model, node, numbering),
         Command::GoToState(state) => return go_to_state(model, state),
         Command::Travel { id, count, states: false } => return travel(model, id, count),

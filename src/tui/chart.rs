@@ -12,7 +12,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
-use ratatui::widgets::Block;
+use ratatui::widgets::{Block, Paragraph, Widget, Wrap};
 
 /// An entry of the legend: what a line or a letter looks like, and what it means.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,9 +90,8 @@ impl Chart<'_> {
         frame.render_widget(block, area);
         let buffer = frame.buffer_mut();
         if let Some(reason) = &self.figure.missing {
-            let text = theme.text(reason);
-            let room = usize::from(inner.width.saturating_sub(1));
-            buffer.set_stringn(inner.x + 1, inner.y + 1, text, room, theme.dim());
+            let reason = Paragraph::new(theme.text(reason)).wrap(Wrap { trim: true }).style(theme.dim());
+            reason.render(inner.inner(Margin::new(1, 1)), buffer);
             return;
         }
         let Some(plot) = self.plot(area) else { return };

@@ -114,7 +114,7 @@ impl FileForm {
         let mut read = parse(&self.bytes, &ColumnSpec::default());
         if !self.option.is_empty() {
             let refusal = read.expect_err(name).to_string();
-            assert!(refusal.contains("--columns x=1,force=2"), "{name}: {refusal}");
+            assert!(refusal.contains("--columns approach=1,force=2"), "{name}: {refusal}");
             assert!(columns(&self.bytes).unwrap().len() > 1, "{name}");
             read = parse(&self.bytes, &ColumnSpec::parse(self.option).unwrap());
         }

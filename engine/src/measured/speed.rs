@@ -96,7 +96,7 @@ fn of_row(times: &[f64], values: &[f64], sigma: f64, at: usize, widest: usize) -
         // The third derivative bends a speed with the square of the width. At an end nothing shows how it goes on.
         if is_inside { beyond * own / (other - own) } else { beyond }
     });
-    Some(Speed { error: found.error.hypot(bias), ..found })
+    Some(Speed { error: (found.error * found.error + bias * bias).sqrt(), ..found })
 }
 
 /// By how much the speed in a wider window differs beyond what the noise may explain.

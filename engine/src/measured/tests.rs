@@ -180,7 +180,9 @@ fn a_record_that_ends_at_its_last_contact_keeps_its_signs() {
                 [|at: &MomentRow| at.approach, |at: &MomentRow| at.force, |at: &MomentRow| at.contact_radius]
                     .map(|of| at(t, of));
             let _ = write!(text, "{t:e},{:e},{p:e}", sign * x);
-            text += &if with_radius { format!(",{s:e}") } else { String::new() };
+            if with_radius {
+                let _ = write!(text, ",{s:e}");
+            }
             text += if with_segment { ",retraction\n" } else { "\n" };
         }
         text

@@ -372,6 +372,8 @@ impl PathReport {
         let in_zone = case.cohesion.is_some();
         let mut warnings =
             if is_loop || in_zone { case.warnings_of_problem() } else { case.warnings(begins) };
+        let radii = path.states.iter().map(|state| state.contact_radius);
+        warnings.extend(case.warning_of_size(radii.fold(begins, f64::max)));
         warnings.extend(path.warnings.iter().map(|w| w.words(&printer)));
         let mut notes = if is_loop || in_zone { problem_notes(case) } else { case.notes(begins) };
         notes.extend(note_of_range(preset, case));

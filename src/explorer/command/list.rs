@@ -108,7 +108,7 @@ macro_rules! each_command {
             { words: "cursor read", look: look::cross_hair }
         Map "map" "" "map" curve Nothing Screen
             "where snaps happen over the selected value; again: the map of it and the adhesion" { words: "phase diagram threshold onset", look: look::map,
-            takes: takes("KEY [KEY, control, approach or force]", axes).going_on(axes_of) }
+            takes: takes("KEY[=[log:]FROM..TO] [another, control, approach or force]", axes).going_on(axes_of) }
         Axes "axes" "a" "axes" always Nothing Screen "axes in P/Pc, delta, s/lambda, or raw values" { look: look::axes }
         Overlays "overlays" "y" "theory" curve Nothing Screen
             "theory over the curve: smooth sphere, exact solution, envelope, the line of the loading device"

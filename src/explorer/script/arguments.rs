@@ -6,11 +6,9 @@ use super::lexer::Word;
 use super::offers::{Offer, PICTURES, Typing};
 use crate::explorer::command::{Assignment, Command, Id, LENGTHS, MOST_STEPS};
 use crate::explorer::export::{ExportKind, Picture, ends_in};
-use crate::explorer::map_axes::CURVES;
 use crate::explorer::pins;
 use crate::explorer::view::{Home, Overlay, View};
 use pulloff_engine::preset::Key;
-use pulloff_engine::stability::COMPLIANCE;
 use pulloff_engine::sweep::QuantityColumn;
 use pulloff_engine::text::{closest, quote};
 
@@ -210,9 +208,9 @@ pub(in crate::explorer) fn theory(rest: &mut Rest<'_>) -> Result<Command, Script
 }
 
 pub(in crate::explorer) fn axes(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
-    let x = axis(rest.need("a key")?, &[])?;
-    let y = rest.next().map(|word| axis(word, &CURVES.map(|(name, _)| name))).transpose()?;
-    Ok(Command::Map { x, y })
+    // The preset that is open knows the short names.
+    let x = rest.need("a key")?.text.clone().into();
+    Ok(Command::Map { x, y: rest.next().map(|word| word.text.clone().into()) })
 }
 
 pub(in crate::explorer) fn pin(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
@@ -282,12 +280,4 @@ fn assignment(word: &Word, read: ReadKey) -> Result<Assignment, ScriptFault> {
         return Err(ScriptFault::new(word.column, what));
     };
     Ok((read(key, word.column)?, text.to_owned()))
-}
-
-/// What an axis of a map shows: a key, a group, the compliance, or one of these words.
-fn axis(word: &Word, words: &[&str]) -> Result<Key, ScriptFault> {
-    if word.text == COMPLIANCE || words.contains(&&*word.text) {
-        return Ok(word.text.clone().into());
-    }
-    known(&word.text, word.column)
 }

@@ -46,16 +46,20 @@ pub(in crate::explorer) fn key_called(preset: &Preset, name: &str) -> Result<Key
     let keys: Vec<Key> = rows_called(preset, name).into_iter().map(|row| row.key).collect();
     match &keys[..] {
         [key] => Ok(key.clone()),
-        [] => Err(format!("unknown key {}", quote(name))),
+        [] => Err(unknown(name)),
         several => Err(format!("{} is short for several: {}", quote(name), several.join(", "))),
     }
+}
+
+fn unknown(key: &str) -> String {
+    let hint = meant(key).map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
+    format!("unknown key {}{hint}", quote(key))
 }
 
 /// A key or a group.
 pub(super) fn known(key: &str, column: usize) -> Result<Key, ScriptFault> {
     if parameter(key).is_none() && groups::row(key).is_none() {
-        let hint = meant(key).map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
-        return Err(ScriptFault::new(column, format!("unknown key {}{hint}", quote(key))));
+        return Err(ScriptFault::new(column, unknown(key)));
     }
     Ok(key.to_owned().into())
 }

@@ -18,7 +18,8 @@ pub fn line(command: &Command) -> Option<String> {
         Command::GoToState([approach, force, radius]) => format!(" {approach:?} {force:?} {radius:?}"),
         Command::Assign(all) => assignments(all)?,
         Command::Map { x, y } => {
-            format!(" {x}{}", y.as_ref().map_or_else(String::new, |y| format!(" {y}")))
+            let y = y.as_ref().map_or(Some(String::new()), |y| Some(format!(" {}", quoted(y)?)))?;
+            format!(" {}{y}", quoted(x)?)
         }
         Command::Go(home) => format!(" {}", home.name()),
         Command::Show(view) => format!(" {}", view.name()),

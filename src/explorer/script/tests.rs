@@ -39,6 +39,7 @@ fn any_command() -> impl Strategy<Value = Command> {
         Just(Command::Map { x: "gap.amplitude".into(), y: None }),
         Just(Command::Map { x: "compliance".into(), y: Some("groups.adhesion".into()) }),
         Just(Command::Map { x: "groups.adhesion".into(), y: Some("force".into()) }),
+        Just(Command::Map { x: "gap.amplitude=log:1e-4..5e-3".into(), y: Some("compliance=0..inf".into()) }),
         proptest::option::of(1..=6usize).prop_map(Command::Unpin),
         text().prop_map(Command::Open),
         (text(), assignments(1)).prop_map(|(name, assignments)| Command::OpenWith { name, assignments }),

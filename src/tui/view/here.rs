@@ -10,6 +10,7 @@ use crate::tui::theme::Theme;
 use pulloff_engine::case::critical_force;
 use pulloff_engine::gap::{Gap, wave_index};
 use pulloff_engine::problem::Control;
+use pulloff_engine::quasistatic::State;
 use pulloff_engine::report::number::{difference, fixed, short, significant, with_unit};
 use pulloff_engine::units::Quantity;
 use ratatui::Frame;
@@ -17,8 +18,20 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Paragraph;
 
+/// An approach below this share of the contact radius is rounding alone.
+const NO_APPROACH: f64 = 1e-13;
+
 /// The largest difference from the exact state that is rounding alone.
 const ROUNDING: f64 = 1e-10;
+
+/// The state of a node in the user's units.
+fn shown_state(node: &Node) -> State {
+    let mut state = node.state.in_units(node.setting.units());
+    if state.approach.abs() <= NO_APPROACH * state.contact_radius {
+        state.approach = 0.0;
+    }
+    state
+}
 
 /// Draws the state of the walker.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
@@ -53,7 +66,7 @@ pub fn line(app: &App, room: usize) -> Line<'static> {
     };
     let scale = Scale::of(curve, model.axes);
     let [length, force, radius] = scale.state_axes();
-    let state = node.state.in_units(node.setting.units());
+    let state = shown_state(node);
     let mut parts: Vec<Vec<Span<'static>>> = Vec::new();
     let shown = |axis: &Axis, x: f64, digits| {
         pair(theme, &format!("{} ", axis.symbol), &significant(x, digits)).to_vec()
@@ -133,7 +146,7 @@ fn shown(theme: Theme, node: &Node, quantity: Quantity, x: f64, digits: usize) -
 }
 
 fn apart(theme: Theme, keymap: &Keymap, node: &Node) -> Vec<Line<'static>> {
-    let state = node.state.in_units(node.setting.units());
+    let state = shown_state(node);
     let shown = |quantity, x| shown(theme, node, quantity, x, 5);
     vec![
         Line::styled(" the bodies are apart", theme.strong()),
@@ -150,7 +163,7 @@ fn apart(theme: Theme, keymap: &Keymap, node: &Node) -> Vec<Line<'static>> {
 
 fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'static>> {
     let setting = &node.setting;
-    let state = node.state.in_units(setting.units());
+    let state = shown_state(node);
     let critical = critical_force(&setting.preset);
     let wave = setting.reduced.gap.wavelength();
     let s = node.state.contact_radius;

@@ -470,3 +470,23 @@ fn the_cross_hair_on_a_map_counts_the_snaps() {
         assert!(text.contains(said), "{said}: {text}");
     }
 }
+
+#[test]
+fn the_axes_of_a_map_take_ranges() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":map A=log:1e-4..5e-3 gamma=0.001..0.008\r");
+    let crate::figure::Subject { map: Some(Ok(report)), .. } =
+        crate::figure::Subject::of(&screen.app.model).unwrap()
+    else {
+        panic!("{}", screen.text(120, 40))
+    };
+    assert!(report.x.logarithmic && !report.y.logarithmic);
+    assert_eq!([report.x.from, report.x.to, report.y.to], [Some(1e-4), Some(5e-3), Some(8e-3)]);
+    let text = screen.text(120, 40);
+    assert!(text.contains("0.0001                 0.001"), "{text}");
+    for (axis, why) in [("A=log:0..1", "a logarithmic axis must begin above zero"), ("A=1", "KEY=FROM..TO")] {
+        screen.keys(&format!("\x1b:map {axis}\r"));
+        let text = screen.text(300, 60);
+        assert!(text.contains(why), "{axis}: {text}");
+    }
+}
