@@ -52,7 +52,9 @@ pub(in crate::explorer) fn key_called(preset: &Preset, name: &str) -> Result<Key
 }
 
 fn unknown(key: &str) -> String {
-    let hint = meant(key).map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
+    // A letter or two is near to too much.
+    let meant = meant(key).filter(|_| key.chars().count() > 2);
+    let hint = meant.map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
     format!("unknown key {}{hint}", quote(key))
 }
 
