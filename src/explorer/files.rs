@@ -171,7 +171,7 @@ fn put(path: &str, bytes: &[u8], replace: bool) -> Result<Fingerprint, WriteErro
 fn units(content: &Content, csv: &str) -> Option<String> {
     let preset = match content {
         Content::Curve(curve) | Content::Walk(curve, _) | Content::Events(curve, _) => &curve.setting.preset,
-        Content::Pull(pull) => &pull.preset,
+        Content::Pull(_, preset) => preset,
         Content::Script(..) | Content::Study(..) => return None,
     };
     let columns: Vec<&str> = csv.lines().next()?.split(',').collect();
@@ -281,9 +281,8 @@ fn text(content: &Content, as_json: bool) -> Result<String, Box<dyn std::error::
                 events_table(events)?.csv()?
             }
         }
-        Content::Pull(pull) => {
-            let report = pull.report.as_ref().map_err(|fault| fault.text.clone())?;
-            if as_json { json(report)? } else { report.moments()?.csv()? }
+        Content::Pull(report, _) => {
+            if as_json { json(&**report)? } else { report.moments()?.csv()? }
         }
         Content::Study(study, _) => study_table::csv(study)?,
         Content::Script(_, lines) => lines.join("\n"),

@@ -6,13 +6,13 @@ use super::data::{Folder, Foreign};
 use super::export::{ExportKind, Page};
 use super::journal::Beginning;
 use super::node::Node;
-use super::pulls::PullData;
 use super::studies::StudyData;
 use crate::mend::WordedFault;
 use crate::store::{Fingerprint, Listing, Loaded, Overwrite, Source};
 use pulloff_engine::gap::shapes::ProfileRows;
 use pulloff_engine::preset::{Key, Preset};
 use pulloff_engine::report::path::EventReport;
+use pulloff_engine::report::pull::PullReport;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -25,7 +25,8 @@ pub enum Content {
     Events(Arc<CurveData>, Vec<EventReport>),
     /// Where the session began, and the lines that follow.
     Script(Box<Beginning>, Vec<String>),
-    Pull(Arc<PullData>),
+    /// A pull and its preset.
+    Pull(Box<PullReport>, Box<Preset>),
     /// A study and where its preset comes from.
     Study(Arc<StudyData>, Box<Beginning>),
 }

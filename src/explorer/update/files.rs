@@ -11,7 +11,6 @@ use crate::explorer::journal::Beginning;
 use crate::explorer::look;
 use crate::explorer::model::{Level, Model, Question};
 use crate::explorer::pins::changed;
-use crate::explorer::pulls::PullData;
 use crate::explorer::requests::{change, file, want_curve};
 use crate::explorer::studies::StudyData;
 use crate::explorer::undo::SessionPlace;
@@ -75,12 +74,12 @@ pub(super) fn export(model: &mut Model, what: ExportKind, path: String, replace:
         }
         ExportKind::Events => Content::Events(curve, model.path_events().to_vec()),
         ExportKind::Pull => {
-            let pull = model.results.share::<PullData>().filter(|pull| pull.is_of(&model.preset));
-            let Some(pull) = pull.filter(|pull| pull.run().is_some()) else {
+            let pull = model.pull().filter(|pull| pull.is_of(&model.preset));
+            let Some((pull, report)) = pull.and_then(|pull| Some((pull, pull.report.as_ref().ok()?))) else {
                 return model
                     .refuse("there is no pull to export: path.rate and the law of the edge make one");
             };
-            Content::Pull(pull)
+            Content::Pull(Box::new(report.clone()), Box::new(pull.preset.clone()))
         }
         ExportKind::Study => {
             let study =
