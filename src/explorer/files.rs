@@ -282,7 +282,11 @@ fn text(content: &Content, as_json: bool) -> Result<String, Box<dyn std::error::
             }
         }
         Content::Pull(report, _) => {
-            if as_json { json(&**report)? } else { report.moments()?.csv()? }
+            if as_json {
+                json(&**report)?
+            } else {
+                report.moments()?.csv()?
+            }
         }
         Content::Study(study, _) => study_table::csv(study)?,
         Content::Script(_, lines) => lines.join("\n"),

@@ -1,7 +1,8 @@
 //! Handles the fits of many files as they finish: reports each, puts it into the table, and sums all up at the end.
 
+use super::arguments::{FitArguments, FitSinks};
 use super::summary::FitSummary;
-use super::{FitArguments, FitSinks, table};
+use super::table;
 use crate::cli::console::Console;
 use crate::cli::format::Format;
 use crate::cli::watch::StopSignal;

@@ -1,49 +1,20 @@
 //! One law fitted to several files.
 
+use super::arguments::{FitArguments, FitSinks, of_file, refused, with_points};
 use super::done::{ended, status_of};
-use super::{FitArguments, FitSinks, of_file, refused, table, with_points};
+use super::table;
 use crate::cli::Failure;
 use crate::cli::console::Console;
 use crate::cli::format::Format;
-use crate::cli::measured::typed;
 use crate::cli::watch::StopSignal;
 use crate::store::Loaded;
 use crate::store::atomic::folder_of;
-use clap::Args;
 use pulloff_engine::fit::{Options, fit_together};
-use pulloff_engine::preset::edge::RATE;
 use pulloff_engine::preset::{Preset, Value, write};
 use pulloff_engine::report::{FitReport, TogetherReport, json};
 use pulloff_engine::text::show_path;
 use std::path::PathBuf;
 use std::process::ExitCode;
-
-/// The options for fitting several files at once.
-#[derive(Debug, Args)]
-pub(super) struct Several {
-    /// Fit one law to all files: the free values of material, gap, edge and path are shared, those of data.* are each
-    /// file's own; the report says whether the files follow one law
-    #[arg(long, conflicts_with_all = ["residuals", "table", "profile", "bootstrap", "poisson"])]
-    pub(super) together: bool,
-    /// The rate of the device in each file, in order, or one for all; path.rate when left out. A file with times
-    /// and the position of the device gives its own rate
-    #[arg(long, value_name = "RATE,...", value_delimiter = ',')]
-    pub(super) rate: Vec<String>,
-}
-
-impl Several {
-    /// The rates of the files.
-    pub(super) fn rates(&self, files: &[PathBuf], preset: &Preset) -> Result<Vec<f64>, Failure> {
-        if self.rate.len() > 1 && self.rate.len() != files.len() {
-            return Err(Failure::Usage(format!(
-                "--rate: {} rates are given for {} files: give one for each, or one for all",
-                self.rate.len(),
-                files.len()
-            )));
-        }
-        self.rate.iter().map(|text| typed(preset, "--rate", RATE, text)).collect()
-    }
-}
 
 /// Fits the law and writes what was found.
 pub(super) fn run(
