@@ -9,7 +9,8 @@
 //! | `help` | the help, and searching it for a word |
 //! | `line` | commands typed by name |
 //! | `mouse` | clicks and the wheel |
-//! | `state` | the app: keys, prompts, questions |
+//! | `keys` | keys, prompts, questions |
+//! | `state` | the app |
 //! | `typed` | the lines typed earlier |
 //! | `session` | the offer of a session, the branches of the walk |
 
@@ -18,6 +19,7 @@ mod columns;
 mod files;
 mod gap;
 mod help;
+mod keys;
 mod line;
 mod mouse;
 mod session;
