@@ -3,6 +3,7 @@
 //! | file | what lives there |
 //! |---|---|
 //! | [`equilibrium`] | the contact as a system of two equations in (δ, P, s); states, stability, controls |
+//! | [`places`] | the places of the states with which a curve is drawn |
 //! | [`curve`] | the equilibrium curve between two radii, its limit points, the arc-length tracer |
 //! | [`monotone`] | the stretches on which a control is monotone, the limit points between them |
 //! | [`start`] | the state a path starts from: a contact radius, an approach or a preload |
@@ -30,16 +31,18 @@ pub mod landscape;
 pub mod monotone;
 pub mod overlap;
 pub mod path;
+pub mod places;
 pub mod profile;
 pub mod start;
 pub mod walk;
 
 pub use admissible::Admissibility;
-pub use curve::{Curve, CurveStop, Detail, Sample};
+pub use curve::{Curve, CurveStop, Sample};
 pub use equilibrium::{Equilibrium, Scales, Stability, State, StatePoint, Stiffness};
 pub use landscape::Landscape;
 pub use monotone::{Extremum, Limit, Monotone};
 pub use overlap::Overlap;
 pub use path::{Event, EventKind, Losses, Path, PathState, PathStop};
+pub use places::Detail;
 pub use profile::Profile;
 pub use start::StartError;

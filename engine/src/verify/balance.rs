@@ -15,7 +15,7 @@
 use super::row::VerifyRow;
 use crate::gap::Gap;
 use crate::problem::Control;
-use crate::quasistatic::curve::radii;
+use crate::quasistatic::places::radii;
 use crate::quasistatic::{Curve, Equilibrium, Path, PathState};
 use gauss_quad::GaussLegendre;
 

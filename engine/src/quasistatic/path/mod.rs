@@ -26,7 +26,8 @@
 //! | `unload` | the way down from a disc |
 //! | `follow` | the stable stretches between events |
 //! | `area` | losses, computed a second time |
-//! | [`zone`] | paths of adhesion with a range |
+//! | `zones` | the equilibria of adhesion with a range |
+//! | [`zone`] | paths along them |
 //! | `zero` | the loop without adhesion |
 
 mod area;
@@ -45,6 +46,7 @@ pub mod stepped;
 mod unload;
 mod zero;
 pub mod zone;
+mod zones;
 
 pub use super::energy::Losses;
 pub use balance::{Balance, HeldEdges, NotFound};
@@ -58,4 +60,5 @@ pub use point::{PathPoint, PathStep};
 pub use setting::{AskedState, DeadBand, Path, PathSetting, PathStop, Totals, TurnReached, WhyNot};
 pub use stepped::{SingularSide, TakenStep};
 pub use unload::unload;
-pub use zone::{Zones, cycle_in_zone, start_in_zone, unload_in_zone};
+pub use zone::{cycle_in_zone, start_in_zone, unload_in_zone};
+pub use zones::Zones;

@@ -7,10 +7,11 @@ use super::setting::{AskedState, DeadBand, Path, PathSetting, PathStop, Totals, 
 use crate::disc::Place;
 use crate::problem::{ContactKind, Control};
 use crate::progress::Progress;
-use crate::quasistatic::curve::{CurveStop, Detail, places};
+use crate::quasistatic::curve::CurveStop;
 use crate::quasistatic::descent::{AT_END, Descent, descend, stable_start};
 use crate::quasistatic::energy::{self, Losses};
 use crate::quasistatic::jump::{self, EdgeDirection, Landing};
+use crate::quasistatic::places::{Detail, places};
 
 /// The share of its losses to which the balance of a path may stay open.
 const BALANCED: f64 = 1e-6;

@@ -6,8 +6,9 @@ use super::event::{Direction, Event, EventKind, PathState};
 use super::jump::{EVEN, Mobility};
 use crate::problem::{ContactKind, Control, Printer, Turn};
 use crate::quasistatic::State;
-use crate::quasistatic::curve::{CurveStop, Detail};
+use crate::quasistatic::curve::CurveStop;
 use crate::quasistatic::energy::Losses;
+use crate::quasistatic::places::Detail;
 use crate::zone::FaultKind;
 use std::fmt;
 
