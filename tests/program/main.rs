@@ -35,6 +35,7 @@ mod plot;
 mod pull;
 mod recording;
 mod release;
+mod rooms;
 mod run;
 mod session;
 mod speeds;

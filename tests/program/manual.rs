@@ -46,11 +46,11 @@ const PARTS: [&str; 15] = [
     "code: engine/examples/fig_9.rs",
 ];
 
-fn root() -> &'static Path {
+pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-fn text(file: &str) -> String {
+pub fn text(file: &str) -> String {
     fs::read_to_string(root().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
 }
 
@@ -427,94 +427,6 @@ fn the_paths_and_names_of_the_architecture_are_those_of_the_code() {
     }
 }
 
-/// The code of a file without its tests and comments: an item below `#[cfg(test)]` ends with its braces or its semicolon.
-fn without_tests(text: &str) -> String {
-    let mut rest = text;
-    let mut code = String::new();
-    while let Some((before, item)) = rest.split_once("#[cfg(test)]") {
-        code.push_str(before);
-        let body = item.find(['{', ';']).expect("an item");
-        let mut depth = 0;
-        let end = item[body..].char_indices().find(|&(_, c)| {
-            depth += i32::from(c == '{') - i32::from(c == '}');
-            depth == 0
-        });
-        rest = &item[body + end.map_or(item.len() - body, |(at, _)| at + 1)..];
-    }
-    code.push_str(rest);
-    code.lines()
-        .filter(|line| !line.trim_start().starts_with("//"))
-        .fold(String::new(), |all, line| all + line + "\n")
-}
-
-/// The files of a room with its own code: tests, examples and fixtures do not count.
-fn files_of(room: &Path) -> Vec<PathBuf> {
-    if room.is_file() {
-        return vec![room.to_owned()];
-    }
-    let is_code = |path: &Path| {
-        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        !name.starts_with("tests")
-            && name != "examples.rs"
-            && (path.is_dir() || path.extension().is_some_and(|ending| ending == "rs"))
-    };
-    let entries = fs::read_dir(room).expect("a room").map(|entry| entry.expect("an entry").path());
-    entries.filter(|path| is_code(path)).flat_map(|path| files_of(&path)).collect()
-}
-
-/// The rooms that a room refers to as `crate::ROOM` or `crate::{ROOM, …}`.
-fn rooms_used(room: &Path) -> BTreeSet<String> {
-    let is_in_name = |c: char| c.is_ascii_lowercase() || c == '_';
-    let mut used = BTreeSet::new();
-    for file in files_of(room) {
-        let code = without_tests(&fs::read_to_string(&file).expect("a source file"));
-        for after in code.split("crate::").skip(1) {
-            let list = after.strip_prefix('{').and_then(|list| list.split_once('}'));
-            let names =
-                list.map_or_else(|| vec![after], |(list, _)| list.split(',').map(str::trim).collect());
-            used.extend(
-                names
-                    .into_iter()
-                    .map(|name| name.split(|c| !is_in_name(c)).next().unwrap_or_default().to_owned()),
-            );
-        }
-    }
-    used
-}
-
-/// The tables of rooms list what each room uses, and a room uses only those above it, so there is no cycle.
-#[test]
-fn the_tables_of_rooms_say_what_each_room_uses() {
-    const EVERYWHERE: [&str; 2] = ["elementary", "progress"];
-    let page = text("ARCHITECTURE.md");
-    for base in ["engine/src/", "src/"] {
-        let rows: Vec<(&str, &str)> = page
-            .lines()
-            .filter_map(|line| line.strip_prefix("| `")?.strip_prefix(base)?.split_once('`'))
-            .map(|(room, rest)| {
-                (room, rest.trim_end_matches('|').rsplit('|').next().unwrap_or_default().trim())
-            })
-            .collect();
-        assert!(rows.len() > 8, "{base}: {} rows", rows.len());
-        let names: Vec<&str> = rows.iter().map(|(room, _)| room.trim_end_matches(".rs")).collect();
-        for (index, &(room, uses)) in rows.iter().enumerate() {
-            let mut used = rooms_used(&root().join(base).join(room));
-            used.retain(|name| {
-                name != names[index] && names.contains(&name.as_str()) && !EVERYWHERE.contains(&name.as_str())
-            });
-            let said: BTreeSet<String> =
-                uses.split(", ").filter(|name| !name.is_empty()).map(str::to_owned).collect();
-            assert_eq!(used, said, "{base}{room}: what it uses (left) and what ARCHITECTURE.md says (right)");
-            for name in &used {
-                assert!(
-                    names[..index].contains(&name.as_str()),
-                    "{base}{room} uses {name}, which stands below it"
-                );
-            }
-        }
-    }
-}
-
 /// The names at the root of the engine, its modules and exports, in ascending order.
 fn public_items() -> Vec<String> {
     let source = text("engine/src/lib.rs");
@@ -545,24 +457,4 @@ fn the_public_items_of_the_engine_are_those_of_the_list() {
     assert_eq!(text(FILE), list, "UPDATE_DOCS=1 cargo test --test program manual:: writes {FILE}");
     let source = text("engine/src/lib.rs") + &text("src/lib.rs");
     assert!(!source.contains("doc(hidden)"), "what is public is documented");
-}
-
-/// Each test binary is linked with the whole program, so there are few, and every file is in one of them.
-#[test]
-fn the_tests_are_few_binaries_and_each_file_is_in_one() {
-    let mut binaries = 0;
-    for folder in ["tests", "engine/tests"] {
-        for entry in fs::read_dir(root().join(folder)).unwrap().map(Result::unwrap) {
-            let path = entry.path();
-            let is_file = path.extension().is_some_and(|ending| ending == "rs");
-            binaries += usize::from(is_file || path.join("main.rs").exists());
-            let Ok(main) = fs::read_to_string(path.join("main.rs")) else { continue };
-            for file in files_of(&path).iter().filter(|file| file.parent() == Some(&path)) {
-                let name = file.file_stem().unwrap().to_str().unwrap();
-                let is_in_it = name == "main" || main.contains(&format!("mod {name};"));
-                assert!(is_in_it, "{} is no part of its main.rs: it would never run", file.display());
-            }
-        }
-    }
-    assert!(binaries <= 6, "{binaries} test binaries: put a new file beside those that it is like");
 }
