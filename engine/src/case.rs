@@ -18,7 +18,8 @@ use crate::problem::{
 use crate::progress::{Progress, Stopped, Unwatched};
 use crate::quasistatic::admissible::{Judge, falls};
 use crate::quasistatic::path::{
-    Losses, Path, PathError, PathSetting, Zones, cycle, cycle_in_zone, start_in_zone, unload, unload_in_zone,
+    Losses, Path, PathError, PathSetting, ZoneStartError, Zones, cycle, cycle_in_zone, start_in_zone, unload,
+    unload_in_zone,
 };
 use crate::quasistatic::start::StartError;
 use crate::quasistatic::start::contact_radius;
@@ -179,8 +180,11 @@ impl Case {
         let closing = preset.edge.closing_work_of_adhesion.map(|gamma| gamma / units.work_of_adhesion);
         let closing = closing.filter(|closing| *closing < reduced.work_of_adhesion);
         let start = if let Some(law) = cohesion {
-            start_in_zone(&table, law, wanted, progress)
-                .map_err(|error| refused_path(error, printer.clone()))?
+            match start_in_zone(&table, law, wanted, progress) {
+                Err(ZoneStartError::Path(error)) => return Err(refused_path(error, printer)),
+                Err(ZoneStartError::Start(error)) => Err(error),
+                Ok(start) => Ok(start),
+            }
         } else {
             let work_of_adhesion = closing.unwrap_or(reduced.work_of_adhesion);
             let grown = Reduced { work_of_adhesion, ..reduced.clone() };

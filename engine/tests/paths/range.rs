@@ -10,7 +10,8 @@ use pulloff_engine::problem::{Cohesion, Control, Problem, Start, Turn};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::StartError;
 use pulloff_engine::quasistatic::path::{
-    Event, EventKind, Path, PathError, PathSetting, PathStop, cycle_in_zone, start_in_zone, unload_in_zone,
+    Event, EventKind, Path, PathError, PathSetting, PathStop, ZoneStartError, cycle_in_zone, start_in_zone,
+    unload_in_zone,
 };
 use pulloff_engine::zone::{Equilibria, ZoneAt, ZoneState};
 use std::f64::consts::PI;
@@ -269,7 +270,12 @@ fn the_slopes_of_a_thin_zone_have_all_their_digits() {
 fn a_start_without_contact_says_why_there_is_none() {
     let law = cohesion(GAMMA, strength(GAMMA, 1.0));
     let start = |shape: &Shape, approach| {
-        start_in_zone(&table(shape), law, Start::Approach(approach), &Unwatched).unwrap()
+        start_in_zone(&table(shape), law, Start::Approach(approach), &Unwatched).map_err(
+            |error| match error {
+                ZoneStartError::Start(error) => error,
+                ZoneStartError::Path(error) => panic!("{error}"),
+            },
+        )
     };
     let found = start(&SPHERE, 0.01).unwrap();
     let of = equilibria(&SPHERE, GAMMA, law.strength, 0.4);

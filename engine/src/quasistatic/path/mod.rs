@@ -60,5 +60,5 @@ pub use point::{PathPoint, PathStep};
 pub use setting::{AskedState, DeadBand, Path, PathSetting, PathStop, Totals, TurnReached, WhyNot};
 pub use stepped::{SingularSide, TakenStep};
 pub use unload::unload;
-pub use zone::{cycle_in_zone, start_in_zone, unload_in_zone};
+pub use zone::{ZoneStartError, cycle_in_zone, start_in_zone, unload_in_zone};
 pub use zones::Zones;

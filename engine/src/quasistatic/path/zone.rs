@@ -104,19 +104,33 @@ pub fn unload_in_zone(
     })
 }
 
-/// The contact radius of the largest state with contact at an approach or a force, or why there is none; for a start
-/// by radius, that radius.
+/// Why a path in a zone does not start.
+#[derive(Debug)]
+pub enum ZoneStartError {
+    /// No state is the one that was asked for.
+    Start(StartError),
+    /// The equilibria cannot be found.
+    Path(PathError),
+}
+
+impl<E: Into<PathError>> From<E> for ZoneStartError {
+    fn from(error: E) -> Self {
+        Self::Path(error.into())
+    }
+}
+
+/// The contact radius of the largest state with contact at an approach or a force; for a start by radius, that radius.
 ///
 /// # Errors
-/// [`PathError`] where the equilibria cannot be found.
+/// [`ZoneStartError`].
 pub fn start_in_zone(
     table: &Arc<Table>,
     cohesion: Cohesion,
     start: Start,
     progress: &dyn Progress,
-) -> Result<Result<f64, StartError>, PathError> {
+) -> Result<f64, ZoneStartError> {
     let (control, value, name) = match start {
-        Start::ContactRadius(radius) => return Ok(Ok(radius)),
+        Start::ContactRadius(radius) => return Ok(radius),
         Start::Approach(approach) => (Control::Displacement, approach, "approach"),
         Start::Force(force) => (Control::Force, force, "force"),
     };
@@ -138,19 +152,19 @@ pub fn start_in_zone(
     let monotone = Monotone::of(&*solution, control);
     let crossings = monotone.crossings(&*solution, weighted(control, value, value));
     let radii = crossings.iter().rev().map(|(place, _)| solution.edges(*place).contact_radius);
-    Ok(radii.into_iter().find(|radius| *radius > 0.0).ok_or_else(|| {
+    radii.into_iter().find(|radius| *radius > 0.0).ok_or_else(|| {
         // Contact begins at a touch, and may pull more further out.
         let ends = monotone.stretches.iter().flat_map(|stretch| [stretch.inner, stretch.outer]);
         let in_contact = ends.filter(|place| solution.edges(*place).contact_radius > 0.0);
         let touches = found.touches().iter().filter_map(|edge| solution.place(*edge));
         let values = in_contact.chain(touches).map(|place| monotone.value(&solution.at(place)));
         let (smallest, searched) = (values.fold(f64::INFINITY, f64::min), found.reach());
-        match found.zone.gap.largest_radius() {
+        ZoneStartError::Start(match found.zone.gap.largest_radius() {
             _ if value < smallest && smallest.is_finite() => StartError::OutOfReach { name, value, smallest },
             Some(known) => StartError::NotKnown { name, value, searched, known },
             None => StartError::NotReached { name, value, largest: searched },
-        }
-    }))
+        })
+    })
 }
 
 /// A path on as much of the equilibria as it needs.
