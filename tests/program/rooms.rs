@@ -106,12 +106,13 @@ impl Imports {
     fn of(base: &Path) -> Self {
         let mut all = Self { own: BTreeMap::new(), handed_on: BTreeMap::new() };
         for file in files_of(base) {
-            let inside = file.strip_prefix(base).unwrap().with_extension("");
-            let mut module: Module = inside.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
+            let inside = file.strip_prefix(base).expect("a file of the package").with_extension("");
+            let mut module: Module =
+                inside.iter().map(|part| part.to_str().expect("a name").to_owned()).collect();
             if module.last().is_some_and(|name| matches!(&**name, "mod" | "lib" | "main")) {
                 module.pop();
             }
-            let code = without_tests(&fs::read_to_string(&file).unwrap());
+            let code = without_tests(&fs::read_to_string(&file).expect("a source file"));
             let (mut own, mut handed_on) = (Vec::new(), Vec::new());
             for (before, tree) in code.split("use ").zip(code.split("use ").skip(1)) {
                 let line = before.rsplit('\n').next().unwrap_or_default().trim();
@@ -198,7 +199,9 @@ fn no_files_import_each_other_in_a_circle() {
                 break;
             }
             left.retain(|module, _| !ground.contains(module));
-            left.values_mut().for_each(|used| used.retain(|at| !ground.contains(at)));
+            for used in left.values_mut() {
+                used.retain(|at| !ground.contains(at));
+            }
         }
         let remain: Vec<String> = left
             .iter()
