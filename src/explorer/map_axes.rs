@@ -61,12 +61,6 @@ impl MapAxes {
         Self { x: axis_of(key), y: usual.y }
     }
 
-    /// Whether limit points over one number are shown.
-    #[must_use]
-    pub fn is_curves(&self) -> bool {
-        CURVES.iter().any(|(name, _)| *name == self.y)
-    }
-
     /// The axes with their ranges around the values of `preset`.
     /// Errors: In words.
     pub(super) fn ranges(&self, preset: &Preset) -> Result<(MapAxis, Ordinate), String> {

@@ -271,17 +271,6 @@ impl Panels {
         if panel.steep { slope } else { slope * panel.span.stretch(at.x) }
     }
 
-    /// d²g/dv² at a place.
-    pub fn bend_by_variable(&self, at: Place) -> f64 {
-        let panel = &*self.list[at.panel];
-        let (span, [_, half]) = (&panel.span, panel.line);
-        if let Some(law) = &self.law {
-            return law.bend(span.radius(at.x));
-        }
-        let [slope, by_x] = chebyshev::sum_and_slope(&panel.slope, at.x);
-        if panel.steep { by_x / half } else { by_x / half * span.stretch(at.x) + slope * span.bend(at.x) }
-    }
-
     /// Everything at a place.
     pub fn values(&self, at: Place) -> TransformValues {
         let panel = &*self.list[at.panel];

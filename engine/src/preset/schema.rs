@@ -254,12 +254,6 @@ impl Parameter {
         Some(format!("{x:?} {}", if base.is_empty() { "rad" } else { &base }))
     }
 
-    /// Whether it is changed by factors rather than by differences.
-    #[must_use]
-    pub fn is_logarithmic(&self) -> bool {
-        matches!(self.kind, Kind::Positive)
-    }
-
     /// Whether it applies where the choice `chooser` is `word`.
     #[must_use]
     pub fn fits(&self, chooser: &str, word: &str) -> bool {

@@ -18,10 +18,6 @@
 
 use crate::elementary::pow;
 use crate::gap::{Breaks, ComplexDisc, Form, Gap, Jet, Parity};
-use std::ops::RangeInclusive;
-
-/// The allowed exponents. Below 1 the tip is a cusp without a disc of contact; above 100 the body is a flat punch.
-pub const EXPONENT_RANGE: RangeInclusive<f64> = 1.0..=100.0;
 
 /// Exponents below this are reduced like the cone: (2c)^(−1/(n−1)) may be decades away from every contact radius.
 pub const NEARLY_A_CONE: f64 = 1.5;
@@ -31,7 +27,7 @@ pub const NEARLY_A_CONE: f64 = 1.5;
 pub struct PowerLaw {
     /// c, positive, a length to the power 1 − n.
     pub factor: f64,
-    /// n, in [`EXPONENT_RANGE`].
+    /// n, from 1 to 100. Below 1 the tip is a cusp without a disc of contact; above 100 the body is a flat punch.
     pub exponent: f64,
 }
 
@@ -43,11 +39,6 @@ impl PowerLaw {
     #[must_use]
     pub fn cone(slope: f64) -> Self {
         Self { factor: slope, exponent: 1.0 }
-    }
-
-    /// Whether the gap is a cone.
-    pub fn is_cone(&self) -> bool {
-        self.exponent <= 1.0
     }
 
     /// rᵐ, or zero where it is singular on the axis.
@@ -141,7 +132,6 @@ mod tests {
         }
         let cone = PowerLaw::cone(0.3);
         assert_eq!(cone.jet(0.0), Jet { first: 0.3, ..Jet::default() });
-        assert!(cone.is_cone() && !PowerLaw { factor: 0.3, exponent: 1.1 }.is_cone());
         assert!((cone.reference_length() - 1.0).abs() < 1e-15);
     }
 }
