@@ -6,7 +6,7 @@ use super::marks::{letter, look, style};
 use super::raster::{self, Layer, Meets};
 use super::theme::Theme;
 use super::ticks::ticks;
-use crate::figure::{self, Area, Bounds, Figure, Meaning, Role, Sign};
+use crate::figure::{self, Area, AxisScale, Bounds, Figure, Meaning, Role, Sign};
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
@@ -285,8 +285,10 @@ impl Chart<'_> {
     /// Draws the axes through zero, in the empty cells.
     fn draw_zero(&self, buffer: &mut Buffer, plot: Rect) {
         let theme = self.theme;
-        let column = cell(0.0, self.bounds.x, plot.width, false);
-        let row = cell(0.0, self.bounds.y, plot.height, true);
+        // On a logarithmic axis there is no zero.
+        let has_zero = [&self.figure.x, &self.figure.y].map(|axis| axis.run != AxisScale::Logarithmic);
+        let column = cell(0.0, self.bounds.x, plot.width, false).filter(|_| has_zero[0]);
+        let row = cell(0.0, self.bounds.y, plot.height, true).filter(|_| has_zero[1]);
         let across = row.into_iter().flat_map(|row| (0..plot.width).map(move |i| (i, row)));
         let across = across.map(|at| (at, theme.glyph("┈", "-")));
         let upwards = column.into_iter().flat_map(|column| (0..plot.height).map(move |j| (column, j)));
