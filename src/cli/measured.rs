@@ -34,7 +34,7 @@ pub(super) fn attach(
 /// What the user says about the columns and rows of a measured curve.
 #[derive(Debug, Clone, Args)]
 pub(super) struct ReadingArguments {
-    /// What the columns are, by number or name, where the header does not say: x=1,force=2 or position=Z [nm],force=F [nN]
+    /// What the columns are, by number or name, where the header does not say: approach=1,force=2 or position=Z [nm],force=F [nN]
     #[arg(long, value_name = "ROLE=COLUMN,...")]
     columns: Option<String>,
     /// Use only one branch of the curve

@@ -300,10 +300,12 @@ impl Model {
             let behind = landed.map_or_else(|| behind(events, s, "unloading"), |at| at + 1);
             return (if from_disc { 0 } else { behind }, false);
         }
-        let direction = if self.inward || from_disc { "unloading" } else { "loading" };
         let begins = events.iter().position(|event| is_there(event.before.as_ref()));
         let pull = self.path().and_then(|path| radius(path.totals.largest_pull.as_ref()));
-        let is_on_path = begins.is_some() || pull.is_some_and(|pull| is_near(pull, s));
+        let is_pull = pull.is_some_and(|pull| is_near(pull, s));
+        let is_on_path = begins.is_some() || is_pull;
+        // Bodies are pulled hardest on their way apart, whichever way the walker has turned since.
+        let direction = if self.inward || from_disc || is_pull { "unloading" } else { "loading" };
         (begins.unwrap_or_else(|| behind(events, s, direction)), is_on_path)
     }
 }

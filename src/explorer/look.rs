@@ -38,10 +38,14 @@ pub(super) fn map(model: &mut Model) {
         };
         return model.tell(Level::Error, text);
     };
+    // An axis of the same key keeps its range.
+    let shown = model.map_axes.clone().filter(|_| model.view == View::Map);
     let over = MapAxes::over(&row.key);
-    let is_shown = model.view == View::Map && model.map_axes.as_ref() == Some(&over);
+    let x = shown.as_ref().map(|shown| shown.x.clone()).filter(|x| key_of(x) == over.x);
+    let is_shown = x.is_some() && shown.is_some_and(|shown| shown.y == over.y);
     let axes = if is_shown { MapAxes::beside_adhesion(&row.key, &model.preset) } else { over };
-    show_map(model, axes);
+    let x = x.filter(|x| key_of(x) == axes.x).unwrap_or(axes.x);
+    show_map(model, MapAxes { x, y: axes.y });
 }
 
 /// Shows the map of these axes; without a second one, the limit points over the first.

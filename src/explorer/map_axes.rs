@@ -1,5 +1,6 @@
 //! What the axes of a map show: two numbers, or one number and a quantity of limit points.
 
+use super::script::key_called;
 use pulloff_engine::gap::Gap;
 use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{Key, Parameter, Preset};
@@ -94,6 +95,8 @@ pub fn typed(preset: &Preset, text: &str) -> Result<MapAxis, String> {
     let (key, range) = (key.trim(), range.trim());
     let (logarithmic, range) = range.strip_prefix("log:").map_or((false, range), |rest| (true, rest));
     let (from, to) = range.split_once("..").filter(|_| !key.contains(':')).ok_or_else(expected)?;
+    let called = if key == COMPLIANCE { key.to_owned() } else { key_called(preset, key)?.into_owned() };
+    let key = &*called;
     let unit = preset.gap.length().unwrap_or(1.0) * preset.material.effective_modulus;
     let number = |text: &str| -> Result<f64, String> {
         if key == COMPLIANCE {

@@ -9,6 +9,7 @@ use super::walk::{branches, events_before, walk};
 use crate::explorer::View;
 use crate::explorer::curve::CurvePoint;
 use crate::explorer::pins::Pin;
+use pulloff_engine::preset::model::BasisSpec;
 use pulloff_engine::report::number::{fixed, significant};
 use pulloff_engine::report::path::PathStateReport;
 
@@ -45,7 +46,15 @@ fn cycle(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figur
     let pieces = report.states.chunk_by(|a, b| {
         (a.piece, a.direction, a.state.contacts.len()) == (b.piece, b.direction, b.state.contacts.len())
     });
-    for piece in pieces {
+    // One disc of the exact equation runs along the curve, which shows it.
+    let curve = subject.curve;
+    let is_exact = curve.setting.preset.basis == BasisSpec::Exact && curve.case.cohesion.is_none();
+    let largest = curve.case.start * curve.case.units().length * (1.0 + 1e-9);
+    let is_on_curve = |piece: &[PathStateReport]| {
+        let is_disc = |at: &PathStateReport| matches!(at.state.contacts[..], [[inner, outer]] if inner == 0.0 && outer <= largest);
+        is_exact && !rests && piece.iter().all(is_disc)
+    };
+    for piece in pieces.filter(|piece| !is_on_curve(piece)) {
         let (role, name) = if piece[0].direction == "loading" {
             (Role::Loading, "loading")
         } else {

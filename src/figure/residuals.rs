@@ -22,8 +22,11 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         Some((Abscissa::Position, _)) => scale.length_axis("Δ"),
         _ => scale.length_axis("δ"),
     };
-    let mut figure =
-        Figure::empty("distances of the points from the curve".to_owned(), x, Axis::pure("r/σ".to_owned()));
+    let mut figure = Figure::empty(
+        "distances of the points from the curve, in σ".to_owned(),
+        x,
+        Axis::pure("r/σ".to_owned()),
+    );
     let residuals = match subject.distances {
         Some(Ok((_, residuals))) => residuals,
         Some(Err(reason)) => {

@@ -12,7 +12,7 @@ const PAUSE: f64 = 0.1;
 const SHARES: [f64; 2] = [0.08, 0.16];
 
 /// From this number of rows on, they show whether the force stands still.
-const MANY: usize = 40;
+const MANY: usize = 100;
 
 /// Whether the curve is free at its low end and at its high end: where y stays constant while x changes.
 pub(super) fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
@@ -75,7 +75,7 @@ fn trends(x: &[f64], y: &[f64], order: &[usize], share: f64) -> Option<[f64; 2]>
     Some([trend(first)?, trend(last - BINS as f64 * bin)?])
 }
 
-/// The ends of x, low and high, at which the force stays constant as the rows show it, and not only changes little.
+/// The ends of x, low and high, at which the force stays constant as the rows show it, and does not only change little.
 pub(super) fn still_end(points: &[MeasuredPoint]) -> [bool; 2] {
     let (x, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
     let end = free_end(&x, &force);
@@ -86,9 +86,29 @@ pub(super) fn still_end(points: &[MeasuredPoint]) -> [bool; 2] {
     let mut in_order = points.to_vec();
     in_order.sort_by(|a, b| b.x.total_cmp(&a.x));
     let mut force: Vec<f64> = in_order.iter().map(|point| point.force).collect();
-    let low = end[0] && stands_still(&force);
+    let low = end[0] && is_level(&force);
     force.reverse();
-    [low, end[1] && stands_still(&force)]
+    [low, end[1] && is_level(&force)]
+}
+
+/// Whether the last rows are level within their noise, or a line that hardly rises, as where a baseline is tilted. A
+/// force that goes through its largest pull there bends; one that goes on in contact rises.
+fn is_level(force: &[f64]) -> bool {
+    /// The range of three medians is below so many of their errors; and the share of the whole range that is level.
+    const ERRORS: f64 = 5.0;
+    const LEVEL: f64 = 3.0 * FLOOR;
+    /// A tilt is less than this share of the mean slope, and straight to this share of itself.
+    const TILT: f64 = 0.2;
+    let count = (force.len() / END_SHARE).max(2 * END_ROWS);
+    let (end, whole) = (&force[force.len() - count..], range(force.iter().copied()));
+    let third = count / 3;
+    let middles = [&end[..third], &end[third..count - third], &end[count - third..]];
+    let [a, b, c] = middles.map(|part| median(part.to_vec()).unwrap_or(0.0));
+    let off = range([a, b, c].into_iter());
+    let error = 1.25 * noise_of(force) / (third as f64).sqrt();
+    let mean = whole * (count - third) as f64 / force.len() as f64;
+    let is_straight = ((b - a) - (c - b)).abs() <= TILT * (c - a).abs() + ERRORS * error;
+    off <= ERRORS * error + LEVEL * whole || is_straight && (c - a).abs() <= TILT * mean
 }
 
 /// Whether the force stays constant at the end without a jump before it, as it does where bodies without adhesion come

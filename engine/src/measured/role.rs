@@ -186,7 +186,9 @@ pub struct ColumnSpec(pub Vec<Said>);
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ColumnSpecError {
     /// It is not of the form `ROLE=COLUMN`.
-    #[error("\"{0}\" is not of the form ROLE=COLUMN, as in x=1,force=2 or position=Z [nm],force=F [nN]")]
+    #[error(
+        "\"{0}\" is not of the form ROLE=COLUMN, as in approach=1,force=2 or position=Z [nm],force=F [nN]"
+    )]
     Form(String),
     /// An unknown role.
     #[error(

@@ -124,14 +124,36 @@ fn way(values: impl Iterator<Item = f64>) -> Option<f64> {
 }
 
 /// Whether the sign of x is reversed, by the contact radii beside it, which grow as the bodies approach; `None` without
-/// them.
+/// them, and where they do not tell: radii that are constant, noisy, or held as the bodies part.
 fn by_radii(points: &[MeasuredPoint]) -> Option<bool> {
-    let mut known: Vec<&MeasuredPoint> = points.iter().filter(|point| point.radius > 0.0).collect();
+    /// The least correlation of ranks.
+    const SURE: f64 = 0.9;
+    let known: Vec<&MeasuredPoint> = points.iter().filter(|point| point.radius > 0.0).collect();
     if known.len() < 2 * END_ROWS {
         return None;
     }
-    known.sort_by(|a, b| a.radius.total_cmp(&b.radius));
-    way(known.iter().map(|point| point.x)).filter(|way| *way != 0.0).map(|way| way < 0.0)
+    let [x, radii] = [|point: &MeasuredPoint| point.x, |point: &MeasuredPoint| point.radius]
+        .map(|of| ranks(&known.iter().map(|point| of(point)).collect::<Vec<f64>>()));
+    let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let correlation = sum(&x, &radii) / (sum(&x, &x) * sum(&radii, &radii)).sqrt();
+    (correlation.abs() >= SURE).then_some(correlation < 0.0)
+}
+
+/// The place of each value among all in ascending order, counted from the middle; equal ones share theirs.
+fn ranks(values: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    let mut ranks = vec![0.0; values.len()];
+    let middle = 0.5 * (values.len() as f64 - 1.0);
+    let mut first = 0;
+    for equal in order.chunk_by(|&a, &b| values[a].total_cmp(&values[b]).is_eq()) {
+        let place = first as f64 + 0.5 * (equal.len() as f64 - 1.0) - middle;
+        for at in equal {
+            ranks[*at] = place;
+        }
+        first += equal.len();
+    }
+    ranks
 }
 
 /// The end of x at which `span` lies, as (low, high).

@@ -73,15 +73,14 @@ impl Snaps {
         let slow = if level > 0.0 { RUNS * level } else { f64::INFINITY };
         let level = level.max(f64::MIN_POSITIVE);
         let (mut least, mut is_settled) = (level, false);
-        // Another rate does not end a snap, but an edge that rests or turns round does.
+        // Another rate does not end a snap as long as the edge is fast for it too; an edge that rests or turns round does.
         let goes_on = |(running, _): &(BegunSnap, Vec<[f64; 2]>)| {
             let [before, now] = [running.low.0.speed, moments.get(1).map_or(0.0, |at| at.speed)];
-            before * now > 0.0
+            before * now > 0.0 && now.abs() > FASTER * running.least.max(level)
         };
         let mut run = match self.run.take() {
             Some(known) if goes_on(&known) => {
                 least = known.0.least.max(rests * level);
-                is_settled = true;
                 Some(known.0)
             }
             Some((ended, unstable)) => {
@@ -91,6 +90,7 @@ impl Snaps {
             }
             None => None,
         };
+        let mut is_carried = run.is_some();
         for (i, pair) in moments.windows(2).enumerate() {
             let [a, b] = [&pair[0], &pair[1]];
             let speed = if resolved { b.speed.abs() } else { mean_speed(a, b) };
@@ -115,7 +115,9 @@ impl Snaps {
             if speed <= FASTER * least {
                 let ended = running.ended(crossing(a, b, FASTER * least));
                 self.push(ended, unstable);
-                (run, least, is_settled) = (None, speed.max(rests * level), true);
+                (least, is_settled) =
+                    if is_carried { (level, false) } else { (speed.max(rests * level), true) };
+                (run, is_carried) = (None, false);
             } else if low <= slow && FASTER * low < running.top && speed > FASTER * low {
                 let ended = running.ended([at.contact_radius, at.dissipated]);
                 self.push(ended, unstable);

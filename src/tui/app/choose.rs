@@ -145,7 +145,15 @@ impl App {
                 }
                 effects
             }
-            Choice::Command(command) => self.open_or_ask(command),
+            Choice::Command(command) => {
+                let is_formula =
+                    matches!(&command, Command::Set { key, text } if key == "gap.shape" && text == "formula");
+                let effects = self.open_or_ask(command);
+                if is_formula {
+                    self.ask_formula_of_shape();
+                }
+                effects
+            }
             Choice::Prompt(prompt) => {
                 self.overlay = Some(Dialog::Prompt(*prompt));
                 Vec::new()

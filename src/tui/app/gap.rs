@@ -41,6 +41,14 @@ impl App {
         Vec::new()
     }
 
+    /// Asks for the formula once that is the shape.
+    pub(super) fn ask_formula_of_shape(&mut self) {
+        const KEY: &str = "gap.formula";
+        if self.model.preset.gap.name() == "formula" {
+            self.ask_formula(KEY.into(), self.model.preset.get(KEY));
+        }
+    }
+
     pub(super) fn ask_formula(&mut self, key: Key, value: Option<Value>) -> Vec<Effect> {
         let text = value.map_or_else(String::new, |value| value.to_string());
         let note = "r, pi, e, parameters; + - * / ^; functions like sqrt(), exp(), cos(), min(,)";

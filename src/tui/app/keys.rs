@@ -265,6 +265,10 @@ impl App {
                 let about = self.walker_place();
                 self.run(Command::Zoom { view: self.model.view, closer: id == Id::ZoomIn, about })
             }
+            Id::Cancel if self.enlarged && !self.model.is_busy() && self.model.cross.is_none() => {
+                self.enlarged = false;
+                Vec::new()
+            }
             Id::Enlarge => {
                 self.enlarged = !self.enlarged;
                 Vec::new()

@@ -19,7 +19,7 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::Paragraph;
 
 /// An approach below this share of the contact radius is rounding alone.
-const NO_APPROACH: f64 = 1e-13;
+const NO_APPROACH: f64 = 1e-12;
 
 /// The largest difference from the exact state that is rounding alone.
 const ROUNDING: f64 = 1e-10;

@@ -378,7 +378,7 @@ pub static PARAMETERS: &[Parameter] = &[
     row(
         data::COLUMNS,
         "columns",
-        "what its columns are, where its header does not say: x=1,force=2",
+        "what its columns are, where its header does not say: approach=1,force=2",
         Kind::Text { max_chars: 200 },
     )
     .or(Fallback::Text("")),
