@@ -97,8 +97,10 @@ fn is_level(force: &[f64]) -> bool {
     /// The range of three medians is below so many of their errors; and the share of the whole range that is level.
     const ERRORS: f64 = 5.0;
     const LEVEL: f64 = 3.0 * FLOOR;
+    const BENDS: f64 = 6.0;
     /// A tilt is less than this share of the mean slope, and straight to this share of itself.
-    const TILT: f64 = 0.2;
+    const TILT: f64 = 0.05;
+    const STRAIGHT: f64 = 0.2;
     let count = (force.len() / END_SHARE).max(2 * END_ROWS);
     let (end, whole) = (&force[force.len() - count..], range(force.iter().copied()));
     let third = count / 3;
@@ -107,8 +109,14 @@ fn is_level(force: &[f64]) -> bool {
     let off = range([a, b, c].into_iter());
     let error = 1.25 * noise_of(force) / (third as f64).sqrt();
     let mean = whole * (count - third) as f64 / force.len() as f64;
-    let is_straight = ((b - a) - (c - b)).abs() <= TILT * (c - a).abs() + ERRORS * error;
-    off <= ERRORS * error + LEVEL * whole || is_straight && (c - a).abs() <= TILT * mean
+    let is_straight = ((b - a) - (c - b)).abs() <= STRAIGHT * (c - a).abs() + ERRORS * error;
+    if off <= ERRORS * error || is_straight && (c - a).abs() <= TILT * mean {
+        return true;
+    }
+    // Where a force bends through its largest pull, the rows before are three times as far off as these among themselves.
+    let before = &force[force.len().saturating_sub(2 * count)..force.len() - count];
+    let next = (median(before.to_vec()).unwrap_or(b) - b).abs();
+    off <= LEVEL * whole && next >= BENDS * off
 }
 
 /// Whether the force stays constant at the end without a jump before it, as it does where bodies without adhesion come

@@ -225,6 +225,9 @@ impl Parameter {
             let number = Value::Control(Control::Stiffness(typed.number));
             return self.check(typed.unit.map_or(number, |_| Value::Typed(stiffness.to_owned())));
         }
+        if text.parse::<f64>().is_ok() && real(text).is_none() && self.kind.is_number() {
+            return Err(self.out_of_range(text));
+        }
         let value = match (self.kind, DeValue::parse(text)) {
             // Text that happens to look like a number is still text.
             (Kind::Text { .. } | Kind::File | Kind::Points, Ok(value)) => match value.get_ref() {
