@@ -90,7 +90,6 @@ impl Snaps {
             }
             None => None,
         };
-        let mut is_carried = run.is_some();
         for (i, pair) in moments.windows(2).enumerate() {
             let [a, b] = [&pair[0], &pair[1]];
             let speed = if resolved { b.speed.abs() } else { mean_speed(a, b) };
@@ -115,9 +114,7 @@ impl Snaps {
             if speed <= FASTER * least {
                 let ended = running.ended(crossing(a, b, FASTER * least));
                 self.push(ended, unstable);
-                (least, is_settled) =
-                    if is_carried { (level, false) } else { (speed.max(rests * level), true) };
-                (run, is_carried) = (None, false);
+                (run, least, is_settled) = (None, speed.max(rests * level), true);
             } else if low <= slow && FASTER * low < running.top && speed > FASTER * low {
                 let ended = running.ended([at.contact_radius, at.dissipated]);
                 self.push(ended, unstable);
