@@ -272,7 +272,7 @@ impl Going<'_> {
         let (at, end) = stretch.follow(&mut self.record, progress)?;
         let [drive, _] = equation.branch.drive(level);
         let resolved = level <= 0.0 || drive >= RESOLVED * settings.tolerance;
-        self.snaps.add(&self.record.moments[first..], (level, resolved), &unstable);
+        self.snaps.add(&self.record.moments[first..], (way.rate, level, resolved), &unstable);
         let s = at.held.contact_radius;
         self.adhesion += edge.adhesion(motion) * PI * (self.s - s) * (self.s + s);
         if motion == Motion::Closing && self.closed_to.is_none_or(|[largest, _]| s > largest) {

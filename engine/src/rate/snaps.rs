@@ -54,6 +54,8 @@ pub struct Snaps {
     found: Vec<Snap>,
     /// The one that has not ended with its stretch, and where equilibria are not stable.
     run: Option<(BegunSnap, Vec<[f64; 2]>)>,
+    /// The rate of the last stretch, the slowest speed since the last snap, and whether it is one of the equilibria.
+    before: Option<(f64, f64, bool)>,
 }
 
 impl Snaps {
@@ -65,14 +67,22 @@ impl Snaps {
         self.found
     }
 
-    /// Adds those among the moments of a stretch of one motion. At its beginning the edge would go at the speed `level`
+    /// Adds those among the moments of a stretch of one motion at this rate of the control. At its beginning the edge would go at the speed `level`
     /// if it followed the equilibria; at held control that is 0. Between the radii `unstable`, equilibria are not
     /// stable. The speed is not `resolved` where the drive along the equilibria is less than the integrator resolves.
-    pub fn add(&mut self, moments: &[Moment], (level, resolved): (f64, bool), unstable: &[[f64; 2]]) {
+    pub fn add(
+        &mut self,
+        moments: &[Moment],
+        (rate, level, resolved): (f64, f64, bool),
+        unstable: &[[f64; 2]],
+    ) {
         let rests = RESTS[usize::from(!resolved)];
         let slow = if level > 0.0 { RUNS * level } else { f64::INFINITY };
         let level = level.max(f64::MIN_POSITIVE);
-        let (mut least, mut is_settled) = (level, false);
+        // At the same rate, the slowest speed is known.
+        let known = self.before.filter(|(before, ..)| before.total_cmp(&rate).is_eq() && rate != 0.0);
+        let (mut least, mut is_settled) =
+            known.map_or((level, false), |(_, least, settled)| (least, settled));
         // Another rate does not end a snap as long as the edge is fast for it too; an edge that rests or turns round does.
         let goes_on = |(running, _): &(BegunSnap, Vec<[f64; 2]>)| {
             let [before, now] = [running.low.0.speed, moments.get(1).map_or(0.0, |at| at.speed)];
@@ -122,6 +132,7 @@ impl Snaps {
                 run = Some(begun(crossing(a, b, FASTER * low), least));
             }
         }
+        self.before = Some((rate, least, is_settled));
         self.run = run.map(|run| (run, unstable.to_vec()));
     }
 

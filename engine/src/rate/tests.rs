@@ -297,3 +297,32 @@ fn the_snaps_of_ever_slower_pulls_converge() {
         }
     }
 }
+
+/// A pull that is interrupted by a border between two parts, and nothing else, has the same snaps.
+#[test]
+fn a_snap_goes_on_across_the_border_of_two_parts() {
+    let table = wavy();
+    let parts = |programme: &[Part]| {
+        puller(&table, 0.5, Control::Displacement).pull(programme, &Unwatched).unwrap().snaps
+    };
+    let rate = 0.01;
+    let whole = parts(&[Part::Apart { rate }]);
+    // Borders before, in and after the first snaps.
+    for k in 0..40 {
+        let to = 0.06 - 0.0025 * f64::from(k);
+        let cut = parts(&[Part::Ramp { to, rate }, Part::Apart { rate }]);
+        assert_eq!(cut.len(), whole.len(), "{to}: {cut:?} {whole:?}");
+        for (a, b) in cut.iter().zip(&whole) {
+            assert!((a.from - b.from).abs() < 1e-3 && (a.to - b.to).abs() < 1e-3, "{to}: {a:?} {b:?}");
+            assert!((a.top_speed / b.top_speed - 1.0).abs() < 1e-3, "{to}: {a:?} {b:?}");
+        }
+    }
+    // A hold in which the edge comes to rest begins anew: the faster part after it has its own snaps.
+    let faster = parts(&[
+        Part::Ramp { to: -0.01, rate: 0.1 },
+        Part::Hold { time: 1000.0 },
+        Part::Apart { rate: 10.0 },
+    ]);
+    let last = faster.last().unwrap();
+    assert!(faster.len() == 5 && last.top_speed > 50.0, "{faster:?}");
+}
