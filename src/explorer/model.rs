@@ -432,16 +432,13 @@ impl Model {
 
     /// Whether the session stands at `place`.
     pub fn is_at(&self, place: &SessionPlace) -> bool {
-        let own = (self.history.id(), self.inward, self.length.to_bits());
-        place.shelved.is_none()
-            && own == (place.node, place.inward, place.length.to_bits())
-            && self.preset == place.preset
-            && self.pins.is_like(&place.pins)
+        place.is_like(&self.place())
     }
 
     /// Whether any of `places` differs from where the session stands.
     pub(super) fn can_travel(&self, places: &[Arc<SessionPlace>]) -> bool {
-        places.iter().rev().any(|place| !self.is_at(place))
+        let here = self.place();
+        places.iter().rev().any(|place| !place.is_like(&here))
     }
 
     /// Whether the values have changed since the walker's state was made.

@@ -63,17 +63,8 @@ pub enum Action {
 impl Action {
     /// Whether it begins a new walk, wherever the walker stood.
     pub fn begins(&self) -> bool {
-        self.command().is_some() || matches!(self, Self::MoveTo(_) | Self::Begin)
-    }
-
-    /// The command that leads to a state of the path.
-    pub fn command(&self) -> Option<&Command> {
-        match self {
-            Self::MoveToState { command, .. }
-            | Self::MoveToLimit { command, .. }
-            | Self::MoveToContacts { command, .. } => Some(command),
-            _ => None,
-        }
+        let is_move = matches!(self, Self::MoveTo(_) | Self::MoveToState { .. } | Self::Begin);
+        is_move || matches!(self, Self::MoveToLimit { .. } | Self::MoveToContacts { .. })
     }
 
     /// Solves the state of a node again for other values.

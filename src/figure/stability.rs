@@ -20,8 +20,8 @@ use std::sync::Arc;
 /// The number of radii at which the law is drawn.
 const RADII: usize = 1500;
 
-/// The preset's adhesion over the least one drawn where the law falls further: to the floor, where no adhesion is
-/// stable.
+/// The law is drawn down to the preset's adhesion over this; where it falls further, to where no adhesion is stable, it runs
+/// along the floor.
 const RANGE: f64 = 1e3;
 
 /// Where contact radii and works of adhesion, both reduced, stand on the axes: the latter by γ', or by γ where the gap

@@ -60,3 +60,46 @@ fn without_a_curve_it_says_what_is_missing() {
     let said = String::from_utf8(ended.get_output().stderr.clone()).unwrap();
     assert!(said.contains("no measured curve"), "{said}");
 }
+
+/// A pull, from this contact radius to its last contact, in sixty rows of displacement and force.
+fn pull(folder: &Path, start: &str) -> [String; 2] {
+    let preset = format!(
+        "format = 1\ntitle = \"pull\"\nunits = \"SI\"\n[material]\neffective_modulus = 1.5e6\nwork_of_adhesion = 0.045\n\
+         [gap]\nshape = \"sphere\"\nradius_of_curvature = 0.01\n[edge]\nreference_speed = 1e-6\nexponent = 0.5\n\
+         [path]\nstart_contact_radius = {start}\nrate = 1e-5\n"
+    );
+    let [toml, file] = ["p.toml", "p.csv"].map(|name| folder.join(name).to_str().unwrap().to_owned());
+    std::fs::write(&toml, preset).unwrap();
+    let mut command = Command::cargo_bin("pulloff").unwrap();
+    let made = command.args(["pull", &toml, "--rows", "moments", "--format", "csv"]).assert().success();
+    let mut moments = csv::Reader::from_reader(&*made.get_output().stdout);
+    let header = moments.headers().unwrap().clone();
+    let at = ["time", "approach", "force", "contact_radius"]
+        .map(|name| header.iter().position(|column| column == name).unwrap());
+    let rows = moments.records().map(|row| at.map(|at| row.as_ref().unwrap()[at].parse::<f64>().unwrap()));
+    let rows: Vec<[f64; 4]> = rows.filter(|[.., s]| *s > 0.0).collect();
+    let mut text = "time [s],displacement [m],force [N]\n".to_owned();
+    for i in 0..60 {
+        let t = 0.999 * rows[rows.len() - 1][0] * f64::from(i) / 59.0;
+        let next = rows.partition_point(|row| row[0] < t).clamp(1, rows.len() - 1);
+        let [a, b] = [rows[next - 1], rows[next]];
+        let between = |k: usize| a[k] + (b[k] - a[k]) * (t - a[0]) / (b[0] - a[0]);
+        writeln!(text, "{t:e},{:e},{:e}", between(1), between(2)).unwrap();
+    }
+    std::fs::write(&file, text).unwrap();
+    [file, toml]
+}
+
+#[test]
+fn a_sign_that_no_row_apart_explains_is_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let warned = |start: &str, signs: &[&str]| {
+        let [file, toml] = pull(folder.path(), start);
+        let ended = pulloff(&[&[&*file, &*toml, "--from", "force-approach"], signs].concat()).success();
+        let said = String::from_utf8(ended.get_output().stderr.clone()).unwrap();
+        said.contains("warning: the sign of the approach is reversed, but no row is apart")
+    };
+    // So few rows hardly rise where the force is largest, which looks like rows apart.
+    assert!(warned("3e-4", &[]));
+    assert!(!warned("3e-4", &["--signs", "x=+,force=+"]) && !warned("6e-4", &[]));
+}

@@ -94,13 +94,16 @@ pub(super) fn still_end(points: &[MeasuredPoint]) -> [bool; 2] {
 /// Whether the last rows are level within their noise, or a line that hardly rises, as where a baseline is tilted. A
 /// force that goes through its largest pull there bends; one that goes on in contact rises.
 fn is_level(force: &[f64]) -> bool {
-    /// The range of three medians is below so many of their errors; and the share of the whole range that is level.
+    /// Three medians of the same force differ by less than this many of their errors.
     const ERRORS: f64 = 5.0;
-    const LEVEL: f64 = 3.0 * FLOOR;
-    const BENDS: f64 = 6.0;
-    /// A tilt is less than this share of the mean slope, and straight to this share of itself.
+    /// A tilted baseline rises by less than this share of the mean slope.
     const TILT: f64 = 0.05;
+    /// Its two halves rise alike, to this share.
     const STRAIGHT: f64 = 0.2;
+    /// Without noise, medians that differ by less than this share of the whole range are level,
+    const LEVEL: f64 = 3.0 * FLOOR;
+    /// if the rows before them are off by this many times as much.
+    const BENDS: f64 = 6.0;
     let count = (force.len() / END_SHARE).max(2 * END_ROWS);
     let (end, whole) = (&force[force.len() - count..], range(force.iter().copied()));
     let third = count / 3;

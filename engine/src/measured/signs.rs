@@ -88,9 +88,9 @@ impl UnsignedPoints<'_> {
         let is_timed = points.iter().all(|point| point.time.is_finite());
         let of = self.segments.filter(|_| is_timed)?;
         let ways = [Segment::Approach, Segment::Retraction].map(|segment| {
-            let way: f64 =
-                runs(points, of, segment).iter().filter_map(|run| way(run.iter().map(|p| p.x))).sum();
-            if segment == Segment::Approach { way } else { -way }
+            let runs = runs(points, of, segment);
+            let gained: f64 = runs.iter().filter_map(|run| gained(run.iter().map(|point| point.x))).sum();
+            if segment == Segment::Approach { gained } else { -gained }
         });
         let [least, most] = [ways[0].min(ways[1]), ways[0].max(ways[1])];
         (least * most >= 0.0 && least + most != 0.0).then_some(least + most < 0.0)
@@ -117,7 +117,7 @@ impl UnsignedPoints<'_> {
 }
 
 /// By how much the last third of some values lies above the first, by their medians; `None` of too few.
-fn way(values: impl Iterator<Item = f64>) -> Option<f64> {
+fn gained(values: impl Iterator<Item = f64>) -> Option<f64> {
     let values: Vec<f64> = values.collect();
     let third = values.len() / 3;
     Some(median(values[values.len() - third..].to_vec())? - median(values[..third].to_vec())?)
