@@ -97,9 +97,18 @@ fn a_sign_that_no_row_apart_explains_is_warned_of() {
         let [file, toml] = pull(folder.path(), start);
         let ended = pulloff(&[&[&*file, &*toml, "--from", "force-approach"], signs].concat()).success();
         let said = String::from_utf8(ended.get_output().stderr.clone()).unwrap();
-        said.contains("warning: the sign of the approach is reversed, but no row is apart")
+        said.contains("warning: the points leave it open which way their columns run: x=-,force=+ is assumed")
     };
     // So few rows hardly rise where the force is largest, which looks like rows apart.
     assert!(warned("3e-4", &[]));
     assert!(!warned("3e-4", &["--signs", "x=+,force=+"]) && !warned("6e-4", &[]));
+    // A fit tries both, and only the right ones describe the points.
+    let [file, toml] = pull(folder.path(), "3e-4");
+    let mut command = Command::cargo_bin("pulloff").unwrap();
+    let free = "edge.reference_speed,edge.exponent";
+    let ended = command.args(["fit", &file, &toml, "--free", free, "--format", "csv"]).assert().success();
+    let said = String::from_utf8(ended.get_output().stderr.clone()).unwrap();
+    assert!(said.contains("x=+,force=+ is taken"), "{said}");
+    let fitted = String::from_utf8(ended.get_output().stdout.clone()).unwrap();
+    assert!(fitted.contains("edge.exponent,0.5000"), "{fitted}");
 }

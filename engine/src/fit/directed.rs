@@ -54,12 +54,7 @@ fn seen(preset: &Preset, options: &Options) -> Result<(Points, Asked), FitError>
 pub(super) fn branches_of(preset: &Preset, options: &Options) -> Result<Branches, FitError> {
     let (points, asked) = seen(preset, options)?;
     let mut branches = points.branches(&asked)?;
-    if branches.or.is_some() {
-        branches.notes.push(format!(
-            "the points leave it open which way their columns run: {} is assumed. Set --signs or data.signs",
-            signs_text(branches.turned)
-        ));
-    }
+    branches.notes.extend(branches.doubt());
     branches.notes.splice(0..0, preset.notes_of_reading().map_err(FitError::Data)?);
     Ok(branches)
 }
@@ -92,12 +87,22 @@ pub fn fit(
         fit_branches(preset, &branches, &Options { asked, ..options.clone() }, progress)
     };
     let second = along(other, sigma, &ProgressPart::new(progress, [0.3, 0.6]));
+    let alone = |mut fit: Fit, why: &FitError, [taken, left]: [Turned; 2]| {
+        fit.notes.push(format!(
+            "the points leave it open which way their columns run: {} is taken, as there is no fit with {} ({why}). \
+             Set --signs or data.signs",
+            signs_text(taken),
+            signs_text(left),
+        ));
+        fit
+    };
     let (first, second) = match (first, second) {
         (Ok(first), Ok(second)) => (first, second),
-        (Ok(first), Err(_)) => return Ok(first),
+        (Ok(first), Err(why)) => return Ok(alone(first, &why, [branches.turned, other])),
         (Err(error), Err(_)) => return Err(error),
-        (Err(_), Ok(_)) => {
-            return along(other, options.asked.sigma, &ProgressPart::new(progress, [0.6, 1.0]));
+        (Err(why), Ok(_)) => {
+            let taken = along(other, options.asked.sigma, &ProgressPart::new(progress, [0.6, 1.0]))?;
+            return Ok(alone(taken, &why, [other, branches.turned]));
         }
     };
     let [here, there] = [&first, &second].map(chi_squared);

@@ -160,6 +160,21 @@ impl FitPath {
         self.draw();
     }
 
+    /// The radius at x on its outermost piece; `None` where that does not hold x.
+    pub(super) fn outermost_at(&self, x: f64) -> Option<f64> {
+        const HALVINGS: usize = 50;
+        let PathPiece::Arc([mut hi, mut lo]) = *self.pieces.first()? else { return None };
+        let at = |s: f64| self.corner(s, [1.0; 2]).at[0];
+        if !(at(lo)..=at(hi)).contains(&x) {
+            return None;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (lo + hi);
+            if at(middle) > x { hi = middle } else { lo = middle }
+        }
+        Some(hi)
+    }
+
     /// The smallest radius at which the disc would overlap a crest outside, on this path up to the radius `to`: with
     /// rings of contact the path is then another one.
     #[must_use]

@@ -49,7 +49,7 @@ pub fn posed(
         targets.push(Target::Key(START.to_owned()));
     } else {
         bare.edge.rate = None;
-        if options.separate && !has_waves {
+        if options.separate {
             let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
             let attached: Vec<&MeasuredPoint> = retraction.flat_map(|branch| &branch.attached).collect();
             bare.path.start = begun(&bare, branches, &attached, preset.data.offset)?;

@@ -250,8 +250,15 @@ impl FitProblem {
         share(self.sigma[0], |point| point.x).min(share(self.sigma[1], |point| point.force))
     }
 
+    /// The contact radius that the way up reaches at x, less the instrument's offset, at `u`; `None` where the approach
+    /// has no way of its own.
+    pub(super) fn reached(&self, u: &[f64], x: f64) -> Option<f64> {
+        let is_pinned = false;
+        self.loops.then(|| self.path(u, Segment::Approach, None, is_pinned))??.outermost_at(x)
+    }
+
     /// The path of a branch at `u`, beginning at the radius `radius` where that is given.
-    fn path(&self, u: &[f64], segment: Segment, radius: Option<f64>) -> Option<FitPath> {
+    fn path(&self, u: &[f64], segment: Segment, radius: Option<f64>, is_pinned: bool) -> Option<FitPath> {
         let instrument = self.instrument_at(u);
         let [x, force, s] = self.reach.most;
         let shift = if self.abscissa == Abscissa::Radius { 0.0 } else { instrument.offset };
@@ -264,12 +271,15 @@ impl FitProblem {
             noise: self.noise(),
             ..self.reach
         };
-        let way = if self.loops && segment == Segment::Approach { Way::Up } else { Way::Down };
+        let goes_up = self.loops && segment == Segment::Approach;
         let preset = self.preset_at(u, segment)?;
         // A pinned edge stays where the approach has left it.
-        let reach = match preset.path.start {
-            Start::ContactRadius(radius) if self.pins() => Reach { radius: Some(radius), ..reach },
-            _ => reach,
+        let (reach, way) = match preset.path.start {
+            Start::ContactRadius(radius) if is_pinned => {
+                let way = if goes_up { Way::UpToPinned } else { Way::DownFromPinned };
+                (Reach { radius: Some(radius), ..reach }, way)
+            }
+            _ => (reach, if goes_up { Way::Up } else { Way::Down }),
         };
         FitPath::new(&preset, self.abscissa, &reach, way)
     }
@@ -297,7 +307,7 @@ impl FitProblem {
     }
 
     fn paths_from(&self, u: &[f64], radius: &dyn Fn(Segment) -> Option<f64>) -> Option<Paths> {
-        let of = |segment| self.path(u, segment, radius(segment));
+        let of = |segment| self.path(u, segment, radius(segment), self.pins());
         let approach = if self.splits() || self.loops { Some(of(Segment::Approach)?) } else { None };
         let mut retraction = of(Segment::Retraction)?;
         if let Some(approach) = approach.as_ref().filter(|_| self.pins()) {

@@ -8,7 +8,7 @@ use super::judge::{doubts, of_sparse, of_spring, reasons, unseen};
 use super::least_squares::{Ending, LeastSquares};
 use super::options::{FitError, Options, letter};
 use super::pose::posed;
-use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, Instrument, Prior, START, Target};
+use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, Instrument, Paths, Prior, START, Target};
 use super::pulled::is_pulled;
 use super::rows::Rows;
 use super::scatter::Scatter;
@@ -22,6 +22,7 @@ use crate::measured::{Abscissa, Branches, Noise, Origin, Segment};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::{Preset, Value, edge};
 use crate::progress::{Progress, ProgressPart};
+use crate::units::number::short;
 use crate::units::{
     Quantity,
     number::{said, significant},
@@ -259,7 +260,10 @@ impl<'a> Posed<'a> {
         let mut fitted = values(&problem, u, what.errors.as_ref().zip(what.degrees.as_ref()));
         let bootstrapped = match &what.errors {
             Some(errors) if alone => {
-                let wanted = Options { bootstrap: options.bootstrap.or(of_few(degrees)), ..options.clone() };
+                let wanted = Options {
+                    bootstrap: options.bootstrap.or(unasked(&problem, u, degrees)),
+                    ..options.clone()
+                };
                 intervals(
                     &problem,
                     &solved,
@@ -282,8 +286,9 @@ impl<'a> Posed<'a> {
         reasons.extend(of_sparse(branches, preset));
         let is_known = [Origin::Given, Origin::Apart].contains(&branches.noise.from[1]);
         let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
-        let warnings =
+        let mut warnings =
             doubts(&problem, &solved, &scatter, what.inner.as_ref(), &fitted, (&reasons, is_known));
+        warnings.extend(too_small(&fitted));
         let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
         let fitted_preset = laid(preset, &problem, (&found, closing, &problem.instrument_at(u)), &mut notes);
         let lists =
@@ -493,12 +498,34 @@ fn of_tare(
     solve(problem, &solved.minimum.parameters, robust, ROUNDS, progress).unwrap_or(solved)
 }
 
-/// The bootstrap that is run unasked: with few degrees of freedom, a linear model says too little about the intervals.
-fn of_few(degrees: f64) -> Option<(usize, u64)> {
+/// The bootstrap that is run unasked: with few degrees of freedom, or through snaps, where the curve has a corner beside
+/// each point, a linear model says too little about the intervals.
+fn unasked(problem: &FitProblem, u: &[f64], degrees: f64) -> Option<(usize, u64)> {
     /// The number of fits, and the seed of their random numbers.
     const FITS: usize = 200;
+    const THROUGH_SNAPS: usize = 60;
     const SEED: u64 = 1;
-    (degrees < FEW_DEGREES).then_some((FITS, SEED))
+    if degrees < FEW_DEGREES {
+        return Some((FITS, SEED));
+    }
+    let has_snaps =
+        |paths: Paths| [Segment::Approach, Segment::Retraction].iter().any(|way| paths.of(*way).snaps > 0);
+    problem.paths(u).is_some_and(has_snaps).then_some((THROUGH_SNAPS, SEED))
+}
+
+/// A sentence on standard errors that the bootstrap finds to be too small.
+fn too_small(fitted: &[Fitted]) -> Option<String> {
+    const TIMES: f64 = 2.0;
+    let times = |fitted: &Fitted| Some(fitted.bootstrap?.error / fitted.standard_error?);
+    let worst = fitted.iter().filter_map(|of| Some((times(of)?, of))).max_by(|a, b| a.0.total_cmp(&b.0));
+    worst.filter(|(times, _)| *times > TIMES).map(|(times, of)| {
+        format!(
+            "the standard error of {} is {} times too small, as the model is not linear there: the interval of the \
+             bootstrap holds",
+            of.key,
+            short(times, 2)
+        )
+    })
 }
 
 /// Puts the requested intervals into `fitted`; returns how many fits of the bootstrap there were, and the rows of its

@@ -205,9 +205,31 @@ impl FitProblem {
         let x = self.reach.turn[0] - if self.abscissa == Abscissa::Radius { 0.0 } else { at.offset };
         let before = if self.splits() { Segment::Approach } else { Segment::Retraction };
         let preset = self.preset_at(u, before);
-        if let Some(s) = preset.and_then(|preset| begins(&preset, self.abscissa, x, self.reach.length)) {
+        let outermost = || begins(&preset?, self.abscissa, x, self.reach.length);
+        if let Some(s) = self.reached(u, x).or_else(outermost) {
             u[j] = self.parameters[j].inner(s);
         }
+    }
+
+    /// The best start of an edge that is pinned on waves, by that of one which is not: while the way up is not known,
+    /// neither is the wave on which it ends.
+    fn pinned(&self, robust: bool, progress: &dyn Progress) -> Option<(Vec<f64>, Vec<Tried>)> {
+        const TIMES: usize = 4;
+        let j = *self.index(|target| target.key() == START).first()?;
+        let own = self.parameters[j].inner(self.parameters[j].start);
+        let (mut u, tried) = start(&self.holding(j, own)?, true, robust, progress)?;
+        u.insert(j, own);
+        let run = self.thinned(RUN);
+        let mut nearest = f64::INFINITY;
+        for _ in 0..TIMES {
+            let mut next = u.clone();
+            self.begun(&mut next);
+            let Some(found) = solve(&run, &next, robust, ROUNDS, progress) else { break };
+            let next = found.minimum.parameters;
+            let Some(distance) = run.distance(&next).filter(|distance| *distance < nearest) else { break };
+            (nearest, u) = (distance, next);
+        }
+        Some((u, tried))
     }
 
     /// The candidates, that of the preset first.
@@ -262,6 +284,9 @@ pub fn start(
     robust: bool,
     progress: &dyn Progress,
 ) -> Option<(Vec<f64>, Vec<Tried>)> {
+    if scan && problem.loops && problem.pins() {
+        return problem.pinned(robust, progress);
+    }
     let (compared, run) = (problem.thinned(COMPARED), problem.thinned(RUN));
     let attached = problem.data.iter().filter(|datum| !datum.free);
     let least = attached.map(|datum| datum.point.force).fold(f64::INFINITY, f64::min);

@@ -1,6 +1,6 @@
 //! Known values from made loops on waves: the path of our own cycle, whose states are found here by the contact radius.
 
-use super::tests::{E, W, close, preset, run};
+use super::tests::{E, Normal, W, close, preset, run};
 use super::*;
 use crate::case::Case;
 use crate::measured::{Abscissa, Points, Segment};
@@ -125,6 +125,89 @@ fn a_loop_on_waves_is_found_by_its_own_ways_up_and_back() {
     let found = fit(&preset(WAVES, 3.0, 0.0013, ""), &points, &apart, &Unwatched).unwrap();
     close(&found, &[1.0, 0.004, 0.004], 1e-8);
     assert!(found.warnings.iter().all(|warning| !warning.contains("quasi-static")));
+}
+
+/// A loop up to the approach `top` whose edge is pinned between the works of adhesion of two presets, by the states of
+/// its path and the equilibria between them, `n` samples each way; and the contact radius at its turn.
+fn banded(works: [f64; 2], top: f64, n: usize) -> (Points, f64) {
+    let mut truth = preset(WAVES, 1.0, works[1], "");
+    truth.set_all([("material.closing_work_of_adhesion", works[0].into())]).unwrap();
+    let case = Case::new(&truth).unwrap();
+    let cycle = case.cycle(Some(Turn::Control(top)), &case.setting(), &Unwatched).unwrap();
+    assert!(cycle.states.iter().all(|state| state.contacts.len() == 1 && state.contacts[0][0] == 0.0));
+    let least = cycle.states.iter().map(|state| state.approach).fold(0.0, f64::min);
+    let ways = [(Segment::Approach, Direction::Loading), (Segment::Retraction, Direction::Unloading)];
+    let (mut x, mut force, mut segments) = (Vec::new(), Vec::new(), Vec::new());
+    for ((segment, direction), work) in ways.into_iter().zip(works) {
+        let case = Case::new(&preset(WAVES, 1.0, work, "")).unwrap();
+        let states: Vec<&PathState> =
+            cycle.states.iter().filter(|state| state.direction == direction).collect();
+        let between = |at: f64, [a, b]: [&PathState; 2]| {
+            let share = (at - a.approach) / (b.approach - a.approach);
+            if !(0.0..=1.0).contains(&share) || a.piece != b.piece {
+                return None;
+            }
+            if (a.contact_radius - b.contact_radius).abs() < 1e-9 {
+                return Some(a.force + share * (b.force - a.force));
+            }
+            let state = |s: f64| case.basis.equilibrium(&case.reduced, s).unwrap();
+            let [mut lo, mut hi] =
+                [a.contact_radius.min(b.contact_radius), a.contact_radius.max(b.contact_radius)];
+            for _ in 0..60 {
+                let middle = 0.5 * (lo + hi);
+                if state(middle).approach > at { hi = middle } else { lo = middle }
+            }
+            Some(state(hi).force)
+        };
+        for i in 0..n {
+            let at = 1.3 * least + (i as f64 + 0.5) / n as f64 * (top - 1.3 * least);
+            x.push(at);
+            force.push(states.windows(2).find_map(|pair| between(at, [pair[0], pair[1]])).unwrap_or(0.0));
+            segments.push(segment);
+        }
+    }
+    let turned = cycle.states.iter().max_by(|a, b| a.approach.total_cmp(&b.approach)).unwrap();
+    let segments = Some(segments);
+    let points = Points {
+        abscissa: Abscissa::Approach,
+        x,
+        force,
+        radius: None,
+        steps: [1e-30; 3],
+        segments,
+        time: None,
+    };
+    (points, turned.contact_radius)
+}
+
+#[test]
+fn an_edge_is_pinned_on_waves_between_two_works_of_adhesion() {
+    let free = vec![E.to_owned(), W.to_owned()];
+    let options = Options { free, separate: true, ..Options::default() };
+    for top in [0.09, 0.12] {
+        let (mut points, radius) = banded([0.002, 0.004], top, 300);
+        let mut noise = Normal::new(7);
+        points.force.iter_mut().for_each(|force| *force += 3e-5 * noise.next());
+        let found = fit(&preset(WAVES, 1.2, 0.0013, ""), &points, &options, &Unwatched).unwrap();
+        assert_eq!(found.verdict, Verdict::Describes, "{top}: {:?}", found.reasons);
+        close(&found, &[1.0, 0.002, 0.004, radius], 0.01);
+    }
+}
+
+#[test]
+fn an_error_that_a_snap_makes_too_small_is_told() {
+    let (mut points, _) = banded([0.001, 0.004], 0.05, 300);
+    let mut noise = Normal::new(7);
+    points.force.iter_mut().for_each(|force| *force += 3e-5 * noise.next());
+    let options = Options { free: vec![E.to_owned(), W.to_owned()], separate: true, ..Options::default() };
+    let found = fit(&preset(WAVES, 1.2, 0.0013, ""), &points, &options, &Unwatched).unwrap();
+    assert!(
+        found.warnings.iter().any(|text| text.contains("work_of_adhesion.approach is")),
+        "{:?}",
+        found.warnings
+    );
+    let [lo, hi] = found.parameters[1].bootstrap.unwrap().interval;
+    assert!((lo..=hi).contains(&0.001), "{lo} {hi}");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::problem::Control;
 use crate::quasistatic::Monotone;
 use crate::quasistatic::ascent::{Rise, ascend};
 use crate::quasistatic::descent::{descend, stable_start};
-use crate::quasistatic::jump::Landing;
+use crate::quasistatic::jump::{self, EdgeDirection, Landing};
 
 /// Which way the device goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,6 +15,10 @@ pub enum Way {
     Up,
     /// Down from the state in which the points begin: several states can have one way of the device.
     Down,
+    /// Up to the end of the track, where the edge is then pinned.
+    UpToPinned,
+    /// Down from the end of the track, where the edge was pinned.
+    DownFromPinned,
 }
 
 /// What the points say about a way.
@@ -50,6 +54,8 @@ pub(super) fn legs(track: &mut Track, control: Control, way: Way, seen: &WayEvid
         let (Some(solution), Some(monotone)) = (track.solution(), track.monotone(control)) else { break };
         let found = match way {
             Way::Up => up(seen, solution, &monotone),
+            Way::UpToPinned => return up_to(track.ends()[0], solution, &monotone).unwrap_or_default(),
+            Way::DownFromPinned => return down_from(track.ends(), solution, &monotone).unwrap_or_default(),
             Way::Down => turned(seen, solution, &monotone)
                 .or_else(|| stable_start(solution, &monotone, solution.reach()))
                 .map(|start| down(solution, &monotone, start, track.ends()[1])),
@@ -93,6 +99,33 @@ fn up(seen: &WayEvidence<'_>, solution: &dyn Solution, monotone: &Monotone) -> O
     let enough = |at: &Local| (seen.x_of)(at) >= seen.most;
     let rises = ascend(solution, monotone, 0.0, &enough);
     rises.last().filter(|last| enough(&solution.at(last.end)))?;
+    Some(legs_of(&rises, monotone))
+}
+
+/// The way up to where the track ends, if it gets there.
+fn up_to(end: f64, solution: &dyn Solution, monotone: &Monotone) -> Option<Vec<Leg>> {
+    let last = monotone.stretch_of(end);
+    let mut rises = ascend(solution, monotone, 0.0, &|at| at.contact_radius >= end);
+    let reached = rises.last_mut().filter(|rise| rise.landing.stretch == last)?;
+    reached.end = solution.place(end).filter(|_| solution.radius(reached.landing.place) < end)?;
+    Some(legs_of(&rises, monotone))
+}
+
+/// The way down from where the track ends; if no state there is stable, the edge runs as soon as it is not pinned.
+fn down_from([end, innermost]: [f64; 2], solution: &dyn Solution, monotone: &Monotone) -> Option<Vec<Leg>> {
+    let (stretch, place) = (monotone.stretch_of(end), solution.place(end)?);
+    if monotone.stretches.get(stretch)?.rising {
+        return Some(down(solution, monotone, Landing { place, stretch }, innermost));
+    }
+    let value = monotone.value(&solution.at(place));
+    let landing = jump::run(solution, monotone, stretch, value, EdgeDirection::Inward).ok().flatten()?;
+    let mut legs = vec![Leg::Jump([place, landing.place])];
+    legs.extend(down(solution, monotone, landing, innermost));
+    Some(legs)
+}
+
+/// The legs of these stable pieces and of the jumps between them.
+fn legs_of(rises: &[Rise], monotone: &Monotone) -> Vec<Leg> {
     let stretches = &monotone.stretches;
     let mut legs = Vec::new();
     for (i, Rise { landing, end }) in rises.iter().enumerate().rev() {
@@ -105,7 +138,7 @@ fn up(seen: &WayEvidence<'_>, solution: &dyn Solution, monotone: &Monotone) -> O
             legs.extend(unstable.map(|stretch| Leg::Along([stretch.outer, stretch.inner])));
         }
     }
-    Some(legs)
+    legs
 }
 
 fn down(solution: &dyn Solution, monotone: &Monotone, from: Landing, innermost: f64) -> Vec<Leg> {

@@ -10,10 +10,10 @@
 //!
 //! `sigma` finds how well the columns are known.
 
-use super::asked::{Asked, FreePart, ValueRange};
+use super::asked::{Asked, FreePart, ValueRange, signs_text};
 use super::converter::{Clipped, clipped, quantum, without_repeats};
 pub use super::free::MeasuredBranch;
-use super::free::{as_elsewhere, branch, one_sided, same_free_force};
+use super::free::{as_elsewhere, branch, never_pulls, one_sided, same_free_force};
 pub(crate) use super::noise::median;
 use super::noise::{END_ROWS, range};
 pub use super::noise::{FLOOR, Noise, Origin};
@@ -55,6 +55,19 @@ pub struct Branches {
     pub pauses: usize,
     /// The end of a converter's range at which rows in contact lie.
     pub clipped: Option<Clipped>,
+}
+
+impl Branches {
+    /// A sentence on signs that were assumed although the points leave them open.
+    #[must_use]
+    pub fn doubt(&self) -> Option<String> {
+        self.or.map(|_| {
+            format!(
+                "the points leave it open which way their columns run: {} is assumed. Set --signs or data.signs",
+                signs_text(self.turned)
+            )
+        })
+    }
 }
 
 /// Why points yield no branches.
@@ -126,7 +139,7 @@ impl Points {
             notes.push(format!("{repeated} rows repeat the row before and are left out"));
         }
         let of_radius = self.abscissa == Abscissa::Radius;
-        let Orientation { turned, or } = self.directed(&mut points, asked, &mut notes)?;
+        let Orientation { turned, or, unless_apart } = self.directed(&mut points, asked, &mut notes)?;
         let free = self.free_part(&points, asked.free, turned)?;
         // Contact radii, which are zero while apart, are never turned.
         let ordered = asked.sigma[0].is_some() || of_radius;
@@ -177,6 +190,11 @@ impl Points {
         let list: Vec<MeasuredBranch> = list.into_iter().map(|(branch, _)| branch).collect();
         one_sided(&list, &mut notes);
         let abscissa = self.abscissa;
+        if asked.free == FreePart::Found && !of_radius {
+            notes.extend(never_pulls(&list, &noise));
+        }
+        let is_apart = list.iter().any(|branch| !branch.free.is_empty());
+        let or = or.or(unless_apart.filter(|_| !is_apart));
         Ok(Branches { abscissa, list, noise, baseline, turned, or, ranges, notes, rows, pauses, clipped })
     }
 
@@ -217,7 +235,7 @@ impl Points {
             Some([true, _]) if self.abscissa == Abscissa::Radius => Err(BranchError::TurnedRadius),
             Some(turned) => {
                 turn(points, turned);
-                Ok(Orientation { turned, or: None })
+                Ok(Orientation { turned, or: None, unless_apart: None })
             }
             None => {
                 let is_in_order = disorder(points, segments) <= UNORDERED;

@@ -210,3 +210,26 @@ pub(super) fn one_sided(list: &[MeasuredBranch], notes: &mut Vec<String>) {
         notes.push(format!("the {name} has no rows apart: it ends in contact"));
     }
 }
+
+/// A sentence on rows that are apart at the smallest force of all, with no jump before them: a record that ends in
+/// contact near its largest pull looks the same.
+pub(super) fn never_pulls(list: &[MeasuredBranch], noise: &Noise) -> Option<String> {
+    let branch = list.iter().max_by_key(|branch| branch.free.len())?;
+    // Radii of 0 show that they are apart.
+    if branch.free.iter().any(|point| point.radius == 0.0) {
+        return None;
+    }
+    let level = median(branch.free.iter().map(|point| point.force).collect())?;
+    let whole = range(list.iter().flat_map(|branch| &branch.attached).map(|point| point.force));
+    let limit = level - BEYOND * noise.sigma[1].max(FLOOR * whole);
+    let pulled =
+        |branch: &MeasuredBranch| branch.jump > 0 || branch.attached.iter().any(|point| point.force < limit);
+    (!list.iter().any(pulled)).then(|| {
+        format!(
+            "the last {} rows of the {} are taken to be apart, although none before them pulls more. \
+             If they are still in contact, set --free-part none or data.free_part=none",
+            branch.free.len(),
+            branch.segment.name()
+        )
+    })
+}

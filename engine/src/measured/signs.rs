@@ -21,6 +21,8 @@ const FALLS: &str = "the force falls as the bodies are pressed together: its sig
 pub(super) struct Orientation {
     pub(super) turned: Turned,
     pub(super) or: Option<Turned>,
+    /// What else they may be if no row turns out to be apart: the sign of x was reversed for a level end alone.
+    pub(super) unless_apart: Option<Turned>,
 }
 
 /// What is known about points whose signs are not yet known.
@@ -75,11 +77,15 @@ impl UnsignedPoints<'_> {
                 notes.push("there is no free part: the signs are taken as in the file".to_owned());
             }
         }
-        if turned[0] {
-            turn(points, [true, false]);
-            notes.push(self.turned_x());
+        if !turned[0] {
+            return Some(self.of_force(points, turned, notes));
         }
-        Some(self.of_force(points, turned, notes))
+        let is_guess = known.is_none() && self.free == FreePart::Found;
+        let as_in_file =
+            is_guess.then(|| self.of_force(&mut points.to_vec(), [false; 2], &mut Vec::new()).turned);
+        turn(points, [true, false]);
+        notes.push(self.turned_x());
+        Some(Orientation { unless_apart: as_in_file, ..self.of_force(points, turned, notes) })
     }
 
     /// Whether the sign of x is reversed, by the branches that a column names; `None` where they disagree, x stands
@@ -112,7 +118,7 @@ impl UnsignedPoints<'_> {
             notes.push(if rises == Some(false) { FALLS } else { PULLED }.to_owned());
         }
         let is_doubtful = pulls.is_some_and(|pulls| rises.is_some_and(|rises| rises != pulls));
-        Orientation { turned: [x, turned], or: is_doubtful.then_some([x, !turned]) }
+        Orientation { turned: [x, turned], or: is_doubtful.then_some([x, !turned]), unless_apart: None }
     }
 }
 
@@ -197,7 +203,7 @@ fn by_jumps(
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     let (best, turned) = *found.first().filter(|(sum, _)| *sum > 0.0)?;
     let or = found.get(1).filter(|(sum, _)| *sum > LIKELY * best).map(|(_, turned)| *turned);
-    Some(Orientation { turned, or })
+    Some(Orientation { turned, or, unless_apart: None })
 }
 
 /// Whether the force before the jump to the free part is below that of the free part, as it is where bodies attract;

@@ -309,14 +309,7 @@ impl SpeedsReport {
             return Err(SpeedsError::Nothing);
         }
         let mut warnings = case.warnings_of_problem();
-        let is_apart = branches.list.iter().any(|branch| !branch.free.is_empty());
-        let has_radii = of_file.iter().any(|point| point.radius > 0.0);
-        if branches.turned[0] && preset.reading().asked.turned.is_none() && !is_apart && !has_radii {
-            warnings.push(
-                "the sign of the approach is reversed, but no row is apart to show that it must be: --signs says it"
-                    .to_owned(),
-            );
-        }
+        warnings.extend(branches.doubt());
         if rows.len() < of_file.len() {
             warnings.push(format!(
                 "{} rows in contact are left out: no contact with tension at its edge has their force there",

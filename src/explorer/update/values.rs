@@ -317,8 +317,8 @@ fn tell_points(model: &mut Model, preset: &Preset) {
             let read = format!("{name}: {}", parts.collect::<Vec<_>>().join("; "));
             // What was assumed about the columns, and how many rows were left out.
             let of_file = preset.notes_of_reading().unwrap_or_default();
-            let said: Vec<String> =
-                std::iter::once(read).chain(of_file).chain(branches.notes.iter().cloned()).collect();
+            let notes = of_file.into_iter().chain(branches.notes.iter().cloned());
+            let said: Vec<String> = branches.doubt().into_iter().chain([read]).chain(notes).collect();
             model.tell(Level::Info, said.join("; "));
         }
         Err(why) => model.tell(Level::Error, format!("{name} is not drawn: {why}")),
