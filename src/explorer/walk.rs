@@ -357,6 +357,10 @@ fn made(request: &Request, reached: Reached) -> MadeState {
         Arrival::Solved => (NodeKind::Solved, None),
     };
     // The exact solution is that of one disc whose edge opens.
+    // A crest that touches just here does not overlap, whatever the last digits of its gap say.
+    let overlaps = admissibility.overlapping().is_some();
+    let holds = admissibility.holds || overlaps && matches!(kind, NodeKind::Touch(_));
+    let admissibility = Admissibility { holds, ..admissibility };
     let is_beside = on_path.is_some() || edges::has_rings(&point);
     let exact = if is_beside { f64::NAN } else { from_exact(&request.curve.case, &state) };
     MadeState {

@@ -244,6 +244,17 @@ pub fn reading(data: &StudyData, preset: &Preset, critical: Option<f64>, x: f64)
     Some(format!("{} {value}: {} {found}", row.label, words(data.wish.column)))
 }
 
+/// The point of the drawn study nearest to `x`, both on the axes of its figure on the screen; `None` where `x` is
+/// nearest to a value for which there is nothing.
+pub fn place(data: &StudyData, preset: &Preset, figure: &Figure, x: f64) -> Option<(f64, f64)> {
+    let (at, _) = taken(data, preset, figure.values_at((x, 0.0)).0)?;
+    if !matches!(data.outcomes.get(at)?, StudyOutcome::Found(_)) {
+        return None;
+    }
+    let drawn = figure.lines.iter().filter(|line| line.role == Role::Body).flat_map(|line| &line.points);
+    drawn.copied().min_by(|a, b| (a.0 - x).abs().total_cmp(&(b.0 - x).abs()))
+}
+
 /// The computed value nearest to `x` on its axis, in the units of the preset, and its index in the list.
 pub fn taken(data: &StudyData, preset: &Preset, x: f64) -> Option<(usize, f64)> {
     let row = row(data, preset)?;

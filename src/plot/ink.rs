@@ -105,7 +105,7 @@ pub fn stamp(sign: Sign) -> Stamp {
         Sign::Stray | Sign::Walker => stamp(MarkerShape::Hexagon, BLACK, 2.6, "state"),
         Sign::Cusp => stamp(MarkerShape::TriangleDown, BLUE, 2.3, "cusp"),
         Sign::Swallowtail => stamp(MarkerShape::Star, BLUE, 2.8, "swallowtail"),
-        Sign::Preset => stamp(MarkerShape::Plus, BLACK, 3.2, "preset"),
+        Sign::Preset => stamp(MarkerShape::Plus, BLACK, 3.2, "now"),
         // Snap counts and crests are written as numbers; a letter is beside its point.
         Sign::Snaps(_) | Sign::OfCrest(_) => stamp(MarkerShape::Circle, BLACK, 0.0, ""),
         Sign::Letter(_) => stamp(MarkerShape::Circle, BLACK, 1.6, ""),

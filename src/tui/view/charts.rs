@@ -4,7 +4,7 @@ use super::legend::legend;
 use super::parts::is_selected;
 use super::states;
 use crate::explorer::{Id, Model, ScreenPanel, View, Window, reach};
-use crate::figure::{Area, Axis, Figure, Meaning, Sign, Subject, nearest};
+use crate::figure::{Area, Axis, Figure, Meaning, Sign, Subject, nearest, study};
 use crate::tui::app::App;
 use crate::tui::chart::{Chart, LegendRow};
 use crate::tui::marks::style;
@@ -48,6 +48,9 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, seat: Seat
             chart.title.push_str(&hint);
         }
         chart.cross = model.cross.map(|share| chart.bounds.at(share));
+        if let (View::Study, Some(Ok(data)), Some(cross)) = (view, &subject.study, &mut chart.cross) {
+            *cross = study::place(data, subject.preset, &figure, cross.0).unwrap_or(*cross);
+        }
         let found = chart.cross.and_then(|at| nearest(&subject, view, &chart.bounds, at));
         chart.nearest = found.map(|nearest| nearest.at);
     }

@@ -72,7 +72,7 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
         Sign::Maximum => (5, "maximum"),
         Sign::Barrier => (5, "barrier"),
         Sign::Walker => (8, "here"),
-        Sign::Preset => (3, "preset"),
+        Sign::Preset => (3, "now"),
         Sign::Cusp => (5, "cusp"),
         Sign::Swallowtail => (5, "swallowtail"),
         Sign::Snaps(_) => (0, "snaps"),

@@ -51,9 +51,14 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let count = log.entries.len() + parts.len();
     let shown = shown(&log, model, count, rows);
     let (first, last) = (shown.first().copied().unwrap_or(0), shown.last().map_or(0, |last| last + 1));
-    // How many lines are left out above and below.
-    let left_out = |count: usize| if count > 0 { format!(" +{count}") } else { String::new() };
-    let [above, below] = [first, count - last].map(left_out);
+    // How many events, and how many inadmissible parts after them, are left out above and below.
+    let events = log.entries.len();
+    let left_out = |[from, to]: [usize; 2]| {
+        let of = [to.min(events) - from.min(events), to.max(events) - from.max(events)];
+        let texts = [(" +", of[0]), (" !", of[1])].map(|(sign, count)| format!("{sign}{count}"));
+        texts.into_iter().zip(of).filter(|(_, count)| *count > 0).map(|(text, _)| text).collect::<String>()
+    };
+    let [above, below] = [[0, first], [last, count]].map(left_out);
     let width = room - above.len().max(below.len());
     let texts = table(model, theme, &log.entries, first, width.saturating_sub(1));
     let units = &model.preset.units;
