@@ -4,7 +4,7 @@ use super::balance::{Balance, HeldEdges};
 use super::course::{Course, CourseEnd};
 use super::error::PathError;
 use super::event::Direction;
-use super::point::{PathPoint, PathStep};
+use super::point::{GROWTH, PathPoint, PathStep};
 use super::stepped::{SingularSide, TakenStep};
 use crate::annuli::ground::gauss;
 use crate::annuli::{AnnuliError, MOST_POINTS_IN_ALL, points};
@@ -19,9 +19,6 @@ pub const FIRST: f64 = 0.02;
 
 /// The longest step of many, in the units of the arc length.
 pub const LONGEST: f64 = 0.15;
-
-/// How much longer than the previous step a step may be.
-pub const GROWTH: f64 = 1.5;
 
 /// The number of past points from which a step is predicted.
 pub const PAST: usize = 2;

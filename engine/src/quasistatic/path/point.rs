@@ -14,6 +14,9 @@ const ITERATIONS: usize = 10;
 const CONVERGED: f64 = 1e-12;
 const STALLED: f64 = 1e-9;
 
+/// How much longer than the previous step a step may be.
+pub const GROWTH: f64 = 1.5;
+
 /// Bounds of a step: the cosine of the turn of its tangent, the motion of an edge in waves, the share that widths keep.
 const TURN: f64 = 0.970_3;
 const LONGEST: f64 = 0.2;
@@ -286,6 +289,28 @@ impl<'a, 'b> PathStep<'a, 'b> {
         self.allowed(&point).then_some(point)
     }
 
+    /// The longest step up to `length` that keeps its bounds as far as the curve is known: the corrections of a step
+    /// that breaks them are for nothing. It is not much shorter than the previous one, whatever the polynomial says.
+    pub fn foreseen(&self, mut length: f64) -> f64 {
+        const SHORTER: f64 = 0.9;
+        let Some(past) = &self.past else { return length };
+        let least = length / GROWTH;
+        while length > least && !self.keeps_bounds(past, length) {
+            length *= SHORTER;
+        }
+        length
+    }
+
+    /// Whether the curve as it is known keeps the bounds of a step up to this distance.
+    fn keeps_bounds(&self, past: &Interpolant, length: f64) -> bool {
+        let (offset, rate) = past.at(length);
+        let n = self.from.held.excess.len();
+        let edges = offset.rows(0, n);
+        let turn = self.from.tangent.dot(&rate) / rate.norm();
+        let contacts = moved(self.from.contacts(), &edges.component_mul(&self.from.scales.edges));
+        turn > TURN && edges.amax() <= LONGEST && keeps_widths(self.from.contacts(), &contacts, LEFT)
+    }
+
     /// The step up to `end`, at the distance `length`, as a polynomial in the length. States are added to it until one
     /// lies on it to `near`. Its values are the offsets in the units of the arc length, and dΠ/dc, which is P or, for
     /// `by_force`, −δ.
@@ -383,7 +408,7 @@ impl<'a, 'b> PathStep<'a, 'b> {
         at_start: f64,
         measure: &mut dyn FnMut(&PathPoint) -> Option<f64>,
     ) -> Option<(f64, PathPoint)> {
-        const ROUNDING: f64 = 1e-14;
+        const ROUNDING: f64 = 1e-12;
         /// Places nearer to each other than this share of the step add nothing to the polynomial but their rounding.
         const APART: f64 = 1e-4;
         let near = ROUNDING * end.0.max(1e-3);

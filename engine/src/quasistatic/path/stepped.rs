@@ -73,6 +73,7 @@ impl<'b> Balance<'b> {
             return self.led(from, edge, way, side);
         }
         let step = PathStep::new(self, from).after(past);
+        length = step.foreseen(length);
         // An edge may have moved faster than its tangent said, or onto other equilibria: shorter steps see that
         // coming.
         let taken = |length: f64| step.taken(length).filter(|end| !self.crosses(from, end) && fits(end));
