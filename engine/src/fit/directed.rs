@@ -3,6 +3,7 @@
 
 use super::options::{FitError, Options};
 use super::run::{Fit, fit_branches};
+use super::verdict::Verdict;
 use crate::measured::asked::signs_text;
 use crate::measured::points::Turned;
 use crate::measured::{Asked, Branches, Points};
@@ -76,6 +77,10 @@ pub fn fit(
     let branches = points.branches(&options.asked)?;
     let Some(other) = branches.or else { return fit_branches(preset, &branches, options, progress) };
     let first = fit_branches(preset, &branches, options, &ProgressPart::new(progress, [0.0, 0.3]));
+    // Signs as in the file are doubted only where they do not lead to a fit.
+    if branches.is_as_in_file && first.as_ref().is_ok_and(|fit| fit.verdict == Verdict::Describes) {
+        return first;
+    }
     // The second is judged by the noise of the first.
     let sigma = first.as_ref().map_or(options.asked.sigma, |fit| {
         let of = |axis: usize| Some(fit.noise.sigma[axis]).filter(|sigma| *sigma > 0.0);
@@ -107,6 +112,9 @@ pub fn fit(
     };
     let [here, there] = [&first, &second].map(chi_squared);
     let [taken, left] = if here <= there { [branches.turned, other] } else { [other, branches.turned] };
+    if branches.is_as_in_file && here <= there + CLEAR {
+        return Ok(first);
+    }
     if (here - there).abs() <= CLEAR {
         return Err(FitError::Direction { one: signs_text(taken), other: signs_text(left) });
     }

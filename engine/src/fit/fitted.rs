@@ -1,6 +1,6 @@
 //! One value that a fit finds, and what a key measures.
 
-use super::intervals::Bootstrapped;
+use super::intervals::{Bootstrapped, NORMAL};
 use super::problem::ADHESION;
 use crate::preset::Preset;
 use crate::preset::data::{BASELINE, OFFSET, TILT};
@@ -25,6 +25,22 @@ pub struct Fitted {
     pub profile: Option<[f64; 2]>,
     /// What the bootstrap found.
     pub bootstrap: Option<Bootstrapped>,
+}
+
+impl Fitted {
+    /// How many times too small the bootstrap finds the standard error to be, if that is more than twice. It goes by the
+    /// interval: a few fits that went astray do not count.
+    pub(super) fn too_small(&self) -> Option<f64> {
+        const TIMES: f64 = 2.0;
+        let times = self.bootstrap?.half() / (NORMAL * self.standard_error?);
+        Some(times).filter(|times| *times > TIMES)
+    }
+
+    /// Whether there is a standard error that holds as far as the value alone shows.
+    #[must_use]
+    pub fn has_error(&self) -> bool {
+        self.standard_error.is_some() && self.too_small().is_none()
+    }
 }
 
 /// What a key measures.

@@ -10,6 +10,9 @@ use crate::progress::Progress;
 /// The rise of χ² at the ends of a 95 % interval of one value: the square of 1.96.
 const RISE: f64 = 3.841_458_820_694_124;
 
+/// Half a 95 % interval, in standard errors.
+pub(super) const NORMAL: f64 = 1.96;
+
 /// The rounds and the tolerance of a fit that begins next to its end.
 const WARM: MinimizationSettings =
     MinimizationSettings { rounds: 40, tolerance: 1e-6, resolution: 1.0, huber: f64::INFINITY, nothing: 0.0 };
@@ -24,6 +27,13 @@ pub struct Bootstrapped {
     pub error: f64,
     /// The 2.5 and 97.5 % points of the fits.
     pub interval: [f64; 2],
+}
+
+impl Bootstrapped {
+    /// Half the width of the interval.
+    pub(super) fn half(&self) -> f64 {
+        0.5 * (self.interval[1] - self.interval[0])
+    }
 }
 
 impl FitProblem {

@@ -27,6 +27,7 @@ pub(super) use range::unseen;
 pub(super) use spring::of_spring;
 
 use super::fitted::Fitted;
+use super::intervals::NORMAL;
 use super::path::Foot;
 use super::problem::{ADHESION, FitProblem, Paths};
 use super::pulled::is_pulled;
@@ -182,9 +183,14 @@ pub(super) fn doubts(
     let of_edge = || rate::of_untimed(problem, solved, scatter, inner);
     let is_sharp = problem.preset.cohesion().is_none() && !is_pulled(&problem.preset);
     let mut doubts: Vec<String> = if has_speed || !is_sharp { None } else { of_edge() }.into_iter().collect();
+    // The larger of two: through snaps a standard error may be too small.
+    let error = |fitted: &Fitted| {
+        let drawn = fitted.bootstrap.map_or(0.0, |found| found.half() / NORMAL);
+        fitted.standard_error.map(|error| error.max(drawn))
+    };
     let adhesions: Vec<&Fitted> = fitted.iter().filter(|fitted| fitted.key.starts_with(ADHESION)).collect();
     if let [approach, retraction] = adhesions[..]
-        && let (Some(a), Some(b)) = (approach.standard_error, retraction.standard_error)
+        && let [Some(a), Some(b)] = [approach, retraction].map(error)
         && (approach.value - retraction.value).abs()
             > f64::max(2.0 * hypot(a, b), DIFFERENT * retraction.value)
     {

@@ -17,6 +17,7 @@ use super::start::{Tried, start};
 use super::uncertain::{uncertain, written};
 use super::verdict::{Reason, Verdict};
 use crate::elementary::{ln, pow};
+use crate::gap::Gap;
 use crate::measured::branches::FLOOR;
 use crate::measured::{Abscissa, Branches, Noise, Origin, Segment};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
@@ -114,7 +115,8 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The pairs of values of which one combination is known far better than each alone, in words.
+    /// The values of which a combination is known far better than each alone, in words: pairs, and what depends on a
+    /// radius of curvature that the points do not show.
     #[must_use]
     pub fn known_together(&self) -> Vec<String> {
         /// Beyond this correlation the errors of two values say little about both together.
@@ -126,7 +128,23 @@ impl Fit {
             let [a, b] = [j, i].map(|k| letter(&self.preset, &self.parameters[k].key));
             format!("{a} and {b} are known together far better than alone (correlation {r:+.4})")
         };
-        together.map(sentence).collect()
+        self.of_radius().into_iter().chain(together.map(sentence)).collect()
+    }
+
+    /// A sentence on a radius of curvature that is held: with r → a r and δ → δ the curve of a sphere stays as it is.
+    fn of_radius(&self) -> Option<String> {
+        let gap = &self.preset.gap;
+        let radius = gap.radius_of_curvature().filter(|_| gap.feature_length().is_none())?;
+        let is_free = |key: &str| self.parameters.iter().any(|fitted| fitted.key.starts_with(key));
+        let has_radii = self.abscissa == Abscissa::Radius || self.noise.sigma[2] > 0.0;
+        let depends = is_free(ADHESION) || is_free("material.effective_modulus");
+        if has_radii || !depends || is_free("gap.radius_of_curvature") {
+            return None;
+        }
+        let radius = said(&self.preset.units, Quantity::Length, radius);
+        Some(format!(
+            "E* and γ hold for R = {radius}, which is not fitted: without contact radii the points show E*√R and γR"
+        ))
     }
 
     /// Whether what was found holds for `preset`: it has the same points, taken in the same way, and all the fitted and
@@ -221,7 +239,8 @@ impl<'a> Posed<'a> {
         }
         if branches.baseline.is_none() {
             notes.push(
-                "there is no free part: the baseline is held, and sigma of the force is taken from neighbouring rows"
+                "there is no free part: the baseline is held, and its error is not in those of the values (measure until \
+                 the bodies are apart, or give data.baseline); sigma of the force is taken from neighbouring rows"
                     .to_owned(),
             );
         }
@@ -503,7 +522,7 @@ fn of_tare(
 fn unasked(problem: &FitProblem, u: &[f64], degrees: f64) -> Option<(usize, u64)> {
     /// The number of fits, and the seed of their random numbers.
     const FITS: usize = 200;
-    const THROUGH_SNAPS: usize = 60;
+    const THROUGH_SNAPS: usize = 100;
     const SEED: u64 = 1;
     if degrees < FEW_DEGREES {
         return Some((FITS, SEED));
@@ -513,15 +532,13 @@ fn unasked(problem: &FitProblem, u: &[f64], degrees: f64) -> Option<(usize, u64)
     problem.paths(u).is_some_and(has_snaps).then_some((THROUGH_SNAPS, SEED))
 }
 
-/// A sentence on standard errors that the bootstrap finds to be too small.
+/// A sentence on the standard error that the bootstrap finds to be too small by most.
 fn too_small(fitted: &[Fitted]) -> Option<String> {
-    const TIMES: f64 = 2.0;
-    let times = |fitted: &Fitted| Some(fitted.bootstrap?.error / fitted.standard_error?);
-    let worst = fitted.iter().filter_map(|of| Some((times(of)?, of))).max_by(|a, b| a.0.total_cmp(&b.0));
-    worst.filter(|(times, _)| *times > TIMES).map(|(times, of)| {
+    let all = fitted.iter().filter_map(|of| Some((of.too_small()?, of)));
+    all.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(times, of)| {
         format!(
-            "the standard error of {} is {} times too small, as the model is not linear there: the interval of the \
-             bootstrap holds",
+            "the standard error of {} is {} times too small, as the model is not linear there: use the interval of \
+             the bootstrap",
             of.key,
             short(times, 2)
         )

@@ -235,6 +235,39 @@ fn noisy(seed: u64, outliers: bool) -> Points {
     points
 }
 
+#[test]
+fn a_long_free_part_does_not_hide_which_way_the_columns_run() {
+    const ROWS: u32 = 400;
+    let state = sphere(1.0, 0.02, 1.0);
+    let body = Body { state: &state, compliance: 0.0, most: 0.45 };
+    let (top, last) = (state(body.most).0, body.way(body.fold()));
+    for (k, share) in [(0, 0.5), (1, 0.15), (2, 0.1), (3, 0.08)] {
+        let turned = [k & 1 == 1, k & 2 == 2];
+        let signs = turned.map(|turned| if turned { -1.0 } else { 1.0 });
+        let mut normal = Normal::new(k);
+        let rows = (0..ROWS).map(|i| top + (f64::from(i) + 0.5) / f64::from(ROWS) * (last - top) / share);
+        let (x, force): (Vec<f64>, Vec<f64>) = rows
+            .map(|x| {
+                let force = if x < last { 0.0 } else { body.radius(x).map_or(0.0, |s| state(s).1) };
+                (signs[0] * x, signs[1] * (force + 3e-5 * normal.next()))
+            })
+            .unzip();
+        let points = Points {
+            abscissa: Abscissa::Approach,
+            x,
+            force,
+            radius: None,
+            steps: [1e-30; 3],
+            segments: None,
+            time: None,
+        };
+        let found = points.branches(&Asked::default()).unwrap();
+        let contact = found.list[0].attached.len() as f64;
+        assert_eq!((found.turned, found.or), (turned, None), "{share}");
+        assert!((contact - share * f64::from(ROWS)).abs() < 4.0, "{share}: {contact}");
+    }
+}
+
 /// The shares of 95 % intervals that contain the truth, and the mean errors in σ.
 fn coverage(seeds: std::ops::Range<u64>, outliers: bool) -> [[f64; 2]; 2] {
     let count = (seeds.end - seeds.start) as f64;

@@ -45,6 +45,8 @@ pub struct Branches {
     pub turned: Turned,
     /// Other signs with comparable evidence.
     pub or: Option<Turned>,
+    /// Whether nothing but the file itself speaks for the sign of x as it is there.
+    pub is_as_in_file: bool,
     /// The ranges of x, P and s over the points that are used.
     pub ranges: [f64; 3],
     /// What was found or assumed, in words.
@@ -194,8 +196,23 @@ impl Points {
             notes.extend(never_pulls(&list, &noise));
         }
         let is_apart = list.iter().any(|branch| !branch.free.is_empty());
-        let or = or.or(unless_apart.filter(|_| !is_apart));
-        Ok(Branches { abscissa, list, noise, baseline, turned, or, ranges, notes, rows, pauses, clipped })
+        let unless_apart = unless_apart.filter(|_| !is_apart);
+        let is_as_in_file = or.is_none() && unless_apart.is_some() && !turned[0];
+        let or = or.or(unless_apart);
+        Ok(Branches {
+            abscissa,
+            list,
+            noise,
+            baseline,
+            turned,
+            or,
+            is_as_in_file,
+            ranges,
+            notes,
+            rows,
+            pauses,
+            clipped,
+        })
     }
 
     /// The points requested, in the order in which they were measured, with the signs of the file.

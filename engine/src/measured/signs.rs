@@ -21,7 +21,7 @@ const FALLS: &str = "the force falls as the bodies are pressed together: its sig
 pub(super) struct Orientation {
     pub(super) turned: Turned,
     pub(super) or: Option<Turned>,
-    /// What else they may be if no row turns out to be apart: the sign of x was reversed for a level end alone.
+    /// What else they may be if no row turns out to be apart: nothing but a level end, or the file, tells the sign of x.
     pub(super) unless_apart: Option<Turned>,
 }
 
@@ -77,15 +77,19 @@ impl UnsignedPoints<'_> {
                 notes.push("there is no free part: the signs are taken as in the file".to_owned());
             }
         }
-        if !turned[0] {
-            return Some(self.of_force(points, turned, notes));
+        // Without radii, branches, a jump or rows that the user names, the other sign is as good.
+        let is_guess = known.is_none() && !matches!(self.free, FreePart::Within(_));
+        let other = is_guess.then(|| {
+            let mut other = points.to_vec();
+            let turned = [!turned[0], false];
+            turn(&mut other, turned);
+            self.of_force(&mut other, turned, &mut Vec::new()).turned
+        });
+        if turned[0] {
+            turn(points, [true, false]);
+            notes.push(self.turned_x());
         }
-        let is_guess = known.is_none() && self.free == FreePart::Found;
-        let as_in_file =
-            is_guess.then(|| self.of_force(&mut points.to_vec(), [false; 2], &mut Vec::new()).turned);
-        turn(points, [true, false]);
-        notes.push(self.turned_x());
-        Some(Orientation { unless_apart: as_in_file, ..self.of_force(points, turned, notes) })
+        Some(Orientation { unless_apart: other, ..self.of_force(points, turned, notes) })
     }
 
     /// Whether the sign of x is reversed, by the branches that a column names; `None` where they disagree, x stands
@@ -190,9 +194,9 @@ fn by_jumps(
             turn(&mut piece, turned);
             piece.sort_by(|a, b| b.x.total_cmp(&a.x).then(b.force.total_cmp(&a.force)));
             let (x, force): (Vec<f64>, Vec<f64>) = piece.iter().map(|point| (point.x, point.force)).unzip();
-            if rises(&x, &force) == Some(true) {
-                sum += jump(&x, &force).map_or(0.0, |jump| jump.deviations);
-            }
+            // Where most rows are apart, the outer fifth of all would hold more of them than of the contact.
+            let found = jump(&x, &force).filter(|jump| rises(&x[..jump.at], &force[..jump.at]) == Some(true));
+            sum += found.map_or(0.0, |jump| jump.deviations);
         }
         sum
     };

@@ -103,7 +103,8 @@ pub struct ParameterReport {
     pub standard_error: Option<f64>,
     /// The degrees of freedom of the square of the error; `None` where it is not determined.
     pub degrees_of_freedom: Option<f64>,
-    /// Whether the error may be believed: only where the model describes the points.
+    /// Whether the error may be believed: only where the model describes the points and the bootstrap, if there is one,
+    /// does not find it too small.
     pub error_holds: bool,
     /// The 95 % interval by Student's t.
     pub interval: Option<[f64; 2]>,
@@ -136,7 +137,7 @@ impl ParameterReport {
             value: fitted.value,
             standard_error: fitted.standard_error,
             degrees_of_freedom: fitted.degrees,
-            error_holds: holds && fitted.standard_error.is_some(),
+            error_holds: holds && fitted.has_error(),
             interval: fitted.interval,
             start: fitted.start,
             unit: quantity.si().filter(|_| is_si).unwrap_or(""),
@@ -465,7 +466,7 @@ impl FitReport {
         text.push_str(&aligned(&rows, 2));
         if self.parameters.iter().any(|of| of.standard_error.is_some() && !of.error_holds) {
             text.push_str(
-                "errors in parentheses do not hold: they assume that the model describes the points\n",
+                "errors in parentheses do not hold: they assume that the model describes the points, and is linear\n",
             );
         }
         for parameter in &self.parameters {
