@@ -169,6 +169,6 @@ impl Model {
     /// another R or another column nothing is known. There is none if the model does not describe the points.
     pub fn standard_error(&self, key: &str) -> Option<f64> {
         let fit = self.fitted().filter(|fit| fit.verdict == Verdict::Describes)?;
-        fit.parameters.iter().find(|fitted| fitted.key == key)?.standard_error
+        fit.parameters.iter().find(|fitted| fitted.key == key && fitted.has_error())?.standard_error
     }
 }

@@ -2,7 +2,7 @@
 
 use super::bounds::Bounds;
 use super::curves::{pinned_scale, place};
-use super::parts::{Axis, AxisScale};
+use super::parts::{Axis, AxisScale, Figure, Role};
 use super::scale::Scale;
 use super::subject::Subject;
 use crate::explorer::{CurveData, View};
@@ -80,6 +80,12 @@ impl What {
             Self::Pin(number) => format!("on curve {number}"),
         }
     }
+}
+
+/// The point of the lines of this role that is nearest to `x` on its axis.
+pub fn on_line(figure: &Figure, role: Role, x: f64) -> Option<(f64, f64)> {
+    let drawn = figure.lines.iter().filter(|line| line.role == role).flat_map(|line| &line.points);
+    drawn.copied().min_by(|a, b| (a.0 - x).abs().total_cmp(&(b.0 - x).abs()))
 }
 
 /// The state nearest to `at` in a window with these bounds, limit points and landings first; `None` if the view shows

@@ -1,6 +1,7 @@
 //! A quantity over the range of one value, with the preset's value marked.
 
 use super::parts::{Area, Axis, AxisScale, Figure, Line, Mark, Meaning, Role, Sign};
+use super::reading::on_line;
 use super::scale::Scale;
 use super::subject::Subject;
 use crate::explorer::studies::{StudyData, StudyOutcome, number};
@@ -251,8 +252,7 @@ pub fn place(data: &StudyData, preset: &Preset, figure: &Figure, x: f64) -> Opti
     if !matches!(data.outcomes.get(at)?, StudyOutcome::Found(_)) {
         return None;
     }
-    let drawn = figure.lines.iter().filter(|line| line.role == Role::Body).flat_map(|line| &line.points);
-    drawn.copied().min_by(|a, b| (a.0 - x).abs().total_cmp(&(b.0 - x).abs()))
+    on_line(figure, Role::Body, x)
 }
 
 /// The computed value nearest to `x` on its axis, in the units of the preset, and its index in the list.

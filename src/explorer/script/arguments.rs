@@ -136,7 +136,17 @@ impl<'a> Rest<'a> {
         &mut self,
         key: fn(&str, usize) -> Result<Key, ScriptFault>,
     ) -> Result<Vec<Assignment>, ScriptFault> {
-        std::iter::from_fn(|| self.next()).map(|word| assignment(word, key)).collect()
+        let mut all: Vec<Assignment> = Vec::new();
+        while let Some(word) = self.next() {
+            match all.last_mut() {
+                // A unit after its number.
+                Some((_, number)) if !word.text.contains('=') && number.parse::<f64>().is_ok() => {
+                    *number = format!("{number} {}", word.text);
+                }
+                _ => all.push(assignment(word, key)?),
+            }
+        }
+        Ok(all)
     }
 }
 
@@ -183,9 +193,10 @@ pub(in crate::explorer) fn branch(rest: &mut Rest<'_>) -> Result<Command, Script
 }
 
 pub(in crate::explorer) fn assigned(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
-    let first = assignment(rest.need("KEY=VALUE")?, short)?;
-    let mut all = vec![first];
-    all.extend(rest.assignments(short)?);
+    let all = rest.assignments(short)?;
+    if all.is_empty() {
+        rest.need("KEY=VALUE")?;
+    }
     Ok(Command::Assign(all))
 }
 

@@ -100,6 +100,11 @@ fn a_script_is_read_with_comments_quotes_and_synonyms() {
         (8, Command::SaveAs { name: "x".to_owned(), replace: true, with_data: false }),
     ];
     assert_eq!(commands, expected);
+    // A unit may follow its number without quotes.
+    assert_eq!(
+        parse("set gap.wavelength=3 um title=x").unwrap(),
+        Some(set(&[("gap.wavelength", "3 um"), ("title", "x")]))
+    );
     assert!(lines.iter().all(|line| line.may_fail == (line.number == 6)));
 }
 
@@ -113,7 +118,7 @@ fn a_fault_names_line_column_word_and_what_is_allowed() {
         ("set gap.amplitud=1", "t:1:5: unknown key gap.amplitud; did you mean gap.amplitude?"),
         ("set amplitud=1", "t:1:5: unknown key amplitud; did you mean gap.amplitude?"),
         ("open fig-9 amplitude=1", "t:1:12: unknown key amplitude; did you mean gap.amplitude?"),
-        ("set gap.wavelength=3 um", "t:1:22: \"um\" is not KEY=VALUE"),
+        ("set title=a b", "t:1:13: \"b\" is not KEY=VALUE"),
         (
             "export curv x.csv",
             "t:1:8: no document is called \"curv\": it is curve, walk, events, script, pull, study, figure, screen; did you mean curve?",

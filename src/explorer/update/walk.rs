@@ -252,7 +252,11 @@ fn tell_of_end(model: &mut Model, outcome: WalkOutcome, stepped: bool) {
                 model.history.current().is_some_and(|node| matches!(node.kind, NodeKind::Stale(_)));
             let again =
                 if is_stale { format!("; {} starts again", Id::Restart.named()) } else { String::new() };
-            model.tell(Level::Failure, format!("{reason}{again}"));
+            // What the new values have to say, such as a fit, comes first.
+            match model.message.take() {
+                Some((level, said)) if is_stale => model.tell(level, format!("{said}; {reason}{again}")),
+                _ => model.tell(Level::Failure, format!("{reason}{again}")),
+            }
         }
     }
 }

@@ -1,10 +1,10 @@
 //! The views: figures with their legends, the cross-hair and the selected event.
 
-use super::legend::legend;
+use super::legend::{legend, on_its_line};
 use super::parts::is_selected;
 use super::states;
 use crate::explorer::{Id, Model, ScreenPanel, View, Window, reach};
-use crate::figure::{Area, Axis, Figure, Meaning, Sign, Subject, nearest, study};
+use crate::figure::{Area, Axis, Figure, Meaning, Sign, Subject, nearest};
 use crate::tui::app::App;
 use crate::tui::chart::{Chart, LegendRow};
 use crate::tui::marks::style;
@@ -48,9 +48,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, seat: Seat
             chart.title.push_str(&hint);
         }
         chart.cross = model.cross.map(|share| chart.bounds.at(share));
-        if let (View::Study, Some(Ok(data)), Some(cross)) = (view, &subject.study, &mut chart.cross) {
-            *cross = study::place(data, subject.preset, &figure, cross.0).unwrap_or(*cross);
-        }
+        chart.cross = chart.cross.map(|at| on_its_line(&subject, view, &figure, at));
         let found = chart.cross.and_then(|at| nearest(&subject, view, &chart.bounds, at));
         chart.nearest = found.map(|nearest| nearest.at);
     }

@@ -77,9 +77,11 @@ fn heading(app: &App, warnings: &[String], room: u16) -> Vec<Span<'static>> {
     spans
 }
 
-/// The columns of the places and of a warning.
+/// The columns of the places and of a warning, or of its beginning.
 fn beside(app: &App, warnings: &[String]) -> usize {
-    let warning = warnings.first().map_or(0, |first| first.chars().count() + "  !  +9 ?: all".len());
+    const BEGINNING: usize = 16;
+    let whole = |first: &String| first.chars().count() + "  !  +9 ?: all".len();
+    let warning = warnings.first().map_or(0, |first| whole(first).min(BEGINNING));
     width(&places(app)) + warning
 }
 
@@ -92,7 +94,7 @@ fn warnings(app: &App) -> Vec<String> {
     warnings.map(|text| app.theme.text(text)).collect()
 }
 
-/// Whether there is room for the places: a job under way, and a warning, need it more.
+/// Whether there is room for the places: a job under way needs it more.
 fn has_places(app: &App, room: u16) -> bool {
     let warnings = warnings(app);
     usize::from(room) > width(&heading(app, &warnings, room)) + beside(app, &warnings)

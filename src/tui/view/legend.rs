@@ -84,6 +84,16 @@ fn meaning(sign: Sign) -> Option<(u8, &'static str)> {
     })
 }
 
+/// Where the cross-hair at `at` belongs: on the line of a view that has one value for each place of its axis.
+pub fn on_its_line(subject: &Subject<'_>, view: View, figure: &Figure, at: (f64, f64)) -> (f64, f64) {
+    let on = match (view, &subject.study) {
+        (View::Study, Some(Ok(data))) => study::place(data, subject.preset, figure, at.0),
+        (View::ForceTime, _) => reading::on_line(figure, Role::Pull, at.0),
+        _ => None,
+    };
+    on.unwrap_or(at)
+}
+
 /// The cross-hair in words: on a curve the nearest state, then both coordinates.
 pub fn reading(model: &Model) -> Option<String> {
     let (share, view) = (model.cross?, model.view);
@@ -93,7 +103,7 @@ pub fn reading(model: &Model) -> Option<String> {
     let subject = Subject::of(model)?;
     let figure = subject.figure(view).on_screen();
     let bounds = figure.bounds.part(&model.window(view));
-    let at = bounds.at(share);
+    let at = on_its_line(&subject, view, &figure, bounds.at(share));
     let here = reading::coordinates(&bounds, [&figure.x, &figure.y], at);
     if let (View::Study, Some(Ok(data))) = (view, &subject.study) {
         return study::reading(data, subject.preset, study::critical_force(&subject), figure.values_at(at).0);
