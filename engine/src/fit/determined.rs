@@ -54,6 +54,13 @@ pub struct Determined {
     pub direction: Option<String>,
 }
 
+impl Determined {
+    /// The same without errors, as the points say nothing in this direction.
+    pub(super) fn without_errors(self, direction: String) -> Self {
+        Self { errors: None, degrees: None, correlations: None, direction: Some(direction), ..self }
+    }
+}
+
 /// What the fit `solved` of `problem` determines, its noise correlated from row to row as `scatter` says.
 pub fn determined(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatter, robust: bool) -> Determined {
     let (at, u) = (&solved.minimum.at, &solved.minimum.parameters[..]);

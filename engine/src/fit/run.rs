@@ -261,13 +261,7 @@ impl<'a> Posed<'a> {
         let unseen = unseen(&problem, &solved, (&what, &scatter), options.robust, progress);
         let is_unseen = unseen.is_some();
         if let Some(direction) = unseen {
-            what = Determined {
-                errors: None,
-                degrees: None,
-                correlations: None,
-                direction: Some(direction),
-                ..what
-            };
+            what = what.without_errors(direction);
         }
         let priors = given(&problem, &what.shares, &mut notes);
         let real = problem.real(&solved.minimum.at.residuals);
@@ -279,18 +273,8 @@ impl<'a> Posed<'a> {
         let mut fitted = values(&problem, u, what.errors.as_ref().zip(what.degrees.as_ref()));
         let bootstrapped = match &what.errors {
             Some(errors) if alone => {
-                let wanted = Options {
-                    bootstrap: options.bootstrap.or(unasked(&problem, u, degrees)),
-                    ..options.clone()
-                };
-                intervals(
-                    &problem,
-                    &solved,
-                    &wanted,
-                    errors,
-                    &mut fitted,
-                    &ProgressPart::new(progress, [0.85, 0.95]),
-                )
+                let progress = ProgressPart::new(progress, [0.85, 0.95]);
+                intervals(&problem, &solved, options, (errors, degrees), &mut fitted, &progress)
             }
             _ => None,
         };
@@ -545,13 +529,13 @@ fn too_small(fitted: &[Fitted]) -> Option<String> {
     })
 }
 
-/// Puts the requested intervals into `fitted`; returns how many fits of the bootstrap there were, and the rows of its
+/// Puts the intervals that are requested or needed into `fitted`; returns how many fits of the bootstrap there were, and the rows of its
 /// blocks.
 fn intervals(
     problem: &FitProblem,
     solved: &SolvedFit,
     options: &Options,
-    errors: &DVector<f64>,
+    (errors, degrees): (&DVector<f64>, f64),
     fitted: &mut [Fitted],
     progress: &dyn Progress,
 ) -> Option<[usize; 2]> {
@@ -560,7 +544,8 @@ fn intervals(
             fitted.profile = profile(problem, solved, errors[j], j, options.robust, progress);
         }
     }
-    let (count, found) = bootstrap(problem, solved, options.robust, options.bootstrap?, progress)?;
+    let drawn = options.bootstrap.or_else(|| unasked(problem, &solved.minimum.parameters, degrees))?;
+    let (count, found) = bootstrap(problem, solved, options.robust, drawn, progress)?;
     for (fitted, found) in fitted.iter_mut().zip(found) {
         fitted.bootstrap = Some(found);
     }

@@ -119,6 +119,15 @@ pub enum BranchError {
     NoSegment(&'static str),
 }
 
+/// Leaves out times that start again within a branch.
+fn without_restarts(part: &mut [MeasuredPoint]) {
+    if part.windows(2).any(|pair| pair[1].time < pair[0].time) {
+        for point in part {
+            point.time = f64::NAN;
+        }
+    }
+}
+
 impl Points {
     /// The branches of these points.
     ///
@@ -126,15 +135,7 @@ impl Points {
     /// [`BranchError`].
     pub fn branches(&self, asked: &Asked) -> Result<Branches, BranchError> {
         let mut notes = Vec::new();
-        let mut points = self.used(asked, &mut notes);
-        if points.len() < END_ROWS {
-            return Err(BranchError::Few(points.len()));
-        }
-        let radius =
-            |point: &MeasuredPoint| if self.abscissa == Abscissa::Radius { point.x } else { point.radius };
-        if let Some(point) = points.iter().find(|point| radius(point) < 0.0) {
-            return Err(BranchError::NegativeRadius { row: point.row, radius: radius(point) });
-        }
+        let mut points = self.used(asked, &mut notes)?;
         let step = quantum(&points.iter().map(|point| point.force).collect::<Vec<_>>());
         let repeated = without_repeats(&mut points);
         if repeated > 0 {
@@ -147,13 +148,7 @@ impl Points {
         let ordered = asked.sigma[0].is_some() || of_radius;
         let mut parts = self.parts(&points, ordered, &mut notes)?;
         for (_, part) in &mut parts {
-            let goes_back = |pair: &[MeasuredPoint]| pair[1].time < pair[0].time;
-            // A time that starts again within a branch is not used.
-            if part.windows(2).any(goes_back) {
-                for point in part {
-                    point.time = f64::NAN;
-                }
-            }
+            without_restarts(part);
         }
         let (rows, pauses) = self.counted(&parts);
         let is_wanted = |segment| asked.segment.is_none_or(|wanted| wanted == segment);
@@ -216,7 +211,7 @@ impl Points {
     }
 
     /// The points requested, in the order in which they were measured, with the signs of the file.
-    fn used(&self, asked: &Asked, notes: &mut Vec<String>) -> Vec<MeasuredPoint> {
+    fn used(&self, asked: &Asked, notes: &mut Vec<String>) -> Result<Vec<MeasuredPoint>, BranchError> {
         let point = |(at, i): (usize, usize)| MeasuredPoint {
             x: self.x[i],
             force: self.force[i],
@@ -231,13 +226,22 @@ impl Points {
         }
         let in_order = by_time.unwrap_or_else(|| (0..self.x.len()).collect());
         let numbered = in_order.into_iter().enumerate();
-        numbered
+        let points: Vec<MeasuredPoint> = numbered
             .filter(|&(_, i)| i >= asked.skip)
             .filter(|&(_, i)| asked.x.is_none_or(|span| span.holds(self.x[i])))
             .filter(|&(_, i)| asked.force.is_none_or(|span| span.holds(self.force[i])))
             .filter(|&(_, i)| self.segments.as_ref().is_none_or(|of| of[i] != Segment::Other))
             .map(point)
-            .collect()
+            .collect();
+        let radius =
+            |point: &MeasuredPoint| if self.abscissa == Abscissa::Radius { point.x } else { point.radius };
+        if points.len() < END_ROWS {
+            return Err(BranchError::Few(points.len()));
+        }
+        match points.iter().find(|point| radius(point) < 0.0) {
+            Some(point) => Err(BranchError::NegativeRadius { row: point.row, radius: radius(point) }),
+            None => Ok(points),
+        }
     }
 
     /// Sets the signs as the user specifies, or as the points show.

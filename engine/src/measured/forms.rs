@@ -155,7 +155,7 @@ fn western(text: &str) -> Vec<u8> {
 
 /// All forms.
 fn all() -> Vec<FileForm> {
-    let makers = [makers::of_microscopes(), makers::of_indenters(), makers::of_testers()];
+    let makers = [makers::of_microscopes(), makers::of_igor(), makers::of_indenters(), makers::of_testers()];
     let programs = [programs::of_spreadsheets(), programs::of_own_programs()];
     makers.into_iter().chain(programs).flatten().collect()
 }

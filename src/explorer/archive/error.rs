@@ -18,8 +18,9 @@ pub enum ArchiveError {
     /// Neither a state folder nor a home folder is known.
     #[error("no folder for sessions: neither XDG_STATE_HOME nor HOME is set")]
     NoFolder,
-    #[error("no session is called \"{name}\"{}", .meant.as_deref().map_or_else(String::new, |meant| format!("; did you mean {meant}?")))]
-    NotFound { name: String, meant: Option<String> },
+    /// `hint` says which one may be meant, after a semicolon, or is empty.
+    #[error("no session is called \"{name}\"{hint}")]
+    NotFound { name: String, hint: String },
     #[error("there is no session to resume")]
     Empty,
     #[error("the session {name} is running in another pulloff")]

@@ -122,8 +122,11 @@ impl Archive {
             return Ok(path);
         }
         let known = self.list()?;
-        let meant = closest(name, known.iter().map(|entry| &*entry.name)).map(str::to_owned);
-        Err(ArchiveError::NotFound { name: quote(name), meant })
+        let meant = closest(name, known.iter().map(|entry| &*entry.name));
+        // A session is named after the preset with which it began, not after the one it was saved as.
+        let newest = || known.first().map(|newest| format!("; the newest is {}", newest.name));
+        let hint = meant.map(|meant| format!("; did you mean {meant}?")).or_else(newest).unwrap_or_default();
+        Err(ArchiveError::NotFound { name: quote(name), hint })
     }
 
     /// The bytes of a session, as they are.

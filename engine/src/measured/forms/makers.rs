@@ -28,8 +28,6 @@ fn beside(separator: &str) -> String {
 /// Forms of microscope makers.
 pub(super) fn of_microscopes() -> Vec<FileForm> {
     let both = [("extend", half(false)), ("retract", half(true))];
-    let igor = lines(&rows(), |_, x, p| format!("\t{:e}\t{:e}", x * 1e-9, p * 1e-9));
-    let wave = |scale: f64, at: usize| lines(&rows(), |_, x, p| format!("\t{:e}", [x, p][at] * scale));
     let workshop = |head: &str| {
         let pairs: Vec<_> = half(false).into_iter().zip(half(true)).collect();
         pairs.iter().fold(head.to_owned(), |mut text, ([x, p], [z, f])| {
@@ -77,26 +75,6 @@ pub(super) fn of_microscopes() -> Vec<FileForm> {
         .position()
         .spring(0.0425)
         .halves(),
-        form("Igor, two waves in a block", format!("IGOR\nWAVES/D\tZSnsr\tForce\nBEGIN\n{igor}END\n"))
-            .position(),
-        form(
-            "Igor, a block for each wave",
-            format!("IGOR\nWAVES/D/N=(20) Ind\nBEGIN\n{}END\nWAVES/D/N=(20) Force\nBEGIN\n{}END\n", wave(1e-9, 0), wave(1e-9, 1))
-                .replace("Ind\n", "Indentation\n"),
-        ),
-        form(
-            "Igor, with units, notes and old ends of lines",
-            format!(
-                "IGOR\nWAVES/D\t'Line0001Point0002ZSnsr_Ext'\tDefl_Ext\nBEGIN\n{}END\nX SetScale/P x 0,1,\"s\", Defl_Ext; \
-                 SetScale y 0,0,\"nm\", Defl_Ext\nX SetScale d 0,0,\"nm\", 'Line0001Point0002ZSnsr_Ext'\n\
-                 X Note Defl_Ext, \"ScanRate: 1\\rSpringConstant: 0.0425\\rInvOLS: 6e-8\"\n",
-                lines(&rows(), |_, x, p| format!("\t{x}\t{p}"))
-            )
-            .replace('\n', "\r"),
-        )
-        .position()
-        .spring(0.0425),
-        form("Igor, waves indented", format!("IGOR\nWAVES\tDepth, Force\nBEGIN\n{igor}END\n")),
         form(
             "AFM Workshop",
             workshop(
@@ -118,6 +96,34 @@ pub(super) fn of_microscopes() -> Vec<FileForm> {
         .spring(0.0425)
         .halves(),
         form("afmformats .tab", tab).position().spring(0.0425).halves(),
+    ]
+}
+
+/// Forms of text that Igor writes.
+pub(super) fn of_igor() -> Vec<FileForm> {
+    let igor = lines(&rows(), |_, x, p| format!("\t{:e}\t{:e}", x * 1e-9, p * 1e-9));
+    let wave = |scale: f64, at: usize| lines(&rows(), |_, x, p| format!("\t{:e}", [x, p][at] * scale));
+    vec![
+        form("Igor, two waves in a block", format!("IGOR\nWAVES/D\tZSnsr\tForce\nBEGIN\n{igor}END\n"))
+            .position(),
+        form(
+            "Igor, a block for each wave",
+            format!("IGOR\nWAVES/D/N=(20) Ind\nBEGIN\n{}END\nWAVES/D/N=(20) Force\nBEGIN\n{}END\n", wave(1e-9, 0), wave(1e-9, 1))
+                .replace("Ind\n", "Indentation\n"),
+        ),
+        form(
+            "Igor, with units, notes and old ends of lines",
+            format!(
+                "IGOR\nWAVES/D\t'Line0001Point0002ZSnsr_Ext'\tDefl_Ext\nBEGIN\n{}END\nX SetScale/P x 0,1,\"s\", Defl_Ext; \
+                 SetScale y 0,0,\"nm\", Defl_Ext\nX SetScale d 0,0,\"nm\", 'Line0001Point0002ZSnsr_Ext'\n\
+                 X Note Defl_Ext, \"ScanRate: 1\\rSpringConstant: 0.0425\\rInvOLS: 6e-8\"\n",
+                lines(&rows(), |_, x, p| format!("\t{x}\t{p}"))
+            )
+            .replace('\n', "\r"),
+        )
+        .position()
+        .spring(0.0425),
+        form("Igor, waves indented", format!("IGOR\nWAVES\tDepth, Force\nBEGIN\n{igor}END\n")),
     ]
 }
 
