@@ -48,10 +48,13 @@ fn heading(app: &App, warnings: &[String], room: u16) -> Vec<Span<'static>> {
     spans.push(Span::raw("  control "));
     spans.push(Span::styled(control, theme.strong()));
     let after_control = spans.len();
-    // A job under way and a warning need the room more than what the Problem panel says anyway.
-    if let (Some(count), true) = (model.preset.get("basis.rings"), warnings.is_empty() && app.late.is_none())
-    {
-        spans.push(Span::raw(format!("  rings {count}")));
+    // A job under way, a warning and the places need the room more than what the Problem panel says anyway.
+    let is_free = warnings.is_empty() && app.late.is_none();
+    if let (Some(count), true) = (model.preset.get("basis.rings"), is_free) {
+        let rings = Span::raw(format!("  rings {count}"));
+        if width(&spans) + rings.width() + width(&places(app)) < usize::from(room) {
+            spans.push(rings);
+        }
     }
     if model.is_computing() {
         let far = model.stage.map_or_else(String::new, |stage| format!(" {}", stage.text()));
