@@ -131,7 +131,7 @@ impl Fit {
         self.of_radius().into_iter().chain(together.map(sentence)).collect()
     }
 
-    /// A sentence on a radius of curvature that is held: with r → a r and δ → δ the curve of a sphere stays as it is.
+    /// A sentence on a radius of curvature that is held: (R, E*, γ) → (a²R, E*/a, γ/a²) leaves P(δ) of a sphere as it is.
     fn of_radius(&self) -> Option<String> {
         let gap = &self.preset.gap;
         let radius = gap.radius_of_curvature().filter(|_| gap.feature_length().is_none())?;
