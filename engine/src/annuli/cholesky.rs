@@ -88,24 +88,38 @@ fn factorize(a: &mut [f64], n: usize) -> bool {
     true
 }
 
-/// Solves for four right-hand sides at once, in place.
+/// Solves for four right-hand sides at once, in place, as many unknowns at a time as pivots are eliminated together; `n` is a
+/// multiple of four.
 fn solve(u: &[f64], n: usize, x: &mut [f64x4]) {
-    for j in 0..n {
-        let row = &u[j * n..(j + 1) * n];
-        let (head, tail) = x.split_at_mut(j + 1);
-        let solved = head[j] * f64x4::splat(row[j]);
-        head[j] = solved;
-        for (x, u) in tail.iter_mut().zip(&row[j + 1..]) {
-            *x -= solved * f64x4::splat(*u);
+    let rows = |j: usize| -> [&[f64]; BLOCK] { std::array::from_fn(|p| &u[(j + p) * n..(j + p + 1) * n]) };
+    for j in (0..n).step_by(BLOCK) {
+        let rows = rows(j);
+        let (head, tail) = x.split_at_mut(j + BLOCK);
+        let head = &mut head[j..];
+        for p in 0..BLOCK {
+            let above = (0..p).fold(head[p], |left, q| left - head[q] * f64x4::splat(rows[q][j + p]));
+            head[p] = above * f64x4::splat(rows[p][j + p]);
+        }
+        let [a, b, c, d] = rows.map(|row| &row[j + BLOCK..]);
+        for (x, (((a, b), c), d)) in tail.iter_mut().zip(a.iter().zip(b).zip(c).zip(d)) {
+            let [a, b, c, d] = [a, b, c, d].map(|u| f64x4::splat(*u));
+            *x -= (head[0] * a + head[1] * b) + (head[2] * c + head[3] * d);
         }
     }
-    for j in (0..n).rev() {
-        let row = &u[j * n..(j + 1) * n];
-        let mut sum = [x[j], f64x4::ZERO];
-        for (k, (x, u)) in x[j + 1..].iter().zip(&row[j + 1..]).enumerate() {
-            sum[k & 1] -= *x * f64x4::splat(*u);
+    for j in (0..n).step_by(BLOCK).rev() {
+        let rows = rows(j);
+        let (head, tail) = x.split_at_mut(j + BLOCK);
+        let head = &mut head[j..];
+        let [a, b, c, d] = rows.map(|row| &row[j + BLOCK..]);
+        for (x, (((a, b), c), d)) in tail.iter().zip(a.iter().zip(b).zip(c).zip(d)) {
+            for (head, u) in head.iter_mut().zip([a, b, c, d]) {
+                *head -= *x * f64x4::splat(*u);
+            }
         }
-        x[j] = (sum[0] + sum[1]) * f64x4::splat(row[j]);
+        for p in (0..BLOCK).rev() {
+            let below = (p + 1..BLOCK).fold(head[p], |left, q| left - head[q] * f64x4::splat(rows[p][j + q]));
+            head[p] = below * f64x4::splat(rows[p][j + p]);
+        }
     }
 }
 

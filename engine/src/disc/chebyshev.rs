@@ -78,12 +78,12 @@ impl ChebyshevRule {
     }
 }
 
-/// f(x), by Clenshaw's recurrence.
+/// f(x), by Clenshaw's recurrence, grouped so that a term waits for the previous one with one product and one sum only.
 pub fn sum(series: &[f64], x: f64) -> f64 {
     let (mut b1, mut b2) = (0.0, 0.0);
     let twice = 2.0 * x;
     for c in series.iter().skip(1).rev() {
-        (b1, b2) = (twice * b1 - b2 + c, b1);
+        (b1, b2) = (twice * b1 + (c - b2), b1);
     }
     series.first().map_or(0.0, |c| x * b1 - b2 + c)
 }
@@ -93,7 +93,7 @@ pub fn sum4(series: &[f64], x: f64x4) -> f64x4 {
     let (mut b1, mut b2) = (f64x4::ZERO, f64x4::ZERO);
     let twice = x + x;
     for c in series.iter().skip(1).rev() {
-        (b1, b2) = (twice * b1 - b2 + f64x4::splat(*c), b1);
+        (b1, b2) = (twice * b1 + (f64x4::splat(*c) - b2), b1);
     }
     series.first().map_or(f64x4::ZERO, |c| x * b1 - b2 + f64x4::splat(*c))
 }
@@ -106,7 +106,7 @@ pub fn sums<const M: usize, const N: usize>(series: [&[f64]; M], x: &[f64; N]) -
         for (j, series) in series.iter().enumerate() {
             let c = series.get(k).copied().unwrap_or(0.0);
             for i in 0..N {
-                let b = 2.0 * x[i] * b1[j][i] - b2[j][i] + c;
+                let b = 2.0 * x[i] * b1[j][i] + (c - b2[j][i]);
                 b2[j][i] = b1[j][i];
                 b1[j][i] = b;
             }
@@ -124,8 +124,8 @@ pub fn sum_and_slope(series: &[f64], x: f64) -> [f64; 2] {
     let twice = 2.0 * x;
     for c in series.iter().skip(1).rev() {
         // The derivative of the recurrence, with the value it has before this step.
-        (d1, d2) = (twice * d1 - d2 + 2.0 * b1, d1);
-        (b1, b2) = (twice * b1 - b2 + c, b1);
+        (d1, d2) = (twice * d1 + (2.0 * b1 - d2), d1);
+        (b1, b2) = (twice * b1 + (c - b2), b1);
     }
     let first = series.first().copied().unwrap_or(0.0);
     [x * b1 - b2 + first, x * d1 - d2 + b1]
@@ -138,8 +138,8 @@ pub fn sum_and_slopes(series: &[f64], x: f64) -> [f64; 3] {
     for c in series.iter().skip(1).rev() {
         // The derivatives of the recurrence, each with the value that the previous one has before this step.
         (e1, e2) = (twice * e1 - e2 + 4.0 * d1, e1);
-        (d1, d2) = (twice * d1 - d2 + 2.0 * b1, d1);
-        (b1, b2) = (twice * b1 - b2 + c, b1);
+        (d1, d2) = (twice * d1 + (2.0 * b1 - d2), d1);
+        (b1, b2) = (twice * b1 + (c - b2), b1);
     }
     let first = series.first().copied().unwrap_or(0.0);
     [x * b1 - b2 + first, x * d1 - d2 + b1, x * e1 - e2 + 2.0 * d1]
@@ -224,8 +224,9 @@ pub fn least(nodes: usize, [lo, hi]: [f64; 2], f: impl Fn(f64) -> f64) -> [f64; 
     [middle + half * x, value(x)]
 }
 
-/// Parts into which an interval is divided until each has no root or is monotone.
-const PARTS: usize = 4;
+/// Parts into which an interval is divided until each has no root or is monotone: their four borders are evaluated side
+/// by side.
+const PARTS: usize = 5;
 
 /// Trailing coefficients that add up to less than this share of the rounding are ignored.
 const NEGLIGIBLE: f64 = 0.01;
@@ -236,8 +237,8 @@ fn sums_and_slopes(series: &[f64], x: f64x4) -> [f64x4; 2] {
     let twice = x + x;
     for c in series.iter().skip(1).rev() {
         // The derivative of the recurrence, with the value it has before this step.
-        (d1, d2) = (twice * d1 + (b1 + b1) - d2, d1);
-        (b1, b2) = (twice * b1 - b2 + f64x4::splat(*c), b1);
+        (d1, d2) = (twice * d1 + (b1 + b1 - d2), d1);
+        (b1, b2) = (twice * b1 + (f64x4::splat(*c) - b2), b1);
     }
     let first = series.first().copied().unwrap_or(0.0);
     [x * b1 - b2 + f64x4::splat(first), x * d1 - d2 + b1]
@@ -305,7 +306,7 @@ impl RootSearch<'_> {
             }
             return;
         }
-        let x: [f64; PARTS] = std::array::from_fn(|i| lo.x + width * (i + 1) as f64 / PARTS as f64);
+        let x: [f64; PARTS - 1] = std::array::from_fn(|i| lo.x + width * (i + 1) as f64 / PARTS as f64);
         let [values, slopes] = sums_and_slopes(self.series, f64x4::new(x)).map(f64x4::to_array);
         let mut before = lo;
         for i in 0..PARTS {

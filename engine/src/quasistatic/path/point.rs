@@ -14,6 +14,13 @@ const ITERATIONS: usize = 10;
 const CONVERGED: f64 = 1e-12;
 const STALLED: f64 = 1e-9;
 
+/// The same for a point that is passed on the way: no event depends on its last digits.
+const PASSED: f64 = 1e-10;
+
+/// The share of the previous Newton step to which the third and all later ones shrink at least: a correction that
+/// converges does so quadratically.
+const SHRINKS: f64 = 0.5;
+
 /// How much longer than the previous step a step may be.
 pub const GROWTH: f64 = 1.5;
 
@@ -272,7 +279,7 @@ impl<'a, 'b> PathStep<'a, 'b> {
                 let tangent = &rate / rate.norm();
                 return Some((PathPoint { held, tangent, scales: self.from.scales.clone(), rounds }, rate));
             }
-            if size > 2.0 * last.max(1e-3) {
+            if size > 2.0 * last.max(1e-3) || (rounds > 2 && size > SHRINKS * last) {
                 return None;
             }
             last = size;
@@ -284,8 +291,9 @@ impl<'a, 'b> PathStep<'a, 'b> {
     /// The point at the distance `length`, predicted from what is known of the curve; `None` where the step exceeds
     /// its bounds.
     pub fn taken(&self, length: f64) -> Option<PathPoint> {
-        let going_on = self.past.as_ref().and_then(|past| self.to(length, &past.at(length).0));
-        let (point, _) = going_on.or_else(|| self.to(length, &self.line(length)))?;
+        let to = |guess: &DVector<f64>| self.within(length, guess, PASSED);
+        let going_on = self.past.as_ref().and_then(|past| to(&past.at(length).0));
+        let (point, _) = going_on.or_else(|| to(&self.line(length)))?;
         self.allowed(&point).then_some(point)
     }
 
