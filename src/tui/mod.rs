@@ -35,7 +35,7 @@ mod ticks;
 pub mod view;
 
 #[cfg(test)]
-mod budget;
+mod budget_tests;
 
 pub use terminal::refuse_reason;
 

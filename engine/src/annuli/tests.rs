@@ -2,7 +2,7 @@ use super::*;
 use crate::disc::{Basis, ExactBasis};
 use crate::gap::Gap;
 use crate::gap::{shapes::Harmonic, shapes::Harmonics};
-use crate::ritz::examples::wavy;
+use crate::ritz::fixtures::wavy;
 use std::sync::Arc;
 
 fn fig9() -> Ground {

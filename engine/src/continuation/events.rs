@@ -106,7 +106,7 @@ fn approach_to_zero(f: [f64; 2], d: [f64; 2], share: f64) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::continuation::Settings;
-    use crate::continuation::examples::Cubic;
+    use crate::continuation::fixtures::Cubic;
 
     #[test]
     fn a_pair_inside_one_step_is_found() {

@@ -192,7 +192,7 @@ fn root_of_slope(from: &Point, to: &Point, row: &Vector) -> f64 {
 mod tests {
     use super::*;
     use crate::continuation::Settings;
-    use crate::continuation::examples::Cubic;
+    use crate::continuation::fixtures::Cubic;
 
     #[test]
     fn the_folds_of_the_cubic_to_rounding() {

@@ -50,6 +50,6 @@ pub use trace::{End, Stop};
 pub use tracer::Tracer;
 
 #[cfg(test)]
-mod examples;
+mod fixtures;
 #[cfg(test)]
 mod tests;

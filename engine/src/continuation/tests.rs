@@ -1,6 +1,6 @@
 //! Systems of other sizes than the contact's, with second derivatives and without.
 
-use super::examples::{Bratu, Circle, Cubic, Lifted, point};
+use super::fixtures::{Bratu, Circle, Cubic, Lifted, point};
 use super::{
     End, Linearization, NewtonFailure, Point, Settings, SizeError, StepFailure, Stop, System, Tracer, Vector,
 };

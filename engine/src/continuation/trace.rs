@@ -96,7 +96,7 @@ impl Tracer<'_> {
 mod tests {
     use super::*;
     use crate::continuation::Settings;
-    use crate::continuation::examples::{Circle, Cubic};
+    use crate::continuation::fixtures::{Circle, Cubic};
 
     #[test]
     fn lands_exactly_on_the_end_value() {

@@ -278,7 +278,7 @@ mod tests {
     use crate::gap::Shape;
     use crate::gap::shapes::PowerLaw;
     use crate::problem::{Control, Problem};
-    use crate::ritz::examples::{check_derivatives, wavy};
+    use crate::ritz::fixtures::{check_derivatives, wavy};
 
     fn sphere(gamma: f64) -> Reduced {
         let shape = Shape::Sphere { radius_of_curvature: 1.0 };

@@ -256,5 +256,4 @@ pub fn minimize_from<P: LeastSquares>(
 }
 
 #[cfg(test)]
-#[path = "nist.rs"]
 mod tests;

@@ -12,7 +12,7 @@
 
 pub mod breaks;
 #[cfg(test)]
-mod complex;
+mod fixtures;
 pub mod formula;
 pub mod function;
 pub(crate) mod lanes;

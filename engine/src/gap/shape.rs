@@ -329,8 +329,8 @@ impl Gap for Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gap::fixtures::{Complex, largest_on};
     use crate::gap::function::Scaled;
-    use crate::gap::{complex::Complex, complex::largest_on};
     use crate::gap::{shapes::Harmonic, shapes::ProfileGap, shapes::Smoothing};
 
     #[test]

@@ -62,6 +62,4 @@ pub use role::{ColumnRole, ColumnSpec, ColumnSpecError, Segment};
 pub use source::PointsFile;
 
 #[cfg(test)]
-mod forms;
-#[cfg(test)]
 mod tests;

@@ -1,5 +1,7 @@
 //! Files good, bad and damaged; signs, branches, noise.
 
+mod forms;
+
 use super::points::MeasuredPoint;
 use super::*;
 use crate::gap::shapes::split_mix::SplitMix64;

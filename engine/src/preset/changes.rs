@@ -97,7 +97,7 @@ fn typed(row: &Parameter, units: &UnitSystem, value: &Value) -> String {
 mod tests {
     use super::*;
     use crate::fixtures::preset;
-    use crate::preset::examples::any_preset;
+    use crate::preset::fixtures::any_preset;
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 

@@ -115,7 +115,7 @@ pub fn changes(preset: &Preset, row: &Parameter, x: f64) -> Result<Vec<(Key, Val
 mod tests {
     use super::*;
     use crate::fixtures;
-    use crate::preset::examples::wavy;
+    use crate::preset::fixtures::wavy;
     use crate::preset::{read_with, write};
 
     fn number(preset: &Preset, key: &str) -> f64 {

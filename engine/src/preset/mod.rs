@@ -35,9 +35,9 @@ pub mod changes;
 pub mod data;
 pub mod edge;
 pub mod edit;
-#[cfg(test)]
-mod examples;
 pub mod family;
+#[cfg(test)]
+mod fixtures;
 mod given;
 pub mod groups;
 pub mod invalid;

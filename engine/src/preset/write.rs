@@ -126,7 +126,7 @@ mod tests {
     use super::*;
     use crate::fixtures::read;
     use crate::gap::Shape;
-    use crate::preset::examples::{any_preset, wavy};
+    use crate::preset::fixtures::{any_preset, wavy};
     use crate::problem::Start;
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;

@@ -35,7 +35,7 @@ pub mod pull;
 pub mod residuals;
 pub mod rows;
 #[cfg(test)]
-mod schema;
+mod schema_tests;
 pub mod slow;
 pub mod speeds;
 pub mod stability;

@@ -26,7 +26,7 @@ pub mod parallel;
 pub mod rings;
 
 #[cfg(test)]
-pub(crate) mod examples;
+pub(crate) mod fixtures;
 
 pub use caution::Caution;
 pub use functional::Forms;

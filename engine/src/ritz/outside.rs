@@ -34,7 +34,7 @@ pub(super) fn by_disc(b: f64, r: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::Rings;
-    use super::super::examples::wavy;
+    use super::super::fixtures::wavy;
     use super::*;
     use crate::disc::{Basis, ExactBasis};
     use crate::theory::quadrature::integrate;

@@ -411,7 +411,7 @@ impl Basis for Rings {
 
 #[cfg(test)]
 mod tests {
-    use super::super::examples::{check_derivatives, wavy};
+    use super::super::fixtures::{check_derivatives, wavy};
     use super::*;
     use crate::gap::Shape;
     use crate::problem::Problem;

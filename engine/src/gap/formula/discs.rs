@@ -261,7 +261,7 @@ impl Image {
 #[cfg(test)]
 mod tests {
     use crate::gap::ComplexDisc;
-    use crate::gap::{complex::Complex, complex::largest_on};
+    use crate::gap::fixtures::{Complex, largest_on};
     use crate::gap::{formula::Bound, formula::Formula};
     use std::f64::consts::TAU;
 

@@ -53,7 +53,7 @@ impl Gap for ExactSphere {
 
 #[cfg(test)]
 mod tests {
-    use super::super::examples::check_derivatives;
+    use super::super::fixtures::check_derivatives;
     use super::*;
 
     #[test]

@@ -200,7 +200,7 @@ pub fn sine_change(sin: f64, cos: f64, radius: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::examples::check_derivatives;
+    use super::super::fixtures::check_derivatives;
     use super::*;
     use crate::gap::Shape;
 

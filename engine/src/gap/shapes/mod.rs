@@ -27,4 +27,4 @@ pub use profile::{ProfileGap, Smoothing};
 pub use random_waves::RandomWaves;
 
 #[cfg(test)]
-mod examples;
+mod fixtures;

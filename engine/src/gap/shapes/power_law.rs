@@ -101,7 +101,7 @@ impl Gap for PowerLaw {
 
 #[cfg(test)]
 mod tests {
-    use super::super::examples::check_derivatives;
+    use super::super::fixtures::check_derivatives;
     use super::*;
     use crate::gap::Shape;
 

@@ -1,6 +1,6 @@
 use super::onto;
 use crate::fixtures::{read, text as shipped};
-use crate::preset::examples::{any_preset, wavy};
+use crate::preset::fixtures::{any_preset, wavy};
 use crate::preset::{Preset, write};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

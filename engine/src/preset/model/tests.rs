@@ -4,7 +4,7 @@ use super::*;
 use crate::gap::{shapes::ExactSphere, shapes::PowerLaw, shapes::RandomWaves};
 use crate::measured::PointsFile;
 use crate::preset::edge::EdgeSpec;
-use crate::preset::examples::{any_gap, wavy};
+use crate::preset::fixtures::{any_gap, wavy};
 use crate::preset::rows::parameter;
 use crate::preset::schema::{ADHESION, Applies, FORMAT, Fallback, Kind, LIQUID_KEYS, PARAMETERS};
 use crate::preset::value::Value;

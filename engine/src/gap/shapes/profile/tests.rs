@@ -1,5 +1,5 @@
 use super::*;
-use crate::gap::shapes::examples::check_two_derivatives;
+use crate::gap::shapes::fixtures::check_two_derivatives;
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::gap::{Gap, Jet};
 use crate::gap::{shapes::Harmonic, shapes::Harmonics};

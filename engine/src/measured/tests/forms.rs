@@ -4,9 +4,9 @@
 mod makers;
 mod programs;
 
-use super::role::ColumnSpec;
-use super::{Abscissa, ColumnRole, CurveReadError, Measured, Segment, columns, parse};
 use crate::gap::shapes::split_mix::SplitMix64;
+use crate::measured::role::ColumnSpec;
+use crate::measured::{Abscissa, ColumnRole, CurveReadError, Measured, Segment, columns, parse};
 use crate::units::{DisplayUnits, UnitSystem};
 use std::fmt::Write;
 
