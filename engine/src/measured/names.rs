@@ -28,171 +28,45 @@ pub(super) struct ColumnName {
     pub unit: Option<String>,
 }
 
-/// The roles with the names that headers use for them, letters and digits only, in lower case. Names of rank 1 may mean
-/// something else when others are present; names of rank 2 are what was asked for, not what was reached.
-const NAMES: [(ColumnRole, u8, &[&str]); 17] = [
-    (
-        ColumnRole::Approach,
-        0,
-        &[
-            "indentation",
-            "indentationdepth",
-            "delta",
-            "δ",
-            "penetration",
-            "penetrationdepth",
-            "eindringtiefe",
-        ],
-    ),
-    (
-        ColumnRole::Approach,
-        1,
-        &[
-            "approach",
-            "depth",
-            "displacementintosurface",
-            "displacement",
-            "disp",
-            "tipposition",
-            "verticaltipposition",
-            "tipsampleseparation",
-            "tipsampledistance",
-            "separation",
-            "sep",
-            "distance",
-            "hc",
-        ],
-    ),
-    (
-        ColumnRole::Position,
-        0,
-        &[
-            "heightmeasured",
-            "measuredheight",
-            "heightmeasuredsmoothed",
-            "smoothedmeasuredheight",
-            "zsensor",
-            "zsense",
-            "zsnsr",
-            "heightsensor",
-            "sensorheight",
-            "capacitivesensorheight",
-            "smoothedcapacitivesensorheight",
-            "lvdt",
-            "actuatorposition",
-            "stageposition",
-            "measuredposition",
-            "positionmeasured",
-        ],
-    ),
-    (
-        ColumnRole::Position,
-        1,
-        &[
-            "position",
-            "height",
-            "piezo",
-            "z",
-            "stage",
-            "heightpiezo",
-            "zpiezo",
-            "piezoheight",
-            "piezoz",
-            "extension",
-            "piezoposition",
-            "zposition",
-            "zheight",
-            "zdisplacement",
-            "piezodisplacement",
-            "stagez",
-            "zstage",
-            "crosshead",
-            "crossheadposition",
-            "crossheaddisplacement",
-            "actuator",
-            "weg",
-            "standardweg",
-            "traverse",
-            "calcramp",
-            "ramp",
-            "zscanner",
-            "scannerz",
-        ],
-    ),
-    (ColumnRole::Position, 2, &["raw", "rawheight", "targetposition", "setposition", "zdriver", "zcommand"]),
-    (
-        ColumnRole::Deflection,
-        0,
-        &[
-            "deflection",
-            "defl",
-            "bending",
-            "cantileverdeflection",
-            "vdeflection",
-            "verticaldeflection",
-            "deflectionv",
-            "cantilever",
-            "deflectionerror",
-            // From AFM Workshop: the top of the detector minus its bottom.
-            "tb",
-        ],
-    ),
-    (
-        ColumnRole::Force,
-        0,
-        &[
-            "force",
-            "load",
-            "normalforce",
-            "normalload",
-            "loadonsample",
-            "appliedload",
-            "appliedforce",
-            "loadcell",
-            "verticalforce",
-            "forcez",
-            "zforce",
-            "fz",
-            "fn",
-            "contactforce",
-            "adhesionforce",
-            "kraft",
-            "standardkraft",
-            "prüfkraft",
-            "normalkraft",
-            "charge",
-        ],
-    ),
-    (ColumnRole::Force, 1, &["p", "f", "weight", "last", "mass"]),
-    (ColumnRole::Force, 2, &["targetforce", "setforce", "targetload", "rawload", "rawforce"]),
-    (ColumnRole::Radius, 0, &["contactradius", "radiusofcontact", "kontaktradius"]),
-    (ColumnRole::Radius, 1, &["radius", "s", "a"]),
-    (ColumnRole::Diameter, 0, &["contactdiameter", "diameterofcontact"]),
-    (ColumnRole::Diameter, 1, &["diameter"]),
-    (ColumnRole::Area, 0, &["contactarea", "areaofcontact", "area", "kontaktfläche"]),
-    (ColumnRole::Time, 0, &["seriestime", "elapsedtime", "totaltime"]),
-    (ColumnRole::Time, 1, &["time", "t", "zeit", "standardzeit", "prüfzeit"]),
-    (ColumnRole::Segment, 0, &["segment", "branch", "direction", "phase", "segmentname", "segmenttype"]),
+/// The roles with the names that headers use for them, letters and digits only, in lower case, split by spaces. Names of
+/// rank 1 may mean something else when others are present; names of rank 2 are what was asked for, not what was
+/// reached. A long list goes on in the next row.
+const NAMES: &[(ColumnRole, u8, &str)] = &[
+    (ColumnRole::Approach, 0, "indentation indentationdepth delta δ penetration penetrationdepth"),
+    (ColumnRole::Approach, 0, "eindringtiefe"),
+    (ColumnRole::Approach, 1, "approach depth displacementintosurface displacement disp tipposition"),
+    (ColumnRole::Approach, 1, "verticaltipposition tipsampleseparation tipsampledistance separation sep"),
+    (ColumnRole::Approach, 1, "distance hc"),
+    (ColumnRole::Position, 0, "heightmeasured measuredheight heightmeasuredsmoothed smoothedmeasuredheight"),
+    (ColumnRole::Position, 0, "zsensor zsense zsnsr heightsensor sensorheight capacitivesensorheight"),
+    (ColumnRole::Position, 0, "smoothedcapacitivesensorheight lvdt actuatorposition stageposition"),
+    (ColumnRole::Position, 0, "measuredposition positionmeasured"),
+    (ColumnRole::Position, 1, "position height piezo z stage heightpiezo zpiezo piezoheight piezoz"),
+    (ColumnRole::Position, 1, "extension piezoposition zposition zheight zdisplacement piezodisplacement"),
+    (ColumnRole::Position, 1, "stagez zstage crosshead crossheadposition crossheaddisplacement actuator weg"),
+    (ColumnRole::Position, 1, "standardweg traverse calcramp ramp zscanner scannerz"),
+    (ColumnRole::Position, 2, "raw rawheight targetposition setposition zdriver zcommand"),
+    // "tb" is from AFM Workshop: the top of the detector minus its bottom.
+    (ColumnRole::Deflection, 0, "deflection defl bending cantileverdeflection vdeflection"),
+    (ColumnRole::Deflection, 0, "verticaldeflection deflectionv cantilever deflectionerror tb"),
+    (ColumnRole::Force, 0, "force load normalforce normalload loadonsample appliedload appliedforce"),
+    (ColumnRole::Force, 0, "loadcell verticalforce forcez zforce fz fn contactforce adhesionforce kraft"),
+    (ColumnRole::Force, 0, "standardkraft prüfkraft normalkraft charge"),
+    (ColumnRole::Force, 1, "p f weight last mass"),
+    (ColumnRole::Force, 2, "targetforce setforce targetload rawload rawforce"),
+    (ColumnRole::Radius, 0, "contactradius radiusofcontact kontaktradius"),
+    (ColumnRole::Radius, 1, "radius s a"),
+    (ColumnRole::Diameter, 0, "contactdiameter diameterofcontact"),
+    (ColumnRole::Diameter, 1, "diameter"),
+    (ColumnRole::Area, 0, "contactarea areaofcontact area kontaktfläche"),
+    (ColumnRole::Time, 0, "seriestime elapsedtime totaltime"),
+    (ColumnRole::Time, 1, "time t zeit standardzeit prüfzeit"),
+    (ColumnRole::Segment, 0, "segment branch direction phase segmentname segmenttype"),
 ];
 
 /// Words in a name that say nothing about what the column holds.
-const EMPTY_WORDS: [&str; 15] = [
-    "smoothed",
-    "corrected",
-    "filtered",
-    "avg",
-    "average",
-    "mean",
-    "ch",
-    "channel",
-    "sensor",
-    "signal",
-    "wave",
-    "image",
-    "untitled",
-    "calibrated",
-    "measured",
-];
+const EMPTY_WORDS: &str = "smoothed corrected filtered avg average mean ch channel sensor signal wave image untitled \
+     calibrated measured";
 
 /// Words for a branch that may be joined to a name.
 const GROWN: [&str; 8] =
@@ -205,7 +79,7 @@ pub(super) fn squashed(name: &str) -> String {
 
 /// The role and the rank of a name with nothing around it.
 fn known(squashed: &str) -> Option<(ColumnRole, u8)> {
-    let found = NAMES.iter().find(|(.., names)| names.contains(&squashed));
+    let found = NAMES.iter().find(|(.., names)| names.split(' ').any(|name| name == squashed));
     found.map(|(role, rank, _)| (*role, *rank))
 }
 
@@ -239,7 +113,8 @@ pub(super) fn named(name: &str) -> Option<ColumnName> {
             word == "V" || unit.is_ok_and(|unit| dimensions().contains(&unit.dimension()))
         };
         let is_empty = |word: &str| {
-            EMPTY_WORDS.contains(&&*word.to_lowercase()) || word.chars().all(|c| c.is_ascii_digit())
+            let lower = word.to_lowercase();
+            EMPTY_WORDS.split(' ').any(|empty| empty == lower) || word.chars().all(|c| c.is_ascii_digit())
         };
         if side.is_none() && of(last).is_some() {
             side = of(last);

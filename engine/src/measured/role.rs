@@ -51,46 +51,16 @@ impl Segment {
     /// What a cell says; `None` for an unknown word.
     pub fn of(text: &str) -> Option<Self> {
         let word = text.to_lowercase();
-        let is = |words: &[&str]| words.contains(&word.as_str());
-        if is(&[
-            "false",
-            "0",
-            "0.0",
-            "approach",
-            "approaching",
-            "extend",
-            "extending",
-            "ext",
-            "ex",
-            "advance",
-            "loading",
-            "load",
-            "trace",
-            "in",
-            "forward",
-            "push",
-        ]) {
+        let is = |words: &str| words.split(' ').any(|known| known == word);
+        if is("false 0 0.0 approach approaching extend extending ext ex advance loading load trace in \
+            forward push")
+        {
             Some(Self::Approach)
-        } else if is(&[
-            "true",
-            "1",
-            "1.0",
-            "retract",
-            "retracting",
-            "retraction",
-            "ret",
-            "rt",
-            "withdraw",
-            "withdrawal",
-            "unloading",
-            "unload",
-            "retrace",
-            "out",
-            "backward",
-            "pull",
-        ]) {
+        } else if is("true 1 1.0 retract retracting retraction ret rt withdraw withdrawal unloading unload \
+            retrace out backward pull")
+        {
             Some(Self::Retraction)
-        } else if is(&["2", "2.0", "pause", "hold", "holding", "dwell", "intermediate"]) {
+        } else if is("2 2.0 pause hold holding dwell intermediate") {
             Some(Self::Other)
         } else {
             None

@@ -30,33 +30,10 @@ pub(super) fn parts_tables(remark: &str) -> bool {
 
 /// Whether a cell means that nothing was measured: empty, not a number, or beyond the range of the instrument.
 pub(super) fn is_gap(cell: &str) -> bool {
-    const WORDS: [&str; 22] = [
-        "nan",
-        "na",
-        "n/a",
-        "null",
-        "none",
-        "inf",
-        "infinity",
-        "overload",
-        "overrange",
-        "overflow",
-        "ovld",
-        "ovl",
-        "ol",
-        "saturated",
-        "sat",
-        "out of range",
-        "nan(ind)",
-        "1.#qnan",
-        "1.#ind",
-        "1.#inf",
-        "missing",
-        "invalid",
-    ];
+    const WORDS: &str = "num div/0 value ref nan na n/a null none inf infinity overload overrange overflow \
+         ovld ovl ol saturated sat nan(ind) 1.#qnan 1.#ind 1.#inf missing invalid";
     let cell = cell.trim_start_matches(['-', '+', '#', '*']).trim_end_matches('!');
-    cell.is_empty()
-        || ["num", "div/0", "value", "ref"].iter().chain(&WORDS).any(|word| cell.eq_ignore_ascii_case(word))
+    cell.is_empty() || WORDS.split(' ').chain(["out of range"]).any(|word| cell.eq_ignore_ascii_case(word))
 }
 
 /// Whether a cell is a number, with a decimal point or comma.
