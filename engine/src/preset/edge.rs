@@ -1,64 +1,69 @@
 //! How an edge moves and at which rate it is pulled: the table `[edge]`, and the keys of other tables that belong to it.
 
+use super::given::GivenValues;
 use super::schema::{Parameter, Row};
 use super::value::Value;
 use crate::problem::Control;
 use crate::units::Quantity;
 use std::borrow::Cow;
 
-/// `γ_a`.
-pub const CLOSING_ADHESION: &str = "material.closing_work_of_adhesion";
-/// v₀.
-pub const REFERENCE_SPEED: &str = "edge.reference_speed";
-/// n.
-pub const EXPONENT: &str = "edge.exponent";
-/// `v_a`.
-pub const CLOSING_SPEED: &str = "edge.closing_speed";
-/// m.
-pub const CLOSING_EXPONENT: &str = "edge.closing_exponent";
-/// The largest G/γ.
-pub const HIGHEST_RATIO: &str = "edge.highest_ratio";
-/// τ.
-pub const RELAXATION_TIME: &str = "edge.relaxation_time";
-/// V.
-pub const RATE: &str = "path.rate";
 /// The parts of a test.
 pub const STEPS: &str = "path.steps";
 
-/// All of them.
-pub const KEYS: [&str; 9] = [
-    CLOSING_ADHESION,
-    REFERENCE_SPEED,
-    EXPONENT,
-    CLOSING_SPEED,
-    CLOSING_EXPONENT,
-    HIGHEST_RATIO,
-    RELAXATION_TIME,
-    RATE,
-    STEPS,
-];
+/// Makes the keys of an edge, its values, and the ways from one to the other, from a row for each number.
+macro_rules! edge {
+    ($($(#[doc = $meaning:literal])+ $key:ident $name:literal $field:ident;)+) => {
+        $($(#[doc = $meaning])+ pub const $key: &str = $name;)+
 
-/// How an edge moves, and at which rate it is pulled; numbers in SI or reduced units.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct EdgeSpec {
+        /// All of them.
+        pub const KEYS: &[&str] = &[$($key,)+ STEPS];
+
+        /// How an edge moves, and at which rate it is pulled; numbers in SI or reduced units.
+        #[derive(Debug, Clone, PartialEq, Default)]
+        pub struct EdgeSpec {
+            $($(#[doc = $meaning])+ pub $field: Option<f64>,)+
+            /// The steps of a pull, instead of a single rate, as typed.
+            pub steps: String,
+        }
+
+        impl EdgeSpec {
+            /// The value of a key.
+            pub(super) fn get(&self, key: &str) -> Option<Value> {
+                match key {
+                    $($key => self.$field.map(Value::from),)+
+                    STEPS => Some(&*self.steps).filter(|steps| !steps.is_empty()).map(Value::from),
+                    _ => None,
+                }
+            }
+        }
+
+        impl GivenValues<'_> {
+            /// The edge.
+            pub(super) fn edge(&mut self) -> EdgeSpec {
+                let mut number = |key: &str| self.values.contains_key(key).then(|| self.number(key));
+                EdgeSpec { $($field: number($key),)+ steps: self.text(STEPS) }
+            }
+        }
+    };
+}
+
+edge! {
     /// `γ_a`, the work of adhesion that a closing edge gains; none if it is γ.
-    pub closing_work_of_adhesion: Option<f64>,
+    CLOSING_ADHESION "material.closing_work_of_adhesion" closing_work_of_adhesion;
     /// v₀, a speed.
-    pub reference_speed: Option<f64>,
+    REFERENCE_SPEED "edge.reference_speed" reference_speed;
     /// n.
-    pub exponent: Option<f64>,
+    EXPONENT "edge.exponent" exponent;
     /// `v_a`, a speed; none if it is v₀.
-    pub closing_speed: Option<f64>,
+    CLOSING_SPEED "edge.closing_speed" closing_speed;
     /// m; none if it is n.
-    pub closing_exponent: Option<f64>,
+    CLOSING_EXPONENT "edge.closing_exponent" closing_exponent;
     /// The largest G/γ that the bodies can have.
-    pub highest_ratio: Option<f64>,
+    HIGHEST_RATIO "edge.highest_ratio" highest_ratio;
     /// τ, the longest relaxation time of the bodies.
-    pub relaxation_time: Option<f64>,
+    RELAXATION_TIME "edge.relaxation_time" relaxation_time;
     /// V, a speed or a force in a time.
-    pub rate: Option<f64>,
-    /// The steps of a pull, instead of a single rate, as typed.
-    pub steps: String,
+    RATE "path.rate" rate;
 }
 
 /// The quantity of a rate under this control.
@@ -73,23 +78,4 @@ pub(super) fn own(control: Control, row: &'static Parameter) -> Row {
         return Row::Owned(Parameter { dimension, quantity, ..row.clone() });
     }
     Row::Borrowed(row)
-}
-
-impl EdgeSpec {
-    /// The value of a key.
-    pub(super) fn get(&self, key: &str) -> Option<Value> {
-        let number = match key {
-            CLOSING_ADHESION => self.closing_work_of_adhesion,
-            REFERENCE_SPEED => self.reference_speed,
-            EXPONENT => self.exponent,
-            CLOSING_SPEED => self.closing_speed,
-            CLOSING_EXPONENT => self.closing_exponent,
-            HIGHEST_RATIO => self.highest_ratio,
-            RELAXATION_TIME => self.relaxation_time,
-            RATE => self.rate,
-            STEPS => return Some(&*self.steps).filter(|steps| !steps.is_empty()).map(Value::from),
-            _ => None,
-        };
-        number.map(Value::from)
-    }
 }

@@ -1,10 +1,6 @@
-//! The table `[edge]` as it is read, what is wrong with it, and the parts of a test at a rate.
+//! What is wrong with the table `[edge]`, and the parts of a test at a rate.
 
-use super::edge::{
-    CLOSING_ADHESION, CLOSING_EXPONENT, CLOSING_SPEED, EXPONENT, EdgeSpec, HIGHEST_RATIO, RATE,
-    REFERENCE_SPEED, RELAXATION_TIME, STEPS, rate_quantity,
-};
-use super::given::GivenValues;
+use super::edge::{CLOSING_ADHESION, EXPONENT, EdgeSpec, RATE, STEPS, rate_quantity};
 use super::invalid::Invalid;
 use super::model::Preset;
 use super::resolve::shown;
@@ -14,24 +10,6 @@ use crate::units::{Quantity, UnitSystem, parse_quantity};
 
 /// What a part of [`STEPS`] may be.
 const PARTS: &str = "to VALUE at RATE, hold TIME or apart at RATE, separated by ;";
-
-impl GivenValues<'_> {
-    /// The edge.
-    pub(super) fn edge(&mut self) -> EdgeSpec {
-        let mut number = |key: &str| self.values.contains_key(key).then(|| self.number(key));
-        EdgeSpec {
-            closing_work_of_adhesion: number(CLOSING_ADHESION),
-            reference_speed: number(REFERENCE_SPEED),
-            exponent: number(EXPONENT),
-            closing_speed: number(CLOSING_SPEED),
-            closing_exponent: number(CLOSING_EXPONENT),
-            highest_ratio: number(HIGHEST_RATIO),
-            relaxation_time: number(RELAXATION_TIME),
-            rate: number(RATE),
-            steps: self.text(STEPS),
-        }
-    }
-}
 
 impl EdgeSpec {
     /// What is wrong across several keys.
