@@ -13,7 +13,6 @@ use crate::gap::Gap;
 use crate::problem::Printer;
 use crate::progress::Unwatched;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_4, LN_10, PI};
-use std::fmt;
 use std::sync::Arc;
 use wide::f64x4;
 
@@ -35,6 +34,7 @@ const AMONG_BREAKS: f64 = 96.0;
 
 /// Why there is no state.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{}", self.words(&Printer::reduced()))]
 pub enum AnnuliError {
     /// The contacts are none.
     Contacts(#[from] ContactsError),
@@ -57,12 +57,6 @@ pub enum AnnuliError {
         /// The narrowest ring or gap, a length.
         narrowest: f64,
     },
-}
-
-impl fmt::Display for AnnuliError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.words(&Printer::reduced()))
-    }
 }
 
 impl AnnuliError {

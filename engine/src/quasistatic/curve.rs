@@ -11,7 +11,6 @@ use crate::gap::Gap;
 use crate::problem::{Control, Printer, Reduced};
 use crate::progress::{Progress, Stopped, Unwatched};
 use crate::root;
-use std::fmt;
 use std::sync::Arc;
 
 /// A trace this near to a corner, in units of the ranges of δ, P and s, goes straight to it.
@@ -21,6 +20,7 @@ pub const WAVE_SHARE: f64 = 1.0 / 12.0;
 
 /// Why a curve ends where it does.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("{}", self.words(&Printer::reduced()))]
 pub enum CurveStop {
     /// It reached the end contact radius.
     End,
@@ -28,12 +28,6 @@ pub enum CurveStop {
     NoEquilibrium(f64),
     /// The tracer stopped for another reason.
     Tracer(Stop),
-}
-
-impl fmt::Display for CurveStop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.words(&Printer::reduced()))
-    }
 }
 
 impl CurveStop {

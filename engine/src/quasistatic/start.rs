@@ -6,10 +6,10 @@ use crate::elementary::cbrt;
 use crate::gap::Gap;
 use crate::problem::{Control, Printer, Reduced, Start};
 use crate::progress::{Progress, Stopped};
-use std::fmt;
 
 /// Why a start state was not found. All numbers are reduced.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("{}", self.words(&Printer::reduced()))]
 pub enum StartError {
     /// The basis has no equilibrium at the radius.
     NoEquilibrium(f64),
@@ -44,12 +44,6 @@ pub enum StartError {
     },
     /// The start was no longer wanted.
     Stopped(#[from] Stopped),
-}
-
-impl fmt::Display for StartError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.words(&Printer::reduced()))
-    }
 }
 
 impl StartError {

@@ -2,10 +2,10 @@
 
 use crate::problem::Printer;
 use crate::progress::Stopped;
-use std::fmt;
 
 /// Why there is no pull. All numbers are reduced.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("{}", self.words(&Printer::reduced()))]
 pub enum RateError {
     /// The integrator found no next step at this radius.
     Lost {
@@ -33,12 +33,6 @@ pub enum RateError {
     NoAdhesion,
     /// The pull was no longer wanted.
     Stopped(Stopped),
-}
-
-impl fmt::Display for RateError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.words(&Printer::reduced()))
-    }
 }
 
 impl RateError {

@@ -9,6 +9,7 @@ use std::fmt;
 
 /// Why there is no path. All numbers are reduced.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{}", self.words(&Printer::reduced()))]
 pub enum PathError {
     /// The control turns before the bodies touch.
     TurnBeforeTouch {
@@ -100,12 +101,6 @@ pub enum PathError {
     Table(TableError),
     /// It was no longer wanted.
     Stopped(#[from] Stopped),
-}
-
-impl fmt::Display for PathError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.words(&Printer::reduced()))
-    }
 }
 
 impl PathError {

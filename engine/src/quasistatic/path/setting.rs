@@ -10,7 +10,6 @@ use crate::quasistatic::curve::CurveStop;
 use crate::quasistatic::energy::Losses;
 use crate::quasistatic::places::Detail;
 use crate::zone::FaultKind;
-use std::fmt;
 
 /// The value by which a turn is measured, for edges at a control value.
 pub(super) fn measure(turn: Turn, held: &HeldEdges, control: Control) -> f64 {
@@ -97,6 +96,7 @@ pub enum WhyNot {
 
 /// Why a path ended.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("{}", self.words(&Printer::reduced()))]
 pub enum PathStop {
     /// The bodies came apart.
     Apart,
@@ -116,12 +116,6 @@ pub enum PathStop {
         /// P.
         force: f64,
     },
-}
-
-impl fmt::Display for PathStop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.words(&Printer::reduced()))
-    }
 }
 
 impl PathStop {
