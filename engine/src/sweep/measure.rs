@@ -14,6 +14,7 @@ use crate::quasistatic::path::{Losses, PathSetting, PathStop};
 use crate::report::PullReport;
 use crate::report::pull::{AskedPulls, RunReport};
 use crate::units::Quantity;
+use std::cell::OnceCell;
 
 /// The quantities of a preset.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,13 +29,18 @@ pub struct MeasuredQuantities {
 struct Workings<'a> {
     preset: &'a Preset,
     ground: PresetValues,
-    start: Option<Result<StartState, Fault>>,
-    line: Option<Result<CurveMinima, Fault>>,
-    paths: Vec<(Control, ContactKind, Result<OnPath, Fault>)>,
-    loops: Vec<(Control, Result<OnPath, Fault>)>,
-    pull: Option<Result<RunReport, Fault>>,
-    fitting: Option<Result<Fitting, Fault>>,
+    start: OnceCell<Result<StartState, Fault>>,
+    line: OnceCell<Result<CurveMinima, Fault>>,
+    /// The unloading under a control with these contacts; the whole loop under it where none are named.
+    paths: Vec<((Control, Option<ContactKind>), Result<OnPath, Fault>)>,
+    pull: OnceCell<Result<RunReport, Fault>>,
+    fitting: OnceCell<Result<Fitting, Fault>>,
     progress: &'a dyn Progress,
+}
+
+/// What is in `cell`, made first if it is empty.
+fn once<T>(cell: &OnceCell<Result<T, Fault>>, make: impl FnOnce() -> Result<T, Fault>) -> Result<&T, Fault> {
+    cell.get_or_init(make).as_ref().map_err(Clone::clone)
 }
 
 /// The `wanted` quantities of `preset`; `progress` is asked now and then, and the result is `None` if it said stop.
@@ -43,17 +49,14 @@ pub fn measure(
     wanted: &[QuantityColumn],
     progress: &dyn Progress,
 ) -> Option<MeasuredQuantities> {
-    let ground = PresetValues::new(preset);
-    let (paths, loops) = (Vec::new(), Vec::new());
     let mut work = Workings {
         preset,
-        ground,
-        start: None,
-        line: None,
-        paths,
-        loops,
-        pull: None,
-        fitting: None,
+        ground: PresetValues::new(preset),
+        start: OnceCell::new(),
+        line: OnceCell::new(),
+        paths: Vec::new(),
+        pull: OnceCell::new(),
+        fitting: OnceCell::new(),
         progress,
     };
     let mut measured = MeasuredQuantities { cells: Vec::with_capacity(wanted.len()), fault: None };
@@ -72,136 +75,101 @@ pub fn measure(
 
 impl Workings<'_> {
     fn cell(&mut self, column: &QuantityColumn) -> Result<Option<Cell>, Fault> {
-        let own = self.preset.path.control;
         match column.quantity.of {
             Stage::Preset(of) => Ok(of(&self.ground)),
             Stage::Start(of) => self.start().map(of),
             Stage::Curve(of) => of(self.line()?),
             Stage::Limits => {
-                let control = self.reduced(column.under.control(own))?;
+                let control = self.control(column)?;
                 Ok(Some(Cell::Count(self.line()?.curve.limit_points(control).len())))
             }
             Stage::Unloading(of) => {
-                let control = self.reduced(column.under.control(own))?;
-                let path = self.path(control, None)?;
-                let (found, stop) = (of(path), path.path.stop);
-                self.ended(found, stop)
+                let contact = self.start()?.case.setting_of_unloading().contact;
+                self.on_path(of, self.control(column)?, Some(contact))
             }
-            Stage::Passed => {
-                let control = self.reduced(column.under.control(own))?;
-                self.inadmissible_share(control)
-            }
-            Stage::Loop(of) => {
-                let control = self.reduced(column.under.control(own))?;
-                let path = self.whole(control)?;
-                let (found, stop) = (of(path), path.path.stop);
-                self.ended(found, stop)
-            }
+            Stage::Passed => self.inadmissible_share(self.control(column)?),
+            Stage::Loop(of) => self.on_path(of, self.control(column)?, None),
             Stage::Pull(of) => self.pull().map(of),
             Stage::Fit(of) => self.fitting().map(of),
         }
     }
 
-    /// A quantity found on a path with this end: a path that stopped early has no answer.
-    fn ended(&mut self, found: Option<Cell>, stop: PathStop) -> Result<Option<Cell>, Fault> {
+    /// A quantity of a path: one that stopped early has no answer.
+    fn on_path(
+        &mut self,
+        of: fn(&OnPath) -> Option<Cell>,
+        control: Control,
+        contact: Option<ContactKind>,
+    ) -> Result<Option<Cell>, Fault> {
+        let path = self.path(control, contact)?;
+        let (found, stop) = (of(path), path.path.stop);
         if matches!(stop, PathStop::Apart | PathStop::End) {
             return Ok(found);
         }
-        let case = &self.start()?.case;
-        Err(Fault::incomplete(&stop.words(&case.printer())))
+        Err(Fault::incomplete(&stop.words(&self.start()?.case.printer())))
     }
 
-    fn reduced(&mut self, control: Control) -> Result<Control, Fault> {
+    /// The control of a column, reduced.
+    fn control(&self, column: &QuantityColumn) -> Result<Control, Fault> {
         let stiffness = self.start()?.case.units().stiffness;
-        Ok(control.in_units(stiffness))
+        Ok(column.under.control(self.preset.path.control).in_units(stiffness))
     }
 
-    fn start(&mut self) -> Result<&StartState, Fault> {
-        let made = self.start.get_or_insert_with(|| {
+    fn start(&self) -> Result<&StartState, Fault> {
+        once(&self.start, || {
             let case = Case::with_range(self.preset, self.progress).map_err(|e| Fault::of_case(&e))?;
             Ok(StartState { case })
-        });
-        made.as_ref().map_err(Clone::clone)
+        })
     }
 
-    fn line(&mut self) -> Result<&CurveMinima, Fault> {
-        if self.line.is_none() {
-            let progress = self.progress;
-            let made = self
-                .start()
-                .and_then(|start| CurveMinima::new(&start.case, progress).map_err(|e| Fault::of_case(&e)));
-            self.line = Some(made);
-        }
-        match &self.line {
-            Some(Ok(line)) => Ok(line),
-            Some(Err(fault)) => Err(fault.clone()),
-            None => Err(Fault::incomplete("no curve")),
-        }
+    fn line(&self) -> Result<&CurveMinima, Fault> {
+        once(&self.line, || {
+            CurveMinima::new(&self.start()?.case, self.progress).map_err(|e| Fault::of_case(&e))
+        })
     }
 
-    /// The unloading under a control; with the contacts of the preset if none are named.
+    /// A path as [`Workings::paths`] keeps it.
     fn path(&mut self, control: Control, contact: Option<ContactKind>) -> Result<&OnPath, Fault> {
-        let own = self.start()?.case.setting_of_unloading();
-        let contact = contact.unwrap_or(own.contact);
-        let known = self.paths.iter().position(|(of, with, _)| (*of, *with) == (control, contact));
-        let at = known.unwrap_or_else(|| {
-            let (losses, detail) = (Losses::Once, Detail::Borders);
-            let setting = PathSetting { control, contact, losses, detail, ..own };
-            let progress = self.progress;
-            let in_zone = self.start().and_then(|start| {
-                start.case.unload_in_zone(&setting, progress).map_err(|error| Fault::of_case(&error))
-            });
-            let made = match in_zone.transpose() {
-                Some(found) => found.map(|path| OnPath { path }),
-                None => self.line().map(|_| ()).and_then(|()| {
-                    let (Some(Ok(start)), Some(Ok(line))) = (&self.start, &self.line) else {
-                        return Err(Fault::incomplete("no curve"));
-                    };
-                    let path = start.case.unload(&line.curve, &setting, self.progress);
-                    Ok(OnPath { path: path.map_err(|e| Fault::of_case(&e))? })
-                }),
-            };
-            self.paths.push((control, contact, made));
+        let key = (control, contact);
+        let at = self.paths.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
+            self.paths.push((key, self.followed(control, contact)));
             self.paths.len() - 1
         });
-        self.paths[at].2.as_ref().map_err(Clone::clone)
+        self.paths[at].1.as_ref().map_err(Clone::clone)
     }
 
-    fn whole(&mut self, control: Control) -> Result<&OnPath, Fault> {
-        let known = self.loops.iter().position(|(known, _)| *known == control);
-        let at = known.unwrap_or_else(|| {
-            let progress = self.progress;
-            let made = self.start().and_then(|start| {
-                let (losses, detail) = (Losses::Once, Detail::Borders);
-                let setting = PathSetting { control, losses, detail, ..start.case.setting() };
-                let path = start.case.cycle(None, &setting, progress);
-                Ok(OnPath { path: path.map_err(|e| Fault::of_case(&e))? })
-            });
-            self.loops.push((control, made));
-            self.loops.len() - 1
-        });
-        self.loops[at].1.as_ref().map_err(Clone::clone)
+    fn followed(&self, control: Control, contact: Option<ContactKind>) -> Result<OnPath, Fault> {
+        let case = &self.start()?.case;
+        let (losses, detail) = (Losses::Once, Detail::Borders);
+        let path = if let Some(contact) = contact {
+            let setting = PathSetting { control, contact, losses, detail, ..case.setting_of_unloading() };
+            match case.unload_in_zone(&setting, self.progress).transpose() {
+                Some(path) => path,
+                None => case.unload(&self.line()?.curve, &setting, self.progress),
+            }
+        } else {
+            let setting = PathSetting { control, losses, detail, ..case.setting() };
+            case.cycle(None, &setting, self.progress)
+        };
+        Ok(OnPath { path: path.map_err(|e| Fault::of_case(&e))? })
     }
 
-    fn pull(&mut self) -> Result<&RunReport, Fault> {
-        let made = self.pull.get_or_insert_with(|| {
+    fn pull(&self) -> Result<&RunReport, Fault> {
+        once(&self.pull, || {
             let asked = AskedPulls::default();
             let report =
                 PullReport::compute(self.preset, &asked, self.progress).map_err(|e| Fault::of_pull(&e))?;
             report.runs.into_iter().next().ok_or_else(|| Fault::incomplete("no pull"))
-        });
-        made.as_ref().map_err(Clone::clone)
+        })
     }
 
-    fn fitting(&mut self) -> Result<&Fitting, Fault> {
-        let made = self.fitting.get_or_insert_with(|| Fitting::new(self.preset, self.progress));
-        made.as_ref().map_err(Clone::clone)
+    fn fitting(&self) -> Result<&Fitting, Fault> {
+        once(&self.fitting, || Fitting::new(self.preset, self.progress))
     }
 
     fn inadmissible_share(&mut self, control: Control) -> Result<Option<Cell>, Fault> {
         let pieces = self.path(control, Some(ContactKind::OneDisc))?.path.pieces();
-        let progress = self.progress;
-        let passed = passed(&self.line()?.curve, &pieces, progress);
+        let passed = passed(&self.line()?.curve, &pieces, self.progress);
         let length = |sum: f64, [from, to]: [f64; 2]| sum + (from - to);
         let whole = pieces.iter().copied().fold(0.0, length);
         let lost =
@@ -211,9 +179,11 @@ impl Workings<'_> {
 
     /// A cell in the user's units: what comes from the preset alone, or from a report, is in them already.
     fn shown(&self, cell: Cell, quantity: &SweepQuantity) -> Cell {
-        let (Cell::Number(x), Some(Ok(start)), false) =
-            (cell, &self.start, matches!(quantity.of, Stage::Preset(_) | Stage::Pull(_) | Stage::Fit(_)))
-        else {
+        let (Cell::Number(x), Some(Ok(start)), false) = (
+            cell,
+            self.start.get(),
+            matches!(quantity.of, Stage::Preset(_) | Stage::Pull(_) | Stage::Fit(_)),
+        ) else {
             return cell;
         };
         let units = start.case.units();
