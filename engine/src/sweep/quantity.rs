@@ -42,12 +42,22 @@ pub(super) enum Stage {
     Fit(fn(&Fitting) -> Option<Cell>),
 }
 
-/// Makes [`QUANTITIES`] from the table: name, symbol, unit, meaning, and what it is computed from.
+/// Makes [`QUANTITIES`] from the table: name, symbol, unit, meaning, and what it is computed from; or the key that a fit
+/// gives it to, which makes two quantities, the value and its error.
 macro_rules! quantities {
-    ($($name:literal $symbol:literal $unit:ident $meaning:literal: $of:expr;)*) => {
+    ($($name:literal $symbol:literal $unit:ident $meaning:literal $($fitted:ident $key:literal)? $(: $of:expr)?;)*) => {
         /// The quantities.
-        pub static QUANTITIES: &[SweepQuantity] =
-            &[$(SweepQuantity { name: $name, symbol: $symbol, unit: Quantity::$unit, meaning: $meaning, of: $of }),*];
+        pub static QUANTITIES: &[SweepQuantity] = &[$(
+            SweepQuantity {
+                name: $name, symbol: $symbol, unit: Quantity::$unit,
+                meaning: concat!($meaning, $(" ", stringify!($fitted), " to the measured curve; empty where it is not free")?),
+                of: $(Stage::Fit(|fit| fit.value($key)))? $($of)?,
+            },
+            $(SweepQuantity {
+                name: concat!($name, "_error"), symbol: "", unit: Quantity::$unit, meaning: "its standard error",
+                of: Stage::Fit(|fit| fit.error($key)),
+            },)?
+        )*];
     };
 }
 
@@ -120,43 +130,15 @@ quantities! {
         Stage::Preset(|ground| ground.groups.connectivity.map(Cell::Number));
     "tabor" "μ" Number "Tabor's mu, where the range of action is known":
         Stage::Preset(|ground| ground.groups.tabor.map(Cell::Number));
-    "fitted_modulus" "E*" Stress "effective modulus fitted to the measured curve; empty where it is not free":
-        Stage::Fit(|fit| fit.value("material.effective_modulus"));
-    "fitted_modulus_error" "" Stress "its standard error":
-        Stage::Fit(|fit| fit.error("material.effective_modulus"));
-    "fitted_adhesion" "γ" EnergyPerArea "work of adhesion fitted to the measured curve; empty where it is not free":
-        Stage::Fit(|fit| fit.value("material.work_of_adhesion"));
-    "fitted_adhesion_error" "" EnergyPerArea "its standard error":
-        Stage::Fit(|fit| fit.error("material.work_of_adhesion"));
-    "fitted_radius" "R" Length "radius of curvature fitted to the measured curve; empty where it is not free":
-        Stage::Fit(|fit| fit.value("gap.radius_of_curvature"));
-    "fitted_radius_error" "" Length "its standard error":
-        Stage::Fit(|fit| fit.error("gap.radius_of_curvature"));
-    "fitted_amplitude" "A" Length "amplitude fitted to the measured curve; empty where it is not free":
-        Stage::Fit(|fit| fit.value("gap.amplitude"));
-    "fitted_amplitude_error" "" Length "its standard error":
-        Stage::Fit(|fit| fit.error("gap.amplitude"));
-    "fitted_wavelength" "λ" Length "wavelength fitted to the measured curve; empty where it is not free":
-        Stage::Fit(|fit| fit.value("gap.wavelength"));
-    "fitted_wavelength_error" "" Length "its standard error":
-        Stage::Fit(|fit| fit.error("gap.wavelength"));
-    "fitted_stiffness" "k" ForcePerLength "stiffness of the device fitted to the measured curve; empty where it is \
-                                           not free":
-        Stage::Fit(|fit| fit.value("path.control.stiffness"));
-    "fitted_stiffness_error" "" ForcePerLength "its standard error":
-        Stage::Fit(|fit| fit.error("path.control.stiffness"));
-    "fitted_offset" "δ₀" Length "offset of x fitted to the measured curve; empty where it is not free":
-        Stage::Fit(|fit| fit.value("data.offset"));
-    "fitted_offset_error" "" Length "its standard error":
-        Stage::Fit(|fit| fit.error("data.offset"));
-    "fitted_baseline" "P₀" Force "baseline of the force fitted to the measured curve; empty where it is not free":
-        Stage::Fit(|fit| fit.value("data.baseline"));
-    "fitted_baseline_error" "" Force "its standard error":
-        Stage::Fit(|fit| fit.error("data.baseline"));
-    "fitted_tilt" "" ForcePerLength "tilt of the baseline fitted to the measured curve; empty where it is not free":
-        Stage::Fit(|fit| fit.value("data.tilt"));
-    "fitted_tilt_error" "" ForcePerLength "its standard error":
-        Stage::Fit(|fit| fit.error("data.tilt"));
+    "fitted_modulus" "E*" Stress "effective modulus" fitted "material.effective_modulus";
+    "fitted_adhesion" "γ" EnergyPerArea "work of adhesion" fitted "material.work_of_adhesion";
+    "fitted_radius" "R" Length "radius of curvature" fitted "gap.radius_of_curvature";
+    "fitted_amplitude" "A" Length "amplitude" fitted "gap.amplitude";
+    "fitted_wavelength" "λ" Length "wavelength" fitted "gap.wavelength";
+    "fitted_stiffness" "k" ForcePerLength "stiffness of the device" fitted "path.control.stiffness";
+    "fitted_offset" "δ₀" Length "offset of x" fitted "data.offset";
+    "fitted_baseline" "P₀" Force "baseline of the force" fitted "data.baseline";
+    "fitted_tilt" "" ForcePerLength "tilt of the baseline" fitted "data.tilt";
     "fit_chi_squared" "" Number "chi squared per point of the fit": Stage::Fit(|fit| Some(fit.chi_squared()));
     "fit_outliers" "" Number "points far from the fitted curve": Stage::Fit(|fit| Some(fit.outliers()));
     "fit_verdict" "" Number "0 where the model describes the points, 4 where it does not; then no value can be \
