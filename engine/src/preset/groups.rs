@@ -11,13 +11,14 @@ use super::model::Preset;
 use super::schema::{self, Applies, CHOOSERS, Fallback, Key, Kind, Parameter};
 use super::value::Value;
 use crate::problem::Groups;
+use crate::units::Quantity;
 use std::f64::consts::TAU;
 
 const WAVY: Applies = Applies::With { key: CHOOSERS[0], words: &["wavy-sphere"] };
 
 /// The row of a group.
 const fn group(key: &'static str, label: &'static str, meaning: &'static str, kind: Kind) -> Parameter {
-    schema::row(key, label, meaning, kind).or(Fallback::Computed)
+    schema::row([key, label, meaning], ("", Quantity::Number), kind).or(Fallback::Computed)
 }
 
 /// The groups that can be set.
