@@ -74,30 +74,37 @@ pub fn runs(residuals: &[f64]) -> f64 {
     if variance > 0.0 { (runs - mean) / variance.sqrt() } else { f64::NEG_INFINITY }
 }
 
-/// What speaks against the fit `solved`, whose fitted preset is `preset`. `inner` is (JᵀJ)⁻¹ where the values are determined.
-pub(super) fn reasons(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    preset: &Preset,
-    inner: Option<&DMatrix<f64>>,
-    clipped: Option<Clipped>,
-) -> Vec<Reason> {
+/// What a fit is judged by.
+#[derive(Clone, Copy)]
+pub(super) struct Evidence<'a> {
+    /// The points and the model.
+    pub(super) problem: &'a FitProblem,
+    /// The fit itself.
+    pub(super) solved: &'a SolvedFit,
+    /// The noise of its rows as neighbours show it.
+    pub(super) scatter: &'a Scatter,
+    /// (JᵀJ)⁻¹, where the values are determined.
+    pub(super) inner: Option<&'a DMatrix<f64>>,
+}
+
+/// What speaks against a fit whose fitted preset is `preset`.
+pub(super) fn reasons(evidence: Evidence, preset: &Preset, clipped: Option<Clipped>) -> Vec<Reason> {
+    let Evidence { problem, solved, scatter, .. } = evidence;
     let mut reasons: Vec<Reason> = clipped.map(|clipped| of_clipped(preset, clipped)).into_iter().collect();
-    reasons.extend(contact::of_contact(problem, solved, scatter, inner));
+    reasons.extend(contact::of_contact(evidence));
     reasons.extend(apart::of_apart(problem, solved, scatter));
     // Rows that are not apart can be mistaken for a tilt.
     let in_contact = apart::of_contact(problem, solved);
-    let tilt = if in_contact.is_some() { None } else { scores::of_tilt(problem, solved, scatter, inner) };
+    let tilt = if in_contact.is_some() { None } else { scores::of_tilt(evidence) };
     reasons.extend(in_contact.into_iter().chain(tilt));
-    reasons.extend(scores::of_shape(problem, solved, scatter, inner));
+    reasons.extend(scores::of_shape(evidence));
     if preset.cohesion().is_some() {
         reasons.extend(range::of_zone(problem, solved));
     } else if !is_pulled(&problem.preset) {
         // All of these start from what an adhesion at the edge alone does.
-        reasons.extend(touch::of_touch(problem, solved, scatter, inner));
-        reasons.extend(scores::of_range(problem, solved, scatter, inner));
-        reasons.extend(rate::of_rate(problem, solved, scatter, inner));
+        reasons.extend(touch::of_touch(evidence));
+        reasons.extend(scores::of_range(evidence));
+        reasons.extend(rate::of_rate(evidence));
         reasons.extend(of_range(preset));
     }
     reasons.extend(unlikely(problem, solved, preset));
@@ -172,15 +179,13 @@ fn unlikely(problem: &FitProblem, solved: &SolvedFit, preset: &Preset) -> Vec<Re
 /// What is doubtful about a fit but leaves its verdict as it is. `is_known` says whether the noise of the force was
 /// given, or found in rows apart.
 pub(super) fn doubts(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
+    evidence: Evidence,
     fitted: &[Fitted],
     (reasons, is_known): (&[Reason], bool),
 ) -> Vec<String> {
+    let Evidence { problem, scatter, .. } = evidence;
     let has_speed = reasons.iter().any(|reason| rate::KINDS.contains(&reason.kind));
-    let of_edge = || rate::of_untimed(problem, solved, scatter, inner);
+    let of_edge = || rate::of_untimed(evidence);
     let is_sharp = problem.preset.cohesion().is_none() && !is_pulled(&problem.preset);
     let mut doubts: Vec<String> = if has_speed || !is_sharp { None } else { of_edge() }.into_iter().collect();
     // The larger of two: through snaps a standard error may be too small.

@@ -4,7 +4,7 @@ use super::chance::t_of;
 use super::determined::{Determined, determined};
 use super::fitted::Fitted;
 use super::intervals::{FEW_DEGREES, block, bootstrap, profile};
-use super::judge::{doubts, of_sparse, of_spring, reasons, unseen};
+use super::judge::{Evidence, doubts, of_sparse, of_spring, reasons, unseen};
 use super::least_squares::{Ending, LeastSquares};
 use super::options::{FitError, Options, letter};
 use super::pose::posed;
@@ -285,12 +285,13 @@ impl<'a> Posed<'a> {
             Ending::Rounds if is_unseen => Ending::Converged,
             ending => ending,
         };
-        let mut reasons = reasons(&problem, &solved, &scatter, &found, what.inner.as_ref(), branches.clipped);
+        let evidence =
+            Evidence { problem: &problem, solved: &solved, scatter: &scatter, inner: what.inner.as_ref() };
+        let mut reasons = reasons(evidence, &found, branches.clipped);
         reasons.extend(of_sparse(branches, preset));
         let is_known = [Origin::Given, Origin::Apart].contains(&branches.noise.from[1]);
         let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
-        let mut warnings =
-            doubts(&problem, &solved, &scatter, what.inner.as_ref(), &fitted, (&reasons, is_known));
+        let mut warnings = doubts(evidence, &fitted, (&reasons, is_known));
         warnings.extend(too_small(&fitted));
         let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
         let fitted_preset = laid(preset, &problem, (&found, closing, &problem.instrument_at(u)), &mut notes);

@@ -11,16 +11,14 @@
 //! 20 000 simulated series of 8 to 300 rows), runs 1 in 1000.
 
 use super::super::chance::{beyond_f, beyond_t};
-use super::super::problem::FitProblem;
-use super::super::scatter::{Scatter, ScatterRow};
-use super::super::solve::SolvedFit;
+use super::super::scatter::ScatterRow;
 use super::super::verdict::Reason;
-use super::{ROUNDING, runs};
+use super::{Evidence, ROUNDING, runs};
 use crate::elementary::{hypot, ln};
 use crate::measured::Segment;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 /// The share of right fits that each test flags.
 const FALSE_ALARM: f64 = 1e-3;
@@ -48,15 +46,11 @@ struct Bin {
     variance: f64,
 }
 
-/// What the points in contact say against the fit. `inner` is (JᵀJ)⁻¹.
-pub(super) fn of_contact(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-) -> Vec<Reason> {
+/// What the points in contact say against the fit.
+pub(super) fn of_contact(evidence: Evidence) -> Vec<Reason> {
+    let scatter = evidence.scatter;
     let Some(s) = scatter.contact.map(|s| s.max(ROUNDING)) else { return Vec::new() };
-    let mut reasons = of_bins(problem, solved, scatter, inner, s);
+    let mut reasons = of_bins(evidence, s);
     let count = scatter.rows as f64 / scatter.correlation.rows();
     let ratio = scatter.residuals / s;
     let limit =
@@ -73,20 +67,15 @@ pub(super) fn of_contact(
         ));
     }
     if scatter.correlation.share <= 0.0 && scatter.residuals > ROUNDING {
-        reasons.extend(of_runs(problem, solved));
+        reasons.extend(of_runs(evidence));
     }
     reasons
 }
 
 /// Whether the means along the path are off the curve.
-fn of_bins(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-    s: f64,
-) -> Vec<Reason> {
-    let bins = bins(problem, solved, scatter, inner);
+fn of_bins(evidence: Evidence, s: f64) -> Vec<Reason> {
+    let Evidence { problem, scatter, .. } = evidence;
+    let bins = bins(evidence);
     let mut reasons = Vec::new();
     let tests = bins.len() as f64;
     let off = |bin: &Bin| bin.mean / (s * bin.variance.sqrt());
@@ -138,12 +127,8 @@ fn of_bins(
 }
 
 /// The bins of all branches.
-fn bins(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-) -> Vec<Bin> {
+fn bins(evidence: Evidence) -> Vec<Bin> {
+    let Evidence { problem, solved, .. } = evidence;
     let per = problem.per_point();
     let mut bins = Vec::new();
     for branch in 0..problem.branches() {
@@ -153,21 +138,15 @@ fn bins(
             let count = if rows.len() < ROWS { 0 } else { most };
             for b in 0..count {
                 let of = &rows[b * rows.len() / count..(b + 1) * rows.len() / count];
-                bins.extend(bin(problem, solved, scatter, inner, of, part));
+                bins.extend(bin(evidence, of, part));
             }
         }
     }
     bins
 }
 
-fn bin(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-    rows: &[ScatterRow],
-    part: usize,
-) -> Option<Bin> {
+fn bin(evidence: Evidence, rows: &[ScatterRow], part: usize) -> Option<Bin> {
+    let Evidence { problem, solved, scatter, inner } = evidence;
     let (count, per) = (rows.len() as f64, problem.per_point());
     let jacobian = &solved.minimum.at.jacobian;
     let gradient = DVector::from_iterator(
@@ -192,7 +171,7 @@ fn bin(
 }
 
 /// Residuals that keep their sign.
-fn of_runs(problem: &FitProblem, solved: &SolvedFit) -> Vec<Reason> {
+fn of_runs(Evidence { problem, solved, .. }: Evidence) -> Vec<Reason> {
     let mut reasons = Vec::new();
     for branch in 0..problem.branches() {
         let rows = problem.rows(solved, branch, false, 0);

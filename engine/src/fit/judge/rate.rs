@@ -16,16 +16,15 @@
 
 use super::super::chance::beyond_t;
 use super::super::problem::FitProblem;
-use super::super::scatter::Scatter;
 use super::super::solve::SolvedFit;
 use super::super::track::Mover;
 use super::super::verdict::Reason;
+use super::Evidence;
 use super::edge::{EdgeMotion, retractions};
 use super::scores::{MOST_OF_NEIGHBOURS, score};
 use super::untold::untold;
 use crate::elementary::{ln, pow};
 use crate::units::number::short;
-use nalgebra::DMatrix;
 
 /// The kinds of the reasons that are found here.
 pub(super) const KINDS: [&str; 2] = ["rate", "speed"];
@@ -38,20 +37,14 @@ const LEANING: f64 = 1.4;
 const SLOWEST: f64 = 1.0 / 400.0;
 
 /// What speaks for a work of adhesion that grows, or against telling it from one that does not.
-pub(super) fn of_rate(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-) -> Option<Reason> {
+pub(super) fn of_rate(evidence: Evidence) -> Option<Reason> {
+    let Evidence { problem, solved, .. } = evidence;
     let edges = EdgeMotion::all(problem, &solved.minimum.parameters);
-    let tested: Vec<(&EdgeMotion, [[f64; 2]; 2])> = edges
-        .iter()
-        .filter_map(|edge| Some((edge, tested(problem, solved, scatter, inner, edge)?)))
-        .collect();
+    let tested: Vec<(&EdgeMotion, [[f64; 2]; 2])> =
+        edges.iter().filter_map(|edge| Some((edge, tested(evidence, edge)?))).collect();
     // The speed by each clock and, where none is a column of times, the number of the row.
     let tests = if edges.iter().any(EdgeMotion::is_timed) { 1.0 } else { 1.0 + edges.len() as f64 };
-    let found = tested.iter().find_map(|(edge, tested)| grows(problem, scatter, edge, (*tested, tests)));
+    let found = tested.iter().find_map(|(edge, tested)| grows(evidence, edge, (*tested, tests)));
     // What a fit takes up of a law by one clock is left in the law by another, or by the number of the row.
     let all = tested.iter().flat_map(|(edge, [[_, by_speed], [_, by_row]])| {
         [*by_speed, if edge.is_timed() { f64::NEG_INFINITY } else { *by_row }]
@@ -62,46 +55,37 @@ pub(super) fn of_rate(
             // Without times nothing says that the edge moves at all: where the points do not lean to it, that is a
             // doubt and not a reason.
             let may = edge.is_timed() || lean >= LEANING;
-            may.then(|| untold(problem, solved, scatter, inner, (edge, lean))).flatten()
+            may.then(|| untold(evidence, edge, lean)).flatten()
         })
     })
 }
 
 /// What is doubtful where no column has the times and nothing else was found: the points do not say whether the edge is
 /// at rest.
-pub(super) fn of_untimed(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-) -> Option<String> {
-    let edges = EdgeMotion::all(problem, &solved.minimum.parameters);
+pub(super) fn of_untimed(evidence: Evidence) -> Option<String> {
+    let edges = EdgeMotion::all(evidence.problem, &evidence.solved.minimum.parameters);
     let mut untimed = edges.iter().filter(|edge| !edge.is_timed());
-    let reason = untimed.find_map(|edge| untold(problem, solved, scatter, inner, (edge, 0.0)))?;
+    let reason = untimed.find_map(|edge| untold(evidence, edge, 0.0))?;
     Some(format!("there is no column of times: {}", reason.sentence))
 }
 
 /// n and t of the speed, and of the number of the row.
-fn tested(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-    edge: &EdgeMotion,
-) -> Option<[[f64; 2]; 2]> {
+fn tested(evidence: Evidence, edge: &EdgeMotion) -> Option<[[f64; 2]; 2]> {
+    let Evidence { problem, solved, scatter, inner } = evidence;
     let mut alone = vec![false; problem.per_point() * problem.data.len()];
     for rows in retractions(problem) {
         off_alone(problem, solved, MOST_OF_NEIGHBOURS * scatter.contact?, &rows, &mut alone);
     }
     let most = (0..problem.data.len()).filter_map(|i| edge.speed(i)).fold(0.0, f64::max);
-    if most <= 0.0 {
+    // Without (JᵀJ)⁻¹ no law has a score, which is not the same as one that says nothing.
+    if most <= 0.0 || inner.is_none() {
         return None;
     }
     let u = &solved.minimum.parameters;
     let of = |share: &dyn Fn(usize) -> f64| {
         let z = problem.changed(u, Mover::Adhesion, share)?;
         // A law that the values take up completely says nothing.
-        Some(score(problem, solved, scatter, inner?, &z, Some(&alone)).unwrap_or([0.0; 2]))
+        Some(score(evidence, &z, Some(&alone)).unwrap_or([0.0; 2]))
     };
     let by_speed = of(&|i| edge.speed(i).map_or(0.0, |speed| ln((speed / most).max(SLOWEST))))?;
     Some([by_speed, of(&|i| edge.order[i].sqrt())?])
@@ -110,8 +94,7 @@ fn tested(
 /// A work of adhesion that grows with the speed of the edge or, where no column has the times, with the number of the
 /// row.
 fn grows(
-    problem: &FitProblem,
-    scatter: &Scatter,
+    Evidence { problem, scatter, .. }: Evidence,
     edge: &EdgeMotion,
     ([by_speed, by_row], tests): ([[f64; 2]; 2], f64),
 ) -> Option<Reason> {

@@ -12,12 +12,10 @@
 
 use super::super::chance::beyond_t;
 use super::super::least_squares::LeastSquares;
-use super::super::problem::{FitProblem, Target};
-use super::super::scatter::Scatter;
-use super::super::solve::SolvedFit;
+use super::super::problem::Target;
 use super::super::track::Mover;
 use super::super::verdict::Reason;
-use super::ROUNDING;
+use super::{Evidence, ROUNDING};
 use crate::elementary::pow;
 use crate::gap::Shape;
 use crate::gap::shapes::PowerLaw;
@@ -25,7 +23,7 @@ use crate::measured::{Abscissa, Segment};
 use crate::problem::Groups;
 use crate::units::Quantity;
 use crate::units::number::{said, short};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 /// The share of right fits that each test flags.
 const FALSE_ALARM: f64 = 1e-3;
@@ -37,17 +35,11 @@ pub(super) const MOST_OF_NEIGHBOURS: f64 = 4.0;
 
 /// n and t of residuals that change by `z`. Rows that `alone` marks as off alone say nothing, and the noise of
 /// neighbours is then taken for all others: what these differ by apart from z is not noise.
-pub(super) fn score(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    inner: &DMatrix<f64>,
-    z: &DVector<f64>,
-    alone: Option<&[bool]>,
-) -> Option<[f64; 2]> {
+pub(super) fn score(evidence: Evidence, z: &DVector<f64>, alone: Option<&[bool]>) -> Option<[f64; 2]> {
+    let Evidence { problem, solved, scatter, inner } = evidence;
     let s = scatter.contact?.max(ROUNDING);
     let at = &solved.minimum.at;
-    let along = inner * at.jacobian.tr_mul(z);
+    let along = inner? * at.jacobian.tr_mul(z);
     let across = z - &at.jacobian * &along;
     let left = z.dot(&across);
     let most = if alone.is_some() { MOST_OF_NEIGHBOURS * s } else { MOST * f64::max(s, solved.scale) };
@@ -73,18 +65,14 @@ pub(super) fn score(
 }
 
 /// A force with a slope over x. Rows apart alone would determine it by a short lever.
-pub(super) fn of_tilt(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-) -> Option<Reason> {
+pub(super) fn of_tilt(evidence: Evidence) -> Option<Reason> {
+    let Evidence { problem, solved, scatter, .. } = evidence;
     let is_free = problem.parameters.iter().any(|parameter| parameter.target == Target::Tilt);
     if problem.abscissa == Abscissa::Radius || is_free || !problem.data.iter().any(|datum| datum.free) {
         return None;
     }
     let z = problem.tilted(&solved.minimum.parameters)?;
-    let [_, t] = score(problem, solved, scatter, inner?, &z, None)?;
+    let [_, t] = score(evidence, &z, None)?;
     (beyond_t(t, scatter.degrees) < FALSE_SLOPES).then(|| {
         let sentence = format!(
             "a force with a slope over x, in contact and apart, describes the points better ({} standard errors): free data.tilt",
@@ -95,14 +83,10 @@ pub(super) fn of_tilt(
 }
 
 /// A gap that is not a paraboloid: h goes as r^(2 + n).
-pub(super) fn of_shape(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-) -> Option<Reason> {
+pub(super) fn of_shape(evidence: Evidence) -> Option<Reason> {
     /// The change of the exponent by which the derivative is taken.
     const STEP: f64 = 0.02;
+    let Evidence { problem, solved, scatter, .. } = evidence;
     let Shape::Sphere { radius_of_curvature } = problem.preset.gap else { return None };
     let is_of_gap = |target: &Target| matches!(target, Target::Key(key) if key.starts_with("gap."));
     if problem.parameters.iter().any(|parameter| is_of_gap(&parameter.target)) {
@@ -117,7 +101,7 @@ pub(super) fn of_shape(
         LeastSquares::residuals(&other, u)
     };
     let z = (with(STEP)? - with(-STEP)?) / (2.0 * STEP);
-    let [n, t] = score(problem, solved, scatter, inner?, &z, None)?;
+    let [n, t] = score(evidence, &z, None)?;
     (beyond_t(t, scatter.degrees) < FALSE_ALARM).then(|| {
         let sentence = format!(
             "a gap that grows as r^n describes the points better than r^2: n is about {} ({} standard errors \
@@ -130,17 +114,13 @@ pub(super) fn of_shape(
 }
 
 /// An adhesion with a range: the edge is no longer sharp, to first order in the range.
-pub(super) fn of_range(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-) -> Option<Reason> {
+pub(super) fn of_range(evidence: Evidence) -> Option<Reason> {
     /// The separation to which the tension reaches, over the z₀ of Tabor's number, by the usual match.
     const OF_EQUILIBRIUM: f64 = 0.97;
+    let Evidence { problem, solved, scatter, .. } = evidence;
     let u = &solved.minimum.parameters;
     let z = problem.changed(u, Mover::Range, |_| 1.0)?;
-    let [n, t] = score(problem, solved, scatter, inner?, &z, None)?;
+    let [n, t] = score(evidence, &z, None)?;
     let preset = problem.preset_at(u, Segment::Retraction)?;
     let reach = preset.material.work_of_adhesion * n.max(0.0).sqrt();
     let tabor = Groups::of(&preset.problem(), Some(reach / OF_EQUILIBRIUM), None).tabor?;

@@ -3,16 +3,13 @@
 //!
 //! A median of m rows is known to 1.2533 s/√m; a deviation beyond five of these is not chance.
 
-use super::super::problem::{FitProblem, Target};
-use super::super::scatter::Scatter;
-use super::super::solve::SolvedFit;
+use super::super::problem::Target;
 use super::super::verdict::Reason;
-use super::ROUNDING;
+use super::{Evidence, ROUNDING};
 use crate::measured::branches::median;
 use crate::measured::{Abscissa, Segment};
 use crate::units::Quantity;
 use crate::units::number::{said, short};
-use nalgebra::DMatrix;
 
 /// The fewest rows that pull.
 const FEWEST: usize = 2;
@@ -23,12 +20,7 @@ const NO_CHANCE: f64 = 5.0;
 const BEFORE: f64 = 3.0;
 
 /// Rows of an approach that pull where the model has the bodies apart.
-pub(super) fn of_touch(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-) -> Option<Reason> {
+pub(super) fn of_touch(Evidence { problem, solved, scatter, inner }: Evidence) -> Option<Reason> {
     if problem.abscissa == Abscissa::Radius {
         return None;
     }

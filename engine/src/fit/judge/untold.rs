@@ -18,10 +18,10 @@
 
 use super::super::options::letter;
 use super::super::problem::FitProblem;
-use super::super::scatter::Scatter;
-use super::super::solve::{SolvedFit, solve};
+use super::super::solve::solve;
 use super::super::track::Mover;
 use super::super::verdict::Reason;
+use super::Evidence;
 use super::edge::EdgeMotion;
 use crate::elementary::{exp_m1, hypot};
 use crate::measured::branches::median;
@@ -29,7 +29,7 @@ use crate::measured::{Abscissa, Segment};
 use crate::problem::Control;
 use crate::progress::Unwatched;
 use crate::units::number::short;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -55,13 +55,8 @@ const NOTHING: f64 = 3.0;
 
 /// A law that grows with the speed and fits as well; `lean` is the number of standard errors by which the points lean
 /// to one.
-pub(super) fn untold(
-    problem: &FitProblem,
-    solved: &SolvedFit,
-    scatter: &Scatter,
-    inner: Option<&DMatrix<f64>>,
-    (edge, lean): (&EdgeMotion, f64),
-) -> Option<Reason> {
+pub(super) fn untold(evidence: Evidence, edge: &EdgeMotion, lean: f64) -> Option<Reason> {
+    let Evidence { problem, solved, scatter, inner } = evidence;
     let (s, inner) = (scatter.contact?, inner?);
     let usual = median((0..problem.data.len()).filter_map(|i| edge.speed(i)).collect())?;
     let u = &solved.minimum.parameters;
