@@ -51,61 +51,6 @@ pub struct Theme {
     pub ascii: bool,
 }
 
-/// The style of every role.
-#[derive(Debug, Clone, Copy)]
-pub struct Styles {
-    /// A panel's frame,
-    pub frame: Style,
-    /// that of the selected one,
-    pub selected_frame: Style,
-    /// and its title.
-    pub selected_title: Style,
-    /// Headlines.
-    pub strong: Style,
-    /// Secondary text, axes.
-    pub dim: Style,
-    /// The selected line.
-    pub selection: Style,
-    /// Errors and warnings.
-    pub error: Style,
-    /// Keys in the footer and the help.
-    pub key: Style,
-    /// The curve of the problem; pressures, gaps and potentials.
-    pub curve: Style,
-    /// The smooth sphere, crests, other branches.
-    pub smooth: Style,
-    /// The walk.
-    pub walk: Style,
-    /// Jumps.
-    pub jump: Style,
-    /// Where a jump lands.
-    pub landing: Style,
-    /// Energy lost.
-    pub lost: Style,
-    /// Lines that are no curve: the device, a barrier.
-    pub aid: Style,
-    /// Inadmissible states.
-    pub warning: Style,
-    /// Events and other marks.
-    pub mark: Style,
-    /// The walker.
-    pub walker: Style,
-    /// The walker in a state of other values.
-    pub stray: Style,
-    /// The state nearest to the cross-hair.
-    pub nearest: Style,
-    /// The exact solution,
-    pub exact: Style,
-    /// and the envelope of small waves.
-    pub envelope: Style,
-    /// The loop of loading and unloading.
-    pub loops: Style,
-    /// A pull at a rate.
-    pub pull: Style,
-    /// The pinned curves, by number.
-    pub pins: [Style; 6],
-}
-
 const fn ink(color: Color) -> Style {
     Style::new().fg(color)
 }
@@ -115,176 +60,118 @@ const fn hue(index: u8) -> Style {
     Style::new().fg(Color::Indexed(index))
 }
 
+const fn bold(style: Style) -> Style {
+    style.add_modifier(Modifier::BOLD)
+}
+
+const fn reversed(style: Style) -> Style {
+    style.add_modifier(Modifier::REVERSED)
+}
+
 const PLAIN: Style = Style::new();
-const BOLD: Style = Style::new().add_modifier(Modifier::BOLD);
-const REVERSED: Style = Style::new().add_modifier(Modifier::REVERSED);
-const REVERSED_BOLD: Style = REVERSED.add_modifier(Modifier::BOLD);
-const UNDERLINED: Style = Style::new().add_modifier(Modifier::UNDERLINED);
+const BOLD: Style = bold(PLAIN);
+const REVERSED: Style = reversed(PLAIN);
+const UNDERLINED: Style = PLAIN.add_modifier(Modifier::UNDERLINED);
 
-/// Every colour has a contrast of at least 3 : 1 on black and on white, so that nothing needs to know the background.
-/// The walk has the terminal's own text colour.
-static ANY: Styles = Styles {
-    frame: hue(244),
-    selected_frame: hue(33).add_modifier(Modifier::BOLD),
-    selected_title: BOLD,
-    strong: BOLD,
-    dim: hue(244),
-    selection: REVERSED,
-    error: hue(167).add_modifier(Modifier::BOLD),
-    key: hue(33),
-    curve: hue(32),
-    smooth: hue(243),
-    walk: ink(Color::Reset).add_modifier(Modifier::BOLD),
-    jump: hue(133),
-    landing: hue(133).add_modifier(Modifier::BOLD),
-    lost: hue(97),
-    aid: hue(131),
-    warning: hue(167),
-    mark: hue(166).add_modifier(Modifier::BOLD),
-    walker: hue(31).add_modifier(Modifier::BOLD.union(Modifier::REVERSED)),
-    stray: hue(244).add_modifier(Modifier::REVERSED),
-    nearest: hue(31).add_modifier(Modifier::BOLD),
-    exact: hue(136),
-    envelope: hue(30),
-    loops: hue(62),
-    pull: hue(64).add_modifier(Modifier::BOLD),
-    pins: [hue(202), hue(169), hue(100), hue(29), hue(160), hue(99)],
-};
+/// The table of styles: a role on each line and a palette in each column.
+macro_rules! styles {
+    ($(
+        $(#[$doc:meta])*
+        $role:ident: $of:ty = $any:expr, $dark:expr, $light:expr, $few_dark:expr, $few_light:expr, $mono:expr;
+    )*) => {
+        /// The style of every role.
+        #[derive(Debug, Clone, Copy)]
+        pub struct Styles {
+            $($(#[$doc])* pub $role: $of,)*
+        }
 
-/// Every colour has a contrast of at least 3 : 1 on black and on dark blue-green. The hues are those of the figures on
-/// paper: no two that are compared are red and green.
-static DARK: Styles = Styles {
-    frame: hue(244),
-    selected_frame: hue(81).add_modifier(Modifier::BOLD),
-    selected_title: BOLD,
-    strong: BOLD,
-    dim: hue(246),
-    selection: REVERSED,
-    error: hue(209).add_modifier(Modifier::BOLD),
-    key: hue(81),
-    curve: hue(75),
-    smooth: hue(249),
-    walk: hue(231).add_modifier(Modifier::BOLD),
-    jump: hue(182),
-    landing: hue(182).add_modifier(Modifier::BOLD),
-    lost: hue(139),
-    aid: hue(174),
-    warning: hue(209),
-    mark: hue(215).add_modifier(Modifier::BOLD),
-    walker: hue(87).add_modifier(Modifier::BOLD.union(Modifier::REVERSED)),
-    stray: hue(246).add_modifier(Modifier::REVERSED),
-    nearest: hue(87).add_modifier(Modifier::BOLD),
-    exact: hue(223),
-    envelope: hue(79),
-    loops: hue(110),
-    pull: hue(119).add_modifier(Modifier::BOLD),
-    pins: [hue(214), hue(176), hue(228), hue(43), hue(203), hue(159)],
-};
+        /// Every colour has a contrast of at least 3 : 1 on black and on white, so that nothing needs to know
+        /// the background. The walk has the terminal's own text colour.
+        static ANY: Styles = Styles { $($role: $any,)* };
 
-/// The same on white and on pale yellow.
-static LIGHT: Styles = Styles {
-    frame: hue(243),
-    selected_frame: hue(25).add_modifier(Modifier::BOLD),
-    selected_title: BOLD,
-    strong: BOLD,
-    dim: hue(242),
-    selection: REVERSED,
-    error: hue(124).add_modifier(Modifier::BOLD),
-    key: hue(25),
-    curve: hue(25),
-    smooth: hue(243),
-    walk: hue(16).add_modifier(Modifier::BOLD),
-    jump: hue(90),
-    landing: hue(90).add_modifier(Modifier::BOLD),
-    lost: hue(133),
-    aid: hue(131),
-    warning: hue(160),
-    mark: hue(130).add_modifier(Modifier::BOLD),
-    walker: hue(18).add_modifier(Modifier::BOLD.union(Modifier::REVERSED)),
-    stray: hue(242).add_modifier(Modifier::REVERSED),
-    nearest: hue(18).add_modifier(Modifier::BOLD),
-    exact: hue(94),
-    envelope: hue(23),
-    loops: hue(61),
-    pull: hue(64).add_modifier(Modifier::BOLD),
-    pins: [hue(166), hue(126), hue(58), hue(29), hue(88), hue(30)],
-};
+        /// Every colour has a contrast of at least 3 : 1 on black and on dark blue-green. The hues are those of
+        /// the figures on paper: no two that are compared are red and green.
+        static DARK: Styles = Styles { $($role: $dark,)* };
 
-/// With the normal colours of any terminal; their appearance is up to the terminal, so letters identify curves too.
-static FEW_DARK: Styles = Styles {
-    frame: PLAIN,
-    selected_frame: ink(Cyan).add_modifier(Modifier::BOLD),
-    selected_title: BOLD,
-    strong: BOLD,
-    dim: PLAIN,
-    selection: REVERSED,
-    error: ink(Red).add_modifier(Modifier::BOLD),
-    key: ink(Cyan),
-    curve: ink(Cyan),
-    smooth: PLAIN,
-    walk: BOLD,
-    jump: ink(Magenta),
-    landing: ink(Magenta).add_modifier(Modifier::BOLD),
-    lost: ink(Magenta),
-    aid: ink(Red),
-    warning: ink(Red).add_modifier(Modifier::BOLD),
-    mark: ink(Yellow).add_modifier(Modifier::BOLD),
-    walker: ink(Cyan).add_modifier(Modifier::BOLD.union(Modifier::REVERSED)),
-    stray: REVERSED,
-    nearest: ink(Cyan).add_modifier(Modifier::BOLD),
-    exact: ink(Blue),
-    envelope: ink(Blue).add_modifier(Modifier::BOLD),
-    loops: PLAIN,
-    pull: ink(Green).add_modifier(Modifier::BOLD),
-    pins: [
-        ink(Yellow),
-        ink(Magenta),
-        ink(Green),
-        ink(Yellow).add_modifier(Modifier::BOLD),
-        ink(Magenta).add_modifier(Modifier::BOLD),
-        ink(Green).add_modifier(Modifier::BOLD),
-    ],
-};
+        /// The same on white and on pale yellow.
+        static LIGHT: Styles = Styles { $($role: $light,)* };
 
-static FEW_LIGHT: Styles = Styles {
-    selected_frame: ink(Blue).add_modifier(Modifier::BOLD),
-    key: ink(Blue),
-    curve: ink(Blue),
-    mark: ink(Red).add_modifier(Modifier::BOLD),
-    walker: ink(Blue).add_modifier(Modifier::BOLD.union(Modifier::REVERSED)),
-    nearest: ink(Blue).add_modifier(Modifier::BOLD),
-    exact: ink(Cyan),
-    envelope: ink(Cyan).add_modifier(Modifier::BOLD),
-    ..FEW_DARK
-};
+        /// With the normal colours of any terminal; their appearance is up to the terminal, so letters identify
+        /// curves too.
+        static FEW_DARK: Styles = Styles { $($role: $few_dark,)* };
 
-static MONO: Styles = Styles {
-    frame: PLAIN,
-    selected_frame: BOLD,
-    selected_title: REVERSED_BOLD,
-    strong: BOLD,
-    dim: PLAIN,
-    selection: REVERSED,
-    error: UNDERLINED.add_modifier(Modifier::BOLD),
-    key: UNDERLINED,
-    curve: PLAIN,
-    smooth: PLAIN,
-    walk: BOLD,
-    jump: PLAIN,
-    landing: BOLD,
-    lost: PLAIN,
-    aid: PLAIN,
-    warning: BOLD,
-    mark: BOLD,
-    walker: REVERSED_BOLD,
-    stray: REVERSED,
-    nearest: BOLD,
-    exact: PLAIN,
-    envelope: PLAIN,
-    loops: PLAIN,
-    pull: BOLD,
-    pins: [PLAIN; 6],
-};
+        /// The same on a light background.
+        static FEW_LIGHT: Styles = Styles { $($role: $few_light,)* };
+
+        static MONO: Styles = Styles { $($role: $mono,)* };
+    };
+}
+
+styles! {
+    // On any background, dark, light; with few colours on dark, on light; without colours.
+
+    /// A panel's frame,
+    frame: Style = hue(244), hue(244), hue(243), PLAIN, PLAIN, PLAIN;
+    /// that of the selected one,
+    selected_frame: Style =
+        bold(hue(33)), bold(hue(81)), bold(hue(25)), bold(ink(Cyan)), bold(ink(Blue)), BOLD;
+    /// and its title.
+    selected_title: Style = BOLD, BOLD, BOLD, BOLD, BOLD, bold(REVERSED);
+    /// Headlines.
+    strong: Style = BOLD, BOLD, BOLD, BOLD, BOLD, BOLD;
+    /// Secondary text, axes.
+    dim: Style = hue(244), hue(246), hue(242), PLAIN, PLAIN, PLAIN;
+    /// The selected line.
+    selection: Style = REVERSED, REVERSED, REVERSED, REVERSED, REVERSED, REVERSED;
+    /// Errors and warnings.
+    error: Style =
+        bold(hue(167)), bold(hue(209)), bold(hue(124)), bold(ink(Red)), bold(ink(Red)), bold(UNDERLINED);
+    /// Keys in the footer and the help.
+    key: Style = hue(33), hue(81), hue(25), ink(Cyan), ink(Blue), UNDERLINED;
+    /// The curve of the problem; pressures, gaps and potentials.
+    curve: Style = hue(32), hue(75), hue(25), ink(Cyan), ink(Blue), PLAIN;
+    /// The smooth sphere, crests, other branches.
+    smooth: Style = hue(243), hue(249), hue(243), PLAIN, PLAIN, PLAIN;
+    /// The walk.
+    walk: Style = bold(ink(Color::Reset)), bold(hue(231)), bold(hue(16)), BOLD, BOLD, BOLD;
+    /// Jumps.
+    jump: Style = hue(133), hue(182), hue(90), ink(Magenta), ink(Magenta), PLAIN;
+    /// Where a jump lands.
+    landing: Style =
+        bold(hue(133)), bold(hue(182)), bold(hue(90)), bold(ink(Magenta)), bold(ink(Magenta)), BOLD;
+    /// Energy lost.
+    lost: Style = hue(97), hue(139), hue(133), ink(Magenta), ink(Magenta), PLAIN;
+    /// Lines that are no curve: the device, a barrier.
+    aid: Style = hue(131), hue(174), hue(131), ink(Red), ink(Red), PLAIN;
+    /// Inadmissible states.
+    warning: Style = hue(167), hue(209), hue(160), bold(ink(Red)), bold(ink(Red)), BOLD;
+    /// Events and other marks.
+    mark: Style = bold(hue(166)), bold(hue(215)), bold(hue(130)), bold(ink(Yellow)), bold(ink(Red)), BOLD;
+    /// The walker.
+    walker: Style =
+        bold(reversed(hue(31))), bold(reversed(hue(87))), bold(reversed(hue(18))),
+        bold(reversed(ink(Cyan))), bold(reversed(ink(Blue))), bold(REVERSED);
+    /// The walker in a state of other values.
+    stray: Style = reversed(hue(244)), reversed(hue(246)), reversed(hue(242)), REVERSED, REVERSED, REVERSED;
+    /// The state nearest to the cross-hair.
+    nearest: Style = bold(hue(31)), bold(hue(87)), bold(hue(18)), bold(ink(Cyan)), bold(ink(Blue)), BOLD;
+    /// The exact solution,
+    exact: Style = hue(136), hue(223), hue(94), ink(Blue), ink(Cyan), PLAIN;
+    /// and the envelope of small waves.
+    envelope: Style = hue(30), hue(79), hue(23), bold(ink(Blue)), bold(ink(Cyan)), PLAIN;
+    /// The loop of loading and unloading.
+    loops: Style = hue(62), hue(110), hue(61), PLAIN, PLAIN, PLAIN;
+    /// A pull at a rate.
+    pull: Style = bold(hue(64)), bold(hue(119)), bold(hue(64)), bold(ink(Green)), bold(ink(Green)), BOLD;
+    /// The pinned curves, by number.
+    pins: [Style; 6] =
+        [hue(202), hue(169), hue(100), hue(29), hue(160), hue(99)],
+        [hue(214), hue(176), hue(228), hue(43), hue(203), hue(159)],
+        [hue(166), hue(126), hue(58), hue(29), hue(88), hue(30)],
+        [ink(Yellow), ink(Magenta), ink(Green), bold(ink(Yellow)), bold(ink(Magenta)), bold(ink(Green))],
+        [ink(Yellow), ink(Magenta), ink(Green), bold(ink(Yellow)), bold(ink(Magenta)), bold(ink(Green))],
+        [PLAIN; 6];
+}
 
 const ASCII_BORDER: border::Set<'static> = border::Set {
     top_left: "+",
