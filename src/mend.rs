@@ -5,6 +5,8 @@
 //! which it is, so that it has the same status in every command and in scripts.
 
 use pulloff_engine::case::CaseError;
+use pulloff_engine::report::map::MapError;
+use pulloff_engine::report::pull::PullError;
 use rustix::io::Errno;
 use std::fmt;
 use std::io::{self, ErrorKind};
@@ -14,6 +16,24 @@ pub trait Mend {
     /// Whether other values, options, paths or permissions mend it.
     fn can_be_mended(&self) -> bool;
 }
+
+/// Implements [`Mend`] for a type of errors: those of the variants after `of` can be mended if the fault in their
+/// field can be, those of the variants after `never` cannot, all others can.
+macro_rules! mend {
+    ($error:ty $(, as $field:tt of $($variant:ident)|+)* $(, never $($never:ident)|+)?) => {
+        impl $crate::mend::Mend for $error {
+            fn can_be_mended(&self) -> bool {
+                match self {
+                    $($(Self::$variant { $field: fault, .. } => $crate::mend::Mend::can_be_mended(fault),)+)*
+                    $($(Self::$never { .. })|+ => false,)?
+                    _ => true,
+                }
+            }
+        }
+    };
+}
+
+pub(crate) use mend;
 
 /// A fault in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -78,27 +98,9 @@ impl Mend for CaseError {
     }
 }
 
-impl Mend for pulloff_engine::report::pull::PullError {
-    /// A law and a rate are values.
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Case(error) => error.can_be_mended(),
-            Self::NoLaw { .. } | Self::NoRate => true,
-            Self::Rate { .. } => false,
-        }
-    }
-}
-
-impl Mend for pulloff_engine::report::map::MapError {
-    /// An axis is a value.
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Case(error) => error.can_be_mended(),
-            Self::Family(_) => true,
-            Self::Stopped(_) => false,
-        }
-    }
-}
+// A law, a rate and an axis are values.
+mend!(PullError, as 0 of Case, never Rate);
+mend!(MapError, as 0 of Case, never Stopped);
 
 #[cfg(test)]
 mod tests {

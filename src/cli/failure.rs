@@ -1,7 +1,7 @@
 //! The exit statuses of the program, and the ways in which a command can fail.
 
 use crate::explorer::archive::ArchiveError;
-use crate::mend::{Mend, WordedFault};
+use crate::mend::{Mend, WordedFault, mend};
 use crate::print::DrawError;
 use crate::print::FormatError;
 use crate::store::data::PointsFileError;
@@ -279,38 +279,14 @@ impl Failure {
             _ => self,
         }
     }
-
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Preset(error) => error.can_be_mended(),
-            Self::Session(error) => error.can_be_mended(),
-            Self::Case(error) => error.can_be_mended(),
-            Self::Pull(error) => error.can_be_mended(),
-            Self::File(error) => error.can_be_mended(),
-            Self::Points(error) => error.can_be_mended(),
-            Self::Write(error) => error.can_be_mended(),
-            Self::Map(error) => error.can_be_mended(),
-            Self::Lines(error) => error.can_be_mended(),
-            Self::Format(error) => error.can_be_mended(),
-            Self::Draw(error) => error.can_be_mended(),
-            Self::Script { reason, .. } => reason.can_be_mended(),
-            Self::Spec(error) => error.can_be_mended(),
-            Self::Sweep(error) => error.can_be_mended(),
-            Self::Merge(error) => error.can_be_mended(),
-            Self::System { cause, .. } => cause.can_be_mended(),
-            Self::Usage(_) => true,
-            Self::Rows(_)
-            | Self::Csv(_)
-            | Self::Paper(_)
-            | Self::Verify(_)
-            | Self::Json(_)
-            | Self::Closed
-            | Self::Incomplete(_)
-            | Self::Disagreement(_)
-            | Self::Doubtful(_)
-            | Self::NotDescribed(_)
-            | Self::Interrupted { .. }
-            | Self::Terminal(_) => false,
-        }
-    }
 }
+
+mend!(
+    Failure,
+    as 0 of Preset | Session | Case | Pull | File | Points | Write | Map | Lines | Format | Draw | Spec
+        | Sweep | Merge,
+    as reason of Script,
+    as cause of System,
+    never Rows | Csv | Paper | Verify | Json | Closed | Incomplete | Disagreement | Doubtful | NotDescribed
+        | Interrupted | Terminal
+);

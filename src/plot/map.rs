@@ -5,7 +5,7 @@ use super::Width;
 use super::ink;
 use super::svg::{cropped, entry, filled, finish, frame, hatched, hatches, line, outline, plain};
 use crate::figure::{AxisScale, Line};
-use crate::mend::Mend;
+use crate::mend::mend;
 use crate::sweep::SweepResults;
 use crate::sweep::results::ResultsError;
 use kuva::plot::colormap::ColorMap;
@@ -53,14 +53,7 @@ pub enum MapChartError {
     Grid(String),
 }
 
-impl Mend for MapChartError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Results(error) => error.can_be_mended(),
-            Self::Grid(_) => true,
-        }
-    }
-}
+mend!(MapChartError, as 0 of Results);
 
 impl MapChartError {
     /// No row has a number in this column.

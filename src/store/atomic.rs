@@ -7,7 +7,7 @@
 
 use super::file::{Fingerprint, kind_of, read_bytes};
 use super::temporary;
-use crate::mend::Mend;
+use crate::mend::mend;
 use pulloff_engine::text::show_path;
 use rustix::fs::{Access, access};
 use rustix::io::Errno;
@@ -55,19 +55,7 @@ pub enum WriteError {
     Io { path: String, doing: &'static str, cause: io::Error },
 }
 
-impl Mend for WriteError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Io { cause, .. } => cause.can_be_mended(),
-            Self::NotReadBack { .. } => false,
-            Self::Exists { .. }
-            | Self::Changed { .. }
-            | Self::ReadOnly { .. }
-            | Self::NotRegular { .. }
-            | Self::Locked { .. } => true,
-        }
-    }
-}
+mend!(WriteError, as cause of Io, never NotReadBack);
 
 /// The system's message about a failed write, completed where it is too brief.
 #[must_use]

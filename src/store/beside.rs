@@ -3,7 +3,7 @@
 use super::atomic::{Overwrite, WriteError, write_atomically};
 use super::data::load;
 use super::file::{FileError, read_bytes};
-use crate::mend::Mend;
+use crate::mend::mend;
 use pulloff_engine::gap::Shape;
 use pulloff_engine::gap::shapes::MeasuredGap;
 use pulloff_engine::preset::measured::SHIPPED_DATA;
@@ -26,15 +26,7 @@ pub enum DataError {
     Other(String),
 }
 
-impl Mend for DataError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::File(error) => error.can_be_mended(),
-            Self::Write(error) => error.can_be_mended(),
-            Self::Other(_) => true,
-        }
-    }
-}
+mend!(DataError, as 0 of File | Write);
 
 impl From<String> for DataError {
     fn from(words: String) -> Self {

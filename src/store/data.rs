@@ -1,7 +1,7 @@
 //! The files of profiles: the engine does not read the disk, and gets the rows that a preset names from here.
 
 use super::file::{FileError, read_bytes};
-use crate::mend::Mend;
+use crate::mend::mend;
 use pulloff_engine::gap::shapes::ProfileRows;
 use pulloff_engine::measured::PointsFile;
 use pulloff_engine::preset::measured::{SHIPPED_DATA, rows, words};
@@ -35,14 +35,7 @@ pub enum PointsFileError {
     Shipped(String),
 }
 
-impl Mend for PointsFileError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::File(error) => error.can_be_mended(),
-            Self::Shipped(_) => true,
-        }
-    }
-}
+mend!(PointsFileError, as 0 of File);
 
 /// Reads the profile in the file `path`.
 pub fn read_profile(path: &Path) -> Result<ProfileColumns, ProfileError> {

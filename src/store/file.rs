@@ -1,6 +1,6 @@
 //! Reads regular files of bounded size, and recognises them later.
 
-use crate::mend::Mend;
+use crate::mend::mend;
 use pulloff_engine::text::show_path;
 use serde::{Deserialize, Serialize};
 use std::fs::{File, Metadata, OpenOptions};
@@ -63,16 +63,7 @@ pub enum FileError {
     },
 }
 
-impl Mend for FileError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Io { cause, .. } => cause.can_be_mended(),
-            Self::NotRegular { .. } | Self::TooLarge { .. } | Self::Endless { .. } | Self::NotText { .. } => {
-                true
-            }
-        }
-    }
-}
+mend!(FileError, as cause of Io);
 
 /// The kind of a file that is not regular.
 #[must_use]

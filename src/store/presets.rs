@@ -9,7 +9,7 @@ use super::file::{self, FileError, Fingerprint, read_text};
 use super::lock::{FolderLock, PATIENCE};
 use super::name::{self, NameError};
 use super::shipped::{self, SHIPPED, Shipped};
-use crate::mend::Mend;
+use crate::mend::mend;
 use crate::store::read_in;
 use etcetera::BaseStrategy;
 use pulloff_engine::preset::edit::onto;
@@ -142,22 +142,7 @@ pub enum StoreError {
     Delete { path: String, cause: io::Error },
 }
 
-impl Mend for StoreError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::File(error) => error.can_be_mended(),
-            Self::Write(error) => error.can_be_mended(),
-            Self::Data(error) => error.can_be_mended(),
-            Self::Folder { cause, .. } | Self::Delete { cause, .. } => cause.can_be_mended(),
-            Self::NotFound { .. }
-            | Self::Name(_)
-            | Self::Read(_)
-            | Self::Invalid(_)
-            | Self::NoFolder
-            | Self::Shipped(_) => true,
-        }
-    }
-}
+mend!(StoreError, as 0 of File | Write | Data, as cause of Folder | Delete);
 
 /// The folder of the user's presets.
 #[derive(Debug, Clone)]

@@ -4,7 +4,7 @@ use super::output::{Existing, FaultCounts, OutputError};
 use super::record::{Layout, Wrong};
 use super::shard::Shard;
 use super::sidecar::{self, Sidecar, SidecarError};
-use crate::mend::Mend;
+use crate::mend::mend;
 use crate::store::atomic::{Overwrite, WriteError, explained, write_atomically, write_filled};
 use crate::store::stream;
 use pulloff_engine::text::show_path;
@@ -53,22 +53,7 @@ pub enum MergeError {
     Io { path: String, cause: io::Error },
 }
 
-impl Mend for MergeError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Output(error) => error.can_be_mended(),
-            Self::Io { cause, .. } => cause.can_be_mended(),
-            Self::NotOurs { cause, .. } => cause.can_be_mended(),
-            Self::Exists { .. }
-            | Self::OtherSweep { .. }
-            | Self::OtherDivision { .. }
-            | Self::Doubled { .. }
-            | Self::Missing(_)
-            | Self::Incomplete { .. }
-            | Self::Changed { .. } => true,
-        }
-    }
-}
+mend!(MergeError, as 0 of Output, as cause of Io | NotOurs);
 
 impl From<WriteError> for MergeError {
     fn from(error: WriteError) -> Self {

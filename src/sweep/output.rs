@@ -10,7 +10,7 @@ use super::results::ResultsError;
 use super::shard::Shard;
 use super::sidecar::{self, Sidecar, SidecarError};
 use super::spec::identity;
-use crate::mend::Mend;
+use crate::mend::mend;
 use crate::store::atomic::{Overwrite, WriteError, check as check_writable, explained, write_atomically};
 use crate::store::file::{LARGEST, read_text};
 use crate::store::lock::lock_file;
@@ -69,22 +69,7 @@ pub enum OutputError {
     Threads(#[from] ThreadPoolBuildError),
 }
 
-impl Mend for OutputError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Write(error) => error.can_be_mended(),
-            Self::Io { cause, .. } => cause.can_be_mended(),
-            Self::NotOurs { cause, .. } => cause.can_be_mended(),
-            Self::Rows(error) => error.can_be_mended(),
-            Self::Threads(_) => false,
-            Self::Busy { .. }
-            | Self::Described { .. }
-            | Self::OtherSweep { .. }
-            | Self::OtherShard { .. }
-            | Self::Changed { .. } => true,
-        }
-    }
-}
+mend!(OutputError, as 0 of Write | Rows, as cause of Io | NotOurs, never Threads);
 
 /// The faults of rows.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

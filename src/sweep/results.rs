@@ -2,7 +2,7 @@
 
 use super::record::statistic;
 use super::sidecar::{ColumnInfo, Sidecar, SidecarError};
-use crate::mend::Mend;
+use crate::mend::mend;
 use pulloff_engine::text::{closest, quote, sanitize, show_path};
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -20,14 +20,7 @@ pub enum ResultsError {
     Table { path: String, what: String },
 }
 
-impl Mend for ResultsError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::Sidecar(error) => error.can_be_mended(),
-            Self::NoColumn { .. } | Self::Table { .. } => true,
-        }
-    }
-}
+mend!(ResultsError, as 0 of Sidecar);
 
 /// The results of a sweep, or of a part of it; they may still be growing.
 #[derive(Debug, Clone)]

@@ -8,7 +8,7 @@
 use super::record::{self, COUNTS, Layout};
 use super::shard::Shard;
 use super::spec::{canonical, identity};
-use crate::mend::Mend;
+use crate::mend::mend;
 use crate::store::file::{self, FileError, read_text};
 use pulloff_engine::sweep::Spec;
 use pulloff_engine::sweep::document::SpecText;
@@ -39,14 +39,7 @@ pub enum SidecarError {
     },
 }
 
-impl Mend for SidecarError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::File(error) => error.can_be_mended(),
-            Self::Unknown { .. } => true,
-        }
-    }
-}
+mend!(SidecarError, as 0 of File);
 
 /// A column of the results.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]

@@ -1,6 +1,6 @@
 //! The spec of a sweep from the disk, and the canonical form by which results are recognised.
 
-use crate::mend::Mend;
+use crate::mend::mend;
 use crate::store::file::{self, FileError};
 use crate::store::hash::{hex, sha256};
 use crate::store::{Store, atomic, stream};
@@ -26,14 +26,7 @@ pub enum LoadError {
     Spec(#[from] SpecError),
 }
 
-impl Mend for LoadError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::File(error) => error.can_be_mended(),
-            Self::Spec(_) => true,
-        }
-    }
-}
+mend!(LoadError, as 0 of File);
 
 /// A spec from a file, and what else was read for it.
 #[derive(Debug)]

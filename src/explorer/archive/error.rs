@@ -1,7 +1,7 @@
 //! Why a session cannot be found, read or written.
 
 use crate::explorer::session::Unreadable;
-use crate::mend::Mend;
+use crate::mend::mend;
 use crate::store::WriteError;
 use crate::store::file::FileError;
 use pulloff_engine::text::show_path;
@@ -40,22 +40,7 @@ pub enum ArchiveError {
     Io { path: String, doing: &'static str, cause: io::Error },
 }
 
-impl Mend for ArchiveError {
-    fn can_be_mended(&self) -> bool {
-        match self {
-            Self::File(error) => error.can_be_mended(),
-            Self::Write(error) => error.can_be_mended(),
-            Self::Io { cause, .. } => cause.can_be_mended(),
-            Self::Document(_) => false,
-            Self::NoFolder
-            | Self::NotFound { .. }
-            | Self::Empty
-            | Self::Running { .. }
-            | Self::Data { .. }
-            | Self::Unreadable { .. } => true,
-        }
-    }
-}
+mend!(ArchiveError, as 0 of File | Write, as cause of Io, never Document);
 
 impl ArchiveError {
     /// The reason without the path, for a line that is cut off at the edge of the screen.
