@@ -38,124 +38,92 @@ pub enum Axes {
     Raw,
 }
 
-/// The views of a problem and its walker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum View {
+/// The table of views: each with its name, what it shows in one line, and its companions.
+macro_rules! views {
+    ($($(#[$doc:meta])* $view:ident $name:literal $meaning:literal [$($companion:ident),+];)+) => {
+        /// The views of a problem and its walker.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[serde(rename_all = "kebab-case")]
+        pub enum View {
+            $($(#[$doc])* $view,)+
+        }
+
+        impl View {
+            /// All views, in their order.
+            pub const ALL: [Self; 19] = [$(Self::$view),+];
+
+            /// Its name.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$view => $name,)+
+                }
+            }
+
+            /// What it shows, in one line.
+            pub fn meaning(self) -> &'static str {
+                match self {
+                    $(Self::$view => $meaning,)+
+                }
+            }
+
+            /// What is shown beside it if there is room, the most informative first.
+            pub fn companions(self) -> [Self; 3] {
+                match self {
+                    $(Self::$view => [$(Self::$companion),+],)+
+                }
+            }
+        }
+    };
+}
+
+views! {
     /// P over δ.
-    ForceApproach,
+    ForceApproach "force-approach" "the force P over the approach" [ForceRadius, Contact, Energy];
     /// P over Δ, the displacement of the device's far end.
-    ForcePosition,
+    ForcePosition "force-position" "the force P over the position of the device's far end"
+        [ForceRadius, Contact, Energy];
     /// P over s, on the same axis of P as [`View::ForceApproach`].
-    ForceRadius,
+    ForceRadius "force-radius" "the force P over the contact radius s" [ForceApproach, Contact, Energy];
     /// s over δ.
-    RadiusApproach,
+    RadiusApproach "radius-approach" "the contact radius s over the approach"
+        [ForceApproach, Energy, Pressure];
     /// The contact pressure p(r) of the walker's state.
-    Pressure,
+    Pressure "pressure" "the contact pressure of the walker's state" [Gap, Contact, ForceApproach];
     /// The deformed gap outside the disc of the walker's state.
-    Gap,
+    Gap "gap" "the gap around its contact, deformed and undeformed" [Pressure, Contact, ForceApproach];
     /// The contact of the walker's state from above.
-    Contact,
+    Contact "contact" "its contact from above" [Gap, Pressure, ForceApproach];
     /// The potential of bodies and device over s, with the control held at the walker's value.
-    Energy,
+    Energy "energy" "the potential over s, the control held" [RadiusApproach, ForceApproach, Pressure];
     /// The quasi-static path with what its jumps dissipate, Fig. 10.
-    Unloading,
+    Unloading "unloading" "the path down with the energy its jumps lose" [ForceApproach, Pressure, Energy];
     /// The whole loop of loading and unloading with its losses, P over δ.
-    Cycle,
+    Cycle "cycle" "the whole loop of loading and unloading" [ContactMap, ForceApproach, Pressure];
     /// The contacts along the course of the control.
-    ContactMap,
+    ContactMap "contact-map" "where the bodies touch, over the whole loop"
+        [Cycle, ForceApproach, ForceRadius];
     /// The law of stability: the adhesion at which each state is a limit point, over the contact radius.
-    Stability,
+    Stability "stability" "the adhesion at which each state is a limit point"
+        [RadiusApproach, ForceApproach, Unloading];
     /// Lines in the plane of two numbers at which snaps begin or end.
-    Map,
+    Map "map" "where snaps begin, over two numbers" [Stability, ForceApproach, Unloading];
     /// The distances of the measured points from the curve.
-    Residuals,
+    Residuals "residuals" "how far each measured point is from the curve"
+        [ForceApproach, ForceRadius, Pressure];
     /// P over time, in the pull at the rate of the preset.
-    ForceTime,
+    ForceTime "force-time" "the force P over time, pulled at path.rate" [ForceApproach, ForceRadius, Energy];
     /// G of the measured rows over the speed of the edge.
-    Speeds,
+    Speeds "speeds" "the energy release rate of measured rows over the speed of the edge"
+        [ForceApproach, ForceRadius, Pressure];
     /// P minus that of the pinned curves and of theory, at equal s and at equal δ.
-    Differences,
+    Differences "differences" "P minus that of pins and theory" [ForceApproach, ForceRadius, RadiusApproach];
     /// The states walked, as a table.
-    Walk,
+    Walk "walk" "the walked states, as a table" [ForceApproach, Pressure, Energy];
     /// A quantity over the range of the selected value.
-    Study,
+    Study "study" "a quantity over the range of the selected value" [ForceApproach, Unloading, ForceRadius];
 }
 
 impl View {
-    /// All views, in their order.
-    pub const ALL: [Self; 19] = [
-        Self::ForceApproach,
-        Self::ForcePosition,
-        Self::ForceRadius,
-        Self::RadiusApproach,
-        Self::Pressure,
-        Self::Gap,
-        Self::Contact,
-        Self::Energy,
-        Self::Unloading,
-        Self::Cycle,
-        Self::ContactMap,
-        Self::Stability,
-        Self::Map,
-        Self::Residuals,
-        Self::ForceTime,
-        Self::Speeds,
-        Self::Differences,
-        Self::Walk,
-        Self::Study,
-    ];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::ForceApproach => "force-approach",
-            Self::ForcePosition => "force-position",
-            Self::ForceRadius => "force-radius",
-            Self::RadiusApproach => "radius-approach",
-            Self::Pressure => "pressure",
-            Self::Gap => "gap",
-            Self::Contact => "contact",
-            Self::Energy => "energy",
-            Self::Unloading => "unloading",
-            Self::Cycle => "cycle",
-            Self::ContactMap => "contact-map",
-            Self::Stability => "stability",
-            Self::Map => "map",
-            Self::Residuals => "residuals",
-            Self::ForceTime => "force-time",
-            Self::Speeds => "speeds",
-            Self::Differences => "differences",
-            Self::Walk => "walk",
-            Self::Study => "study",
-        }
-    }
-
-    /// What it shows, in one line.
-    pub fn meaning(self) -> &'static str {
-        match self {
-            Self::ForceApproach => "the force P over the approach",
-            Self::ForcePosition => "the force P over the position of the device's far end",
-            Self::ForceRadius => "the force P over the contact radius s",
-            Self::RadiusApproach => "the contact radius s over the approach",
-            Self::Pressure => "the contact pressure of the walker's state",
-            Self::Gap => "the gap around its contact, deformed and undeformed",
-            Self::Contact => "its contact from above",
-            Self::Energy => "the potential over s, the control held",
-            Self::Unloading => "the path down with the energy its jumps lose",
-            Self::Cycle => "the whole loop of loading and unloading",
-            Self::ContactMap => "where the bodies touch, over the whole loop",
-            Self::Stability => "the adhesion at which each state is a limit point",
-            Self::Map => "where snaps begin, over two numbers",
-            Self::Residuals => "how far each measured point is from the curve",
-            Self::ForceTime => "the force P over time, pulled at path.rate",
-            Self::Speeds => "the energy release rate of measured rows over the speed of the edge",
-            Self::Differences => "P minus that of pins and theory",
-            Self::Walk => "the walked states, as a table",
-            Self::Study => "a quantity over the range of the selected value",
-        }
-    }
-
     /// Whether it is a table of lines, which has no axes.
     pub fn is_table(self) -> bool {
         self == Self::Walk
@@ -202,28 +170,6 @@ impl View {
         let here = views.iter().position(|view| *view == self).unwrap_or(0);
         let way = move |by| if forward { by } else { views.len() - by };
         (1..views.len()).map(move |by| views[(here + way(by)) % views.len()])
-    }
-
-    /// What is shown beside it if there is room, the most informative first.
-    pub fn companions(self) -> [Self; 3] {
-        match self {
-            ForceApproach | ForcePosition => [ForceRadius, Contact, Energy],
-            ForceRadius => [ForceApproach, Contact, Energy],
-            ForceTime => [ForceApproach, ForceRadius, Energy],
-            Cycle => [ContactMap, ForceApproach, Pressure],
-            ContactMap => [Cycle, ForceApproach, ForceRadius],
-            Contact => [Gap, Pressure, ForceApproach],
-            Stability => [RadiusApproach, ForceApproach, Unloading],
-            Map => [Stability, ForceApproach, Unloading],
-            Residuals | Speeds => [ForceApproach, ForceRadius, Pressure],
-            Study => [ForceApproach, Unloading, ForceRadius],
-            Differences => [ForceApproach, ForceRadius, RadiusApproach],
-            Gap => [Pressure, Contact, ForceApproach],
-            Unloading | Walk => [ForceApproach, Pressure, Energy],
-            RadiusApproach => [ForceApproach, Energy, Pressure],
-            Pressure => [Gap, Contact, ForceApproach],
-            Energy => [RadiusApproach, ForceApproach, Pressure],
-        }
     }
 }
 
