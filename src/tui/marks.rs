@@ -11,83 +11,76 @@ const DIGITS: [char; 6] = ['1', '2', '3', '4', '5', '6'];
 /// Numbers of snaps; from ten on, a single sign stands for many.
 const COUNTS: [&str; 11] = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "*"];
 
-/// The stroke of a line. Solid is stable, broken is not; the colour says which curve it is.
-pub fn look(role: Role, theme: Theme) -> RasterStroke {
+/// Where the letter of a line identifies it, apart from charts of characters.
+#[derive(PartialEq)]
+enum Lettered {
+    /// Along the line and in the legend, where colours are few.
+    Along,
+    /// In the legend, where there is no colour at all.
+    Legend,
+    Never,
+}
+
+/// A line's stroke without its letter, where the letter is, and its rank in the legend, the most important first.
+fn row(role: Role, theme: Theme) -> (RasterStroke, Lettered, u8) {
+    use Lettered::{Along, Legend, Never};
     use Meets::{Beneath, Shares, Tints};
     let styles = theme.styles();
-    let of = |style: Style, meets, is_broken, symbol| RasterStroke {
-        style,
-        meets,
-        is_broken,
-        symbol,
-        letter: None,
-    };
-    let stroke = match role {
-        Role::Zero => of(styles.dim, Beneath, false, ','),
-        Role::Undeformed | Role::Starts => of(styles.smooth, Beneath, true, ','),
-        Role::Smooth => of(styles.smooth, Shares, false, 's'),
-        Role::Branch => of(styles.smooth, Beneath, true, 'b'),
-        Role::Envelope => of(styles.envelope, Shares, false, 'k'),
-        Role::Exact => of(styles.exact, Shares, false, 'e'),
+    let (style, meets, is_broken, symbol, lettered, rank) = match role {
+        Role::Zero => (styles.dim, Beneath, false, ',', Never, 9),
+        Role::Undeformed => (styles.smooth, Beneath, true, ',', Never, 9),
+        Role::Starts => (styles.smooth, Beneath, true, ',', Legend, 9),
+        Role::Smooth => (styles.smooth, Shares, false, 's', Along, 6),
+        Role::Branch => (styles.smooth, Beneath, true, 'b', Along, 9),
+        Role::Envelope => (styles.envelope, Shares, false, 'k', Along, 6),
+        Role::Exact => (styles.exact, Shares, false, 'e', Along, 6),
+        // Requested by the person, and often with numbers.
         Role::Pin(number) => {
             let at = number.saturating_sub(1) % DIGITS.len();
-            of(styles.pins[at], Shares, false, DIGITS[at])
+            (styles.pins[at], Shares, false, DIGITS[at], Along, 2)
         }
-        Role::Unstable => of(styles.curve, Shares, true, UNSTABLE),
+        Role::Unstable => (styles.curve, Shares, true, UNSTABLE, Never, 1),
         Role::Stable | Role::Body | Role::Edges | Role::Law | Role::Cusps => {
-            of(styles.curve, Shares, false, STABLE)
+            (styles.curve, Shares, false, STABLE, Never, 0)
         }
-        Role::Loading => of(styles.exact, Beneath, false, 'l'),
-        Role::Unloading => of(styles.loops, Beneath, false, 'u'),
-        Role::Inadmissible => of(styles.warning, Tints, false, '!'),
-        Role::Contact => of(styles.walk, Shares, false, 'c'),
-        Role::Pull => of(styles.pull, Tints, false, 'p'),
-        Role::Walk | Role::Chosen => of(styles.walk, Tints, false, 'w'),
-        Role::Zone => of(styles.jump, Tints, false, 'z'),
-        Role::Barrier | Role::Level => of(styles.aid, Beneath, true, '='),
-        Role::Device => of(styles.aid, Beneath, true, ':'),
-        Role::Jump => of(styles.jump, Beneath, true, 'j'),
-        Role::Landings => of(styles.exact, Shares, true, 'n'),
-        Role::Unchanged | Role::Twin => of(styles.smooth, Beneath, true, '.'),
+        Role::Loading => (styles.exact, Beneath, false, 'l', Along, 8),
+        Role::Unloading => (styles.loops, Beneath, false, 'u', Along, 8),
+        Role::Inadmissible => (styles.warning, Tints, false, '!', Along, 3),
+        Role::Contact => (styles.walk, Shares, false, 'c', Legend, 8),
+        Role::Pull => (styles.pull, Tints, false, 'p', Along, 3),
+        Role::Walk | Role::Chosen => (styles.walk, Tints, false, 'w', Legend, 3),
+        Role::Zone => (styles.jump, Tints, false, 'z', Legend, 3),
+        Role::Barrier => (styles.aid, Beneath, true, '=', Legend, 8),
+        Role::Level => (styles.aid, Beneath, true, '=', Legend, 3),
+        Role::Device => (styles.aid, Beneath, true, ':', Legend, 8),
+        Role::Jump => (styles.jump, Beneath, true, 'j', Legend, 9),
+        Role::Landings => (styles.exact, Shares, true, 'n', Never, 1),
+        Role::Unchanged | Role::Twin => (styles.smooth, Beneath, true, '.', Never, 9),
     };
-    // Where colours are few, a letter along the curve identifies it.
-    let is_lettered = matches!(
-        role,
-        Role::Smooth
-            | Role::Exact
-            | Role::Envelope
-            | Role::Pin(_)
-            | Role::Branch
-            | Role::Loading
-            | Role::Unloading
-            | Role::Inadmissible
-            | Role::Pull
-    );
-    let letter =
-        (is_lettered && (theme.has_few_colours() || theme.charts == Charts::Ascii)).then_some(stroke.symbol);
-    RasterStroke { letter, ..stroke }
+    (RasterStroke { style, meets, is_broken, symbol, letter: None }, lettered, rank)
+}
+
+/// The stroke of a line. Solid is stable, broken is not; the colour says which curve it is.
+pub fn look(role: Role, theme: Theme) -> RasterStroke {
+    let (stroke, lettered, _) = row(role, theme);
+    let is_told = lettered == Lettered::Along && (theme.has_few_colours() || theme.charts == Charts::Ascii);
+    RasterStroke { letter: is_told.then_some(stroke.symbol), ..stroke }
+}
+
+/// The rank of a line in the legend, the most important first.
+pub fn rank(role: Role, theme: Theme) -> u8 {
+    row(role, theme).2
 }
 
 /// How a legend shows a line; together with its style, or even without colour, no two that meet are the same.
 pub fn glyph(role: Role, theme: Theme) -> String {
-    let stroke = look(role, theme);
-    let is_pin = matches!(role, Role::Pin(_));
-    if stroke.letter.is_some() || is_pin || theme.charts == Charts::Ascii {
-        return stroke.symbol.to_string();
-    }
-    let tells = matches!(
-        role,
-        Role::Contact
-            | Role::Zone
-            | Role::Jump
-            | Role::Walk
-            | Role::Chosen
-            | Role::Barrier
-            | Role::Device
-            | Role::Level
-            | Role::Starts
-    );
-    if tells && theme.palette == Palette::Mono {
+    let (stroke, lettered, _) = row(role, theme);
+    let is_told = match lettered {
+        Lettered::Along => theme.has_few_colours() || matches!(role, Role::Pin(_)),
+        Lettered::Legend => theme.palette == Palette::Mono,
+        Lettered::Never => false,
+    };
+    if is_told || theme.charts == Charts::Ascii {
         return stroke.symbol.to_string();
     }
     let of = |solid: &str, broken: &str| if stroke.is_broken { broken } else { solid }.to_owned();

@@ -3,7 +3,7 @@
 use crate::explorer::{Model, View};
 use crate::figure::{Bounds, Figure, Role, Sign, Subject, map, nearest, reading, study};
 use crate::tui::chart::LegendRow;
-use crate::tui::marks::{glyph, letter, look, style};
+use crate::tui::marks::{glyph, letter, look, rank, style};
 use crate::tui::theme::Theme;
 
 /// What is in the window of a figure, the most important first: the curve, pins, the walk, the marks, theory, the rest.
@@ -22,7 +22,7 @@ pub fn legend(figure: &Figure, bounds: &Bounds, theme: Theme) -> Vec<LegendRow> 
     for line in figure.lines.iter().filter(|line| !line.name.is_empty() && is_seen(&line.points)) {
         let style = look(line.role, theme).style;
         let meaning = theme.symbols(&line.name);
-        add(rank(line.role), LegendRow { glyph: glyph(line.role, theme), style, meaning });
+        add(rank(line.role, theme), LegendRow { glyph: glyph(line.role, theme), style, meaning });
     }
     for mark in figure.marks.iter().filter(|mark| bounds.share(mark.at).is_some()) {
         if let Some((rank, word)) = meaning(mark.sign) {
@@ -38,20 +38,6 @@ pub fn legend(figure: &Figure, bounds: &Bounds, theme: Theme) -> Vec<LegendRow> 
     // Entries of equal rank keep the order of the figure; pins are ordered by number.
     words.sort_by_key(|(rank, _)| *rank);
     words.into_iter().map(|(_, entry)| entry).collect()
-}
-
-/// The rank of a line in the legend, the most important first.
-fn rank(role: Role) -> u8 {
-    match role {
-        Role::Stable | Role::Body | Role::Edges | Role::Law | Role::Cusps => 0,
-        Role::Unstable | Role::Landings => 1,
-        // Requested by the person, and often with numbers.
-        Role::Pin(_) => 2,
-        Role::Inadmissible | Role::Level | Role::Pull | Role::Zone | Role::Walk | Role::Chosen => 3,
-        Role::Smooth | Role::Exact | Role::Envelope => 6,
-        Role::Loading | Role::Unloading | Role::Barrier | Role::Device | Role::Contact => 8,
-        _ => 9,
-    }
 }
 
 /// What a sign means, and its rank in the legend.
