@@ -8,6 +8,8 @@
 use std::fmt::Write;
 use std::ops::Range;
 
+use Color::{Black, Blue, Cyan, DarkGray, Gray, Green, LightBlue, LightCyan, LightGreen, LightMagenta};
+use Color::{LightRed, LightYellow, Magenta, Red, White, Yellow};
 use ratatui::{
     buffer::Cell,
     layout::Position,
@@ -176,7 +178,8 @@ impl CellEncoder {
             codes.push_str("0;");
             from = PLAIN;
         }
-        for (modifier, code) in MODIFIERS {
+        // The attributes are in the order of the codes that switch them on, from 1.
+        for (modifier, code) in Modifier::all().iter().zip(1_u8..) {
             if ink.modifier.difference(from.modifier).contains(modifier) {
                 let _ = write!(codes, "{code};");
             }
@@ -236,54 +239,26 @@ fn bytes_of_way(from: Position, to: Position) -> u32 {
     steps(from, to).into_iter().map(cost).sum()
 }
 
-/// The codes that switch attributes on.
-const MODIFIERS: [(Modifier, u8); 9] = [
-    (Modifier::BOLD, 1),
-    (Modifier::DIM, 2),
-    (Modifier::ITALIC, 3),
-    (Modifier::UNDERLINED, 4),
-    (Modifier::SLOW_BLINK, 5),
-    (Modifier::RAPID_BLINK, 6),
-    (Modifier::REVERSED, 7),
-    (Modifier::HIDDEN, 8),
-    (Modifier::CROSSED_OUT, 9),
-];
-
 fn looks_same_blank(a: Ink, b: Ink) -> bool {
     let marked = |ink: Ink| ink.modifier.intersects(SEEN_ON_BLANKS);
     a.bg == b.bg && !marked(a) && !marked(b)
 }
 
-/// The code of a colour: the short one for the sixteen that every terminal has. For a background it is `shift` larger.
+/// The sixteen colours that every terminal has, in the order of their codes.
+const SIXTEEN: [[Color; 8]; 2] = [
+    [Black, Red, Green, Yellow, Blue, Magenta, Cyan, Gray],
+    [DarkGray, LightRed, LightGreen, LightYellow, LightBlue, LightMagenta, LightCyan, White],
+];
+
+/// The code of a colour: the short one for the sixteen. For a background it is `shift` larger.
 fn color(codes: &mut String, color: Color, shift: u8) {
-    let short = match color {
-        Color::Reset => 39,
-        Color::Black => 30,
-        Color::Red => 31,
-        Color::Green => 32,
-        Color::Yellow => 33,
-        Color::Blue => 34,
-        Color::Magenta => 35,
-        Color::Cyan => 36,
-        Color::Gray => 37,
-        Color::DarkGray => 90,
-        Color::LightRed => 91,
-        Color::LightGreen => 92,
-        Color::LightYellow => 93,
-        Color::LightBlue => 94,
-        Color::LightMagenta => 95,
-        Color::LightCyan => 96,
-        Color::White => 97,
-        Color::Indexed(index) => {
-            let _ = write!(codes, "{};5;{index};", 38 + shift);
-            return;
-        }
-        Color::Rgb(r, g, b) => {
-            let _ = write!(codes, "{};2;{r};{g};{b};", 38 + shift);
-            return;
-        }
+    let mut short = (30..38).chain(90..98).zip(SIXTEEN.as_flattened());
+    let _ = match color {
+        Color::Indexed(index) => write!(codes, "{};5;{index};", 38 + shift),
+        Color::Rgb(r, g, b) => write!(codes, "{};2;{r};{g};{b};", 38 + shift),
+        // What remains is the terminal's own colour.
+        _ => write!(codes, "{};", shift + short.find(|(_, one)| **one == color).map_or(39, |(code, _)| code)),
     };
-    let _ = write!(codes, "{};", short + shift);
 }
 
 /// How many columns a symbol takes.
@@ -391,6 +366,37 @@ mod tests {
         terminal.process(b"\x1b[HZ");
         let cell = terminal.screen().cell(0, 0).unwrap();
         assert!(cell.fgcolor() == vt100::Color::Default && !cell.bold() && !cell.inverse());
+    }
+
+    #[test]
+    fn every_attribute_and_colour_has_its_code() {
+        let attributes = [
+            Modifier::BOLD,
+            Modifier::DIM,
+            Modifier::ITALIC,
+            Modifier::UNDERLINED,
+            Modifier::SLOW_BLINK,
+            Modifier::RAPID_BLINK,
+            Modifier::REVERSED,
+            Modifier::HIDDEN,
+            Modifier::CROSSED_OUT,
+        ];
+        assert_eq!(Modifier::all().iter().collect::<Vec<_>>(), attributes);
+        let code = |of: Color, shift| {
+            let mut codes = String::new();
+            color(&mut codes, of, shift);
+            codes
+        };
+        let named = [(Color::Reset, 39), (Color::Black, 30), (Color::Red, 31), (Color::Green, 32)];
+        let more = [(Color::Yellow, 33), (Color::Blue, 34), (Color::Magenta, 35), (Color::Cyan, 36)];
+        let gray = [(Color::Gray, 37), (Color::DarkGray, 90), (Color::LightRed, 91), (Color::LightGreen, 92)];
+        let light = [(Color::LightYellow, 93), (Color::LightBlue, 94), (Color::LightMagenta, 95)];
+        let rest = [(Color::LightCyan, 96), (Color::White, 97)];
+        for (of, expected) in [&named[..], &more, &gray, &light, &rest].concat() {
+            assert_eq!(code(of, 0), format!("{expected};"), "{of}");
+            assert_eq!(code(of, 10), format!("{};", expected + 10), "{of}");
+        }
+        assert_eq!(code(Color::Indexed(200), 10) + &code(Color::Rgb(1, 2, 3), 0), "48;5;200;38;2;1;2;3;");
     }
 
     #[test]
