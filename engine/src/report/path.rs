@@ -183,51 +183,24 @@ pub struct DeadBandReport {
     pub dissipated: f64,
 }
 
-/// A state in a row of events.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-struct StateCells {
-    contact_radius: f64,
-    approach: f64,
-    force: f64,
-    wave: Option<u64>,
-    rings: usize,
-    area: f64,
-    energy: f64,
-}
-
 /// An event as a row of CSV.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct EventRow {
-    number: usize,
-    kind: &'static str,
-    direction: &'static str,
-    control: f64,
-    radius: Option<f64>,
-    before: Option<StateCells>,
-    after: Option<StateCells>,
-    dissipated: Option<f64>,
-    dissipated_by_area: Option<f64>,
-    admissible: Option<bool>,
-    before_zone_radius: Option<f64>,
-    after_zone_radius: Option<f64>,
+struct EventRow<'a> {
+    #[serde(flatten)]
+    event: &'a EventReport,
+    before_rings: Option<usize>,
+    after_rings: Option<usize>,
 }
 
 /// One contact of one state, as a row of CSV.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct ContactRow {
+struct ContactRow<'a> {
     state: usize,
-    piece: usize,
-    direction: &'static str,
-    control: f64,
-    approach: f64,
-    force: f64,
-    energy: f64,
-    area: f64,
-    held_stiffness: f64,
+    #[serde(flatten)]
+    at: &'a PathStateReport,
     contact: usize,
     inner_radius: Option<f64>,
     outer_radius: Option<f64>,
-    zone_radius: Option<f64>,
 }
 
 /// The columns of the events as CSV; they never change, new ones come after them.
@@ -465,35 +438,22 @@ impl PathReport {
     /// # Errors
     /// As [`ReportTable::of`].
     pub fn states_table(&self) -> Result<ReportTable, RowsError> {
-        let rows: Vec<ContactRow> = self
-            .states
-            .iter()
-            .enumerate()
-            .flat_map(|(number, at)| {
-                // A zone without contact has a row, too.
-                let contacts = &at.state.contacts;
-                let rows = contacts.len().max(usize::from(at.state.zone_radius.is_some()));
-                (0..rows).map(move |contact| ContactRow {
-                    state: number,
-                    piece: at.piece,
-                    direction: at.direction,
-                    control: at.control,
-                    approach: at.state.approach,
-                    force: at.state.force,
-                    energy: at.state.energy,
-                    area: at.state.area,
-                    held_stiffness: at.state.held_stiffness,
-                    contact,
-                    inner_radius: contacts.get(contact).map(|edges| edges[0]),
-                    outer_radius: contacts.get(contact).map(|edges| edges[1]),
-                    zone_radius: at.state.zone_radius,
-                })
+        let rows = self.states.iter().enumerate().flat_map(|(state, at)| {
+            // A zone without contact has a row, too.
+            let contacts = &at.state.contacts;
+            let rows = contacts.len().max(usize::from(at.state.zone_radius.is_some()));
+            (0..rows).map(move |contact| ContactRow {
+                state,
+                at,
+                contact,
+                inner_radius: contacts.get(contact).map(|edges| edges[0]),
+                outer_radius: contacts.get(contact).map(|edges| edges[1]),
             })
-            .collect();
-        if rows.iter().all(|row| row.zone_radius.is_none()) {
-            return ReportTable::of(STATE_COLUMNS, &rows);
+        });
+        if self.states.iter().all(|at| at.state.zone_radius.is_none()) {
+            return ReportTable::picking(STATE_COLUMNS, rows);
         }
-        ReportTable::of(&[STATE_COLUMNS, STATE_ZONE_COLUMNS].concat(), &rows)
+        ReportTable::picking(&[STATE_COLUMNS, STATE_ZONE_COLUMNS].concat(), rows)
     }
 }
 
@@ -502,37 +462,19 @@ impl PathReport {
 /// # Errors
 /// As [`ReportTable::of`].
 pub fn events_table(events: &[EventReport]) -> Result<ReportTable, RowsError> {
-    let cells = |state: &Option<StateReport>| {
-        state.as_ref().map(|state| StateCells {
-            contact_radius: state.contact_radius,
-            approach: state.approach,
-            force: state.force,
-            wave: state.wave,
-            rings: state.contacts.iter().filter(|[inner, _]| *inner > 0.0).count(),
-            area: state.area,
-            energy: state.energy,
-        })
+    let rings = |state: &Option<StateReport>| {
+        state.as_ref().map(|state| state.contacts.iter().filter(|[inner, _]| *inner > 0.0).count())
     };
-    let zone = |state: &Option<StateReport>| state.as_ref().and_then(|state| state.zone_radius);
-    let row = |event: &EventReport| EventRow {
-        number: event.number,
-        kind: event.kind,
-        direction: event.direction,
-        control: event.control,
-        radius: event.radius,
-        before: cells(&event.before),
-        after: cells(&event.after),
-        dissipated: event.dissipated,
-        dissipated_by_area: event.dissipated_by_area,
-        admissible: event.admissible,
-        before_zone_radius: zone(&event.before),
-        after_zone_radius: zone(&event.after),
-    };
-    let rows: Vec<EventRow> = events.iter().map(row).collect();
-    if rows.iter().all(|row| row.before_zone_radius.or(row.after_zone_radius).is_none()) {
-        return ReportTable::of(COLUMNS, &rows);
+    let rows = events.iter().map(|event| EventRow {
+        event,
+        before_rings: rings(&event.before),
+        after_rings: rings(&event.after),
+    });
+    let mut states = events.iter().flat_map(|event| event.before.iter().chain(&event.after));
+    if states.all(|state| state.zone_radius.is_none()) {
+        return ReportTable::picking(COLUMNS, rows);
     }
-    ReportTable::of(&[COLUMNS, ZONE_COLUMNS].concat(), &rows)
+    ReportTable::picking(&[COLUMNS, ZONE_COLUMNS].concat(), rows)
 }
 
 fn problem_notes(case: &Case) -> Vec<String> {

@@ -150,17 +150,14 @@ pub struct MomentRow {
     pub dissipated: f64,
 }
 
-/// A run as a row of CSV.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-struct RunRow {
-    rate: Option<f64>,
-    peak: MomentReport,
+/// A run as a row of CSV, with counts in place of its lists.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct RunRow<'a> {
+    #[serde(flatten)]
+    run: &'a RunReport,
+    // After the run, so that they replace what it has under these names.
     tension_peaks: usize,
     snaps: usize,
-    last_contact: Option<LastContactReport>,
-    dissipated: Option<f64>,
-    top_edge_speed: f64,
-    balance: f64,
 }
 
 /// The columns of the runs as CSV; they never change, new ones come after them.
@@ -372,17 +369,12 @@ impl PullReport {
         if self.runs.is_empty() {
             return ReportTable::of(FAILURE_COLUMNS, &self.failures);
         }
-        let row = |run: &RunReport| RunRow {
-            rate: run.rate,
-            peak: run.peak,
+        let rows = self.runs.iter().map(|run| RunRow {
+            run,
             tension_peaks: run.tension_peaks.len(),
             snaps: run.snaps.len(),
-            last_contact: run.last_contact,
-            dissipated: run.dissipated,
-            top_edge_speed: run.top_edge_speed,
-            balance: run.balance,
-        };
-        ReportTable::of(COLUMNS, &self.runs.iter().map(row).collect::<Vec<_>>())
+        });
+        ReportTable::picking(COLUMNS, rows)
     }
 
     /// The moments of all runs.

@@ -33,13 +33,34 @@ impl ReportTable {
     /// # Errors
     /// [`RowsError::Shape`] when a row has a value without a column, so that none is lost silently.
     pub fn of<R: Serialize>(columns: &[&str], rows: &[R]) -> Result<Self, RowsError> {
-        let cells = |row: &R| {
+        Self::filled(columns, rows, |surplus| {
+            surplus.into_keys().next().map_or(Ok(()), |name| Err(RowsError::Shape(name)))
+        })
+    }
+
+    /// The same where the rows hold more than is wanted, such as a whole state: only the named cells are taken.
+    ///
+    /// # Errors
+    /// [`RowsError::Json`] when a row could not be serialized.
+    pub(super) fn picking<R: Serialize>(
+        columns: &[&str],
+        rows: impl IntoIterator<Item = R>,
+    ) -> Result<Self, RowsError> {
+        Self::filled(columns, rows, |_| Ok(()))
+    }
+
+    fn filled<R: Serialize>(
+        columns: &[&str],
+        rows: impl IntoIterator<Item = R>,
+        check: impl Fn(HashMap<String, Value>) -> Result<(), RowsError>,
+    ) -> Result<Self, RowsError> {
+        let cells = |row: R| {
             let mut cells = HashMap::new();
             flatten("", serde_json::to_value(row)?, &mut cells);
             let row = columns.iter().map(|column| cells.remove(*column).unwrap_or_default()).collect();
-            cells.into_keys().next().map_or(Ok(row), |name| Err(RowsError::Shape(name)))
+            check(cells).map(|()| row)
         };
-        let rows = rows.iter().map(cells).collect::<Result<_, _>>()?;
+        let rows = rows.into_iter().map(cells).collect::<Result<_, _>>()?;
         Ok(Self { columns: columns.iter().map(|column| (*column).to_owned()).collect(), rows })
     }
 
@@ -105,7 +126,7 @@ fn flatten(name: &str, value: Value, cells: &mut HashMap<String, Value>) {
 
 #[cfg(test)]
 mod tests {
-    use super::{csv, tsv};
+    use super::{ReportTable, csv, tsv};
     use serde_json::json;
 
     #[test]
@@ -114,5 +135,7 @@ mod tests {
         assert_eq!(csv(&["a", "b_c", "b_d"], &rows).unwrap(), "a,b_c,b_d\n1.5e-9,true,\n-2.0,,\n");
         assert_eq!(tsv(&["a", "b_c", "b_d"], &rows).unwrap(), "a\tb_c\tb_d\n1.5e-9\ttrue\t\n-2.0\t\t\n");
         assert!(csv(&["a"], &rows).is_err());
+        let picked = ReportTable::picking(&["b_c", "a"], rows).unwrap();
+        assert_eq!(picked.csv().unwrap(), "b_c,a\ntrue,1.5e-9\n,-2.0\n");
     }
 }
