@@ -6,6 +6,12 @@
 use crate::problem::Control;
 use crate::units::{Quantity, UnitSystem};
 
+/// The names of columns, separated by spaces: a header is read as it stands in the file.
+macro_rules! columns {
+    ($($name:ident)+) => { &[$(stringify!($name)),+] };
+}
+pub(super) use columns;
+
 /// What a column of numbers measures; `None` for pure numbers, words and verdicts.
 fn quantity(column: &str, control: Control) -> Option<Quantity> {
     let of_state = ["before_", "after_", "exact_", "peak_", "last_contact_"]

@@ -1,5 +1,6 @@
 //! Maps of two numbers, and limit points over one, as a document.
 
+use super::columns::columns;
 use super::problem::Head;
 use super::rows::{ReportTable, RowsError};
 use crate::case::Case;
@@ -59,8 +60,7 @@ pub struct RowReport {
 }
 
 /// The columns of the points as CSV; they never change, new ones come after them.
-pub const COLUMNS: &[&str] =
-    &["line", "kind", "crest", "contact_radius", "x", "y", "control", "stable", "changes"];
+pub const COLUMNS: &[&str] = columns!(line kind crest contact_radius x y control stable changes);
 
 /// One axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,5 +1,6 @@
 //! A path as a document: an unloading, or a whole loop of loading and unloading.
 
+use super::columns::columns;
 use super::number::{significant, with_unit};
 use super::overlap::{self, OverlapReport};
 use super::problem::{Head, control_name};
@@ -204,53 +205,23 @@ struct ContactRow<'a> {
 }
 
 /// The columns of the events as CSV; they never change, new ones come after them.
-pub const COLUMNS: &[&str] = &[
-    "number",
-    "kind",
-    "direction",
-    "control",
-    "radius",
-    "before_contact_radius",
-    "before_approach",
-    "before_force",
-    "before_wave",
-    "before_rings",
-    "before_area",
-    "before_energy",
-    "after_contact_radius",
-    "after_approach",
-    "after_force",
-    "after_wave",
-    "after_rings",
-    "after_area",
-    "after_energy",
-    "dissipated",
-    "dissipated_by_area",
-    "admissible",
-];
+pub const COLUMNS: &[&str] = columns!(
+    number kind direction control radius before_contact_radius before_approach before_force before_wave
+    before_rings before_area before_energy after_contact_radius after_approach after_force after_wave
+    after_rings after_area after_energy dissipated dissipated_by_area admissible
+);
 
 /// The columns of the states as CSV, a row for each contact; they never change, new ones come after them.
-pub const STATE_COLUMNS: &[&str] = &[
-    "state",
-    "piece",
-    "direction",
-    "control",
-    "approach",
-    "force",
-    "energy",
-    "area",
-    "held_stiffness",
-    "contact",
-    "inner_radius",
-    "outer_radius",
-];
+pub const STATE_COLUMNS: &[&str] = columns!(
+    state piece direction control approach force energy area held_stiffness contact inner_radius outer_radius
+);
 
 /// The column after [`STATE_COLUMNS`] where the adhesion has a range; a state without contact then has one row,
 /// without radii.
-pub const STATE_ZONE_COLUMNS: &[&str] = &["zone_radius"];
+pub const STATE_ZONE_COLUMNS: &[&str] = columns!(zone_radius);
 
 /// The columns after [`COLUMNS`] where the adhesion has a range.
-pub const ZONE_COLUMNS: &[&str] = &["before_zone_radius", "after_zone_radius"];
+pub const ZONE_COLUMNS: &[&str] = columns!(before_zone_radius after_zone_radius);
 
 /// How much of a path is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,5 +1,6 @@
 //! Pulls at a rate, and times to failure under dead loads, as a document.
 
+use super::columns::columns;
 use super::map::EXACT;
 use super::number::{loss, significant};
 use super::problem::Head;
@@ -161,36 +162,18 @@ struct RunRow<'a> {
 }
 
 /// The columns of the runs as CSV; they never change, new ones come after them.
-pub const COLUMNS: &[&str] = &[
-    "rate",
-    "peak_time",
-    "peak_contact_radius",
-    "peak_approach",
-    "peak_force",
-    "tension_peaks",
-    "snaps",
-    "last_contact_time",
-    "last_contact_control",
-    "dissipated",
-    "top_edge_speed",
-    "balance",
-];
+pub const COLUMNS: &[&str] = columns!(
+    rate peak_time peak_contact_radius peak_approach peak_force tension_peaks snaps last_contact_time
+    last_contact_control dissipated top_edge_speed balance
+);
 
 /// The columns of the moments.
-pub const MOMENT_COLUMNS: &[&str] = &[
-    "rate",
-    "time",
-    "control",
-    "contact_radius",
-    "approach",
-    "force",
-    "speed",
-    "energy_release_rate",
-    "dissipated",
-];
+pub const MOMENT_COLUMNS: &[&str] = columns!(
+    rate time control contact_radius approach force speed energy_release_rate dissipated
+);
 
 /// The columns of the times to failure.
-pub const FAILURE_COLUMNS: &[&str] = &["force", "time"];
+pub const FAILURE_COLUMNS: &[&str] = columns!(force time);
 
 /// Pulls of one disc whose edge has a speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]

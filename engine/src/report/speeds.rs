@@ -9,6 +9,7 @@
 //! radius, G does not depend on the force, unless the way is that of the other end of a spring. D. Maugis and M.
 //! Barquins, J. Phys. D 11, 1989 (1978).
 
+use super::columns::columns;
 use super::problem::Head;
 use super::rows::{ReportTable, RowsError};
 use crate::case::{Case, CaseError};
@@ -114,17 +115,9 @@ pub struct SpeedRow {
 }
 
 /// The columns as CSV; they never change, new ones come after them.
-pub const COLUMNS: &[&str] = &[
-    "time",
-    "contact_radius",
-    "speed",
-    "energy_release_rate",
-    "error",
-    "speed_error",
-    "window",
-    "segment",
-    "row",
-];
+pub const COLUMNS: &[&str] = columns!(
+    time contact_radius speed energy_release_rate error speed_error window segment row
+);
 
 /// G at every row in contact, and how fast the edge goes there.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,5 +1,6 @@
 //! The law of stability over the contact radius as a document.
 
+use super::columns::columns;
 use super::map::EXACT;
 use super::problem::Head;
 use super::rows::{ReportTable, RowsError};
@@ -37,8 +38,9 @@ pub struct RowReport {
 }
 
 /// The columns of the rows as CSV; they never change, new ones come after them.
-pub const COLUMNS: &[&str] =
-    &["kind", "contact_radius", "critical_displacement", "critical_force", "critical_chosen"];
+pub const COLUMNS: &[&str] = columns!(
+    kind contact_radius critical_displacement critical_force critical_chosen
+);
 
 /// The law of stability of one disc between the end and the start of a preset.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,5 +1,6 @@
 //! The equilibrium curve as a document.
 
+use super::columns::columns;
 use super::number::{significant, with_unit};
 use super::overlap::{self, OverlapReport};
 use super::path::note_of_range;
@@ -210,31 +211,20 @@ pub struct LimitReport {
 }
 
 /// The columns of the points as CSV; they never change, new ones come after them.
-pub const COLUMNS: &[&str] = &[
-    "step",
-    "contact_radius",
-    "approach",
-    "force",
-    "energy",
-    "newton_iterations",
-    "stable_displacement",
-    "stable_force",
-    "stable_chosen",
-    "contact_stiffness",
-    "tangent_stiffness",
-    "area_slope",
-    "admissible",
-];
+pub const COLUMNS: &[&str] = columns!(
+    step contact_radius approach force energy newton_iterations stable_displacement stable_force stable_chosen
+    contact_stiffness tangent_stiffness area_slope admissible
+);
 
 /// The columns of the exact solution, after [`COLUMNS`] where it was asked for.
 pub const EXACT_COLUMNS: &[&str] =
-    &["exact_approach", "exact_force", "exact_energy", "exact_relative_difference"];
+    columns!(exact_approach exact_force exact_energy exact_relative_difference);
 
 /// Why a trace of adhesion with a range ends where nothing cuts it short.
 const OUT_OF_RANGE: &str = "the zone has shrunk to nothing: the bodies are out of range";
 
 /// The column after them where the adhesion has a range.
-pub const ZONE_COLUMNS: &[&str] = &["zone_radius"];
+pub const ZONE_COLUMNS: &[&str] = columns!(zone_radius);
 
 /// Why an unloading does not begin where the curve does.
 fn start_note(preset: &Preset, case: &Case, start: &PointReport) -> Option<String> {

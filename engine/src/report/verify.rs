@@ -1,6 +1,7 @@
 //! Our numbers against theory, and against each other, as a document.
 
 use super::SCHEMA;
+use super::columns::columns;
 use super::rows::{ReportTable, RowsError};
 use crate::verify::{Group, VerifyRow};
 use serde::Serialize;
@@ -51,8 +52,7 @@ pub struct RowReport {
 }
 
 /// The columns of the rows.
-pub const COLUMNS: &[&str] =
-    &["group", "measure", "what", "ours", "exact", "other", "difference", "bound", "passes"];
+pub const COLUMNS: &[&str] = columns!(group measure what ours exact other difference bound passes);
 
 impl VerifyReport {
     /// The document of `groups`, or only of the rows whose group or name contains `only`, ignoring case.

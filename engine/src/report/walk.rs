@@ -1,6 +1,7 @@
 //! The states that a person walked through, as a document.
 
 use super::Head;
+use super::columns::columns;
 use super::path::EventReport;
 use super::trace::StableReport;
 use serde::Serialize;
@@ -70,24 +71,8 @@ pub struct WalkRow {
 }
 
 /// The columns of the walk as CSV; after them come the keys that changed during it.
-pub const WALK_COLUMNS: &[&str] = &[
-    "step",
-    "kind",
-    "control",
-    "contact_radius",
-    "approach",
-    "force",
-    "energy",
-    "wave",
-    "newton_iterations",
-    "stable_displacement",
-    "stable_force",
-    "stable_chosen",
-    "dissipated",
-    "dissipated_by_area",
-    "work_of_adhesion",
-    "radius_of_curvature",
-    "amplitude",
-    "wavelength",
-    "admissible",
-];
+pub const WALK_COLUMNS: &[&str] = columns!(
+    step kind control contact_radius approach force energy wave newton_iterations stable_displacement
+    stable_force stable_chosen dissipated dissipated_by_area work_of_adhesion radius_of_curvature amplitude
+    wavelength admissible
+);
