@@ -3,7 +3,6 @@
 use super::node::{Node, NodeKind};
 use pulloff_engine::gap::{Gap, wave_index};
 use pulloff_engine::preset::{Key, Preset, Row};
-use pulloff_engine::problem::Control;
 use pulloff_engine::report::trace::StableReport;
 use pulloff_engine::report::walk::WalkRow;
 use serde_json::Value;
@@ -35,7 +34,6 @@ pub(super) fn changed_keys(walk: &[Node]) -> Vec<Key> {
 pub(super) fn row(node: &Node, changed: &[Key]) -> WalkRow {
     let setting = &node.setting;
     let state = node.state.in_units(setting.units());
-    let stability = node.stability;
     let event = if let NodeKind::Jump(event) = &node.kind { Some(event) } else { None };
     let energy = |x: f64| x * setting.units().energy;
     let wave = setting.preset.gap.wave();
@@ -54,11 +52,7 @@ pub(super) fn row(node: &Node, changed: &[Key]) -> WalkRow {
             wave_index(node.state.contact_radius, setting.reduced.gap.wavelength())
         },
         newton_iterations: node.point.rounds,
-        stable: StableReport {
-            displacement: stability.under(Control::Displacement),
-            force: stability.under(Control::Force),
-            chosen: stability.under(node.control),
-        },
+        stable: StableReport::of(&node.stability, node.control),
         dissipated: event.and_then(|e| e.dissipated).map(energy),
         dissipated_by_area: event.and_then(|e| e.dissipated_by_area).map(energy),
         work_of_adhesion: setting.preset.material.work_of_adhesion,

@@ -23,7 +23,6 @@ use super::admissible::{Admissibility, Judge};
 use crate::continuation::{self, ColumnView, Linearization, MatrixMut, System, Vector};
 use crate::disc::{Basis, Evaluation, Table};
 use crate::elementary::{exp2, log2};
-use crate::gap::{Gap, wave_index};
 use crate::problem::{Control, Reduced, Units};
 use crate::progress::{Progress, Stopped};
 use std::f64::consts::PI;
@@ -274,11 +273,6 @@ impl Equilibrium {
     /// The state of radius `s` from the explicit root, as a point whose tangent runs inward.
     pub fn explicit(&self, s: f64) -> Option<StatePoint> {
         self.point(&self.basis.equilibrium(&self.problem, s)?)
-    }
-
-    /// The wave index of an edge, where the gap has a single wave.
-    pub fn wave(&self, s: f64) -> Option<u64> {
-        wave_index(s, self.problem.gap.wavelength())
     }
 
     /// The point of an evaluated equilibrium, its tangent running inward; `None` where the curve is singular.

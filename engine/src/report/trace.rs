@@ -15,7 +15,9 @@ use crate::problem::Control;
 use crate::progress::{Progress, ProgressPart};
 use crate::quasistatic::overlap::overlaps;
 use crate::quasistatic::path::Zones;
-use crate::quasistatic::{Curve, CurveStop, Equilibrium, Monotone, Overlap, State, StatePoint, Stiffness};
+use crate::quasistatic::{
+    Curve, CurveStop, Equilibrium, Limit, Monotone, Overlap, Stability, State, StatePoint, Stiffness,
+};
 use crate::theory::{self, Exact};
 use crate::units::Quantity;
 use serde::Serialize;
@@ -122,11 +124,7 @@ impl PointReport {
             force: state.force,
             energy: state.energy,
             newton_iterations: point.rounds,
-            stable: StableReport {
-                displacement: stability.under(Control::Displacement),
-                force: stability.under(Control::Force),
-                chosen: stability.under(case.control),
-            },
+            stable: StableReport::of(&stability, case.control),
             contact_stiffness: stiffness.contact,
             tangent_stiffness: finite(stiffness.tangent),
             area_slope: finite(stiffness.area_slope),
@@ -153,11 +151,7 @@ impl PointReport {
             force: at.force * units.force,
             energy: zones.solution.energy(place) * units.energy,
             newton_iterations: 0,
-            stable: StableReport {
-                displacement: stability.under(Control::Displacement),
-                force: stability.under(Control::Force),
-                chosen: stability.under(case.control),
-            },
+            stable: StableReport::of(&stability, case.control),
             contact_stiffness: 2.0 * contact_radius * units.stiffness,
             tangent_stiffness: finite(stability.force / stability.approach * units.stiffness),
             area_slope: finite(area * units.length),
@@ -191,6 +185,17 @@ pub struct StableReport {
     pub chosen: bool,
 }
 
+impl StableReport {
+    /// The verdicts on a state, `chosen` being the control of the document.
+    pub fn of(stability: &Stability, chosen: Control) -> Self {
+        Self {
+            displacement: stability.under(Control::Displacement),
+            force: stability.under(Control::Force),
+            chosen: stability.under(chosen),
+        }
+    }
+}
+
 /// One limit point.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -208,6 +213,21 @@ pub struct LimitReport {
     pub force: f64,
     /// The crest of the edge; none for a gap without waves.
     pub wave: Option<u64>,
+}
+
+impl LimitReport {
+    /// `limit` of `case`, with its edges.
+    fn of(case: &Case, limit: &Limit, edges: Edges) -> Self {
+        let units = case.units();
+        Self {
+            control: case.shown_control(limit.control),
+            contact_radius: edges.contact_radius * units.length,
+            zone_radius: edges.zone.map(|edge| edge * units.length),
+            approach: limit.approach * units.length,
+            force: limit.force * units.force,
+            wave: wave_index(edges.contact_radius, case.reduced.gap.wavelength()),
+        }
+    }
 }
 
 /// The columns of the points as CSV; they never change, new ones come after them.
@@ -236,6 +256,13 @@ fn start_note(preset: &Preset, case: &Case, start: &PointReport) -> Option<Strin
             control_name(case.control)
         )
     })
+}
+
+/// The smallest approach and the smallest force of a curve: a limit point may lie between two points.
+fn smallest(points: &[PointReport], limits: &[LimitReport]) -> [Option<f64>; 2] {
+    let points = points.iter().map(|p| [p.approach, p.force]);
+    let all = points.chain(limits.iter().map(|p| [p.approach, p.force]));
+    [0, 1].map(|at| all.clone().map(|both| both[at]).min_by(f64::total_cmp))
 }
 
 impl TraceReport {
@@ -284,23 +311,9 @@ impl TraceReport {
                 let limits = Monotone::of(solution, control).limits;
                 limits.into_iter().rev().filter(|limit| (least..=start).contains(&radius(limit.place)))
             })
-            .map(|limit| {
-                let edges = solution.edges(limit.place);
-                LimitReport {
-                    control: case.shown_control(limit.control),
-                    contact_radius: edges.contact_radius * units.length,
-                    zone_radius: edges.zone.map(|edge| edge * units.length),
-                    approach: limit.approach * units.length,
-                    force: limit.force * units.force,
-                    wave: wave_index(edges.contact_radius, case.reduced.gap.wavelength()),
-                }
-            })
+            .map(|limit| LimitReport::of(case, &limit, solution.edges(limit.place)))
             .collect();
-        let smallest = |of: fn((f64, f64)) -> f64| {
-            let points = points.iter().map(|p| (p.approach, p.force));
-            let limits = limit_points.iter().map(|p| (p.approach, p.force));
-            points.chain(limits).map(of).min_by(f64::total_cmp)
-        };
+        let [curve_min_approach, curve_min_force] = smallest(&points, &limit_points);
         let has_reached_its_end = fault.is_none();
         let stop = fault.map_or_else(|| OUT_OF_RANGE.to_owned(), |error| error.words(&case.printer()));
         Ok(Self {
@@ -310,8 +323,8 @@ impl TraceReport {
             start_note: points.first().and_then(|start| start_note(preset, case, start)),
             stop,
             has_reached_its_end,
-            curve_min_force: smallest(|(_, force)| force),
-            curve_min_approach: smallest(|(approach, _)| approach),
+            curve_min_force,
+            curve_min_approach,
             limit_points,
             inadmissible: Vec::new(),
             points,
@@ -373,20 +386,12 @@ impl TraceReport {
             .controls()
             .into_iter()
             .flat_map(|control| curve.limit_points(control))
-            .map(|limit| LimitReport {
-                control: case.shown_control(limit.control),
-                contact_radius: limit.contact_radius * units.length,
-                zone_radius: None,
-                approach: limit.approach * units.length,
-                force: limit.force * units.force,
-                wave: equilibrium.wave(limit.contact_radius),
+            .map(|limit| {
+                let edges = Edges { contact_radius: limit.contact_radius, zone: None };
+                LimitReport::of(case, &limit, edges)
             })
             .collect();
-        let smallest = |of: fn((f64, f64)) -> f64| {
-            let points = points.iter().map(|p| (p.approach, p.force));
-            let limits = limit_points.iter().map(|p| (p.approach, p.force));
-            points.chain(limits).map(of).min_by(f64::total_cmp)
-        };
+        let [curve_min_approach, curve_min_force] = smallest(&points, &limit_points);
         Ok(Self {
             head: Head::new("trace", preset, case),
             warnings: case
@@ -399,8 +404,8 @@ impl TraceReport {
             start_note: points.first().and_then(|start| start_note(preset, case, start)),
             has_reached_its_end: stop == CurveStop::End,
             stop: stop.words(&case.printer()),
-            curve_min_force: smallest(|(_, force)| force),
-            curve_min_approach: smallest(|(approach, _)| approach),
+            curve_min_force,
+            curve_min_approach,
             limit_points,
             inadmissible,
             points,
