@@ -10,7 +10,7 @@ use pulloff_engine::annuli::Contacts;
 use pulloff_engine::case::Case;
 use pulloff_engine::preset::{Preset, Value};
 use pulloff_engine::progress::Unwatched;
-use pulloff_engine::quasistatic::walk::{At, Emit, Walk, WalkEnd, WalkFailure, edges};
+use pulloff_engine::quasistatic::walk::{At, Emit, Walk, WalkFailure, Walked, edges};
 use pulloff_engine::quasistatic::{Curve, Detail, State};
 
 /// The smallest part of a change, and how many parts are tried.
@@ -34,11 +34,11 @@ impl Before {
     }
 
     /// The state of the problem of `curve` with the same contacts, at the value that the control has in `state`.
-    pub fn follow(&self, curve: &CurveData, state: &State, emit: &mut Emit<'_>) -> WalkEnd {
+    pub fn follow(&self, curve: &CurveData, state: &State, emit: &mut Emit<'_>) -> Walked {
         let last =
             |from: &Contacts, emit: &mut Emit<'_>| solved(&curve.case, &curve.base.curve, from, state, emit);
         let whole = last(&self.contacts, emit);
-        if whole == WalkEnd::Done {
+        if whole.is_ok() {
             return whole;
         }
         let (mut contacts, mut share, mut part) = (self.contacts.clone(), 0.0, 0.5);
@@ -46,7 +46,7 @@ impl Before {
             let to = share + part;
             if to >= 1.0 {
                 let end = last(&contacts, emit);
-                if end == WalkEnd::Done {
+                if end.is_ok() {
                     return end;
                 }
             } else if let Some(found) = self.part(&curve.setting.preset, to, &contacts, state) {
@@ -58,7 +58,7 @@ impl Before {
                 break;
             }
         }
-        WalkEnd::Failed(WalkFailure::NotSolved)
+        Err(WalkFailure::NotSolved)
     }
 
     /// The contacts after this share of the change to `preset`.
@@ -71,12 +71,12 @@ impl Before {
             found = Some(scaled(&contacts, case.units().length));
             true
         });
-        found.filter(|_| end == WalkEnd::Done)
+        found.filter(|_| end.is_ok())
     }
 }
 
 /// Solves for the edges near `from` (in the user's units) on a curve.
-fn solved(case: &Case, curve: &Curve, from: &Contacts, state: &State, emit: &mut Emit<'_>) -> WalkEnd {
+fn solved(case: &Case, curve: &Curve, from: &Contacts, state: &State, emit: &mut Emit<'_>) -> Walked {
     let units = case.units();
     let walk = Walk {
         curve,

@@ -13,7 +13,7 @@
 use crate::support::random_gap;
 use crate::walk::{STEPS, Walker, curve};
 use pulloff_engine::problem::Control;
-use pulloff_engine::quasistatic::walk::{Arrival, At, Reached, WalkEnd, edges};
+use pulloff_engine::quasistatic::walk::{Arrival, At, Reached, WalkEnd, Walked, edges};
 use rayon::prelude::*;
 use std::fmt::Write;
 
@@ -27,12 +27,12 @@ const SHARE: usize = 4;
 const EDGES: f64 = 2e-8;
 const LOSSES: f64 = 1e-5;
 
-fn ended(end: &WalkEnd) -> String {
+fn ended(end: &Walked) -> String {
     let words = match end {
-        WalkEnd::EdgesMeet(radius) => format!("meet {radius:.3}"),
-        WalkEnd::Vanishes(radius) => format!("vanish {radius:.3}"),
-        WalkEnd::Failed(_) => "failed".to_owned(),
-        other => format!("{other:?}"),
+        Ok(WalkEnd::EdgesMeet(radius)) => format!("meet {radius:.3}"),
+        Ok(WalkEnd::Vanishes(radius)) => format!("vanish {radius:.3}"),
+        Ok(other) => format!("{other:?}"),
+        Err(_) => "failed".to_owned(),
     };
     format!("| {words} ")
 }
@@ -54,7 +54,7 @@ fn line(number: u64) -> String {
     };
     let loss = |loss: Option<f64>| loss.map_or_else(|| "- ".to_owned(), |loss| format!("{loss:.6e} "));
     let (end, _) = walker.asked(|walk, emit| walk.first_touch(emit));
-    if end != WalkEnd::Done {
+    if end != Ok(WalkEnd::Done) {
         return ended(&end);
     }
     write!(text, "F {}", radii(&walker)).unwrap();
@@ -69,11 +69,11 @@ fn line(number: u64) -> String {
         let unsaid = made.windows(2).find(|pair| !overlaps(&pair[0]) && overlaps(&pair[1]));
         assert!(goes_past || unsaid.is_none(), "{number}: {unsaid:?}");
         let kind = match end {
-            WalkEnd::AtLimit => "L",
-            WalkEnd::AtTouch => "T",
+            Ok(WalkEnd::AtLimit) => "L",
+            Ok(WalkEnd::AtTouch) => "T",
             other => {
                 text += &ended(&other);
-                if matches!(other, WalkEnd::Failed(_)) {
+                if other.is_err() {
                     break;
                 }
                 walker.inward = !walker.inward;

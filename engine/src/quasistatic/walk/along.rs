@@ -3,7 +3,7 @@
 //! With two works of adhesion an edge grows on one curve, recedes on another and rests in between; adhesion with a range has states without
 //! contact. A walker then goes from state to state of the path of the device, through its events.
 
-use super::arrival::{Ahead, Arrival, Emit, Reached, WalkEnd, WalkFailure};
+use super::arrival::{Ahead, Arrival, Emit, Reached, WalkEnd, WalkFailure, Walked};
 use crate::continuation::Columns;
 use crate::quasistatic::path::{Direction, EventKind};
 use crate::quasistatic::{Admissibility, Event, Path, PathState, Scales, Stability, StatePoint, Stiffness};
@@ -94,13 +94,16 @@ impl<'a> Along<'a> {
 
     /// Takes `count` steps, single or of a run; stops where edges run, where the path turns, and where a held edge
     /// begins to move.
-    pub fn steps(&self, count: usize, emit: &mut Emit<'_>) -> WalkEnd {
+    ///
+    /// # Errors
+    /// [`WalkFailure::NoState`] where the walker stands on no state of the path.
+    pub fn steps(&self, count: usize, emit: &mut Emit<'_>) -> Walked {
         let states = &self.path.states;
-        let Some(mut at) = self.here() else { return WalkEnd::Failed(WalkFailure::NoState("walk")) };
+        let mut at = self.here().ok_or(WalkFailure::NoState("walk"))?;
         if let Some(passing) = self.waiting(at) {
             // Edges may run at once where a held one is let go. The path goes on only after the jump.
             emit(self.reached(at, passing.arrival()));
-            return WalkEnd::AtLimit;
+            return Ok(WalkEnd::AtLimit);
         }
         let is_ahead =
             |passing: &Passing<'_>| passing.before > at || passing.before == at && passing.after > at;
@@ -115,65 +118,73 @@ impl<'a> Along<'a> {
             match &ahead {
                 Some(passing) if at == last && passing.is_jump() => {
                     emit(self.reached(at, passing.arrival()));
-                    return WalkEnd::AtLimit;
+                    return Ok(WalkEnd::AtLimit);
                 }
                 Some(passing) if at == last => {
                     emit(self.reached(passing.after, Arrival::Jump(Box::new(passing.event.clone()))));
-                    return WalkEnd::AtLimit;
+                    return Ok(WalkEnd::AtLimit);
                 }
                 None if at == last => {
                     if gone > 0.0 {
                         emit(self.reached(at, Arrival::Step));
                     }
-                    return WalkEnd::PathEnds;
+                    return Ok(WalkEnd::PathEnds);
                 }
                 _ => {}
             }
             if !emit(self.reached(at, Arrival::Step)) {
-                return WalkEnd::Paused;
+                return Ok(WalkEnd::Paused);
             }
         }
-        WalkEnd::Done
+        Ok(WalkEnd::Done)
     }
 
     /// Lets the waiting edges run.
-    pub fn jump(&self, emit: &mut Emit<'_>) -> WalkEnd {
-        let Some(passing) = self.here().and_then(|at| self.waiting(at)) else {
-            return WalkEnd::Failed(WalkFailure::Stable);
-        };
+    ///
+    /// # Errors
+    /// [`WalkFailure::Stable`] where none wait.
+    pub fn jump(&self, emit: &mut Emit<'_>) -> Walked {
+        let passing = self.here().and_then(|at| self.waiting(at)).ok_or(WalkFailure::Stable)?;
         emit(self.reached(passing.after, Arrival::Jump(Box::new(passing.event.clone()))));
-        WalkEnd::Done
+        Ok(WalkEnd::Done)
     }
 
     /// Goes to the state of this number, from 0.
-    pub fn move_to(&self, at: usize, emit: &mut Emit<'_>) -> WalkEnd {
+    ///
+    /// # Errors
+    /// [`WalkFailure::NoEquilibrium`] where the path has fewer states.
+    pub fn move_to(&self, at: usize, emit: &mut Emit<'_>) -> Walked {
         if at >= self.path.states.len() {
-            return WalkEnd::Failed(WalkFailure::NoEquilibrium("on the path"));
+            return Err(WalkFailure::NoEquilibrium("on the path"));
         }
         emit(self.reached(at, self.waiting(at).map_or(Arrival::Moved, |passing| passing.arrival())));
-        WalkEnd::Done
+        Ok(WalkEnd::Done)
     }
 
     /// Goes to the state whose contact radius is nearest to `s`, on the way in `direction`.
-    pub fn move_near(&self, s: f64, direction: Direction, emit: &mut Emit<'_>) -> WalkEnd {
+    ///
+    /// # Errors
+    /// [`WalkFailure::NoEquilibrium`] where the path has no state.
+    pub fn move_near(&self, s: f64, direction: Direction, emit: &mut Emit<'_>) -> Walked {
         let found = self.nearest(direction, &|state| [(state.contact_radius - s).abs(), 0.0]);
         self.move_to(found.unwrap_or(usize::MAX), emit)
     }
 
     /// Goes to the state at this value of the control on the way in `direction`; of several, as around a jump, to the
     /// one whose contact radius is nearest to `s`.
-    pub fn solve(&self, value: f64, s: f64, direction: Direction, emit: &mut Emit<'_>) -> WalkEnd {
+    ///
+    /// # Errors
+    /// [`WalkFailure::NotSolved`] where the path has no state.
+    pub fn solve(&self, value: f64, s: f64, direction: Direction, emit: &mut Emit<'_>) -> Walked {
         let values = self.path.states.iter().map(|state| state.control_value);
         let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], c| [lo.min(c), hi.max(c)]);
         let apart = |state: &PathState| {
             let off = (state.control_value - value).abs();
             [if off <= SAME * (range[1] - range[0]) { 0.0 } else { off }, (state.contact_radius - s).abs()]
         };
-        let Some(at) = self.nearest(direction, &apart) else {
-            return WalkEnd::Failed(WalkFailure::NotSolved);
-        };
+        let at = self.nearest(direction, &apart).ok_or(WalkFailure::NotSolved)?;
         emit(self.reached(at, Arrival::Solved));
-        WalkEnd::Done
+        Ok(WalkEnd::Done)
     }
 
     /// The state with the least `measure` on the way in `direction`, or on the whole path where there is none on that

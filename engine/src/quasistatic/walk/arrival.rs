@@ -52,8 +52,6 @@ pub enum WalkEnd {
     Vanishes(f64),
     /// At three times the start radius.
     OutOfRange,
-    /// It could not go on.
-    Failed(WalkFailure),
 }
 
 /// Why a walk cannot go on.
@@ -93,6 +91,9 @@ pub enum WalkFailure {
     #[error("no equilibrium at this control value near the old contact radius")]
     NotSolved,
 }
+
+/// How a request ended, or why it could not go on.
+pub type Walked = Result<WalkEnd, WalkFailure>;
 
 /// A state that a walk arrived at, with what is known about it.
 #[derive(Debug, Clone, PartialEq)]

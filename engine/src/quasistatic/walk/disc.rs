@@ -1,6 +1,6 @@
 //! Steps, runs and jumps of one disc along its curve.
 
-use super::arrival::{Ahead, Arrival, Emit, WalkEnd, WalkFailure};
+use super::arrival::{Ahead, Arrival, Emit, WalkEnd, WalkFailure, Walked};
 use super::land::Jumped;
 use super::walker::{At, ROOM, Walk};
 use crate::continuation::Tracer;
@@ -55,27 +55,33 @@ fn first_between(stops: &[StepStop], from: f64, to: f64) -> Option<StepStop> {
 
 impl Walk<'_> {
     /// Goes to the state of this contact radius.
-    pub fn move_to(&self, s: f64, emit: &mut Emit<'_>) -> WalkEnd {
-        let Some(point) = self.equilibrium().explicit(s) else {
-            return WalkEnd::Failed(WalkFailure::NoEquilibrium("at that contact radius"));
-        };
+    ///
+    /// # Errors
+    /// [`WalkFailure`] where there is none.
+    pub fn move_to(&self, s: f64, emit: &mut Emit<'_>) -> Walked {
+        let point = self.equilibrium().explicit(s);
+        let point = point.ok_or(WalkFailure::NoEquilibrium("at that contact radius"))?;
         emit(self.of_disc(Arrival::Moved, point));
-        WalkEnd::Done
+        Ok(WalkEnd::Done)
     }
 
     /// Goes to the limit point at this contact radius.
-    pub fn move_to_limit(&self, s: f64, emit: &mut Emit<'_>) -> WalkEnd {
-        let Some(point) = self.equilibrium().explicit(s) else {
-            return WalkEnd::Failed(WalkFailure::NoEquilibrium("at the limit point"));
-        };
+    ///
+    /// # Errors
+    /// [`WalkFailure`] where there is no state.
+    pub fn move_to_limit(&self, s: f64, emit: &mut Emit<'_>) -> Walked {
+        let point = self.equilibrium().explicit(s).ok_or(WalkFailure::NoEquilibrium("at the limit point"))?;
         emit(self.of_disc(Arrival::Limit(self.ahead(&point)), point));
-        WalkEnd::AtLimit
+        Ok(WalkEnd::AtLimit)
     }
 
     /// Goes to the state at this value of the control, nearest to the contact radius `s` before the problem changed.
     /// From a stable state it goes to the nearest stable one, where there is one: bodies would not stay in an unstable
     /// one.
-    pub fn solve(&self, value: f64, s: f64, was_stable: bool, emit: &mut Emit<'_>) -> WalkEnd {
+    ///
+    /// # Errors
+    /// [`WalkFailure::NotSolved`] where there is none near.
+    pub fn solve(&self, value: f64, s: f64, was_stable: bool, emit: &mut Emit<'_>) -> Walked {
         let equilibrium = self.equilibrium();
         let problem = &equilibrium.problem;
         // On a wavy gap Newton's method may find another state far away; the branch of the old radius is wanted.
@@ -98,16 +104,14 @@ impl Walk<'_> {
             found => self.nearest_crossing(value, s, &is_stable).filter(|_| was_stable).or(found),
         };
         let found = newton.or_else(|| self.nearest_crossing(value, s, &|_| true));
-        let Some(point) = stable(found) else {
-            return WalkEnd::Failed(WalkFailure::NotSolved);
-        };
+        let point = stable(found).ok_or(WalkFailure::NotSolved)?;
         // If the control is at its limit, as after a change that leaves the curve as it was, the state is at the limit
         // point itself.
         if let Some(limit) = self.limit_at(value, equilibrium.contact_radius(&point)) {
             return self.move_to_limit(limit, emit);
         }
         emit(self.of_disc(Arrival::Solved, point));
-        WalkEnd::Done
+        Ok(WalkEnd::Done)
     }
 
     /// The radius of the limit point beside the state of radius `s` at which the control takes this value; `None` where none does.
@@ -163,12 +167,7 @@ impl Walk<'_> {
         found
     }
 
-    pub(super) fn disc_steps(
-        &self,
-        count: usize,
-        run: bool,
-        emit: &mut Emit<'_>,
-    ) -> Result<WalkEnd, WalkFailure> {
+    pub(super) fn disc_steps(&self, count: usize, run: bool, emit: &mut Emit<'_>) -> Walked {
         let equilibrium = self.equilibrium();
         let from = self.begun("walk")?;
         let [start, end] = self.range;
@@ -309,7 +308,7 @@ impl Walk<'_> {
         Ok(tracer.step(here)?)
     }
 
-    pub(super) fn disc_jump(&self, emit: &mut Emit<'_>) -> Result<WalkEnd, WalkFailure> {
+    pub(super) fn disc_jump(&self, emit: &mut Emit<'_>) -> Walked {
         let from = self.begun("jump")?;
         let (curve, leaves, landing) = self.landing(from)?;
         let event = Event::of_disc(&*curve.solution, self.control, leaves, landing, Losses::Twice);

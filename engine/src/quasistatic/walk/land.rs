@@ -1,6 +1,6 @@
 //! Where edges land when they run at held control, with the rings that they make on the way.
 
-use super::arrival::{Ahead, Arrival, Emit, Reached, WalkEnd, WalkFailure};
+use super::arrival::{Ahead, Arrival, Emit, Reached, WalkEnd, WalkFailure, Walked};
 use super::edges;
 use super::walker::{At, Walk};
 use crate::annuli::{AnnuliError, Contacts, Ground};
@@ -165,17 +165,7 @@ impl Walk<'_> {
     ///
     /// # Errors
     /// [`WalkFailure`] where the gap has no least value, or the edges do not land.
-    pub fn first_touch(&self, emit: &mut Emit<'_>) -> WalkEnd {
-        match self.touched() {
-            Ok(reached) => {
-                emit(reached);
-                WalkEnd::Done
-            }
-            Err(failure) => WalkEnd::Failed(failure),
-        }
-    }
-
-    fn touched(&self) -> Result<Reached, WalkFailure> {
+    pub fn first_touch(&self, emit: &mut Emit<'_>) -> Walked {
         let first = |ground: &Ground| {
             let balance = self.running(ground);
             let setting = PathSetting::new(balance.control);
@@ -190,6 +180,7 @@ impl Walk<'_> {
         };
         let (crest, jumped) = self.ran([self.range[0], 0.0], &first, &|(_, jumped)| Some(jumped))?;
         let held = jumped.held.ok_or(WalkFailure::NoEquilibrium("after the first touch"))?;
-        self.landed(&self.running(&jumped.ground), Arrival::Touch(crest.radius), held)
+        emit(self.landed(&self.running(&jumped.ground), Arrival::Touch(crest.radius), held)?);
+        Ok(WalkEnd::Done)
     }
 }

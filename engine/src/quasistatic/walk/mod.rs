@@ -25,7 +25,7 @@ mod rings;
 pub mod walker;
 
 pub use along::{Along, Passing};
-pub use arrival::{Ahead, Arrival, Emit, Reached, WalkEnd, WalkFailure};
+pub use arrival::{Ahead, Arrival, Emit, Reached, WalkEnd, WalkFailure, Walked};
 pub use walker::{At, ROOM, Walk};
 
 use super::Event;
@@ -33,21 +33,18 @@ use super::Event;
 impl Walk<'_> {
     /// Takes `count` steps of the length asked for or, in a `run`, of the length that the curve allows; stops at a
     /// limit point of the control and where a crest touches.
-    pub fn steps(&self, count: usize, run: bool, emit: &mut Emit<'_>) -> WalkEnd {
-        let end = if self.has_rings() {
-            self.ring_steps(count, run, emit)
-        } else {
-            self.disc_steps(count, run, emit)
-        };
-        end.unwrap_or_else(WalkEnd::Failed)
+    ///
+    /// # Errors
+    /// [`WalkFailure`] where it could not go on.
+    pub fn steps(&self, count: usize, run: bool, emit: &mut Emit<'_>) -> Walked {
+        if self.has_rings() { self.ring_steps(count, run, emit) } else { self.disc_steps(count, run, emit) }
     }
 
     /// Lets the edges run at constant control to the next stable state; from a touch, with the new contact.
-    pub fn jump(&self, emit: &mut Emit<'_>) -> WalkEnd {
-        self.try_jump(emit).unwrap_or_else(WalkEnd::Failed)
-    }
-
-    fn try_jump(&self, emit: &mut Emit<'_>) -> Result<WalkEnd, WalkFailure> {
+    ///
+    /// # Errors
+    /// [`WalkFailure`] where nothing runs, or the edges do not land.
+    pub fn jump(&self, emit: &mut Emit<'_>) -> Walked {
         let from = self.begun("jump")?;
         let is_touch = matches!(self.at, At::Touch(_));
         let jumped = if self.has_rings() || is_touch {

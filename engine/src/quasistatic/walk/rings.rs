@@ -1,6 +1,6 @@
 //! Steps along the equilibria of any number of contacts, as a path takes them.
 
-use super::arrival::{Arrival, Emit, Reached, WalkEnd, WalkFailure};
+use super::arrival::{Arrival, Emit, WalkEnd, WalkFailure, Walked};
 use super::edges;
 use super::walker::{At, ROOM, Walk};
 use crate::annuli::{Contacts, Ground, points};
@@ -17,12 +17,7 @@ struct RingStep {
 }
 
 impl Walk<'_> {
-    pub(super) fn ring_steps(
-        &self,
-        count: usize,
-        run: bool,
-        emit: &mut Emit<'_>,
-    ) -> Result<WalkEnd, WalkFailure> {
+    pub(super) fn ring_steps(&self, count: usize, run: bool, emit: &mut Emit<'_>) -> Walked {
         let scales = &self.equilibrium().scales;
         let turned = |point: StatePoint| if self.inward { point } else { point.reversed() };
         let mut here = turned(self.begun("walk")?.clone());
@@ -124,51 +119,34 @@ impl Walk<'_> {
 
     /// Goes to the equilibrium with these contacts at this value of the control, where `at` waits, as at an event of a
     /// path.
-    pub fn move_to_contacts(&self, contacts: &Contacts, value: f64, at: At, emit: &mut Emit<'_>) -> WalkEnd {
-        match self.try_move_to_contacts(contacts, value, at) {
-            Ok(reached) => {
-                emit(reached);
-                match at {
-                    At::Nothing => WalkEnd::Done,
-                    At::Limit => WalkEnd::AtLimit,
-                    At::Touch(_) => WalkEnd::AtTouch,
-                }
-            }
-            Err(failure) => WalkEnd::Failed(failure),
-        }
-    }
-
-    fn try_move_to_contacts(&self, contacts: &Contacts, value: f64, at: At) -> Result<Reached, WalkFailure> {
+    ///
+    /// # Errors
+    /// [`WalkFailure`] where there is none.
+    pub fn move_to_contacts(&self, contacts: &Contacts, value: f64, at: At, emit: &mut Emit<'_>) -> Walked {
         let delta = if self.control == Control::Displacement { value } else { 0.0 };
         let ground = self.ground(contacts.outermost(), delta)?;
         let balance = self.balance(&ground, self.control);
         let held = balance.held(contacts, &points(&ground, contacts), value);
         let held = held.map_err(|error| WalkFailure::Edges(error.to_string()))?;
-        let arrival = match at {
-            At::Nothing => Arrival::Moved,
-            At::Limit => Arrival::Limit(None),
-            At::Touch(radius) => Arrival::Touch(radius),
+        let (arrival, end) = match at {
+            At::Nothing => (Arrival::Moved, WalkEnd::Done),
+            At::Limit => (Arrival::Limit(None), WalkEnd::AtLimit),
+            At::Touch(radius) => (Arrival::Touch(radius), WalkEnd::AtTouch),
         };
-        let reached = self.landed(&balance, arrival, held)?;
-        if at != At::Limit {
-            return Ok(reached);
+        let mut reached = self.landed(&balance, arrival, held)?;
+        if at == At::Limit {
+            let ahead = self.standing(&reached.point, at).try_rings().ok().map(|jumped| jumped.ahead());
+            reached.arrival = Arrival::Limit(ahead);
         }
-        let ahead = self.standing(&reached.point, at).try_rings().ok().map(|jumped| jumped.ahead());
-        Ok(Reached { arrival: Arrival::Limit(ahead), ..reached })
+        emit(reached);
+        Ok(end)
     }
 
     /// Goes to the state at this value of the control with the same contacts, from the edges `from` of the problem before it changed.
-    pub fn solve_rings(&self, value: f64, from: &Contacts, emit: &mut Emit<'_>) -> WalkEnd {
-        match self.try_solve_rings(value, from) {
-            Ok(reached) => {
-                emit(reached);
-                WalkEnd::Done
-            }
-            Err(failure) => WalkEnd::Failed(failure),
-        }
-    }
-
-    fn try_solve_rings(&self, value: f64, from: &Contacts) -> Result<Reached, WalkFailure> {
+    ///
+    /// # Errors
+    /// [`WalkFailure`] where there is none near.
+    pub fn solve_rings(&self, value: f64, from: &Contacts, emit: &mut Emit<'_>) -> Walked {
         let delta = if self.control == Control::Displacement { value } else { 0.0 };
         let ground = self.ground(from.outermost(), delta)?;
         let balance = self.balance(&ground, self.control);
@@ -176,7 +154,8 @@ impl Walk<'_> {
             NotFound::State(error) => WalkFailure::Edges(error.to_string()),
             NotFound::Singular | NotFound::Unfinished { .. } => WalkFailure::NotSolved,
         })?;
-        self.landed(&balance, Arrival::Solved, held)
+        emit(self.landed(&balance, Arrival::Solved, held)?);
+        Ok(WalkEnd::Done)
     }
 }
 
