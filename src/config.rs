@@ -103,7 +103,6 @@ type TableReader = fn(&mut Config, &DeTable<'_>, &mut ConfigSheet<'_>);
 const TABLES: [(&str, TableReader); 2] = [("keys", keys), ("look", look)];
 
 /// The user's settings file, which need not exist; `None` where there is no home.
-#[must_use]
 pub fn path() -> Option<PathBuf> {
     let folder = etcetera::base_strategy::Xdg::new().ok()?.config_dir();
     Some(folder.join("pulloff/config.toml"))

@@ -394,7 +394,6 @@ impl Case {
     }
 
     /// The refusal of a path under `control`, reduced.
-    #[must_use]
     pub fn no_path(&self, error: PathError, control: Control) -> CaseError {
         refused_path(error, self.printer().under(control))
     }

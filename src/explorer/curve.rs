@@ -231,7 +231,6 @@ impl CurveData {
     }
 
     /// The same curve with its inadmissible states and those of its path; `None` if `progress` asked to stop.
-    #[must_use]
     pub fn checked(&self, progress: &dyn Progress) -> Option<Self> {
         if self.is_checked() {
             return Some(self.clone());

@@ -64,7 +64,6 @@ impl Foreign {
 
 impl Folder {
     /// The name a preset uses for the file `name` of this folder.
-    #[must_use]
     pub fn name_of(&self, name: &str) -> String {
         if self.is_own { name.to_owned() } else { self.path.join(name).to_string_lossy().into_owned() }
     }

@@ -60,7 +60,6 @@ pub(super) fn named(preset: &Preset, name: &str) -> Option<String> {
 }
 
 /// Whether a fit may change this key.
-#[must_use]
 pub fn is_free(preset: &Preset, key: &str) -> bool {
     preset.data.free().any(|name| name == key || named(preset, name).as_deref() == Some(key))
 }

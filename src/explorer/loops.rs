@@ -104,13 +104,11 @@ impl Model {
 
 impl LoopData {
     /// Whether it is the loop of `preset`.
-    #[must_use]
     pub fn is_of_preset(&self, preset: &Preset) -> bool {
         same_loop(&self.preset, preset)
     }
 
     /// The loop.
-    #[must_use]
     pub fn report(&self) -> Option<&PathReport> {
         self.report.as_ref().ok()
     }
@@ -123,7 +121,6 @@ fn same_loop(a: &Preset, b: &Preset) -> bool {
 }
 
 /// Whether the gap of a curve has crests further out; without them, the loop is the first touch and the unloading.
-#[must_use]
 fn has_crests(curve: &CurveData) -> bool {
     let reduced = &curve.case.reduced;
     reduced.gap.wavelength().is_some() || falls(&reduced.gap, curve.case.start)

@@ -117,7 +117,6 @@ pub fn typed(preset: &Preset, text: &str) -> Result<MapAxis, String> {
 }
 
 /// Whether a row can be an axis: a number, or the device.
-#[must_use]
 pub fn can_be_axis(row: &Parameter) -> bool {
     row.kind.is_number() || row.kind == Kind::Control
 }

@@ -54,7 +54,6 @@ impl Background for MapData {
 
 impl MapData {
     /// The map of a preset; `None` if `progress` asked to stop.
-    #[must_use]
     pub fn of(preset: &Preset, axes: &MapAxes, progress: &dyn Progress) -> Option<Self> {
         let report = if preset.material.work_of_adhesion > 0.0 {
             match axes.ranges(preset) {

@@ -74,7 +74,6 @@ impl PullData {
     }
 
     /// The pull.
-    #[must_use]
     pub fn run(&self) -> Option<&RunReport> {
         self.report.as_ref().ok()?.runs.first()
     }

@@ -197,7 +197,6 @@ impl StudyWish {
 
     /// Computes it on this many threads, and reports from time to time what is done; `None` if `progress` asked to
     /// stop.
-    #[must_use]
     pub fn run(
         &self,
         threads: usize,

@@ -320,7 +320,6 @@ impl Window {
     }
 
     /// Zoomed about a place, in shares of the window; `None` beyond the limits.
-    #[must_use]
     pub fn zoomed(&self, times: f64, about: (f64, f64)) -> Option<Self> {
         let zoomed = |[lo, hi]: [f64; 2], at: f64| {
             let fixed = lo + (hi - lo) * at;

@@ -58,7 +58,6 @@ pub enum WriteError {
 mend!(WriteError, as cause of Io, never NotReadBack);
 
 /// The system's message about a failed write, completed where it is too brief.
-#[must_use]
 pub fn explained(cause: io::Error) -> io::Error {
     match cause.kind() {
         kind @ io::ErrorKind::FileTooLarge => {
@@ -182,7 +181,6 @@ pub fn follow(path: &Path) -> Result<PathBuf, WriteError> {
 }
 
 /// The folder that contains a file.
-#[must_use]
 pub fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,

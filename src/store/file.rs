@@ -66,7 +66,6 @@ pub enum FileError {
 mend!(FileError, as cause of Io);
 
 /// The kind of a file that is not regular.
-#[must_use]
 pub fn kind_of(metadata: &Metadata) -> &'static str {
     let kind = metadata.file_type();
     if kind.is_dir() {

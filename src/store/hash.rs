@@ -7,13 +7,11 @@ use std::fmt::Write;
 pub const DIGITS: usize = 64;
 
 /// The SHA-256 of `bytes` in hexadecimal digits.
-#[must_use]
 pub fn sha256(bytes: &[u8]) -> String {
     hex(Sha256::digest(bytes).as_slice())
 }
 
 /// Two digits per byte.
-#[must_use]
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().fold(String::new(), |mut text, byte| {
         // Writing to a String cannot fail.

@@ -91,7 +91,6 @@ impl FileLock {
     }
 
     /// Whether any process holds the lock of the file `path`.
-    #[must_use]
     pub fn is_held(path: &Path) -> bool {
         File::open(path).is_ok_and(|file| matches!(lock(&file), Ok(false)))
     }

@@ -25,7 +25,6 @@ pub enum NameError {
 }
 
 /// Whether a name has the form of a preset name: `[a-z0-9][a-z0-9_-]{0,63}`.
-#[must_use]
 pub fn is_well_formed(name: &str) -> bool {
     let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit();
     name.len() <= LONGEST

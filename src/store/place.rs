@@ -18,7 +18,6 @@ pub enum FilePlace {
 
 impl FilePlace {
     /// The place of what is written to `path`, where `-` is standard output; `None` where it leads nowhere.
-    #[must_use]
     pub fn written(path: &Path) -> Option<Self> {
         if path == Path::new(STANDARD) {
             return behind(rustix::stdio::stdout());
@@ -33,7 +32,6 @@ impl FilePlace {
     }
 
     /// The place of what is read from `path`, where `-` is standard input; `None` where there is no regular file.
-    #[must_use]
     pub fn read(path: &Path) -> Option<Self> {
         let node = if path == Path::new(STANDARD) {
             behind(rustix::stdio::stdin())

@@ -48,7 +48,6 @@ pub enum Source {
 
 impl Source {
     /// What messages call it: a name, or a path safe to show.
-    #[must_use]
     pub fn shown(&self) -> String {
         match self {
             Self::Shipped(shipped) => shipped.name.to_owned(),
@@ -58,7 +57,6 @@ impl Source {
     }
 
     /// Its file; `None` for a shipped preset and for one that came through a pipe.
-    #[must_use]
     pub fn path(&self) -> Option<&Path> {
         match self {
             Self::Shipped(_) | Self::Piped { .. } => None,
@@ -92,7 +90,6 @@ pub struct Listed {
 
 impl Loaded {
     /// The comment at the start of its text, safe to show, without the line that every preset is written with.
-    #[must_use]
     pub fn comment(&self) -> String {
         let text = match &self.source {
             Source::Shipped(shipped) => shipped.text,
@@ -167,7 +164,6 @@ impl Store {
     }
 
     /// The folder, which need not exist; `None` if the user has no home.
-    #[must_use]
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
     }
@@ -208,7 +204,6 @@ impl Store {
     }
 
     /// The names of all presets, the shipped ones first, without checking that their files are valid.
-    #[must_use]
     pub fn known(&self) -> Vec<String> {
         let (own, _) = self.names();
         SHIPPED.iter().map(|shipped| shipped.name.to_owned()).chain(own).collect()
@@ -230,7 +225,6 @@ impl Store {
     }
 
     /// All presets. Those that cannot be read are listed with the reason.
-    #[must_use]
     pub fn list(&self) -> Listing {
         let entry = |name: String, source: Source| {
             let (title, comment) = match self.load(&source, &[] as &[&str]) {

@@ -20,7 +20,6 @@ const DESCRIPTORS: &str = "/dev/fd";
 const LINKS: usize = 40;
 
 /// Whether a path names neither a regular file nor one that could be created, but something that is read and written directly.
-#[must_use]
 pub fn is_stream(path: &Path) -> bool {
     let is_open_ended = |kind: std::fs::FileType| kind.is_fifo() || kind.is_char_device();
     path == Path::new(STANDARD)
@@ -29,7 +28,6 @@ pub fn is_stream(path: &Path) -> bool {
 }
 
 /// What messages call the destination of such a write.
-#[must_use]
 pub fn shown(path: &Path) -> String {
     if path == Path::new(STANDARD) { "standard output".to_owned() } else { show_path(path) }
 }

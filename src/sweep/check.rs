@@ -28,7 +28,6 @@ pub struct Checked {
 
 impl Checked {
     /// Whether every row of a whole sweep exists and none of them has a quantity.
-    #[must_use]
     pub fn is_failure(&self) -> bool {
         self.shard == Shard::WHOLE && self.rows == self.of && self.faults.failures == self.of
     }

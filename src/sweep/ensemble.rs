@@ -19,7 +19,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The file with the rows of the members, beside these results.
-#[must_use]
 pub fn members(results: &Path) -> PathBuf {
     let is_csv = results.extension().is_some_and(|ending| ending == "csv");
     let stem = if is_csv { results.with_extension("") } else { results.to_owned() };
@@ -29,13 +28,11 @@ pub fn members(results: &Path) -> PathBuf {
 }
 
 /// The file for the rows of a sweep with these results.
-#[must_use]
 pub fn file_of_rows(results: &Path, spec: &Spec) -> PathBuf {
     if spec.is_ensemble() { members(results) } else { results.to_owned() }
 }
 
 /// The rows of a sweep that was told to write these results: the results themselves, or the members beside them.
-#[must_use]
 pub fn found_rows(results: &Path) -> PathBuf {
     let members = members(results);
     let is_there = |path: &Path| sidecar::path(path).exists();
@@ -43,7 +40,6 @@ pub fn found_rows(results: &Path) -> PathBuf {
 }
 
 /// The file for the rows of `parts` when they are joined to `results`.
-#[must_use]
 pub fn joined_rows(parts: &[PathBuf], results: &Path) -> PathBuf {
     // Faults in a part are reported when it is joined.
     let is_of_members =
@@ -94,13 +90,11 @@ pub struct AtPoint {
 
 impl AtPoint {
     /// The number of members with an error.
-    #[must_use]
     pub fn refused(&self) -> u64 {
         self.refused.values().sum()
     }
 
     /// The fault of a point that should have `of` members.
-    #[must_use]
     pub fn fault(&self, of: u64) -> Option<Fault> {
         Fault::of_members([self.there, of], &self.refused)
     }

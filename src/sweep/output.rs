@@ -90,7 +90,6 @@ impl FaultCounts {
     }
 
     /// The rows with a fault.
-    #[must_use]
     pub fn total(&self) -> u64 {
         self.reasons.values().sum()
     }

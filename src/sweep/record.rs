@@ -18,7 +18,6 @@ pub const COUNTS: [(&str, &str); 2] =
     [("members", "members computed"), ("refused", "members with an error, some of whose values are missing")];
 
 /// The name of a statistic of a quantity.
-#[must_use]
 pub fn statistic(quantity: &str, of: &str) -> String {
     format!("{quantity}.{of}")
 }
@@ -42,7 +41,6 @@ pub struct RowOutcome {
 
 impl RowOutcome {
     /// Whether there is a fault and nothing else.
-    #[must_use]
     pub fn is_failure(self) -> bool {
         self.fault.is_some() && !self.has_quantity
     }
@@ -73,7 +71,6 @@ fn line<'a>(fields: impl IntoIterator<Item = &'a str>) -> String {
 }
 
 /// The names of all columns, in their order.
-#[must_use]
 pub fn names(spec: &Spec) -> Vec<String> {
     let axes = spec.axes.iter().map(|axis| axis.key.clone());
     let columns = spec.columns.iter().map(QuantityColumn::name);
@@ -99,7 +96,6 @@ fn after(known: &[String], found: &[String]) -> String {
 }
 
 /// The line of a row.
-#[must_use]
 pub fn record(spec: &Spec, row: u64, measured: &MeasuredQuantities) -> String {
     let cells = measured.cells.iter().map(|cell| cell.map_or_else(String::new, |cell| cell.to_string()));
     let fault = measured.fault.as_ref().map_or_else(String::new, Fault::to_string);
@@ -129,7 +125,6 @@ impl Layout {
     }
 
     /// The first line.
-    #[must_use]
     pub fn header(&self) -> String {
         line(self.columns.iter().map(String::as_str))
     }

@@ -49,14 +49,12 @@ impl SweepResults {
     }
 
     /// The title of an axis that shows this column.
-    #[must_use]
     pub fn title(&self, name: &str) -> String {
         let column = self.columns.iter().find(|column| column.name == name);
         column.map_or_else(|| name.to_owned(), ColumnInfo::title)
     }
 
     /// The same for a quantity of which this column is a statistic.
-    #[must_use]
     pub fn title_of(&self, quantity: &str, name: &str) -> String {
         let column = self.columns.iter().find(|column| column.name == name);
         let named = |column: &ColumnInfo| ColumnInfo { name: quantity.to_owned(), ..column.clone() }.title();
@@ -64,7 +62,6 @@ impl SweepResults {
     }
 
     /// Whether there are statistics of this quantity and no column of its own.
-    #[must_use]
     pub fn has_statistics_of(&self, quantity: &str) -> bool {
         let median = statistic(quantity, "q50");
         self.is_statistics && self.columns.iter().any(|column| column.name == median)

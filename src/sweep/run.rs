@@ -28,13 +28,11 @@ pub struct RunSummary {
 
 impl RunSummary {
     /// Whether all rows exist.
-    #[must_use]
     pub fn is_complete(&self) -> bool {
         self.before + self.now == self.of
     }
 
     /// Whether all rows exist and none of them has a quantity.
-    #[must_use]
     pub fn is_failure(&self) -> bool {
         self.is_complete() && self.faults.failures == self.of
     }

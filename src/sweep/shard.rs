@@ -22,19 +22,16 @@ impl Shard {
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
     /// How many of `rows` belong to it.
-    #[must_use]
     pub fn len(self, rows: u64) -> u64 {
         (rows + self.of - self.number) / self.of
     }
 
     /// Whether none of `rows` belongs to it.
-    #[must_use]
     pub fn is_empty(self, rows: u64) -> bool {
         self.len(rows) == 0
     }
 
     /// Its `index`-th row, from 0.
-    #[must_use]
     pub fn row(self, index: u64) -> u64 {
         self.number - 1 + index * self.of
     }

@@ -94,7 +94,6 @@ pub(super) struct Beside {
 }
 
 /// The file beside these results.
-#[must_use]
 pub fn path(results: &Path) -> PathBuf {
     let mut name = results.as_os_str().to_owned();
     name.push(ENDING);
@@ -102,7 +101,6 @@ pub fn path(results: &Path) -> PathBuf {
 }
 
 /// The text of the file for a part of a sweep.
-#[must_use]
 pub fn text(spec: &Spec, shard: Shard) -> String {
     let rows = format!("rows = {}", spec.rows);
     written(&identity(spec), shard, &rows, &canonical(spec), &columns(spec))
@@ -137,7 +135,6 @@ pub(super) fn canonical_in(text: &str) -> Option<&str> {
 }
 
 /// The text for the whole sweep, derived from that of a part.
-#[must_use]
 pub fn of_whole(text: &str, part: Shard) -> String {
     let line = |shard: Shard| format!("\nshard = \"{shard}\"\n");
     text.replacen(&line(part), &line(Shard::WHOLE), 1)
@@ -154,7 +151,6 @@ const PARTS: [(&[&str], &str); 6] = [
 ];
 
 /// How a sweep differs from the one in this sidecar text, in words that are safe to show.
-#[must_use]
 pub fn differences(text: &str, spec: &Spec) -> String {
     let sweep = |text: &str| toml::from_str::<Table>(text).ok()?.remove("sweep");
     let (theirs, ours) = (sweep(text), sweep(&canonical(spec)));
@@ -240,7 +236,6 @@ fn columns(spec: &Spec) -> Vec<ColumnInfo> {
 
 impl ColumnInfo {
     /// The title of an axis: the meaning in words, the symbol, and the unit in which it is shown.
-    #[must_use]
     pub fn title(&self) -> String {
         // A key of a preset contains a dot, and its meaning describes it; the name of a quantity describes itself.
         let words = if self.name.contains('.') {
@@ -255,7 +250,6 @@ impl ColumnInfo {
     }
 
     /// A number of the column in the unit in which it is shown.
-    #[must_use]
     pub fn shown(&self, number: f64) -> f64 {
         let unit = self.shown.as_ref().and_then(|unit| Unit::parse(unit, 0).ok());
         unit.map_or(number, |unit| unit.from_si(number))
@@ -324,32 +318,27 @@ impl Sidecar {
     }
 
     /// The keys of the axes, which are also the names of their columns.
-    #[must_use]
     pub fn axes(&self) -> Vec<String> {
         let all = self.sweep.axis.iter().filter(|axis| !self.statistics || axis.distribution.is_none());
         all.map(|axis| axis.key.clone()).collect()
     }
 
     /// Whether the rows are the members of an ensemble.
-    #[must_use]
     pub fn is_of_members(&self) -> bool {
         self.sweep.ensemble.is_some() && !self.statistics
     }
 
     /// Whether the rows are statistics of the members of an ensemble.
-    #[must_use]
     pub fn is_statistics(&self) -> bool {
         self.statistics
     }
 
     /// Whether the values of the axes are drawn at random.
-    #[must_use]
     pub fn is_random(&self) -> bool {
         self.sweep.random.is_some() || self.is_of_members()
     }
 
     /// The part of the sweep.
-    #[must_use]
     pub fn shard(&self) -> Shard {
         // Validated when it was read.
         self.shard.parse().unwrap_or(Shard::WHOLE)

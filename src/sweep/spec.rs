@@ -80,7 +80,6 @@ fn read_changed(
 }
 
 /// Everything that determines the results, in one form: two specs that differ in it are different sweeps.
-#[must_use]
 pub fn canonical(spec: &Spec) -> String {
     let mut text = format!("[sweep]\nprogram_version = \"{}\"\n", env!("CARGO_PKG_VERSION"));
     // Writing to a String cannot fail.
@@ -109,7 +108,6 @@ pub fn canonical(spec: &Spec) -> String {
 }
 
 /// The hash of the canonical form.
-#[must_use]
 pub fn identity(spec: &Spec) -> String {
     sha256(canonical(spec).as_bytes())
 }

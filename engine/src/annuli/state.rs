@@ -61,7 +61,6 @@ pub enum AnnuliError {
 
 impl AnnuliError {
     /// What is wrong, in words.
-    #[must_use]
     pub fn words(&self, printer: &Printer) -> String {
         match *self {
             Self::Contacts(ContactsError::NotAscending { before, .. }) => format!(

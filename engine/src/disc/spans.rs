@@ -23,7 +23,6 @@ pub enum TableError {
 
 impl TableError {
     /// Why, in words.
-    #[must_use]
     pub fn words(&self, printer: &Printer) -> String {
         match self {
             Self::TooFine(refused) => refused.words(|r| printer.length(r)),

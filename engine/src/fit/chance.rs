@@ -52,19 +52,16 @@ fn fraction(x: f64, a: f64, b: f64) -> f64 {
 }
 
 /// The chance that Student's t of `degrees` degrees of freedom is beyond ±`t`.
-#[must_use]
 pub fn beyond_t(t: f64, degrees: f64) -> f64 {
     incomplete_beta(degrees / (degrees + t * t), 0.5 * degrees, 0.5)
 }
 
 /// The chance that F of `above` over `below` degrees of freedom is larger than `f`.
-#[must_use]
 pub fn beyond_f(f: f64, above: f64, below: f64) -> f64 {
     incomplete_beta(below / (below + above * f), 0.5 * below, 0.5 * above)
 }
 
 /// The t beyond which, on either side, only this share lies: 1.96 for 0.05 and many degrees of freedom.
-#[must_use]
 pub fn t_of(share: f64, degrees: f64) -> f64 {
     let mut hi = 1.0;
     while beyond_t(hi, degrees) > share && hi < 1e300 {

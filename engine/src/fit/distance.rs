@@ -96,7 +96,6 @@ impl<'a> ScaledPath<'a> {
 
     /// The foot of the point `m`, in units of noise; `None` where the path is empty. `box_of_last` is the box that
     /// holds the foot of the previous point and is searched first: rows that follow each other lie near each other.
-    #[must_use]
     pub fn nearest(&self, m: PathPlace, box_of_last: &mut usize) -> Option<Nearest> {
         let vertices = &self.path.vertices;
         let mut best = (f64::INFINITY, 0, 0.0);

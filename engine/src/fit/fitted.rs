@@ -37,14 +37,12 @@ impl Fitted {
     }
 
     /// Whether there is a standard error that holds as far as the value alone shows.
-    #[must_use]
     pub fn has_error(&self) -> bool {
         self.standard_error.is_some() && self.too_small().is_none()
     }
 }
 
 /// What a key measures.
-#[must_use]
 pub fn quantity(preset: &Preset, key: &str) -> Quantity {
     match key {
         OFFSET => Quantity::Length,

@@ -123,7 +123,6 @@ fn rms(problem: &FitProblem, solved: &SolvedFit) -> f64 {
 }
 
 /// How many rows belong together: the lag at which the correlation of the residuals has fallen to one over e.
-#[must_use]
 pub fn block(residuals: &[f64]) -> usize {
     let n = residuals.len();
     let mean = residuals.iter().sum::<f64>() / n.max(1) as f64;

@@ -63,7 +63,6 @@ const OF_FEW: f64 = 3.5;
 
 /// The deviation of the number of runs of signs from the number expected by chance, in units of its standard deviation;
 /// A. Wald and J. Wolfowitz, Ann. Math. Stat. 11, 147 (1940).
-#[must_use]
 pub fn runs(residuals: &[f64]) -> f64 {
     let plus = residuals.iter().filter(|r| **r > 0.0).count() as f64;
     let n = residuals.len() as f64;

@@ -104,7 +104,6 @@ fn loss(r: f64, c: f64) -> f64 {
 }
 
 /// ψ/r.
-#[must_use]
 pub fn weight(r: f64, c: f64) -> f64 {
     if r.abs() <= c { 1.0 } else { c / r.abs() }
 }

@@ -48,7 +48,6 @@ impl Model {
     pub const ALL: [Self; 3] = [Self::ShortRange, Self::Dugdale, Self::Rate];
 
     /// Its word.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::ShortRange => Adhesion::NAMES[0],
@@ -58,14 +57,12 @@ impl Model {
     }
 
     /// The model of a word.
-    #[must_use]
     pub fn of(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|model| model.name() == word)
     }
 
     /// `preset` with this model, and what is free in it in addition to `free`: the tension of adhesion with a range,
     /// unless its range is free, or the law of an edge's speed.
-    #[must_use]
     pub fn laid(self, preset: &Preset, free: &[String]) -> (Preset, Vec<String>) {
         let mut laid = preset.clone();
         let row = |key: &str| preset.row(key).map_or_else(String::new, |row| row.label.to_string());
@@ -153,7 +150,6 @@ pub struct Models {
 
 impl Models {
     /// The fit of the best, and what was free in it.
-    #[must_use]
     pub fn best(&self) -> Option<(&Fit, &[String])> {
         let FittedModel { fit, free, .. } = self.fits.get(self.best?)?;
         Some((fit.as_ref().ok()?, free))

@@ -183,7 +183,6 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
 }
 
 /// A key as it appears in a sentence: E*, γ, R.
-#[must_use]
 pub fn letter(preset: &Preset, key: &str) -> String {
     if let Some(branch) = key.strip_prefix(ADHESION) {
         return format!("γ{}", branch.replace('.', " of "));

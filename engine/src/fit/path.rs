@@ -90,7 +90,6 @@ const DEEPEST: usize = 7;
 
 impl FitPath {
     /// The path of `preset` on this way; `None` where no path reaches far enough.
-    #[must_use]
     pub fn new(preset: &Preset, abscissa: Abscissa, reach: &Reach, way: Way) -> Option<Self> {
         let control = preset.path.control;
         let length = preset.gap.length().unwrap_or(reach.length);
@@ -177,7 +176,6 @@ impl FitPath {
 
     /// The smallest radius at which the disc would overlap a crest outside, on this path up to the radius `to`: with
     /// rings of contact the path is then another one.
-    #[must_use]
     pub fn overlap(&self, to: f64) -> Option<f64> {
         let Track::Edge(curve) = &self.track else { return None };
         let length = self.eye.units.length;
@@ -297,7 +295,6 @@ impl FitPath {
 
     /// How the place `at`, `along` an arc, moves per unit of the logarithm of a value, with what runs along held;
     /// `None` where there is no closed form.
-    #[must_use]
     pub fn moves(&self, mover: Mover, along: f64, at: PathPlace) -> Option<PathPlace> {
         let [_, force, s] = at;
         let compliance = self.eye.compliance;
@@ -347,20 +344,17 @@ impl FitPath {
     }
 
     /// δ at a place `along` an arc.
-    #[must_use]
     pub fn approach(&self, along: f64) -> Option<f64> {
         let length = self.eye.units.length;
         self.track.state(along / length).map(|state| state.at[1] * length)
     }
 
     /// s at a place `along` an arc.
-    #[must_use]
     pub fn radius(&self, along: f64) -> Option<f64> {
         self.at(along).map(|([_, _, s], _)| s)
     }
 
     /// The step of the logarithm of a value over which its derivatives are taken.
-    #[must_use]
     pub(super) fn step(&self) -> f64 {
         self.track.step()
     }

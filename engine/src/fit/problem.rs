@@ -33,7 +33,6 @@ pub enum Target {
 
 impl Target {
     /// Its dotted key; for the adhesion of a branch, followed by the branch.
-    #[must_use]
     pub fn key(&self) -> String {
         match self {
             Self::Key(key) => key.clone(),
@@ -64,25 +63,21 @@ pub struct FreeParameter {
 
 impl FreeParameter {
     /// u of a value.
-    #[must_use]
     pub fn inner(&self, value: f64) -> f64 {
         self.scale.map_or_else(|| ln(value), |scale| value / scale)
     }
 
     /// The value of u.
-    #[must_use]
     pub fn value(&self, u: f64) -> f64 {
         self.scale.map_or_else(|| exp(u), |scale| u * scale)
     }
 
     /// dv/du at a value.
-    #[must_use]
     pub fn slope(&self, value: f64) -> f64 {
         self.scale.unwrap_or(value)
     }
 
     /// Its dotted key; for the adhesion of a branch, followed by the branch.
-    #[must_use]
     pub fn key(&self) -> String {
         self.target.key()
     }
@@ -160,7 +155,6 @@ pub struct Paths {
 
 impl Paths {
     /// The path of a branch.
-    #[must_use]
     pub fn of(&self, segment: Segment) -> &FitPath {
         match (&self.approach, segment) {
             (Some(path), Segment::Approach) => path,
@@ -171,32 +165,27 @@ impl Paths {
 
 impl FitProblem {
     /// How many of the residuals the parameters take up: what is known before costs none.
-    #[must_use]
     pub fn taken(&self) -> usize {
         self.parameters.len() - self.priors.len()
     }
 
     /// Residuals of one attached point.
-    #[must_use]
     pub fn per_point(&self) -> usize {
         if self.space { 2 } else { 1 }
     }
 
     /// The contact radius of a point; not a number where it is not measured.
-    #[must_use]
     pub fn radius(&self, i: usize) -> f64 {
         let point = &self.data[i].point;
         if self.abscissa == Abscissa::Radius { point.x } else { point.radius }
     }
 
     /// 1/σ, 0 for what is not measured.
-    #[must_use]
     pub fn weights(&self) -> PathPlace {
         [1.0 / self.sigma[0], 1.0 / self.sigma[1], if self.space { 1.0 / self.sigma[2] } else { 0.0 }]
     }
 
     /// The preset at `u`, of one branch.
-    #[must_use]
     pub fn preset_at(&self, u: &[f64], segment: Segment) -> Option<Preset> {
         let mut preset = self.preset.clone();
         for (parameter, u) in self.parameters.iter().zip(u) {
@@ -224,7 +213,6 @@ impl FitProblem {
     }
 
     /// The instrument at `u`.
-    #[must_use]
     pub fn instrument_at(&self, u: &[f64]) -> Instrument {
         let mut instrument = self.instrument;
         for (parameter, u) in self.parameters.iter().zip(u) {
@@ -285,7 +273,6 @@ impl FitProblem {
     }
 
     /// Whether the branches have works of adhesion of their own, and the edge is pinned between them.
-    #[must_use]
     pub(super) fn pins(&self) -> bool {
         self.splits() && self.parameters.iter().any(|p| p.target == Target::Key(START.to_owned()))
     }
@@ -296,7 +283,6 @@ impl FitProblem {
     }
 
     /// The paths at `u`.
-    #[must_use]
     pub fn paths(&self, u: &[f64]) -> Option<Paths> {
         self.paths_from(u, &|_| None)
     }

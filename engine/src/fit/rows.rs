@@ -53,25 +53,21 @@ impl Rows {
     }
 
     /// The branches with their names.
-    #[must_use]
     pub fn branches(&self) -> [(&'static str, BranchRows); 2] {
         [(Segment::Approach.name(), self.approach), (Segment::Retraction.name(), self.retraction)]
     }
 
     /// How many rows in contact are fitted.
-    #[must_use]
     pub fn contact(&self) -> usize {
         self.approach.contact + self.retraction.contact
     }
 
     /// How many rows are fitted.
-    #[must_use]
     pub fn fitted(&self) -> usize {
         self.contact() + self.approach.free + self.retraction.free
     }
 
     /// How many rows there are.
-    #[must_use]
     pub fn all(&self) -> usize {
         let of = |(_, rows): (_, BranchRows)| rows.contact + rows.free + rows.jump + rows.dropped;
         self.branches().map(of).iter().sum::<usize>() + self.pause

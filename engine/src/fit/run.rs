@@ -117,7 +117,6 @@ pub struct Fit {
 impl Fit {
     /// The values of which a combination is known far better than each alone, in words: pairs, and what depends on a
     /// radius of curvature that the points do not show.
-    #[must_use]
     pub fn known_together(&self) -> Vec<String> {
         /// Beyond this correlation the errors of two values say little about both together.
         const TOGETHER: f64 = 0.98;
@@ -149,7 +148,6 @@ impl Fit {
 
     /// Whether what was found holds for `preset`: it has the same points, taken in the same way, and all the fitted and
     /// all the held values of the fit. Its path, which a fit does not see, may differ.
-    #[must_use]
     pub fn holds_for(&self, preset: &Preset) -> bool {
         let found = &self.preset;
         let mut same = preset.clone();

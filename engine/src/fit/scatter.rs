@@ -52,19 +52,16 @@ pub struct Correlation {
 
 impl Correlation {
     /// The correlation of rows that are `k` rows apart.
-    #[must_use]
     pub fn at(&self, k: f64) -> f64 {
         if self.share > 0.0 { self.share * exp(k * ln(self.decay)) } else { 0.0 }
     }
 
     /// τ.
-    #[must_use]
     pub fn rows(&self) -> f64 {
         1.0 + 2.0 * self.share * self.decay / (1.0 - self.decay)
     }
 
     /// The variance of the mean of `n` rows, in units of that of one.
-    #[must_use]
     pub fn of_mean(&self, n: usize) -> f64 {
         let count = n as f64;
         if self.share <= 0.0 {

@@ -21,7 +21,6 @@ pub enum Verdict {
 
 impl Verdict {
     /// The word used in documents.
-    #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Self::Describes => "describes",
@@ -32,7 +31,6 @@ impl Verdict {
     }
 
     /// The verdict of a word.
-    #[must_use]
     pub fn of(word: &str) -> Option<Self> {
         [Self::Describes, Self::DoesNotDescribe, Self::NotDetermined, Self::NotConverged]
             .into_iter()
@@ -40,7 +38,6 @@ impl Verdict {
     }
 
     /// The sentence above a result.
-    #[must_use]
     pub fn sentence(self) -> &'static str {
         match self {
             Self::Describes => "the model describes the points",

@@ -69,7 +69,6 @@ pub type Number<'a> = &'a dyn Fn(&str) -> Result<f64, String>;
 
 impl ValueRange {
     /// Whether it holds a value.
-    #[must_use]
     pub fn holds(&self, value: f64) -> bool {
         self.lo <= value && value <= self.hi
     }
@@ -146,7 +145,6 @@ pub fn signs(text: &str) -> Result<Turned, AskedError> {
 }
 
 /// The text that [`signs`] reads.
-#[must_use]
 pub fn signs_text(turned: Turned) -> String {
     let [x, force] = turned.map(|turned| if turned { '-' } else { '+' });
     format!("x={x},force={force}")

@@ -61,7 +61,6 @@ pub struct Branches {
 
 impl Branches {
     /// A sentence on signs that were assumed although the points leave them open.
-    #[must_use]
     pub fn doubt(&self) -> Option<String> {
         self.or.map(|_| {
             format!(

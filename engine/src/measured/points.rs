@@ -134,7 +134,6 @@ pub const SPRING: Statement = ("a spring", "path.control.stiffness", Quantity::F
 pub const TIP: Statement = ("a tip radius", "gap.radius_of_curvature", Quantity::Length);
 
 /// What a file states and a preset omits or contradicts, in words; `None` where they agree.
-#[must_use]
 pub fn overridden(
     stated: Option<StatedValue>,
     preset: Option<f64>,

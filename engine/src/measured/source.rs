@@ -49,7 +49,6 @@ impl PointsFile {
     }
 
     /// Where the file is.
-    #[must_use]
     pub fn path(&self) -> PathBuf {
         self.folder.as_ref().map_or_else(|| PathBuf::from(&self.name), |folder| folder.join(&self.name))
     }
@@ -111,7 +110,6 @@ impl PointsFile {
 
 impl PointsFile {
     /// Whether it has the same content, whatever its name.
-    #[must_use]
     pub fn has_bytes_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.bytes, &other.bytes) || self.bytes == other.bytes
     }

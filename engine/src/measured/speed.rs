@@ -40,7 +40,6 @@ pub struct Speed {
 
 /// dy/dt at each row of `values` at `times`, in the order of measurement; σ of y is `sigma`. Nothing where the times stand still or go back,
 /// or of fewer than [`FEWEST`] rows.
-#[must_use]
 pub fn speeds(times: &[f64], values: &[f64], sigma: f64) -> Vec<Option<Speed>> {
     let n = values.len().min(times.len());
     if n < FEWEST {
@@ -52,7 +51,6 @@ pub fn speeds(times: &[f64], values: &[f64], sigma: f64) -> Vec<Option<Speed>> {
 }
 
 /// σ of a quantity that goes on from row to row, by its neighbours: over the time, or over the number of the row, whichever tells less.
-#[must_use]
 pub fn noise(times: &[f64], values: &[f64]) -> f64 {
     let numbers: Vec<f64> = (0..values.len()).map(|i| i as f64).collect();
     let of = |x: &[f64]| scatter_over(x, values).filter(|sigma| sigma.is_finite());

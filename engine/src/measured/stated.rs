@@ -28,7 +28,6 @@ pub struct StatedValue {
 
 impl StatedValue {
     /// Whether `value`, in SI, may be the value that the file states.
-    #[must_use]
     pub fn is(&self, value: f64) -> bool {
         (self.value - value).abs() <= self.rounding.max(SAME * value.abs())
     }

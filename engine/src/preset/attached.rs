@@ -109,7 +109,6 @@ impl GivenValues<'_> {
 
 impl Preset {
     /// How the points of a measured curve are obtained for this preset.
-    #[must_use]
     pub fn reading(&self) -> Reading {
         let spring = match self.path.control {
             Control::Stiffness(k) => Some(k),
@@ -148,7 +147,6 @@ impl Preset {
     ///
     /// # Errors
     /// Why its points yield none, in words.
-    #[must_use]
     pub fn branches(&self) -> Option<Result<Arc<Branches>, String>> {
         self.data.source.as_ref().map(|source| source.branches(&self.reading()))
     }

@@ -11,7 +11,6 @@ const FIRST: [&str; 6] = [CHOOSERS[2], CHOOSERS[0], CHOOSERS[1], CHOOSERS[3], "g
 
 /// The assignments that turn `from` into `to`, in an order in which each is valid; `None` if there are none, for
 /// example because an optional key would have to be removed. Numbers keep every digit.
-#[must_use]
 pub fn changes(from: &Preset, to: &Preset) -> Option<Vec<(Key, String)>> {
     let (mut now, mut made) = (from.clone(), Vec::new());
     if to.units == UnitSystem::Reduced && now.units != to.units {
@@ -35,7 +34,6 @@ pub fn changes(from: &Preset, to: &Preset) -> Option<Vec<(Key, String)>> {
 
 /// Every value in which `to` differs from `from`, to be applied all together as `--set` does. The caller must check
 /// whether the result is `to`.
-#[must_use]
 pub fn differences(from: &Preset, to: &Preset) -> Vec<(Key, String)> {
     let rows = to.rows().filter(|row| !row.is_part() && groups::row(&row.key).is_none());
     rows.filter_map(|row| {

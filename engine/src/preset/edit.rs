@@ -25,7 +25,6 @@ use toml_edit::{Array, Document, InlineTable, Item, Table, Value};
 
 /// `text` edited so that it is `preset`; `None` if `text` is not a preset, or cannot be edited to that effect. A file
 /// in it is relative to `folder`.
-#[must_use]
 pub fn onto(folder: Option<&Path>, text: &str, preset: &Preset) -> Option<String> {
     let held = |text: &str| read_holding(preset.files, "", text, HeldFiles::by(preset)).ok();
     // A text with another profile is read with its own rows.

@@ -30,7 +30,6 @@ pub const WAVE_KEYS: [&str; 3] = ["amplitude", "wavelength", "phase"];
 pub const PARAMETER_KEYS: [&str; 3] = ["min", "max", "unit"];
 
 /// The row of a key of either family.
-#[must_use]
 pub fn row(key: &str) -> Option<Parameter> {
     if let Some(name) = below(key, PARAMETER_TABLE) {
         return match name.split_once('.') {
@@ -52,7 +51,6 @@ pub fn examples() -> impl Iterator<Item = Parameter> {
 }
 
 /// Whether a key holds other keys of a family: `gap.parameters`, one of its parameters, `gap.waves`, a wave.
-#[must_use]
 pub fn is_table(key: &str) -> bool {
     let inside = |table| below(key, table);
     key == PARAMETER_TABLE
@@ -62,38 +60,32 @@ pub fn is_table(key: &str) -> bool {
 }
 
 /// Whether a key is a parameter of a formula, not its range.
-#[must_use]
 pub fn is_parameter(key: &str) -> bool {
     below(key, PARAMETER_TABLE).is_some_and(is_name)
 }
 
 /// Whether a key is the unit of a parameter.
-#[must_use]
 pub fn is_unit(key: &str) -> bool {
     key.strip_suffix(".unit").is_some_and(is_parameter)
 }
 
 /// Whether a key may have a knob: the waves after the first [`WAVE_KNOBS`] have none.
-#[must_use]
 pub fn has_knob(key: &str) -> bool {
     let number = below(key, WAVE_TABLE).and_then(|rest| wave_number(rest.split_once('.')?.0));
     number.is_none_or(|number| number <= WAVE_KNOBS)
 }
 
 /// The dotted key of a parameter.
-#[must_use]
 pub fn parameter_key(name: &str) -> String {
     format!("{PARAMETER_TABLE}.{name}")
 }
 
 /// The dotted key of a wave, counted from 1.
-#[must_use]
 pub fn wave_key(number: impl Display, name: &str) -> String {
     format!("{WAVE_TABLE}.{number}.{name}")
 }
 
 /// The rest of `key` below `table`.
-#[must_use]
 pub fn below<'a>(key: &'a str, table: &str) -> Option<&'a str> {
     key.strip_prefix(table)?.strip_prefix('.')
 }

@@ -41,13 +41,11 @@ pub static GROUPS: [Parameter; 3] = [
 ];
 
 /// The row of a group's key.
-#[must_use]
 pub fn row(key: &str) -> Option<&'static Parameter> {
     GROUPS.iter().find(|row| row.key == key)
 }
 
 /// The value of a group, if the gap has the quantities for it.
-#[must_use]
 pub fn get(preset: &Preset, key: &str) -> Option<Value> {
     let groups = Groups::of(&preset.problem(), preset.range_of_action(), preset.cohesion());
     let wavy = preset.gap.wave().is_some();
@@ -61,7 +59,6 @@ pub fn get(preset: &Preset, key: &str) -> Option<Value> {
 }
 
 /// What a group changes when it is set, and what it holds fixed, as the labels of rows; `None` for another key.
-#[must_use]
 pub fn effect(key: &str) -> Option<[&'static str; 2]> {
     Some(match key {
         "groups.amplitude_over_wavelength" => ["A", "lambda"],
@@ -72,7 +69,6 @@ pub fn effect(key: &str) -> Option<[&'static str; 2]> {
 }
 
 /// The keys that a group changes when it is set; none for another key.
-#[must_use]
 pub fn changed(key: &str) -> &'static [&'static str] {
     match key {
         "groups.amplitude_over_wavelength" => &["gap.amplitude"],

@@ -229,7 +229,6 @@ fn hint(key: Option<&Key>) -> String {
 
 impl Invalid {
     /// The known key this is about, if there is one.
-    #[must_use]
     pub fn key(&self) -> Option<&str> {
         match self {
             Self::Type { key, .. }

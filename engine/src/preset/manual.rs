@@ -6,7 +6,6 @@ use super::schema::PARAMETERS;
 use std::fmt::Write;
 
 /// One row per key: key, symbol, meaning with its dimension, values, default.
-#[must_use]
 pub fn key_table() -> String {
     let mut text = String::from("| key | on screen | meaning | values | default |\n|---|---|---|---|---|\n");
     let shape = PARAMETERS.iter().rposition(|row| row.table() == Some("gap")).map_or(0, |last| last + 1);

@@ -97,7 +97,6 @@ pub struct PathSpec {
 }
 
 /// The key that gives a start.
-#[must_use]
 pub fn start_key(start: Start) -> &'static str {
     match start {
         Start::ContactRadius(_) => START_KEYS[0],
@@ -107,7 +106,6 @@ pub fn start_key(start: Start) -> &'static str {
 }
 
 /// The key that gives a turn; a control value has none.
-#[must_use]
 pub fn turn_key(turn: Turn) -> Option<&'static str> {
     match turn {
         Turn::Approach(_) => Some(TURN_KEYS[0]),
@@ -143,7 +141,6 @@ impl Preset {
     }
 
     /// The contact problem of this preset.
-    #[must_use]
     pub fn problem(&self) -> Problem {
         Problem {
             effective_modulus: self.material.effective_modulus,
@@ -154,7 +151,6 @@ impl Preset {
 
     /// The same in reduced units. A gap without a length of its own is reduced by the contact radius at the start, if
     /// that is given.
-    #[must_use]
     pub fn reduced(&self) -> Reduced {
         let problem = self.problem();
         match (self.gap.length(), self.path.start) {
@@ -165,21 +161,18 @@ impl Preset {
 
     /// z₀, the range of action of the adhesion: the value in the preset, otherwise 0.3 nm in SI and none in reduced
     /// units.
-    #[must_use]
     pub fn range_of_action(&self) -> Option<f64> {
         let usual = matches!(self.units, UnitSystem::Si(_)).then_some(RANGE_OF_ACTION);
         self.material.range_of_action.or(usual)
     }
 
     /// The tension and the range of the adhesion, if it has a range.
-    #[must_use]
     pub fn cohesion(&self) -> Option<Cohesion> {
         self.material.adhesion.cohesion(self.material.work_of_adhesion, self.range_of_action())
     }
 
     /// The contact radius at which the path ends, given that it starts at `start_contact_radius`: the one in the
     /// preset, or a fixed fraction of the start.
-    #[must_use]
     pub fn end_contact_radius(&self, start_contact_radius: f64) -> f64 {
         self.path.end_contact_radius.unwrap_or(END_OVER_START * start_contact_radius)
     }

@@ -5,7 +5,6 @@ use super::schema::{PARAMETERS, Row};
 use std::borrow::Cow::{self, Borrowed};
 
 /// The row of a dotted key: of the table, or of a [`family`].
-#[must_use]
 pub fn parameter(key: &str) -> Option<Row> {
     PARAMETERS.iter().find(|row| row.key == key).map(Borrowed).or_else(|| family::row(key).map(Cow::Owned))
 }

@@ -164,7 +164,6 @@ pub const DISPLAY: [(&str, Quantity); 6] = [
 ];
 
 /// The keys that give the same thing as this one in other ways, including itself: a preset keeps the last one given.
-#[must_use]
 pub fn rivals(key: &str) -> &'static [&'static str] {
     [&START_KEYS[..], &TURN_KEYS, &RANGE_KEYS]
         .into_iter()
@@ -173,14 +172,12 @@ pub fn rivals(key: &str) -> &'static [&'static str] {
 }
 
 /// The table that a dotted key is in, if any.
-#[must_use]
 pub fn table_of(key: &str) -> Option<&str> {
     key.rsplit_once('.').map(|(table, _)| table)
 }
 
 impl Kind {
     /// Whether its values are real numbers, which may be typed with a unit.
-    #[must_use]
     pub fn is_number(self) -> bool {
         match self {
             Self::Positive | Self::NonNegative | Self::Finite | Self::Between { .. } | Self::Smoothing => {
@@ -198,26 +195,22 @@ impl Kind {
 
 impl Parameter {
     /// The table that the key is in, if any.
-    #[must_use]
     pub fn table(&self) -> Option<&str> {
         table_of(&self.key)
     }
 
     /// The last part of the key.
-    #[must_use]
     pub fn name(&self) -> &str {
         self.key.rsplit_once('.').map_or(&*self.key, |(_, name)| name)
     }
 
     /// Whether the key is part of another parameter's value, as `path.control.stiffness` is.
-    #[must_use]
     pub fn is_part(&self) -> bool {
         let is_whole = |row: &Parameter| row.kind == Kind::Control && Some(&*row.key) == self.table();
         PARAMETERS.iter().any(is_whole)
     }
 
     /// Whether the word [`NONE`] removes its value: it is a number that, if not given, follows from others or is none.
-    #[must_use]
     pub fn is_optional(&self) -> bool {
         let is_described = matches!(self.fallback, Fallback::Described(_));
         is_described && self.kind.is_number()
@@ -229,7 +222,6 @@ impl Parameter {
     }
 
     /// The unit in which a preset with these units has it typed and shown, if there is one.
-    #[must_use]
     pub fn unit_in<'a>(&'a self, units: &'a UnitSystem) -> Option<&'a Unit> {
         let quantity = if self.kind == Kind::Control { Quantity::ForcePerLength } else { self.quantity };
         self.own_unit_in(units).or_else(|| units.unit(quantity))
@@ -241,7 +233,6 @@ impl Parameter {
     }
 
     /// How a number of it, in SI or reduced units, is shown.
-    #[must_use]
     pub fn shown<'a>(&'a self, units: &'a UnitSystem, x: f64) -> Shown<'a> {
         let unit = self.unit_in(units);
         Shown { number: unit.map_or(x, |unit| unit.from_si(x)), unit }
@@ -255,7 +246,6 @@ impl Parameter {
     }
 
     /// Whether it applies where the choice `chooser` is `word`.
-    #[must_use]
     pub fn fits(&self, chooser: &str, word: &str) -> bool {
         match self.applies {
             Applies::With { key, words } => key != chooser || words.contains(&word),
@@ -264,7 +254,6 @@ impl Parameter {
     }
 
     /// The values it takes, in words.
-    #[must_use]
     pub fn allowed(&self) -> String {
         match self.kind {
             Kind::Positive => format!("a number from {SMALLEST:?} to {LARGEST:?}"),
@@ -288,7 +277,6 @@ impl Parameter {
     }
 
     /// What it is when not given, in words.
-    #[must_use]
     pub fn fallback_text(&self) -> String {
         match self.fallback {
             Fallback::Required => "required".to_owned(),

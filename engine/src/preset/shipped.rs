@@ -38,7 +38,6 @@ pub fn curve(name: &str) -> Option<Result<&'static str, String>> {
 }
 
 /// The shipped data of this name.
-#[must_use]
 pub fn data(name: &str) -> Option<&'static str> {
     DATA.iter().find(|shipped| shipped.name == name).map(|shipped| shipped.text)
 }
@@ -91,7 +90,6 @@ pub static SHIPPED: &[Shipped] = &[
 ];
 
 /// The shipped preset of this name.
-#[must_use]
 pub fn find(name: &str) -> Option<&'static Shipped> {
     SHIPPED.iter().find(|shipped| shipped.name == name)
 }

@@ -40,7 +40,6 @@ impl Value {
     }
 
     /// As TOML; numbers keep every digit.
-    #[must_use]
     pub fn to_toml(&self) -> String {
         match self {
             Self::Number(x) => format!("{x:?}"),
@@ -110,7 +109,6 @@ impl fmt::Display for Value {
 
 impl Value {
     /// Its number, if it is a real one.
-    #[must_use]
     pub fn as_number(&self) -> Option<f64> {
         if let Self::Number(x) = self { Some(*x) } else { None }
     }

@@ -13,7 +13,6 @@ use crate::units::{Quantity, UnitSystem, parse_quantity};
 ///
 /// Keys that do not apply (the waves of a sphere, the starts not used) are left out. An end that follows from the start
 /// is written as a comment, so that reading the file back gives the preset that was written.
-#[must_use]
 pub fn write(preset: &Preset) -> String {
     let mut text = head(&preset.units).to_owned();
     let mut table = None;

@@ -45,7 +45,6 @@ impl Adhesion {
     pub const NAMES: [&'static str; 3] = ["short-range", "dugdale", "capillary"];
 
     /// Its name.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::ShortRange => Self::NAMES[0],
@@ -56,7 +55,6 @@ impl Adhesion {
 
     /// The tension and the range of this adhesion with the work of adhesion `gamma` and the range of action `z0`;
     /// `None` for one without a range, or if neither is known or there is no adhesion.
-    #[must_use]
     pub fn cohesion(self, gamma: f64, z0: Option<f64>) -> Option<Cohesion> {
         let found = match self {
             Self::ShortRange => return None,
@@ -89,7 +87,6 @@ pub struct Cohesion {
 
 impl Cohesion {
     /// γ = `σ₀h_c`, an energy per area.
-    #[must_use]
     pub fn work(self) -> f64 {
         self.strength * self.range
     }
@@ -101,7 +98,6 @@ impl Cohesion {
     }
 
     /// Maugis' `λ_M` = σ₀(9R/(2πγE*²))^{1/3} for a radius of curvature R and a modulus E*.
-    #[must_use]
     pub fn maugis(self, radius: f64, modulus: f64) -> f64 {
         cbrt(9.0 * radius * self.strength / (2.0 * PI * self.range * modulus)) * cbrt(self.strength / modulus)
     }

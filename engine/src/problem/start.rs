@@ -13,7 +13,6 @@ pub enum Start {
 
 impl Start {
     /// Its value.
-    #[must_use]
     pub fn value(self) -> f64 {
         match self {
             Self::ContactRadius(x) | Self::Approach(x) | Self::Force(x) => x,
@@ -36,7 +35,6 @@ impl Begin {
     pub const NAMES: [&'static str; 2] = ["disc", "apart"];
 
     /// Its name.
-    #[must_use]
     pub fn name(self) -> &'static str {
         Self::NAMES[usize::from(self == Self::Apart)]
     }

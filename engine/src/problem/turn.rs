@@ -50,7 +50,6 @@ impl ContactKind {
     pub const NAMES: [&'static str; 2] = ["rings", "one-disc"];
 
     /// Its name.
-    #[must_use]
     pub fn name(self) -> &'static str {
         Self::NAMES[usize::from(self == Self::OneDisc)]
     }

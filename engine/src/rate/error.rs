@@ -37,7 +37,6 @@ pub enum RateError {
 
 impl RateError {
     /// In words.
-    #[must_use]
     pub fn words(&self, printer: &Printer) -> String {
         let length = |x| printer.length(x);
         match *self {

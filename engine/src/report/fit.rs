@@ -228,7 +228,6 @@ impl TogetherReport {
     }
 
     /// Each curve, and below them the law.
-    #[must_use]
     pub fn text(&self) -> String {
         let mut text = String::new();
         for run in &self.runs {
@@ -308,14 +307,12 @@ impl ModelsReport {
     }
 
     /// The report of the best model.
-    #[must_use]
     pub fn best(&self) -> Option<&FitReport> {
         let best = self.best?.name();
         self.fits.iter().find(|fit| fit.model == best)
     }
 
     /// The fits as lines of text, and below them which model the points speak for.
-    #[must_use]
     pub fn text(&self) -> String {
         let mut text = String::new();
         for fit in &self.fits {
@@ -411,7 +408,6 @@ impl FitReport {
     }
 
     /// The fit as lines of text.
-    #[must_use]
     pub fn text(&self) -> String {
         let units = &self.shown;
         let mut text = format!("{}: force over {}\n", self.file, self.abscissa);
@@ -575,7 +571,6 @@ impl FitReport {
     }
 
     /// The header and the row of a table with one row for each file.
-    #[must_use]
     pub fn row(&self) -> [Vec<String>; 2] {
         let mut header = ["file", "verdict", "model"].map(str::to_owned).to_vec();
         let mut row = [&self.file, self.verdict.word(), self.model].map(str::to_owned).to_vec();

@@ -560,7 +560,6 @@ impl EventReport {
     }
 
     /// Whether the loss by area confirms the one by energy; `None` where there are not both.
-    #[must_use]
     pub fn losses_agree(&self) -> Option<bool> {
         let (energy, area) = self.dissipated.zip(self.dissipated_by_area)?;
         Some((energy - area).abs() <= LOSS_AGREEMENT * energy.abs())

@@ -12,7 +12,6 @@ use std::fmt::Write;
 const TOLD: usize = 2;
 
 /// The path as lines of text.
-#[must_use]
 pub fn path(report: &PathReport) -> String {
     let mut text = opening(report);
     text.push('\n');
@@ -122,7 +121,6 @@ fn row(units: &UnitSystem, event: &EventReport) -> Vec<String> {
 }
 
 /// `0.11480 [0.13710, 0.15540]`: the disc by its radius, rings by their edges.
-#[must_use]
 pub fn contacts(units: &UnitSystem, contacts: &[[f64; 2]]) -> String {
     in_contact(units, contacts, 5)
 }

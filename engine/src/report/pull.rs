@@ -370,7 +370,6 @@ impl PullReport {
     }
 
     /// Everything as lines of text.
-    #[must_use]
     pub fn text(&self) -> String {
         let units = &self.head.units.shown;
         let mut text = format!("control: {}\n", control(units, self.control));
@@ -512,7 +511,6 @@ pub fn law(preset: &Preset) -> Result<(EdgeLaw, f64), PullError> {
 }
 
 /// Why a preset does not say how it is pulled; `None` where it does.
-#[must_use]
 pub fn missing(preset: &Preset) -> Option<PullError> {
     law(preset).err().or_else(|| programmes(preset, &AskedPulls::default()).err())
 }

@@ -31,7 +31,6 @@ pub struct ResidualRow {
 }
 
 /// The rows that are fitted, in the order of the file.
-#[must_use]
 pub fn rows(fit: &Fit) -> Vec<ResidualRow> {
     let data = &fit.preset.data;
     let measured = data.source.as_ref().and_then(|source| source.measured(&data.columns).ok());
@@ -52,7 +51,6 @@ pub fn rows(fit: &Fit) -> Vec<ResidualRow> {
 }
 
 /// The rows as CSV with the header [`HEADER`].
-#[must_use]
 pub fn csv(rows: &[ResidualRow]) -> String {
     let mut text = format!("{HEADER}\n");
     for of in rows {

@@ -57,7 +57,6 @@ impl SlowPulls {
     }
 
     /// P at a rate, to the first order.
-    #[must_use]
     pub fn at(&self, rate: f64) -> Option<f64> {
         self.first.map(|[first, exponent]| self.force - first * pow(rate, exponent))
     }

@@ -71,7 +71,6 @@ impl MeasuredPair {
     pub const ALL: [Self; 3] = [Self::ForceRadius, Self::ApproachRadius, Self::ForceApproach];
 
     /// Its name on the command line.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::ForceRadius => "force-radius",

@@ -141,7 +141,6 @@ impl SweepAxis {
     }
 
     /// Whether all its values are numbers, so that they have a place on an axis.
-    #[must_use]
     pub fn is_numeric(&self) -> bool {
         match &self.points {
             AxisValues::Values(values) => {
@@ -152,7 +151,6 @@ impl SweepAxis {
     }
 
     /// How many values it has; `None` if they are drawn.
-    #[must_use]
     pub fn count(&self) -> Option<u64> {
         match &self.points {
             AxisValues::Values(values) => Some(values.len() as u64),
@@ -164,7 +162,6 @@ impl SweepAxis {
     }
 
     /// The value at `index`, which is below the count; `None` if the values are drawn.
-    #[must_use]
     pub fn value(&self, index: u64) -> Option<Value> {
         let last = |count: u64| index > 0 && index + 1 >= count;
         let share = |count: u64| index as f64 / (count.max(2) - 1) as f64;
@@ -190,7 +187,6 @@ impl SweepAxis {
     }
 
     /// The values in the canonical form of the spec.
-    #[must_use]
     pub fn canonical(&self) -> String {
         let spaced = |word: &str, from: f64, to: f64, count: u64| {
             format!("{word} = {{ from = {}, to = {}, count = {count} }}", exact(from), exact(to))

@@ -94,7 +94,6 @@ impl Fault {
 
     /// A point of an ensemble with missing members: how many there are, of how many in all, and the reasons of those
     /// that have a fault.
-    #[must_use]
     pub fn of_members([there, of]: [u64; 2], refused: &BTreeMap<&str, u64>) -> Option<Self> {
         let counts: Vec<String> = refused.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
         let total: u64 = refused.values().sum();
@@ -139,7 +138,6 @@ impl Fault {
     }
 
     /// The reason that a written fault begins with.
-    #[must_use]
     pub fn reason_of(text: &str) -> Option<&'static str> {
         let reason = text.split_once(": ")?.0;
         REASONS.into_iter().find(|known| *known == reason)

@@ -25,14 +25,16 @@ pub struct MeasuredQuantities {
     pub fault: Option<Fault>,
 }
 
+/// The unloading under a control with these contacts; the whole loop under it where none are named.
+type AskedPath = (Control, Option<ContactKind>);
+
 /// What has been computed for a preset so far: each part once, when the first quantity needs it.
 struct Workings<'a> {
     preset: &'a Preset,
     ground: PresetValues,
     start: OnceCell<Result<StartState, Fault>>,
     line: OnceCell<Result<CurveMinima, Fault>>,
-    /// The unloading under a control with these contacts; the whole loop under it where none are named.
-    paths: Vec<((Control, Option<ContactKind>), Result<OnPath, Fault>)>,
+    paths: Vec<(AskedPath, Result<OnPath, Fault>)>,
     pull: OnceCell<Result<RunReport, Fault>>,
     fitting: OnceCell<Result<Fitting, Fault>>,
     progress: &'a dyn Progress,

@@ -169,7 +169,6 @@ impl Under {
         [(Self::Own, ""), (Self::Displacement, "_displacement"), (Self::Force, "_force")];
 
     /// The control itself; `own` is that of the preset.
-    #[must_use]
     pub fn control(self, own: Control) -> Control {
         match self {
             Self::Own => own,
@@ -197,7 +196,6 @@ impl PartialEq for QuantityColumn {
 impl SweepQuantity {
     /// Whether it depends on the control. Then `NAME` is under the preset's own, and `NAME_displacement` and
     /// `NAME_force` are under these two.
-    #[must_use]
     pub fn is_of_control(&self) -> bool {
         matches!(self.of, Stage::Limits | Stage::Unloading(_) | Stage::Passed | Stage::Loop(_))
     }
@@ -238,7 +236,6 @@ impl QuantityColumn {
     }
 
     /// Its name: that of the quantity, followed by the control.
-    #[must_use]
     pub fn name(&self) -> String {
         let suffix = Under::ALL.iter().find(|(under, _)| *under == self.under).map_or("", |(_, name)| *name);
         format!("{}{suffix}", self.quantity.name)

@@ -139,7 +139,6 @@ impl Spec {
     }
 
     /// The number of points at which there are members; for other designs, the number of rows.
-    #[must_use]
     pub fn points(&self) -> u64 {
         match self.design {
             Design::Ensemble { members, .. } => self.rows / members,
@@ -148,13 +147,11 @@ impl Spec {
     }
 
     /// Whether every point has many members, and so statistics.
-    #[must_use]
     pub fn is_ensemble(&self) -> bool {
         matches!(self.design, Design::Ensemble { .. })
     }
 
     /// The values of the axes in a row, which is below [`rows`](Self::rows), in the order of the axes.
-    #[must_use]
     pub fn values(&self, row: u64) -> Vec<Value> {
         values(&self.axes, self.design, row)
     }
@@ -182,7 +179,6 @@ impl Spec {
     /// assert_eq!(snaps.iter().map(ToString::to_string).collect::<Vec<_>>(), ["1", "7"]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[must_use]
     pub fn measure(&self, row: u64, progress: &dyn Progress) -> Option<MeasuredQuantities> {
         match self.problem(row) {
             Ok(preset) => measure(&preset, &self.columns, progress),
@@ -191,7 +187,6 @@ impl Spec {
     }
 
     /// A row without any quantities.
-    #[must_use]
     pub fn lost(&self, fault: Fault) -> MeasuredQuantities {
         MeasuredQuantities { cells: vec![None; self.columns.len()], fault: Some(fault) }
     }

@@ -1,7 +1,6 @@
 //! The beginning of a longer description.
 
 /// The part of a text before the first comma, colon, semicolon or bracket: a heading made from a description.
-#[must_use]
 pub fn headline(text: &str) -> &str {
     let end = text.find([',', ':', ';', '(']).unwrap_or(text.len());
     text[..end].trim_end()

@@ -9,7 +9,6 @@ pub const PATH: usize = 120;
 
 /// Whether a character must not reach a terminal: control characters, and Unicode's invisible formatting (direction
 /// overrides, zero-width characters, separators, tags).
-#[must_use]
 pub fn is_unsafe(c: char) -> bool {
     c.is_control()
         || matches!(
@@ -27,7 +26,6 @@ pub fn is_unsafe(c: char) -> bool {
 }
 
 /// `text` with unsafe characters replaced, cut at the end to at most `max` characters.
-#[must_use]
 pub fn sanitize(text: &str, max: usize) -> String {
     let safe = |c: char| if is_unsafe(c) { char::REPLACEMENT_CHARACTER } else { c };
     if text.chars().nth(max).is_none() {
@@ -39,25 +37,21 @@ pub fn sanitize(text: &str, max: usize) -> String {
 }
 
 /// A label from the parameter table with its Greek letters.
-#[must_use]
 pub fn greek(label: &str) -> String {
     label.replace("gamma", "γ").replace("lambda", "λ").replace("delta", "δ")
 }
 
 /// A quotation of foreign text for a message.
-#[must_use]
 pub fn quote(text: &str) -> String {
     sanitize(text, QUOTED)
 }
 
 /// A path for a message; a long path keeps its end, which names the file.
-#[must_use]
 pub fn show_path(path: &Path) -> String {
     show_name(&path.to_string_lossy())
 }
 
 /// A file's name for a message, shortened as in [`show_path`].
-#[must_use]
 pub fn show_name(name: &str) -> String {
     let surplus = name.chars().count().saturating_sub(PATH);
     if surplus == 0 {

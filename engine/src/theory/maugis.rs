@@ -34,7 +34,6 @@ impl Maugis {
     }
 
     /// c of the zone with s/c = cos ψ, 0 < ψ ≤ π/2.
-    #[must_use]
     pub fn edge(&self, angle: f64) -> f64 {
         let (sine, cosine) = sin_cos(angle);
         let square = (angle + sine * cosine - 2.0 * angle * cosine * cosine) / PI;
@@ -44,7 +43,6 @@ impl Maugis {
     }
 
     /// s, δ and P of that zone.
-    #[must_use]
     pub fn state(&self, angle: f64) -> [f64; 3] {
         let (sine, cosine) = sin_cos(angle);
         let c = self.edge(angle);
@@ -54,7 +52,6 @@ impl Maugis {
     }
 
     /// −P/πγR of the largest pull: 3/2 where the range is short, 2 where it is long.
-    #[must_use]
     pub fn largest_pull(&self) -> f64 {
         let force = |angle: f64| self.state(angle)[2];
         let at = |k: u32| FRAC_PI_2 * f64::from(k) / f64::from(ANGLES);

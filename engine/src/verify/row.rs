@@ -31,7 +31,6 @@ pub struct Group {
 impl Group {
     /// The rows against theory, and, under a heading that says so, the rows that compare two numbers of ours, whose
     /// differences are divided as `own_measure` says.
-    #[must_use]
     pub fn apart(self, own_measure: &'static str) -> [Self; 2] {
         let Self { title, measure, rows } = self;
         let (own, exact) = rows.into_iter().partition(|row| row.other.is_some());

@@ -75,25 +75,21 @@ impl Equilibria {
     }
 
     /// What has been found so far.
-    #[must_use]
     pub fn solution(&self) -> Arc<dyn Solution> {
         Arc::new(Sampled::of_zones(self.panels.clone(), &self.touches))
     }
 
     /// The outer edges of the zone at which contact in it begins or ends, lengths.
-    #[must_use]
     pub fn touches(&self) -> &[f64] {
         &self.touches
     }
 
     /// How far out equilibria have been looked for, a length.
-    #[must_use]
     pub fn reach(&self) -> f64 {
         self.at
     }
 
     /// Whether there is nothing further out: the gap is not known there, or it would take too many panels.
-    #[must_use]
     pub fn is_whole(&self) -> bool {
         self.at >= self.end() || self.panels.len() > MOST
     }
@@ -256,7 +252,6 @@ impl From<ZoneState> for ZoneAt {
 }
 
 /// Roughly how far a zone with contact of radius `s` reaches, for R = 1: where a path starts to look.
-#[must_use]
 pub fn about(cohesion: Cohesion, s: f64) -> f64 {
     let wide = (2.0 * cohesion.range).sqrt().min(cbrt(cohesion.work()) + cohesion.range / cohesion.strength);
     s + wide

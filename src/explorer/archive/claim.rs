@@ -32,7 +32,6 @@ impl Claim {
     }
 
     /// The session's name.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }

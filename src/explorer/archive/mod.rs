@@ -84,7 +84,6 @@ impl Archive {
     }
 
     /// The folder, which need not exist; `None` if the person has no home.
-    #[must_use]
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
     }
@@ -149,7 +148,6 @@ impl Archive {
     }
 
     /// Whether a program is writing this session.
-    #[must_use]
     pub fn is_running(&self, name: &str) -> bool {
         self.folder.as_deref().is_some_and(|folder| FileLock::is_held(&lock_of(folder, name)))
     }
@@ -306,7 +304,6 @@ fn base_name(preset: &str) -> String {
 }
 
 /// How long ago a moment was, in words.
-#[must_use]
 pub fn ago(seconds: u64) -> String {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
     match now.saturating_sub(seconds) {

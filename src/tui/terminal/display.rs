@@ -162,13 +162,11 @@ impl<S: FrameSink> Display<S> {
     }
 
     /// When the next frame of a run may be tried.
-    #[must_use]
     pub fn due_running(&self) -> Instant {
         self.due.max(self.due_running)
     }
 
     /// When the next frame may be drawn.
-    #[must_use]
     pub fn due(&self) -> Instant {
         self.due
     }

@@ -66,7 +66,6 @@ impl<T: Send + 'static> Inbox<T> {
     }
 
     /// The next thing that happened. Sleeps until there is one, or until `deadline`, when it returns `None`.
-    #[must_use]
     pub fn next(&self, deadline: Option<Instant>) -> Option<Incoming<T>> {
         loop {
             if let Some(notice) = self.notice() {
@@ -102,7 +101,6 @@ impl<T: Send + 'static> Inbox<T> {
     /// A sending end for a worker.
     ///
     /// Not for the thread that receives: with a full queue it would wait for itself.
-    #[must_use]
     pub fn sender(&self) -> Sender<T> {
         Sender(self.sender.clone())
     }
@@ -173,7 +171,6 @@ pub struct Sender<T>(SyncSender<Post<T>>);
 
 impl<T> Sender<T> {
     /// Sends a message; false if nobody receives any more, and the worker may end.
-    #[must_use]
     pub fn send(&self, message: T) -> bool {
         self.0.send(Post::Message(Incoming::App(message))).is_ok()
     }

@@ -22,7 +22,6 @@ const NAMELESS: &[&str] = &["", "dumb", "unknown", "network", "dialup", "emacs",
 ///
 /// Standard input and output must be a terminal, and TERM must name one that moves its cursor. Nothing is written and
 /// nothing is asked of the terminal.
-#[must_use]
 pub fn refuse_reason() -> Option<String> {
     let why = if !io::stdin().is_terminal() {
         "standard input is not one".to_owned()
@@ -35,7 +34,6 @@ pub fn refuse_reason() -> Option<String> {
 }
 
 /// Whether the locale says that the terminal shows UTF-8; if not, draw with ASCII only.
-#[must_use]
 pub fn utf8_locale() -> bool {
     // The first one that is set and not empty decides, as in setlocale(3).
     let locale = ["LC_ALL", "LC_CTYPE", "LANG"]

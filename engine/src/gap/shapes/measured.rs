@@ -38,7 +38,6 @@ impl ProfileRows {
 
     /// The rows as a preset in these units holds them: in SI, in metres. Rows without a unit are taken to be in metres,
     /// with a note.
-    #[must_use]
     pub fn held_in(self: Arc<Self>, units: &UnitSystem) -> Arc<Self> {
         if *units == UnitSystem::Reduced {
             return self;

@@ -22,7 +22,6 @@ use crate::units::UnitSystem;
 impl Preset {
     /// The value of a dotted key; `None` if the key is unknown, does not apply to this preset, or is left to follow
     /// from others.
-    #[must_use]
     pub fn get(&self, key: &str) -> Option<Value> {
         let Self { title, units, material, gap, basis, path, edge, data, files: _ } = self;
         Some(match key {
@@ -104,7 +103,6 @@ impl Preset {
     }
 
     /// The row of a key, with the range and the quantity that this preset gives it, if any.
-    #[must_use]
     pub fn row(&self, key: &str) -> Option<Row> {
         self.rows()
             .find(|row| row.key == key)
@@ -137,7 +135,6 @@ impl Preset {
     }
 
     /// The rows that have a value in this preset, in the order of [`rows`](Self::rows), with their values.
-    #[must_use]
     pub fn values(&self) -> Vec<(Row, Value)> {
         self.rows().filter_map(|row| self.get(&row.key).map(|value| (row, value))).collect()
     }
@@ -179,7 +176,6 @@ fn adhesion_value(adhesion: Adhesion, key: &str) -> Option<f64> {
 }
 
 /// Whether a key concerns units rather than the problem.
-#[must_use]
 pub fn is_of_units(key: &str) -> bool {
     key == CHOOSERS[2] || DISPLAY.iter().any(|(known, _)| *known == key)
 }

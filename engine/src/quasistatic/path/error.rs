@@ -105,7 +105,6 @@ pub enum PathError {
 
 impl PathError {
     /// Whether another value would do, of the turn, the load or the gap; else the computation itself failed.
-    #[must_use]
     pub fn is_of_values(&self) -> bool {
         !matches!(
             self,
@@ -118,7 +117,6 @@ impl PathError {
     }
 
     /// What is wrong, in words.
-    #[must_use]
     pub fn words(&self, printer: &Printer) -> String {
         let at = |x| printer.control_value(x);
         let length = |x| printer.length(x);
@@ -248,7 +246,6 @@ impl fmt::Display for Warning {
 
 impl Warning {
     /// The warning in words.
-    #[must_use]
     pub fn words(&self, printer: &Printer) -> String {
         match *self {
             Self::Digits { digits, control_value } => {

@@ -263,7 +263,6 @@ pub struct Event {
 
 impl Event {
     /// Whether the bodies, held by contact or a zone before, are apart after it.
-    #[must_use]
     pub fn separates(&self) -> bool {
         matches!(self.kind, EventKind::LastContact | EventKind::SnapOff) && self.after.is_none()
     }

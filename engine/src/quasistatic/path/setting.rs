@@ -56,7 +56,6 @@ impl PathSetting<'static> {
 
 impl PathSetting<'_> {
     /// What a closing edge gains where an opening one costs `gamma`; `None` where that is not less.
-    #[must_use]
     pub fn closing_below(&self, gamma: f64) -> Option<f64> {
         self.closing.filter(|closing| *closing < gamma)
     }

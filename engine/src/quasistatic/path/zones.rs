@@ -73,7 +73,6 @@ impl Zones {
     /// ```
     ///
     /// from D(c, ψ) = `h_c` in the header of [`crate::zone::state`].
-    #[must_use]
     pub fn moves(&self, place: Place) -> [[f64; 3]; 2] {
         let ZoneAt { edge: c, contact_radius: s, .. } = zone_at(&*self.solution, place);
         let sine = ((c - s) * (c + s)).max(0.0).sqrt() / c;
@@ -121,7 +120,6 @@ impl Zones {
     }
 
     /// ds/dc at a place: the edge of the disc follows that of its zone so that ω stays zero there.
-    #[must_use]
     pub fn contact_slope(&self, place: Place) -> f64 {
         let ZoneAt { edge, contact_radius, .. } = zone_at(&*self.solution, place);
         let zone = &self.equilibria.zone;
