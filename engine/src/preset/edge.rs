@@ -1,6 +1,5 @@
 //! How an edge moves and at which rate it is pulled: the table `[edge]`, and the keys of other tables that belong to it.
 
-use super::given::GivenValues;
 use super::schema::{Parameter, Row};
 use super::value::Value;
 use crate::problem::Control;
@@ -27,6 +26,11 @@ macro_rules! edge {
         }
 
         impl EdgeSpec {
+            /// The edge with the numbers that `number` gives for their keys, and these steps.
+            pub(super) fn read(mut number: impl FnMut(&str) -> Option<f64>, steps: String) -> Self {
+                Self { $($field: number($key),)+ steps }
+            }
+
             /// The value of a key.
             pub(super) fn get(&self, key: &str) -> Option<Value> {
                 match key {
@@ -34,14 +38,6 @@ macro_rules! edge {
                     STEPS => Some(&*self.steps).filter(|steps| !steps.is_empty()).map(Value::from),
                     _ => None,
                 }
-            }
-        }
-
-        impl GivenValues<'_> {
-            /// The edge.
-            pub(super) fn edge(&mut self) -> EdgeSpec {
-                let mut number = |key: &str| self.values.contains_key(key).then(|| self.number(key));
-                EdgeSpec { $($field: number($key),)+ steps: self.text(STEPS) }
             }
         }
     };

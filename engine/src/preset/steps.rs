@@ -1,6 +1,7 @@
 //! What is wrong with the table `[edge]`, and the parts of a test at a rate.
 
 use super::edge::{CLOSING_ADHESION, EXPONENT, EdgeSpec, RATE, STEPS, rate_quantity};
+use super::given::GivenValues;
 use super::invalid::Invalid;
 use super::model::Preset;
 use super::resolve::shown;
@@ -10,6 +11,14 @@ use crate::units::{Quantity, UnitSystem, parse_quantity};
 
 /// What a part of [`STEPS`] may be.
 const PARTS: &str = "to VALUE at RATE, hold TIME or apart at RATE, separated by ;";
+
+impl GivenValues<'_> {
+    /// The edge.
+    pub(super) fn edge(&mut self) -> EdgeSpec {
+        let steps = self.text(STEPS);
+        EdgeSpec::read(|key| self.values.contains_key(key).then(|| self.number(key)), steps)
+    }
+}
 
 impl EdgeSpec {
     /// What is wrong across several keys.

@@ -42,15 +42,17 @@ pub(super) enum Stage {
     Fit(fn(&Fitting) -> Option<Cell>),
 }
 
-/// Makes [`QUANTITIES`] from the table: name, symbol, unit, meaning, and what it is computed from; or the key that a fit
-/// gives it to, which makes two quantities, the value and its error.
+/// Makes [`QUANTITIES`] from the table: name, symbol, unit, meaning, and what it is computed from; or,
+/// after `fitted`, the key whose value a fit gives: then its standard error is a quantity too.
 macro_rules! quantities {
     ($($name:literal $symbol:literal $unit:ident $meaning:literal $($fitted:ident $key:literal)? $(: $of:expr)?;)*) => {
         /// The quantities.
         pub static QUANTITIES: &[SweepQuantity] = &[$(
             SweepQuantity {
                 name: $name, symbol: $symbol, unit: Quantity::$unit,
-                meaning: concat!($meaning, $(" ", stringify!($fitted), " to the measured curve; empty where it is not free")?),
+                meaning: concat!(
+                    $meaning, $(" ", stringify!($fitted), " to the measured curve; empty where it is not free")?
+                ),
                 of: $(Stage::Fit(|fit| fit.value($key)))? $($of)?,
             },
             $(SweepQuantity {
