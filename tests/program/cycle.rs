@@ -200,6 +200,34 @@ fn a_table_and_csv_say_the_same() {
     assert_eq!(serde_json::from_str::<Value>(&home.text("loop.json")).unwrap(), document);
 }
 
+/// A table takes the cells that its columns name: one whose name no cell has would be empty.
+#[test]
+fn every_column_has_a_value_in_some_row() {
+    const ZONE: &str = "--set=material.adhesion=dugdale --set=material.cohesive_strength=1";
+    let home = Home::new();
+    let (mut seen, mut filled) = (BTreeSet::new(), BTreeSet::new());
+    for arguments in [
+        "cycle fig-9-weak".to_owned(),
+        "cycle fig-9-weak --rows states".to_owned(),
+        "unload fig-9".to_owned(),
+        format!("unload wavy-sphere {ZONE}"),
+        format!("unload wavy-sphere --rows states {ZONE}"),
+        "pull wavy-sphere --set edge.exponent=0.5 --rate 0.1".to_owned(),
+    ] {
+        let arguments: Vec<&str> = arguments.split(' ').chain(["--format", "csv"]).collect();
+        let csv = home.run(&arguments).out;
+        let mut reader = csv::Reader::from_reader(csv.as_bytes());
+        let columns: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();
+        for row in reader.records().map(Result::unwrap) {
+            let cells = columns.iter().zip(&row);
+            filled.extend(cells.filter(|(_, cell)| !cell.is_empty()).map(|(column, _)| column.clone()));
+        }
+        seen.extend(columns);
+    }
+    assert!(seen.len() > 40 && seen.contains("before_zone_radius"), "{seen:?}");
+    assert_eq!(seen, filled);
+}
+
 #[test]
 fn a_loop_turns_where_it_is_told() {
     let home = Home::new();
