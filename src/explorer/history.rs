@@ -1,6 +1,6 @@
 //! The walk as an append-only tree: undo moves a cursor, a step after undo makes a branch, nothing is erased.
 
-use super::node::Node;
+use super::node::{Node, NodeKind};
 use super::prune;
 use std::sync::Arc;
 
@@ -170,6 +170,13 @@ impl History {
     pub fn push(&mut self, mut node: Node) {
         node.parent = self.cursor;
         self.append(node);
+    }
+
+    /// Whether the walk stands where it began; other values may have been tried there.
+    pub fn has_just_begun(&self) -> bool {
+        let tried = |node: &Node| matches!(node.kind, NodeKind::Solved | NodeKind::Stale(_));
+        let node = self.current().filter(|node| !tried(node));
+        node.or_else(|| self.node(self.parent()?)).is_some_and(|node| node.begins)
     }
 
     /// Appends a node beside the current one: continuing the same change remains one undo.

@@ -143,6 +143,7 @@ fn standing(model: &Model, node: &Node, control: Control) -> String {
     let way = if model.inward { "inward" } else { "outward" };
     let held = control_name(control);
     let kept = match control {
+        _ if !keeps_control(model, node, control) => "where the walk begins".to_owned(),
         Control::Stiffness(_) => "with the spring's far end held".to_owned(),
         Control::Displacement | Control::Force => format!("at the {held} held"),
     };

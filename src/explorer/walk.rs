@@ -5,11 +5,12 @@
 use super::command::{Command, Id};
 use super::curve::CurveData;
 use super::follow::Before;
-use super::node::{Node, NodeKind};
+use super::history::History;
+use super::node::NodeKind;
 use super::setting::Setting;
 use pulloff_engine::annuli::Contacts;
 use pulloff_engine::case::Case;
-use pulloff_engine::problem::{Control, Turn};
+use pulloff_engine::problem::{Begin, Control, Turn};
 use pulloff_engine::quasistatic::path::Direction;
 pub(super) use pulloff_engine::quasistatic::walk::ROOM;
 use pulloff_engine::quasistatic::walk::{
@@ -55,6 +56,8 @@ pub enum Action {
         rings: Option<Box<Before>>,
         /// Whether it was stable, or at the end of the stable part: then a stable state is sought.
         was_stable: bool,
+        /// Whether the walk had not left the state it began with: then it begins again if there is no such state.
+        begins: bool,
     },
     /// The first touch of bodies that were apart, and the state it jumps to.
     Begin,
@@ -67,13 +70,15 @@ impl Action {
         is_move || matches!(self, Self::MoveToLimit { .. } | Self::MoveToContacts { .. })
     }
 
-    /// Solves the state of a node again for other values.
-    pub fn solve(node: &Node) -> Self {
-        Self::Solve {
+    /// Solves the state of the walker again for other values; `None` before a walk.
+    pub fn solve(history: &History) -> Option<Self> {
+        let node = history.current()?;
+        Some(Self::Solve {
             state: node.state.in_units(node.setting.units()),
             rings: Before::of(node),
             was_stable: node.stability.under(node.control) || matches!(node.kind, NodeKind::Limit),
-        }
+            begins: history.has_just_begun(),
+        })
     }
 }
 
@@ -159,11 +164,21 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(MadeState) -> bool) -> WalkO
         Action::MoveToState { .. } => Err(WalkFailure::NoEquilibrium("on a path")),
         Action::Begin => walk.first_touch(&mut arrive),
         Action::Solve { state, rings: Some(before), .. } => before.follow(&request.curve, state, &mut arrive),
-        Action::Solve { state, rings: None, was_stable } => {
+        Action::Solve { state, rings: None, was_stable, .. } => {
             let units = case.units();
             let value = request.control.value(state.approach / units.length, state.force / units.force);
             solve(&walk, value, state.contact_radius / units.length, *was_stable, &mut arrive)
         }
+    };
+    let end = match (end, &request.action) {
+        (Err(WalkFailure::NotSolved), Action::Solve { begins: true, .. }) => {
+            let solved = &mut |reached| arrive(Reached { arrival: Arrival::Solved, ..reached });
+            match request.curve.setting.preset.path.begin {
+                Begin::Disc => walk.move_to(walk.range[0], solved),
+                Begin::Apart => walk.first_touch(solved),
+            }
+        }
+        (end, _) => end,
     };
     let length = |r: f64| said(&case.shown, Quantity::Length, r * case.units().length);
     match end {

@@ -217,6 +217,25 @@ fn the_walker_is_not_sent_further_than_a_walk_may_lead() {
 }
 
 #[test]
+fn a_walk_that_has_not_left_its_start_begins_again_for_values_without_its_state() {
+    let mut session = Session::new("wavy-sphere");
+    let set = |radius: &str| parse(&format!("set gap.radius_of_curvature={radius}")).unwrap().unwrap();
+    session.does(set("4"));
+    assert_eq!(session.kind(), NodeKind::Solved, "{}", session.status());
+    assert!(session.model.is_at_start());
+    assert!(session.status().contains("back at its start"), "{}", session.status());
+    session.does(Id::NextEvent);
+    assert!(session.status().contains("Event 1 of"), "{}", session.status());
+    // Away from its start, the state stays, and turning back solves it again.
+    let state = session.model.history.current().unwrap().state;
+    session.does(set("1"));
+    assert!(session.status().contains("no equilibrium at this displacement"), "{}", session.status());
+    session.does(set("4"));
+    let again = session.model.history.current().unwrap().state;
+    assert!((again.approach / state.approach - 1.0).abs() < 1e-9);
+}
+
+#[test]
 fn short_keys_are_the_last_part_of_a_key_or_its_symbol() {
     let mut session = Session::new("wavy-sphere");
     for (line, key, text) in [

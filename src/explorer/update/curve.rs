@@ -82,7 +82,7 @@ pub(super) fn curve_came(
 
 /// Solves the walker's state for the values of the curve, if it does not lie on it.
 pub(super) fn solve_again(model: &mut Model) -> Option<Vec<Effect>> {
-    let node = model.history.current().filter(|node| !model.is_on_curve(node) && !node.is_apart())?;
-    let again = Action::solve(node);
+    model.history.current().filter(|node| !model.is_on_curve(node) && !node.is_apart())?;
+    let again = Action::solve(&model.history)?;
     Some(walk(model, again))
 }

@@ -210,7 +210,7 @@ pub(super) fn walked(
         .filter(|node| {
             !model.is_on_curve(node) && !matches!(node.kind, NodeKind::Stale(_)) && !node.is_apart()
         })
-        .map(Action::solve);
+        .and_then(|_| Action::solve(&model.history));
     if let (Some(again), false) = (outdated, model.is_computing()) {
         return Some(walk(model, again));
     }
