@@ -18,15 +18,18 @@ pub trait Mend {
 }
 
 /// Implements [`Mend`] for a type of errors: those of the variants after `of` can be mended if the fault in their
-/// field can be, those of the variants after `never` cannot, all others can.
+/// field can be, those of the variants after `never` cannot, those after `always` can. Every variant is named.
 macro_rules! mend {
-    ($error:ty $(, as $field:tt of $($variant:ident)|+)* $(, never $($never:ident)|+)?) => {
+    (
+        $error:ty $(, as $field:tt of $($variant:ident)|+)*
+        $(, never $($never:ident)|+)? $(, always $($always:ident)|+)?
+    ) => {
         impl $crate::mend::Mend for $error {
             fn can_be_mended(&self) -> bool {
                 match self {
                     $($(Self::$variant { $field: fault, .. } => $crate::mend::Mend::can_be_mended(fault),)+)*
                     $($(Self::$never { .. })|+ => false,)?
-                    _ => true,
+                    $($(Self::$always { .. })|+ => true,)?
                 }
             }
         }
@@ -99,8 +102,8 @@ impl Mend for CaseError {
 }
 
 // A law, a rate and an axis are values.
-mend!(PullError, as 0 of Case, never Rate);
-mend!(MapError, as 0 of Case, never Stopped);
+mend!(PullError, as 0 of Case, never Rate, always NoLaw | NoRate);
+mend!(MapError, as 0 of Case, never Stopped, always Family);
 
 #[cfg(test)]
 mod tests {

@@ -288,5 +288,4 @@ mend!(
     as reason of Script,
     as cause of System,
     never Rows | Csv | Paper | Verify | Json | Closed | Incomplete | Disagreement | Doubtful | NotDescribed
-        | Interrupted | Terminal
-);
+        | Interrupted | Terminal, always Usage);

@@ -53,7 +53,7 @@ pub enum MapChartError {
     Grid(String),
 }
 
-mend!(MapChartError, as 0 of Results);
+mend!(MapChartError, as 0 of Results, always Grid);
 
 impl MapChartError {
     /// No row has a number in this column.

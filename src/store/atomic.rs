@@ -55,7 +55,10 @@ pub enum WriteError {
     Io { path: String, doing: &'static str, cause: io::Error },
 }
 
-mend!(WriteError, as cause of Io, never NotReadBack);
+mend!(
+    WriteError, as cause of Io, never NotReadBack,
+    always Exists | Changed | ReadOnly | NotRegular | Locked
+);
 
 /// The system's message about a failed write, completed where it is too brief.
 pub fn explained(cause: io::Error) -> io::Error {

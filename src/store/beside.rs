@@ -26,7 +26,7 @@ pub enum DataError {
     Other(String),
 }
 
-mend!(DataError, as 0 of File | Write);
+mend!(DataError, as 0 of File | Write, always Other);
 
 impl From<String> for DataError {
     fn from(words: String) -> Self {

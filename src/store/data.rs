@@ -35,7 +35,7 @@ pub enum PointsFileError {
     Shipped(String),
 }
 
-mend!(PointsFileError, as 0 of File);
+mend!(PointsFileError, as 0 of File, always Shipped);
 
 /// Reads the profile in the file `path`.
 pub fn read_profile(path: &Path) -> Result<ProfileColumns, ProfileError> {

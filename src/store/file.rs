@@ -63,7 +63,7 @@ pub enum FileError {
     },
 }
 
-mend!(FileError, as cause of Io);
+mend!(FileError, as cause of Io, always NotRegular | TooLarge | Endless | NotText);
 
 /// The kind of a file that is not regular.
 pub fn kind_of(metadata: &Metadata) -> &'static str {

@@ -139,7 +139,10 @@ pub enum StoreError {
     Delete { path: String, cause: io::Error },
 }
 
-mend!(StoreError, as 0 of File | Write | Data, as cause of Folder | Delete);
+mend!(
+    StoreError, as 0 of File | Write | Data, as cause of Folder | Delete,
+    always NotFound | Name | Read | Invalid | NoFolder | Shipped
+);
 
 /// The folder of the user's presets.
 #[derive(Debug, Clone)]

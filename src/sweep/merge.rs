@@ -53,7 +53,10 @@ pub enum MergeError {
     Io { path: String, cause: io::Error },
 }
 
-mend!(MergeError, as 0 of Output, as cause of Io | NotOurs);
+mend!(
+    MergeError, as 0 of Output, as cause of Io | NotOurs,
+    always Exists | OtherSweep | OtherDivision | Doubled | Missing | Incomplete | Changed
+);
 
 impl From<WriteError> for MergeError {
     fn from(error: WriteError) -> Self {

@@ -69,7 +69,10 @@ pub enum OutputError {
     Threads(#[from] ThreadPoolBuildError),
 }
 
-mend!(OutputError, as 0 of Write | Rows, as cause of Io | NotOurs, never Threads);
+mend!(
+    OutputError, as 0 of Write | Rows, as cause of Io | NotOurs, never Threads,
+    always Busy | Described | OtherSweep | OtherShard | Changed
+);
 
 /// The faults of rows.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -20,7 +20,7 @@ pub enum ResultsError {
     Table { path: String, what: String },
 }
 
-mend!(ResultsError, as 0 of Sidecar);
+mend!(ResultsError, as 0 of Sidecar, always NoColumn | Table);
 
 /// The results of a sweep, or of a part of it; they may still be growing.
 #[derive(Debug, Clone)]

@@ -39,7 +39,7 @@ pub enum SidecarError {
     },
 }
 
-mend!(SidecarError, as 0 of File);
+mend!(SidecarError, as 0 of File, always Unknown);
 
 /// A column of the results.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]

@@ -26,7 +26,7 @@ pub enum LoadError {
     Spec(#[from] SpecError),
 }
 
-mend!(LoadError, as 0 of File);
+mend!(LoadError, as 0 of File, always Spec);
 
 /// A spec from a file, and what else was read for it.
 #[derive(Debug)]

@@ -40,7 +40,10 @@ pub enum ArchiveError {
     Io { path: String, doing: &'static str, cause: io::Error },
 }
 
-mend!(ArchiveError, as 0 of File | Write, as cause of Io, never Document);
+mend!(
+    ArchiveError, as 0 of File | Write, as cause of Io, never Document,
+    always NoFolder | NotFound | Empty | Running | Unreadable | Data
+);
 
 impl ArchiveError {
     /// The reason without the path, for a line that is cut off at the edge of the screen.
