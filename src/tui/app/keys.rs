@@ -11,7 +11,7 @@ use crate::store::{Listed, Listing, Source};
 use crate::tui::layout::is_alone;
 use crate::tui::overlay::{Choice, Choose, Confirm, Dialog, Help, Item, LONGEST_LINE, Prompt, Purpose};
 use crate::tui::view::help::ABOUT;
-use crate::tui::view::{cells, places};
+use crate::tui::view::{cells, places, problem};
 use crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
 use pulloff_engine::preset::data;
 use pulloff_engine::preset::schema::{Kind, NONE};
@@ -85,6 +85,10 @@ impl App {
         let drawn = places(self, screen).map(|regions| regions.panels(is_alone(screen, self.enlarged)));
         if drawn.is_some_and(|drawn| !drawn.contains(&self.model.panel)) {
             self.model.panel = ScreenPanel::Charts;
+        }
+        let problem = places(self, screen).filter(|regions| !regions.is_stacked);
+        if let Some(area) = problem.and_then(|regions| regions.problem) {
+            self.first_value = problem::first_value(self, area);
         }
         make_room(&mut self.model, views)
     }

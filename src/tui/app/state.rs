@@ -25,6 +25,8 @@ pub struct App {
     pub clipboard: Option<String>,
     /// The screen as last drawn.
     pub screen: Rect,
+    /// The first value shown in Problem as last drawn.
+    pub first_value: usize,
     /// The message about a background job that takes long enough to be shown.
     pub late: Option<String>,
     /// How many presses before the last key belong to the same hold of that key.
@@ -51,6 +53,7 @@ impl App {
             enlarged: false,
             clipboard: None,
             screen: Rect::ZERO,
+            first_value: 0,
             late: None,
             held: 0,
         }

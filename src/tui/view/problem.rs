@@ -48,9 +48,14 @@ fn arrange(app: &App, area: Rect, all: &[(Row, Option<Value>)]) -> Arranged {
     let onset = onset(app.theme, model).filter(|_| parameters.min(ABOVE) + groups.len() < height);
     groups.extend(onset);
     let rows = height - groups.len();
-    // By a window less a line at a time: a line at a time would send the whole list for every key.
-    let page = rows.saturating_sub(1).max(1);
-    let first = (model.parameter + 1).saturating_sub(rows).div_ceil(page) * page;
+    // It stays as long as the selected line is in it, and then moves so far that one line of those before is seen: a
+    // line at a time would send the whole list for every key.
+    let first = match (app.first_value, model.parameter) {
+        (_, at) if at >= parameters => app.first_value,
+        (first, at) if at < first => (at + 2).saturating_sub(rows),
+        (first, at) if at >= first + rows => at - usize::from(rows > 1),
+        (first, _) => first,
+    };
     let first = first.min(parameters.saturating_sub(rows));
     Arranged { inner, parameters, first, rows, groups }
 }
@@ -89,6 +94,11 @@ pub fn rows(app: &App, width: u16) -> usize {
     let parameters = all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count();
     let onset = usize::from(app.model.snaps_from().is_some());
     parameters + group_lines(app, &all[parameters..], None, width).len() + onset
+}
+
+/// The first value shown in the panel `area`.
+pub fn first_value(app: &App, area: Rect) -> usize {
+    arrange(app, area, &app.model.knobs()).first
 }
 
 /// The parameter in this row of the screen, in the panel `area`.
