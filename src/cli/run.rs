@@ -5,15 +5,13 @@ use super::console::Messages;
 use super::output::{Inputs, Outputs, Replacing};
 use super::problem::{Changes, ProblemArguments, store};
 use crate::explorer::command::{Command, by_name};
-use crate::explorer::export::{Page, Picture};
 use crate::explorer::files::target;
 use crate::explorer::script::{self, Permission, ScriptLine, play};
 use crate::explorer::{Inline, Model, open};
-use crate::plot::picture::picture;
 use crate::store::place::FilePlace;
 use crate::store::stream::{self, STANDARD};
 use crate::store::{Loaded, Store};
-use crate::tui::copy::screen;
+use crate::tui::copy::drawn_alone;
 use clap::Args;
 use pulloff_engine::text::sanitize;
 use std::ffi::OsString;
@@ -76,7 +74,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
             }
         });
     };
-    play(&mut model, &Inline::new(store()), effects, &lines, permission, &drawn, &mut told)
+    play(&mut model, &Inline::new(store()), effects, &lines, permission, &drawn_alone, &mut told)
         .map_err(|failed| Failure::Script { text: format!("{name}:{failed}"), reason: failed.reason })?;
     drop(shown);
     console.end()
@@ -90,10 +88,7 @@ fn look(name: &str, lines: &[ScriptLine], inputs: Inputs, replacing: Replacing) 
         Outputs::beside(opened.fold(inputs, |all, preset| all.with_problem(None, &preset)), replacing);
     let mut written = Vec::new();
     for line in lines {
-        let (Command::Export { path, replace, .. } | Command::Picture { path, replace, .. }) = &line.command
-        else {
-            continue;
-        };
+        let Command::Export { path, replace, .. } = &line.command else { continue };
         let option = format!("{name}:{}: {}", line.number, line.command.id().name());
         let path = target(path);
         // A line may replace what an earlier line of the script wrote, where it says so.
@@ -115,14 +110,6 @@ fn look(name: &str, lines: &[ScriptLine], inputs: Inputs, replacing: Replacing) 
 fn opened(store: &Store, command: &Command) -> Option<Loaded> {
     let (Command::Open(name) | Command::OpenWith { name, .. }) = command else { return None };
     store.load(&store.resolve(name).ok()?, &[] as &[&str]).ok()
-}
-
-/// Draws what a screen would show.
-fn drawn(model: &Model, what: Picture) -> Result<Page, String> {
-    match what {
-        Picture::Screen => Ok(Page::Screen(screen(model))),
-        Picture::Figure(view) => picture(model, view.unwrap_or(model.view)).map(Page::Figure),
-    }
 }
 
 /// Reports what became of a line, in one line.

@@ -169,23 +169,10 @@ pub enum Command {
     },
     /// Save although somebody else has changed the file meanwhile.
     SaveAnyway,
-    /// Write the screen to a file ending in `.txt`, or a figure to one whose extension chooses its format.
-    ExportPage {
-        page: super::export::Page,
-        path: String,
-        /// Whether an existing file of that name is replaced.
-        replace: bool,
-    },
-    /// Write what is seen: the part that draws turns it into an [`ExportPage`](Self::ExportPage).
-    Picture {
-        picture: super::export::Picture,
-        path: String,
-        /// Whether an existing file of that name is replaced.
-        replace: bool,
-    },
-    /// Export to a file, whose extension chooses CSV or JSON.
+    /// Export to a file, whose extension chooses its format. What is seen reaches the model as a
+    /// [page](super::export::Export::Page): the part that draws makes it one.
     Export {
-        what: super::export::ExportKind,
+        what: super::export::Export,
         path: String,
         /// Whether an existing file of that name is replaced.
         replace: bool,
@@ -223,7 +210,7 @@ impl Command {
             Self::Open(_) | Self::OpenWith { .. } | Self::Delete(_) => Id::Open,
             Self::SaveAs { .. } => Id::SaveAs,
             Self::SaveAnyway => Id::Save,
-            Self::Export { .. } | Self::ExportPage { .. } | Self::Picture { .. } => Id::Export,
+            Self::Export { .. } => Id::Export,
         }
     }
 }

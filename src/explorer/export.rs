@@ -7,8 +7,8 @@ use pulloff_engine::text::sanitize;
 use std::path::Path;
 
 /// What can be exported.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ExportKind {
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Export {
     Curve,
     Walk,
     Events,
@@ -17,42 +17,64 @@ pub enum ExportKind {
     Pull,
     /// The study on the screen: its values, or the spec of a sweep that repeats it.
     Study,
+    /// A view as a figure for print; without a view, the first one on the screen.
+    Figure(Option<View>),
+    /// The screen as text.
+    Screen,
+    /// A figure or the screen, as it was drawn.
+    Page(Page),
 }
 
-impl ExportKind {
+impl Export {
     /// All, in the order they are offered.
-    pub const ALL: [Self; 6] = [Self::Curve, Self::Walk, Self::Events, Self::Script, Self::Pull, Self::Study];
+    pub const ALL: [Self; 8] = [
+        Self::Curve,
+        Self::Walk,
+        Self::Events,
+        Self::Script,
+        Self::Pull,
+        Self::Study,
+        Self::Figure(None),
+        Self::Screen,
+    ];
 
     /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Curve => "curve",
-            Self::Walk => "walk",
-            Self::Events => "events",
-            Self::Script => "script",
-            Self::Pull => "pull",
-            Self::Study => "study",
-        }
+    pub fn name(&self) -> &'static str {
+        self.row().0
     }
 
     /// What it is.
-    pub fn meaning(self) -> &'static str {
-        match self {
-            Self::Curve => "every point of the equilibrium curve",
-            Self::Walk => "the states walked by hand",
-            Self::Events => "the instabilities listed",
-            Self::Script => "what was done, for pulloff run",
-            Self::Pull => "the pull at the preset's rate: its moments, or the whole document in a .json",
-            Self::Study => "the study: its values, or in a .toml the sweep that repeats it",
-        }
+    pub fn meaning(&self) -> &'static str {
+        self.row().1
     }
 
     /// The extensions its file may have, the usual one first.
-    pub fn endings(self) -> &'static [&'static str] {
+    pub fn endings(&self) -> &'static [&'static str] {
+        self.row().2
+    }
+
+    fn row(&self) -> (&'static str, &'static str, &'static [&'static str]) {
+        const TABLE: &[&str] = &["csv", "json"];
         match self {
-            Self::Curve | Self::Walk | Self::Events | Self::Pull => &["csv", "json"],
-            Self::Script => &["pulloff", "txt"],
-            Self::Study => &["csv", "toml"],
+            Self::Curve => ("curve", "every point of the equilibrium curve", TABLE),
+            Self::Walk => ("walk", "the states walked by hand", TABLE),
+            Self::Events => ("events", "the instabilities listed", TABLE),
+            Self::Script => ("script", "what was done, for pulloff run", &["pulloff", "txt"]),
+            Self::Pull => {
+                let meaning = "the pull at the preset's rate: its moments, or the whole document in a .json";
+                ("pull", meaning, TABLE)
+            }
+            Self::Study => {
+                let meaning = "the study: its values, or in a .toml the sweep that repeats it";
+                ("study", meaning, &["csv", "toml"])
+            }
+            Self::Figure(_) | Self::Page(Page::Figure(_)) => {
+                let meaning = "the first view for print: zoom, pins and theory with it";
+                ("figure", meaning, PictureFormat::ENDINGS)
+            }
+            Self::Screen | Self::Page(Page::Screen(_)) => {
+                ("screen", "what is on the screen, as text", &["txt"])
+            }
         }
     }
 }
@@ -61,41 +83,6 @@ impl ExportKind {
 pub fn ends_in(path: &str, endings: &[&str]) -> bool {
     let ending = Path::new(path).extension().and_then(|ending| ending.to_str());
     ending.is_some_and(|ending| endings.iter().any(|known| known.eq_ignore_ascii_case(ending)))
-}
-
-/// What is on the screen and can be written to a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Picture {
-    /// The screen as text.
-    Screen,
-    /// A view as a figure for print; without a view, the first one on the screen.
-    Figure(Option<View>),
-}
-
-impl Picture {
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Screen => "screen",
-            Self::Figure(_) => "figure",
-        }
-    }
-
-    /// What it is.
-    pub fn meaning(self) -> &'static str {
-        match self {
-            Self::Screen => "what is on the screen, as text",
-            Self::Figure(_) => "the first view for print: zoom, pins and theory with it",
-        }
-    }
-
-    /// The extensions its file may have, the usual one first.
-    pub fn endings(self) -> &'static [&'static str] {
-        match self {
-            Self::Screen => &["txt"],
-            Self::Figure(_) => PictureFormat::ENDINGS,
-        }
-    }
 }
 
 /// The file name for a document of this name; it contains the name of the preset.

@@ -10,7 +10,7 @@ use super::walk_table::changed_keys;
 use super::{data, script, study_table, walk_table};
 use crate::mend::WordedFault;
 use crate::print::PictureFormat;
-use crate::store::{Fingerprint, Listed, Overwrite, Source, Store, StoreError, WriteError, write_atomically};
+use crate::store::{Listed, Overwrite, Source, Store, StoreError, WriteError, write_atomically};
 use pulloff_engine::preset::changes::{changes, differences};
 use pulloff_engine::preset::{Invalid, Preset, Value, data as data_keys};
 use pulloff_engine::progress::Unwatched;
@@ -21,20 +21,6 @@ use pulloff_engine::report::{Head, TraceReport, json, rows};
 use pulloff_engine::text::show_path;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-impl Page {
-    /// The bytes of its file `path`.
-    fn bytes(&self, path: &str) -> Result<Vec<u8>, WordedFault> {
-        match self {
-            Self::Screen(text) => Ok(text.as_bytes().to_vec()),
-            Self::Figure(svg) => {
-                let format =
-                    PictureFormat::of(Path::new(path)).map_err(|error| WordedFault::of("", &error))?;
-                format.bytes(svg).map_err(|error| WordedFault::of("", &error))
-            }
-        }
-    }
-}
 
 /// Gives `preset` other values; a measured curve comes last, together with the values that describe its columns.
 fn assign(preset: &mut Preset, assignments: &[Assignment]) -> Result<(), Invalid> {
@@ -106,13 +92,6 @@ pub fn run(store: &Store, job: Job) -> Done {
         Job::SaveAs { name, preset, replace, with_data, from } => {
             save_as(store, name, preset, replace, with_data, &from)
         }
-        Job::Write { page, path, replace } => match page.bytes(&path) {
-            Ok(bytes) => match put(&path, &bytes, replace) {
-                Err(WriteError::Exists { .. }) => Done::PageExists(page, path),
-                result => exported(path, None, result),
-            },
-            Err(reason) => Done::Failed(WordedFault::of("not exported: ", &reason)),
-        },
         Job::Export { content, path, replace } => export(store, &content, path, replace),
     }
 }
@@ -144,45 +123,45 @@ fn save_as(
 
 fn export(store: &Store, content: &Content, path: String, replace: bool) -> Done {
     let as_json = Path::new(&path).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
-    let text = match content {
-        Content::Script(start, lines) => script_text(store, start, lines).map_err(WordedFault::mendable),
+    let bytes = match content {
+        Content::Page(Page::Figure(svg)) => picture(svg, &path),
+        Content::Script(start, lines) => {
+            script_text(store, start, lines).map(String::into_bytes).map_err(WordedFault::mendable)
+        }
         Content::Study(study, start) if ends_in(&path, &["toml"]) => named(store, start)
-            .map(|(name, over)| study_table::spec(study, &name, &over))
+            .map(|(name, over)| study_table::spec(study, &name, &over).into_bytes())
             .map_err(WordedFault::mendable),
-        numbers => text(numbers, as_json)
+        text => self::text(text, as_json)
+            .map(String::into_bytes)
             .map_err(|error| WordedFault { text: error.to_string(), can_be_mended: false }),
     };
-    let text = match text {
-        Ok(text) => text,
+    let bytes = match bytes {
+        Ok(bytes) => bytes,
         Err(reason) => return Done::Failed(WordedFault::of("not exported: ", &reason)),
     };
-    match put(&path, text.as_bytes(), replace) {
-        Err(WriteError::Exists { .. }) => Done::FileExists(content.document(), path),
-        result => exported(path, units(content, &text).filter(|_| !as_json), result),
+    let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
+    match write_atomically(&target(&path), &bytes, overwrite) {
+        Ok(_) => Done::Exported(path, units(content, &bytes).filter(|_| !as_json)),
+        Err(WriteError::Exists { .. }) => Done::FileExists(content.export(), path),
+        Err(error) => Done::Failed(WordedFault::of("not exported: ", &error)),
     }
 }
 
-fn put(path: &str, bytes: &[u8], replace: bool) -> Result<Fingerprint, WriteError> {
-    let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
-    write_atomically(&target(path), bytes, overwrite)
+/// The bytes of the file `path` of a figure.
+fn picture(svg: &str, path: &str) -> Result<Vec<u8>, WordedFault> {
+    let format = PictureFormat::of(Path::new(path)).map_err(|error| WordedFault::of("", &error))?;
+    format.bytes(svg).map_err(|error| WordedFault::of("", &error))
 }
 
 /// The units of the columns of `csv`, as the commands note them.
-fn units(content: &Content, csv: &str) -> Option<String> {
+fn units(content: &Content, csv: &[u8]) -> Option<String> {
     let preset = match content {
         Content::Curve(curve) | Content::Walk(curve, _) | Content::Events(curve, _) => &curve.setting.preset,
         Content::Pull(_, preset) => preset,
-        Content::Script(..) | Content::Study(..) => return None,
+        Content::Script(..) | Content::Study(..) | Content::Page(_) => return None,
     };
-    let columns: Vec<&str> = csv.lines().next()?.split(',').collect();
+    let columns: Vec<&str> = std::str::from_utf8(csv).ok()?.lines().next()?.split(',').collect();
     columns::units(&columns, preset.path.control, &preset.units)
-}
-
-fn exported(path: String, units: Option<String>, result: Result<Fingerprint, WriteError>) -> Done {
-    match result {
-        Ok(_) => Done::Exported(path, units),
-        Err(error) => Done::Failed(WordedFault::of("not exported: ", &error)),
-    }
 }
 
 /// The path a person typed, `~/` meaning the home folder.
@@ -290,5 +269,6 @@ fn text(content: &Content, as_json: bool) -> Result<String, Box<dyn std::error::
         }
         Content::Study(study, _) => study_table::csv(study)?,
         Content::Script(_, lines) => lines.join("\n"),
+        Content::Page(Page::Screen(text) | Page::Figure(text)) => text.clone(),
     })
 }

@@ -3,7 +3,7 @@
 use super::command::Assignment;
 use super::curve::CurveData;
 use super::data::{Folder, Foreign};
-use super::export::{ExportKind, Page};
+use super::export::{Export, Page};
 use super::journal::Beginning;
 use super::node::Node;
 use super::studies::StudyData;
@@ -29,18 +29,20 @@ pub enum Content {
     Pull(Box<PullReport>, Box<Preset>),
     /// A study and where its preset comes from.
     Study(Arc<StudyData>, Box<Beginning>),
+    Page(Page),
 }
 
 impl Content {
-    /// Its document.
-    pub fn document(&self) -> ExportKind {
+    /// What it is the content of.
+    pub fn export(&self) -> Export {
         match self {
-            Self::Curve(_) => ExportKind::Curve,
-            Self::Walk(..) => ExportKind::Walk,
-            Self::Events(..) => ExportKind::Events,
-            Self::Script(..) => ExportKind::Script,
-            Self::Pull(..) => ExportKind::Pull,
-            Self::Study(..) => ExportKind::Study,
+            Self::Curve(_) => Export::Curve,
+            Self::Walk(..) => Export::Walk,
+            Self::Events(..) => Export::Events,
+            Self::Script(..) => Export::Script,
+            Self::Pull(..) => Export::Pull,
+            Self::Study(..) => Export::Study,
+            Self::Page(page) => Export::Page(page.clone()),
         }
     }
 }
@@ -87,11 +89,6 @@ pub enum Job {
         with_data: bool,
         from: Source,
     },
-    Write {
-        page: Page,
-        path: String,
-        replace: bool,
-    },
     Export {
         content: Content,
         path: String,
@@ -124,7 +121,6 @@ pub enum Done {
     NameTaken(String, bool),
     /// A document is in this file; the units of its columns, where it is CSV of a preset in SI.
     Exported(String, Option<String>),
-    FileExists(ExportKind, String),
-    PageExists(Page, String),
+    FileExists(Export, String),
     Failed(WordedFault),
 }

@@ -55,9 +55,8 @@ pub enum Question {
     SaveAnyway,
     /// Whether to replace the preset of this name; the flag says whether with the data of its profile.
     ReplacePreset(String, bool),
-    /// Whether to replace the file at this path with this document.
-    ReplaceFile(super::export::ExportKind, String),
-    ReplacePage(super::export::Page, String),
+    /// Whether to replace the file at this path with this export.
+    ReplaceFile(super::export::Export, String),
 }
 
 /// What commands wait for besides walks and curves.

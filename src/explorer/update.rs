@@ -25,7 +25,7 @@ use super::backgrounds::{kind_of, want_all};
 use super::command::{Command, Id, LENGTHS};
 use super::effect::{Effect, Reply};
 use super::job::{Done, Job};
-use super::model::{Awaits, Level, Model};
+use super::model::{Awaits, Model};
 use super::requests::{browse, file, want_curve};
 use super::table::{Waits, is_available, row_of, why_unavailable};
 use super::view::ScreenPanel;
@@ -33,7 +33,7 @@ use super::walk::Action;
 use super::{look, reach};
 use crate::store::{Loaded, Overwrite};
 use curve::curve_came;
-use files::{export, export_page, file_done, save, save_as};
+use files::{export, file_done, save, save_as};
 use places::{go_to_event, move_to, select_event};
 use selection::{pick, study};
 use travel::{by_states, go_to, go_to_state, travel};
@@ -144,10 +144,6 @@ fn obey(model: &mut Model, command: Command) -> Vec<Effect> {
         Command::SaveAs { name, replace, with_data } => return save_as(model, name, replace, with_data),
         Command::SaveAnyway => return save(model, Overwrite::Always),
         Command::Export { what, path, replace } => return export(model, what, path, replace),
-        Command::ExportPage { page, path, replace } => return export_page(model, page, path, replace),
-        Command::Picture { picture, .. } => {
-            model.tell(Level::Error, format!("nothing here draws a {}", picture.name()));
-        }
     }
     Vec::new()
 }

@@ -7,7 +7,9 @@ use super::app::App;
 use super::overlay::Excerpt;
 use super::theme::Theme;
 use super::view;
+use crate::explorer::export::{Export, Page};
 use crate::explorer::{Model, Node};
+use crate::plot::picture::picture;
 use pulloff_engine::case::critical_force;
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::{significant, with_unit};
@@ -28,10 +30,19 @@ const LINE: usize = 4096;
 /// Digits of a copied value.
 const DIGITS: usize = 10;
 
-/// The screen of a session without one, as text: 100 columns and 30 rows.
-pub fn screen(model: &Model) -> String {
-    let app = App { screen: Rect::new(0, 0, 100, 30), ..App::on(model.clone(), Theme::default()) };
-    text(&app, Excerpt::Screen)
+/// [`drawn`] for a session without a screen, as on one of 100 columns and 30 rows.
+pub fn drawn_alone(model: &Model, what: Export) -> Result<Export, String> {
+    drawn(&App { screen: Rect::new(0, 0, 100, 30), ..App::on(model.clone(), Theme::default()) }, what)
+}
+
+/// Makes a page of an export of what is seen, or says why it cannot be drawn; leaves any other export as it is.
+pub fn drawn(app: &App, what: Export) -> Result<Export, String> {
+    let page = match what {
+        Export::Screen => Page::Screen(text(app, Excerpt::Screen)),
+        Export::Figure(view) => Page::Figure(picture(&app.model, view.unwrap_or(app.model.view))?),
+        other => return Ok(other),
+    };
+    Ok(Export::Page(page))
 }
 
 /// The content as text that cannot control a terminal.
@@ -42,7 +53,7 @@ pub fn text(app: &App, content: Excerpt) -> String {
         Excerpt::Events => {
             events_table(app.model.path_events()).and_then(|table| table.tsv()).unwrap_or_default()
         }
-        Excerpt::Chart | Excerpt::Screen => drawn(app, content),
+        Excerpt::Chart | Excerpt::Screen => cells(app, content),
     };
     let cell = |cell: &str| sanitize(cell, LINE);
     let line = |line: &str| line.split('\t').map(cell).collect::<Vec<_>>().join("\t") + "\n";
@@ -87,7 +98,7 @@ fn quantities(node: &Node) -> String {
 }
 
 /// The screen, or its first chart; the list that asked for it is already closed.
-fn drawn(app: &App, content: Excerpt) -> String {
+fn cells(app: &App, content: Excerpt) -> String {
     let size = app.screen;
     let Ok(mut terminal) = Terminal::new(TestBackend::new(size.width, size.height));
     let Ok(_) = terminal.draw(|frame| {

@@ -2,7 +2,7 @@
 
 use crate::explorer::Command;
 use crate::explorer::data::Foreign;
-use crate::explorer::export::{ExportKind, Page};
+use crate::explorer::export::Export;
 use crate::explorer::script::PaletteEntry;
 use crate::explorer::session::Snapshot;
 use crate::figure::Figure;
@@ -62,8 +62,7 @@ pub enum Purpose {
         /// Whether the data of a profile are copied beside the preset.
         with_data: bool,
     },
-    File(ExportKind),
-    Page(Page),
+    File(Export),
     Path,
     /// A command, from the list of all.
     Line {
@@ -100,10 +99,7 @@ impl Prompt {
             title: title.into(),
             note: note.to_owned(),
             input: Input::new(text),
-            fresh: matches!(
-                purpose,
-                Purpose::Value(_) | Purpose::Name { .. } | Purpose::File(_) | Purpose::Page(_)
-            ),
+            fresh: matches!(purpose, Purpose::Value(_) | Purpose::Name { .. } | Purpose::File(_)),
             purpose,
             error: None,
             waits: false,
@@ -141,7 +137,6 @@ impl Purpose {
             Self::Value(key) | Self::Formula(key) => Command::Set { key, text },
             Self::Name { with_data } => Command::SaveAs { name: text, replace: false, with_data },
             Self::File(what) => Command::Export { what, path: text, replace: false },
-            Self::Page(page) => Command::ExportPage { page, path: text, replace: false },
             Self::Path => Command::Open(text),
             Self::Line { .. } => return None,
         })
@@ -309,23 +304,13 @@ impl Excerpt {
     /// All, in the order they are offered.
     pub const ALL: [Self; 4] = [Self::State, Self::Events, Self::Chart, Self::Screen];
 
-    /// Its name.
-    pub fn name(self) -> &'static str {
+    /// Its name, and what it is.
+    pub fn words(self) -> [&'static str; 2] {
         match self {
-            Self::State => "state",
-            Self::Events => "events",
-            Self::Chart => "chart",
-            Self::Screen => "screen",
-        }
-    }
-
-    /// What it is.
-    pub fn meaning(self) -> &'static str {
-        match self {
-            Self::State => "the walker's state: δ, P, s and what goes with them",
-            Self::Events => "the events listed, tab-separated, for a spreadsheet",
-            Self::Chart => "the first chart as text",
-            Self::Screen => "the whole screen as text",
+            Self::State => ["state", "the walker's state: δ, P, s and what goes with them"],
+            Self::Events => ["events", "the events listed, tab-separated, for a spreadsheet"],
+            Self::Chart => ["chart", "the first chart as text"],
+            Self::Screen => ["screen", "the whole screen as text"],
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::support::session::Session;
 use pulloff::explorer::data::Folder;
-use pulloff::explorer::export::ExportKind;
+use pulloff::explorer::export::Export;
 use pulloff::explorer::log::EventMark;
 use pulloff::explorer::model::{Level, Question};
 use pulloff::explorer::{
@@ -352,13 +352,15 @@ fn the_least_force_is_one_key_away_under_every_control() {
 fn exports_hold_what_is_on_the_screen_and_never_replace_a_file_unasked() {
     let mut session = Session::new("fig-8");
     session.all(&[Id::NextEvent, Id::Jump]);
-    for what in [ExportKind::Curve, ExportKind::Walk, ExportKind::Events] {
+    for what in [Export::Curve, Export::Walk, Export::Events] {
         for ending in ["csv", "json"] {
             let path = session.folder.path().join(format!("{}.{ending}", what.name()));
             let shown = path.to_str().unwrap().to_owned();
-            session.does(Command::Export { what, path: format!("{shown}.txt"), replace: false });
+            let export =
+                |path: &str| Command::Export { what: what.clone(), path: path.to_owned(), replace: false };
+            session.does(export(&format!("{shown}.txt")));
             assert!(session.status().contains("must end in"), "{}", session.status());
-            session.does(Command::Export { what, path: shown.clone(), replace: false });
+            session.does(export(&shown));
             assert!(session.status().contains("exported"), "{}", session.status());
             let text = std::fs::read_to_string(&path).unwrap();
             if ending == "json" {
@@ -368,13 +370,13 @@ fn exports_hold_what_is_on_the_screen_and_never_replace_a_file_unasked() {
             } else {
                 let rows = csv::Reader::from_reader(text.as_bytes()).into_records().count();
                 let expected = match what {
-                    ExportKind::Curve => session.model.curve.as_ref().unwrap().points.len(),
-                    ExportKind::Walk => session.model.history.path().len(),
+                    Export::Curve => session.model.curve.as_ref().unwrap().points.len(),
+                    Export::Walk => session.model.history.path().len(),
                     _ => 2,
                 };
                 assert_eq!(rows, expected, "{what:?}");
             }
-            session.does(Command::Export { what, path: shown, replace: false });
+            session.does(export(&shown));
             assert!(session.model.question.take().is_some());
         }
     }
@@ -387,7 +389,7 @@ fn an_export_in_si_tells_the_units_of_its_columns() {
         session.does(Id::Step);
         for (file, expected) in [("walk.csv", units), ("walk.json", "")] {
             let path = session.folder.path().join(file).to_str().unwrap().to_owned();
-            session.does(Command::Export { what: ExportKind::Walk, path, replace: false });
+            session.does(Command::Export { what: Export::Walk, path, replace: false });
             let has_units = session.status().contains("units of the CSV");
             assert_eq!(has_units, !expected.is_empty(), "{name} {file}: {}", session.status());
             assert!(session.status().contains(expected), "{}", session.status());

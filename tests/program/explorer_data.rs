@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 use crate::support::session::Session;
-use pulloff::explorer::export::ExportKind;
+use pulloff::explorer::export::Export;
 use pulloff::explorer::model::Question;
 use pulloff::explorer::script::parse;
 use pulloff::explorer::session::{Document, Ended, Snapshot};
@@ -291,9 +291,9 @@ fn a_foreign_header_asks_for_the_columns_and_the_answer_is_one_change() {
 #[test]
 fn a_walk_of_ones_own_lies_on_its_own_curve() {
     for (walk, exported) in [
-        ("next-event\n".repeat(4), ExportKind::Walk),
-        ("next-event\n".repeat(12), ExportKind::Walk),
-        (String::new(), ExportKind::Curve),
+        ("next-event\n".repeat(4), Export::Walk),
+        ("next-event\n".repeat(12), Export::Walk),
+        (String::new(), Export::Curve),
     ] {
         let mut session = Session::new("wavy-sphere");
         for _ in walk.lines() {

@@ -4,7 +4,7 @@
 
 use crate::support::session::Session;
 use fastrand::Rng;
-use pulloff::explorer::export::ExportKind;
+use pulloff::explorer::export::Export;
 use pulloff::explorer::job::Done;
 use pulloff::explorer::journal::Journal;
 use pulloff::explorer::script::{self, Permission, play};
@@ -126,11 +126,11 @@ impl Late {
 /// The bytes of the walk, exported.
 fn walk_csv(model: &mut Model, driver: &Inline, folder: &Path) -> String {
     let path = folder.join("walk.csv");
-    export(model, driver, ExportKind::Walk, &path);
+    export(model, driver, Export::Walk, &path);
     std::fs::read_to_string(path).unwrap()
 }
 
-fn export(model: &mut Model, driver: &Inline, what: ExportKind, path: &Path) {
+fn export(model: &mut Model, driver: &Inline, what: Export, path: &Path) {
     let path = path.to_string_lossy().into_owned();
     for effect in update(model, Command::Export { what, path, replace: true }) {
         if let Some(Reply::File(done)) = driver.run(effect) {
@@ -143,7 +143,7 @@ fn export(model: &mut Model, driver: &Inline, what: ExportKind, path: &Path) {
 fn replayed(model: &mut Model, driver: &Inline, folder: &Path) -> (String, String, String) {
     let walked = walk_csv(model, driver, folder);
     let path = folder.join("session.pulloff");
-    export(model, driver, ExportKind::Script, &path);
+    export(model, driver, Export::Script, &path);
     let text = std::fs::read_to_string(path).unwrap();
     let lines = script::read("session", &text).unwrap();
     let store = Store::at(folder.join("presets"), &[]);

@@ -4,7 +4,7 @@
 
 use crate::support::session::Session;
 use fastrand::Rng;
-use pulloff::explorer::export::ExportKind;
+use pulloff::explorer::export::Export;
 use pulloff::explorer::script::{self, Permission, play};
 use pulloff::explorer::undo::SessionPlace;
 use pulloff::explorer::{Command, Effect, Id, Model, NodeKind, ScreenPanel, open, update};
@@ -335,7 +335,7 @@ fn an_exported_script_of_undos_walks_the_same_again() {
         .does(Id::Step);
     let path = session.folder.path().join("s.pulloff");
     let path = path.to_string_lossy().into_owned();
-    session.does(Command::Export { what: ExportKind::Script, path: path.clone(), replace: false });
+    session.does(Command::Export { what: Export::Script, path: path.clone(), replace: false });
     let text = std::fs::read_to_string(path).unwrap();
     assert!(text.starts_with("# A session of pulloff: "), "{text}");
     let again = played(&text);

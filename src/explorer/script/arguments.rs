@@ -3,9 +3,9 @@
 use super::fault::ScriptFault;
 use super::keys::{known, short};
 use super::lexer::Word;
-use super::offers::{Offer, PICTURES, Typing};
+use super::offers::{Offer, Typing};
 use crate::explorer::command::{Assignment, Command, Id, LENGTHS, MOST_STEPS};
-use crate::explorer::export::{ExportKind, Picture, ends_in};
+use crate::explorer::export::{Export, ends_in};
 use crate::explorer::pins;
 use crate::explorer::view::{Home, Overlay, View};
 use pulloff_engine::preset::Key;
@@ -93,7 +93,7 @@ impl<'a> Rest<'a> {
         match self.words.first() {
             None => Ok(command),
             // It can only be meant as the view of a figure.
-            Some(word) if matches!(command, Command::Picture { picture: Picture::Figure(None), .. }) => {
+            Some(word) if matches!(command, Command::Export { what: Export::Figure(None), .. }) => {
                 Err(unknown(word, "view", &View::ALL.map(View::name)))
             }
             Some(word) => {
@@ -248,35 +248,25 @@ pub(in crate::explorer) fn saved_as(rest: &mut Rest<'_>) -> Result<Command, Scri
     Ok(Command::SaveAs { name, with_data, replace: rest.takes("replace") })
 }
 
-/// A document or a picture, and its file.
+/// What is exported, and its file; for a figure also which view.
 pub(in crate::explorer) fn exported(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
     let word = rest.need("a document")?;
-    if let Some(picture) = PICTURES.into_iter().find(|picture| picture.name() == word.text) {
-        let path = file(rest, picture.endings())?;
-        let view = rest.words.first().and_then(|word| View::named(&word.text));
-        let picture = match picture {
-            Picture::Figure(_) if view.is_some() => {
-                rest.next();
-                Picture::Figure(view)
-            }
-            picture => picture,
-        };
-        return Ok(Command::Picture { picture, path, replace: rest.takes("replace") });
-    }
-    let names = ExportKind::ALL.map(ExportKind::name).into_iter().chain(PICTURES.map(Picture::name));
-    let what = ExportKind::ALL.into_iter().find(|what| what.name() == word.text);
-    let what = what.ok_or_else(|| unknown(word, "document", &names.collect::<Vec<_>>()))?;
-    let path = file(rest, what.endings())?;
-    Ok(Command::Export { what, path, replace: rest.takes("replace") })
-}
-
-/// The file of an export.
-fn file(rest: &mut Rest<'_>, endings: &[&str]) -> Result<String, ScriptFault> {
+    let mut all = Export::ALL.into_iter();
+    let Some(mut what) = all.find(|what| what.name() == word.text) else {
+        return Err(unknown(word, "document", &Export::ALL.each_ref().map(Export::name)));
+    };
     let file = rest.need("a file")?;
-    if ends_in(&file.text, endings) {
-        return Ok(file.text.clone());
+    if !ends_in(&file.text, what.endings()) {
+        let text = format!("the file must end in .{}", what.endings().join(" or ."));
+        return Err(ScriptFault::new(file.column, text));
     }
-    Err(ScriptFault::new(file.column, format!("the file must end in .{}", endings.join(" or ."))))
+    if let Export::Figure(view) = &mut what {
+        *view = rest.words.first().and_then(|word| View::named(&word.text));
+        if view.is_some() {
+            rest.next();
+        }
+    }
+    Ok(Command::Export { what, path: file.text.clone(), replace: rest.takes("replace") })
 }
 
 /// Reads a key in a column.

@@ -4,7 +4,7 @@ use super::keys::settable;
 use super::lexer::quoted;
 use crate::explorer::branches;
 use crate::explorer::command::Command;
-use crate::explorer::export::{ExportKind, Picture, file_for};
+use crate::explorer::export::{Export, file_for};
 use crate::explorer::look::NO_ENVELOPE;
 use crate::explorer::map_axes::CURVES;
 use crate::explorer::model::Model;
@@ -19,9 +19,6 @@ use pulloff_engine::report::number::{significant, with_unit};
 use pulloff_engine::stability::COMPLIANCE;
 use pulloff_engine::sweep::{QUANTITIES, SweepQuantity};
 use pulloff_engine::units::Quantity;
-
-/// What is drawn rather than written.
-pub(super) const PICTURES: [Picture; 2] = [Picture::Figure(None), Picture::Screen];
 
 /// What a device can prescribe.
 const CONTROLS: [&str; 3] = ["displacement", "force", "stiffness="];
@@ -181,19 +178,18 @@ pub(in crate::explorer) fn presets(typing: &Typing<'_>) -> Vec<Offer> {
 
 /// What can be exported, and for a figure which view.
 pub(in crate::explorer) fn documents(typing: &Typing<'_>) -> Vec<Offer> {
-    let documents = ExportKind::ALL.map(|what| (what.name(), what.meaning(), what.endings()));
-    let pictures = PICTURES.map(|what| (what.name(), what.meaning(), what.endings()));
-    let all = documents.into_iter().chain(pictures);
     match typing.words {
-        [] => all.map(|(name, meaning, _)| Offer::new(name, meaning)).collect(),
+        [] => Export::ALL.map(|what| Offer::new(what.name(), what.meaning())).to_vec(),
         // Any name will do; these are suggestions.
         [document] => {
             let named = |endings: &[&str]| {
                 let shown = if *document == "figure" { typing.model.view.name() } else { document };
                 endings.iter().map(|ending| file_for(&typing.model.source, shown, ending)).collect::<Vec<_>>()
             };
-            let of = all.filter(|(name, ..)| name == document).flat_map(|(_, _, endings)| named(endings));
-            of.filter_map(|file| Some(Offer::new(quoted(&file)?, ""))).collect()
+            let of = Export::ALL.into_iter().filter(|what| what.name() == *document);
+            of.flat_map(|what| named(what.endings()))
+                .filter_map(|file| Some(Offer::new(quoted(&file)?, "")))
+                .collect()
         }
         ["figure", _] => words(View::ALL.map(View::name).into_iter().chain(["replace"])),
         [_, _] => words(["replace"]),

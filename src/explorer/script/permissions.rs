@@ -28,10 +28,6 @@ pub(super) fn allowed(model: &Model, command: Command, permission: Permission) -
             within(&target(&path))?;
             Command::Export { what, path, replace: may_replace(replace)? }
         }
-        Command::Picture { picture, path, replace } => {
-            within(&target(&path))?;
-            Command::Picture { picture, path, replace: may_replace(replace)? }
-        }
         // A plain name goes to the folder of presets and nowhere else.
         Command::SaveAs { name, replace, with_data } => {
             Command::SaveAs { name, with_data, replace: may_replace(replace)? }

@@ -6,7 +6,7 @@ use super::read::ScriptLine;
 use crate::explorer::command::{Command, by_name};
 use crate::explorer::driver::Inline;
 use crate::explorer::effect::Effect;
-use crate::explorer::export::{Page, Picture};
+use crate::explorer::export::Export;
 use crate::explorer::model::{CurveError, Level, Model};
 use crate::explorer::update::update;
 use crate::mend::WordedFault;
@@ -22,8 +22,8 @@ pub struct Failed {
     pub reason: WordedFault,
 }
 
-/// Draws what a session shows, or says why it cannot.
-pub type Painter<'a> = &'a dyn Fn(&Model, Picture) -> Result<Page, String>;
+/// Makes a page of an export of what a session shows, or says why it cannot; leaves any other export as it is.
+pub type Painter<'a> = &'a dyn Fn(&Model, Export) -> Result<Export, String>;
 
 /// Runs `effects` and then the lines one after another; `told` receives each line that was done, `draws` what is to be
 /// drawn.
@@ -73,10 +73,9 @@ fn obey(
     draws: Painter<'_>,
 ) -> Result<(), WordedFault> {
     let mut command = allowed(model, line.command.clone(), permission).map_err(WordedFault::mendable)?;
-    if let Command::Picture { picture, path, replace } = command {
-        let page =
-            drawn(model, driver, picture, draws).map_err(|why| WordedFault::mendable(by_name(&why)))?;
-        command = Command::ExportPage { page, path, replace };
+    if let Command::Export { what, .. } = &mut command {
+        *what =
+            drawn(model, driver, what.clone(), draws).map_err(|why| WordedFault::mendable(by_name(&why)))?;
     }
     let effects = update(model, command);
     driver.settle(model, effects);
@@ -86,13 +85,13 @@ fn obey(
 }
 
 /// Draws what is seen; a view that is not on the screen is shown for that moment.
-fn drawn(model: &mut Model, driver: &Inline, picture: Picture, draws: Painter<'_>) -> Result<Page, String> {
+fn drawn(model: &mut Model, driver: &Inline, what: Export, draws: Painter<'_>) -> Result<Export, String> {
     let before = model.view;
-    if let Picture::Figure(Some(view)) = picture {
+    if let Export::Figure(Some(view)) = what {
         let effects = update(model, Command::Show(view));
         driver.settle(model, effects);
     }
-    let page = draws(model, picture);
+    let page = draws(model, what);
     model.view = before;
     page
 }

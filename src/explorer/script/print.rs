@@ -2,7 +2,7 @@
 
 use super::lexer::quoted;
 use crate::explorer::command::{Assignment, Command};
-use crate::explorer::export::Picture;
+use crate::explorer::export::Export;
 
 /// The line that reads back as this command; `None` for commands that need a screen.
 pub fn line(command: &Command) -> Option<String> {
@@ -36,14 +36,6 @@ pub fn line(command: &Command) -> Option<String> {
             format!(" {}{with_data}{}", quoted(name)?, replacing(*replace))
         }
         Command::SaveAnyway => replacing(true).to_owned(),
-        Command::Export { what, path, replace } => {
-            format!(" {} {}{}", what.name(), quoted(path)?, replacing(*replace))
-        }
-        Command::Picture { picture, path, replace } => {
-            let view = if let Picture::Figure(Some(view)) = picture { view.name() } else { "" };
-            let view = if view.is_empty() { String::new() } else { format!(" {view}") };
-            format!(" {} {}{view}{}", picture.name(), quoted(path)?, replacing(*replace))
-        }
         Command::HeldStep(_)
         | Command::Set { .. }
         | Command::Try { .. }
@@ -53,8 +45,15 @@ pub fn line(command: &Command) -> Option<String> {
         | Command::Pick { .. }
         | Command::GoTo { .. }
         | Command::Delete(_)
-        | Command::ExportPage { .. }
-        | Command::Zoom { .. } => return None,
+        | Command::Zoom { .. }
+        | Command::Export { what: Export::Page(_), .. } => return None,
+        Command::Export { what, path, replace } => {
+            let view = match what {
+                Export::Figure(Some(view)) => format!(" {}", view.name()),
+                _ => String::new(),
+            };
+            format!(" {} {}{view}{}", what.name(), quoted(path)?, replacing(*replace))
+        }
     };
     Some(format!("{name}{rest}"))
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::explorer::command::{Command, Id, MOST_STEPS};
-use crate::explorer::export::ExportKind;
+use crate::explorer::export::Export;
 use crate::explorer::table::ROWS;
 use crate::explorer::view::Overlay;
 use proptest::prelude::*;
@@ -23,7 +23,7 @@ fn safe(text: &str) -> String {
 
 fn any_command() -> impl Strategy<Value = Command> {
     let text = || "\\PC{0,12}".prop_map(|text| safe(&text));
-    let what = proptest::sample::select(ExportKind::ALL.to_vec());
+    let what = proptest::sample::select(Export::ALL.to_vec());
     let overlay = proptest::sample::select(Overlay::ALL.to_vec());
     let flag = any::<bool>;
     prop_oneof![
@@ -96,7 +96,7 @@ fn a_script_is_read_with_comments_quotes_and_synonyms() {
         (4, Id::Run.into()),
         (5, set(&[("path.control", "force")])),
         (6, set(&[("gap.wavelength", "3 um"), ("title", "a \"b\" # c")])),
-        (7, Command::Export { what: ExportKind::Curve, path: "out file.csv".to_owned(), replace: false }),
+        (7, Command::Export { what: Export::Curve, path: "out file.csv".to_owned(), replace: false }),
         (8, Command::SaveAs { name: "x".to_owned(), replace: true, with_data: false }),
     ];
     assert_eq!(commands, expected);

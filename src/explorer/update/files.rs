@@ -5,7 +5,7 @@ use super::values::{assigned, rows_came};
 use crate::explorer::background::Background;
 use crate::explorer::command::Id;
 use crate::explorer::effect::Effect;
-use crate::explorer::export::{ExportKind, Page, ends_in};
+use crate::explorer::export::{Export, Page, ends_in};
 use crate::explorer::job::{Content, Done, Job};
 use crate::explorer::journal::Beginning;
 use crate::explorer::look;
@@ -60,56 +60,55 @@ pub(super) fn save_as(model: &mut Model, name: String, replace: bool, with_data:
     vec![file(Job::SaveAs { name, preset, replace, with_data, from })]
 }
 
-pub(super) fn export(model: &mut Model, what: ExportKind, path: String, replace: bool) -> Vec<Effect> {
-    let (Some(curve), Some(start)) = (model.curve.clone(), model.journal.start().cloned()) else {
-        return model.refuse("there is no curve to export yet");
-    };
-    if !ends_in(&path, what.endings()) {
-        return model.refuse(format!("the file must end in .{}", what.endings().join(" or .")));
+pub(super) fn export(model: &mut Model, what: Export, path: String, replace: bool) -> Vec<Effect> {
+    match content(model, what, &path) {
+        Ok(content) => vec![file(Job::Export { content, path, replace })],
+        Err(reason) => model.refuse(reason),
     }
-    let content = match what {
-        ExportKind::Curve => Content::Curve(curve),
-        ExportKind::Walk => {
-            Content::Walk(curve, model.history.path().into_iter().map(|(_, node)| node.clone()).collect())
+}
+
+/// What an export to `path` holds, or why there is none.
+fn content(model: &Model, what: Export, path: &str) -> Result<Content, String> {
+    // The error of a figure also says which formats this build lacks.
+    if let Export::Page(Page::Figure(_)) = what {
+        PictureFormat::of(Path::new(path)).map_err(|error| error.to_string())?;
+    } else if !ends_in(path, what.endings()) {
+        return Err(format!("the file must end in .{}", what.endings().join(" or .")));
+    }
+    let begun =
+        || model.curve.clone().zip(model.journal.start().cloned()).ok_or("there is no curve to export yet");
+    Ok(match what {
+        Export::Page(page) => Content::Page(page),
+        Export::Figure(_) | Export::Screen => return Err(format!("nothing here draws a {}", what.name())),
+        Export::Curve => Content::Curve(begun()?.0),
+        Export::Walk => {
+            let path = model.history.path().into_iter();
+            Content::Walk(begun()?.0, path.map(|(_, node)| node.clone()).collect())
         }
-        ExportKind::Events => Content::Events(curve, model.path_events().to_vec()),
-        ExportKind::Pull => {
+        Export::Events => Content::Events(begun()?.0, model.path_events().to_vec()),
+        Export::Pull => {
+            begun()?;
             let pull = model.pull().filter(|pull| pull.is_of(&model.preset));
-            let Some((pull, report)) = pull.and_then(|pull| Some((pull, pull.report.as_ref().ok()?))) else {
-                return model
-                    .refuse("there is no pull to export: path.rate and the law of the edge make one");
-            };
+            let report = pull.and_then(|pull| Some((pull, pull.report.as_ref().ok()?)));
+            let (pull, report) =
+                report.ok_or("there is no pull to export: path.rate and the law of the edge make one")?;
             Content::Pull(Box::new(report.clone()), Box::new(pull.preset.clone()))
         }
-        ExportKind::Study => {
+        Export::Study => {
+            begun()?;
             let study =
                 model.results.share::<StudyData>().filter(|study| study.done() == study.outcomes.len());
-            let Some(study) = study else {
-                let text = format!("there is no study to export: {} makes one", Id::Study.named());
-                return model.refuse(text);
-            };
+            let none = || format!("there is no study to export: {} makes one", Id::Study.named());
+            let study = study.ok_or_else(none)?;
             let preset = study.wish.preset.clone();
             Content::Study(study, Box::new(Beginning { source: model.source.clone(), preset }))
         }
-        ExportKind::Script => match model.script() {
-            Ok(lines) => Content::Script(Box::new(start), lines),
-            Err(reason) => {
-                return model.refuse(format!("not exported: {reason}"));
-            }
-        },
-    };
-    vec![file(Job::Export { content, path, replace })]
-}
-
-pub(super) fn export_page(model: &mut Model, page: Page, path: String, replace: bool) -> Vec<Effect> {
-    let refused = match page {
-        Page::Screen(_) => (!ends_in(&path, &["txt"])).then(|| "the file must end in .txt".to_owned()),
-        Page::Figure(_) => PictureFormat::of(Path::new(&path)).err().map(|error| error.to_string()),
-    };
-    if let Some(reason) = refused {
-        return model.refuse(reason);
-    }
-    vec![file(Job::Write { page, path, replace })]
+        Export::Script => {
+            let start = begun()?.1;
+            let lines = model.script().map_err(|reason| format!("not exported: {reason}"))?;
+            Content::Script(Box::new(start), lines)
+        }
+    })
 }
 
 pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
@@ -168,10 +167,6 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
         Done::FileExists(what, path) => {
             model.tell(Level::Error, format!("{path} exists: not exported"));
             model.question = Some(Question::ReplaceFile(what, path));
-        }
-        Done::PageExists(page, path) => {
-            model.tell(Level::Error, format!("{path} exists: not exported"));
-            model.question = Some(Question::ReplacePage(page, path));
         }
         Done::Failed(reason) => model.tell(Level::of(&reason), reason.text),
     }

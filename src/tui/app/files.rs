@@ -1,12 +1,11 @@
 //! Requests for names and paths: saving, exporting, copying.
 
 use super::state::App;
-use crate::explorer::export::{ExportKind, Page, Picture, file_for};
+use crate::explorer::export::{Export, Page, file_for};
 use crate::explorer::model::Level;
-use crate::explorer::{Command, Effect, Id};
-use crate::plot::picture::picture;
+use crate::explorer::{Effect, Id};
 use crate::store::Source;
-use crate::tui::copy;
+use crate::tui::copy::{self, drawn};
 use crate::tui::overlay::{Choice, Dialog, Excerpt, Item, Prompt, Purpose};
 
 impl App {
@@ -34,48 +33,29 @@ impl App {
     }
 
     pub(super) fn ask_export(&mut self) -> Vec<Effect> {
-        let items = ExportKind::ALL.map(|what| {
-            let file = file_for(&self.model.source, what.name(), what.endings()[0]);
-            let title = format!("Export the {} to", what.name());
-            let note = format!("a file ending in .{}", what.endings().join(" or ."));
-            let prompt = Prompt::new(title, &note, file, Purpose::File(what));
-            let text = format!("{:<7} {}", what.name(), what.meaning());
+        // What is seen stays as it is now, whatever becomes of the screen while the name is typed.
+        let mut all: Vec<Export> =
+            Export::ALL.into_iter().filter_map(|what| drawn(self, what).ok()).collect();
+        // A figure, which not every view has, takes the place of no other.
+        all.sort_by_key(|what| matches!(what, Export::Page(Page::Figure(_))));
+        let items = all.into_iter().map(|what| {
+            let (name, endings) = (what.name(), what.endings());
+            let is_figure = matches!(what, Export::Page(Page::Figure(_)));
+            let named = if is_figure { self.model.view.name() } else { name };
+            let file = file_for(&self.model.source, named, endings[0]);
+            let note = format!("a file ending in .{}", endings.join(" or ."));
+            let text = format!("{name:<7} {}", what.meaning());
+            let prompt = Prompt::new(format!("Export the {name} to"), &note, file, Purpose::File(what));
             Item::new(text, Choice::Prompt(Box::new(prompt)))
         });
-        let item = |what: Picture, page| {
-            let endings = what.endings();
-            let title = format!("Export the {} to", what.name());
-            let note = format!("a file ending in .{}", endings.join(" or ."));
-            let named = if let Picture::Figure(_) = what { self.model.view.name() } else { what.name() };
-            let file = file_for(&self.model.source, named, endings[0]);
-            let prompt = Prompt::new(title, &note, file, Purpose::Page(page));
-            Item::new(format!("{:<7} {}", what.name(), what.meaning()), Choice::Prompt(Box::new(prompt)))
-        };
-        let screen = item(Picture::Screen, Page::Screen(copy::text(self, Excerpt::Screen)));
-        let figure = picture(&self.model, self.model.view).ok();
-        let figure = figure.map(|svg| item(Picture::Figure(None), Page::Figure(svg)));
-        self.choose("Export", items.into_iter().chain([screen]).chain(figure).collect(), 0);
+        self.choose("Export", items.collect(), 0);
         Vec::new()
-    }
-
-    /// Draws what is seen, for its export.
-    pub(super) fn draw_page(&mut self, what: Picture, path: String, replace: bool) -> Option<Command> {
-        let page = match what {
-            Picture::Screen => Ok(Page::Screen(copy::text(self, Excerpt::Screen))),
-            Picture::Figure(view) => picture(&self.model, view.unwrap_or(self.model.view)).map(Page::Figure),
-        };
-        match page {
-            Ok(page) => Some(Command::ExportPage { page, path, replace }),
-            Err(why) => {
-                self.model.message = Some((Level::Error, format!("not exported: {why}")));
-                None
-            }
-        }
     }
 
     pub(super) fn ask_copy(&mut self) -> Vec<Effect> {
         let items = Excerpt::ALL.map(|content| {
-            Item::new(format!("{:<7} {}", content.name(), content.meaning()), Choice::Copy(content))
+            let [name, meaning] = content.words();
+            Item::new(format!("{name:<7} {meaning}"), Choice::Copy(content))
         });
         self.choose("Copy", items.to_vec(), 0);
         Vec::new()
@@ -92,7 +72,7 @@ impl App {
         } else {
             let told = format!(
                 "{} of {} bytes sent to the terminal's clipboard; if none arrive, {} exports to a file",
-                content.name(),
+                content.words()[0],
                 text.len(),
                 Id::Export.named()
             );

@@ -8,6 +8,7 @@ use crate::explorer::table::{is_available, row_of};
 use crate::explorer::{Command, Effect, Home, Id, Reply, ScreenPanel, View, answer, update};
 use crate::figure::Subject;
 use crate::store::{Listed, Listing, Source};
+use crate::tui::copy::drawn;
 use crate::tui::layout::is_alone;
 use crate::tui::overlay::{Choice, Choose, Confirm, Dialog, Help, Item, LONGEST_LINE, Prompt, Purpose};
 use crate::tui::view::help::ABOUT;
@@ -139,9 +140,14 @@ impl App {
 
     /// Runs a command, and notices if it leaves a question.
     pub(super) fn run(&mut self, mut command: Command) -> Vec<Effect> {
-        if let Command::Picture { picture, path, replace } = command {
-            let Some(page) = self.draw_page(picture, path, replace) else { return Vec::new() };
-            command = page;
+        if let Command::Export { what, .. } = &mut command {
+            match drawn(self, what.clone()) {
+                Ok(page) => *what = page,
+                Err(why) => {
+                    self.model.message = Some((Level::Error, format!("not exported: {why}")));
+                    return Vec::new();
+                }
+            }
         }
         let (view, goes) = (self.model.view, matches!(command, Command::Go(_) | Command::Show(_)));
         let effects = update(&mut self.model, command);
@@ -171,10 +177,6 @@ impl App {
             Some(Question::ReplaceFile(what, path)) => {
                 let question = format!("{} exists. y replaces it, Esc goes back.", sanitize(&path, 60));
                 self.ask(question, Command::Export { what, path, replace: true });
-            }
-            Some(Question::ReplacePage(page, path)) => {
-                let question = format!("{} exists. y replaces it, Esc goes back.", sanitize(&path, 60));
-                self.ask(question, Command::ExportPage { page, path, replace: true });
             }
         }
     }
