@@ -13,8 +13,6 @@
 #[cfg(feature = "program")]
 pub mod cli;
 #[cfg(feature = "program")]
-pub mod config;
-#[cfg(feature = "program")]
 pub mod explorer;
 #[cfg(feature = "program")]
 mod fault;

@@ -2,7 +2,7 @@
 //!
 //! To add a target, write a function here and a five-line file in `src/bin`.
 
-use pulloff::config;
+use pulloff::tui::config;
 use pulloff_engine::gap::formula::Formula;
 use pulloff::explorer::script;
 use pulloff::explorer::session::{Document, Ended};

@@ -3,36 +3,19 @@
 use super::Failure;
 use super::console::Console;
 use super::problem::ProblemArguments;
+use crate::tui::look::LookWish;
 use std::path::Path;
 use std::process::ExitCode;
-
-/// How the explorer looks.
-#[derive(Debug, clap::Args)]
-#[command(next_help_heading = "Explorer")]
-pub struct Flags {
-    /// Colours for a dark or a light background, or none; the variable `NO_COLOR` means mono
-    #[arg(long, value_enum)]
-    theme: Option<crate::tui::theme::Palette>,
-    /// What curves are drawn with, for fonts without braille or without blocks
-    #[arg(long, value_enum)]
-    charts: Option<crate::tui::theme::Charts>,
-    /// Only ASCII characters, as in a locale without UTF-8
-    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true", hide_possible_values = true)]
-    ascii: Option<bool>,
-    /// Take the mouse from the start; the command mouse takes it and gives it back
-    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true", hide_possible_values = true)]
-    mouse: Option<bool>,
-}
 
 /// Runs the explorer on a preset, or on the session `resume`: the newest one where that is empty.
 pub fn run(
     problem: &ProblemArguments,
     resume: Option<&str>,
     config: Option<&Path>,
-    flags: &Flags,
+    flags: LookWish,
 ) -> Result<ExitCode, Failure> {
     use crate::explorer::archive::Archive;
-    use crate::tui::look::{Environment, Look, LookFile};
+    use crate::tui::look::{Environment, Look};
     let archive = Archive::open();
     // A fault in the preset, the session or the requested settings is an error on any terminal.
     let start = match resume {
@@ -47,20 +30,18 @@ pub fn run(
     if let Some(notice) = &settings.notice {
         let _ = std::io::Write::write_fmt(&mut std::io::stderr(), format_args!("pulloff: {notice}\n"));
     }
-    let Flags { theme, charts, ascii, mouse } = *flags;
-    let asked = LookFile { theme, charts, ascii, mouse };
-    let look = Look::resolve(asked, Some(settings.look), &Environment::of_process());
+    let look = Look::resolve(flags, settings.look, &Environment::of_process());
     crate::tui::run(super::problem::store(), archive, start, look, settings)
         .map_err(|error| Failure::Terminal(error.to_string()))
 }
 
 /// The settings from the requested file, or from the usual one; faults in the latter leave the defaults and a notice.
 pub(super) fn settings(asked: Option<&Path>) -> Result<crate::tui::UserSettings, Failure> {
-    use crate::config::{self, ConfigError};
-    use crate::tui::{UserSettings, keymap::Keymap, look::LookFile};
+    use crate::tui::config::{self, ConfigError};
+    use crate::tui::{UserSettings, keymap::Keymap};
     let ready = |config: Result<config::Config, ConfigError>| {
         config.and_then(|config| {
-            Ok(UserSettings { keymap: Keymap::of(&config)?, look: LookFile::of(&config), notice: None })
+            Ok(UserSettings { keymap: Keymap::of(&config)?, look: config.look, notice: None })
         })
     };
     if let Some(path) = asked {

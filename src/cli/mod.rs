@@ -58,7 +58,7 @@ struct Cli {
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
     #[command(flatten)]
-    flags: explore::Flags,
+    flags: crate::tui::look::LookWish,
 }
 
 #[derive(Debug, Subcommand)]
@@ -123,7 +123,7 @@ pub fn run() -> ExitCode {
         }
     };
     let result = match &cli.command {
-        None => explore::run(&cli.problem, cli.resume.as_deref(), cli.config.as_deref(), &cli.flags),
+        None => explore::run(&cli.problem, cli.resume.as_deref(), cli.config.as_deref(), cli.flags),
         Some(ProgramCommand::Trace(arguments)) => trace::run(arguments),
         Some(ProgramCommand::Unload(arguments)) => path::unload(arguments),
         Some(ProgramCommand::Cycle(arguments)) => path::cycle(arguments),

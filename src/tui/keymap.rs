@@ -3,7 +3,7 @@
 //! Never Ctrl-S or Ctrl-Q (flow control) or Ctrl-Z (suspend); by default, a function or Alt key is never the only way.
 //! A command without a key is reached through the command line.
 
-use crate::config::{Config, ConfigError, ConfigMistake};
+use super::config::{Config, ConfigError, ConfigMistake};
 use crate::explorer::Id;
 use crate::explorer::command::spelled;
 use crate::explorer::table::{CommandRow, ROWS};
@@ -263,7 +263,7 @@ pub fn markdown() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::read;
+    use crate::tui::config::read;
     use std::collections::HashSet;
 
     #[test]

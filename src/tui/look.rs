@@ -16,30 +16,24 @@
 
 use super::terminal::utf8_locale;
 use super::theme::{Charts, Palette, Theme};
-use crate::config::Config;
-use clap::ValueEnum;
 
-/// What the command line or the table `[look]` of a configuration asks for; `None` where it says nothing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct LookFile {
+/// How the explorer looks: what the command line or the table `[look]` of a configuration asks for; `None` where it says
+/// nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::Args)]
+#[command(next_help_heading = "Explorer")]
+pub struct LookWish {
+    /// Colours for a dark or a light background, or none; the variable `NO_COLOR` means mono
+    #[arg(long, value_enum)]
     pub theme: Option<Palette>,
+    /// What curves are drawn with, for fonts without braille or without blocks
+    #[arg(long, value_enum)]
     pub charts: Option<Charts>,
+    /// Only ASCII characters, as in a locale without UTF-8
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true", hide_possible_values = true)]
     pub ascii: Option<bool>,
+    /// Take the mouse from the start; the command mouse takes it and gives it back
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true", hide_possible_values = true)]
     pub mouse: Option<bool>,
-}
-
-impl LookFile {
-    /// What a configuration asks for.
-    pub fn of(config: &Config) -> Self {
-        let word = |row: &str| config.look.iter().find(|(name, _)| *name == row).map(|(_, word)| *word);
-        let flag = |row| word(row).map(|word| word == "true");
-        Self {
-            theme: word("theme").and_then(|word| Palette::from_str(word, false).ok()),
-            charts: word("charts").and_then(|word| Charts::from_str(word, false).ok()),
-            ascii: flag("ascii"),
-            mouse: flag("mouse"),
-        }
-    }
 }
 
 /// What the environment says about the terminal.
@@ -54,15 +48,10 @@ pub struct Environment {
     pub term: String,
 }
 
-/// How the screen looks, and whether the mouse is taken.
+/// How the screen looks, and whether the mouse is taken from the start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Look {
-    pub theme: Palette,
-    /// What curves are drawn with.
-    pub charts: Charts,
-    /// Only characters below 0x80.
-    pub ascii: bool,
-    /// Whether the mouse is taken from the start.
+    pub theme: Theme,
     pub mouse: bool,
 }
 
@@ -81,9 +70,7 @@ impl Environment {
             term: std::env::var_os("TERM").unwrap_or_default().to_string_lossy().into_owned(),
         }
     }
-}
 
-impl Environment {
     /// Whether the terminal's own name says that it has 256 colours.
     fn has_256(&self) -> bool {
         const NAMES: [&str; 8] =
@@ -93,9 +80,8 @@ impl Environment {
 }
 
 impl Look {
-    /// What `flags` say, or else the environment's `NO_COLOR`, or else `from_file`, or else what the terminal can show.
-    pub fn resolve(flags: LookFile, from_file: Option<LookFile>, environment: &Environment) -> Self {
-        let file = from_file.unwrap_or_default();
+    /// What `flags` say, or else the environment's `NO_COLOR`, or else `file`, or else what the terminal can show.
+    pub fn resolve(flags: LookWish, file: LookWish, environment: &Environment) -> Self {
         let family = environment.term.split(['-', '.', '+']).next().unwrap_or_default().to_ascii_lowercase();
         let is_video = VIDEO.contains(&family.as_str());
         let no_unicode = !environment.utf8 || is_video || CODE_PAGE.contains(&family.as_str());
@@ -115,17 +101,7 @@ impl Look {
             charts.unwrap_or(usual),
             ascii,
         );
-        Self {
-            theme: theme.palette,
-            charts: theme.charts,
-            ascii: theme.ascii,
-            mouse: flags.mouse.or(file.mouse).unwrap_or(false),
-        }
-    }
-
-    /// The theme for drawing.
-    pub fn theme(&self) -> Theme {
-        Theme::new(self.theme, self.charts, self.ascii)
+        Self { theme, mouse: flags.mouse.or(file.mouse).unwrap_or(false) }
     }
 }
 
@@ -138,8 +114,8 @@ mod tests {
     }
 
     fn resolved(environment: &Environment) -> (Palette, Charts, bool) {
-        let look = Look::resolve(LookFile::default(), None, environment);
-        (look.theme, look.charts, look.ascii)
+        let theme = Look::resolve(LookWish::default(), LookWish::default(), environment).theme;
+        (theme.palette, theme.charts, theme.ascii)
     }
 
     #[test]
@@ -156,40 +132,20 @@ mod tests {
 
     #[test]
     fn flags_win_over_no_color_and_that_over_the_file() {
-        let file = Some(LookFile { theme: Some(Palette::Light), mouse: Some(true), ..LookFile::default() });
-        let none = LookFile::default();
+        let file = LookWish { theme: Some(Palette::Light), mouse: Some(true), ..LookWish::default() };
+        let none = LookWish::default();
         let no_color = Environment { no_color: true, ..on("xterm") };
         let look = Look::resolve(none, file, &on("xterm"));
-        assert_eq!((look.theme, look.mouse), (Palette::Light, true));
-        assert_eq!(Look::resolve(none, file, &no_color).theme, Palette::Mono);
-        let flags = LookFile { theme: Some(Palette::Dark), mouse: Some(false), ..none };
+        assert_eq!((look.theme.palette, look.mouse), (Palette::Light, true));
+        assert_eq!(Look::resolve(none, file, &no_color).theme.palette, Palette::Mono);
+        let flags = LookWish { theme: Some(Palette::Dark), mouse: Some(false), ..none };
         let look = Look::resolve(flags, file, &no_color);
-        assert_eq!((look.theme, look.mouse), (Palette::Dark, false));
+        assert_eq!((look.theme.palette, look.mouse), (Palette::Dark, false));
         // ASCII applies to the charts too, whatever else is requested.
-        let ascii = LookFile { ascii: Some(true), charts: Some(Charts::Braille), ..none };
-        assert_eq!(Look::resolve(ascii, None, &on("xterm")).charts, Charts::Ascii);
-        let charts = LookFile { charts: Some(Charts::Ascii), ..none };
-        let look = Look::resolve(charts, None, &on("xterm"));
-        assert_eq!((look.charts, look.ascii), (Charts::Ascii, false));
-    }
-
-    #[test]
-    fn a_file_knows_its_words_and_no_others() {
-        let text = "[look]\ntheme = \"mono\"\ncharts = \"block\"\nmouse = true";
-        let look = LookFile::of(&crate::config::read("c", text).unwrap());
-        let wanted = LookFile {
-            theme: Some(Palette::Mono),
-            charts: Some(Charts::Block),
-            ascii: None,
-            mouse: Some(true),
-        };
-        assert_eq!(look, wanted);
-        // Every word allowed in the file is known here.
-        for (row, words) in crate::config::LOOK {
-            for word in words {
-                let config = crate::config::Config { look: vec![(row, *word)], ..Default::default() };
-                assert_ne!(LookFile::of(&config), LookFile::default(), "{row} = {word}");
-            }
-        }
+        let ascii = LookWish { ascii: Some(true), charts: Some(Charts::Braille), ..none };
+        assert_eq!(Look::resolve(ascii, none, &on("xterm")).theme.charts, Charts::Ascii);
+        let charts = LookWish { charts: Some(Charts::Ascii), ..none };
+        let look = Look::resolve(charts, none, &on("xterm"));
+        assert_eq!((look.theme.charts, look.theme.ascii), (Charts::Ascii, false));
     }
 }

@@ -10,6 +10,7 @@
 //! | [`overlay`] | prompts, choices, questions and the help, as data |
 //! | [`layout`] | which pane goes where at each size |
 //! | [`look`] | theme, charts and mouse from flags, configuration and environment |
+//! | [`config`] | the user's settings file |
 //! | [`theme`] | styles and glyphs, by palette, Unicode or ASCII |
 //! | [`chart`] | a figure on cells: axes, curves, marks, the cross-hair |
 //! | `marks` | how each line and sign of a figure is drawn |
@@ -20,6 +21,7 @@
 
 pub mod app;
 pub mod chart;
+pub mod config;
 pub mod copy;
 mod held;
 pub mod keymap;
@@ -62,7 +64,7 @@ use theme::Theme;
 #[derive(Debug, Clone, Default)]
 pub struct UserSettings {
     pub keymap: Keymap,
-    pub look: look::LookFile,
+    pub look: look::LookWish,
     /// A message to show when the screen comes up.
     pub notice: Option<String>,
 }
@@ -140,7 +142,7 @@ pub fn run(
         // Fails only if the screen is gone.
         let _ = sender.send(reply);
     })?;
-    let (mut app, effects, mut offered) = begin(start, look.theme(), &autosave);
+    let (mut app, effects, mut offered) = begin(start, look.theme, &autosave);
     app.mouse = look.mouse;
     app.keymap = settings.keymap;
     if let Some(notice) = settings.notice {

@@ -151,7 +151,8 @@ fn every_file_of_the_book_is_read() {
                 };
                 Spec::read(&presets, "spec", &block).unwrap_or_else(|error| wrong(error.to_string()));
             } else if block.contains("[keys]") || block.contains("[look]") {
-                pulloff::config::read("settings", &block).unwrap_or_else(|error| wrong(error.to_string()));
+                pulloff::tui::config::read("settings", &block)
+                    .unwrap_or_else(|error| wrong(error.to_string()));
             } else {
                 let files = Files { points, ..Files::SHIPPED };
                 let set: [&str; 0] = [];

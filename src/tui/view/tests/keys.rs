@@ -1,8 +1,8 @@
 //! Sentences name the keys that the person has set.
 
 use super::Screen;
-use crate::config::read;
 use crate::explorer::{Id, ScreenPanel, View};
+use crate::tui::config::read;
 use crate::tui::keymap::Keymap;
 use crossterm::event::KeyCode;
 use pulloff_engine::problem::Control;

@@ -1,8 +1,8 @@
 //! The command line, the search in the help, and a person's own keys, on the screen.
 
 use super::Screen;
-use crate::config;
 use crate::explorer::Id;
+use crate::tui::config;
 use crate::tui::keymap::Keymap;
 use crate::tui::overlay::Dialog;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};

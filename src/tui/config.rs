@@ -12,9 +12,12 @@
 //! The names are those of the [command table](crate::explorer::table::ROWS); a command that is not named keeps its
 //! keys. A table of settings is a row of `TABLES` with its own reader.
 
+use super::look::LookWish;
 use crate::explorer::Id;
 use crate::explorer::table::ROWS;
 use crate::store::file::{FileError, read_text};
+use clap::builder::PossibleValue;
+use clap::{Arg, Args, FromArgMatches};
 use etcetera::BaseStrategy;
 use pulloff_engine::text::{closest, quote, show_path};
 use std::fmt;
@@ -36,17 +39,8 @@ pub struct Config {
     pub name: String,
     /// Keys of commands, in the order of the file.
     pub keys: Vec<Binding>,
-    /// The look of the screen: rows of [`LOOK`] with one of their words, in the order of the file.
-    pub look: Vec<(&'static str, &'static str)>,
+    pub look: LookWish,
 }
-
-/// The rows of `[look]` with the words that each takes; `true` and `false` are written without quotes.
-pub const LOOK: [(&str, &[&str]); 4] = [
-    ("theme", &["any", "dark", "light", "mono"]),
-    ("charts", &["braille", "block", "ascii"]),
-    ("ascii", &["true", "false"]),
-    ("mouse", &["true", "false"]),
-];
 
 /// The keys of one command.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -212,12 +206,16 @@ fn keys(config: &mut Config, table: &DeTable<'_>, sheet: &mut ConfigSheet<'_>) {
     }
 }
 
-/// `[look]`: the appearance of the screen.
+/// `[look]`: each row is a flag of the explorer, and takes the words that the flag takes; `true` and `false` are written
+/// without quotes.
 fn look(config: &mut Config, table: &DeTable<'_>, sheet: &mut ConfigSheet<'_>) {
+    let flags = LookWish::augment_args(clap::Command::new("look").no_binary_name(true));
+    let mut said = Vec::new();
     for (name, value) in table {
-        let at = name.span().start;
-        let Some((row, words)) = LOOK.iter().find(|(row, _)| *row == &**name.get_ref()) else {
-            sheet.unknown(at, "part of [look]", name.get_ref(), &LOOK.map(|(row, _)| row));
+        let (at, row) = (name.span().start, &**name.get_ref());
+        let Some(flag) = flags.get_arguments().find(|flag| flag.get_long() == Some(row)) else {
+            let names: Vec<&str> = flags.get_arguments().filter_map(Arg::get_long).collect();
+            sheet.unknown(at, "part of [look]", row, &names);
             continue;
         };
         let word = match value.get_ref() {
@@ -225,16 +223,22 @@ fn look(config: &mut Config, table: &DeTable<'_>, sheet: &mut ConfigSheet<'_>) {
             DeValue::Boolean(yes) => Some(yes.to_string()),
             _ => None,
         };
-        match words.iter().find(|known| word.as_deref() == Some(**known)) {
-            Some(word) => config.look.push((row, word)),
+        let words = flag.get_possible_values();
+        let words: Vec<&str> = words.iter().map(PossibleValue::get_name).collect();
+        match word.filter(|word| words.contains(&&**word)) {
+            Some(word) => said.push(format!("--{row}={word}")),
             None => sheet.wrong(at, format!("{row} must be one of {}", words.join(", "))),
         }
     }
+    // Flags with words of theirs cannot fail.
+    let look = flags.try_get_matches_from(said).and_then(|said| LookWish::from_arg_matches(&said));
+    config.look = look.unwrap_or_default();
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tui::theme::{Charts, Palette};
 
     fn error(text: &str) -> String {
         read("config.toml", text).unwrap_err().to_string()
@@ -255,8 +259,6 @@ mod tests {
             [binding(Id::Step, &["Space", "F2"], 3), binding(Id::Jump, &[], 4), binding(Id::Undo, &["z"], 5)];
         assert_eq!(bindings, expected);
         assert_eq!(read("c", "").unwrap().keys, []);
-        let look = read("c", "[look]\ntheme = \"light\"\nmouse = true").unwrap().look;
-        assert!(look.contains(&("theme", "light")) && look.contains(&("mouse", "true")), "{look:?}");
     }
 
     #[test]
@@ -264,6 +266,12 @@ mod tests {
         for (text, expected) in [
             ("[keys]\nstepp = \"x\"", "config.toml:2: no command is called \"stepp\"; did you mean step?"),
             ("[look]\ntheme = \"drak\"", "config.toml:2: theme must be one of any, dark, light, mono"),
+            ("[look]\ncharts = 3", "config.toml:2: charts must be one of braille, block, ascii"),
+            ("[look]\nmouse = \"on\"", "config.toml:2: mouse must be one of true, false"),
+            (
+                "[look]\nqqqqqq = 3",
+                "config.toml:2: no part of [look] is called \"qqqqqq\"; expected theme, charts, ascii, mouse",
+            ),
             (
                 "[look]\nthemes = 3",
                 "config.toml:2: no part of [look] is called \"themes\"; did you mean theme?",
@@ -281,6 +289,28 @@ mod tests {
         }
         let many = format!("[keys]\nstep = [{}]", "\"x\",".repeat(MOST_KEYS + 1));
         assert!(error(&many).contains("at most 8"));
+    }
+
+    #[test]
+    fn a_look_takes_every_word_of_its_flags() {
+        let look = |text: &str| read("c", &format!("[look]\n{text}")).unwrap().look;
+        let wanted = LookWish {
+            theme: Some(Palette::Mono),
+            charts: Some(Charts::Block),
+            ascii: None,
+            mouse: Some(true),
+        };
+        assert_eq!(look("theme = \"mono\"\ncharts = \"block\"\nmouse = true"), wanted);
+        let flags = LookWish::augment_args(clap::Command::new("look"));
+        let mut words = 0;
+        for flag in flags.get_arguments() {
+            for word in flag.get_possible_values() {
+                let (row, word) = (flag.get_long().unwrap(), word.get_name());
+                assert_ne!(look(&format!("{row} = \"{word}\"")), LookWish::default(), "{row} = {word}");
+                words += 1;
+            }
+        }
+        assert_eq!(words, 11);
     }
 
     #[test]
