@@ -12,6 +12,7 @@
 use super::distance::Nearest;
 use super::least_squares::LeastSquares;
 use super::path::{Foot, PathPlace};
+use super::prior::Prior;
 use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, Instrument, Paths, START, Target};
 use super::track::Mover;
 use crate::measured::Segment;
@@ -199,5 +200,9 @@ impl LeastSquares for FitProblem {
 
     fn counts(&self) -> Option<&[f64]> {
         self.counts.as_deref()
+    }
+
+    fn priors(&self) -> &[Prior] {
+        &self.priors
     }
 }

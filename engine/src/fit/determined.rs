@@ -13,9 +13,9 @@
 //! is that of J with columns of length 1: beyond [`LARGEST_CONDITION`] no errors are reported.
 
 use super::degrees::{VarianceSources, degrees};
-use super::least_squares::Evaluated;
 use super::options::letter;
-use super::problem::{FitProblem, FreeParameter, Prior};
+use super::prior::{Prior, with_derivatives};
+use super::problem::{FitProblem, FreeParameter};
 use super::scatter::{Correlation, Scatter, together, variance};
 use super::solve::{HUBER, LEAST_SCALE, SolvedFit};
 use super::spread::{LEAST_LEFT, Spread};
@@ -76,18 +76,17 @@ pub fn determined(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatter, r
     let p = u.len();
     let factor = level(&problem.real(&at.residuals), problem.taken(), robust);
     // What is known before counts like the points.
-    let known = problem.of_priors() * factor.sqrt();
-    let rows = at.jacobian.nrows();
-    let mut all = at.jacobian.clone().resize_vertically(rows + known.nrows(), 0.0);
-    all.view_mut((rows, 0), known.shape()).copy_from(&known);
-    let Some(White { condition, inner, weakest, .. }) = White::of(all, known.nrows()) else { return none };
+    let all = with_derivatives(at.jacobian.clone(), &problem.priors, factor.sqrt());
+    let Some(White { condition, inner, weakest, .. }) = White::of(all, problem.priors.len()) else {
+        return none;
+    };
     let Some(inner) = inner else {
-        let words = words(&problem.preset, &problem.parameters, at, u, &weakest);
+        let words = words(&problem.preset, &problem.parameters, &at.jacobian, u, &weakest);
         return Determined { condition, direction: Some(words), ..none };
     };
     let Sandwich { points, bread, noisy, spread } =
         sandwich(problem, solved, &inner, &scatter.correlation, robust);
-    let known = problem.of_priors();
+    let known = with_derivatives(DMatrix::zeros(0, p), &problem.priors, 1.0);
     let known = known.tr_mul(&known);
     let Some(bread) = (bread + &known).try_inverse() else { return none };
     let of_points = (&bread * &points * &bread).diagonal();
@@ -265,7 +264,7 @@ fn level(residuals: &[f64], p: usize, robust: bool) -> f64 {
 pub(super) fn words(
     preset: &Preset,
     parameters: &[FreeParameter],
-    at: &Evaluated,
+    jacobian: &DMatrix<f64>,
     u: &[f64],
     direction: &[f64],
 ) -> String {
@@ -292,7 +291,7 @@ pub(super) fn words(
         .filter(|j| share(**j) > 0.01)
         .map(|&j| format!("{} {}", name(j), change(preset, &parameters[j], u[j], moves[j])))
         .collect();
-    let moved = &at.jacobian * DVector::from_vec(moves.clone());
+    let moved = jacobian * DVector::from_vec(moves.clone());
     let noise = match moved.amax() {
         most if most < 1.0 => "by less than its noise".to_owned(),
         most => format!("by at most {} times its noise", significant(most, 2)),

@@ -1,6 +1,6 @@
 //! Intervals that do not assume a linear model: by the profile of χ², and by a block bootstrap.
 
-use super::least_squares::MinimizationSettings;
+use super::least_squares::{MinimizationSettings, minimize};
 use super::problem::{FitProblem, FreeParameter, Target};
 use super::solve::{HUBER, SolvedFit};
 use crate::gap::shapes::split_mix::SplitMix64;
@@ -82,7 +82,7 @@ pub fn profile(
         // √Δχ² is nearly proportional to the distance.
         let root = |distance: f64, others: &mut Vec<f64>| {
             let held = problem.holding(j, u[j] + side * distance)?;
-            let found = held.minimize(others, &settings, progress)?;
+            let found = minimize(&held, others, &settings, progress)?;
             others.clone_from(&found.parameters);
             Some((2.0 * (found.cost - solved.minimum.cost)).max(0.0).sqrt() / scale)
         };
@@ -165,7 +165,7 @@ pub fn bootstrap(
             }
         }
         drawn.counts = Some(counts);
-        let fit = drawn.minimize(&solved.minimum.parameters, &settings, progress);
+        let fit = minimize(&drawn, &solved.minimum.parameters, &settings, progress);
         if progress.stop() {
             break;
         }

@@ -1,4 +1,5 @@
-//! Least squares with Huber's loss, by Levenberg and Marquardt with Nielsen's damping.
+//! Least squares with Huber's loss, by Levenberg and Marquardt with Nielsen's damping. What is known of the values
+//! before is a term for each, after the residuals.
 //!
 //! ```text
 //! minimize  Σ m_i ρ(r_i),   ρ = r²/2 for |r| ≤ c, c|r| − c²/2 beyond;      weights w = m ψ/r = m min(1, c/|r|)
@@ -9,6 +10,7 @@
 //! Marquardt (1963); the damping: H. B. Nielsen, IMM-REP-1999-05. `levenberg-marquardt` 0.15 uses another version of
 //! nalgebra than ours, and has neither weights nor a way to be stopped.
 
+use super::prior::{Prior, with_derivatives, with_terms};
 use crate::progress::Progress;
 use nalgebra::{DMatrix, DVector};
 
@@ -19,6 +21,26 @@ pub struct Evaluated {
     pub residuals: DVector<f64>,
     /// ∂r/∂u.
     pub jacobian: DMatrix<f64>,
+}
+
+impl Evaluated {
+    /// The points and what is known before, at `u`.
+    fn informed(self, priors: &[Prior], u: &[f64]) -> Self {
+        Self {
+            residuals: with_terms(self.residuals, priors, u),
+            jacobian: with_derivatives(self.jacobian, priors, 1.0),
+        }
+    }
+
+    /// The points alone, without the `known` rows of what is known before.
+    fn of_points(self, known: usize) -> Self {
+        let rows = self.residuals.len() - known;
+        let (residuals, jacobian) = (self.residuals, self.jacobian);
+        Self {
+            residuals: residuals.resize_vertically(rows, 0.0),
+            jacobian: jacobian.resize_vertically(rows, 0.0),
+        }
+    }
 }
 
 /// What is fitted.
@@ -47,6 +69,11 @@ pub trait LeastSquares {
     /// How often each residual counts; without counts, each counts once.
     fn counts(&self) -> Option<&[f64]> {
         None
+    }
+
+    /// What is known of the values before. The residuals and derivatives above are those of the points alone.
+    fn priors(&self) -> &[Prior] {
+        &[]
     }
 }
 
@@ -88,9 +115,9 @@ pub enum Ending {
 pub struct Minimum {
     /// u.
     pub parameters: Vec<f64>,
-    /// Residuals and derivatives there.
+    /// Residuals and derivatives of the points there.
     pub at: Evaluated,
-    /// Σ m ρ.
+    /// Σ m ρ, with the terms of what is known before.
     pub cost: f64,
     /// How it ended.
     pub ending: Ending,
@@ -108,10 +135,14 @@ pub fn weight(r: f64, c: f64) -> f64 {
     if r.abs() <= c { 1.0 } else { c / r.abs() }
 }
 
+/// How often the residual `i` counts. What is known before comes after the residuals of the points, and counts once.
+fn count(counts: Option<&[f64]>, i: usize) -> f64 {
+    counts.and_then(|counts| counts.get(i)).copied().unwrap_or(1.0)
+}
+
 /// Σ m ρ.
 pub(super) fn cost(residuals: &DVector<f64>, counts: Option<&[f64]>, c: f64) -> f64 {
-    let count = |i: usize| counts.map_or(1.0, |counts| counts[i]);
-    residuals.iter().enumerate().map(|(i, r)| count(i) * loss(*r, c)).sum()
+    residuals.iter().enumerate().map(|(i, r)| count(counts, i) * loss(*r, c)).sum()
 }
 
 /// R and −Qᵀr of √W J, and the lengths of its columns.
@@ -125,10 +156,7 @@ impl TriangularSystem {
     fn of(at: &Evaluated, counts: Option<&[f64]>, c: f64) -> Self {
         let roots = DVector::from_iterator(
             at.residuals.len(),
-            at.residuals
-                .iter()
-                .enumerate()
-                .map(|(i, r)| (counts.map_or(1.0, |counts| counts[i]) * weight(*r, c)).sqrt()),
+            at.residuals.iter().enumerate().map(|(i, r)| (count(counts, i) * weight(*r, c)).sqrt()),
         );
         let mut jacobian = at.jacobian.clone();
         for mut column in jacobian.column_iter_mut() {
@@ -182,7 +210,7 @@ pub fn minimize<P: LeastSquares>(
 pub fn minimize_from<P: LeastSquares>(
     problem: &P,
     start: &[f64],
-    mut at: Evaluated,
+    at: Evaluated,
     settings: &MinimizationSettings,
     progress: &dyn Progress,
 ) -> Option<Minimum> {
@@ -193,17 +221,18 @@ pub fn minimize_from<P: LeastSquares>(
     const IDLE: usize = 6;
     const SHOWN: f64 = 1e-10;
     let mut idle = 0;
-    let c = settings.huber;
-    let counts = problem.counts();
+    let (c, counts, priors) = (settings.huber, problem.counts(), problem.priors());
     let mut u = start.to_vec();
+    let mut at = at.informed(priors, &u);
     let mut best = cost(&at.residuals, counts, c);
     if !best.is_finite() {
         return None;
     }
     let mut scales = DVector::zeros(u.len());
     let (mut mu, mut growth) = (FIRST, 2.0);
-    let end =
-        |u: Vec<f64>, at, cost, ending, rounds| Some(Minimum { parameters: u, at, cost, ending, rounds });
+    let end = |u: Vec<f64>, at: Evaluated, cost, ending, rounds| {
+        Some(Minimum { parameters: u, at: at.of_points(priors.len()), cost, ending, rounds })
+    };
     for round in 0..settings.rounds {
         if progress.stop() {
             return end(u, at, best, Ending::Cancelled, round);
@@ -224,7 +253,8 @@ pub fn minimize_from<P: LeastSquares>(
             let size = (2.0 * best).sqrt() + settings.resolution * (at.residuals.len() as f64).sqrt();
             let is_last = moved <= settings.tolerance * size;
             let next: Vec<f64> = u.iter().zip(step.iter()).map(|(u, h)| u + h).collect();
-            let found = problem.look(&next).map(|(r, look)| (cost(&r, counts, c), r, look));
+            let found = problem.look(&next).map(|(r, look)| (with_terms(r, priors, &next), look));
+            let found = found.map(|(r, look)| (cost(&r, counts, c), r, look));
             let found = found.filter(|(cost, ..)| cost.is_finite());
             let predicted = moved * moved + 2.0 * mu * step.component_mul(&scales).norm_squared();
             let gain = found.as_ref().map_or(-1.0, |(cost, ..)| 2.0 * (best - cost) / predicted);
@@ -232,7 +262,7 @@ pub fn minimize_from<P: LeastSquares>(
                 found.filter(|(cost, ..)| *cost < best || (is_last && *cost <= best))
                 && let Some(jacobian) = problem.derivatives(&next, &look)
             {
-                let evaluated = Evaluated { residuals, jacobian };
+                let evaluated = Evaluated { residuals, jacobian: with_derivatives(jacobian, priors, 1.0) };
                 idle = if best - cost <= f64::max(SHOWN * best, settings.nothing) { idle + 1 } else { 0 };
                 (u, at, best) = (next, evaluated, cost);
                 mu *= f64::max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0).powi(3));

@@ -9,7 +9,7 @@
 //! | [`path`] | the curve that points lie on: equilibria and jumps |
 //! | [`distance`] | the signed distance of a point from it |
 //! | `pulled` | the path of a pull at a rate |
-//! | [`prior`] | the minimum with what is known of values beforehand |
+//! | [`prior`] | what is known of values beforehand, as terms of least squares |
 //! | [`problem`] | parameters, data, the paths of values |
 //! | [`derivatives`] | residuals and their derivatives |
 //! | `rings` | loading with rings of contact, which is left out |

@@ -1,7 +1,8 @@
 //! What is fitted: the points and parameters of a preset's branches.
 
 use super::options::{FitError, Options, target};
-use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, Instrument, Prior, START, Target};
+use super::prior::Prior;
+use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, Instrument, START, Target};
 use super::track::Reach;
 use super::track::begins;
 use super::uncertain::{Uncertain, uncertain};

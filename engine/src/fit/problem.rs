@@ -2,6 +2,7 @@
 
 use super::distance::{Nearest, ScaledPath};
 use super::path::{FitPath, PathPlace};
+use super::prior::Prior;
 use super::track::Reach;
 use super::way::Way;
 use crate::elementary::{exp, ln};
@@ -81,17 +82,6 @@ impl FreeParameter {
     pub fn key(&self) -> String {
         self.target.key()
     }
-}
-
-/// What is known of one parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Prior {
-    /// Its number.
-    pub parameter: usize,
-    /// Its u.
-    pub mean: f64,
-    /// The standard deviation of u.
-    pub sigma: f64,
 }
 
 /// One point that is fitted.

@@ -1,6 +1,6 @@
 //! One fit from one start, its noise measured by its own residuals.
 
-use super::least_squares::{Ending, LeastSquares, MinimizationSettings, Minimum};
+use super::least_squares::{Ending, LeastSquares, MinimizationSettings, Minimum, minimize_from};
 use super::problem::FitProblem;
 use super::pulled::is_pulled;
 use crate::measured::branches::median;
@@ -104,7 +104,7 @@ fn solve_all(
             nothing: 0.5 * (NOTHING * scale).powi(2),
             ..MinimizationSettings::default()
         };
-        let minimum = problem.minimize_from(&u, at, &settings, progress)?;
+        let minimum = minimize_from(problem, &u, at, &settings, progress)?;
         left = left.saturating_sub(minimum.rounds);
         let next = problem.scale(&minimum.at.residuals);
         let same = (next / scale - 1.0).abs() <= SAME;

@@ -18,6 +18,7 @@ use super::fitted::Fitted;
 use super::intervals::noise;
 use super::least_squares::{Evaluated, LeastSquares, MinimizationSettings, Minimum, cost, minimize};
 use super::options::{FitError, Options};
+use super::prior::{Prior, with_derivatives, with_terms};
 use super::problem::{FitProblem, FreeParameter, START, Target};
 use super::run::{Fit, Posed};
 use super::scatter::Scatter;
@@ -81,6 +82,8 @@ pub struct Collapse {
 struct Joint<'a> {
     curves: Vec<JoinedCurve<'a>>,
     count: usize,
+    /// What is known before of the values, each once; of a shared value, as the first curve has it.
+    priors: Vec<Prior>,
     robust: bool,
 }
 
@@ -137,7 +140,16 @@ impl<'a> Joint<'a> {
             places: posed.problem.parameters.iter().map(|parameter| place(&parameter.target)).collect(),
         };
         let curves: Vec<_> = posed.iter().map(of).collect();
-        Self { curves, count, robust }
+        let mut priors: Vec<Prior> = Vec::new();
+        for JoinedCurve { problem, places, .. } in &curves {
+            for prior in &problem.priors {
+                let parameter = places[prior.parameter];
+                if priors.iter().all(|known| known.parameter != parameter) {
+                    priors.push(Prior { parameter, ..*prior });
+                }
+            }
+        }
+        Self { curves, count, priors, robust }
     }
 
     /// Residuals beyond it count linearly.
@@ -155,20 +167,6 @@ impl<'a> Joint<'a> {
             self.curves.iter().find_map(has)
         };
         (0..self.count).filter_map(of_place).collect()
-    }
-
-    /// What is known before of the values, each once; of a shared value, as the first curve has it.
-    fn priors(&self) -> Vec<(usize, f64, f64)> {
-        let mut priors: Vec<(usize, f64, f64)> = Vec::new();
-        for JoinedCurve { problem, places, .. } in &self.curves {
-            for prior in &problem.priors {
-                let place = places[prior.parameter];
-                if priors.iter().all(|(known, ..)| *known != place) {
-                    priors.push((place, prior.mean, prior.sigma));
-                }
-            }
-        }
-        priors
     }
 
     /// Rows of each curve among all.
@@ -207,24 +205,23 @@ impl LeastSquares for Joint<'_> {
             all.extend(residuals.iter().map(|r| r * curve.weight()));
             looks.push(look);
         }
-        all.extend(self.priors().iter().map(|(place, mean, sigma)| (u[*place] - mean) / sigma));
         Some((DVector::from_vec(all), looks))
     }
 
     fn derivatives(&self, u: &[f64], looks: &Self::Look) -> Option<DMatrix<f64>> {
-        let (blocks, priors) = (self.blocks(), self.priors());
-        let rows = blocks.last().map_or(0, |block| block.end);
-        let mut jacobian = DMatrix::zeros(rows + priors.len(), self.count);
+        let blocks = self.blocks();
+        let mut jacobian = DMatrix::zeros(blocks.last().map_or(0, |block| block.end), self.count);
         for ((curve, block), look) in self.curves.iter().zip(&blocks).zip(looks) {
             let own = curve.problem.derivatives(&curve.own(u), look)? * curve.weight();
             for (j, place) in curve.places.iter().enumerate() {
                 jacobian.view_mut((block.start, *place), (own.nrows(), 1)).copy_from(&own.column(j));
             }
         }
-        for (i, (place, _, sigma)) in priors.iter().enumerate() {
-            jacobian[(rows + i, *place)] = 1.0 / sigma;
-        }
         Some(jacobian)
+    }
+
+    fn priors(&self) -> &[Prior] {
+        &self.priors
     }
 }
 
@@ -325,7 +322,7 @@ fn least(joint: &Joint, progress: &dyn Progress) -> Option<Minimum> {
     let with_law_of = |curve: &JoinedCurve| {
         let mut u = start.clone();
         lay(curve, &mut u, true);
-        let residuals = joint.residuals(&u)?;
+        let residuals = with_terms(joint.residuals(&u)?, &joint.priors, &u);
         Some((cost(&residuals, None, joint.huber()), u))
     };
     let mut starts: Vec<(f64, Vec<f64>)> = joint.curves.iter().filter_map(with_law_of).collect();
@@ -364,13 +361,14 @@ fn known(
     let lost = if joint.robust { LOST } else { 1.0 };
     let degrees = ((all().map(of_rows).sum::<f64>() - p as f64) / lost).max(1.0);
     let none = |condition, direction| JointUncertainty { condition, direction, covariance: None, degrees };
-    let jacobian = minimum.at.jacobian.clone();
-    let Some(White { condition, inner, weakest, .. }) = White::of(jacobian, joint.priors().len()) else {
+    let jacobian = with_derivatives(minimum.at.jacobian.clone(), &joint.priors, 1.0);
+    let white = White::of(jacobian.clone(), joint.priors.len());
+    let Some(White { condition, inner, weakest, .. }) = white else {
         return none(f64::INFINITY, None);
     };
     let Some(inner) = inner else {
         let preset = &joint.curves[0].problem.preset;
-        let words = words(preset, &joint.parameters(), &minimum.at, &minimum.parameters, &weakest);
+        let words = words(preset, &joint.parameters(), &jacobian, &minimum.parameters, &weakest);
         return none(condition, Some(words));
     };
     let [mut points, mut bread] = [DMatrix::<f64>::zeros(p, p), DMatrix::zeros(p, p)];
@@ -386,9 +384,9 @@ fn known(
             }
         }
     }
-    for (place, _, sigma) in joint.priors() {
-        points[(place, place)] += sigma.powi(-2);
-        bread[(place, place)] += sigma.powi(-2);
+    for Prior { parameter, sigma, .. } in &joint.priors {
+        points[(*parameter, *parameter)] += sigma.powi(-2);
+        bread[(*parameter, *parameter)] += sigma.powi(-2);
     }
     let Some(bread) = bread.try_inverse() else { return none(condition, None) };
     let covariance = &bread * points * &bread;

@@ -5,7 +5,8 @@
 //! and a second fit must not count them twice.
 
 use super::options::{FitError, target};
-use super::problem::{FreeParameter, Prior, Target};
+use super::prior::Prior;
+use super::problem::{FreeParameter, Target};
 use crate::measured::Abscissa;
 use crate::preset::{Preset, Value};
 use crate::text::quote;
