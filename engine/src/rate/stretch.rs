@@ -134,29 +134,17 @@ impl MotionStretch<'_> {
                 }
                 h = h.min(self.settings.of_rest * rest);
             }
-            let s = here.at.held.contact_radius;
-            let cap = self.caps.at(s) / self.equation.radius;
+            let cap = self.caps.at(here.at.held.contact_radius) / self.equation.radius;
             h = h.min(cap / here.at.phi.abs().max(SLOW));
             if h < LEAST * here.xi.max(1e-3) {
-                let is_pressed = self.equation.motion == Motion::Closing && here.at.drive > PRESSED;
-                return Err(if is_pressed {
-                    RateError::Pressed { contact_radius: s }
-                } else {
-                    RateError::Lost { contact_radius: s }
-                });
+                return Err(self.stuck(&here));
             }
             h = Self::within(cap, &here, h, last.as_deref());
             let Some(step) = self.step(&here, h, last.as_deref()) else {
                 h *= AGAIN;
                 continue;
             };
-            let sums = [
-                step.error_of(StretchMoment::dissipation, &here.at),
-                step.error_of(StretchMoment::work, &here.at),
-            ];
-            let lost = sums.map(f64::abs).into_iter().fold(0.0, f64::max) / (self.energy + record.dissipated);
-            let error =
-                (step.error.abs() / self.tolerance(&here)).max(lost / (OF_ENERGY * self.settings.tolerance));
+            let error = self.error(&here, &step, record.dissipated);
             let advance = (step.y - here.y).abs();
             if error > 1.0 || advance > cap {
                 let shorter = if advance > cap { SAFETY * cap / advance } else { 1.0 };
@@ -186,6 +174,27 @@ impl MotionStretch<'_> {
             steps: self.settings.steps,
             contact_radius: here.at.held.contact_radius,
         })
+    }
+
+    /// Why no step from here is short enough.
+    fn stuck(&self, here: &Here) -> RateError {
+        let contact_radius = here.at.held.contact_radius;
+        if self.equation.motion == Motion::Closing && here.at.drive > PRESSED {
+            RateError::Pressed { contact_radius }
+        } else {
+            RateError::Lost { contact_radius }
+        }
+    }
+
+    /// The error of a step from here as a share of the tolerance: that of the radius or of the energies, with `dissipated`
+    /// before it, whichever is larger.
+    fn error(&self, here: &Here, step: &SolvedStep, dissipated: f64) -> f64 {
+        let sums = [
+            step.error_of(StretchMoment::dissipation, &here.at),
+            step.error_of(StretchMoment::work, &here.at),
+        ];
+        let lost = sums.map(f64::abs).into_iter().fold(0.0, f64::max) / (self.energy + dissipated);
+        (step.error.abs() / self.tolerance(here)).max(lost / (OF_ENERGY * self.settings.tolerance))
     }
 
     /// Moves an edge that is next to a break of the gap onto it.
