@@ -161,6 +161,20 @@ struct Released {
 }
 
 impl RowReading {
+    /// Tabulates the gap beyond `reach` until all points have their G: from force and approach, the radius is not known
+    /// beforehand.
+    fn widen(&mut self, points: &[MeasuredPoint], case: &Case, mut reach: f64, progress: &dyn Progress) {
+        for _ in 0..WIDER {
+            let is_wide = points.iter().all(|point| self.released(point).is_some());
+            if is_wide || reach >= case.reduced.largest_contact() {
+                break;
+            }
+            reach = (2.0 * reach).min(case.reduced.largest_contact());
+            let Ok(wider) = case.table.up_to_while(reach, 0, progress) else { break };
+            self.panels = wider;
+        }
+    }
+
     /// G at a row; `None` where its radius is not valid, or one for which the gap is not known.
     fn released(&self, point: &MeasuredPoint) -> Option<Released> {
         let [offset, baseline, tilt] = self.instrument;
@@ -245,29 +259,19 @@ impl SpeedsReport {
         let source = preset.data.source.as_ref().ok_or(SpeedsError::NoData)?;
         let branches = source.branches(&preset.reading()).map_err(SpeedsError::Data)?;
         let case = Case::prepare(preset, progress)?;
-        let units = *case.units();
         let mut notes = branches.notes.clone();
         let baseline = preset.data.baseline.or(branches.baseline).unwrap_or_else(|| {
             notes.push("no row is apart and data.baseline is not set: the force is used as it is".to_owned());
             0.0
         });
-        let mut reach = wanted(&case, &branches);
         let [sigma_x, sigma_force, _] = branches.noise.sigma;
         let of_file: Vec<MeasuredPoint> =
             branches.list.iter().flat_map(|branch| branch.attached.clone()).collect();
-        let is_measured = of_file.iter().all(|point| radius_of(branches.abscissa, point).is_some());
-        let usual = if is_measured { MeasuredPair::ForceRadius } else { MeasuredPair::ForceApproach };
-        let pair = pair.unwrap_or(usual);
-        if pair != MeasuredPair::ForceApproach && !is_measured {
-            return Err(SpeedsError::Lacks { pair, missing: "contact radius at every row" });
-        }
-        if pair != MeasuredPair::ForceRadius && branches.abscissa == Abscissa::Radius {
-            return Err(SpeedsError::Lacks { pair, missing: "approach" });
-        }
-        let mut panels = case.table.up_to(reach).map_err(|_| SpeedsError::Nothing)?;
-        let reading = |panels: Arc<Panels>| RowReading {
-            panels,
-            units,
+        let pair = measured_pair(pair, branches.abscissa, &of_file)?;
+        let reach = wanted(&case, &branches);
+        let mut reading = RowReading {
+            panels: case.table.up_to(reach).map_err(|_| SpeedsError::Nothing)?,
+            units: *case.units(),
             abscissa: branches.abscissa,
             pair,
             control: if branches.abscissa == Abscissa::Position {
@@ -278,18 +282,7 @@ impl SpeedsReport {
             instrument: [preset.data.offset.unwrap_or(0.0), baseline, preset.data.tilt.unwrap_or(0.0)],
             sigma: [sigma_x, sigma_force],
         };
-        // From force and approach, the radius is not known beforehand.
-        for _ in 0..WIDER {
-            let found = reading(Arc::clone(&panels));
-            let is_wide = of_file.iter().all(|point| found.released(point).is_some());
-            if is_wide || reach >= case.reduced.largest_contact() {
-                break;
-            }
-            reach = (2.0 * reach).min(case.reduced.largest_contact());
-            let Ok(wider) = case.table.up_to_while(reach, 0, progress) else { break };
-            panels = wider;
-        }
-        let reading = reading(panels);
+        reading.widen(&of_file, &case, reach, progress);
         let mut rows = Vec::new();
         let mut noises = Vec::new();
         for branch in &branches.list {
@@ -329,6 +322,24 @@ impl SpeedsReport {
     pub fn table(&self) -> Result<ReportTable, RowsError> {
         ReportTable::of(COLUMNS, &self.rows)
     }
+}
+
+/// What G is computed from: `asked`, or what the file has.
+fn measured_pair(
+    asked: Option<MeasuredPair>,
+    abscissa: Abscissa,
+    points: &[MeasuredPoint],
+) -> Result<MeasuredPair, SpeedsError> {
+    let is_measured = points.iter().all(|point| radius_of(abscissa, point).is_some());
+    let usual = if is_measured { MeasuredPair::ForceRadius } else { MeasuredPair::ForceApproach };
+    let pair = asked.unwrap_or(usual);
+    if pair != MeasuredPair::ForceApproach && !is_measured {
+        return Err(SpeedsError::Lacks { pair, missing: "contact radius at every row" });
+    }
+    if pair != MeasuredPair::ForceRadius && abscissa == Abscissa::Radius {
+        return Err(SpeedsError::Lacks { pair, missing: "approach" });
+    }
+    Ok(pair)
 }
 
 /// The radius up to which the gap is wanted: the largest that is measured, or the start radius where that is larger.
