@@ -15,6 +15,55 @@ use crate::elementary::hypot;
 /// The fewest steps between rows apart that determine their noise.
 const FEWEST_APART: usize = 5;
 
+/// How much neighbouring rows differ.
+#[derive(Default)]
+struct Neighbours {
+    /// The steps of the force between rows apart.
+    forces: Vec<f64>,
+    /// The second differences of x of rows apart.
+    ways: Vec<f64>,
+    /// The scatter of the radii of each branch.
+    radii: Vec<f64>,
+    /// The scatter of the force of each branch in contact.
+    in_contact: Vec<f64>,
+}
+
+impl Neighbours {
+    /// Those of all branches. For radii with times, `has_clock`, the radius and the force each show their own noise over
+    /// time, because a clock has none.
+    fn of(list: &[(MeasuredBranch, Vec<MeasuredPoint>)], of_radius: bool, has_clock: bool) -> Self {
+        let mut found = Self::default();
+        for (branch, in_order) in list {
+            // Nothing is known about radii where the bodies are apart. In contact they vary slowly with the quantity
+            // they are measured against.
+            let touching =
+                || in_order.iter().filter(|point| if of_radius { point.x > 0.0 } else { point.radius > 0.0 });
+            let over = |x: fn(&MeasuredPoint) -> f64, y: fn(&MeasuredPoint) -> f64| {
+                let (x, y): (Vec<f64>, Vec<f64>) = touching().map(|point| (x(point), y(point))).unzip();
+                scatter_over(&x, &y)
+            };
+            if has_clock {
+                found.radii.extend(over(|point| point.time, |point| point.x));
+                found.in_contact.extend(over(|point| point.time, |point| point.force));
+            } else {
+                let radii = if of_radius { over(|p| p.force, |p| p.x) } else { over(|p| p.x, |p| p.radius) };
+                found.radii.extend(radii);
+                let (x, force): (Vec<f64>, Vec<f64>) = branch.attached.iter().map(|p| (p.x, p.force)).unzip();
+                found.in_contact.extend(scatter_over(&x, &force));
+            }
+            let mut rows: Vec<usize> = branch.free.iter().map(|point| point.row).collect();
+            rows.sort_unstable();
+            let free: Vec<&MeasuredPoint> =
+                in_order.iter().filter(|point| rows.binary_search(&point.row).is_ok()).collect();
+            found.forces.extend(free.windows(2).map(|pair| (pair[1].force - pair[0].force).abs()));
+            found
+                .ways
+                .extend(free.windows(3).map(|three| (three[0].x - 2.0 * three[1].x + three[2].x).abs()));
+        }
+        found
+    }
+}
+
 /// σ of x, P and s, the rows in the order of the file.
 pub(super) fn noise(
     list: &[(MeasuredBranch, Vec<MeasuredPoint>)],
@@ -23,36 +72,10 @@ pub(super) fn noise(
     ranges: [f64; 3],
     of_radius: bool,
 ) -> Noise {
-    let (mut forces, mut ways, mut radii) = (Vec::new(), Vec::new(), Vec::new());
-    let mut in_contact = Vec::new();
-    // For radii: a clock has no noise, so over time the radius and the force each show their own.
     let touches = |point: &&MeasuredPoint| point.x > 0.0;
     let mut in_touch = list.iter().flat_map(|(_, in_order)| in_order).filter(touches).peekable();
     let has_clock = of_radius && in_touch.peek().is_some() && in_touch.all(|point| point.time.is_finite());
-    for (branch, in_order) in list {
-        // Nothing is known about radii where the bodies are apart. In contact they vary slowly with the quantity they
-        // are measured against.
-        let touching =
-            || in_order.iter().filter(|point| if of_radius { point.x > 0.0 } else { point.radius > 0.0 });
-        let over = |x: fn(&MeasuredPoint) -> f64, y: fn(&MeasuredPoint) -> f64| {
-            let (x, y): (Vec<f64>, Vec<f64>) = touching().map(|point| (x(point), y(point))).unzip();
-            scatter_over(&x, &y)
-        };
-        if has_clock {
-            radii.extend(over(|point| point.time, |point| point.x));
-            in_contact.extend(over(|point| point.time, |point| point.force));
-        } else {
-            radii.extend(if of_radius { over(|p| p.force, |p| p.x) } else { over(|p| p.x, |p| p.radius) });
-            let (x, force): (Vec<f64>, Vec<f64>) = branch.attached.iter().map(|p| (p.x, p.force)).unzip();
-            in_contact.extend(scatter_over(&x, &force));
-        }
-        let mut rows: Vec<usize> = branch.free.iter().map(|point| point.row).collect();
-        rows.sort_unstable();
-        let free: Vec<&MeasuredPoint> =
-            in_order.iter().filter(|point| rows.binary_search(&point.row).is_ok()).collect();
-        forces.extend(free.windows(2).map(|pair| (pair[1].force - pair[0].force).abs()));
-        ways.extend(free.windows(3).map(|three| (three[0].x - 2.0 * three[1].x + three[2].x).abs()));
-    }
+    let Neighbours { forces, ways, radii, in_contact } = Neighbours::of(list, of_radius, has_clock);
     let radius = radii.into_iter().reduce(f64::min);
     let neighbours = in_contact.into_iter().reduce(f64::min);
     // Few rows apart show nothing: those in contact say more.
