@@ -4,7 +4,7 @@ use crate::document::{Document, Report};
 use crate::errors;
 use crate::problem::Problem;
 use crate::running::long;
-use pulloff_engine::fit::{FitError, Model, Options, fit_models, fit_together};
+use pulloff_engine::fit::{AdhesionModel, FitError, Options, fit_models, fit_together};
 use pulloff_engine::measured::{Asked, PointsFile, ValueRange};
 use pulloff_engine::preset::{Invalid, Preset, Value as PresetValue, data as data_keys};
 use pulloff_engine::progress::Stopped;
@@ -194,12 +194,12 @@ pub fn fitted(
     let (name, preset) = attached(py, problem.get(), data, reading, wanted.skip, wanted.uncertain.as_ref())?;
     let options = wanted.options(&preset);
     let model = |word: &String| {
-        Model::of(word).ok_or_else(|| {
-            let known = Model::ALL.map(Model::name).join(", ");
+        AdhesionModel::of(word).ok_or_else(|| {
+            let known = AdhesionModel::ALL.map(AdhesionModel::name).join(", ");
             errors::of_data(py, &format!("model = \"{}\" is not one of {known}", quote(word)))
         })
     };
-    let models = wanted.models.iter().map(model).collect::<PyResult<Vec<Model>>>()?;
+    let models = wanted.models.iter().map(model).collect::<PyResult<Vec<AdhesionModel>>>()?;
     let made = long(py, progress, |progress| fit_models(&preset, &models, &options, progress))?;
     let made = made.and_then(|models| {
         let fit = models.best().map(|(fit, _)| fit.clone()).ok_or(FitError::NoStart)?;

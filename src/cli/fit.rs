@@ -14,7 +14,7 @@ use super::watch::StopSignal;
 use crate::store::Loaded;
 use crate::sweep::in_order;
 pub use arguments::FitArguments;
-use pulloff_engine::fit::{Model, Models, Options, fit_models};
+use pulloff_engine::fit::{AdhesionModel, Models, Options, fit_models};
 use pulloff_engine::preset::Value;
 use pulloff_engine::progress::Progress;
 use std::path::Path;
@@ -76,7 +76,7 @@ fn one(
     path: &Path,
     loaded: &Loaded,
     said: &[(&'static str, Value)],
-    (options, models): (&Options, &[Model]),
+    (options, models): (&Options, &[AdhesionModel]),
     progress: &dyn Progress,
 ) -> Result<Models, Failure> {
     let preset = with_points(path, loaded, said)?;

@@ -3,7 +3,7 @@
 use super::parts::{Figure, Mark, Sign};
 use super::places::Places;
 use pulloff_engine::report::MapReport;
-use pulloff_engine::report::map::RowReport;
+use pulloff_engine::report::map::MapRow;
 use std::collections::VecDeque;
 
 /// A line shorter than this, as a share of the map, has no room for its crest.
@@ -77,11 +77,11 @@ pub fn counts(report: &MapReport, x: &Places, y: &Places) -> Vec<Mark> {
 pub fn crests(report: &MapReport, x: &Places, y: &Places, figure: &mut Figure) {
     let bounds = figure.places();
     let is_line =
-        |row: &&RowReport| matches!(row.kind, "fold" | "cusp" | "landing") && row.changes != Some(false);
-    let rows: Vec<&RowReport> = report.rows.iter().filter(is_line).filter(|row| row.line.is_some()).collect();
+        |row: &&MapRow| matches!(row.kind, "fold" | "cusp" | "landing") && row.changes != Some(false);
+    let rows: Vec<&MapRow> = report.rows.iter().filter(is_line).filter(|row| row.line.is_some()).collect();
     let share = |at: (f64, f64)| bounds.share(figure.place(at));
-    let place = |row: &&RowReport| share((x.at(row.x), y.at(row.y)));
-    let of_line = |a: &&RowReport, b: &&RowReport| a.line == b.line && a.kind == b.kind;
+    let place = |row: &&MapRow| share((x.at(row.x), y.at(row.y)));
+    let of_line = |a: &&MapRow, b: &&MapRow| a.line == b.line && a.kind == b.kind;
     let mut lines: Vec<_> = rows
         .chunk_by(of_line)
         .filter_map(|rows| {

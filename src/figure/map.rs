@@ -10,12 +10,12 @@ use super::subject::Subject;
 use pulloff_engine::preset::{Key, Preset};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::MapReport;
-use pulloff_engine::report::map::{AxisReport, RowReport};
+use pulloff_engine::report::map::{AxisReport, MapRow};
 use pulloff_engine::report::path::EventReport;
 use pulloff_engine::stability::COMPLIANCE;
 
 /// How a row is drawn.
-fn role(row: &RowReport) -> (Role, &'static str) {
+fn role(row: &MapRow) -> (Role, &'static str) {
     match (row.kind, row.stable) {
         ("fold", Some("inward")) => (Role::Unstable, "maximum, stable inward"),
         ("fold", _) => (Role::Stable, "minimum, stable outward"),
@@ -29,10 +29,10 @@ fn role(row: &RowReport) -> (Role, &'static str) {
 
 /// The lines and marks of `report` at these positions.
 fn drawn(report: &MapReport, x: &Places, y: &Places) -> (Vec<Line>, Vec<Mark>) {
-    let place = |row: &RowReport| (x.at(row.x), y.at(row.y));
+    let place = |row: &MapRow| (x.at(row.x), y.at(row.y));
     let is_map = report.counts.is_some();
     let (mut lines, mut marks): (Vec<Line>, Vec<Mark>) = (Vec::new(), Vec::new());
-    let of_line = |row: &RowReport| (row.line, row.kind == "swallowtail");
+    let of_line = |row: &MapRow| (row.line, row.kind == "swallowtail");
     for rows in report.rows.chunk_by(|a, b| of_line(a) == of_line(b) && a.kind == b.kind) {
         let sign = match rows[0].kind {
             "swallowtail" => Some(Sign::Swallowtail),

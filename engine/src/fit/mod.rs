@@ -68,7 +68,7 @@ pub mod way;
 
 pub use directed::{fit, fit_own};
 pub use fitted::Fitted;
-pub use models::{Model, Models, fit_models};
+pub use models::{AdhesionModel, Models, fit_models};
 pub use options::{FitError, Options};
 pub use rows::{BranchRows, Rows};
 pub use run::Fit;

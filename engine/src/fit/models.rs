@@ -32,9 +32,9 @@ const MOST: f64 = 4.0;
 
 /// How the adhesion acts, or the edge moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "Model"))]
 #[serde(rename_all = "kebab-case")]
-pub enum Model {
+pub enum AdhesionModel {
     /// Adhesion at the edge of contact alone.
     ShortRange,
     /// A constant tension within a range.
@@ -43,7 +43,7 @@ pub enum Model {
     Rate,
 }
 
-impl Model {
+impl AdhesionModel {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::ShortRange, Self::Dugdale, Self::Rate];
 
@@ -116,7 +116,7 @@ fn guess(preset: &Preset) -> f64 {
 #[derive(Debug, Clone)]
 pub struct FittedModel {
     /// The model; `None` for one that only the preset has.
-    pub model: Option<Model>,
+    pub model: Option<AdhesionModel>,
     /// What is free in it.
     pub free: Vec<String>,
     /// Its fit, or why there is none.
@@ -128,7 +128,7 @@ pub struct FittedModel {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Pair {
     /// The better one and the other.
-    pub models: [Model; 2],
+    pub models: [AdhesionModel; 2],
     /// By how much the AIC of the other is larger.
     pub difference: f64,
     /// Whether these points tell them apart.
@@ -162,7 +162,7 @@ impl Models {
 /// [`FitError`] of the only model; where there are several, each has its own.
 pub fn fit_models(
     preset: &Preset,
-    models: &[Model],
+    models: &[AdhesionModel],
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Models, FitError> {
@@ -170,9 +170,11 @@ pub fn fit_models(
         return Err(FitError::NothingFree);
     }
     let laid: Vec<_> = match models {
-        [] => vec![(Model::of(preset.material.adhesion.name()), preset.clone(), options.free.clone())],
+        [] => {
+            vec![(AdhesionModel::of(preset.material.adhesion.name()), preset.clone(), options.free.clone())]
+        }
         models => {
-            let of = |model: &Model| {
+            let of = |model: &AdhesionModel| {
                 let (laid, free) = model.laid(preset, &options.free);
                 (Some(*model), laid, free)
             };
@@ -180,7 +182,7 @@ pub fn fit_models(
         }
     };
     // A pull is fitted to the retraction: for a comparison all models have the same rows.
-    let of_retraction = models.len() > 1 && models.contains(&Model::Rate);
+    let of_retraction = models.len() > 1 && models.contains(&AdhesionModel::Rate);
     let count = laid.len() as f64;
     let mut fits: Vec<FittedModel> = Vec::new();
     for (i, (model, mut laid, free)) in laid.into_iter().enumerate() {

@@ -6,7 +6,7 @@ use super::table::aligned;
 use crate::fit::fitted::{Fitted, quantity};
 use crate::fit::intervals::FEW_DEGREES;
 use crate::fit::least_squares::Ending;
-use crate::fit::models::{Model, Models, Pair};
+use crate::fit::models::{AdhesionModel, Models, Pair};
 use crate::fit::options::letter;
 use crate::fit::run::{Fit, Given};
 use crate::fit::together::{Collapse, Together};
@@ -178,7 +178,7 @@ pub struct TogetherReport {
     /// Whether they follow one law.
     pub collapse: Collapse,
     /// The curves.
-    pub runs: Vec<RunReport>,
+    pub runs: Vec<CurveReport>,
     /// What should be doubted about each.
     #[serde(skip)]
     pub doubts: Vec<String>,
@@ -188,8 +188,8 @@ pub struct TogetherReport {
 
 /// One curve among several.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct RunReport {
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "RunReport"))]
+pub struct CurveReport {
     /// The fit under the common law, with the errors of all curves.
     pub fit: FitReport,
     /// The outcome for this curve alone.
@@ -206,12 +206,12 @@ impl TogetherReport {
             let mut alone = FitReport::new(file, &run.alone, None);
             alone.parameters.retain(|of| together.law.iter().any(|law| law.key == of.key));
             let fit = FitReport::new(file, &run.fit, None);
-            RunReport { fit, alone_verdict: alone.verdict, alone: alone.parameters }
+            CurveReport { fit, alone_verdict: alone.verdict, alone: alone.parameters }
         });
-        let runs: Vec<RunReport> = runs.collect();
+        let runs: Vec<CurveReport> = runs.collect();
         let holds = together.verdict == Verdict::Describes;
         let of_law = |fitted| ParameterReport::new(&together.preset, fitted, holds);
-        let of_run = |run: &RunReport| {
+        let of_run = |run: &CurveReport| {
             run.fit.doubts.iter().map(|doubt| format!("{}: {doubt}", run.fit.file)).collect()
         };
         Self {
@@ -267,7 +267,7 @@ pub struct ModelsReport {
     /// The file of the points.
     pub file: String,
     /// The model that comes nearest to the points for its number of free values; null where none could be fitted.
-    pub best: Option<Model>,
+    pub best: Option<AdhesionModel>,
     /// Each other model beside it, and whether the points tell the two apart.
     pub pairs: Vec<Pair>,
     /// The fits, in the order in which they were asked for.
@@ -281,7 +281,7 @@ pub struct ModelsReport {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Refused {
     /// The model.
-    pub model: Model,
+    pub model: AdhesionModel,
     /// Why, in words.
     pub why: String,
 }
@@ -367,7 +367,7 @@ impl FitReport {
             document: "fit",
             file: file.to_owned(),
             model: if parameters.iter().any(|of| of.key.starts_with("edge.")) {
-                Model::Rate.name()
+                AdhesionModel::Rate.name()
             } else {
                 fit.preset.material.adhesion.name()
             },

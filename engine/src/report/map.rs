@@ -37,8 +37,8 @@ impl Ordinate {
 
 /// A point of a line, in the user's units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct RowReport {
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "RowReport"))]
+pub struct MapRow {
     /// The number of its line, from 1; a cusp, swallowtail or landing on a line has the number of that line where it is known.
     pub line: Option<usize>,
     /// `fold`, `cusp`, `swallowtail`, `landing`, `start` or `change`: a count that changes for some other reason, from cell to cell.
@@ -131,7 +131,7 @@ pub struct MapReport {
     /// Where snaps begin; null for a gap without a wave, and where there are none.
     pub onset: Option<OnsetReport>,
     /// The points of the lines, line by line.
-    pub rows: Vec<RowReport>,
+    pub rows: Vec<MapRow>,
     /// The snaps over the map; null for fold curves.
     pub counts: Option<CountsReport>,
 }
@@ -253,12 +253,12 @@ impl MapReport {
                 Some(Sort::Fold) => "fold",
                 None => "change",
             };
-            let row = |point: &MapPoint, kind, changes| RowReport {
+            let row = |point: &MapPoint, kind, changes| MapRow {
                 line: Some(number + 1),
                 kind,
                 crest: line.crest,
                 changes,
-                ..RowReport::of(family, point)
+                ..MapRow::of(family, point)
             };
             let points = line.points.iter().enumerate();
             self.rows.extend(points.map(|(k, point)| row(point, kind, line.changes.get(k).copied())));
@@ -268,7 +268,7 @@ impl MapReport {
 
     fn rows_of_folds(&mut self, family: &Family, folds: &Folds, y: &Ordinate) {
         let row = |point: &MapPoint| {
-            let mut row = RowReport::of(family, point);
+            let mut row = MapRow::of(family, point);
             let units = family.preset.problem().reduced_by(family.length).units;
             row.y = Some(match y {
                 Ordinate::Approach => point.approach * units.length,
@@ -279,7 +279,7 @@ impl MapReport {
         };
         for (number, line) in folds.lines.iter().enumerate() {
             let stable = Some(if line.is_minimum { "outward" } else { "inward" });
-            self.rows.extend(line.points.iter().map(|point| RowReport {
+            self.rows.extend(line.points.iter().map(|point| MapRow {
                 line: Some(number + 1),
                 crest: line.crest,
                 stable,
@@ -288,16 +288,12 @@ impl MapReport {
         }
         let crest = |point: &MapPoint| family.crest(point.contact_radius);
         for (kind, points) in [("cusp", &folds.cusps), ("landing", &folds.landings)] {
-            self.rows.extend(points.iter().map(|point| RowReport {
-                kind,
-                crest: crest(point),
-                ..row(point)
-            }));
+            self.rows.extend(points.iter().map(|point| MapRow { kind, crest: crest(point), ..row(point) }));
         }
     }
 }
 
-impl RowReport {
+impl MapRow {
     fn of(family: &Family, point: &MapPoint) -> Self {
         let units = family.preset.problem().reduced_by(family.length).units;
         let value = |k: usize| {

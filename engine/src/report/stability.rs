@@ -26,8 +26,8 @@ pub struct CriticalReport {
 
 /// A contact radius.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct RowReport {
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "RowReport"))]
+pub struct StabilityRow {
     /// `sample`; `minimum` or `maximum` of the law under the device of the preset, a cusp, where a pair of limit points is born;
     /// `corner`, where h'' jumps.
     pub kind: &'static str,
@@ -56,7 +56,7 @@ pub struct StabilityReport {
     /// The work of adhesion of the preset, with which the law is compared.
     pub work_of_adhesion: f64,
     /// Equally spaced samples, cusps and corners, from the end outward.
-    pub rows: Vec<RowReport>,
+    pub rows: Vec<StabilityRow>,
 }
 
 impl StabilityReport {
@@ -98,7 +98,7 @@ impl StabilityReport {
         let [displacement, force, chosen] =
             [over(Control::Displacement), over(Control::Force), over(case.control)];
         let shown = |adhesion: f64| Some(adhesion * units.work_of_adhesion).filter(|x| x.is_finite());
-        let row = |(k, (s, kind)): (usize, &(f64, &'static str))| RowReport {
+        let row = |(k, (s, kind)): (usize, &(f64, &'static str))| StabilityRow {
             kind,
             contact_radius: s * units.length,
             critical: CriticalReport {

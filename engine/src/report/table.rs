@@ -2,7 +2,7 @@
 
 use super::number::{difference, short, significant, with_unit};
 use super::rows::ReportTable;
-use super::verify::{RowReport, VerifyReport};
+use super::verify::{VerifiedRow, VerifyReport};
 use crate::problem::Control;
 use crate::units::{Quantity, UnitSystem};
 use serde_json::Value;
@@ -104,7 +104,7 @@ pub fn verify(report: &VerifyReport) -> String {
     text
 }
 
-fn verified(row: &RowReport) -> Vec<String> {
+fn verified(row: &VerifiedRow) -> Vec<String> {
     let dash = || "-".to_owned();
     // Counts and orders are whole numbers: they need no decimals.
     let number = |x: f64| if x.fract() == 0.0 { short(x, 8) } else { significant(x, 8) };

@@ -21,13 +21,13 @@ pub struct VerifyReport {
     /// How many rows there are.
     pub total: usize,
     /// The rows, those of a group together.
-    pub rows: Vec<RowReport>,
+    pub rows: Vec<VerifiedRow>,
 }
 
 /// One number against theory, or against another of ours.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct RowReport {
+#[cfg_attr(test, derive(schemars::JsonSchema), schemars(rename = "RowReport"))]
+pub struct VerifiedRow {
     /// What is compared, with the basis.
     pub group: String,
     /// What the difference is divided by.
@@ -63,11 +63,11 @@ impl VerifyReport {
                 [&group.title, &row.what].into_iter().any(|text| text.to_lowercase().contains(wanted))
             })
         };
-        let rows: Vec<RowReport> = groups
+        let rows: Vec<VerifiedRow> = groups
             .iter()
             .flat_map(|group| group.rows.iter().map(move |row| (group, row)))
             .filter(|(group, row)| is_wanted(group, row))
-            .map(|(group, row)| RowReport::new(group, row))
+            .map(|(group, row)| VerifiedRow::new(group, row))
             .collect();
         Self {
             schema: SCHEMA,
@@ -93,7 +93,7 @@ impl VerifyReport {
     }
 }
 
-impl RowReport {
+impl VerifiedRow {
     fn new(group: &Group, row: &VerifyRow) -> Self {
         let finite = |x: f64| x.is_finite().then_some(x);
         Self {

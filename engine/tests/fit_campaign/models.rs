@@ -10,7 +10,7 @@ use pulloff_engine::fit::path::FitPath;
 use pulloff_engine::fit::together::CurveFits;
 use pulloff_engine::fit::track::{Mover, Reach};
 use pulloff_engine::fit::way::Way;
-use pulloff_engine::fit::{Model, Together, Verdict, fit_models, fit_together};
+use pulloff_engine::fit::{AdhesionModel, Together, Verdict, fit_models, fit_together};
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{Preset, Value, read};
 use pulloff_engine::problem::Groups;
@@ -77,7 +77,7 @@ fn a_zone_moves_by_closed_forms() {
 
 #[test]
 fn adhesion_of_a_range_is_found_with_its_model() {
-    const MODELS: [Model; 2] = [Model::ShortRange, Model::Dugdale];
+    const MODELS: [AdhesionModel; 2] = [AdhesionModel::ShortRange, AdhesionModel::Dugdale];
     for (name, mu, least) in [("Tabor 0.5", 0.5, 3), ("Tabor 1", 1.0, 1), ("Tabor 2", 2.0, 0)] {
         let kind = DOUBTFUL.iter().find(|kind| kind.name == name).unwrap();
         let mut told = 0;
@@ -101,7 +101,7 @@ fn adhesion_of_a_range_is_found_with_its_model() {
             let tabor = Groups::of(&fit.preset.problem(), None, fit.preset.cohesion()).tabor.unwrap();
             let error = tension.standard_error.unwrap() / tension.value;
             assert!((tabor / mu).ln().abs() < 4.0 * error, "{name} {number}: {tabor} {error}");
-            told += usize::from(pair.told_apart && pair.models[0] == Model::Dugdale);
+            told += usize::from(pair.told_apart && pair.models[0] == AdhesionModel::Dugdale);
         }
         assert!(told >= least, "{name}: {told}");
     }
@@ -110,10 +110,14 @@ fn adhesion_of_a_range_is_found_with_its_model() {
 #[test]
 fn a_range_that_the_points_do_not_show_is_not_determined() {
     let made = plain(3);
-    let found =
-        fit_models(&preset(&made), &[Model::ShortRange, Model::Dugdale], &options(&made.free), &Unwatched)
-            .unwrap();
-    assert_eq!(found.fits[found.best.unwrap()].model, Some(Model::ShortRange), "{:#?}", found.pairs);
+    let found = fit_models(
+        &preset(&made),
+        &[AdhesionModel::ShortRange, AdhesionModel::Dugdale],
+        &options(&made.free),
+        &Unwatched,
+    )
+    .unwrap();
+    assert_eq!(found.fits[found.best.unwrap()].model, Some(AdhesionModel::ShortRange), "{:#?}", found.pairs);
     let ranged = found.fits[1].fit.as_ref().unwrap();
     println!("{:?} {:?} {:?} {:?}", found.pairs, ranged.verdict, ranged.direction, ranged.parameters);
     assert!(found.pairs.iter().all(|pair| !pair.told_apart), "{:#?}", found.pairs);
@@ -256,11 +260,11 @@ fn a_modulus_is_right_where_the_edge_has_its_speed() {
 
 #[test]
 fn the_speed_of_an_edge_is_told_from_adhesion_that_has_none() {
-    const MODELS: [Model; 2] = [Model::ShortRange, Model::Rate];
+    const MODELS: [AdhesionModel; 2] = [AdhesionModel::ShortRange, AdhesionModel::Rate];
     let made = Pulled::new(LENS, Seen::Approach, [300.0, 0.003], 9).made(&["gamma"]);
     let found = fit_models(&preset(&made), &MODELS, &options(&made.free), &Unwatched).unwrap();
     let ([pair], [_, law]) = (&found.pairs[..], &found.fits[..]) else { panic!("{found:#?}") };
-    assert!(pair.told_apart && pair.models[0] == Model::Rate, "{pair:?}");
+    assert!(pair.told_apart && pair.models[0] == AdhesionModel::Rate, "{pair:?}");
     let fit = law.fit.as_ref().unwrap();
     assert_eq!(fit.verdict, Verdict::Describes, "{:?}", fit.reasons);
     let n = fit.parameters.iter().find(|of| of.key == "edge.exponent").unwrap();

@@ -13,7 +13,7 @@ use crate::store::hash::sha256;
 use crate::store::{Loaded, stream};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use pulloff_engine::fit::{FitError, Model, Options};
+use pulloff_engine::fit::{AdhesionModel, FitError, Options};
 use pulloff_engine::measured::asked::AskedError;
 use pulloff_engine::measured::{Asked, ValueRange};
 use pulloff_engine::preset::edge::RATE;
@@ -50,7 +50,7 @@ pub struct FitArguments {
     /// the keys of edge are free. Given several models and one file of points, the report says which one the points
     /// favour
     #[arg(long, value_name = "MODEL,...", value_delimiter = ',', value_parser = models())]
-    pub(super) model: Vec<Model>,
+    pub(super) model: Vec<AdhesionModel>,
     #[command(flatten)]
     pub(super) several: Several,
     #[command(flatten)]
@@ -118,8 +118,9 @@ pub(super) enum Robust {
 }
 
 /// The names of the models.
-fn models() -> impl TypedValueParser<Value = Model> {
-    PossibleValuesParser::new(Model::ALL.map(Model::name)).try_map(|word| Model::of(&word).ok_or("no model"))
+fn models() -> impl TypedValueParser<Value = AdhesionModel> {
+    PossibleValuesParser::new(AdhesionModel::ALL.map(AdhesionModel::name))
+        .try_map(|word| AdhesionModel::of(&word).ok_or("no model"))
 }
 
 /// The options for fitting several files at once.
