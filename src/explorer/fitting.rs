@@ -3,7 +3,7 @@
 use super::background::{Background, Tell, Want, Watcher};
 use super::model::Model;
 use super::view::View;
-use pulloff_engine::fit::run::{Residual, residuals_own};
+use pulloff_engine::fit::residuals::{Residual, residuals_own};
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{Preset, data};
 

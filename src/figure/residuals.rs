@@ -8,7 +8,7 @@ use super::measured::DRAWN;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
 use super::subject::Subject;
 use crate::explorer::fitting::NO_POINTS;
-use pulloff_engine::fit::run::Residual;
+use pulloff_engine::fit::residuals::Residual;
 use pulloff_engine::measured::{Abscissa, Segment};
 
 /// Nearly all normal noise lies within this many deviations.

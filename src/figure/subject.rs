@@ -13,7 +13,7 @@ use crate::explorer::speeds::SpeedsData;
 use crate::explorer::studies::StudyData;
 use crate::explorer::study::study_range;
 use crate::explorer::{Axes, CurveData, Model, Node, Overlays, View, device};
-use pulloff_engine::fit::run::Residual;
+use pulloff_engine::fit::residuals::Residual;
 use pulloff_engine::measured::Abscissa;
 use pulloff_engine::preset::{BasisSpec, Preset};
 use pulloff_engine::report::{MapReport, PathReport};

@@ -2,7 +2,8 @@
 //! the better one is taken.
 
 use super::options::{FitError, Options};
-use super::run::{Fit, fit_branches};
+use super::outcome::Fit;
+use super::run::fit_branches;
 use super::verdict::Verdict;
 use crate::measured::asked::signs_text;
 use crate::measured::points::Turned;

@@ -1,10 +1,13 @@
 //! One value that a fit finds, and what a key measures.
 
+use super::chance::t_of;
 use super::intervals::{Bootstrapped, NORMAL};
-use super::problem::ADHESION;
+use super::problem::{ADHESION, FitProblem, FreeParameter};
 use crate::preset::Preset;
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::units::Quantity;
+use crate::units::number::short;
+use nalgebra::DVector;
 
 /// One fitted value, in base units.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,4 +54,39 @@ pub fn quantity(preset: &Preset, key: &str) -> Quantity {
         key if key.starts_with(ADHESION) => Quantity::EnergyPerArea,
         key => preset.row(key).map_or(Quantity::Number, |row| row.quantity),
     }
+}
+
+/// The values with their errors, and the degrees of freedom of these.
+pub(super) fn values(
+    problem: &FitProblem,
+    u: &[f64],
+    known: Option<(&DVector<f64>, &DVector<f64>)>,
+) -> Vec<Fitted> {
+    /// The share of truths outside an interval.
+    const OUTSIDE: f64 = 0.05;
+    let of = |(j, parameter): (usize, &FreeParameter)| {
+        let value = parameter.value(u[j]);
+        let standard_error = known.map(|(errors, _)| errors[j] * parameter.slope(value).abs());
+        let degrees = known.map(|(_, degrees)| degrees[j]);
+        let interval = known.map(|(errors, degrees)| {
+            let t = t_of(OUTSIDE, degrees[j]);
+            [-t, t].map(|t| parameter.value(u[j] + t * errors[j]))
+        });
+        let (key, start) = (parameter.key(), parameter.start);
+        Fitted { key, value, standard_error, degrees, interval, start, profile: None, bootstrap: None }
+    };
+    problem.parameters.iter().enumerate().map(of).collect()
+}
+
+/// A sentence on the standard error that the bootstrap finds to be too small by most.
+pub(super) fn too_small(fitted: &[Fitted]) -> Option<String> {
+    let all = fitted.iter().filter_map(|of| Some((of.too_small()?, of)));
+    all.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(times, of)| {
+        format!(
+            "the standard error of {} is {} times too small, as the model is not linear there: use the interval of \
+             the bootstrap",
+            of.key,
+            short(times, 2)
+        )
+    })
 }

@@ -1,11 +1,15 @@
 //! Intervals that do not assume a linear model: by the profile of χ², and by a block bootstrap.
 
+use super::fitted::Fitted;
 use super::least_squares::{MinimizationSettings, minimize};
-use super::problem::{FitProblem, FreeParameter, Target};
+use super::options::Options;
+use super::problem::{FitProblem, FreeParameter, Paths, Target};
 use super::solve::{HUBER, SolvedFit};
 use crate::gap::shapes::split_mix::SplitMix64;
+use crate::measured::Segment;
 use crate::preset::Value;
 use crate::progress::Progress;
+use nalgebra::DVector;
 
 /// The rise of χ² at the ends of a 95 % interval of one value: the square of 1.96.
 const RISE: f64 = 3.841_458_820_694_124;
@@ -186,4 +190,43 @@ pub fn bootstrap(
         Bootstrapped { error, interval: [at(0.025), at(0.975)] }
     };
     Some((found.len(), problem.parameters.iter().enumerate().map(of).collect()))
+}
+
+/// Puts the intervals that are requested or needed into `fitted`; returns how many fits of the bootstrap there were, and the rows of its
+/// blocks.
+pub(super) fn intervals(
+    problem: &FitProblem,
+    solved: &SolvedFit,
+    options: &Options,
+    (errors, degrees): (&DVector<f64>, f64),
+    fitted: &mut [Fitted],
+    progress: &dyn Progress,
+) -> Option<[usize; 2]> {
+    if options.profile {
+        for (j, fitted) in fitted.iter_mut().enumerate() {
+            fitted.profile = profile(problem, solved, errors[j], j, options.robust, progress);
+        }
+    }
+    let drawn = options.bootstrap.or_else(|| unasked(problem, &solved.minimum.parameters, degrees))?;
+    let (count, found) = bootstrap(problem, solved, options.robust, drawn, progress)?;
+    for (fitted, found) in fitted.iter_mut().zip(found) {
+        fitted.bootstrap = Some(found);
+    }
+    let first: Vec<f64> = solved.minimum.at.residuals.iter().step_by(problem.per_point()).copied().collect();
+    Some([count, block(&first)])
+}
+
+/// The bootstrap that is run unasked: with few degrees of freedom, or through snaps, where the curve has a corner beside
+/// each point, a linear model says too little about the intervals.
+fn unasked(problem: &FitProblem, u: &[f64], degrees: f64) -> Option<(usize, u64)> {
+    /// The number of fits, and the seed of their random numbers.
+    const FITS: usize = 200;
+    const THROUGH_SNAPS: usize = 100;
+    const SEED: u64 = 1;
+    if degrees < FEW_DEGREES {
+        return Some((FITS, SEED));
+    }
+    let has_snaps =
+        |paths: Paths| [Segment::Approach, Segment::Retraction].iter().any(|way| paths.of(*way).snaps > 0);
+    problem.paths(u).is_some_and(has_snaps).then_some((THROUGH_SNAPS, SEED))
 }

@@ -24,10 +24,14 @@
 //! | `spread` | how that noise varies with the slope of the curve |
 //! | [`chance`] | how likely a statistic is by chance |
 //! | [`judge`] | what speaks against the fit: means along the path, rows apart, ranges, the device's stiffness |
-//! | `uncertain` | values that are given with an error |
+//! | [`uncertain`] | values that are given with an error |
 //! | [`verdict`] | what it comes to, in one word, and why |
 //! | [`rows`] | what a fit makes of the rows of a file, counted |
-//! | [`run`] | all of it, in order |
+//! | [`residuals`] | the points compared with a curve |
+//! | `settled` | the last fit, with the noise that it shows |
+//! | `laid` | the preset that a fit leaves |
+//! | `run` | all of it, in order |
+//! | [`outcome`] | what it comes to |
 //! | [`models`] | several models side by side |
 //! | [`together`] | one law for several curves, and whether they follow it |
 //! | `directed` | the whole fit, in the direction in which the columns run |
@@ -44,25 +48,29 @@ pub mod distance;
 pub mod fitted;
 pub mod intervals;
 pub mod judge;
+mod laid;
 pub mod least_squares;
 pub mod models;
 pub mod mover;
 pub mod options;
+pub mod outcome;
 pub mod path;
 pub mod pose;
 pub mod prior;
 pub mod problem;
 mod pulled;
+pub mod residuals;
 mod rings;
 pub mod rows;
-pub mod run;
+mod run;
 pub mod scatter;
+mod settled;
 pub mod solve;
 mod spread;
 pub mod start;
 pub mod together;
 pub mod track;
-mod uncertain;
+pub mod uncertain;
 pub mod verdict;
 pub mod way;
 
@@ -70,8 +78,8 @@ pub use directed::{fit, fit_own};
 pub use fitted::Fitted;
 pub use models::{AdhesionModel, Models, fit_models};
 pub use options::{FitError, Options};
+pub use outcome::Fit;
 pub use rows::{BranchRows, Rows};
-pub use run::Fit;
 pub use together::{Together, fit_together};
 pub use verdict::{Reason, Verdict};
 

@@ -10,7 +10,7 @@
 
 use super::directed::fit_own;
 use super::options::{FitError, Options};
-use super::run::Fit;
+use super::outcome::Fit;
 use super::verdict::Verdict;
 use crate::elementary::cbrt;
 use crate::measured::Origin;

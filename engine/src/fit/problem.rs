@@ -78,6 +78,12 @@ impl FreeParameter {
         self.scale.unwrap_or(value)
     }
 
+    /// The value that is known before, and its standard deviation.
+    pub(super) fn given(&self, prior: &Prior) -> [f64; 2] {
+        let value = self.value(prior.mean);
+        [value, prior.sigma * self.slope(value).abs()]
+    }
+
     /// Its dotted key; for the adhesion of a branch, followed by the branch.
     pub fn key(&self) -> String {
         self.target.key()

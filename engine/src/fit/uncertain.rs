@@ -4,12 +4,13 @@
 //! another stands before `+-` or `±`. A fit writes the second form: the value that it leaves in the preset comes from the points too,
 //! and a second fit must not count them twice.
 
-use super::options::{FitError, target};
+use super::options::{FitError, letter, target};
 use super::prior::Prior;
-use super::problem::{FreeParameter, Target};
+use super::problem::{FitProblem, FreeParameter, Target};
 use crate::measured::Abscissa;
 use crate::preset::{Preset, Value};
 use crate::text::quote;
+use serde::Serialize;
 
 /// The signs between a value and its error; the first is written.
 const BETWEEN: [&str; 2] = ["+-", "±"];
@@ -25,6 +26,20 @@ pub(super) struct Uncertain {
     mean: f64,
     /// Its standard deviation, likewise.
     sigma: f64,
+}
+
+/// What was known of a value before, with an error.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Given {
+    /// Its dotted key.
+    pub key: String,
+    /// The value, in base units.
+    pub value: f64,
+    /// Its standard deviation, likewise.
+    pub standard_error: f64,
+    /// Its share of the variance of each fitted value, in their order.
+    pub shares: Vec<f64>,
 }
 
 /// The values that `text` gives with an error.
@@ -93,7 +108,32 @@ impl Uncertain {
 
 /// The text of what was known of a parameter before its fit, for the next fit of the same points.
 pub(super) fn written(parameter: &FreeParameter, prior: &Prior) -> String {
-    let mean = parameter.value(prior.mean);
-    let sigma = prior.sigma * parameter.slope(mean).abs();
+    let [mean, sigma] = parameter.given(prior);
     format!("{}={mean:?}{}{sigma:?}", parameter.key(), BETWEEN[0])
+}
+
+/// What was known before, and a sentence where it decides how well a value is known.
+pub(super) fn given(problem: &FitProblem, shares: &[Vec<f64>], notes: &mut Vec<String>) -> Vec<Given> {
+    /// Above this share of the variance the points matter less.
+    const MOST: f64 = 0.5;
+    let none = Vec::new();
+    let of = |(i, prior): (usize, &Prior)| {
+        let parameter = &problem.parameters[prior.parameter];
+        let [value, standard_error] = parameter.given(prior);
+        let shares = shares.get(i).unwrap_or(&none).clone();
+        Given { key: parameter.key(), value, standard_error, shares }
+    };
+    let given: Vec<Given> = problem.priors.iter().enumerate().map(of).collect();
+    for Given { key, shares, .. } in &given {
+        let of = problem.parameters.iter().zip(shares).filter(|(_, share)| **share > MOST);
+        let told: Vec<String> = of
+            .map(|(parameter, share)| {
+                format!("{:.0} % of that of {}", 100.0 * share, letter(&problem.preset, &parameter.key()))
+            })
+            .collect();
+        if !told.is_empty() {
+            notes.push(format!("the given error of {key} makes up {} (variance)", told.join(", ")));
+        }
+    }
+    given
 }

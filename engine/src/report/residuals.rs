@@ -1,7 +1,8 @@
 //! The points beside a fit, row by row, as part of its document and as CSV.
 
 use super::number::exact;
-use crate::fit::run::{Fit, Residual};
+use crate::fit::outcome::Fit;
+use crate::fit::residuals::Residual;
 use serde::Serialize;
 use std::fmt::Write;
 

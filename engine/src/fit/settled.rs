@@ -1,0 +1,93 @@
+//! The last fit, and again where its residuals show another noise than was assumed.
+
+use super::options::FitError;
+use super::prior::Prior;
+use super::problem::{FitProblem, START, Target};
+use super::solve::{SolvedFit, solve};
+use crate::progress::Progress;
+use crate::units::{Quantity, number::said};
+
+/// Rounds of the last fit.
+const ROUNDS: usize = 200;
+
+/// The last fit, from `u`. Where `least` is given, σ of P is that of neighbours, but not below the second number; so is
+/// σ of x, not below the first, where that is finite.
+pub(super) fn last(
+    problem: &mut FitProblem,
+    u: &[f64],
+    robust: bool,
+    least: Option<[f64; 2]>,
+    progress: &dyn Progress,
+) -> Result<SolvedFit, FitError> {
+    /// The number of fits after which σ has settled.
+    const TIMES: usize = 2;
+    let mut solved = solve(problem, u, robust, ROUNDS, progress).ok_or(FitError::NoStart)?;
+    let Some([least_x, least_force]) = least else { return Ok(solved) };
+    for _ in 0..TIMES {
+        let off = if least_x.is_finite() { problem.off(&solved) } else { None };
+        let of_force = || problem.scatter(&solved).contact.map(|scale| [1.0, scale]);
+        let Some([x, force]) = off.or_else(of_force) else { break };
+        if off.is_some() {
+            problem.sigma[0] = (problem.sigma[0] * x).max(least_x);
+        }
+        problem.sigma[1] = (problem.sigma[1] * force).max(least_force);
+        let u = &solved.minimum.parameters;
+        solved = solve(problem, u, robust, ROUNDS, progress).ok_or(FitError::NoStart)?;
+    }
+    Ok(solved)
+}
+
+/// The number of the contact radius at which an edge is pinned, where the points determine it worse than to a tenth:
+/// then the works of adhesion of both branches are the same, and there is no line between them.
+pub(super) fn unpinned(problem: &FitProblem, solved: &SolvedFit) -> Option<usize> {
+    const LEAST: f64 = 10.0;
+    let j = problem.parameters.iter().position(|parameter| parameter.target == Target::Key(START.to_owned()));
+    j.filter(|j| problem.pins() && solved.minimum.at.jacobian.column(*j).norm() < LEAST * solved.scale)
+}
+
+/// Fits again where the noise is correlated from row to row: σ is then larger than differences of neighbours tell, by
+/// 1/√(1 − r), with r the correlation of neighbours.
+pub(super) fn of_correlated(
+    problem: &mut FitProblem,
+    solved: SolvedFit,
+    robust: bool,
+    progress: &dyn Progress,
+) -> SolvedFit {
+    let correlation = problem.scatter(&solved).correlation;
+    if correlation.share <= 0.0 {
+        return solved;
+    }
+    problem.sigma[1] /= (1.0 - correlation.at(1.0)).sqrt();
+    solve(problem, &solved.minimum.parameters, robust, ROUNDS, progress).unwrap_or(solved)
+}
+
+/// Fits again where the points contradict the assumed tare of the force, 0 ± σ: with the σ of the largest likelihood,
+/// σ² = b² − v, where b is the tare that the points alone give, with the variance v; J. O. Berger, *Statistical
+/// Decision Theory and Bayesian Analysis* (1985), section 3.5.4.
+pub(super) fn of_tare(
+    problem: &mut FitProblem,
+    solved: SolvedFit,
+    robust: bool,
+    (notes, progress): (&mut Vec<String>, &dyn Progress),
+) -> SolvedFit {
+    let is_of = |prior: &&mut Prior| problem.parameters[prior.parameter].target == Target::Baseline;
+    let jacobian = &solved.minimum.at.jacobian;
+    let Some(prior) = problem.priors.iter_mut().find(is_of) else { return solved };
+    let j = prior.parameter;
+    let mut weights = jacobian.tr_mul(jacobian);
+    let Some(alone) = weights.clone().try_inverse() else { return solved };
+    weights[(j, j)] += prior.sigma.powi(-2);
+    let Some(both) = weights.try_inverse() else { return solved };
+    let off = (solved.minimum.parameters[j] - prior.mean) / (1.0 - both[(j, j)] / prior.sigma.powi(2));
+    let found = off * off - solved.scale.powi(2) * alone[(j, j)];
+    if found.is_nan() || found <= prior.sigma * prior.sigma {
+        return solved;
+    }
+    prior.sigma = found.sqrt();
+    let [_, wider] = problem.parameters[j].given(prior);
+    notes.push(format!(
+        "the points contradict that: the tare is assumed to be off by {}",
+        said(&problem.preset.units, Quantity::Force, wider)
+    ));
+    solve(problem, &solved.minimum.parameters, robust, ROUNDS, progress).unwrap_or(solved)
+}
