@@ -78,10 +78,6 @@ pub fn fit(
     let branches = points.branches(&options.asked)?;
     let Some(other) = branches.or else { return fit_branches(preset, &branches, options, progress) };
     let first = fit_branches(preset, &branches, options, &ProgressPart::new(progress, [0.0, 0.3]));
-    // Signs as in the file are doubted only where they do not lead to a fit.
-    if branches.is_as_in_file && first.as_ref().is_ok_and(|fit| fit.verdict == Verdict::Describes) {
-        return first;
-    }
     // The second is judged by the noise of the first.
     let sigma = first.as_ref().map_or(options.asked.sigma, |fit| {
         let of = |axis: usize| Some(fit.noise.sigma[axis]).filter(|sigma| *sigma > 0.0);
@@ -102,7 +98,7 @@ pub fn fit(
         ));
         fit
     };
-    let (first, second) = match (first, second) {
+    let (mut first, second) = match (first, second) {
         (Ok(first), Ok(second)) => (first, second),
         (Ok(first), Err(why)) => return Ok(alone(first, &why, [branches.turned, other])),
         (Err(error), Err(_)) => return Err(error),
@@ -111,6 +107,18 @@ pub fn fit(
             return Ok(alone(taken, &why, [other, branches.turned]));
         }
     };
+    // Signs as in the file stay where they lead to a fit.
+    if branches.is_as_in_file && first.verdict == Verdict::Describes {
+        if second.verdict == Verdict::Describes {
+            first.warnings.push(format!(
+                "the points are described with {} and with {} as well: the values hold for the first, which is that of the \
+                 file. Set --signs or data.signs",
+                signs_text(branches.turned),
+                signs_text(other),
+            ));
+        }
+        return Ok(first);
+    }
     let [here, there] = [&first, &second].map(chi_squared);
     let [taken, left] = if here <= there { [branches.turned, other] } else { [other, branches.turned] };
     if branches.is_as_in_file && here <= there + CLEAR {

@@ -579,7 +579,9 @@ impl FitReport {
             header.push(parameter.key.clone());
             header.push(format!("{} error", parameter.key));
             row.push(exact(parameter.value));
-            row.push(parameter.standard_error.map_or_else(String::new, exact));
+            // Who averages over many files sees no verdicts: an error that does not hold is left out.
+            let error = parameter.standard_error.filter(|_| parameter.error_holds);
+            row.push(error.map_or_else(String::new, exact));
         }
         for (name, value) in [
             ("chi_squared", exact(self.chi_squared)),
