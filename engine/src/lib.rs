@@ -97,6 +97,7 @@ pub mod cells;
 pub mod continuation;
 pub mod disc;
 pub mod elementary;
+pub mod exact;
 pub mod expression;
 pub mod fit;
 #[cfg(test)]

@@ -28,6 +28,7 @@ use crate::gap::{Form, Gap};
 use crate::problem::Reduced;
 use crate::progress::Progress;
 use crate::root;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
@@ -69,26 +70,30 @@ fn minimum_searched(steepest: f64) -> f64 {
 }
 
 /// A place outside the contact where the bodies come near each other.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Crest {
     /// r, where the deformed gap has a minimum.
+    #[serde(with = "crate::exact")]
     pub radius: f64,
     /// The gap there, negative where the bodies would overlap.
+    #[serde(with = "crate::exact")]
     pub gap: f64,
     /// Which crest of the waves it is; `None` without waves.
     pub wave: Option<u64>,
 }
 
 /// What a state must satisfy beyond equilibrium, in reduced units.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Admissibility {
     /// The nearest crest outside; `None` where the gap only grows.
     pub nearest: Option<Crest>,
     /// The least pressure inside and its radius, without adhesion only: adhesion may pull.
+    #[serde(with = "crate::exact")]
     pub least_pressure: Option<(f64, f64)>,
     /// Whether the bodies stay apart outside, as far as the gap is known, and, without adhesion, nothing pulls inside.
     pub holds: bool,
     /// The radius up to which the gap was examined, if what lies beyond is unknown; `None` where nothing can follow.
+    #[serde(with = "crate::exact")]
     pub known_to: Option<f64>,
 }
 

@@ -25,17 +25,21 @@ use crate::disc::{Basis, Evaluation, Table};
 use crate::elementary::{exp2, log2};
 use crate::problem::{Control, Reduced, Units};
 use crate::progress::{Progress, Stopped};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// The unit of each unknown: the ranges of δ, P and s over the curve.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Scales {
     /// δ₀.
+    #[serde(with = "crate::exact")]
     pub approach: f64,
     /// P₀.
+    #[serde(with = "crate::exact")]
     pub force: f64,
     /// s₀.
+    #[serde(with = "crate::exact")]
     pub contact_radius: f64,
 }
 
@@ -73,15 +77,19 @@ impl Scales {
 }
 
 /// One equilibrium state.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// s.
+    #[serde(with = "crate::exact")]
     pub contact_radius: f64,
     /// δ.
+    #[serde(with = "crate::exact")]
     pub approach: f64,
     /// P.
+    #[serde(with = "crate::exact")]
     pub force: f64,
     /// U, the total energy of the bodies.
+    #[serde(with = "crate::exact")]
     pub energy: f64,
 }
 
@@ -99,11 +107,13 @@ impl State {
 }
 
 /// The slopes of the curve at a state, from which the stability under every control follows.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Stability {
     /// dδ/ds.
+    #[serde(with = "crate::exact")]
     pub approach: f64,
     /// dP/ds.
+    #[serde(with = "crate::exact")]
     pub force: f64,
 }
 
@@ -117,14 +127,17 @@ impl Stability {
 /// How the force and the contact area respond to the approach at a state.
 ///
 /// Units: a force per length, and a length.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Stiffness {
     /// `P_δ` = ∂P/∂δ at a fixed contact radius: the stiffness of the contact itself.
+    #[serde(with = "crate::exact")]
     pub contact: f64,
     /// dP/dδ along the curve; infinite at a limit point of the approach, with the sign that rounding leaves it; not a
     /// number at a corner of the curve, where there are two slopes.
+    #[serde(with = "crate::exact")]
     pub tangent: f64,
     /// dA/dδ along the curve, A = πs² the contact area; infinite, or not a number, where `tangent` is.
+    #[serde(with = "crate::exact")]
     pub area_slope: f64,
 }
 

@@ -5,10 +5,12 @@ use crate::disc::{Edges, Local, Place, Solution};
 use crate::problem::Control;
 use crate::quasistatic::energy::{self, Losses};
 use crate::quasistatic::{Stability, State};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Which way the control goes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Direction {
     /// Up.
     Loading,
@@ -35,23 +37,31 @@ impl Direction {
 }
 
 /// One state of a path, in reduced units.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathState {
     /// The outermost edge of contact, a length; 0 where a zone holds the bodies without contact.
+    #[serde(with = "crate::exact")]
     pub contact_radius: f64,
     /// c, the outer edge of the zone of adhesion with a range, a length; `None` for adhesion without one.
+    #[serde(with = "crate::exact")]
     pub zone: Option<f64>,
     /// δ, a length.
+    #[serde(with = "crate::exact")]
     pub approach: f64,
     /// P, a force.
+    #[serde(with = "crate::exact")]
     pub force: f64,
     /// U, an energy: elastic, minus γ times the contact area; on the way up, minus what that area gained in closing.
+    #[serde(with = "crate::exact")]
     pub energy: f64,
     /// Contacts as [inner, outer], lengths, from the axis outward; a disc is [0, s].
+    #[serde(with = "crate::exact")]
     pub contacts: Vec<[f64; 2]>,
     /// The contact area, a length squared.
+    #[serde(with = "crate::exact")]
     pub contact_area: f64,
     /// dP/dδ while all edges are held, a force over a length: 2E*s for a disc.
+    #[serde(with = "crate::exact")]
     pub held_stiffness: f64,
     /// Whether the device can hold it: not at a limit point, from which edges run.
     pub stable: bool,
@@ -59,6 +69,7 @@ pub struct PathState {
     /// state was found on them and no edge is on a corner.
     pub slopes: Option<Stability>,
     /// c: δ, P or Δ.
+    #[serde(with = "crate::exact")]
     pub control_value: f64,
     /// Which way the control goes.
     pub direction: Direction,
@@ -138,7 +149,8 @@ impl PathState {
 }
 
 /// What happened.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum EventKind {
     /// The bodies, out of range of each other before, come within range and jump into a zone.
     JumpIn,
@@ -208,7 +220,8 @@ impl EventKind {
 }
 
 /// What a jump passed on its way. Neither its order nor its radii mean much: both depend on how fast edges move.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum PassedKind {
     /// A crest touched.
     Touch,
@@ -230,32 +243,37 @@ impl PassedKind {
 }
 
 /// Something a jump passed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Passed {
     /// What.
     pub kind: PassedKind,
     /// Where, a length.
+    #[serde(with = "crate::exact")]
     pub radius: f64,
 }
 
 /// One event of a path.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Event {
     /// What happened.
     pub kind: EventKind,
     /// Which way the control went.
     pub direction: Direction,
     /// c: δ, P or Δ.
+    #[serde(with = "crate::exact")]
     pub control_value: f64,
     /// Where a crest touched, contacts merged or split, one vanished, or an edge began to move, a length.
+    #[serde(with = "crate::exact")]
     pub radius: Option<f64>,
     /// The state before; `None` while the bodies were apart.
     pub before: Option<PathState>,
     /// The state after; `None` where they came apart.
     pub after: Option<PathState>,
     /// The energy lost, by the drop of the potential; `None` for a last contact under a dead load.
+    #[serde(with = "crate::exact")]
     pub dissipated: Option<f64>,
     /// The same from the work left over at the edges on their way; `None` where it was not asked for.
+    #[serde(with = "crate::exact")]
     pub dissipated_by_area: Option<f64>,
     /// What the jump passed.
     pub passed: Vec<Passed>,

@@ -3,14 +3,16 @@
 use crate::continuation::StepFailure;
 use crate::quasistatic::path::Event;
 use crate::quasistatic::{Admissibility, Stability, State, StatePoint, Stiffness};
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// Where the edge would land from a limit point, and what it would cost.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Ahead {
     /// The landing; `None` where the bodies come apart.
     pub after: Option<State>,
     /// The energy lost; `None` for a pull-off under a dead load.
+    #[serde(with = "crate::exact")]
     pub dissipated: Option<f64>,
 }
 
