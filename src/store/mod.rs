@@ -8,6 +8,7 @@
 //! | [`name`] | which names a user's preset may have |
 //! | [`file`](mod@file) | reading regular files of bounded size; fingerprints |
 //! | [`hash`] | names derived from content |
+//! | [`path`] | paths in a document, where they need not be text |
 //! | [`place`] | which file a path leads to, whatever it is called |
 //! | [`stream`] | standard input and output, pipes and devices, which are read and written directly |
 //! | [`atomic`] | writing a file as a whole or not at all |
@@ -21,6 +22,7 @@ pub mod file;
 pub mod hash;
 pub mod lock;
 pub mod name;
+pub mod path;
 pub mod place;
 pub mod presets;
 pub mod stream;

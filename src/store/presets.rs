@@ -18,6 +18,8 @@ use pulloff_engine::preset::model::Preset;
 use pulloff_engine::preset::read::ReadError;
 use pulloff_engine::preset::write::{head, write};
 use pulloff_engine::text::{closest, quote, sanitize, show_path};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::ffi::OsStr;
 use std::fs;
 use std::io;
@@ -30,20 +32,33 @@ use thiserror::Error;
 const LISTED: usize = 1000;
 
 /// Where a preset comes from.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Source {
-    Shipped(&'static Shipped),
+    Shipped(#[serde(serialize_with = "name_of", deserialize_with = "named")] &'static Shipped),
     User {
         name: String,
+        #[serde(with = "super::path")]
         path: PathBuf,
     },
-    File(PathBuf),
+    File(#[serde(with = "super::path")] PathBuf),
     /// A text that came through a pipe and cannot be read again.
     Piped {
         /// What messages call its source.
         name: String,
         text: Arc<str>,
     },
+}
+
+fn name_of<S: Serializer>(shipped: &Shipped, serializer: S) -> Result<S::Ok, S::Error> {
+    shipped.name.serialize(serializer)
+}
+
+/// The preset that comes with the program under a name; if none does any longer, the default: only the name is missing.
+fn named<'de, D: Deserializer<'de>>(deserializer: D) -> Result<&'static Shipped, D::Error> {
+    let name = String::deserialize(deserializer)?;
+    let known = shipped::find(&name).or_else(|| shipped::find(shipped::DEFAULT));
+    known.ok_or_else(|| D::Error::custom(format!("no preset {name}")))
 }
 
 impl Source {
