@@ -7,6 +7,7 @@ use super::output;
 use crate::explorer::archive::{Archive, ArchiveError, ago};
 use crate::explorer::session::{Document, SessionSummary};
 use clap::Subcommand;
+use pulloff_engine::quasistatic::State;
 use pulloff_engine::report::number::significant;
 use pulloff_engine::text::{sanitize, show_path};
 use std::fmt::Write as _;
@@ -116,8 +117,8 @@ fn shown(archive: &Archive, name: &str) -> Result<String, Failure> {
     row("ended", summary.ended.name());
     row("steps", &summary.steps.to_string());
     row("unsaved", if summary.unsaved { "the preset has changes that are in no file" } else { "nothing" });
-    if let Some(walker) = document.walker() {
-        let [delta, force, s] = walker.map(|x| significant(x, 10));
+    if let Some(State { approach, force, contact_radius, .. }) = document.walker {
+        let [delta, force, s] = [approach, force, contact_radius].map(|x| significant(x, 10));
         row("walker", &format!("delta {delta}, P {force}, s {s}"));
     }
     row("pins", &document.pins().to_string());

@@ -13,9 +13,11 @@ use super::node::{Node, NodeKind};
 use super::script;
 use super::walk::{Action, WalkOutcome};
 use crate::store::Source;
+use pulloff_engine::exact;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::preset::changes::changes;
 use pulloff_engine::problem::Begin;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The most lines kept, and the most bytes in them: half of what a script may have.
@@ -25,31 +27,26 @@ const BYTES: usize = 1 << 19;
 /// What was done since a preset was opened.
 #[derive(Debug, Clone, Default)]
 pub struct Journal {
-    lines: Arc<Vec<String>>,
+    kept: KeptJournal,
     /// How many states each line made; not known for the earlier lines of a resumed session.
     states: Arc<Vec<Option<usize>>>,
     bytes: usize,
-    start: Option<Box<Beginning>>,
-    replay: Option<Box<Replay>>,
-    /// The steps of the last line, if further steps can be added to it.
-    steps: Option<usize>,
     walking: Option<OpenWalk>,
-    /// Why the lines no longer lead to the current state.
-    broken: Option<String>,
 }
 
 /// Where the walk began.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Beginning {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Beginning<P = Preset> {
     pub source: Source,
-    pub preset: Preset,
+    pub preset: P,
 }
 
 /// What a replay has set at the end of the lines.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Replay {
-    pub preset: Preset,
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Replay<P = Preset> {
+    pub preset: P,
     pub inward: bool,
+    #[serde(with = "exact")]
     pub length: f64,
 }
 
@@ -63,14 +60,37 @@ struct OpenWalk {
     made: usize,
 }
 
-/// What a session keeps of a journal: everything but a walk that is not over yet.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct KeptJournal {
+/// What a session keeps of a journal: everything but a walk that is not over yet. A document holds the numbers of its
+/// presets.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct KeptJournal<P = Preset> {
     pub lines: Arc<Vec<String>>,
-    pub start: Option<Beginning>,
-    pub replay: Option<Replay>,
+    pub start: Option<Box<Beginning<P>>>,
+    pub replay: Option<Box<Replay<P>>>,
+    /// The steps of the last line, if further steps can be added to it.
     pub steps: Option<usize>,
+    /// Why the lines no longer lead to the current state.
     pub broken: Option<String>,
+}
+
+impl Default for KeptJournal {
+    fn default() -> Self {
+        Self { lines: Arc::default(), start: None, replay: None, steps: None, broken: None }
+    }
+}
+
+impl<P> KeptJournal<P> {
+    /// The same with other presets.
+    /// Errors: Those of `preset`.
+    pub fn map<Q, E>(self, mut preset: impl FnMut(P) -> Result<Q, E>) -> Result<KeptJournal<Q>, E> {
+        let Self { lines, start, replay, steps, broken } = self;
+        let start = start.map(|at| Ok(Box::new(Beginning { source: at.source, preset: preset(at.preset)? })));
+        let start = start.transpose()?;
+        let replay = replay.map(|at| {
+            Ok(Box::new(Replay { preset: preset(at.preset)?, inward: at.inward, length: at.length }))
+        });
+        Ok(KeptJournal { lines, start, replay: replay.transpose()?, steps, broken })
+    }
 }
 
 impl Journal {
@@ -78,33 +98,24 @@ impl Journal {
     pub fn kept(&self) -> KeptJournal {
         let mut over = self.clone();
         over.abandoned();
-        let Self { lines, start, replay, steps, broken, .. } = over;
-        KeptJournal {
-            lines,
-            start: start.map(|start| *start),
-            replay: replay.map(|replay| *replay),
-            steps,
-            broken,
-        }
+        over.kept
     }
 
     /// The journal of a resumed session.
     pub fn of(kept: KeptJournal) -> Self {
-        let KeptJournal { lines, start, replay, steps, broken } = kept;
-        let bytes = lines.iter().map(String::len).sum();
-        let (start, replay) = (start.map(Box::new), replay.map(Box::new));
-        let states = Arc::new(vec![None; lines.len()]);
-        Self { lines, states, bytes, start, replay, steps, walking: None, broken }
+        let bytes = kept.lines.iter().map(String::len).sum();
+        let states = Arc::new(vec![None; kept.lines.len()]);
+        Self { kept, states, bytes, walking: None }
     }
 
     /// Its lines so far; a walk under way is not among them yet.
     pub fn lines(&self) -> &[String] {
-        &self.lines
+        &self.kept.lines
     }
 
     /// Where the walk began; nothing before the first state.
     pub fn start(&self) -> Option<&Beginning> {
-        self.start.as_deref()
+        self.kept.start.as_deref()
     }
 
     /// The lines that lead to `preset`, or without one to the walker's state, walked `way` (inward or not, step
@@ -117,14 +128,14 @@ impl Journal {
     ) -> Result<Vec<String>, String> {
         let mut journal = self.clone();
         journal.abandoned();
-        let own = journal.replay.as_ref().map(|replay| replay.preset.clone());
+        let own = journal.kept.replay.as_ref().map(|replay| replay.preset.clone());
         if let Some(preset) = preset.or(own.as_ref()) {
             journal.sync(preset, Some(way), failed);
         }
-        if let Some(broken) = journal.broken {
+        if let Some(broken) = journal.kept.broken {
             return Err(broken);
         }
-        let made = journal.lines.iter().cloned().zip(journal.states.iter().copied());
+        let made = journal.kept.lines.iter().cloned().zip(journal.states.iter().copied());
         Ok(without_detours(&made.collect::<Vec<_>>()))
     }
 
@@ -132,7 +143,7 @@ impl Journal {
         let inward = preset.path.begin == Begin::Disc;
         let replay = Replay { preset: preset.clone(), inward, length: FIRST_LENGTH };
         let (start, replay) = (Some(Box::new(Beginning { source, preset })), Some(Box::new(replay)));
-        *self = Self { start, replay, ..Self::default() };
+        *self = Self { kept: KeptJournal { start, replay, ..KeptJournal::default() }, ..Self::default() };
     }
 
     pub(super) fn walks(&mut self, action: Action, curve: Arc<CurveData>, inward: bool, length: f64) {
@@ -155,7 +166,7 @@ impl Journal {
         let Some(walking) = self.walking.take() else { return };
         let mut preset = walking.curve.setting.preset.clone();
         // Where a walk begins is not part of the curve: only a restart asks for it.
-        preset.path.begin = match (&walking.action, &self.replay) {
+        preset.path.begin = match (&walking.action, &self.kept.replay) {
             // A path belongs to one beginning.
             _ if walking.curve.along.is_some() => preset.path.begin,
             (Action::Begin, _) => Begin::Apart,
@@ -170,7 +181,7 @@ impl Journal {
         if walking.made == 0 && !(is_stale && is_solve) {
             return;
         }
-        let (made, before) = (walking.made, self.lines.len());
+        let (made, before) = (walking.made, self.kept.lines.len());
         match walking.action {
             Action::Solve { .. } => self.sync(preset, None, is_stale),
             Action::Steps(_) => {
@@ -220,8 +231,8 @@ impl Journal {
                 self.turned(walking.inward);
             }
         }
-        let all = self.steps.filter(|all| *all > made).unwrap_or(made);
-        let has_line = self.lines.len() > before || all > made;
+        let all = self.kept.steps.filter(|all| *all > made).unwrap_or(made);
+        let has_line = self.kept.lines.len() > before || all > made;
         if let Some(last) = Arc::make_mut(&mut self.states).last_mut() {
             // If states were made without a line, it is not known which line an undo takes back.
             *last = has_line.then_some(all);
@@ -231,7 +242,7 @@ impl Journal {
     /// An undo, redo or change of branch led to `node` and its values.
     pub(super) fn travelled(&mut self, command: &Command, node: Option<&Node>) {
         self.write(command);
-        let (Some(replay), Some(node)) = (&mut self.replay, node) else { return };
+        let (Some(replay), Some(node)) = (&mut self.kept.replay, node) else { return };
         if !matches!(node.kind, NodeKind::Stale(_)) {
             let mut preset = node.setting.preset.clone();
             preset.title.clone_from(&replay.preset.title);
@@ -243,18 +254,20 @@ impl Journal {
 
     /// The last command leaves the walk in this direction.
     pub(super) fn turned(&mut self, inward: bool) {
-        if let Some(replay) = &mut self.replay {
+        if let Some(replay) = &mut self.kept.replay {
             replay.inward = inward;
         }
     }
 
     /// Writes what a replay needs to have set before the next line: values, direction, step length.
     fn sync(&mut self, preset: &Preset, way: Option<(bool, f64)>, may_fail: bool) {
-        let Some(mut replay) = self.replay.take() else { return };
+        let Some(mut replay) = self.kept.replay.take() else { return };
         if replay.preset != *preset {
             match changes(&replay.preset, preset) {
                 Some(all) => self.write_line(may_fail, &Command::Assign(all)),
-                None => self.broken = Some("a value that was dropped cannot be put in a script".to_owned()),
+                None => {
+                    self.kept.broken = Some("a value that was dropped cannot be put in a script".to_owned())
+                }
             }
             replay.preset = preset.clone();
         }
@@ -268,20 +281,20 @@ impl Journal {
                 replay.length = length;
             }
         }
-        self.replay = Some(replay);
+        self.kept.replay = Some(replay);
     }
 
     fn step(&mut self, count: usize, goes_on: bool) {
-        let merged = self.steps.map(|before| before + count).filter(|all| *all <= MOST_STEPS);
+        let merged = self.kept.steps.map(|before| before + count).filter(|all| *all <= MOST_STEPS);
         if merged.is_some()
-            && let Some(last) = Arc::make_mut(&mut self.lines).pop()
+            && let Some(last) = Arc::make_mut(&mut self.kept.lines).pop()
         {
             Arc::make_mut(&mut self.states).pop();
             self.bytes -= last.len();
         }
         let count = merged.unwrap_or(count);
         self.write(&Command::Steps(count));
-        self.steps = goes_on.then_some(count);
+        self.kept.steps = goes_on.then_some(count);
     }
 
     fn write(&mut self, command: &Command) {
@@ -289,21 +302,21 @@ impl Journal {
     }
 
     fn write_line(&mut self, may_fail: bool, command: &Command) {
-        self.steps = None;
-        if self.replay.is_none() && self.start.is_none() {
+        self.kept.steps = None;
+        if self.kept.replay.is_none() && self.kept.start.is_none() {
             return;
         }
         let Some(line) = script::line(command) else {
-            self.broken = Some("a value of the session cannot be written on one line".to_owned());
+            self.kept.broken = Some("a value of the session cannot be written on one line".to_owned());
             return;
         };
         let line = if may_fail { format!("try {line}") } else { line };
-        if self.lines.len() >= LINES || self.bytes + line.len() > BYTES || line.len() > script::LONGEST {
-            self.broken = Some("the session is longer than a script may be".to_owned());
+        if self.kept.lines.len() >= LINES || self.bytes + line.len() > BYTES || line.len() > script::LONGEST {
+            self.kept.broken = Some("the session is longer than a script may be".to_owned());
             return;
         }
         self.bytes += line.len();
-        Arc::make_mut(&mut self.lines).push(line);
+        Arc::make_mut(&mut self.kept.lines).push(line);
         Arc::make_mut(&mut self.states).push(Some(0));
     }
 }

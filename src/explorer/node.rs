@@ -2,20 +2,23 @@
 
 use super::setting::Setting;
 use pulloff_engine::annuli::Contacts;
+use pulloff_engine::exact;
 use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::walk::{Ahead, At, edges};
 use pulloff_engine::quasistatic::{Admissibility, Event, Stability, State, StatePoint, Stiffness};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// How a node came about.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum NodeKind {
     Start,
     Step,
     /// A limit point of the control, located exactly.
     Limit,
     /// Where the crest at this radius (reduced) touches, located exactly: from here on, the real path has a ring.
-    Touch(f64),
+    Touch(#[serde(with = "exact")] f64),
     /// The landing of a jump, or `None` inside for a pull-off, with the energy lost.
     Jump(Box<Event>),
     /// Moved to by hand: a selected event, or the start again.

@@ -7,28 +7,22 @@
 //! whenever files that no session refers to are removed.
 
 use super::error::{ArchiveError, LARGEST, failed};
-use crate::explorer::session::Aside;
+use crate::explorer::session::{Aside, SavedFile};
 use crate::store::file::{FileError, read_bytes};
 use crate::store::hash::{DIGITS, sha256};
 use crate::store::lock::{FolderLock, PATIENCE};
 use crate::store::{Overwrite, make_folder, write_atomically};
-use pulloff_engine::gap::shapes::ProfileRows;
 use pulloff_engine::text::{quote, show_path};
-use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
-use std::fmt::Write;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::Duration;
 
 /// The folder of the data, inside the folder of sessions.
 const FOLDER: &str = "data";
 /// The extension of a data file.
 const ENDING: &str = "csv";
-/// Its first line.
-const HEADER: &str = "r,h";
 
 /// The data of one session, or of all sessions.
 #[derive(Debug)]
@@ -57,17 +51,14 @@ impl Data {
 
     /// Makes sure that `kept` is in a file, and returns the hash that names it.
     pub(super) fn keep(&mut self, kept: &Aside) -> Result<String, ArchiveError> {
-        let known = self.known.iter().find(|(known, _)| is_same(known, kept));
+        let known = self.known.iter().find(|(known, _)| known.is_same(kept));
         let known = known.map(|(_, hash)| hash.clone());
         if let Some(hash) = &known
             && self.path(hash).symlink_metadata().is_ok_and(|there| there.is_file())
         {
             return Ok(hash.clone());
         }
-        let bytes: Cow<'_, [u8]> = match kept {
-            Aside::Profile(rows) => Cow::Owned(text(rows).into_bytes()),
-            Aside::Curve(source) => Cow::Borrowed(&source.bytes),
-        };
+        let bytes = kept.bytes();
         let hash = known.unwrap_or_else(|| {
             let hash = sha256(&bytes);
             self.known.push((kept.clone(), hash.clone()));
@@ -81,23 +72,23 @@ impl Data {
         Ok(hash)
     }
 
-    /// r and h of the data with this hash, for the profile `name` of the session in the file `session`.
-    pub(super) fn columns(
+    /// The content of a file of the session in the file `session`.
+    pub(super) fn take_back(
         &self,
         session: &Path,
+        file: &SavedFile,
         hash: &str,
-        name: &str,
-    ) -> Result<[Vec<f64>; 2], ArchiveError> {
-        let bytes = self.bytes(session, hash, name)?;
-        columns(&bytes).ok_or_else(|| ArchiveError::Data {
+    ) -> Result<Aside, ArchiveError> {
+        let bytes = self.bytes(session, hash, &file.name)?;
+        file.with(&bytes).ok_or_else(|| ArchiveError::Data {
             path: show_path(session),
-            name: quote(name),
+            name: quote(&file.name),
             why: format!("{} holds no rows r,h", show_path(&self.path(hash))),
         })
     }
 
     /// The data with this hash, for the file `name` of the session in the file `session`.
-    pub(super) fn bytes(&self, session: &Path, hash: &str, name: &str) -> Result<Vec<u8>, ArchiveError> {
+    fn bytes(&self, session: &Path, hash: &str, name: &str) -> Result<Vec<u8>, ArchiveError> {
         let lost = |why: String| ArchiveError::Data { path: show_path(session), name: quote(name), why };
         if !is_hash(hash) {
             return Err(lost(format!("\"{}\" is not a SHA-256", quote(hash))));
@@ -163,72 +154,13 @@ pub(super) fn named_in(bytes: &[u8]) -> impl Iterator<Item = &str> {
     words.filter_map(|word| std::str::from_utf8(word).ok().filter(|word| is_hash(word)))
 }
 
-/// Whether both are the very same object, which is known without comparing contents.
-fn is_same(a: &Aside, b: &Aside) -> bool {
-    match (a, b) {
-        (Aside::Profile(a), Aside::Profile(b)) => Arc::ptr_eq(a, b),
-        (Aside::Curve(a), Aside::Curve(b)) => Arc::ptr_eq(&a.bytes, &b.bytes),
-        _ => false,
-    }
-}
-
 fn is_hash(text: &str) -> bool {
     text.len() == DIGITS && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
-}
-
-/// The columns of a profile as text, with every digit.
-fn text(rows: &ProfileRows) -> String {
-    let mut text = format!("{HEADER}\n");
-    for (r, h) in rows.radii.iter().zip(&rows.gaps) {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{r:?},{h:?}");
-    }
-    text
-}
-
-/// The inverse: the columns from their text.
-fn columns(bytes: &[u8]) -> Option<[Vec<f64>; 2]> {
-    let mut lines = std::str::from_utf8(bytes).ok()?.lines();
-    lines.next().filter(|line| *line == HEADER)?;
-    let row = |line: &str| {
-        let (r, h) = line.split_once(',')?;
-        Some((r.parse::<f64>().ok()?, h.parse::<f64>().ok()?))
-    };
-    let (radii, gaps) = lines.map(row).collect::<Option<(Vec<f64>, Vec<f64>)>>()?;
-    Some([radii, gaps])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
-    use proptest::test_runner::RngSeed;
-
-    proptest! {
-        #![proptest_config(ProptestConfig {
-            cases: 200, rng_seed: RngSeed::Fixed(5), failure_persistence: None, ..ProptestConfig::default()
-        })]
-
-        #[test]
-        fn every_bit_of_the_columns_comes_back(
-            rows in prop::collection::vec((prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL
-                | prop::num::f64::ZERO, prop::num::f64::NORMAL | prop::num::f64::ZERO), 0..20),
-        ) {
-            let (radii, gaps): (Vec<f64>, Vec<f64>) = rows.into_iter().unzip();
-            let rows = ProfileRows { radii, gaps, ..ProfileRows::default() };
-            let [radii, gaps] = columns(text(&rows).as_bytes()).unwrap();
-            let bits = |column: &[f64]| column.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-            prop_assert_eq!((bits(&radii), bits(&gaps)), (bits(&rows.radii), bits(&rows.gaps)));
-        }
-    }
-
-    #[test]
-    fn what_is_no_table_of_two_columns_gives_none() {
-        for text in ["", "h,r\n", "r,h\n1\n", "r,h\n1,2,3\n", "r,h\n1,x\n", "1,2\n"] {
-            assert_eq!(columns(text.as_bytes()), None, "{text}");
-        }
-        assert_eq!(columns(b"\xff"), None);
-    }
 
     #[test]
     fn a_hash_is_found_in_whatever_is_left_of_a_session() {

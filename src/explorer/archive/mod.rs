@@ -164,13 +164,10 @@ impl Archive {
         let claim = Claim::of(self.folder_or()?, name)?;
         let (bytes, _) = read_bytes(&path, LARGEST)?;
         let unreadable = |cause| ArchiveError::Unreadable { path: show_path(&path), cause };
-        let summary = summary(&bytes).map_err(unreadable)?;
         let mut document = Document::read(&bytes).map_err(unreadable)?;
         let data = Data::beside(self.folder_or()?);
-        document.take_back(
-            |hash, profile| data.columns(&path, hash, profile),
-            |hash, curve| data.bytes(&path, hash, curve),
-        )?;
+        document.take_back(|file, hash| data.take_back(&path, file, hash))?;
+        let summary = document.summary.clone();
         let snapshot = document.snapshot().map_err(unreadable)?;
         Ok(HeldSession { claim, summary, snapshot })
     }

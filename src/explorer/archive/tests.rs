@@ -91,7 +91,7 @@ fn the_rows_of_a_profile_are_written_once_beside_the_session_and_come_back_bit_f
     assert_eq!((mode(&folder.join("data")), mode(file)), (mode(&folder), mode(&session)));
     // The session names them and contains no rows itself.
     let text = fs::read_to_string(&session).unwrap();
-    assert!(text.contains(file.file_stem().unwrap().to_str().unwrap()) && !text.contains("\"radii\""));
+    assert!(text.contains(file.file_stem().unwrap().to_str().unwrap()) && !text.contains("r,h"));
     // What is read back is written unchanged.
     let within = |snapshot: &Snapshot| Document::new(snapshot, Ended::Quit, 0).json().unwrap();
     let mut held = bench.archive().load("scan-1").unwrap();
@@ -105,11 +105,11 @@ fn the_rows_of_a_profile_are_written_once_beside_the_session_and_come_back_bit_f
     with_profile(&mut bench, 0.5);
     assert_eq!((file.metadata().unwrap().modified().unwrap(), fs::read(file).unwrap()), before);
     assert_eq!(data(&bench), files);
-    // A session of an earlier version contains its rows.
+    // A document that was not laid aside contains its rows.
     let old = bench.archive().begin("old").unwrap();
     old.write(&within(&snapshot)).unwrap();
     drop(old);
-    assert!(fs::read_to_string(folder.join("old-1.json")).unwrap().contains("\"radii\":["));
+    assert!(fs::read_to_string(folder.join("old-1.json")).unwrap().contains("\"text\":\"r,h\\n0.0,0.0\\n"));
     fs::remove_file(file).unwrap();
     assert_eq!(bench.archive().load("old-1").unwrap().snapshot.preset, snapshot.preset);
     // Data that disappear while the program runs are written again.
@@ -314,7 +314,7 @@ fn a_damaged_session_is_kept_aside_and_said_once() {
     assert_eq!(bench.files(), ["fig-3-jkr-1.damaged", "fig-3-jkr-2.json"]);
     assert_eq!(fs::read(folder.join("fig-3-jkr-1.damaged")).unwrap(), half);
     // A session of a later version is left where it is.
-    let text = String::from_utf8(whole).unwrap().replacen("\"format\":4", "\"format\":7", 1);
+    let text = String::from_utf8(whole).unwrap().replacen("\"format\":5", "\"format\":7", 1);
     fs::write(folder.join("fig-3-jkr-8.json"), &text).unwrap();
     assert!(bench.archive().cut_off().unwrap_err().contains("has format 7"));
     assert_eq!(fs::read_to_string(folder.join("fig-3-jkr-8.json")).unwrap(), text);

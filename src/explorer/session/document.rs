@@ -2,17 +2,17 @@
 //!
 //! What a list of sessions shows comes first, so it can be read without understanding the rest.
 
-use super::number::{Real, floats, reals};
+use super::aside::{Aside, SavedFile};
 use super::places::SavedPlaces;
-use super::problems::{Aside, Collector, Problems, Restored, SavedPath};
+use super::problems::{Collector, Problems, Restored};
 use super::snapshot::{SessionLook, Snapshot};
 use super::tree::{self, SavedNode};
 use super::unreadable::{FORMAT, Unreadable};
-use crate::explorer::journal::{Beginning, KeptJournal, Replay};
-use crate::store::{Fingerprint, Source, shipped};
-use pulloff_engine::preset::Preset;
+use crate::explorer::journal::KeptJournal;
+use crate::store::{Fingerprint, Source};
+use pulloff_engine::quasistatic::State;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
+use std::convert::Infallible;
 
 /// How a session ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,25 +54,19 @@ pub struct SessionSummary {
 /// A session.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Document {
-    // The fields of the summary come first in the file.
-    format: u32,
-    program_version: String,
-    ended: Ended,
-    saved_at: u64,
-    preset_name: String,
-    title: String,
-    steps: usize,
-    unsaved: bool,
-    /// δ, P and s of the walker in the user's units, for people who read the file.
-    walker: Option<[Real; 3]>,
-    source: PresetOrigin,
+    /// It comes first in the file.
+    #[serde(flatten)]
+    pub summary: SessionSummary,
+    /// The walker's state in the user's units, for people who read the file.
+    pub walker: Option<State>,
+    source: Source,
     fingerprint: Option<Fingerprint>,
     /// The numbers of the current preset and of the saved one.
     preset: usize,
     saved: usize,
     look: SessionLook,
     pins: Vec<(usize, usize)>,
-    journal: SavedScript,
+    journal: KeptJournal<usize>,
     problems: Problems,
     settled: bool,
     cursor: Option<usize>,
@@ -81,92 +75,18 @@ pub struct Document {
     undo: SavedPlaces,
 }
 
-/// The script that leads to where the session is.
-#[derive(Debug, Serialize, Deserialize)]
-struct SavedScript {
-    lines: Vec<String>,
-    /// Where the walk began: the source of its preset, and the number of the preset.
-    start: Option<(PresetOrigin, usize)>,
-    /// What a replay has set at the end: the number of the preset, the direction, the step length.
-    replay: Option<(usize, bool, Real)>,
-    steps: Option<usize>,
-    broken: Option<String>,
-}
-
-impl SavedScript {
-    fn of(kept: &KeptJournal, problems: &mut Collector) -> Self {
-        let start = kept.start.as_ref();
-        let replay = kept.replay.as_ref();
-        Self {
-            lines: kept.lines.to_vec(),
-            start: start.map(|start| (PresetOrigin::of(&start.source), problems.preset(&start.preset))),
-            replay: replay.map(|at| (problems.preset(&at.preset), at.inward, Real(at.length))),
-            steps: kept.steps,
-            broken: kept.broken.clone(),
-        }
-    }
-
-    fn back(self, preset: impl Fn(usize) -> Result<Preset, Unreadable>) -> Result<KeptJournal, Unreadable> {
-        let start =
-            self.start.map(|(source, at)| Ok(Beginning { source: source.back()?, preset: preset(at)? }));
-        let replay =
-            self.replay.map(|(at, inward, Real(length))| Ok(Replay { preset: preset(at)?, inward, length }));
-        Ok(KeptJournal {
-            lines: Arc::new(self.lines),
-            start: start.transpose()?,
-            replay: replay.transpose()?,
-            steps: self.steps,
-            broken: self.broken,
-        })
-    }
-}
-
-/// Where a preset came from.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum PresetOrigin {
-    Shipped(String),
-    User { name: String, path: SavedPath },
-    File(SavedPath),
-    Piped { name: String, text: String },
-}
-
-impl PresetOrigin {
-    fn of(source: &Source) -> Self {
-        match source {
-            Source::Shipped(shipped) => Self::Shipped(shipped.name.to_owned()),
-            Source::User { name, path } => Self::User { name: name.clone(), path: SavedPath::of(path) },
-            Source::File(path) => Self::File(SavedPath::of(path)),
-            Source::Piped { name, text } => Self::Piped { name: name.clone(), text: text.to_string() },
-        }
-    }
-
-    fn back(self) -> Result<Source, Unreadable> {
-        Ok(match self {
-            // If a preset no longer comes with the program, only its name is missing.
-            Self::Shipped(name) => {
-                let known = shipped::find(&name).or_else(|| shipped::find(shipped::DEFAULT));
-                Source::Shipped(known.ok_or_else(|| Unreadable::Damaged(format!("no preset {name}")))?)
-            }
-            Self::User { name, path } => Source::User { name, path: path.path() },
-            Self::File(path) => Source::File(path.path()),
-            Self::Piped { name, text } => Source::Piped { name, text: text.into() },
-        })
-    }
-}
-
 impl Document {
-    /// The document of a snapshot, made `saved_at` seconds after 1970. It contains the rows of the profiles.
+    /// The document of a snapshot, made `saved_at` seconds after 1970.
     pub fn new(snapshot: &Snapshot, ended: Ended, saved_at: u64) -> Self {
         let mut problems = Collector::default();
         let preset = problems.preset(&snapshot.preset);
         let saved = problems.preset(&snapshot.saved);
         let pins = snapshot.pins.iter().map(|(number, preset)| (*number, problems.preset(preset))).collect();
-        let journal = SavedScript::of(&snapshot.journal, &mut problems);
+        let Ok(journal) =
+            snapshot.journal.clone().map(|preset| Ok::<_, Infallible>(problems.preset(&preset)));
         let nodes = tree::nodes(&snapshot.history, |setting| problems.setting(setting));
         let undo = SavedPlaces::of(&snapshot.undo, &snapshot.history, |preset| problems.preset(preset));
-        let walker = snapshot.history.current().map(|node| node.state.in_units(node.setting.units()));
-        Self {
+        let summary = SessionSummary {
             format: FORMAT,
             program_version: env!("CARGO_PKG_VERSION").to_owned(),
             ended,
@@ -175,8 +95,12 @@ impl Document {
             title: snapshot.preset.title.clone(),
             steps: snapshot.steps(),
             unsaved: snapshot.preset != snapshot.saved,
-            walker: walker.map(|state| reals([state.approach, state.force, state.contact_radius])),
-            source: PresetOrigin::of(&snapshot.source),
+        };
+        let walker = snapshot.history.current();
+        Self {
+            summary,
+            walker: walker.map(|node| node.state.in_units(node.setting.units())),
+            source: snapshot.source.clone(),
             fingerprint: snapshot.fingerprint,
             preset,
             saved,
@@ -191,27 +115,36 @@ impl Document {
         }
     }
 
-    /// Gives the data of each profile and each measured curve to `keep`, which returns the hash of the file they are
-    /// in. The document then refers to them by that hash.
+    /// Gives what presets take from files to `keep`, which returns the hash of the file it is in. The document then
+    /// refers to it by that hash.
     /// Errors: Those of `keep`.
-    pub fn lay_aside<E>(&mut self, keep: impl FnMut(&Aside) -> Result<String, E>) -> Result<(), E> {
-        self.problems.lay_aside(keep)
+    pub fn lay_aside<E>(&mut self, mut keep: impl FnMut(&Aside) -> Result<String, E>) -> Result<(), E> {
+        for file in &mut self.problems.files {
+            if let Some(held) = &file.held {
+                file.data = Some(keep(held)?);
+            }
+        }
+        Ok(())
     }
 
-    /// Takes the data back into the document: `columns` gives r and h of the file with a hash, `bytes` its whole
-    /// content; both also receive the name of the profile or the curve.
-    /// Errors: Those of `columns` and `bytes`.
+    /// The inverse: `fetch` gives the content of a file, which it finds by its hash.
+    /// Errors: Those of `fetch`.
     pub fn take_back<E>(
         &mut self,
-        columns: impl FnMut(&str, &str) -> Result<[Vec<f64>; 2], E>,
-        bytes: impl FnMut(&str, &str) -> Result<Vec<u8>, E>,
+        mut fetch: impl FnMut(&SavedFile, &str) -> Result<Aside, E>,
     ) -> Result<(), E> {
-        self.problems.take_back(columns, bytes)
+        for file in &mut self.problems.files {
+            if let Some(hash) = &file.data {
+                file.held = Some(fetch(file, hash)?);
+            }
+        }
+        Ok(())
     }
 
-    /// As JSON, in one line.
-    pub fn json(&self) -> serde_json::Result<Vec<u8>> {
-        let mut bytes = serde_json::to_vec(self)?;
+    /// As JSON, in one line. It contains what presets take from files, unless that is laid aside.
+    pub fn json(mut self) -> serde_json::Result<Vec<u8>> {
+        self.problems.files.iter_mut().for_each(SavedFile::lay_within);
+        let mut bytes = serde_json::to_vec(&self)?;
         bytes.push(b'\n');
         Ok(bytes)
     }
@@ -225,11 +158,6 @@ impl Document {
     /// The number of pinned curves.
     pub fn pins(&self) -> usize {
         self.pins.len()
-    }
-
-    /// δ, P and s of the walker in the user's units, as written.
-    pub fn walker(&self) -> Option<[f64; 3]> {
-        self.walker.map(floats)
     }
 
     /// Its snapshot; no problem is prepared and no file is read.
@@ -248,14 +176,14 @@ impl Document {
             session: 0,
             preset: preset(self.preset)?,
             saved: preset(self.saved)?,
-            source: self.source.back()?,
+            source: self.source,
             fingerprint: self.fingerprint,
             history,
             undo,
             settled: self.settled,
             pins: pins.collect::<Result<_, Unreadable>>()?,
             look: self.look,
-            journal: self.journal.back(preset)?,
+            journal: self.journal.map(preset)?,
         })
     }
 }

@@ -17,20 +17,20 @@
 //! | `problems` | the presets and settings of a document, each stored once |
 //! | `tree` | the nodes of the walk |
 //! | `places` | what undo goes back to |
-//! | `number` | numbers bit for bit |
+//! | `aside` | what presets take from files |
 //! | `unreadable` | why a session cannot be read |
 //!
 //! Nothing here touches a file; [`archive`](super::archive) does.
 
+mod aside;
 pub mod document;
-mod number;
 mod places;
 mod problems;
 pub mod snapshot;
 mod tree;
 mod unreadable;
 
+pub use aside::{Aside, SavedFile};
 pub use document::{Document, Ended, SessionSummary, summary};
-pub use problems::Aside;
 pub use snapshot::Snapshot;
 pub use unreadable::Unreadable;

@@ -2,11 +2,11 @@
 //!
 //! Commands from before another preset was opened are left out: that session is a document of its own.
 
-use super::number::Real;
 use super::unreadable::Unreadable;
 use crate::explorer::history::History;
 use crate::explorer::pins::Pins;
 use crate::explorer::undo::{SessionPlace, Undo};
+use pulloff_engine::exact;
 use pulloff_engine::preset::{Key, Preset};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -27,7 +27,8 @@ struct SavedPlace {
     preset: usize,
     node: Option<usize>,
     inward: bool,
-    length: Real,
+    #[serde(with = "exact")]
+    length: f64,
     /// Each pin's number, and that of its preset.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pins: Vec<(usize, usize)>,
@@ -43,7 +44,7 @@ impl SavedPlaces {
                 preset: preset(&place.preset),
                 node: place.node.and_then(|id| history.find(id)),
                 inward: place.inward,
-                length: Real(place.length),
+                length: place.length,
                 pins: place.pins.presets().map(|(number, pinned)| (number, preset(pinned))).collect(),
                 settled: place.settled,
             });
@@ -66,7 +67,7 @@ impl SavedPlaces {
                 // A tree that is read numbers its nodes afresh, from 0.
                 node: saved.node.map(|at| at as u64),
                 inward: saved.inward,
-                length: saved.length.0,
+                length: saved.length,
                 settled: saved.settled,
                 is_step: false,
                 shelved: None,
