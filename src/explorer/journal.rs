@@ -266,7 +266,7 @@ impl Journal {
             match changes(&replay.preset, preset) {
                 Some(all) => self.write_line(may_fail, &Command::Assign(all)),
                 None => {
-                    self.kept.broken = Some("a value that was dropped cannot be put in a script".to_owned())
+                    self.kept.broken = Some("a value that was dropped cannot be put in a script".to_owned());
                 }
             }
             replay.preset = preset.clone();

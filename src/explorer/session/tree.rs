@@ -85,7 +85,8 @@ impl SavedNode {
 
     fn back(self, settings: &[Arc<Setting>]) -> Option<(Node, Option<usize>)> {
         let setting = Arc::clone(settings.get(self.setting)?);
-        let is_whole = self.columns.len() % 3 == 0 && (FEWEST..=MOST).contains(&(self.columns.len() / 3));
+        let is_whole =
+            self.columns.len().is_multiple_of(3) && (FEWEST..=MOST).contains(&(self.columns.len() / 3));
         let columns = is_whole.then(|| Columns::from_vec(self.columns))?;
         let mut point = StatePoint::of(columns, self.positive);
         (point.length, point.rounds, point.turning) = (self.length, self.rounds, self.turning);
