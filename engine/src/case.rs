@@ -502,7 +502,7 @@ impl Case {
              the bodies stay apart outside it and that nothing pulls inside it"
         };
         let mut notes = self.problem.shape.remarks(&self.shown);
-        notes.extend(falls(&self.reduced.gap, largest).then(|| text.to_owned()));
+        notes.extend(falls(self.reduced.gap.as_ref(), largest).then(|| text.to_owned()));
         if let Some(radius) = Judge::new(&self.reduced, &self.table).unknown_beyond(largest) {
             let radius = said(&self.shown, Quantity::Length, radius * self.units().length);
             notes.push(format!(

@@ -123,5 +123,5 @@ fn same_loop(a: &Preset, b: &Preset) -> bool {
 /// Whether the gap of a curve has crests further out; without them, the loop is the first touch and the unloading.
 fn has_crests(curve: &CurveData) -> bool {
     let reduced = &curve.case.reduced;
-    reduced.gap.wavelength().is_some() || falls(&reduced.gap, curve.case.start)
+    reduced.gap.wavelength().is_some() || falls(reduced.gap.as_ref(), curve.case.start)
 }

@@ -5,7 +5,6 @@ use super::curve::CurveData;
 use super::model::Model;
 use super::view::View;
 use pulloff_engine::annuli::Contacts;
-use pulloff_engine::gap::Gap;
 use pulloff_engine::problem::{Control, Units};
 use pulloff_engine::quasistatic::admissible::Judge;
 use pulloff_engine::quasistatic::jump::EdgeDirection;

@@ -4,7 +4,7 @@ use super::command::Id;
 use super::model::{Level, Model, Walking};
 use super::node::{Node, NodeKind};
 use super::view::{Home, View};
-use pulloff_engine::gap::{Gap, wave_index};
+use pulloff_engine::gap::wave_index;
 use pulloff_engine::preset::edge;
 use pulloff_engine::problem::{Begin, Control};
 use pulloff_engine::quasistatic::EventKind;

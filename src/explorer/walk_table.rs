@@ -1,7 +1,7 @@
 //! The walk as a table: one row per state, for CSV and JSON.
 
 use super::node::{Node, NodeKind};
-use pulloff_engine::gap::{Gap, wave_index};
+use pulloff_engine::gap::wave_index;
 use pulloff_engine::preset::{Key, Preset, Row};
 use pulloff_engine::report::trace::StableReport;
 use pulloff_engine::report::walk::WalkRow;

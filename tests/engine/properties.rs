@@ -6,7 +6,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
 use pulloff_engine::case::Case;
-use pulloff_engine::gap::{Gap, Shape};
+use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::data::DataSpec;
 use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
 use pulloff_engine::problem::{Adhesion, Begin, ContactKind, Control, Start};

@@ -11,7 +11,6 @@ use super::ground::{DiscNodes, Ground};
 use super::state::AnnuliState;
 use crate::disc::{chebyshev, outside};
 use crate::elementary::{asin, sin};
-use crate::gap::Gap;
 use std::f64::consts::{FRAC_2_PI, PI};
 use wide::f64x4;
 

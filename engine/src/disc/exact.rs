@@ -14,7 +14,6 @@ use super::span::Place;
 use super::spans::TableError;
 use super::table::Table;
 use crate::elementary::sin;
-use crate::gap::Gap;
 use crate::problem::Reduced;
 use crate::progress::{Progress, Stopped, Unwatched};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

@@ -9,7 +9,6 @@ use super::basis::{Basis, Evaluation, Order};
 use super::chebyshev::{self, ChebyshevRule};
 use super::solution::{Edges, Local, Solution};
 use super::span::Place;
-use crate::gap::Gap;
 use crate::gap::{panels::Span, panels::Variable};
 use crate::problem::{Control, Reduced};
 use crate::progress::{Progress, Stopped};

@@ -12,7 +12,6 @@
 
 use super::mover::Mover;
 use crate::disc::Table;
-use crate::gap::Gap;
 use crate::preset::Preset;
 use crate::problem::{Control, Part, Reduced, Start};
 use crate::progress::Unwatched;

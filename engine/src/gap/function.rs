@@ -279,56 +279,6 @@ fn first_beyond(r: f64, length: f64) -> f64 {
     scaled
 }
 
-impl<G: Gap + ?Sized> Gap for std::sync::Arc<G> {
-    fn jet(&self, r: f64) -> Jet {
-        (**self).jet(r)
-    }
-
-    fn values(&self, s: f64, nodes: &[f64], values: &mut [f64]) {
-        (**self).values(s, nodes, values);
-    }
-
-    fn derivatives(&self, s: f64, nodes: &[f64], derivatives: [&mut [f64]; 3]) {
-        (**self).derivatives(s, nodes, derivatives);
-    }
-
-    fn feature_length(&self) -> Option<f64> {
-        (**self).feature_length()
-    }
-
-    fn wavelength(&self) -> Option<f64> {
-        (**self).wavelength()
-    }
-
-    fn breaks(&self) -> Breaks<'_> {
-        (**self).breaks()
-    }
-
-    fn form(&self) -> Form {
-        (**self).form()
-    }
-
-    fn slope_bound(&self, disc: ComplexDisc) -> Option<f64> {
-        (**self).slope_bound(disc)
-    }
-
-    fn breaks_up_to(&self, to: f64) -> Vec<f64> {
-        (**self).breaks_up_to(to)
-    }
-
-    fn uncertified(&self) -> Option<&'static str> {
-        (**self).uncertified()
-    }
-
-    fn reference_length(&self) -> f64 {
-        (**self).reference_length()
-    }
-
-    fn largest_radius(&self) -> Option<f64> {
-        (**self).largest_radius()
-    }
-}
-
 /// The index of the crest at which an edge of radius `s` sits: floor(s/λ + ½). Crests are at r = mλ.
 pub fn wave_index(s: f64, wavelength: Option<f64>) -> Option<u64> {
     // s/λ is positive and far below 2^53.

@@ -267,33 +267,24 @@ impl Gap for Shape {
     }
 
     fn breaks(&self) -> Breaks<'_> {
-        match self {
-            Self::Sphere { .. } | Self::WavySphere { .. } => Breaks::default(),
-            Self::ExactSphere(gap) => gap.breaks(),
-            Self::Cone { .. } => PowerLaw::CONE_BREAKS,
-            Self::PowerLaw(gap) => gap.breaks(),
-            Self::Harmonics(gap) | Self::RandomWaves { drawn: gap, .. } => gap.breaks(),
-            Self::Formula(typed) => typed.gap().breaks(),
-            Self::Profile(measured) => measured.profile().breaks(),
+        match self.other() {
+            None => Breaks::default(),
+            Some(ShapeGap::Ref(gap)) => gap.breaks(),
+            Some(ShapeGap::Cone(_)) => PowerLaw::CONE_BREAKS,
         }
     }
 
     fn form(&self) -> Form {
-        match self {
-            Self::Sphere { radius_of_curvature } => {
-                Form::Power { factor: 0.5 / radius_of_curvature, exponent: 2.0 }
-            }
-            Self::WavySphere { radius_of_curvature, amplitude, wavelength } => {
-                let wave = Wave { amplitude: *amplitude, wavenumber: TAU / wavelength, phase: [0.0, 1.0] };
-                let waves = if *amplitude == 0.0 { Vec::new() } else { vec![wave] };
-                Form::Waves { curvature: 1.0 / radius_of_curvature, waves }
-            }
-            Self::Cone { slope } => PowerLaw::cone(*slope).form(),
-            Self::PowerLaw(gap) => gap.form(),
-            Self::Harmonics(gap) | Self::RandomWaves { drawn: gap, .. } => gap.form(),
-            Self::Profile(measured) => measured.profile().form(),
-            Self::ExactSphere(_) | Self::Formula(_) => Form::Any,
+        if let Some(other) = self.other() {
+            return other.gap().form();
         }
+        let radius = self.paraboloid();
+        let Some((amplitude, wavelength)) = self.wave() else {
+            return Form::Power { factor: 0.5 / radius, exponent: 2.0 };
+        };
+        let wave = Wave { amplitude, wavenumber: TAU / wavelength, phase: [0.0, 1.0] };
+        let waves = if amplitude == 0.0 { Vec::new() } else { vec![wave] };
+        Form::Waves { curvature: 1.0 / radius, waves }
     }
 
     fn slope_bound(&self, disc: ComplexDisc) -> Option<f64> {

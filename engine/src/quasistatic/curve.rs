@@ -7,7 +7,6 @@ use super::places::{Detail, places};
 use crate::continuation::{Branch, End, Settings, Stop, Tracer};
 use crate::disc::exact::outer_side;
 use crate::disc::{Basis, Local, Place, Solution, Table};
-use crate::gap::Gap;
 use crate::problem::{Control, Printer, Reduced};
 use crate::progress::{Progress, Stopped, Unwatched};
 use crate::root;

@@ -13,7 +13,7 @@ use crate::annuli::around::BESIDE;
 use crate::annuli::{Around, Contacts, Ground, Wanted};
 use crate::disc::{Basis, Table};
 use crate::elementary::sin;
-use crate::gap::{Gap, wave_index};
+use crate::gap::wave_index;
 use crate::problem::{Cohesion, Reduced};
 use crate::progress::Unwatched;
 use crate::zone::{Zone, ZoneAt};

@@ -3,7 +3,6 @@
 use super::monotone::Monotone;
 use crate::disc::Basis;
 use crate::elementary::cbrt;
-use crate::gap::Gap;
 use crate::problem::{Control, Printer, Reduced, Start};
 use crate::progress::{Progress, Stopped};
 

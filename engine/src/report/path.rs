@@ -6,7 +6,7 @@ use super::overlap::{self, OverlapReport};
 use super::problem::{Head, control_name};
 use super::rows::{ReportTable, RowsError};
 use crate::case::{Case, CaseError};
-use crate::gap::{Gap, wave_index};
+use crate::gap::wave_index;
 use crate::preset::{BasisSpec, Preset};
 use crate::problem::cohesion::TABOR_OVER_MAUGIS;
 use crate::problem::{ContactKind, Control, Reduced, Turn, Units};

@@ -9,7 +9,7 @@ use super::problem::control_name;
 use super::rows::{ReportTable, RowsError};
 use crate::case::{Case, CaseError};
 use crate::disc::{Edges, Place};
-use crate::gap::{Gap, wave_index};
+use crate::gap::wave_index;
 use crate::preset::Preset;
 use crate::problem::Control;
 use crate::progress::{Progress, ProgressPart};

@@ -6,7 +6,6 @@ use crate::case::{Case, CaseError};
 use crate::disc::{ExactSolution, Solution};
 use crate::fit::least_squares::Ending;
 use crate::fit::{Fit, Fitted, Options, Verdict, fit_own};
-use crate::gap::Gap;
 use crate::preset::Preset;
 use crate::problem::{Control, Groups, Problem};
 use crate::progress::Progress;

@@ -13,7 +13,6 @@
 //! It holds in any basis, as in theory, because the functional is stationary in s: dU = P dδ.
 
 use super::row::VerifyRow;
-use crate::gap::Gap;
 use crate::problem::Control;
 use crate::quasistatic::places::radii;
 use crate::quasistatic::{Curve, Equilibrium, Path, PathState};

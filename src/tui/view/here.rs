@@ -8,7 +8,7 @@ use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use crate::tui::theme::Theme;
 use pulloff_engine::case::critical_force;
-use pulloff_engine::gap::{Gap, wave_index};
+use pulloff_engine::gap::wave_index;
 use pulloff_engine::problem::Control;
 use pulloff_engine::quasistatic::State;
 use pulloff_engine::report::number::{difference, fixed, short, significant, with_unit};

@@ -8,7 +8,7 @@ use crate::explorer::walk_table::kind_name;
 use crate::explorer::{Model, View};
 use crate::tui::app::App;
 use pulloff_engine::case::critical_force;
-use pulloff_engine::gap::{Gap, wave_index};
+use pulloff_engine::gap::wave_index;
 use pulloff_engine::report::number::{fixed, loss, significant, with_unit};
 use pulloff_engine::units::Quantity;
 use ratatui::Frame;

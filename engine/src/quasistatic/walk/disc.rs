@@ -5,7 +5,6 @@ use super::land::Jumped;
 use super::walker::{At, ROOM, Walk};
 use crate::continuation::Tracer;
 use crate::disc::Place;
-use crate::gap::Gap;
 use crate::problem::Control;
 use crate::progress::Unwatched;
 use crate::quasistatic::curve::{Curve, settings};

@@ -8,7 +8,7 @@ use crate::annuli::{Around, Contacts, Ground, points};
 use crate::continuation::{ColumnView, Columns, Vector};
 use crate::disc::Table;
 use crate::elementary::sin;
-use crate::gap::{Gap, wave_index};
+use crate::gap::wave_index;
 use crate::problem::Control;
 use crate::quasistatic::admissible::{Admissibility, Crest, Judge};
 use crate::quasistatic::equilibrium::{Equilibrium, Scales};
