@@ -5,6 +5,9 @@
 //! changes, so comments, order, blank lines, dotted keys and inline tables stay. A comment after a removed key stays on
 //! a line of its own, unless it is the one that the program itself writes there.
 //!
+//! `toml_edit` finds where things are, and edits inline tables. It does not print the text: it would bring dotted keys
+//! of one table together, write LF for CR LF and end the last line.
+//!
 //! What a text means can depend on what it leaves out: a start that is left out follows the radius of curvature. The
 //! result is therefore read back, and any key that came back different is written out.
 
@@ -16,8 +19,9 @@ use super::rows::parameter;
 use super::schema::Key;
 use super::shape::is_range;
 use super::value::Value as Number;
-use super::write::{COMMENTS, FOLLOWING, comment, following, head, line, toml, toml_of_parameter};
+use super::write::{COMMENTS, FOLLOWING, comment, following, head, header, line, toml, toml_of_parameter};
 use crate::problem::Control;
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::Path;
@@ -30,38 +34,21 @@ pub fn onto(folder: Option<&Path>, text: &str, preset: &Preset) -> Option<String
     // A text with another profile is read with its own rows.
     let before = held(text).or_else(|| read_in(preset.files, folder, "", text, &[] as &[&str]).ok());
     let layout = TextLayout::of(text)?;
-    let mut forced = Forced::Keys(BTreeSet::new());
+    // Which keys are written out even if the text seems to give their value; without a list, all.
+    let mut forced = Some(BTreeSet::<Key>::new());
     loop {
-        let edited = layout.edited(before.as_ref(), preset, &forced)?;
+        let edited = layout.edited(before.as_ref(), preset, forced.as_ref())?;
         let back = held(&edited);
         if back.as_ref() == Some(preset) {
             return Some(edited);
         }
-        forced = match (forced, back) {
-            (Forced::All, _) => return None,
-            (Forced::Keys(keys), Some(back)) => {
-                let differs = |row: &super::schema::Row| back.get(&row.key) != preset.get(&row.key);
-                let more: BTreeSet<Key> =
-                    preset.rows().filter(differs).map(|row| row.key.clone()).chain(keys.clone()).collect();
-                if more == keys { Forced::All } else { Forced::Keys(more) }
-            }
-            (Forced::Keys(_), None) => Forced::All,
-        };
-    }
-}
-
-/// Which keys are written out even if the text seems to give their value.
-enum Forced {
-    Keys(BTreeSet<Key>),
-    All,
-}
-
-impl Forced {
-    fn has(&self, key: &str) -> bool {
-        match self {
-            Self::Keys(keys) => keys.contains(key),
-            Self::All => true,
+        let known = forced?;
+        let mut more = known.clone();
+        if let Some(back) = back {
+            let keys = preset.rows().map(|row| row.key.clone());
+            more.extend(keys.filter(|key| back.get(key) != preset.get(key)));
         }
+        forced = (more != known).then_some(more);
     }
 }
 
@@ -72,37 +59,51 @@ fn route(key: &str) -> Route {
     key.split('.').map(str::to_owned).collect()
 }
 
-/// A value of the text.
-struct Leaf {
-    route: Route,
+fn below(route: &[String], name: &str) -> Route {
+    [route, &[name.to_owned()]].concat()
+}
+
+/// Where a value is in the text.
+#[derive(Clone)]
+struct Place {
     /// Where its line begins, and where the value on the line is.
     start: usize,
     value: Range<usize>,
     /// Its place within that value; empty if it is the whole value.
     inner: Route,
-    /// Its text, if it is a string.
-    string: Option<String>,
     /// The table that contains it.
     section: usize,
+}
+
+impl Place {
+    fn below(&self, name: &str) -> Self {
+        Self { inner: below(&self.inner, name), ..self.clone() }
+    }
+}
+
+/// A value of the text.
+struct Leaf {
+    route: Route,
+    place: Place,
+    /// Its text, if it is a string.
+    string: Option<String>,
 }
 
 /// A table with a header, or the top of the text.
 struct TextSection {
     route: Route,
-    /// Its header; the top has none.
-    header: Option<Range<usize>>,
+    /// Its header; empty for the top.
+    header: Range<usize>,
     /// Where its last value ends, or its header if it has none.
     end: usize,
 }
 
 /// Where the keys of a table are.
 enum Holder {
-    /// Below a header, or at the top.
-    Section(usize),
-    /// In lines of a section that begin with this prefix.
-    Dotted(usize, String),
-    /// In a value, at this place within it.
-    Inline(Range<usize>, Route),
+    /// In lines of a section that begin with this prefix, empty except for dotted keys.
+    Lines(usize, String),
+    /// In a value.
+    Inline(Place),
     /// Only in tables below it.
     Implied,
 }
@@ -128,40 +129,43 @@ struct WantedValue {
 impl<'a> TextLayout<'a> {
     fn of(text: &'a str) -> Option<Self> {
         let document = Document::parse(text).ok()?;
-        let top = TextSection { route: Route::new(), header: None, end: 0 };
+        let top = TextSection { route: Route::new(), header: 0..0, end: 0 };
         let mut layout = Self { text, leaves: Vec::new(), sections: vec![top], holders: BTreeMap::new() };
-        layout.holders.insert(Vec::new(), Holder::Section(0));
-        layout.table(&Vec::new(), document.as_table(), 0, "");
+        layout.table(&Route::new(), document.as_table(), 0, "");
         Some(layout)
     }
 
-    /// Records the keys of a table; for a dotted one, with the prefix of its lines.
+    /// Records a table with keys of its own; for a dotted one, with the prefix of its lines.
     fn table(&mut self, above: &Route, table: &Table, section: usize, dotted: &str) {
+        self.holders.insert(above.clone(), Holder::Lines(section, dotted.to_owned()));
+        self.keys(above, table, section, dotted);
+    }
+
+    fn keys(&mut self, above: &Route, table: &Table, section: usize, dotted: &str) {
         for (name, item) in table {
             let Some(key) = table.key(name) else { continue };
-            let route = [above.as_slice(), &[name.to_owned()]].concat();
+            let route = below(above, name);
             match item {
                 Item::None => {}
                 Item::Value(value) => {
                     let (Some(at), Some(span)) = (key.span(), value.span()) else { continue };
                     let own = &mut self.sections[section];
                     own.end = own.end.max(span.end);
-                    self.value(&route, value, (at.start, &span), &Vec::new(), section);
+                    let place = Place { start: at.start, value: span, inner: Route::new(), section };
+                    self.value(route, value, place);
                 }
                 Item::Table(inner) if inner.is_dotted() => {
-                    let dotted = format!("{dotted}{}.", key.display_repr());
-                    self.holders.insert(route.clone(), Holder::Dotted(section, dotted.clone()));
-                    self.table(&route, inner, section, &dotted);
+                    self.table(&route, inner, section, &format!("{dotted}{}.", key.display_repr()));
                 }
                 Item::Table(inner) if inner.is_implicit() => {
                     self.holders.insert(route.clone(), Holder::Implied);
-                    self.table(&route, inner, section, "");
+                    self.keys(&route, inner, section, "");
                 }
                 Item::Table(inner) => self.section(&route, inner),
                 Item::ArrayOfTables(all) => {
                     self.holders.insert(route.clone(), Holder::Implied);
                     for (i, inner) in all.iter().enumerate() {
-                        self.section(&[route.as_slice(), &[(i + 1).to_string()]].concat(), inner);
+                        self.section(&below(&route, &(i + 1).to_string()), inner);
                     }
                 }
             }
@@ -169,47 +173,28 @@ impl<'a> TextLayout<'a> {
     }
 
     fn section(&mut self, route: &Route, table: &Table) {
-        let header = table.span();
-        let end = header.as_ref().map_or(0, |header| header.end);
-        self.sections.push(TextSection { route: route.clone(), header, end });
-        let section = self.sections.len() - 1;
-        self.holders.insert(route.clone(), Holder::Section(section));
-        self.table(route, table, section, "");
+        let header = table.span().unwrap_or_default();
+        self.sections.push(TextSection { route: route.clone(), end: header.end, header });
+        self.table(route, table, self.sections.len() - 1, "");
     }
 
     /// Records what is in the value of a line.
-    fn value(
-        &mut self,
-        route: &Route,
-        value: &Value,
-        line: (usize, &Range<usize>),
-        inner: &Route,
-        section: usize,
-    ) {
-        let below = |route: &Route, name: &str| [route.as_slice(), &[name.to_owned()]].concat();
-        let holder = || Holder::Inline(line.1.clone(), inner.clone());
+    fn value(&mut self, route: Route, value: &Value, place: Place) {
         match value {
             Value::InlineTable(table) => {
-                self.holders.insert(route.clone(), holder());
                 for (name, value) in table {
-                    self.value(&below(route, name), value, line, &below(inner, name), section);
+                    self.value(below(&route, name), value, place.below(name));
                 }
+                self.holders.insert(route, Holder::Inline(place));
             }
             Value::Array(all) if route.join(".") == family::WAVE_TABLE => {
-                self.holders.insert(route.clone(), holder());
                 for (i, value) in all.iter().enumerate() {
                     let number = (i + 1).to_string();
-                    self.value(&below(route, &number), value, line, &below(inner, &number), section);
+                    self.value(below(&route, &number), value, place.below(&number));
                 }
+                self.holders.insert(route, Holder::Inline(place));
             }
-            scalar => self.leaves.push(Leaf {
-                route: route.clone(),
-                start: line.0,
-                value: line.1.clone(),
-                inner: inner.clone(),
-                string: scalar.as_str().map(str::to_owned),
-                section,
-            }),
+            scalar => self.leaves.push(Leaf { route, place, string: scalar.as_str().map(str::to_owned) }),
         }
     }
 
@@ -220,33 +205,37 @@ impl<'a> TextLayout<'a> {
             let Some(value) = preset.get(&row.key) else { continue };
             let own = route(&row.key);
             let is_table = self.holders.contains_key(&own);
-            let at = |name: &str| [own.as_slice(), &[name.to_owned()]].concat();
             let mut want = |route: Route, key: Key, value: String| {
                 all.push(WantedValue { route, key, value, comment: comment(&row) });
             };
             if is_parameter(&row.key) && is_table {
-                want(at("value"), row.key.clone(), toml(preset, &row, &value));
+                want(below(&own, "value"), row.key.clone(), toml(preset, &row, &value));
                 for part in PARAMETER_KEYS {
                     let key = format!("{}.{part}", row.key);
                     if let Some(value) = preset.get(&key) {
-                        want(at(part), key.into(), toml(preset, &row, &value));
+                        want(below(&own, part), key.into(), toml(preset, &row, &value));
                     }
                 }
             } else if is_parameter(&row.key) {
-                want(own.clone(), row.key.clone(), toml_of_parameter(preset, &row, &value));
+                want(own, row.key.clone(), toml_of_parameter(preset, &row, &value));
             } else if let (true, Number::Control(Control::Stiffness(_))) = (is_table, &value) {
                 let whole = toml(preset, &row, &value).parse::<Value>().ok();
                 let stiffness = whole.as_ref().and_then(|whole| whole.as_inline_table()?.get("stiffness"));
-                want(at("stiffness"), row.key.clone(), stiffness.map(printed).unwrap_or_default());
+                want(below(&own, "stiffness"), row.key.clone(), stiffness.map(printed).unwrap_or_default());
             } else {
-                want(own.clone(), row.key.clone(), toml(preset, &row, &value));
+                want(own, row.key.clone(), toml(preset, &row, &value));
             }
         }
         all
     }
 
     /// The text for `preset`, given that it was the text for `before`.
-    fn edited(&self, before: Option<&Preset>, preset: &Preset, forced: &Forced) -> Option<String> {
+    fn edited(
+        &self,
+        before: Option<&Preset>,
+        preset: &Preset,
+        forced: Option<&BTreeSet<Key>>,
+    ) -> Option<String> {
         let wanted = self.wanted(preset);
         let same = |key: &str| before.is_some_and(|before| before.get(key) == preset.get(key));
         let mut edits = Edits::default();
@@ -257,52 +246,57 @@ impl<'a> TextLayout<'a> {
             let there = self.leaves.iter().find(|leaf| leaf.route == want.route);
             // A parameter that gains or loses a range is replaced as a whole.
             let parts = PARAMETER_KEYS.map(|part| format!("{}.{part}", want.key));
-            let is_same = same(&want.key) && parts.iter().all(|part| same(part)) && !forced.has(&want.key);
+            let is_same = same(&want.key)
+                && parts.iter().all(|part| same(part))
+                && forced.is_some_and(|keys| !keys.contains(&want.key));
             match (there, self.holders.get(&want.route)) {
                 (Some(leaf), _) => {
-                    kept.insert(leaf.section);
+                    kept.insert(leaf.place.section);
                     // The rows of a file may be in memory, whatever its name.
                     let is_file = want.key == "gap.file" || want.key == data::FILE;
-                    if !(if is_file { leaf.string == name(preset, &want.key) } else { is_same }) {
-                        edits.set(self.text, &leaf.value, &leaf.inner, Some(&want.value))?;
+                    if !(if is_file {
+                        leaf.string == preset.get(&want.key).map(|value| value.to_string())
+                    } else {
+                        is_same
+                    }) {
+                        edits.set(self.text, &leaf.place, &[], Some(&want.value))?;
                     }
                 }
-                (None, Some(Holder::Inline(value, inner))) => {
+                (None, Some(Holder::Inline(place))) => {
                     replaced.push(&want.route);
-                    edits.set(self.text, value, inner, Some(&want.value))?;
+                    edits.set(self.text, place, &[], Some(&want.value))?;
                 }
-                (None, _) if !is_same => {
-                    self.add(want, &mut edits, &mut kept)?;
-                }
+                (None, _) if !is_same => self.add(want, &mut edits, &mut kept)?,
                 (None, _) => {}
             }
         }
         let is_kept = |leaf: &&Leaf| {
             let key = key_of(leaf);
             // Some keys only spell out a default, such as reduced units.
-            let is_idle = same(&key) && preset.get(&key).is_none() && !matches!(forced, Forced::All);
+            let is_idle = same(&key) && preset.get(&key).is_none() && forced.is_some();
             is_idle
                 || wanted.iter().any(|want| want.route == leaf.route)
                 || replaced.iter().any(|whole| leaf.route.starts_with(whole))
         };
         let (stays, goes): (Vec<&Leaf>, Vec<&Leaf>) = self.leaves.iter().partition(is_kept);
-        kept.extend(stays.iter().map(|leaf| leaf.section));
+        kept.extend(stays.iter().map(|leaf| leaf.place.section));
         // From the last to the first: removing a wave does not change the numbers of those before it.
         for leaf in goes.iter().rev() {
-            gone.insert(leaf.section);
-            if stays.iter().any(|other| other.value == leaf.value) {
-                edits.set(self.text, &leaf.value, &leaf.inner, None)?;
+            let place = &leaf.place;
+            gone.insert(place.section);
+            if stays.iter().any(|other| other.place.value == place.value) {
+                edits.set(self.text, place, &[], None)?;
             } else {
-                edits.take_line(self.text, leaf.start, leaf.value.end, &key_of(leaf));
+                edits.take_line(self.text, place.start, place.value.end, &key_of(leaf));
             }
         }
         // A table is removed when it, and the tables below it, have lost all their keys.
-        for section in &self.sections {
+        for section in &self.sections[1..] {
             let below = |set: &BTreeSet<usize>| {
                 set.iter().any(|other| self.sections[*other].route.starts_with(&section.route))
             };
-            if let (Some(header), true, false) = (&section.header, below(&gone), below(&kept)) {
-                edits.take_line(self.text, header.start, header.end, "");
+            if below(&gone) && !below(&kept) {
+                edits.take_line(self.text, section.header.start, section.header.end, "");
             }
         }
         let edited = edits.made(self.text);
@@ -318,25 +312,19 @@ impl<'a> TextLayout<'a> {
         let (name, above) = want.route.split_last()?;
         // In the innermost value that holds what is above it.
         for depth in (0..=above.len()).rev() {
-            if let Some(Holder::Inline(value, inner)) = self.holders.get(&above[..depth]) {
-                let inner = [inner.as_slice(), &want.route[depth..]].concat();
-                edits.set(self.text, value, &inner, Some(&want.value))?;
-                let line = self.leaves.iter().find(|leaf| leaf.value == *value);
-                kept.extend(line.map(|leaf| leaf.section));
-                return Some(());
+            if let Some(Holder::Inline(place)) = self.holders.get(&above[..depth]) {
+                kept.insert(place.section);
+                return edits.set(self.text, place, &want.route[depth..], Some(&want.value));
             }
         }
-        let (section, name) = match self.holders.get(above) {
-            Some(Holder::Section(section)) => (*section, name.clone()),
-            Some(Holder::Dotted(section, dotted)) => (*section, format!("{dotted}{name}")),
-            _ => {
-                edits.add_table(above, &line(name, &want.value, &want.comment));
-                return Some(());
-            }
+        let Some(Holder::Lines(section, dotted)) = self.holders.get(above) else {
+            edits.add_table(above, &line(name, &want.value, &want.comment));
+            return Some(());
         };
         // After the other keys of the same table, which with dotted keys need not be the last lines.
-        let near = self.leaves.iter().filter(|leaf| leaf.section == section && leaf.route.starts_with(above));
-        let end = near.map(|leaf| leaf.value.end).max().unwrap_or(self.sections[section].end);
+        let near =
+            self.leaves.iter().filter(|leaf| leaf.place.section == *section && leaf.route.starts_with(above));
+        let end = near.map(|leaf| leaf.place.value.end).max().unwrap_or(self.sections[*section].end);
         let at = if end > 0 { end_of_line(self.text, end) } else { self.top() };
         if want.key == FOLLOWING
             && let Some(row) = parameter(&want.key)
@@ -344,16 +332,15 @@ impl<'a> TextLayout<'a> {
         {
             edits.take_line(self.text, begin, begin, "");
         }
-        edits.add_line(self.text, at, &line(&name, &want.value, &want.comment));
-        kept.insert(section);
+        edits.add_line(self.text, at, &line(&format!("{dotted}{name}"), &want.value, &want.comment));
+        kept.insert(*section);
         Some(())
     }
 
     /// Where a key goes before all tables: above the first of them and above the comments directly before it.
     fn top(&self) -> usize {
-        let first =
-            self.sections.iter().filter_map(|section| section.header.as_ref()).map(|header| header.start);
-        let mut at = start_of_line(self.text, first.min().unwrap_or(self.text.len()));
+        let first = self.sections[1..].iter().map(|section| section.header.start).min();
+        let mut at = start_of_line(self.text, first.unwrap_or(self.text.len()));
         while at > 0 {
             let before = start_of_line(self.text, at - 1);
             if !self.text[before..at].trim_start().starts_with('#') {
@@ -372,11 +359,6 @@ fn key_of(leaf: &Leaf) -> String {
         Some(whole) if is_parameter(whole) || whole == "path.control" => whole.to_owned(),
         _ => key,
     }
-}
-
-/// The file name that the preset has for this key.
-fn name(preset: &Preset, key: &str) -> Option<String> {
-    preset.get(key).map(|value| value.to_string())
 }
 
 fn start_of_line(text: &str, at: usize) -> usize {
@@ -405,16 +387,16 @@ struct Edits {
 }
 
 impl Edits {
-    /// Sets another value at the place `inner` within the value of a line, or removes it.
-    fn set(&mut self, text: &str, line: &Range<usize>, inner: &[String], value: Option<&str>) -> Option<()> {
+    /// Sets another value at a place, or `below` it, or removes it.
+    fn set(&mut self, text: &str, place: &Place, below: &[String], value: Option<&str>) -> Option<()> {
         let value = value.map(str::parse::<Value>).transpose().ok()?;
-        let (_, whole) = match self.values.entry(line.start) {
-            std::collections::btree_map::Entry::Occupied(there) => there.into_mut(),
-            std::collections::btree_map::Entry::Vacant(free) => {
-                free.insert((line.clone(), text.get(line.clone())?.parse().ok()?))
+        let (_, whole) = match self.values.entry(place.value.start) {
+            Entry::Occupied(there) => there.into_mut(),
+            Entry::Vacant(free) => {
+                free.insert((place.value.clone(), text.get(place.value.clone())?.parse().ok()?))
             }
         };
-        set_in(whole, inner, value)
+        set_in(whole, &[&place.inner, below].concat(), value)
     }
 
     fn add_line(&mut self, text: &str, at: usize, line: &str) {
@@ -469,10 +451,7 @@ impl Edits {
             if !made.ends_with('\n') && !made.is_empty() {
                 made.push('\n');
             }
-            let name = match family::below(&route.join("."), family::WAVE_TABLE) {
-                Some(_) => format!("[[{}]]", family::WAVE_TABLE),
-                None => format!("[{}]", route.join(".")),
-            };
+            let name = header(&route.join("."));
             made = format!("{made}\n{name}\n{lines}");
         }
         // If all line ends of the text are CR LF, the new ones are too.
@@ -492,7 +471,7 @@ fn in_line(text: &str, place: Range<usize>, new: &str) -> (Range<usize>, String)
     if spaces == 0 || !is_one_line || !behind[spaces..].starts_with('#') {
         return (place, new.to_owned());
     }
-    let start = text[..place.start].rfind('\n').map_or(0, |at| at + 1);
+    let start = start_of_line(text, place.start);
     let before = text[start..place.end].chars().count();
     let after = text[start..place.start].chars().count() + new.chars().count();
     let column = match spaces {
@@ -514,47 +493,34 @@ fn set_in(value: &mut Value, route: &[String], new: Option<Value>) -> Option<()>
         *value.decor_mut() = decor;
         return Some(());
     };
-    match value {
-        Value::InlineTable(table) => {
-            if !table.contains_key(name) {
-                let new = new?;
-                // The space before the brace moves behind the new last value.
-                let last = table.iter().last().map(|(key, _)| key.to_owned());
-                let last = last.and_then(|key| table.get_mut(&key));
-                if let Some(last) = last {
-                    last.decor_mut().set_suffix("");
-                }
-                table.insert(name, nested(rest, new).decorated(" ", " "));
-                return Some(());
-            }
-            let is_taken = new.is_none();
-            if rest.is_empty() && is_taken {
-                table.remove(name);
-                return Some(());
-            }
-            let inner = table.get_mut(name)?;
-            set_in(inner, rest, new)?;
-            if is_taken && inner.as_inline_table().is_some_and(InlineTable::is_empty) {
-                table.remove(name);
-            }
-            Some(())
-        }
-        Value::Array(all) => {
-            let at = name.parse::<usize>().ok()?.checked_sub(1)?;
-            if at == all.len() {
-                all.push(nested(rest, new?));
-                return Some(());
-            }
-            let is_taken = new.is_none();
-            let inner = all.get_mut(at)?;
-            set_in(inner, rest, new)?;
-            if is_taken && inner.as_inline_table().is_some_and(InlineTable::is_empty) {
-                all.remove(at);
-            }
-            Some(())
-        }
+    // The number of a wave, as an index.
+    let index = name.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
+    let there = match value {
+        Value::InlineTable(table) => table.get_mut(name),
+        Value::Array(all) => all.get_mut(index?),
         _ => None,
+    };
+    let is_taken = new.is_none();
+    if let Some(inner) = there.filter(|_| !is_taken || !rest.is_empty()) {
+        set_in(inner, rest, new.clone())?;
+        if !is_taken || !inner.as_inline_table().is_some_and(InlineTable::is_empty) {
+            return Some(());
+        }
     }
+    match (value, new) {
+        (Value::InlineTable(table), Some(new)) => {
+            // The space before the brace moves behind the new last value.
+            if let Some((_, last)) = table.iter_mut().last() {
+                last.decor_mut().set_suffix("");
+            }
+            table.insert(name, nested(rest, new).decorated(" ", " "));
+        }
+        (Value::InlineTable(table), None) => drop(table.remove(name)?),
+        (Value::Array(all), Some(new)) if index? == all.len() => all.push(nested(rest, new)),
+        (Value::Array(all), None) if index? < all.len() => drop(all.remove(index?)),
+        _ => return None,
+    }
+    Some(())
 }
 
 /// A value in the tables that a route names; a number is the number of a wave, the first of an array.

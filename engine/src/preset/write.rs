@@ -27,13 +27,7 @@ pub fn write(preset: &Preset) -> String {
         };
         if row.table() != table.as_deref() {
             table = row.table().map(str::to_owned);
-            text.push_str(&table.as_ref().map_or_else(String::new, |name| {
-                // All waves are elements of one array.
-                match family::below(name, family::WAVE_TABLE) {
-                    Some(_) => format!("\n[[{}]]\n", family::WAVE_TABLE),
-                    None => format!("\n[{name}]\n"),
-                }
-            }));
+            text.push_str(&table.as_deref().map_or_else(String::new, |name| format!("\n{}\n", header(name))));
         }
         text.push_str(&line);
         text.push('\n');
@@ -46,6 +40,14 @@ pub fn head(units: &UnitSystem) -> &'static str {
     match units {
         UnitSystem::Reduced => "# A pulloff preset. Any consistent units.\n",
         UnitSystem::Si(_) => "# A pulloff preset. Numbers without a unit are SI.\n",
+    }
+}
+
+/// The header of a table. All waves are elements of one array.
+pub(super) fn header(table: &str) -> String {
+    match family::below(table, family::WAVE_TABLE) {
+        Some(_) => format!("[[{}]]", family::WAVE_TABLE),
+        None => format!("[{table}]"),
     }
 }
 
