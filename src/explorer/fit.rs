@@ -154,6 +154,15 @@ fn told(fit: &Fit) -> String {
     greek(&parts.join("; "))
 }
 
+/// How well a fitted value is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FittedError {
+    /// Its standard error.
+    Holds(f64),
+    /// No error holds: the model does not describe the points, or they do not determine the value.
+    Unknown,
+}
+
 impl Model {
     /// The last fit that was adopted, if the present values are still its values.
     pub fn fitted(&self) -> Option<&Fit> {
@@ -165,10 +174,12 @@ impl Model {
         self.fitted().map(told)
     }
 
-    /// The standard error of the value of `key`, as long as everything is as the fit found it: for another file,
-    /// another R or another column nothing is known. There is none if the model does not describe the points.
-    pub fn standard_error(&self, key: &str) -> Option<f64> {
-        let fit = self.fitted().filter(|fit| fit.verdict == Verdict::Describes)?;
-        fit.parameters.iter().find(|fitted| fitted.key == key && fitted.has_error())?.standard_error
+    /// How well the value of `key` is known, as long as everything is as the fit found it: for another file, another R
+    /// or another column nothing is known.
+    pub fn fitted_error(&self, key: &str) -> Option<FittedError> {
+        let fit = self.fitted()?;
+        let fitted = fit.parameters.iter().find(|fitted| fitted.key == key)?;
+        let holds = fit.verdict == Verdict::Describes && fitted.has_error();
+        Some(fitted.standard_error.filter(|_| holds).map_or(FittedError::Unknown, FittedError::Holds))
     }
 }

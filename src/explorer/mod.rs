@@ -65,7 +65,7 @@ pub mod driver;
 pub mod effect;
 pub mod export;
 pub mod files;
-mod fit;
+pub mod fit;
 pub mod fitting;
 pub mod follow;
 pub mod history;

@@ -1,6 +1,7 @@
 //! The parameters with their values, and the dimensionless groups that follow from them.
 
 use super::parts::{is_selected, pair, panel, symbol};
+use crate::explorer::fit::FittedError;
 use crate::explorer::fitting::is_free;
 use crate::explorer::{Id, Model, ScreenPanel};
 use crate::tui::app::App;
@@ -79,7 +80,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let mut lines: Vec<Line> = shown
         .map(|(i, (row, value))| {
             let turning = (i == model.parameter && selected).then_some(&*keys);
-            let fit = (is_free(&model.preset, &row.key), model.standard_error(&row.key));
+            let fit = (is_free(&model.preset, &row.key), model.fitted_error(&row.key));
             knob_line(theme, units, (row, value.as_ref()), fit, turning, inner.width)
         })
         .collect();
@@ -155,17 +156,17 @@ pub(super) fn shown(app: &App) -> Vec<ShownValue> {
     let values = model.knobs().into_iter().map(|(row, value)| {
         let label = theme.symbols(&row.label);
         let label = if is_free(&model.preset, &row.key) { format!("{label}?") } else { label };
-        let error = model.standard_error(&row.key).map(|error| row.shown(units, error).number.abs());
-        let number = |label, x, errors: &[String]| {
-            let short = fitted(theme, units, &row, x, (3, errors), 0).chars().count();
+        let error = model.fitted_error(&row.key);
+        let number = |label, x| {
+            let texts = numbers(theme, units, &row, x, error);
+            let shortest = texts.last().map_or(0, |text| text.chars().count());
             let unit = row.unit_in(units).map_or(0, |unit| unit.ascii().chars().count() + 1);
-            let shortest = errors.iter().map(|error| error.chars().count()).min().unwrap_or(0);
-            let width = short.max(NUMBER + unit) + shortest;
-            ShownValue::new(label, width, |room| fitted(theme, units, &row, x, (7, errors), room))
+            let width = if error.is_some() { shortest } else { shortest.max(NUMBER + unit) };
+            ShownValue::new(label, width, |room| fitting(&texts, room))
         };
         match value {
             None => ShownValue::word(label, "auto".to_owned()),
-            Some(Value::Number(x)) => number(label, x, &errors(theme, error)),
+            Some(Value::Number(x)) => number(label, x),
             // Its stiffness has a cell of its own.
             Some(Value::Control(Control::Stiffness(_))) => ShownValue::word(label, "stiffness".to_owned()),
             Some(value) => ShownValue::word(label, theme.text(&value.to_string())),
@@ -192,55 +193,59 @@ fn turning(keymap: &Keymap) -> String {
     if is_short { format!(" {}", keys.join(" ")) } else { String::new() }
 }
 
-/// The ways to write a standard error after its value, the longest first; empty without one. With one digit it is
-/// rounded up.
-fn errors(theme: Theme, error: Option<f64>) -> Vec<String> {
-    let Some(error) = error else { return vec![String::new()] };
-    let up = |error: f64| {
-        let place = 10.0_f64.powf(error.log10().floor());
-        // An error that has only one digit stays as it is.
-        place * (error / place - 1e-6).ceil()
-    };
-    [short(error, 2), short(up(error), 1)].map(|text| theme.text(&format!(" ±{text}"))).to_vec()
-}
-
-/// A number with its unit and its error, with as many digits as fit, so that neither is cut.
-fn fitted(
+/// The ways to write a number with its unit and its error, the longest first. Its digits end where those of the error
+/// do; with one digit, the error is rounded up. A fitted number whose error is not known says so.
+fn numbers(
     theme: Theme,
     units: &UnitSystem,
     row: &Parameter,
     x: f64,
-    (most, errors): (usize, &[String]),
-    room: usize,
-) -> String {
+    error: Option<FittedError>,
+) -> Vec<String> {
     let shown = row.shown(units, x);
     let text = |digits| shown.text(&short(shown.number, digits), theme.ascii);
-    let with = |error: &String| {
-        let texts = (3..=most).rev().map(|digits| text(digits) + error);
-        texts.into_iter().find(|text| text.chars().count() <= room)
+    let Some(error) = error else { return (3..=7).rev().map(text).collect() };
+    let place = |x: f64| x.abs().log10().floor();
+    let FittedError::Holds(error) = error else {
+        return [4, 3].map(|digits| theme.text(&format!("{} ±?", text(digits)))).to_vec();
     };
-    errors.iter().find_map(with).unwrap_or_else(|| text(3))
+    let error = row.shown(units, error).number.abs();
+    let unit = 10.0_f64.powf(place(error));
+    // An error that has only one digit stays as it is.
+    let rounded_up = unit * (error / unit - 1e-6).ceil();
+    let with = |(error, least): (f64, usize)| {
+        let ends = |digits: &usize| place(shown.number) - *digits as f64 <= place(error) - least as f64;
+        let digits = (least..9).find(ends).unwrap_or(9);
+        theme.text(&format!("{} ±{}", text(digits), short(error, least)))
+    };
+    [(error, 2), (rounded_up, 1)].map(with).to_vec()
+}
+
+/// The first of these texts, the longest first, for which there is room; otherwise the last.
+fn fitting(texts: &[String], room: usize) -> String {
+    let fits = texts.iter().find(|text| text.chars().count() <= room);
+    fits.or(texts.last()).cloned().unwrap_or_default()
 }
 
 fn knob_line(
     theme: Theme,
     units: &UnitSystem,
     (row, value): (&Parameter, Option<&Value>),
-    (is_free, error): (bool, Option<f64>),
+    (is_free, error): (bool, Option<FittedError>),
     turning: Option<&str>,
     width: u16,
 ) -> Line<'static> {
     let (mark, ends) = turning.map_or((" ", ""), |keys| (">", keys));
     // A standard error matters more than the signs that the value can be turned.
     let ends = if error.is_some() { "" } else { ends };
-    let error = error.map(|error| row.shown(units, error).number.abs());
     let name = theme.symbols(&row.label);
-    let label = format!("{mark}{:<9} ", if is_free { format!("{name}?") } else { name });
-    let room = usize::from(width).saturating_sub(label.chars().count() + ends.chars().count());
-    let shown = |x, most: usize, errors: &[String]| fitted(theme, units, row, x, (most, errors), room);
+    let name = if is_free { format!("{name}?") } else { name };
+    // Beside an error, what a value needs is taken from the space after its name.
+    let least = if error.is_some() { name.chars().count() } else { 9 };
+    let room = usize::from(width).saturating_sub(2 + least + ends.chars().count());
     let text = match value {
         None => "auto".to_owned(),
-        Some(Value::Number(x)) => shown(*x, 7, &errors(theme, error)),
+        Some(Value::Number(x)) => fitting(&numbers(theme, units, row, *x, error), room),
         // It has a line of its own.
         Some(Value::Control(Control::Stiffness(_))) => "stiffness".to_owned(),
         Some(value) => theme.text(&value.to_string()),
@@ -249,6 +254,8 @@ fn knob_line(
     let (ends, room) =
         if text.chars().count() > room { ("", room + ends.chars().count()) } else { (ends, room) };
     let text: String = text.chars().take(room).collect();
+    let padded = usize::from(width).saturating_sub(2 + text.chars().count()).clamp(least, 9);
+    let label = format!("{mark}{name:<padded$} ");
     let style = if turning.is_some() { theme.selection() } else { ratatui::style::Style::new() };
     Line::styled(format!("{label}{text}{ends}"), style)
 }
