@@ -294,3 +294,18 @@ fn a_rate_without_a_law_of_the_edge_says_that_it_changes_nothing() {
     session.does(Command::Assign(both.to_vec()));
     assert!(!session.status().contains("has no effect"), "{}", session.status());
 }
+
+#[test]
+fn a_bare_number_of_an_si_preset_says_that_it_is_si_and_a_unit_may_stand_apart() {
+    let mut session = Session::new("fig-9-si");
+    session.does(parse("set gap.amplitude=1.2e-5").unwrap().unwrap());
+    assert!(session.status().contains("a bare number is SI"), "{}", session.status());
+    assert!((number(&session, "gap.amplitude") - 1.2e-5).abs() < 1e-18);
+    session.does(parse("set gap.amplitude=12 um").unwrap().unwrap());
+    assert!(!session.status().contains("a bare number is SI"), "{}", session.status());
+    for line in ["control stiffness=2000 N/m", "set control=stiffness=2000 N/m"] {
+        session.does(parse(line).unwrap().unwrap());
+        let given = session.model.preset.get("path.control").unwrap().to_string();
+        assert!(given.starts_with("stiffness=2000"), "{given}: {}", session.status());
+    }
+}

@@ -115,9 +115,14 @@ impl<'a> Rest<'a> {
         number(self.need("a length")?, &allowed, |length| LENGTHS.contains(length))
     }
 
-    /// A value for a known key.
+    /// A value for a known key, and its unit.
     pub fn assigned(&mut self, what: &str, key: &'static str) -> Result<Command, ScriptFault> {
-        Ok(Command::Assign(vec![(key.into(), self.need(what)?.text.clone())]))
+        let mut text = self.need(what)?.text.clone();
+        while let Some(unit) = self.words.first().filter(|_| ends_in_number(&text)) {
+            text = format!("{text} {}", unit.text);
+            self.next();
+        }
+        Ok(Command::Assign(vec![(key.into(), text)]))
     }
 
     /// One of several, by its name.
@@ -140,7 +145,7 @@ impl<'a> Rest<'a> {
         while let Some(word) = self.next() {
             match all.last_mut() {
                 // A unit after its number.
-                Some((_, number)) if !word.text.contains('=') && number.parse::<f64>().is_ok() => {
+                Some((_, number)) if !word.text.contains('=') && ends_in_number(number) => {
                     *number = format!("{number} {}", word.text);
                 }
                 _ => all.push(assignment(word, key)?),
@@ -148,6 +153,11 @@ impl<'a> Rest<'a> {
         }
         Ok(all)
     }
+}
+
+/// Whether a value is, or ends with `=` and, a number without a unit.
+fn ends_in_number(text: &str) -> bool {
+    text.rsplit('=').next().is_some_and(|number| number.parse::<f64>().is_ok())
 }
 
 /// A number that is allowed.

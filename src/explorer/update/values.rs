@@ -17,7 +17,7 @@ use pulloff_engine::preset::{Preset, Row, Value, groups};
 use pulloff_engine::problem::Start;
 use pulloff_engine::report::number::{short, with_unit};
 use pulloff_engine::text::{closest, greek, show_name, show_path};
-use pulloff_engine::units::{Quantity, UnitSystem};
+use pulloff_engine::units::{Quantity, UnitSystem, parse_quantity};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -63,6 +63,20 @@ fn tell_effect(model: &mut Model, key: &str, changed: &Preset) {
         moved.filter_map(|row| Some(labelled(&row, &changed.get(&row.key)?, &changed.units))).collect();
     if !values.is_empty() {
         model.tell(Level::Info, greek(&format!("changed: {}; {held} held", values.join(", "))));
+    }
+}
+
+/// Says in which unit a bare number was taken, where another one is shown.
+fn tell_bare(model: &mut Model, key: &str, text: &str, changed: &Preset) {
+    let Some((row, value)) = changed.row(key).zip(changed.get(key)) else { return };
+    let number = text.rsplit('=').next().unwrap_or(text);
+    let is_bare = parse_quantity(number).is_ok_and(|value| value.unit.is_none());
+    // A unit of its own is that of bare numbers too.
+    let unit = row.unit_in(&changed.units).filter(|_| is_bare && row.unit.is_none());
+    if let Some(unit) = unit.filter(|unit| (unit.from_si(1.0) - 1.0).abs() > 1e-9) {
+        let now = greek(&labelled(&row, &value, &changed.units));
+        let said = format!("{now} now: a bare number is SI, as in files; or type {text} {}", unit.ascii());
+        model.tell(Level::Info, said);
     }
 }
 
@@ -259,7 +273,8 @@ pub(super) fn assign(model: &mut Model, assignments: Vec<Assignment>) -> Vec<Eff
     }
     match preset.assign_all(&assignments) {
         Ok(()) => {
-            for (key, _) in &assignments {
+            for (key, text) in &assignments {
+                tell_bare(model, key, text, &preset);
                 tell_idle(model, key, &preset);
             }
             assigned(model, preset)
