@@ -65,7 +65,7 @@ fn below(route: &[String], name: &str) -> Route {
 
 /// Where a value is in the text.
 #[derive(Clone)]
-struct Place {
+struct ValueText {
     /// Where its line begins, and where the value on the line is.
     start: usize,
     value: Range<usize>,
@@ -75,7 +75,7 @@ struct Place {
     section: usize,
 }
 
-impl Place {
+impl ValueText {
     fn below(&self, name: &str) -> Self {
         Self { inner: below(&self.inner, name), ..self.clone() }
     }
@@ -84,7 +84,7 @@ impl Place {
 /// A value of the text.
 struct Leaf {
     route: Route,
-    place: Place,
+    place: ValueText,
     /// Its text, if it is a string.
     string: Option<String>,
 }
@@ -103,7 +103,7 @@ enum Holder {
     /// In lines of a section that begin with this prefix, empty except for dotted keys.
     Lines(usize, String),
     /// In a value.
-    Inline(Place),
+    Inline(ValueText),
     /// Only in tables below it.
     Implied,
 }
@@ -151,7 +151,7 @@ impl<'a> TextLayout<'a> {
                     let (Some(at), Some(span)) = (key.span(), value.span()) else { continue };
                     let own = &mut self.sections[section];
                     own.end = own.end.max(span.end);
-                    let place = Place { start: at.start, value: span, inner: Route::new(), section };
+                    let place = ValueText { start: at.start, value: span, inner: Route::new(), section };
                     self.value(route, value, place);
                 }
                 Item::Table(inner) if inner.is_dotted() => {
@@ -179,7 +179,7 @@ impl<'a> TextLayout<'a> {
     }
 
     /// Records what is in the value of a line.
-    fn value(&mut self, route: Route, value: &Value, place: Place) {
+    fn value(&mut self, route: Route, value: &Value, place: ValueText) {
         match value {
             Value::InlineTable(table) => {
                 for (name, value) in table {
@@ -388,7 +388,7 @@ struct Edits {
 
 impl Edits {
     /// Sets another value at a place, or `below` it, or removes it.
-    fn set(&mut self, text: &str, place: &Place, below: &[String], value: Option<&str>) -> Option<()> {
+    fn set(&mut self, text: &str, place: &ValueText, below: &[String], value: Option<&str>) -> Option<()> {
         let value = value.map(str::parse::<Value>).transpose().ok()?;
         let (_, whole) = match self.values.entry(place.value.start) {
             Entry::Occupied(there) => there.into_mut(),
