@@ -2,9 +2,10 @@
 
 use super::curve::{CurveData, ProblemCurve};
 use super::job::{Done, Job};
+use super::node::Node;
 use super::progress::CurveStage;
 use super::results::{Found, Task};
-use super::walk::{MadeState, Request, WalkOutcome};
+use super::walk::{Request, WalkOutcome};
 use crate::mend::WordedFault;
 use pulloff_engine::preset::Preset;
 use std::sync::Arc;
@@ -55,7 +56,7 @@ pub enum Reply {
     Found(Found),
     Walked {
         id: u64,
-        made: Vec<MadeState>,
+        made: Vec<Node>,
         /// How it ended; `None` while it continues.
         outcome: Option<WalkOutcome>,
     },

@@ -6,17 +6,16 @@ use super::command::{Command, Id};
 use super::curve::CurveData;
 use super::follow::Before;
 use super::history::History;
-use super::node::NodeKind;
-use super::setting::Setting;
+use super::node::{Node, NodeKind};
 use pulloff_engine::annuli::Contacts;
 use pulloff_engine::case::Case;
 use pulloff_engine::problem::{Begin, Control, Turn};
 use pulloff_engine::quasistatic::path::Direction;
 pub(super) use pulloff_engine::quasistatic::walk::ROOM;
 use pulloff_engine::quasistatic::walk::{
-    Ahead, Along, Arrival, At, Emit, Reached, Walk, WalkEnd, WalkFailure, Walked, edges,
+    Along, Arrival, At, Emit, Reached, Walk, WalkEnd, WalkFailure, Walked, edges,
 };
-use pulloff_engine::quasistatic::{Admissibility, Stability, State, StatePoint, Stiffness};
+use pulloff_engine::quasistatic::{Admissibility, State, StatePoint};
 use pulloff_engine::report::problem::control_name;
 use pulloff_engine::theory::Exact;
 use pulloff_engine::units::Quantity;
@@ -103,24 +102,6 @@ pub struct Request {
     pub pace: Option<f64>,
 }
 
-/// One new state; the fields are as in [`Node`].
-#[derive(Debug, Clone)]
-pub struct MadeState {
-    pub kind: NodeKind,
-    /// The problem it solves, which may no longer be the one on the screen.
-    pub setting: Arc<Setting>,
-    pub point: StatePoint,
-    pub state: State,
-    pub stability: Stability,
-    pub stiffness: Stiffness,
-    pub ahead: Option<Ahead>,
-    pub admissibility: Admissibility,
-    pub digits: f64,
-    pub from_exact: f64,
-    pub on_path: Option<usize>,
-    pub begins: bool,
-}
-
 /// The end of a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum WalkOutcome {
@@ -134,7 +115,7 @@ pub enum WalkOutcome {
 }
 
 /// Does what `request` asks; each new state goes to `emit`, which says whether to go on.
-pub fn walk(request: &Request, emit: &mut dyn FnMut(MadeState) -> bool) -> WalkOutcome {
+pub fn walk(request: &Request, emit: &mut dyn FnMut(Node) -> bool) -> WalkOutcome {
     let case = &request.curve.case;
     let walk = Walk {
         curve: &request.curve.base.curve,
@@ -361,7 +342,8 @@ pub fn from_exact(case: &Case, state: &State) -> f64 {
     (state.force - exact) / exact.abs()
 }
 
-fn made(request: &Request, reached: Reached) -> MadeState {
+/// A new state, which is not in the tree yet.
+fn made(request: &Request, reached: Reached) -> Node {
     let Reached { arrival, point, state, stability, stiffness, admissibility, digits, on_path } = reached;
     let (kind, ahead) = match arrival {
         Arrival::Step => (NodeKind::Step, None),
@@ -379,7 +361,11 @@ fn made(request: &Request, reached: Reached) -> MadeState {
     let admissibility = Admissibility { holds, ..admissibility };
     let is_beside = on_path.is_some() || edges::has_rings(&point);
     let exact = if is_beside { f64::NAN } else { from_exact(&request.curve.case, &state) };
-    MadeState {
+    Node {
+        parent: None,
+        control: request.curve.setting.control,
+        step: 0,
+        request: request.id,
         setting: Arc::clone(&request.curve.setting),
         stability,
         stiffness,

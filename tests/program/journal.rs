@@ -8,8 +8,8 @@ use pulloff::explorer::export::Export;
 use pulloff::explorer::job::Done;
 use pulloff::explorer::journal::Journal;
 use pulloff::explorer::script::{self, Permission, play};
-use pulloff::explorer::walk::{MadeState, walk};
-use pulloff::explorer::{Command, Effect, Id, Inline, Model, Reply, answer, open, update};
+use pulloff::explorer::walk::walk;
+use pulloff::explorer::{Command, Effect, Id, Inline, Model, Node, Reply, answer, open, update};
 use pulloff::store::Store;
 use std::collections::VecDeque;
 use std::path::Path;
@@ -104,7 +104,7 @@ impl Late {
         let first = self.pending.iter().position(|effect| std::mem::discriminant(effect) == lane).unwrap();
         match self.pending.remove(first).unwrap() {
             Effect::Walk(request) => {
-                let mut made: Vec<MadeState> = Vec::new();
+                let mut made: Vec<Node> = Vec::new();
                 let outcome = walk(&request, &mut |state| {
                     made.push(state);
                     true

@@ -7,7 +7,7 @@ use crate::explorer::model::{Level, Model, Walking};
 use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::requests::{stop, stop_walk, want_curve};
 use crate::explorer::status_line::{back_or_anew, of_before};
-use crate::explorer::walk::{Action, MadeState, Request, WalkOutcome, from_exact};
+use crate::explorer::walk::{Action, Request, WalkOutcome, from_exact};
 use pulloff_engine::problem::Begin;
 use pulloff_engine::quasistatic::path::Direction;
 use pulloff_engine::quasistatic::walk::At;
@@ -165,7 +165,7 @@ pub(in crate::explorer) fn scale_pace(model: &mut Model, by: f64) -> Vec<Effect>
 pub(super) fn walked(
     model: &mut Model,
     id: u64,
-    made: Vec<MadeState>,
+    made: Vec<Node>,
     outcome: Option<WalkOutcome>,
 ) -> Option<Vec<Effect>> {
     let Some(walking) = model.walking.as_mut().filter(|walking| walking.id == id) else {
@@ -180,7 +180,7 @@ pub(super) fn walked(
     let numbering = model.history.numbering();
     let before = solves.then(|| stood_stable(model)).flatten();
     for state in made {
-        append(model, id, state);
+        append(model, state);
     }
     if let Some(before) = before {
         tell_of_fold(model, before);
@@ -261,31 +261,13 @@ fn tell_of_end(model: &mut Model, outcome: WalkOutcome, stepped: bool) {
     }
 }
 
-fn append(model: &mut Model, request: u64, state: MadeState) {
+fn append(model: &mut Model, made: Node) {
     let current = model.history.current();
     let again = current.is_some_and(|node| matches!(node.kind, NodeKind::Solved | NodeKind::Stale(_)));
-    let beside = state.kind == NodeKind::Solved && again;
+    let beside = made.kind == NodeKind::Solved && again;
     // Continuing the same change is not another step.
     let step = current.map_or(0, |node| node.step + usize::from(!beside));
-    let step = if state.begins { 0 } else { step };
-    let node = Node {
-        parent: None,
-        kind: state.kind,
-        control: state.setting.control,
-        setting: state.setting,
-        point: state.point,
-        state: state.state,
-        step,
-        stability: state.stability,
-        stiffness: state.stiffness,
-        ahead: state.ahead,
-        admissibility: state.admissibility,
-        digits: state.digits,
-        from_exact: state.from_exact,
-        on_path: state.on_path,
-        begins: state.begins,
-        request,
-    };
+    let node = Node { step: if made.begins { 0 } else { step }, ..made };
     if let Some(inward) = on_path_inward(model, node.on_path) {
         model.inward = inward;
     }
