@@ -1,13 +1,13 @@
 //! Checks results without computing anything: whether they belong to the sweep beside them, and how far they are.
 
 use super::output::{FaultCounts, OutputError};
-use super::record::{Layout, RowOutcome, Wrong};
+use super::rows::{RowFault, RowReader};
 use super::shard::Shard;
 use super::sidecar::{self, Sidecar, SidecarError};
 use crate::store::hash::sha256;
 use pulloff_engine::text::show_path;
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::BufReader;
 use std::path::Path;
 
 /// The state of results.
@@ -48,41 +48,22 @@ pub fn check(path: &Path) -> Result<Checked, OutputError> {
     let shard = sidecar.shard();
     let of = shard.len(sidecar.rows);
     let failed = |cause| OutputError::Io { path: shown(), doing: "read", cause };
-    let mut reader = BufReader::new(File::open(path).map_err(failed)?);
-    let mut checked = Checked {
-        identity: sidecar.identity.clone(),
-        shard,
-        rows: 0,
-        of,
-        columns: layout.columns.clone(),
-        faults: FaultCounts::default(),
-        is_torn: false,
-    };
-    let (mut line, mut number) = (Vec::new(), 0);
+    let file = File::open(path).map_err(failed)?;
+    let mut reader = RowReader::new(BufReader::new(file), &layout, shard, sidecar.rows);
+    let mut faults = FaultCounts::default();
     loop {
-        line.clear();
-        if reader.read_until(b'\n', &mut line).map_err(failed)? == 0 {
-            return Ok(checked);
+        match reader.next() {
+            Ok(Some(outcome)) => faults.count(outcome),
+            Ok(None) => break,
+            Err(RowFault::Io(cause)) => return Err(failed(cause)),
+            Err(RowFault::Wrong(what)) => {
+                return Err(OutputError::Changed { path: shown(), line: reader.lines, what });
+            }
         }
-        if line.last() != Some(&b'\n') {
-            checked.is_torn = true;
-            return Ok(checked);
-        }
-        number += 1;
-        let changed = |what| OutputError::Changed { path: shown(), line: number, what };
-        if number == 1 {
-            layout.check_header(&line).map_err(changed)?;
-            continue;
-        }
-        let found = outcome(&layout, shard, checked.rows, of, &line);
-        checked.faults.count(found.map_err(changed)?);
-        checked.rows += 1;
     }
-}
-
-/// The outcome of a row.
-fn outcome(layout: &Layout, shard: Shard, index: u64, of: u64, line: &[u8]) -> Result<RowOutcome, Wrong> {
-    if index < of { layout.outcome(shard.row(index), line) } else { Err(Wrong::behind_the_last()) }
+    let (rows, is_torn) = (reader.rows(), reader.is_torn());
+    let columns = layout.columns.clone();
+    Ok(Checked { identity: sidecar.identity, shard, rows, of, columns, faults, is_torn })
 }
 
 /// The hash of the canonical form in the file beside the results.

@@ -2,6 +2,7 @@
 
 use super::output::{Existing, FaultCounts, OutputError};
 use super::record::{Layout, Wrong};
+use super::rows::{RowFault, RowReader};
 use super::shard::Shard;
 use super::sidecar::{self, Sidecar, SidecarError};
 use crate::mend::mend;
@@ -9,7 +10,7 @@ use crate::store::atomic::{Overwrite, WriteError, explained, write_atomically, w
 use crate::store::stream;
 use pulloff_engine::text::show_path;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, BufWriter, Write};
+use std::io::{self, BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
@@ -68,34 +69,30 @@ impl From<WriteError> for MergeError {
 }
 
 /// A part being read.
-struct MergePart {
-    path: PathBuf,
+struct MergePart<'a> {
+    path: &'a Path,
     shard: Shard,
-    reader: BufReader<File>,
-    lines: u64,
-    line: Vec<u8>,
+    reader: RowReader<'a, BufReader<File>>,
 }
 
-impl MergePart {
-    fn open(path: &Path, shard: Shard) -> Result<Self, MergeError> {
+impl<'a> MergePart<'a> {
+    fn open(path: &'a Path, shard: Shard, layout: &'a Layout, rows: u64) -> Result<Self, MergeError> {
         let file = File::open(path).map_err(|cause| MergeError::Io { path: show_path(path), cause })?;
-        Ok(Self { path: path.to_owned(), shard, reader: BufReader::new(file), lines: 0, line: Vec::new() })
+        Ok(Self { path, shard, reader: RowReader::new(BufReader::new(file), layout, shard, rows) })
     }
 
-    /// The next complete line; `None` at the end, where a torn line does not count.
-    fn next(&mut self) -> Result<Option<&[u8]>, MergeError> {
-        self.line.clear();
-        let read = self.reader.read_until(b'\n', &mut self.line);
-        read.map_err(|cause| MergeError::Io { path: show_path(&self.path), cause })?;
-        if self.line.last() != Some(&b'\n') {
-            return Ok(None);
-        }
-        self.lines += 1;
-        Ok(Some(&self.line))
-    }
-
-    fn changed(&self, what: Wrong) -> MergeError {
-        MergeError::Changed { path: show_path(&self.path), line: self.lines, what }
+    /// What `read` finds next.
+    fn read<T>(
+        &mut self,
+        read: impl FnOnce(&mut RowReader<'a, BufReader<File>>) -> Result<T, RowFault>,
+    ) -> Result<T, MergeError> {
+        let found = read(&mut self.reader);
+        found.map_err(|fault| match fault {
+            RowFault::Io(cause) => MergeError::Io { path: show_path(self.path), cause },
+            RowFault::Wrong(what) => {
+                MergeError::Changed { path: show_path(self.path), line: self.reader.lines, what }
+            }
+        })
     }
 }
 
@@ -143,9 +140,11 @@ pub fn merge(parts: &[PathBuf], results: &Path, existing: Existing) -> Result<Me
     if !missing.is_empty() {
         return Err(MergeError::Missing(listed(&missing)));
     }
-    let open = || -> Result<Vec<MergePart>, MergeError> {
-        let part = |(number, path): (u64, &&PathBuf)| MergePart::open(path, Shard { number, of });
-        (1..=of).zip(found.iter().flatten()).map(part).collect()
+    let open = || -> Result<Vec<MergePart<'_>>, MergeError> {
+        let numbered = (1..=of).zip(found.iter().flatten().copied());
+        numbered
+            .map(|(number, path)| MergePart::open(path, Shard { number, of }, &layout, sidecar.rows))
+            .collect()
     };
     if stream::is_stream(results) {
         // What was written to a stream cannot be taken back, so all parts are checked first.
@@ -177,7 +176,7 @@ fn listed(names: &[String]) -> String {
 fn fill(
     file: &mut dyn Write,
     results: &Path,
-    parts: &mut [MergePart],
+    parts: &mut [MergePart<'_>],
     layout: &Layout,
     rows: u64,
 ) -> Result<FaultCounts, MergeError> {
@@ -187,8 +186,7 @@ fn fill(
     let mut out = BufWriter::new(file);
     for part in parts.iter_mut() {
         // A torn line alone means no rows, which is reported below.
-        let checked = part.next()?.map_or(Ok(()), |line| layout.check_header(line));
-        checked.map_err(|wrong| part.changed(wrong))?;
+        part.read(RowReader::header)?;
     }
     out.write_all(layout.header().as_bytes()).map_err(failed)?;
     let (mut row, mut faults) = (0, FaultCounts::default());
@@ -197,24 +195,18 @@ fn fill(
             if row == rows {
                 break;
             }
-            let shard = part.shard;
-            let Some(line) = part.next()? else {
-                let had = part.lines.saturating_sub(1);
-                let (path, of) = (show_path(&part.path), shard.len(rows));
-                return Err(MergeError::Incomplete { path, rows: had, of, shard });
+            let Some(outcome) = part.read(RowReader::next)? else {
+                let (path, had, shard) = (show_path(part.path), part.reader.rows(), part.shard);
+                return Err(MergeError::Incomplete { path, rows: had, of: shard.len(rows), shard });
             };
-            match layout.outcome(row, line) {
-                Ok(outcome) => faults.count(outcome),
-                Err(wrong) => return Err(part.changed(wrong)),
-            }
-            out.write_all(line).map_err(failed)?;
+            faults.count(outcome);
+            out.write_all(&part.reader.line).map_err(failed)?;
             row += 1;
         }
     }
     for part in parts {
-        if part.next()?.is_some() {
-            return Err(part.changed(Wrong::behind_the_last()));
-        }
+        // Rows after the last are refused.
+        part.read(RowReader::next)?;
     }
     out.flush().map_err(failed)?;
     Ok(faults)

@@ -24,6 +24,7 @@ pub mod merge;
 pub mod output;
 pub mod record;
 pub mod results;
+mod rows;
 pub mod run;
 pub mod shard;
 pub mod sidecar;

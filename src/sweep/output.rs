@@ -7,6 +7,7 @@
 
 use super::record::{Layout, RowOutcome, Wrong};
 use super::results::ResultsError;
+use super::rows::{RowFault, RowReader};
 use super::shard::Shard;
 use super::sidecar::{self, Sidecar, SidecarError};
 use super::spec::identity;
@@ -20,7 +21,7 @@ use pulloff_engine::text::show_path;
 use rayon::ThreadPoolBuildError;
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
-use std::io::{self, BufRead, BufReader, Seek, Write};
+use std::io::{self, BufReader, Seek, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 use thiserror::Error;
@@ -174,34 +175,21 @@ impl Output {
     /// Finds the existing rows, and cuts off a torn line.
     fn scan(&mut self, spec: &Spec, shard: Shard) -> Result<(), OutputError> {
         let layout = Layout::of(spec);
-        let mut whole = 0_u64;
-        let (mut line, mut number) = (Vec::new(), 0);
         let mut reader = BufReader::new(&self.file);
         reader.rewind().map_err(self.failed("read"))?;
+        let mut reader = RowReader::new(reader, &layout, shard, spec.rows);
         loop {
-            line.clear();
-            let length = reader.read_until(b'\n', &mut line).map_err(self.failed("read"))?;
-            if line.last() != Some(&b'\n') {
-                break;
-            }
-            number += 1;
-            let found = if number == 1 {
-                layout.check_header(&line).map(|()| None)
-            } else {
-                let row = shard.row(self.rows);
-                self.rows += 1;
-                if row < spec.rows {
-                    layout.outcome(row, &line).map(Some)
-                } else {
-                    Err(Wrong::behind_the_last())
+            match reader.next() {
+                Ok(Some(outcome)) => self.faults.count(outcome),
+                Ok(None) => break,
+                Err(RowFault::Io(cause)) => return Err(self.failed("read")(cause)),
+                Err(RowFault::Wrong(what)) => {
+                    return Err(OutputError::Changed { path: self.path.clone(), line: reader.lines, what });
                 }
-            };
-            let changed = |what| OutputError::Changed { path: self.path.clone(), line: number, what };
-            if let Some(outcome) = found.map_err(changed)? {
-                self.faults.count(outcome);
             }
-            whole += length as u64;
         }
+        self.rows = reader.rows();
+        let whole = reader.bytes;
         self.file.set_len(whole).map_err(self.failed("cut a torn line off"))?;
         if whole == 0 {
             self.append(&layout.header())?;
