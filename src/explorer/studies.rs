@@ -3,6 +3,8 @@
 //! The value of the preset is one of those computed. Turning it within the range moves its mark and requests nothing.
 //! If the surface is one of many, drawn with a seed, other surfaces are computed after it, one by one.
 
+use super::Axes;
+use pulloff_engine::case::critical_force;
 use pulloff_engine::gap::shapes::split_mix::SplitMix64;
 use pulloff_engine::preset::edge::RATE;
 use pulloff_engine::preset::schema::Kind;
@@ -12,6 +14,7 @@ use pulloff_engine::progress::Progress;
 use pulloff_engine::report::slow::SlowPulls;
 use pulloff_engine::sweep::measure::measure;
 use pulloff_engine::sweep::{Cell, Fault, QuantityColumn};
+use pulloff_engine::units::Quantity;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -29,6 +32,8 @@ const RATE_FACTOR: f64 = 1e3;
 
 /// The quantity whose law at low rates is known.
 const PEAK_FORCE: &str = "peak_force";
+/// The quantity by which other forces are divided.
+const CRITICAL_FORCE: &str = "critical_force";
 /// How often progress is reported.
 const PACE: Duration = Duration::from_millis(100);
 
@@ -72,6 +77,8 @@ pub struct StudyData {
     pub others: Vec<Vec<f64>>,
     /// What the largest pull tends to at low rates, if it is studied over the rate.
     pub slow: Option<SlowPulls>,
+    /// `P_c` at each value; NaN where there is none.
+    critical: Vec<f64>,
 }
 
 /// The key that is varied and its values in ascending order, including that of the preset.
@@ -176,6 +183,16 @@ impl StudyWish {
         preset
     }
 
+    /// `P_c` at each value, the same on all surfaces; NaN where there is none.
+    fn critical_forces(&self) -> Vec<f64> {
+        let at = |value: &Value| {
+            let mut preset = self.preset.clone();
+            preset.set(&self.key, value.clone()).ok()?;
+            critical_force(&preset)
+        };
+        self.values.iter().map(|value| at(value).unwrap_or(f64::NAN)).collect()
+    }
+
     /// The outcome for the value at `index` on the surface of this number; `None` if `progress` asked to stop.
     fn outcome(&self, surface: usize, index: usize, progress: &dyn Progress) -> Option<StudyOutcome> {
         let missing = |fault: Fault| StudyOutcome::Missing(fault.to_string());
@@ -208,7 +225,8 @@ impl StudyWish {
         let is_law = self.key == RATE && self.column.quantity.name == PEAK_FORCE;
         let slow = if is_law { SlowPulls::of(&self.preset, progress).ok().flatten() } else { None };
         let others = vec![Vec::new(); count];
-        let mut data = StudyData { wish: self.clone(), outcomes, others, slow };
+        let mut data =
+            StudyData { wish: self.clone(), outcomes, others, slow, critical: self.critical_forces() };
         let all = count * (1 + self.others());
         let next = AtomicUsize::new(0);
         let (send, done) = channel();
@@ -261,6 +279,16 @@ impl StudyData {
             StudyOutcome::Found(Cell::Count(n)) => *n as f64,
             StudyOutcome::Waits | StudyOutcome::Missing(_) => f64::NAN,
         };
+    }
+
+    /// What each force is divided by on these axes, `P_c` at its own value, NaN where there is none; `None` for another
+    /// quantity, and if nothing adheres.
+    pub fn divisors(&self, axes: Axes) -> Option<&[f64]> {
+        // P_c itself would be 1 everywhere.
+        let is_force = self.wish.column.quantity.unit == Quantity::Force
+            && self.wish.column.quantity.name != CRITICAL_FORCE;
+        let adheres = self.critical.iter().any(|critical| critical.is_finite());
+        (is_force && axes == Axes::Reduced && adheres).then_some(&*self.critical)
     }
 
     /// How many other surfaces are computed at every value.
@@ -380,6 +408,40 @@ mod tests {
     }
 
     #[test]
+    fn a_force_over_the_adhesion_is_divided_by_the_critical_force_of_its_own_value() {
+        use crate::figure::{Role, study};
+        let preset = preset(&[]);
+        let own = preset.material.work_of_adhesion;
+        let of = |key: &'static str, x: f64| {
+            let values = [0.0, 1.0, 1.5, 2.0].map(|factor| Value::from(factor * x)).to_vec();
+            let column = QuantityColumn::named("largest_pull").unwrap();
+            let wish = StudyWish { preset: preset.clone(), key: Key::Borrowed(key), column, values };
+            wish.run(2, &Unwatched, &mut |_| {}).unwrap()
+        };
+        let data = of("material.work_of_adhesion", own);
+        let figure = study::of(&data, &preset, Axes::Reduced);
+        assert_eq!(figure.y.title(), "largest pull (P/Pc at each gamma)");
+        let line = figure.lines.iter().find(|line| line.role == Role::Body).unwrap();
+        assert_eq!(line.points.len(), 3);
+        assert!(study::reading(&data, &preset, Axes::Reduced, 0.0).unwrap().contains("none: "));
+        for (x, y) in &line.points {
+            let (at, _) = data.nearest(*x).unwrap();
+            let mut there = preset.clone();
+            there.set(&data.wish.key, (*x).into()).unwrap();
+            let StudyOutcome::Found(Cell::Number(force)) = data.outcomes[at] else { panic!("{at}") };
+            let ratio = force / critical_force(&there).unwrap();
+            assert!((y - ratio).abs() < 1e-12, "{x}: {y} {ratio}");
+            let said = study::reading(&data, &preset, Axes::Reduced, *x).unwrap();
+            let number = pulloff_engine::report::number::significant(ratio, 5);
+            assert!(said.ends_with(&format!("{number} Pc")), "{said}");
+        }
+        // One P_c for all values.
+        let data = of("gap.amplitude", 0.0025);
+        assert_eq!(study::of(&data, &preset, Axes::Reduced).y.title(), "largest pull (P/Pc)");
+        assert_eq!(study::of(&data, &preset, Axes::Raw).y.title(), "largest pull");
+    }
+
+    #[test]
     fn a_random_surface_is_studied_beside_others() {
         let mut preset = read("random-waves", shipped::find("random-waves").unwrap().text).unwrap();
         for (key, text) in [("gap.count", "4"), ("path.start_contact_radius", "0.45")] {
@@ -395,7 +457,7 @@ mod tests {
         assert!(bits(&one) == bits(&three) && one.outcomes == three.outcomes);
         assert!(one.is_whole() && one.surfaces() == OTHERS);
         assert!(one.others[1].windows(2).all(|pair| pair[0].to_bits() != pair[1].to_bits()));
-        let figure = crate::figure::study::of(&one, &preset, None);
+        let figure = crate::figure::study::of(&one, &preset, Axes::Raw);
         assert_eq!(figure.areas.len(), 2);
         let median = figure.lines.iter().find(|line| line.name.starts_with("median")).unwrap();
         let mut sorted = one.others[1].clone();

@@ -2,8 +2,8 @@
 
 use super::parts::{Area, Axis, AxisScale, Figure, Line, Mark, Meaning, Role, Sign};
 use super::reading::on_line;
-use super::scale::Scale;
 use super::subject::Subject;
+use crate::explorer::Axes;
 use crate::explorer::studies::{StudyData, StudyOutcome, number};
 use pulloff_engine::preset::{Preset, Row};
 use pulloff_engine::report::number::{significant, with_unit};
@@ -33,16 +33,10 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         ..Figure::empty("study".to_owned(), none(), none())
     };
     match &subject.study {
-        Some(Ok(data)) => of(data, subject.preset, critical_force(subject)),
+        Some(Ok(data)) => of(data, subject.preset, subject.axes),
         Some(Err(why)) => empty(why),
         None => empty("the study is being computed"),
     }
-}
-
-/// `P_c` of the present values, by which forces are divided in a study as in the charts of the curve; `None` where those
-/// have the unit of the force.
-pub fn critical_force(subject: &Subject<'_>) -> Option<f64> {
-    Scale::of(subject.curve, subject.axes).force
 }
 
 /// The row of the value that is varied.
@@ -50,14 +44,18 @@ fn row(data: &StudyData, preset: &Preset) -> Option<Row> {
     preset.row(&data.wish.key).or_else(|| data.wish.preset.row(&data.wish.key))
 }
 
+/// Whether two forces differ by more than rounding.
+fn differ(a: f64, b: f64) -> bool {
+    (a - b).abs() > 1e-12 * a.abs()
+}
+
 /// How the values of a study run.
 fn scale_of(data: &StudyData) -> AxisScale {
     AxisScale::of(&data.wish.values.iter().filter_map(number).collect::<Vec<f64>>())
 }
 
-/// The figure of a study, with `preset` marked on it; its forces are divided by `critical`, in the user's units, if that is
-/// given.
-pub fn of(data: &StudyData, preset: &Preset, critical: Option<f64>) -> Figure {
+/// The figure of a study, with `preset` marked on it; on reduced axes each force is divided by `P_c` at its own value.
+pub fn of(data: &StudyData, preset: &Preset, axes: Axes) -> Figure {
     let (wish, units) = (&data.wish, &data.wish.preset.units);
     let quantity = wish.column.quantity.unit;
     let row = row(data, preset);
@@ -65,16 +63,21 @@ pub fn of(data: &StudyData, preset: &Preset, critical: Option<f64>) -> Figure {
     let label = row.as_ref().map_or_else(|| wish.key.to_string(), |row| row.label.to_string());
     let unit = row.as_ref().and_then(|row| row.unit_in(units)).map_or_else(String::new, ToString::to_string);
     let x = Axis { shown: unit, ..Axis::pure(label).running(scale_of(data)) };
-    let critical = critical.filter(|_| quantity == Quantity::Force);
-    let in_unit = |y: f64| critical.map_or_else(|| units.shown(quantity, y).number, |critical| y / critical);
+    let critical = data.divisors(axes);
+    let in_unit = |at: usize, y: f64| {
+        critical.map_or_else(|| units.shown(quantity, y).number, |critical| y / critical[at])
+    };
     let unit = match critical {
+        Some(critical) if critical.windows(2).any(|pair| differ(pair[0], pair[1])) => {
+            format!("P/Pc at each {}", x.symbol)
+        }
         Some(_) => "P/Pc".to_owned(),
         None => units.unit(quantity).map_or_else(String::new, ToString::to_string),
     };
     let y = Axis { shown: unit, ..Axis::pure(words(wish.column)) };
     let mut figure = Figure::empty(format!("{} over {}", y.title(), x.title()), x, y);
-    let value = |cell: &Cell| match cell {
-        Cell::Number(y) => in_unit(*y),
+    let value = |at: usize, cell: &Cell| match cell {
+        Cell::Number(y) => in_unit(at, *y),
         // Exact for every count.
         #[expect(clippy::cast_precision_loss)]
         Cell::Count(n) => *n as f64,
@@ -83,8 +86,11 @@ pub fn of(data: &StudyData, preset: &Preset, critical: Option<f64>) -> Figure {
         .values
         .iter()
         .zip(&data.outcomes)
-        .filter_map(|(x, outcome)| {
-            let y = if let StudyOutcome::Found(cell) = outcome { Some(value(cell)) } else { None };
+        .enumerate()
+        .filter_map(|(at, (x, outcome))| {
+            let y = if let StudyOutcome::Found(cell) = outcome { Some(value(at, cell)) } else { None };
+            // Without adhesion there is no P_c to divide by.
+            let y = y.filter(|y| y.is_finite());
             Some((shown(number(x)?), y))
         })
         .collect();
@@ -101,7 +107,7 @@ pub fn of(data: &StudyData, preset: &Preset, critical: Option<f64>) -> Figure {
         }
     }
     slow_pulls(&mut figure, data, shown, in_unit);
-    let bands = bands(&mut figure, data, &places, |y| if is_counted { y } else { in_unit(y) });
+    let bands = bands(&mut figure, data, &places, |at, y| if is_counted { y } else { in_unit(at, y) });
     let found = places.iter().filter_map(|(x, y)| Some((*x, (*y)?)));
     let ends = [places.first(), places.last()].into_iter().flatten();
     let found: Vec<(f64, f64)> = found.collect();
@@ -118,7 +124,8 @@ pub fn of(data: &StudyData, preset: &Preset, critical: Option<f64>) -> Figure {
     if done < count {
         figure.notes.push(format!("{done} of {count}"));
     }
-    let missing = data.outcomes.iter().filter(|outcome| matches!(outcome, StudyOutcome::Missing(_))).count();
+    let waits = data.outcomes.iter().filter(|outcome| matches!(outcome, StudyOutcome::Waits)).count();
+    let missing = places.iter().filter(|(_, y)| y.is_none()).count().saturating_sub(waits);
     if missing > 0 {
         figure.notes.push(format!("{missing} without a value: the cross-hair says why"));
     }
@@ -126,16 +133,21 @@ pub fn of(data: &StudyData, preset: &Preset, critical: Option<f64>) -> Figure {
 }
 
 /// The limit of the largest pull at low rates: the quasi-static one, and the first order as far as it holds.
-fn slow_pulls(figure: &mut Figure, data: &StudyData, rate: impl Fn(f64) -> f64, force: impl Fn(f64) -> f64) {
+fn slow_pulls(
+    figure: &mut Figure,
+    data: &StudyData,
+    rate: impl Fn(f64) -> f64,
+    force: impl Fn(usize, f64) -> f64,
+) {
     /// The first order is drawn up to this share of the quasi-static pull.
     const SHARE: f64 = 1.0;
     let Some(slow) = &data.slow else { return };
     let rates: Vec<f64> = data.wish.values.iter().filter_map(number).collect();
-    let level = rates.iter().map(|x| (rate(*x), force(slow.force)));
+    let level = rates.iter().enumerate().map(|(at, x)| (rate(*x), force(at, slow.force)));
     figure.lines.push(Line::new(Role::Zero, "quasi-static", level.collect()));
-    let first = rates.iter().filter_map(|x| Some((*x, slow.at(*x)?)));
-    let first = first.take_while(|(_, at)| (at - slow.force).abs() <= SHARE * slow.force.abs());
-    let first = first.map(|(x, at)| (rate(x), force(at)));
+    let first = rates.iter().enumerate().filter_map(|(at, x)| Some((at, *x, slow.at(*x)?)));
+    let first = first.take_while(|(.., pull)| (pull - slow.force).abs() <= SHARE * slow.force.abs());
+    let first = first.map(|(at, x, pull)| (rate(x), force(at, pull)));
     figure.lines.push(Line::new(Role::Exact, "first order", first.collect()));
 }
 
@@ -169,7 +181,7 @@ fn bands(
     figure: &mut Figure,
     data: &StudyData,
     places: &[(f64, Option<f64>)],
-    shown: impl Fn(f64) -> f64,
+    shown: impl Fn(usize, f64) -> f64,
 ) -> Vec<(f64, f64)> {
     let surfaces = data.surfaces();
     if surfaces < FEWEST {
@@ -178,8 +190,12 @@ fn bands(
     let all: Vec<(f64, Option<[f64; 5]>)> = places
         .iter()
         .zip(&data.others)
+        .enumerate()
         // Only complete surfaces, so that they are the same at every value.
-        .map(|((x, _), others)| (*x, quantiles(&others[..surfaces]).map(|all| all.map(&shown))))
+        .map(|(at, ((x, _), others))| {
+            let all = quantiles(&others[..surfaces]).map(|all| all.map(|y| shown(at, y)));
+            (*x, all.filter(|all| all[2].is_finite()))
+        })
         .collect();
     let mut corners = Vec::new();
     for part in all.split(|(_, at)| at.is_none()).filter(|part| part.len() > 1) {
@@ -222,9 +238,8 @@ fn drawn(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points
 }
 
-/// The study's result nearest to `x` on its axis: the value and the quantity, or why there is none; a force over
-/// `critical` as in [`of`].
-pub fn reading(data: &StudyData, preset: &Preset, critical: Option<f64>, x: f64) -> Option<String> {
+/// The study's result nearest to `x` on its axis: the value and the quantity, or why there is none; a force as in [`of`].
+pub fn reading(data: &StudyData, preset: &Preset, axes: Axes, x: f64) -> Option<String> {
     let units = &data.wish.preset.units;
     let row = row(data, preset)?;
     let (at, value) = taken(data, preset, x)?;
@@ -236,8 +251,9 @@ pub fn reading(data: &StudyData, preset: &Preset, critical: Option<f64>, x: f64)
         StudyOutcome::Found(Cell::Count(n)) => n.to_string(),
         StudyOutcome::Found(Cell::Number(y)) => {
             let quantity: Quantity = data.wish.column.quantity.unit;
-            match critical.filter(|_| quantity == Quantity::Force) {
-                Some(critical) => format!("{} Pc", significant(*y / critical, 5)),
+            match data.divisors(axes) {
+                Some(critical) if critical[at].is_nan() => "none: there is no Pc to divide by".to_owned(),
+                Some(critical) => format!("{} Pc", significant(*y / critical[at], 5)),
                 None => with_unit(units, quantity, *y, false, |y| significant(y, 5)),
             }
         }

@@ -225,7 +225,7 @@ fn rates() -> Result<PaperSheet, PaperError> {
     let values = rates.iter().map(|rate| (*rate).into()).collect();
     let wish = StudyWish { preset: preset.clone(), key: Key::Borrowed(RATE), column, values };
     let data = wish.run(threads(), &Unwatched, &mut |_| {}).ok_or(PaperError::Missing("the study"))?;
-    let mut figure = study::of(&data, &preset, None);
+    let mut figure = study::of(&data, &preset, Axes::Raw);
     // No preset is being varied here.
     figure.lines.retain(|line| line.role != Role::Level);
     figure.marks.clear();

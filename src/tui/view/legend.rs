@@ -92,7 +92,7 @@ pub fn reading(model: &Model) -> Option<String> {
     let at = on_its_line(&subject, view, &figure, bounds.at(share));
     let here = reading::coordinates(&bounds, [&figure.x, &figure.y], at);
     if let (View::Study, Some(Ok(data))) = (view, &subject.study) {
-        return study::reading(data, subject.preset, study::critical_force(&subject), figure.values_at(at).0);
+        return study::reading(data, subject.preset, subject.axes, figure.values_at(at).0);
     }
     let snaps = match (view, subject.map) {
         (View::Map, Some(Ok(report))) => map::count(report, subject.preset, figure.values_at(at)),
