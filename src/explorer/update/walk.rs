@@ -135,8 +135,7 @@ fn tell_of_fold(model: &mut Model, before: f64) {
     }
     let length = |s| with_unit(&model.preset.units, Quantity::Length, s, false, |s| significant(s, 4));
     let text = format!(
-        "the walker's part of the curve has no such state now: it is on the next stable one, \
-         s {} instead of {}",
+        "now on the next stable part, s {} instead of {}: the walker's own part of the curve has no such state",
         length(after),
         length(before)
     );
