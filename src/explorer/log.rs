@@ -45,16 +45,21 @@ pub struct Log {
 impl Log {
     /// The energy lost so far, and whether a loss without bound is among it.
     pub fn lost(&self) -> (f64, bool) {
-        self.sum(|mark| mark == EventMark::Done)
+        self.sum(EventMark::Done)
     }
 
-    /// The energy lost once everything ahead has happened too, and whether a loss without bound is among it.
-    pub fn lost_in_all(&self) -> (f64, bool) {
-        self.sum(|mark| mark != EventMark::PassedBy)
+    /// The energy that the events passed by would have lost, and whether a loss without bound is among it.
+    pub fn passed_by(&self) -> (f64, bool) {
+        self.sum(EventMark::PassedBy)
     }
 
-    fn sum(&self, counts: impl Fn(EventMark) -> bool) -> (f64, bool) {
-        let counted = self.entries.iter().filter(|entry| counts(entry.mark));
+    /// Whether jumps that are no events of the path are among what is done.
+    pub fn has_left_path(&self) -> bool {
+        self.entries.iter().any(|entry| entry.number.is_none())
+    }
+
+    fn sum(&self, mark: EventMark) -> (f64, bool) {
+        let counted = self.entries.iter().filter(|entry| entry.mark == mark);
         counted.fold((0.0, false), |(sum, unbounded), entry| match entry.event.dissipated {
             Some(lost) => (sum + lost, unbounded),
             None => (sum, true),

@@ -147,7 +147,7 @@ fn mark(theme: Theme, mark: EventMark) -> &'static str {
     }
 }
 
-/// The largest pull, the energy lost so far and the loss over the whole path, as much of it as fits.
+/// The largest pull, the energy lost so far, the loss over the whole path and what was passed by, as much of it as fits.
 fn sums(model: &Model, log: &Log, room: usize) -> String {
     let Some(path) = model.path() else { return String::new() };
     let units = &model.preset.units;
@@ -157,21 +157,30 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
         format!("{text}{}", if unbounded { "+" } else { "" })
     };
     let (lost, unbounded) = log.lost();
-    let (all, all_unbounded) = log.lost_in_all();
+    let totals = &path.totals;
+    let all = totals.dissipated.unwrap_or(totals.dissipated_before_last_contact);
     let unit = units.unit(Quantity::Energy).map_or_else(String::new, |unit| format!(" {unit}"));
-    let of = format!("{} of {}{unit}", energy(lost, unbounded), energy(all, all_unbounded));
-    let pull = path.totals.largest_pull.as_ref().map(|at| {
+    // What is lost off the path is no part of its total.
+    let of = if log.has_left_path() { ", on the path" } else { " of" };
+    let of = format!("{}{of} {}{unit}", energy(lost, unbounded), energy(all, totals.dissipated.is_none()));
+    let passed = match log.passed_by() {
+        (0.0, false) => String::new(),
+        (lost, unbounded) => format!(", {} passed by", energy(lost, unbounded)),
+    };
+    let force = |force: f64| {
         let critical = model.curve.as_ref().map_or(0.0, |curve| curve.base.critical_force);
         if model.axes == Axes::Reduced && critical > 0.0 {
-            format!("A {} Pc  ", significant(at.force / critical, 4))
+            format!("{} Pc", significant(force / critical, 4))
         } else {
-            format!("A {}  ", with_unit(units, Quantity::Force, at.force, false, |x| significant(x, 4)))
+            with_unit(units, Quantity::Force, force, false, |x| significant(x, 4))
         }
-    });
-    let pull = pull.unwrap_or_default();
+    };
+    let pull = path.totals.largest_pull.as_ref();
+    let pull = pull.map_or_else(String::new, |at| format!("A {}  ", force(at.force)));
     // What else would be lost is not known where a path stops before its end.
     let ends = if path.has_reached_its_end { "" } else { ", ends early" };
     [
+        format!("{pull}lost so far {of}{passed}{ends}"),
         format!("{pull}lost so far {of}{ends}"),
         format!("lost so far {of}{ends}"),
         format!("lost {of}{ends}"),

@@ -5,6 +5,7 @@ use crate::store::Store;
 use crate::tui::app::App;
 use crate::tui::theme::{Charts, Palette, Theme};
 use crossterm::event::{KeyCode, KeyEvent};
+use pulloff_engine::report::number::loss;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
@@ -496,6 +497,12 @@ fn what_lies_behind_a_turned_value_is_passed_by_and_did_not_happen_at_it() {
         text.contains("-1 ") && text.contains("- passed by") && text.contains("lost so far 0 of"),
         "{text}"
     );
+    // The total stays that of the path, as in Result.
+    let path = screen.app.model.path().unwrap();
+    let [all, passed] = [path.totals.dissipated.unwrap(), path.events[0].dissipated.unwrap()].map(loss);
+    let sums = format!("lost so far 0 of {all}, {passed} passed by");
+    assert!(text.contains(&sums) && text.contains(&format!("lost {all}")), "{sums} {text}");
+    assert!(screen.text(80, 24).contains(&format!("0 of {all}")), "{text}");
     screen.keys("nn>");
     let text = screen.text(160, 45);
     assert!(text.contains("-1 ") && text.contains("-2 ") && !text.contains("-3 "), "{text}");
