@@ -3,8 +3,8 @@
 use super::log::snaps;
 use super::parts::{is_selected, pair, panel};
 use crate::explorer::pins::Pin;
-use crate::explorer::{Model, ScreenPanel};
-use crate::figure::Scale;
+use crate::explorer::{CurveData, Model, ScreenPanel};
+use crate::figure::{Axis, Scale};
 use crate::tui::app::App;
 use crate::tui::theme::Theme;
 use pulloff_engine::report::PathReport;
@@ -19,17 +19,58 @@ use ratatui::widgets::Paragraph;
 /// Draws the outcome of the path.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let (model, theme) = (&app.model, app.theme);
-    let block = panel(theme, "Result", is_selected(app, ScreenPanel::Result));
-    let inner = block.inner(area);
-    frame.render_widget(block, area);
     let pinned = model.pins.beside(&model.preset).0.pop();
     let pinned = pinned.and_then(|pin| Some((pin, pin.curve.report.as_ref()?)));
+    let title = title(model, pinned.map(|(pin, _)| pin), usize::from(area.width.saturating_sub(2)));
+    let block = panel(theme, &title, is_selected(app, ScreenPanel::Result));
+    let inner = block.inner(area);
+    frame.render_widget(block, area);
     let lines = match (model.path(), pinned) {
         (Some(path), Some(pinned)) => beside(theme, model, path, pinned),
         (Some(path), None) => lines(theme, model, path),
         (None, _) => vec![Line::styled(" no path yet", theme.dim())],
     };
     frame.render_widget(Paragraph::new(lines), inner);
+}
+
+/// Its name, and beside a pin what the rows are given in, as much as fits.
+fn title(model: &Model, pin: Option<&Pin>, room: usize) -> String {
+    let (Some(pin), Some(curve)) = (pin, model.curve.as_deref()) else {
+        return "Result".to_owned();
+    };
+    let scale = common(model, curve, &pin.curve);
+    let energy = Axis {
+        shown: model.preset.units.unit(Quantity::Energy).map_or_else(String::new, ToString::to_string),
+        ..Axis::pure("W".to_owned())
+    };
+    let [length, force, radius] = scale.state_axes();
+    // Otherwise it would be taken for P/Pc, which it is without a pin.
+    let is_raw = scale.force.is_none() && Scale::of(curve, model.axes).force.is_some();
+    let mut title = "Result".to_owned();
+    for axis in [force, length, radius, energy] {
+        let unit = if axis.shown.is_empty() { String::new() } else { format!(" {}", axis.shown) };
+        let is_raw = is_raw && axis.symbol == "P" && unit.is_empty();
+        let unit = if is_raw { " raw".to_owned() } else { unit };
+        let item = format!(" {}{unit}", axis.symbol);
+        if title.chars().count() + item.chars().count() > room {
+            break;
+        }
+        title += &item;
+    }
+    title
+}
+
+/// The divisors of both curves; what they do not share divides neither.
+fn common<'a>(model: &'a Model, now: &'a CurveData, pinned: &'a CurveData) -> Scale<'a> {
+    let [now, other] = [now, pinned].map(|curve| Scale::of(curve, model.axes));
+    let is_same = |a: f64, b: f64| (a - b).abs() <= 1e-12 * a.abs().max(b.abs());
+    let both = |a: Option<f64>, b: Option<f64>| a.filter(|a| b.is_some_and(|b| is_same(*a, b)));
+    Scale {
+        force: both(now.force, other.force),
+        wave: both(now.wave, other.wave),
+        curvature: both(now.curvature, other.curvature),
+        ..now
+    }
 }
 
 fn lines(theme: Theme, model: &Model, path: &PathReport) -> Vec<Line<'static>> {
@@ -79,8 +120,7 @@ fn beside(
     (pin, other): (&Pin, &PathReport),
 ) -> Vec<Line<'static>> {
     let Some(curve) = model.curve.as_deref() else { return Vec::new() };
-    let here = Scale::of(curve, model.axes);
-    let scales = [here, here.of_other(&pin.curve, model.axes)];
+    let scale = common(model, curve, &pin.curve);
     let [now_width, pin_width, change_width] = COLUMNS;
     let head = |name: String, now: &str, pin: &str, change: &str| {
         // A long name takes its room from a short value.
@@ -107,12 +147,10 @@ fn beside(
         ("B", totals.map(|totals| totals.farthest.as_ref())),
     ];
     for (name, [now, was]) in states {
-        let both = |value: &dyn Fn(&Scale, &StateReport) -> f64| {
-            [now.map(|at| value(&scales[0], at)), was.map(|at| value(&scales[1], at))]
-        };
-        lines.push(row(&format!("{name} P"), both(&|scale, at| scale.force(at.force))));
-        lines.push(row("  \u{3b4}", both(&|scale, at| scale.length(at.approach))));
-        lines.push(row("  s", both(&|scale, at| scale.radius(at.contact_radius))));
+        let both = |value: &dyn Fn(&StateReport) -> f64| [now, was].map(|at| at.map(value));
+        lines.push(row(&format!("{name} P"), both(&|at| scale.force(at.force))));
+        lines.push(row("  \u{3b4}", both(&|at| scale.length(at.approach))));
+        lines.push(row("  s", both(&|at| scale.radius(at.contact_radius))));
     }
     #[expect(clippy::cast_precision_loss)]
     let counts = [path, other].map(|path| Some(snaps(path) as f64));

@@ -5,7 +5,7 @@ use crate::store::Store;
 use crate::tui::app::App;
 use crate::tui::theme::{Charts, Palette, Theme};
 use crossterm::event::{KeyCode, KeyEvent};
-use pulloff_engine::report::number::loss;
+use pulloff_engine::report::number::{loss, significant};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Buffer;
@@ -387,6 +387,24 @@ fn the_cross_hair_reads_the_chart_and_the_curve() {
     assert!(text.contains("+ r/λ ") && !text.contains("* δ/R "), "{text}");
     screen.keys("\x1b");
     assert!(screen.app.model.cross.is_none());
+}
+
+#[test]
+fn a_pin_with_another_critical_force_is_compared_in_forces() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("p");
+    let pinned = screen.app.model.path().unwrap().totals.largest_pull.as_ref().unwrap().force;
+    assert!(screen.text(120, 40).contains("Result P/Pc δ/R s/λ W"), "{}", screen.text(120, 40));
+    screen.keys(":set gamma=0.008\r");
+    let text = screen.text(120, 40);
+    let row = text.lines().find(|line| line.contains(" A P ")).unwrap();
+    assert!(text.contains("Result P raw δ/R s/λ W") && row.contains(&significant(pinned, 3)), "{text}");
+    let mut screen = Screen::new("fig-9-si");
+    screen.keys("p:set gamma=1 J/m^2\r");
+    let text = screen.text(120, 40);
+    let units = &screen.app.model.preset.units;
+    let unit = units.unit(pulloff_engine::units::Quantity::Force).unwrap();
+    assert!(text.contains(&format!("Result P {unit} δ ")), "{text}");
 }
 
 #[test]
