@@ -120,6 +120,17 @@ impl Model {
         self.results.shown()
     }
 
+    /// Whether the present values are pulled at a rate, so that the numbers of the path are not those of the pull.
+    pub fn is_pulled(&self) -> bool {
+        missing(&self.preset).is_none()
+    }
+
+    /// The least force of the pull of the present values, where it is known.
+    pub fn pull_peak(&self) -> Option<f64> {
+        let pull = self.pull().filter(|pull| pull.is_of(&self.preset))?;
+        Some(pull.run()?.peak.force)
+    }
+
     /// The outcome of the pull: first where the law ends, then its numbers; `None` if there is no pull of the present
     /// values.
     pub(super) fn pull_said(&self) -> Option<String> {

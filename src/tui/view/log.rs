@@ -177,14 +177,20 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
     };
     let pull = path.totals.largest_pull.as_ref();
     let pull = pull.map_or_else(String::new, |at| format!("A {}  ", force(at.force)));
+    // Beside a pull at a rate all of these are numbers of another path.
+    let [slow, short] = if model.is_pulled() { ["quasi-static: ", "q-static "] } else { ["", ""] };
+    let at_rate = model.pull_peak().map(|peak| format!("at the rate {}; ", force(peak))).unwrap_or_default();
     // What else would be lost is not known where a path stops before its end.
     let ends = if path.has_reached_its_end { "" } else { ", ends early" };
     [
-        format!("{pull}lost so far {of}{passed}{ends}"),
-        format!("{pull}lost so far {of}{ends}"),
-        format!("lost so far {of}{ends}"),
-        format!("lost {of}{ends}"),
-        format!("lost {of}"),
+        format!("{at_rate}{slow}{pull}lost so far {of}{passed}{ends}"),
+        format!("{at_rate}{slow}{pull}lost so far {of}{ends}"),
+        format!("{slow}{pull}lost so far {of}{passed}{ends}"),
+        format!("{slow}{pull}lost so far {of}{ends}"),
+        format!("{short}{pull}lost {of}{ends}"),
+        format!("{slow}lost so far {of}{ends}"),
+        format!("{short}lost {of}{ends}"),
+        format!("{short}lost {of}"),
     ]
     .into_iter()
     .find(|text| text.chars().count() <= room)

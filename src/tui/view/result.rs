@@ -33,10 +33,12 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(Paragraph::new(lines), inner);
 }
 
-/// Its name, and beside a pin what the rows are given in, as much as fits.
+/// Its name; that its numbers are not those of the pull at a rate; and beside a pin, what the rows are given in, as much
+/// as fits.
 fn title(model: &Model, pin: Option<&Pin>, room: usize) -> String {
+    let is_pulled = model.is_pulled();
     let (Some(pin), Some(curve)) = (pin, model.curve.as_deref()) else {
-        return "Result".to_owned();
+        return if is_pulled { "Result, quasi-static" } else { "Result" }.to_owned();
     };
     let scale = common(model, curve, &pin.curve);
     let energy = Axis {
@@ -46,7 +48,7 @@ fn title(model: &Model, pin: Option<&Pin>, room: usize) -> String {
     let [length, force, radius] = scale.state_axes();
     // Otherwise it would be taken for P/Pc, which it is without a pin.
     let is_raw = scale.force.is_none() && Scale::of(curve, model.axes).force.is_some();
-    let mut title = "Result".to_owned();
+    let mut title = if is_pulled { "Result q-static" } else { "Result" }.to_owned();
     for axis in [force, length, radius, energy] {
         let unit = if axis.shown.is_empty() { String::new() } else { format!(" {}", axis.shown) };
         let is_raw = is_raw && axis.symbol == "P" && unit.is_empty();

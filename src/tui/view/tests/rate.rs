@@ -56,6 +56,22 @@ fn the_pull_lies_over_the_curve_with_the_largest_pull_of_the_command() {
 }
 
 #[test]
+fn the_numbers_of_the_path_are_called_quasi_static_beside_a_pull() {
+    let mut screen = pulled();
+    let text = screen.text(120, 40);
+    assert!(
+        text.contains("Result, quasi-static") && text.contains("at the rate -2.730 Pc; quasi-static: A -"),
+        "{text}"
+    );
+    for (width, height) in [(80, 24), (60, 20)] {
+        let text = screen.text(width, height);
+        let title = text.lines().find(|line| line.contains("Log")).unwrap();
+        assert!(title.contains("static"), "{text}");
+    }
+    assert!(!Screen::new("wavy-sphere").text(120, 40).contains("static"));
+}
+
+#[test]
 fn a_turned_rate_is_pulled_anew_over_the_same_curve() {
     let mut screen = pulled();
     let curve = screen.app.model.curve.clone().unwrap();
