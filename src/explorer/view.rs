@@ -139,6 +139,11 @@ impl View {
         matches!(self, Self::ForceApproach | Self::ForcePosition | Self::ForceRadius | Self::RadiusApproach)
     }
 
+    /// Whether a point of it is a place to go to: a state, or a value of the preset.
+    pub fn leads_somewhere(self) -> bool {
+        self.is_curve() || matches!(self, Self::Study | Self::Map)
+    }
+
     /// Whether it shows forces of a curve but no radius.
     pub fn is_without_radius(self) -> bool {
         matches!(self, Self::ForceApproach | Self::ForcePosition)

@@ -210,7 +210,14 @@ impl App {
 
     /// The walker goes to the state of the curve at the cross-hair.
     pub(super) fn go_to_cross_hair(&mut self) -> Vec<Effect> {
+        let view = self.model.view;
         match self.model.cross {
+            Some(_) if !view.is_table() && !view.leads_somewhere() => {
+                let text =
+                    format!("no point of {} is a state to go to: views of the curve have them", view.name());
+                self.model.message = Some((Level::Info, text));
+                Vec::new()
+            }
             Some(share) if !self.model.view.is_table() => self.go_to(self.model.view, share, None),
             _ => self.run(Id::Edit.into()),
         }

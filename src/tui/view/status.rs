@@ -36,9 +36,10 @@ pub fn offered(app: &App) -> Vec<(Id, &'static str)> {
         (ScreenPanel::Problem, _) => &[(Id::Less, "less"), (Id::More, "more"), (Id::Edit, "type")],
         (ScreenPanel::Log, _) => &[(Id::Edit, "go there")],
         (ScreenPanel::Charts, view) if view.is_table() => &[(Id::Edit, "go there")],
-        (ScreenPanel::Charts, _) if model.cross.is_some() => {
+        (ScreenPanel::Charts, view) if model.cross.is_some() && view.leads_somewhere() => {
             &[(Id::Edit, "go there"), (Id::CrossHair, "off")]
         }
+        (ScreenPanel::Charts, _) if model.cross.is_some() => &[(Id::CrossHair, "off")],
         (ScreenPanel::Charts, View::Study) => &[(Id::Edit, "quantity"), (Id::CrossHair, "cross-hair")],
         (ScreenPanel::Charts, View::Map) => &[(Id::Edit, "axes"), (Id::CrossHair, "cross-hair")],
         (ScreenPanel::Charts, _) => {

@@ -68,6 +68,11 @@ fn the_numbers_of_the_path_are_called_quasi_static_beside_a_pull() {
         let title = text.lines().find(|line| line.contains("Log")).unwrap();
         assert!(title.contains("static"), "{text}");
     }
+    // No point over time is a state of the curve.
+    screen.keys(":view force-time\ri");
+    assert!(!screen.text(120, 40).contains("go there"));
+    screen.keys("\r");
+    assert!(screen.text(80, 24).contains("no point of force-time is a state to go to"));
     assert!(!Screen::new("wavy-sphere").text(120, 40).contains("static"));
 }
 
