@@ -76,6 +76,8 @@ pub struct Walking {
     pub wanted: Option<usize>,
     /// Whether it was started automatically: the state is solved again for other values.
     pub solves: bool,
+    /// The number of the pinned curve on which its target was chosen: it leads to the present curve instead.
+    pub instead_of: Option<usize>,
     /// Whether it runs at the pace.
     pub paced: bool,
     /// Whether it has been asked to end: more states may still arrive.

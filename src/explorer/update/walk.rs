@@ -1,5 +1,6 @@
 //! Steps, runs, jumps and undo: what is requested of the walk, and what becomes of its answers.
 
+use crate::explorer::Axes;
 use crate::explorer::command::{Id, LENGTHS, PACES};
 use crate::explorer::curve::CurveData;
 use crate::explorer::effect::Effect;
@@ -8,6 +9,7 @@ use crate::explorer::node::{Node, NodeKind};
 use crate::explorer::requests::{stop, stop_walk, want_curve};
 use crate::explorer::status_line::{back_or_anew, of_before};
 use crate::explorer::walk::{Action, Request, WalkOutcome, from_exact};
+use pulloff_engine::case::critical_force;
 use pulloff_engine::problem::Begin;
 use pulloff_engine::quasistatic::path::Direction;
 use pulloff_engine::quasistatic::walk::At;
@@ -53,7 +55,8 @@ pub(in crate::explorer) fn walk(model: &mut Model, action: Action) -> Vec<Effect
     let id = model.number();
     let wanted = if let Action::Steps(count) = action { Some(count) } else { None };
     let solves = matches!(action, Action::Solve { .. });
-    model.walking = Some(Walking { id, made: 0, wanted, solves, paced: false, stops: false });
+    model.walking =
+        Some(Walking { id, made: 0, wanted, solves, instead_of: None, paced: false, stops: false });
     // From an unstable start, the edge runs outward, as at the beginning of an unloading.
     let inward = model.inward && !(begins && action == Action::Jump);
     let length = model.length;
@@ -171,7 +174,7 @@ pub(super) fn walked(
         return Some(Vec::new());
     };
     walking.made += made.len();
-    let (stepped, solves) = (walking.wanted.is_some(), walking.solves);
+    let (stepped, solves, instead_of) = (walking.wanted.is_some(), walking.solves, walking.instead_of);
     if !solves && !made.is_empty() {
         model.undo.walked();
     }
@@ -201,7 +204,11 @@ pub(super) fn walked(
     {
         mark_stale(model, id, reason);
     }
+    let is_there = matches!(outcome, WalkOutcome::Done | WalkOutcome::AtLimit);
     tell_of_end(model, outcome, stepped);
+    if let Some(number) = instead_of.filter(|_| is_there) {
+        tell_of_present(model, number);
+    }
     // The problem may have changed while the walk ran.
     let outdated = model
         .history
@@ -214,6 +221,25 @@ pub(super) fn walked(
         return Some(walk(model, again));
     }
     None
+}
+
+/// Says where a walker stands that was sent to a state of the pinned curve with this number.
+fn tell_of_present(model: &mut Model, number: usize) {
+    let Some(node) = model.walker() else { return };
+    let preset = &node.setting.preset;
+    let state = node.state.in_units(node.setting.units());
+    let shown = |quantity, x| with_unit(&preset.units, quantity, x, false, |x| significant(x, 5));
+    let critical = critical_force(preset).filter(|_| model.axes == Axes::Reduced);
+    let force = critical.map_or_else(
+        || shown(Quantity::Force, state.force),
+        |critical| format!("{} Pc", significant(state.force / critical, 5)),
+    );
+    let text = format!(
+        "now on the present curve, not on curve {number}: s {}, P {force}, δ {}",
+        shown(Quantity::Length, state.contact_radius),
+        shown(Quantity::Length, state.approach)
+    );
+    model.tell(Level::Info, text);
 }
 
 /// Says how a walk ended, and does what follows from it; `stepped` if it was of steps.

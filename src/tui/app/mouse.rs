@@ -14,6 +14,7 @@
 use super::state::App;
 use crate::explorer::model::Level;
 use crate::explorer::{Command, Effect, Id, ScreenPanel, View, reach};
+use crate::figure::reading::What;
 use crate::figure::{Subject, map, nearest, study};
 use crate::tui::layout::Regions;
 use crate::tui::overlay::Dialog;
@@ -246,7 +247,21 @@ impl App {
             })
         });
         if is_near {
-            return self.run(Command::MoveTo(found.contact_radius));
+            let pin = if let What::Pin(number) = found.what { Some(number) } else { None };
+            let before = self.model.walking.map(|walking| walking.id);
+            let effects = self.run(Command::MoveTo(found.contact_radius));
+            match (pin, &mut self.model.walking) {
+                (Some(number), Some(walking)) if before != Some(walking.id) => {
+                    walking.instead_of = Some(number);
+                }
+                // It has to wait.
+                (Some(number), _) if self.model.message.is_none() => {
+                    let text = format!("the walker will go to the present curve, not to curve {number}");
+                    self.model.message = Some((Level::Info, text));
+                }
+                _ => {}
+            }
+            return effects;
         }
         self.model.message = Some((Level::Info, "no state of the curve is near there".to_owned()));
         Vec::new()

@@ -5,6 +5,7 @@ use crate::store::Store;
 use crate::tui::app::App;
 use crate::tui::theme::{Charts, Palette, Theme};
 use crossterm::event::{KeyCode, KeyEvent};
+use pulloff_engine::case::critical_force;
 use pulloff_engine::report::number::{loss, significant};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -387,6 +388,27 @@ fn the_cross_hair_reads_the_chart_and_the_curve() {
     assert!(text.contains("+ r/λ ") && !text.contains("* δ/R "), "{text}");
     screen.keys("\x1b");
     assert!(screen.app.model.cross.is_none());
+}
+
+#[test]
+fn a_state_of_a_pinned_curve_leads_to_the_present_one_which_is_told() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("p:set gamma=0.008\ri");
+    let reading = |screen: &Screen| screen.text(120, 40).lines().rev().nth(1).unwrap().to_owned();
+    for _ in 0..60 {
+        if reading(&screen).contains("on curve 1") {
+            break;
+        }
+        screen.press(KeyCode::Up);
+    }
+    assert!(reading(&screen).contains("on curve 1"), "{}", screen.text(120, 40));
+    screen.keys("\r");
+    let node = screen.app.model.walker().unwrap();
+    let state = node.state.in_units(node.setting.units());
+    let critical = critical_force(&screen.app.model.preset).unwrap();
+    let [s, force] = [state.contact_radius, state.force / critical].map(|x| significant(x, 5));
+    let said = format!("now on the present curve, not on curve 1: s {s}, P {force} Pc, δ ");
+    assert!(screen.text(80, 24).contains(&said), "{said} {}", screen.text(80, 24));
 }
 
 #[test]
