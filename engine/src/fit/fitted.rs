@@ -1,13 +1,31 @@
 //! One value that a fit finds, and what a key measures.
 
 use super::chance::t_of;
-use super::intervals::{Bootstrapped, NORMAL};
 use super::problem::{ADHESION, FitProblem, FreeParameter};
 use crate::preset::Preset;
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::units::Quantity;
 use crate::units::number::short;
 use nalgebra::DVector;
+
+/// Half a 95 % interval, in standard errors.
+pub(super) const NORMAL: f64 = 1.96;
+
+/// What a bootstrap found of one parameter, in base units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bootstrapped {
+    /// The standard deviation.
+    pub error: f64,
+    /// The 2.5 and 97.5 % points of the fits.
+    pub interval: [f64; 2],
+}
+
+impl Bootstrapped {
+    /// Half the width of the interval.
+    pub(super) fn half(&self) -> f64 {
+        0.5 * (self.interval[1] - self.interval[0])
+    }
+}
 
 /// One fitted value, in base units.
 #[derive(Debug, Clone, PartialEq)]

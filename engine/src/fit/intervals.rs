@@ -1,6 +1,6 @@
 //! Intervals that do not assume a linear model: by the profile of χ², and by a block bootstrap.
 
-use super::fitted::Fitted;
+use super::fitted::{Bootstrapped, Fitted};
 use super::least_squares::{MinimizationSettings, minimize};
 use super::options::Options;
 use super::problem::{FitProblem, FreeParameter, Paths, Target};
@@ -14,31 +14,12 @@ use nalgebra::DVector;
 /// The rise of χ² at the ends of a 95 % interval of one value: the square of 1.96.
 const RISE: f64 = 3.841_458_820_694_124;
 
-/// Half a 95 % interval, in standard errors.
-pub(super) const NORMAL: f64 = 1.96;
-
 /// The rounds and the tolerance of a fit that begins next to its end.
 const WARM: MinimizationSettings =
     MinimizationSettings { rounds: 40, tolerance: 1e-6, resolution: 1.0, huber: f64::INFINITY, nothing: 0.0 };
 
 /// Below this many degrees of freedom an interval is much wider than 1.96 errors.
 pub const FEW_DEGREES: f64 = 40.0;
-
-/// What a bootstrap found of one parameter, in base units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bootstrapped {
-    /// The standard deviation.
-    pub error: f64,
-    /// The 2.5 and 97.5 % points of the fits.
-    pub interval: [f64; 2],
-}
-
-impl Bootstrapped {
-    /// Half the width of the interval.
-    pub(super) fn half(&self) -> f64 {
-        0.5 * (self.interval[1] - self.interval[0])
-    }
-}
 
 impl FitProblem {
     /// The same problem with the parameter `j` held at `u`.

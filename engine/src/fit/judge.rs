@@ -27,7 +27,7 @@ pub(super) use range::unseen;
 pub(super) use spring::of_spring;
 
 use super::fitted::Fitted;
-use super::intervals::NORMAL;
+use super::fitted::NORMAL;
 use super::path::Foot;
 use super::problem::{ADHESION, FitProblem, Paths};
 use super::pulled::is_pulled;
