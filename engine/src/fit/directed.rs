@@ -133,8 +133,8 @@ pub fn fit(
         along(other, options.asked.sigma, &ProgressPart::new(progress, [0.6, 1.0]))?
     };
     found.notes.push(format!(
-        "the points leave it open which way their columns run: with {} chi squared is {}, with {} it is {}. \
-         Set --signs or data.signs",
+        "which way the columns run shows only in the fit: with {} chi squared is {}, with {} it is {}. \
+         --signs or data.signs sets it",
         signs_text(taken),
         short(here.min(there), 4),
         signs_text(left),
