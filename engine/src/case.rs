@@ -253,7 +253,7 @@ impl Case {
 
     /// A control in the user's units.
     pub fn shown_control(&self, control: Control) -> Control {
-        control.in_units(1.0 / self.units().stiffness)
+        control.as_given(self.units().stiffness)
     }
 
     /// The controls whose limit points are reported: displacement, force, and the device if it is a spring.

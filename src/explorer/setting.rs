@@ -34,7 +34,7 @@ impl Setting {
 
     /// A control in the user's units.
     pub fn shown_control(&self, control: Control) -> Control {
-        control.in_units(1.0 / self.units().stiffness)
+        control.as_given(self.units().stiffness)
     }
 }
 

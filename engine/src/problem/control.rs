@@ -1,5 +1,6 @@
 //! What the loading device prescribes.
 
+use crate::units::number::as_typed;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -37,6 +38,16 @@ impl Control {
             Self::Displacement => (1.0, 0.0),
             Self::Force => (0.0, 1.0),
             Self::Stiffness(k) => (k / (1.0 + k), 1.0 / (1.0 + k)),
+        }
+    }
+
+    /// The same control with its stiffness, in reduced units of the size `unit`, as it was given: the way to these units
+    /// and back leaves a last digit that nobody typed.
+    #[must_use]
+    pub fn as_given(self, unit: f64) -> Self {
+        match self {
+            Self::Stiffness(k) => Self::Stiffness(as_typed(k * unit)),
+            other => other,
         }
     }
 
@@ -99,5 +110,15 @@ mod tests {
         let json = |c: Control| serde_json::to_string(&c).unwrap();
         assert_eq!(json(Control::Displacement), "\"displacement\"");
         assert_eq!(json(Control::Stiffness(0.15)), "{\"stiffness\":0.15}");
+    }
+
+    #[test]
+    fn a_stiffness_comes_back_from_reduced_units_as_it_was_typed() {
+        for k in [5.0, 0.3, 500.0, 0.1234567890123] {
+            for unit in [3.7e5, 1.0 / 3.0, 8.1e-7] {
+                let back = Control::Stiffness(k).in_units(unit).as_given(unit);
+                assert_eq!(back.to_string(), format!("stiffness={k}"));
+            }
+        }
     }
 }

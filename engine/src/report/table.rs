@@ -1,6 +1,6 @@
 //! Cells in columns, numbers with their units, and a verification as text for a terminal.
 
-use super::number::{difference, short, significant, with_unit};
+use super::number::{TYPED, difference, short, significant, with_unit};
 use super::rows::ReportTable;
 use super::verify::{VerifiedRow, VerifyReport};
 use crate::problem::Control;
@@ -56,7 +56,7 @@ pub(super) fn head(units: &UnitSystem, name: &str, quantity: Quantity) -> String
 pub(super) fn control(units: &UnitSystem, control: Control) -> String {
     match control {
         Control::Stiffness(k) => {
-            format!("stiffness={}", ascii_unit(units, Quantity::ForcePerLength, k, |k| k.to_string()))
+            format!("stiffness={}", ascii_unit(units, Quantity::ForcePerLength, k, |k| short(k, TYPED)))
         }
         other => other.to_string(),
     }

@@ -35,6 +35,14 @@ pub fn exact(x: f64) -> String {
     format!("{x:?}")
 }
 
+/// The digits of a double that survive a conversion of units and back.
+pub const TYPED: usize = 15;
+
+/// `x` as it was typed, before conversions of its unit left a last digit that nobody typed.
+pub fn as_typed(x: f64) -> f64 {
+    format!("{x:.*e}", TYPED - 1).parse().unwrap_or(x)
+}
+
 /// A loss: four digits, with an exponent if it is small or large, so that losses of very different size align.
 pub fn loss(x: f64) -> String {
     if (0.1..1e5).contains(&x.abs()) { significant(x, 4) } else { format!("{x:.3e}") }
