@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `contact` | does the curve go through the points in contact |
 //! | `apart` | is the force a constant where the bodies are apart |
-//! | `scores` | would a tilted baseline fit better, a gap of another exponent, or an adhesion with a range |
+//! | `scores` | would a tilted baseline fit better, a gap of another exponent, an adhesion for each branch or with a range |
 //! | `edge` | how fast the edge goes |
 //! | `rate` | does the work of adhesion grow with the speed of the edge |
 //! | `untold` | could the points tell that it does |
@@ -90,6 +90,8 @@ pub(super) struct Evidence<'a> {
 pub(super) fn reasons(evidence: Evidence, preset: &Preset, clipped: Option<Clipped>) -> Vec<Reason> {
     let Evidence { problem, solved, scatter, .. } = evidence;
     let mut reasons: Vec<Reason> = clipped.map(|clipped| of_clipped(preset, clipped)).into_iter().collect();
+    // It asks for no other measurement and no other gap, so it is tried first.
+    reasons.extend(scores::of_branches(evidence));
     reasons.extend(contact::of_contact(evidence));
     reasons.extend(apart::of_apart(problem, solved, scatter));
     // Rows that are not apart can be mistaken for a tilt.

@@ -104,25 +104,6 @@ fn of_bins(evidence: Evidence, s: f64) -> Vec<Reason> {
             ),
         ));
     }
-    let sides = [Segment::Approach, Segment::Retraction].map(|segment| {
-        let of = bins.iter().filter(|bin| bin.segment == segment && chance(bin) < FALSE_ALARM);
-        of.fold(
-            [0usize; 2],
-            |[above, below], bin| {
-                if bin.mean > 0.0 { [above + 1, below] } else { [above, below + 1] }
-            },
-        )
-    });
-    let has_one_side = |[above, below]: [usize; 2]| above + below > 1 && above.min(below) == 0;
-    if sides.iter().all(|side| has_one_side(*side)) && (sides[0][0] > 0) != (sides[1][0] > 0) {
-        reasons.push(Reason {
-            kind: "branches",
-            sentence: "approach and retraction lie on different sides of the curve: their works of adhesion \
-                may differ, which --separate work_of_adhesion tests"
-                .to_owned(),
-            value: None,
-        });
-    }
     reasons
 }
 

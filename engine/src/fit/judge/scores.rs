@@ -1,5 +1,5 @@
-//! Whether another law would fit better: a baseline with a slope, a gap that is not a paraboloid, an adhesion with a
-//! range.
+//! Whether another law would fit better: a work of adhesion for each branch, a baseline with a slope, a gap that is not
+//! a paraboloid, an adhesion with a range.
 //!
 //! ```text
 //! r(n) = r + z n,     n = −z⊥ᵀr/|z⊥|²,     t = n |z⊥|/s,     |z⊥|² = zᵀz − (Jᵀz)ᵀ (JᵀJ)⁻¹ Jᵀz
@@ -12,7 +12,7 @@
 
 use super::super::chance::beyond_t;
 use super::super::least_squares::LeastSquares;
-use super::super::problem::Target;
+use super::super::problem::{ADHESION, Target};
 use super::super::track::Mover;
 use super::super::verdict::Reason;
 use super::{Evidence, ROUNDING};
@@ -79,6 +79,28 @@ pub(super) fn of_tilt(evidence: Evidence) -> Option<Reason> {
             short(t.abs(), 2)
         );
         Reason::new("tilt", t, sentence)
+    })
+}
+
+/// A work of adhesion for each branch, where both share one that is free.
+pub(super) fn of_branches(evidence: Evidence) -> Option<Reason> {
+    let Evidence { problem, solved, scatter, .. } = evidence;
+    let is_shared =
+        problem.parameters.iter().any(|parameter| parameter.target == Target::Key(ADHESION.to_owned()));
+    let has = |segment| problem.data.iter().any(|datum| datum.segment == segment && !datum.free);
+    if !is_shared || !has(Segment::Approach) || !has(Segment::Retraction) {
+        return None;
+    }
+    let of_approach = |i: usize| f64::from(u8::from(problem.data[i].segment == Segment::Approach));
+    let z = problem.changed(&solved.minimum.parameters, Mover::Adhesion, of_approach)?;
+    let [n, t] = score(evidence, &z, None)?;
+    (beyond_t(t, scatter.degrees) < FALSE_ALARM).then(|| {
+        let sentence = format!(
+            "approach and retraction lie on different sides of the curve, and a work of adhesion for each describes them \
+             better ({} standard errors): --separate work_of_adhesion fits both",
+            short(t.abs(), 2)
+        );
+        Reason::new("branches", n, sentence)
     })
 }
 
