@@ -4,11 +4,12 @@
 use super::options::{FitError, Options};
 use super::outcome::Fit;
 use super::run::fit_branches;
-use super::verdict::Verdict;
+use super::verdict::{Reason, Verdict};
 use crate::measured::asked::signs_text;
 use crate::measured::points::Turned;
 use crate::measured::{Asked, Branches, Points};
-use crate::preset::Preset;
+use crate::preset::data::COLUMNS;
+use crate::preset::{OtherReading, Preset};
 use crate::progress::{Progress, ProgressPart};
 use crate::units::number::short;
 
@@ -32,9 +33,46 @@ const CLEAR: f64 = 20.0;
 /// [`FitError`].
 pub fn fit_own(preset: &Preset, options: &Options, progress: &dyn Progress) -> Result<Fit, FitError> {
     let (points, asked) = seen(preset, options)?;
-    let mut found = fit(preset, &points, &Options { asked, ..options.clone() }, progress)?;
+    let other = preset.other_reading().map_err(FitError::Data)?;
+    let share = if other.is_some() { 0.5 } else { 1.0 };
+    let own = ProgressPart::new(progress, [0.0, share]);
+    let mut found = fit(preset, &points, &Options { asked, ..options.clone() }, &own)?;
+    if let Some(other) = other.filter(|_| found.verdict == Verdict::DoesNotDescribe) {
+        let reason =
+            of_reading(preset, &other, (options, &found), &ProgressPart::new(progress, [share, 1.0]));
+        found.reasons.insert(0, reason);
+    }
     found.notes.splice(0..0, preset.notes_of_reading().map_err(FitError::Data)?);
     Ok(found)
+}
+
+/// That x of a fit that does not describe the points may be a position, and whether it is described if it is.
+fn of_reading(
+    preset: &Preset,
+    OtherReading { x, columns }: &OtherReading,
+    (options, own): (&Options, &Fit),
+    progress: &dyn Progress,
+) -> Reason {
+    let mut preset = preset.clone();
+    let options = Options { profile: false, bootstrap: None, ..options.clone() };
+    let set = preset.set(COLUMNS, columns.as_str().into());
+    let found = set.ok().and_then(|()| fit_own(&preset, &options, progress).ok());
+    let is_described = found.as_ref().is_some_and(|found| found.verdict == Verdict::Describes);
+    let chi = |fit: &Fit| short(fit.chi_squared, 4);
+    let outcome = match &found {
+        _ if is_described => "As that, the model describes it".to_owned(),
+        Some(found) => format!(
+            "As that, the model does not describe it either: chi squared per point is {} instead of {}",
+            chi(found),
+            chi(own)
+        ),
+        None => "As that, there is no fit".to_owned(),
+    };
+    let sentence = format!(
+        "{x} is read as the approach of the bodies and may be the position of the device: --columns or data.columns {columns}. \
+         {outcome}"
+    );
+    Reason { kind: "columns", sentence, value: found.map(|found| found.chi_squared) }
 }
 
 /// The points of a preset's own measured curve, and which of them are used.

@@ -267,6 +267,18 @@ fn of_header(
     wanted
 }
 
+/// The column of x in words, if it is taken as an approach though nothing says that it is no position.
+pub(super) fn open(spec: &ColumnSpec, header: Option<&Header>, wanted: &[WantedColumn]) -> Option<String> {
+    let has_position = wanted.iter().any(|column| column.role == ColumnRole::Position);
+    let x = wanted.iter().find(|column| column.role == ColumnRole::Approach)?;
+    if !spec.0.is_empty() || has_position {
+        return None;
+    }
+    let Some(header) = header else { return Some("x, which has no heading,".to_owned()) };
+    let (name, _) = header.heads.get(x.at)?;
+    named(name)?.is_open.then(|| format!("x, headed \"{}\",", quote(name)))
+}
+
 /// Gives the SI unit to columns without a unit.
 pub(super) fn in_si(wanted: &mut [WantedColumn]) {
     for column in wanted.iter_mut().filter(|column| column.unit.is_none()) {

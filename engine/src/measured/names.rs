@@ -26,7 +26,12 @@ pub(super) struct ColumnName {
     pub side: Option<Segment>,
     /// The unit in its name: `Defl_pN_Ex`.
     pub unit: Option<String>,
+    /// Whether a device has a column of this name as often as the bodies have.
+    pub is_open: bool,
 }
+
+/// Names of an approach that are as often those of the position of a device.
+const OPEN: [&str; 3] = ["displacement", "disp", "distance"];
 
 /// The roles with the names that headers use for them, letters and digits only, in lower case, split by spaces. Names of
 /// rank 1 may mean something else when others are present; names of rank 2 are what was asked for, not what was
@@ -96,7 +101,7 @@ pub(super) fn named(name: &str) -> Option<ColumnName> {
     loop {
         let whole = squashed(&words.concat());
         if let Some((role, rank)) = known(&whole) {
-            return Some(ColumnName { role, rank, side, unit });
+            return Some(ColumnName { role, rank, side, unit, is_open: OPEN.contains(&&*whole) });
         }
         let (first, last) = (*words.first()?, *words.last()?);
         if words.len() == 1 {
@@ -105,6 +110,7 @@ pub(super) fn named(name: &str) -> Option<ColumnName> {
                 rank,
                 side: side.or(grown),
                 unit,
+                is_open: false,
             });
         }
         let of = |word: &str| word.chars().all(char::is_alphabetic).then(|| Segment::of(word)).flatten();

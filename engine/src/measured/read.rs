@@ -11,14 +11,14 @@
 //! the file states about its instrument. Rows without a number in a column that is used are left out and counted. The
 //! first faults are reported with line and column; a file with faults yields no curve.
 
-use super::choice::{WantedColumn, in_si, sides, wanted};
+use super::choice::{WantedColumn, in_si, open, sides, wanted};
 use super::error::{CurveFault, CurveReadError, ROW_RANGE};
 use super::header::{Header, headed, same, segment};
 use super::lines::{Outline, TextTable};
 use super::names::named;
 use super::role::{ColumnRole, ColumnSpec, Segment};
 use super::rows::CellFindings;
-pub use super::rows::{Column, Measured};
+pub use super::rows::{Column, Measured, UsedColumn};
 use super::stated::FileSettings;
 use crate::cells;
 use crate::text::{decode, quote, sanitize};
@@ -258,6 +258,15 @@ impl<'a> Pieces<'a> {
         };
         if is_si {
             in_si(&mut wanted);
+        }
+        if retraction.is_empty() {
+            let used = |want: &WantedColumn| UsedColumn {
+                role: want.role,
+                number: want.at + 1,
+                has_unit: want.unit.is_some(),
+            };
+            measured.used = wanted.iter().map(used).collect();
+            measured.open = open(spec, header, &wanted);
         }
         let branches: Vec<Option<Segment>> = all.iter().map(|table| segment(table)).collect();
         let is_said = retraction.is_empty() && branches.iter().all(Option::is_some);

@@ -25,6 +25,17 @@ pub struct Column {
     pub step: f64,
 }
 
+/// A column that is used, as the user would name it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct UsedColumn {
+    /// What it is.
+    pub role: ColumnRole,
+    /// Its number in the file, from 1.
+    pub number: usize,
+    /// Whether it has a unit.
+    pub has_unit: bool,
+}
+
 /// A measured curve as read.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Measured {
@@ -43,6 +54,10 @@ pub struct Measured {
     pub is_computed: bool,
     /// The line of each row, from 1.
     pub lines: Vec<usize>,
+    /// What would give the same columns, if the user said it; empty for two branches side by side.
+    pub used: Vec<UsedColumn>,
+    /// The column of x, in words, if it is read as an approach and its heading may as well mean a position.
+    pub open: Option<String>,
     /// How many rows have no number in a column that is used; they are left out.
     pub skipped: usize,
     /// What was assumed, in words.

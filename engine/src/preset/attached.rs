@@ -10,6 +10,7 @@ use super::model::Preset;
 use super::value::Value;
 use crate::measured::asked::{AskedError, signs};
 use crate::measured::points::{SPRING, TIP, Turned, overridden, stiffness, tip_radius};
+use crate::measured::role::ColumnRole;
 use crate::measured::source::Reading;
 use crate::measured::{Asked, Branches, FreePart, PointsFile, Segment};
 use crate::problem::Control;
@@ -128,6 +129,12 @@ impl Preset {
         let Some(source) = &self.data.source else { return Ok(Vec::new()) };
         let measured = source.measured(&self.data.columns)?;
         let mut notes = measured.notes.clone();
+        notes.extend(self.other_reading()?.map(|OtherReading { x, columns }| {
+            format!(
+                "{x} is read as the approach of the bodies: if it is the position of the device, at the far end of the \
+                 spring, set --columns or data.columns to {columns}"
+            )
+        }));
         if self.data.is_alone {
             let spring = match self.path.control {
                 Control::Stiffness(k) => Some(k),
@@ -143,6 +150,21 @@ impl Preset {
         Ok(notes)
     }
 
+    /// The other way to read its x, where the file leaves it open and a spring makes a difference.
+    ///
+    /// # Errors
+    /// Why the file cannot be read, in words.
+    pub(crate) fn other_reading(&self) -> Result<Option<OtherReading>, String> {
+        let (Some(source), Control::Stiffness(_)) = (&self.data.source, self.path.control) else {
+            return Ok(None);
+        };
+        let measured = source.measured(&self.data.columns)?;
+        let role = |role| if role == ColumnRole::Approach { ColumnRole::Position } else { role };
+        let columns = measured.used.iter().map(|used| format!("{}={}", role(used.role).word(), used.number));
+        let columns = columns.collect::<Vec<_>>().join(",");
+        Ok(measured.open.clone().map(|x| OtherReading { x, columns }))
+    }
+
     /// The branches of its measured curve; `None` without one.
     ///
     /// # Errors
@@ -150,6 +172,15 @@ impl Preset {
     pub fn branches(&self) -> Option<Result<Arc<Branches>, String>> {
         self.data.source.as_ref().map(|source| source.branches(&self.reading()))
     }
+}
+
+/// Another way to read x.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct OtherReading {
+    /// The column, in words.
+    pub(crate) x: String,
+    /// The value of `data.columns` that reads it as a position.
+    pub(crate) columns: String,
 }
 
 #[cfg(test)]
@@ -205,6 +236,30 @@ mod tests {
         assert!(error.contains("there is no column 7: a row has 2"), "{error}");
         let error = read(folder.path(), "", "[data]\nfile='gone.txt'\n").unwrap_err();
         assert!(error.starts_with("p.toml:8: data.file: "), "{error}");
+    }
+
+    #[test]
+    fn what_a_heading_leaves_open_is_said() {
+        let folder = tempfile::tempdir().unwrap();
+        let rows: Vec<String> = (0..20).map(|i| format!("{i},{},approach", i * i)).collect();
+        let notes = |head: &str, control: &str, units: &str| {
+            let text = format!("{head}\n{}\n", rows.join("\n"));
+            std::fs::write(folder.path().join("d.csv"), text).unwrap();
+            let more = format!("[path]\ncontrol={control}\n[data]\nfile='d.csv'\n");
+            read(folder.path(), units, &more).unwrap().notes_of_reading().unwrap().join("; ")
+        };
+        let (si, spring) = ("units='SI'\n", "{stiffness=0.3}");
+        let open = notes("Displacement [um], force, segment", spring, si);
+        assert!(open.contains("x, headed \"Displacement\", is read as the approach of the bodies"), "{open}");
+        assert!(open.contains("to position=1,force=2,segment=3"), "{open}");
+        for (head, control, units) in [
+            ("Displacement [um], force [uN], segment", "'force'", si),
+            ("indentation [um], force [uN], segment", spring, si),
+            ("position [um], force [uN], segment", spring, si),
+            ("indentation, force, segment", spring, ""),
+        ] {
+            assert_eq!(notes(head, control, units), "", "{head} {control}");
+        }
     }
 
     #[test]

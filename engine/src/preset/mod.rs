@@ -56,6 +56,7 @@ pub mod value;
 pub mod values;
 pub mod write;
 
+pub(crate) use attached::OtherReading;
 pub use edge::EdgeSpec;
 pub use invalid::Invalid;
 pub use measured::Files;
