@@ -12,7 +12,7 @@ use crate::measured::asked::{AskedError, signs};
 use crate::measured::points::{SPRING, TIP, Turned, overridden, stiffness, tip_radius};
 use crate::measured::role::ColumnRole;
 use crate::measured::source::Reading;
-use crate::measured::{Asked, Branches, FreePart, PointsFile, Segment};
+use crate::measured::{Asked, Branches, FreePart, Measured, PointsFile, Segment};
 use crate::problem::Control;
 use crate::units::{Quantity, UnitSystem, parse_quantity};
 use std::sync::Arc;
@@ -135,6 +135,9 @@ impl Preset {
                  spring, set --columns or data.columns to {columns}"
             )
         }));
+        if self.units != UnitSystem::Reduced {
+            notes.extend(without_unit(&measured));
+        }
         if self.data.is_alone {
             let spring = match self.path.control {
                 Control::Stiffness(k) => Some(k),
@@ -181,6 +184,36 @@ pub(crate) struct OtherReading {
     pub(crate) x: String,
     /// The value of `data.columns` that reads it as a position.
     pub(crate) columns: String,
+}
+
+/// A sentence on the columns of numbers that have no unit and are read in SI.
+fn without_unit(measured: &Measured) -> Option<String> {
+    // What this program writes is in SI.
+    if measured.is_computed {
+        return None;
+    }
+    let bare = measured.used.iter().filter(|used| !used.has_unit);
+    let (names, units): (Vec<_>, Vec<_>) =
+        bare.filter_map(|used| Some((used.role.word(), used.role.si()?))).unzip();
+    let example = measured.used.iter().map(|used| {
+        let unit = match used.role {
+            _ if used.has_unit => "",
+            ColumnRole::Force => " [mN]",
+            ColumnRole::Area => " [mm^2]",
+            ColumnRole::Time => " [ms]",
+            ColumnRole::Segment => "",
+            _ => " [um]",
+        };
+        format!("{}={}{unit}", used.role.word(), used.number)
+    });
+    (!names.is_empty()).then(|| {
+        format!(
+            "no unit is given for {}, read in {}: --columns or data.columns gives others, as in \"{}\"",
+            names.join(" and "),
+            units.join(" and "),
+            example.collect::<Vec<_>>().join(",")
+        )
+    })
 }
 
 #[cfg(test)]
@@ -252,6 +285,8 @@ mod tests {
         let open = notes("Displacement [um], force, segment", spring, si);
         assert!(open.contains("x, headed \"Displacement\", is read as the approach of the bodies"), "{open}");
         assert!(open.contains("to position=1,force=2,segment=3"), "{open}");
+        assert!(open.contains("no unit is given for force, read in N"), "{open}");
+        assert!(open.contains("as in \"approach=1,force=2 [mN],segment=3\""), "{open}");
         for (head, control, units) in [
             ("Displacement [um], force [uN], segment", "'force'", si),
             ("indentation [um], force [uN], segment", spring, si),

@@ -259,7 +259,8 @@ impl SpeedsReport {
         let source = preset.data.source.as_ref().ok_or(SpeedsError::NoData)?;
         let branches = source.branches(&preset.reading()).map_err(SpeedsError::Data)?;
         let case = Case::prepare(preset, progress)?;
-        let mut notes = branches.notes.clone();
+        let mut notes = preset.notes_of_reading().map_err(SpeedsError::Data)?;
+        notes.extend(branches.notes.iter().cloned());
         let baseline = preset.data.baseline.or(branches.baseline).unwrap_or_else(|| {
             notes.push("no row is apart and data.baseline is not set: the force is used as it is".to_owned());
             0.0
