@@ -371,6 +371,7 @@ impl Sweep {
             let _ = write!(text, "; {} s, {} rows/s on {threads}", short(seconds, 3), significant(rate, 3));
         }
         console.say(&text);
+        console.note(sidecar::units(spec).as_deref());
         with_an_error(&summary.faults, console);
         if summary.is_complete()
             && self.shard == Shard::WHOLE

@@ -10,6 +10,7 @@ use super::shard::Shard;
 use super::spec::{canonical, identity};
 use crate::mend::mend;
 use crate::store::file::{self, FileError, read_text};
+use pulloff_engine::report::columns::sentence as units_of_csv;
 use pulloff_engine::sweep::Spec;
 use pulloff_engine::sweep::document::SpecText;
 use pulloff_engine::sweep::ensemble::{COUNT, STATISTICS};
@@ -201,6 +202,12 @@ fn changed(theirs: &BTreeMap<String, Value>, ours: &BTreeMap<String, Value>) -> 
 /// A column without a unit.
 fn plain(name: &str, meaning: &str) -> ColumnInfo {
     ColumnInfo { name: name.to_owned(), symbol: None, unit: None, shown: None, meaning: meaning.to_owned() }
+}
+
+/// The units of the columns of a sweep's results in one line; `None` if they have none.
+pub fn units(spec: &Spec) -> Option<String> {
+    let all = columns(spec);
+    units_of_csv(all.iter().filter_map(|column| Some((column.name.as_str(), column.unit.as_deref()?))))
 }
 
 fn columns(spec: &Spec) -> Vec<ColumnInfo> {

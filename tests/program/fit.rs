@@ -612,3 +612,47 @@ fn measured_points_lie_behind_a_curve() {
         ended.err
     );
 }
+
+/// A column headed `displacement` may be that of the bodies or that of the device, and an error that does not hold has
+/// no cell.
+#[test]
+fn a_displacement_is_tried_as_a_position_where_it_does_not_describe() {
+    let home = Home::new();
+    home.file("d.csv", &LENS.replace("position [um]", "displacement [um]"));
+    let base = ["fit", "d.csv", "lens"];
+    let ended = home.run(&[&base[..], &["-o", "d.out.csv", "--residuals", "r.csv"]].concat());
+    assert_eq!(ended.status, 4, "{}", ended.err);
+    let first = ended.err.lines().find(|line| line.contains("warning: ")).unwrap();
+    assert!(first.contains("x, headed \"displacement\", is read as the approach of the bodies"), "{first}");
+    assert!(first.ends_with("position=1,force=2,segment=3. As that, the model describes it"), "{first}");
+    let units = "note: units of the CSV: material.effective_modulus in Pa; ";
+    assert!(ended.err.contains(units) && ended.err.contains("note: units of the CSV: x in m; force in N\n"));
+    let text = home.text("d.out.csv");
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let row = reader.records().next().unwrap().unwrap();
+    for (name, cell) in header.iter().zip(&row).filter(|(name, _)| name.ends_with(" error")) {
+        assert_eq!(cell, "", "{name}");
+    }
+    let other = home.run(&[&base[..], &["--columns", "position=1,force=2,segment=3"]].concat());
+    assert_eq!(other.status, 0, "{}", other.out);
+}
+
+/// Turned signs are said where the turned numbers are written.
+#[test]
+fn the_signs_of_residuals_are_said() {
+    let home = Home::new();
+    let turned = LENS.lines().map(|line| match line.split(", ").collect::<Vec<_>>()[..] {
+        [x, force, segment] if x.parse::<f64>().is_ok() => {
+            let [x, force] = [x, force].map(|number| -number.parse::<f64>().unwrap());
+            format!("{x}, {force}, {segment}\n")
+        }
+        _ => format!("{line}\n"),
+    });
+    home.file("t.csv", &turned.collect::<String>());
+    let ended = home.run(&["fit", "t.csv", "lens", "--residuals", "r.csv"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let said = "note: units of the CSV: x in m; force in N; the signs of x and force are those of the fit, turned against the \
+                file: x=-,force=-\n";
+    assert!(ended.err.contains(said), "{}", ended.err);
+}

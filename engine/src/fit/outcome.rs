@@ -11,6 +11,7 @@ use super::start::Tried;
 use super::uncertain::Given;
 use super::verdict::{Reason, Verdict};
 use crate::gap::Gap;
+use crate::measured::points::Turned;
 use crate::measured::{Abscissa, Noise};
 use crate::preset::Preset;
 use crate::units::{Quantity, number::said};
@@ -56,6 +57,8 @@ pub struct Fit {
     pub noise: Noise,
     /// How many fits of the bootstrap there were, and the rows of its blocks.
     pub bootstrapped: Option<[usize; 2]>,
+    /// Whether the signs of x and P are reversed against the file.
+    pub turned: Turned,
     /// What was found, assumed and held, in words.
     pub notes: Vec<String>,
     /// What is doubtful, in words.

@@ -176,6 +176,7 @@ impl<'a> Posed<'a> {
             snaps: problem.paths(u).map_or(0, |paths| paths.of(Segment::Retraction).snaps),
             noise: Noise { sigma: problem.sigma, ..branches.noise },
             bootstrapped,
+            turned: branches.turned,
             notes,
             warnings,
             scatter,

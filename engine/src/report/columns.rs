@@ -47,17 +47,22 @@ pub fn units(columns: &[&str], control: Control, units: &UnitSystem) -> Option<S
     if *units == UnitSystem::Reduced {
         return None;
     }
+    sentence(columns.iter().filter_map(|column| Some((*column, unit(column, control)?))))
+}
+
+/// The names of columns with their units in one line, each name once; `None` if there are none.
+pub fn sentence<'a>(columns: impl IntoIterator<Item = (&'a str, &'a str)>) -> Option<String> {
     let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
-    for column in columns {
-        let Some(unit) = unit(column, control) else { continue };
+    for (column, unit) in columns {
         match groups.iter_mut().find(|(known, _)| *known == unit) {
+            Some((_, names)) if names.contains(&column) => {}
             Some((_, names)) => names.push(column),
             None => groups.push((unit, vec![column])),
         }
     }
     let told: Vec<String> =
         groups.iter().map(|(unit, names)| format!("{} in {unit}", names.join(", "))).collect();
-    Some(format!("units of the CSV: {}", told.join("; ")))
+    (!told.is_empty()).then(|| format!("units of the CSV: {}", told.join("; ")))
 }
 
 #[cfg(test)]

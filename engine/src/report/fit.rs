@@ -1,5 +1,6 @@
 //! A fit to a measured curve as a document, as text for a terminal and as CSV.
 
+use super::columns;
 use super::number::{exact, short, significant};
 use super::residuals::{ResidualRow, rows};
 use super::table::aligned;
@@ -12,11 +13,16 @@ use crate::fit::outcome::Fit;
 use crate::fit::together::{Collapse, Together};
 use crate::fit::uncertain::Given;
 use crate::fit::{Reason, Rows, Verdict};
+use crate::measured::asked::signs_text;
+use crate::measured::points::Turned;
 use crate::measured::{Abscissa, Origin};
 use crate::preset::Preset;
 use crate::units::{Quantity, UnitSystem};
 use serde::Serialize;
 use std::fmt::Write;
+
+/// The key of E*.
+const MODULUS: &str = "material.effective_modulus";
 
 /// A fit, in base units: SI, or those of a reduced problem.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -87,6 +93,9 @@ pub struct FitReport {
     /// The sentences of the reasons, and the warnings.
     #[serde(skip)]
     pub doubts: Vec<String>,
+    /// Whether the signs of x and P are reversed against the file.
+    #[serde(skip)]
+    turned: Turned,
     /// How numbers are shown.
     #[serde(skip)]
     shown: UnitSystem,
@@ -203,14 +212,16 @@ impl TogetherReport {
     /// The document of `together`, fitted to `files`.
     #[must_use]
     pub fn new(files: &[String], together: &Together) -> Self {
+        let holds = together.verdict == Verdict::Describes;
         let runs = together.runs.iter().zip(files).map(|(run, file)| {
             let mut alone = FitReport::new(file, &run.alone, None);
             alone.parameters.retain(|of| together.law.iter().any(|law| law.key == of.key));
-            let fit = FitReport::new(file, &run.fit, None);
+            let mut fit = FitReport::new(file, &run.fit, None);
+            // The errors of each curve assume the law of all.
+            fit.parameters.iter_mut().for_each(|of| of.error_holds &= holds);
             CurveReport { fit, alone_verdict: alone.verdict, alone: alone.parameters }
         });
         let runs: Vec<CurveReport> = runs.collect();
-        let holds = together.verdict == Verdict::Describes;
         let of_law = |fitted| ParameterReport::new(&together.preset, fitted, holds);
         let of_run = |run: &CurveReport| {
             run.fit.doubts.iter().map(|doubt| format!("{}: {doubt}", run.fit.file)).collect()
@@ -347,7 +358,7 @@ impl FitReport {
         let holds = fit.verdict == Verdict::Describes;
         let parameters: Vec<ParameterReport> =
             fit.parameters.iter().map(|fitted| ParameterReport::new(&fit.preset, fitted, holds)).collect();
-        let modulus = parameters.iter().find(|parameter| parameter.key == "material.effective_modulus");
+        let modulus = parameters.iter().find(|parameter| parameter.key == MODULUS);
         let youngs_modulus = poisson.map(|nu| {
             let factor = 1.0 - nu * nu;
             let value = modulus.map_or(fit.preset.material.effective_modulus, |parameter| parameter.value);
@@ -404,8 +415,34 @@ impl FitReport {
             notes: fit.notes.iter().cloned().chain(fit.known_together()).collect(),
             warnings: fit.warnings.clone(),
             doubts: fit.reasons.iter().map(|reason| &reason.sentence).chain(&fit.warnings).cloned().collect(),
+            turned: fit.turned,
             shown: units.clone(),
         }
+    }
+
+    /// The values of these rows of a table with their units in one line; `None` if they have none.
+    pub fn units<'a>(reports: impl IntoIterator<Item = &'a Self>) -> Option<String> {
+        let values = reports.into_iter().flat_map(|report| &report.parameters);
+        let named =
+            values.filter(|value| !value.unit.is_empty()).map(|value| (value.key.as_str(), value.unit));
+        columns::sentence(named).map(|units| format!("{units}; errors as their values"))
+    }
+
+    /// The units and the signs of x and P in the CSV of the residuals; `None` where they are those of the file.
+    pub fn units_of_residuals(&self) -> Option<String> {
+        let units = match &self.shown {
+            UnitSystem::Si(_) => columns::sentence([("x", "m"), ("force", "N")]),
+            UnitSystem::Reduced => None,
+        };
+        let is_turned = self.turned.contains(&true);
+        let signs = is_turned.then(|| {
+            format!(
+                "the signs of x and force are those of the fit, turned against the file: {}",
+                signs_text(self.turned)
+            )
+        });
+        let told: Vec<String> = units.into_iter().chain(signs).collect();
+        (!told.is_empty()).then(|| told.join("; "))
     }
 
     /// The fit as lines of text.
@@ -421,8 +458,11 @@ impl FitReport {
         }
         self.values(&mut text);
         if let Some([Some(value), error]) = self.youngs_modulus {
+            let modulus = self.parameters.iter().find(|of| of.key == MODULUS);
+            let holds = modulus.is_some_and(|of| of.error_holds);
             let error = error.map_or_else(String::new, |error| {
-                format!(" +- {}", significant(units.shown(Quantity::Stress, error).number, 2))
+                let error = significant(units.shown(Quantity::Stress, error).number, 2);
+                if holds { format!(" +- {error}") } else { format!(" +- ({error})") }
             });
             let unit =
                 units.unit(Quantity::Stress).map_or_else(String::new, |unit| format!(" {}", unit.ascii()));

@@ -66,6 +66,7 @@ impl<'a> FinishedFits<'a> {
             table.add(path, Some(&fingerprint), &report.row())?;
         }
         if let Some(sink) = &self.sinks.residuals {
+            self.console.note(report.units_of_residuals().as_deref());
             sink.write(residuals::csv(&report.residuals))?;
         }
         if let Some(sink) = &self.sinks.fitted {
@@ -97,6 +98,10 @@ impl<'a> FinishedFits<'a> {
             None => FitSummary::of_reports(&reports),
         };
         let summary = Some(summary).filter(|_| many);
+        if sinks.format == Format::Csv || sinks.table.is_some() {
+            let fits = compared.as_ref().map_or(&reports, |compared| &compared.fits);
+            console.note(FitReport::units(fits).as_deref());
+        }
         sinks.report.write(match (sinks.format, reports.as_slice(), &compared) {
             (Format::Json, _, Some(compared)) => json(compared)?,
             (Format::Table, _, Some(compared)) => compared.text(),

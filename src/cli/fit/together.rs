@@ -53,6 +53,7 @@ pub(super) fn run(
         Format::Json => json(&report)?,
         Format::Table => report.text(),
         Format::Csv => {
+            console.note(FitReport::units(report.runs.iter().map(|run| &run.fit)).as_deref());
             table::csv(&report.runs.iter().map(|run| FitReport::row(&run.fit)).collect::<Vec<_>>())?
         }
     })?;
