@@ -45,7 +45,7 @@ pub struct PlotArguments {
     /// Draw the results of a sweep instead of a view of a preset: a curve over its one axis, or a map over its two
     #[arg(long, value_name = "RESULTS.csv", conflicts_with_all = ["preset", "assignments", "control", "view", "theory", "raw", "contact_radius", "columns", "segment", "free_part", "signs", "skip"])]
     sweep: Option<PathBuf>,
-    /// The column of the results to draw [default: enhancement]
+    /// The column of the results to draw [default: enhancement, or the only quantity]
     #[arg(long, value_name = "COLUMN")]
     quantity: Option<String>,
     /// What to draw
@@ -259,7 +259,7 @@ impl PlotArguments {
     /// The picture of the results of a sweep, with its data where they are wanted.
     fn of_sweep(&self, path: &Path) -> Result<(String, Option<String>), Failure> {
         let results = SweepResults::open(path).map_err(MapChartError::from)?;
-        let quantity = self.quantity.as_deref().unwrap_or(QUANTITY);
+        let quantity = self.quantity_of(&results)?;
         let axis = match &results.axes[..] {
             [] => {
                 let what = "--sweep: an ensemble without an axis has one row of statistics and nothing to draw it over";
@@ -283,6 +283,20 @@ impl PlotArguments {
         let figure = self.part(series::figure(&results, axis, quantity)?)?;
         let data = if self.data { Some(table::csv(&figure)?) } else { None };
         Ok((svg::svg(&figure, self.width), data))
+    }
+
+    /// The quantity to draw: the requested one, the usual one, or the only one.
+    fn quantity_of<'a>(&'a self, results: &'a SweepResults) -> Result<&'a str, Failure> {
+        let all = results.quantities();
+        match (self.quantity.as_deref(), &all[..]) {
+            (Some(quantity), _) => Ok(quantity),
+            (None, [only]) => Ok(only),
+            (None, all) if all.contains(&QUANTITY) => Ok(QUANTITY),
+            (None, all) => Err(Failure::Usage(format!(
+                "--sweep: the results have no {QUANTITY}, which is drawn by default; choose with --quantity one of {}",
+                all.join(", ")
+            ))),
+        }
     }
 
     /// The requested part of the figure.

@@ -1,6 +1,6 @@
 //! Reads the results of a sweep: columns by name.
 
-use super::record::statistic;
+use super::record::{ERROR, ROW, statistic};
 use super::sidecar::{ColumnInfo, Sidecar, SidecarError};
 use crate::mend::mend;
 use pulloff_engine::text::{closest, quote, sanitize, show_path};
@@ -59,6 +59,17 @@ impl SweepResults {
         let column = self.columns.iter().find(|column| column.name == name);
         let named = |column: &ColumnInfo| ColumnInfo { name: quantity.to_owned(), ..column.clone() }.title();
         column.map_or_else(|| quantity.to_owned(), named)
+    }
+
+    /// The quantities that can be drawn over the axes.
+    pub fn quantities(&self) -> Vec<&str> {
+        let names = self.columns.iter().map(|column| column.name.as_str());
+        if self.is_statistics {
+            let median = statistic("", "q50");
+            return names.filter_map(|name| name.strip_suffix(&*median)).collect();
+        }
+        let is_other = |name: &&str| [ROW, ERROR].contains(name) || self.axes.iter().any(|axis| axis == name);
+        names.filter(|name| !is_other(name)).collect()
     }
 
     /// Whether there are statistics of this quantity and no column of its own.
