@@ -3,6 +3,7 @@
 
 use super::console::Console;
 use crate::store::{Source, Store};
+use pulloff_engine::preset::called::key_called;
 use pulloff_engine::preset::{Preset, Value, groups};
 use pulloff_engine::units::number::short;
 use pulloff_engine::units::parse_quantity;
@@ -18,13 +19,14 @@ pub(super) fn report(
     assignments: &[String],
     after: &Preset,
 ) {
+    let whole = |key: &str| key_called(after, key.trim()).unwrap_or_else(|_| key.trim().to_owned().into());
     let parted =
-        || assignments.iter().filter_map(|text| text.split_once('=')).map(|(key, text)| (key.trim(), text));
+        || assignments.iter().filter_map(|text| text.split_once('=')).map(|(key, text)| (whole(key), text));
     let is_group = |key: &str| groups::row(key).is_some();
-    if parted().any(|(key, _)| is_group(key)) {
+    if parted().any(|(key, _)| is_group(&key)) {
         let rest: Vec<&String> = assignments
             .iter()
-            .filter(|text| !is_group(text.split('=').next().unwrap_or_default().trim()))
+            .filter(|text| !is_group(&whole(text.split('=').next().unwrap_or_default())))
             .collect();
         if let Ok(before) = store.load(source, &rest) {
             console.note(Some(&format!("groups changed {}", changed(&before.preset, after))));
@@ -34,7 +36,8 @@ pub(super) fn report(
     if parted().any(|(_, text)| bare(text))
         && let Ok(own) = store.load(source, &[] as &[&str])
     {
-        let far = parted().filter(|(_, text)| bare(text)).filter_map(|(key, _)| far(&own.preset, after, key));
+        let far =
+            parted().filter(|(_, text)| bare(text)).filter_map(|(key, _)| far(&own.preset, after, &key));
         console.warn(&far.collect::<Vec<_>>());
     }
 }

@@ -46,7 +46,7 @@ pub struct ProblemArguments {
 pub struct Changes {
     /// Give a key of the preset another value, such as gap.amplitude=0.003 (repeatable; for one key the last holds)
     ///
-    /// In an SI preset a bare number is SI, and a value may have a unit: "gap.amplitude=2 um". A dimensionless group
+    /// A key may be given by its last part or its symbol, as in gamma=0.05, where only one key has that name. In an SI preset a bare number is SI, and a value may have a unit: "gap.amplitude=2 um". A dimensionless group
     /// changes the values that it is made from: `groups.amplitude_over_wavelength`, `groups.wavelength_over_radius`,
     /// `groups.adhesion`. An SI preset is shown in the units of its display keys: display.force=mN.
     #[arg(long = "set", value_name = "KEY=VALUE", allow_hyphen_values = true)]

@@ -377,6 +377,29 @@ fn a_sweep_over_one_axis_is_a_curve_with_gaps() {
 }
 
 #[test]
+fn the_only_quantity_of_a_sweep_is_drawn_and_of_several_one_is_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let sweep = |quantities: &str| {
+        let spec = format!(
+            "preset = \"fig-9-si\"\nquantities = [{quantities}]\n[[axis]]\nkey = \"A\"\nvalues = [\"1 um\", \"2 um\"]\n"
+        );
+        std::fs::write(folder.path().join("s.toml"), spec).unwrap();
+        let output = pulloff(folder.path(), &["sweep", "s.toml", "-o", "r.csv", "--overwrite"]);
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let said = sweep("\"largest_pull_force\"");
+    assert!(said.contains("note: units of the CSV: gap.amplitude in m; largest_pull_force in N\n"), "{said}");
+    assert!(structure(&svg(folder.path(), &["--sweep", "r.csv"])).join("\n").contains("largest pull force"));
+    sweep("\"largest_pull_force\", \"snap_loss\"");
+    let (status, said) = refused(folder.path(), &["--sweep", "r.csv"]);
+    assert!(
+        status == Some(2) && said.contains("choose with --quantity one of largest_pull_force, snap_loss"),
+        "{said}"
+    );
+}
+
+#[test]
 fn a_column_is_of_a_sweep() {
     let folder = tempfile::tempdir().unwrap();
     for arguments in [&["--quantity", "snaps"][..], &["wavy-sphere", "--quantity", "snaps"]] {

@@ -16,6 +16,14 @@ pub enum Invalid {
         /// The most similar known key.
         meant: Option<Key>,
     },
+    /// A short name of more than one key.
+    #[error("{name} is short for several: {keys}")]
+    Several {
+        /// The name as written.
+        name: String,
+        /// The keys.
+        keys: String,
+    },
     /// A group that cannot be set.
     #[error("unknown key {key}; of the groups, {known} can be set")]
     UnknownGroup {
@@ -250,6 +258,7 @@ impl Invalid {
             Self::Rangeless { .. } => Some(ADHESION),
             Self::Format { .. } => Some("format"),
             Self::UnknownKey { .. }
+            | Self::Several { .. }
             | Self::UnknownGroup { .. }
             | Self::Syntax { .. }
             | Self::Assignment

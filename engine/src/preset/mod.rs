@@ -20,6 +20,7 @@
 //! | [`edge`] | how an edge moves: the keys of `[edge]` and of rates |
 //! | `steps` | the table `[edge]` as it is read, and the parts of a test |
 //! | [`edit`] | a preset laid over the text it was read from, comments and order kept |
+//! | [`called`] | keys by their short names |
 //! | [`changes`] | what turns one preset into another, as assignments |
 //! | [`manual`] | the key table as text for the manual |
 //! | [`family`] | rows by the form of their keys: a formula's parameters, waves |
@@ -31,6 +32,7 @@
 
 mod attached;
 pub mod build;
+pub mod called;
 pub mod changes;
 pub mod data;
 pub mod edge;

@@ -4,6 +4,7 @@ use super::MOST_ROWS;
 use super::document::{SpecEntry, SpecError, SpecSection};
 use crate::elementary::{cos, ln, pow};
 use crate::gap::shapes::split_mix::SplitMix64;
+use crate::preset::called::key_called;
 use crate::preset::rows::parameter;
 use crate::preset::schema::rivals;
 use crate::preset::{Invalid, Preset, Value, groups, model};
@@ -90,15 +91,16 @@ impl SweepAxis {
         section.only(&["key", "values", "linear", "logarithmic", "distribution"])?;
         let wanted = "a key of the preset, such as \"gap.amplitude\"";
         let entry = section.need("key", wanted)?;
-        let key = entry.text(wanted)?;
+        // Unknown keys are reported here, whatever the values are.
+        let unknown = |unknown: Invalid| entry.fault(&format!("axis.key: {unknown}"));
+        let key = &*key_called(preset, entry.text(wanted)?).map_err(unknown)?;
         if model::is_of_units(key) || ["format", "title"].contains(&key) {
             return Err(entry.fault(&format!("{key} is not a quantity of the problem: it cannot be swept")));
         }
-        // Unknown keys are reported here, whatever the values are.
-        if let Err(unknown @ (Invalid::UnknownKey { .. } | Invalid::UnknownGroup { .. })) =
+        if let Err(invalid @ (Invalid::UnknownKey { .. } | Invalid::UnknownGroup { .. })) =
             preset.resolved(key, 0.0.into())
         {
-            return Err(entry.fault(&format!("axis.key: {unknown}")));
+            return Err(unknown(invalid));
         }
         let points = KeyReader { preset: Some(preset), key }.points(section, &entry)?;
         let axis = Self { key: key.to_owned(), points };

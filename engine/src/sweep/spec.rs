@@ -8,6 +8,7 @@ use super::fault::Fault;
 use super::measure::{MeasuredQuantities, measure};
 use super::quantity::{QuantityColumn, USUAL};
 use crate::gap::shapes::split_mix::SplitMix64;
+use crate::preset::called::key_called;
 use crate::preset::schema::CHOOSERS;
 use crate::preset::{Preset, Value};
 use crate::progress::Progress;
@@ -90,7 +91,7 @@ impl Spec {
         let section = document.section(&table);
         section.only(&["preset", "set", "combine", "random", "ensemble", "quantities", "axis"])?;
         let preset = preset(presets, &section)?;
-        let assigned = assigned(&section)?;
+        let assigned = assigned(&section, &preset)?;
         let design = design(&section)?;
         let wanted = "one or more tables [[axis]]";
         // A single surface with error bars needs no axis.
@@ -102,7 +103,7 @@ impl Spec {
         let tables: Vec<SpecSection<'_>> =
             given.iter().map(|entry| entry.section("a table [[axis]]")).collect::<Result<_, _>>()?;
         let key = |table: &SpecSection<'_>| {
-            table.get("key").and_then(|entry| entry.value.as_str().map(str::to_owned))
+            table.get("key").and_then(|entry| key_called(&preset, entry.value.as_str()?).ok())
         };
         let fixed = !tables.iter().filter_map(key).any(|key| CHOOSERS.contains(&&*key));
         let mut read: Vec<SweepAxis> = Vec::new();
@@ -287,7 +288,10 @@ fn preset(presets: Presets<'_>, section: &SpecSection<'_>) -> Result<Preset, Spe
 }
 
 /// The keys that `set` gives values to, each with its place.
-fn assigned<'a>(section: &SpecSection<'a>) -> Result<Vec<(SpecEntry<'a>, String)>, SpecError> {
+fn assigned<'a>(
+    section: &SpecSection<'a>,
+    preset: &Preset,
+) -> Result<Vec<(SpecEntry<'a>, String)>, SpecError> {
     let mut keys = Vec::new();
     let Some(set) = section.get("set") else { return Ok(keys) };
     for entry in set.array(ASSIGNMENTS)? {
@@ -295,7 +299,8 @@ fn assigned<'a>(section: &SpecSection<'a>) -> Result<Vec<(SpecEntry<'a>, String)
         let Some((key, text)) = entry.text(ASSIGNMENTS)?.split_once('=') else { continue };
         let value = DeValue::parse(text.trim()).ok();
         let table = value.as_ref().and_then(|value| value.get_ref().as_table());
-        let inner = keys_of(key.trim(), table);
+        let whole = key_called(preset, key.trim());
+        let inner = keys_of(whole.as_deref().unwrap_or(key.trim()), table);
         keys.extend(inner.into_iter().map(|key| (entry.clone(), key)));
     }
     Ok(keys)

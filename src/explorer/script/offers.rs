@@ -1,6 +1,5 @@
 //! What can be typed after the name of a command, as the screen lists it.
 
-use super::keys::settable;
 use super::lexer::quoted;
 use crate::explorer::branches;
 use crate::explorer::command::Command;
@@ -12,6 +11,7 @@ use crate::explorer::view::{Home, Overlay, View};
 use crate::explorer::{pins, reach};
 use crate::store::shipped::{self, SHIPPED};
 use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::called::settable;
 use pulloff_engine::preset::groups::GROUPS;
 use pulloff_engine::preset::measured::SHIPPED_DATA;
 use pulloff_engine::preset::schema::{AUTO, Kind, NONE};

@@ -1,12 +1,12 @@
 //! The single list behind a typed line: commands, charts, quantities, presets, files and keys, filtered by the text.
 
-use super::keys::rows_called;
 use super::offers::{FolderNames, Offer, Typing};
 use super::parse::parse;
 use crate::explorer::command::Id;
 use crate::explorer::model::Model;
 use crate::explorer::table::{CommandRow, ROWS, called};
 use pulloff_engine::preset::Parameter;
+use pulloff_engine::preset::called::rows_called;
 
 /// One line of the list.
 #[derive(Debug, Clone, PartialEq, Eq)]

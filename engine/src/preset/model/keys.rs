@@ -139,7 +139,7 @@ impl Preset {
         self.rows().filter_map(|row| self.get(&row.key).map(|value| (row, value))).collect()
     }
 
-    pub(super) fn unknown_key(&self, key: &str) -> Invalid {
+    pub(in crate::preset) fn unknown_key(&self, key: &str) -> Invalid {
         let rows: Vec<Row> = self.rows().chain(groups::GROUPS.iter().map(Row::Borrowed)).collect();
         unknown_among(
             key,

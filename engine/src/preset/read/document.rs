@@ -4,6 +4,7 @@ use super::MISTAKES;
 use super::mistake::ValueOrigin;
 use super::sheet::{LayerOrigin, Sheet};
 use crate::gap::shapes::harmonics::MOST_WAVES;
+use crate::preset::called::{key_anywhere, key_called};
 use crate::preset::data;
 use crate::preset::family;
 use crate::preset::groups;
@@ -145,13 +146,20 @@ impl Sheet {
             (None, Some(table), _) => {
                 self.mistake(origin, not_table(table, format!("\"{}\"", quote(text.trim()))));
             }
-            (None, None, _) => {
-                // By now the file has been laid down.
-                let shape = self.entries.get(CHOOSERS[0]).and_then(|entry| entry.value.as_ref().ok());
-                let unknown = unknown_key(key, shape.map(ToString::to_string).as_deref());
-                self.mistake(origin, unknown);
-            }
+            (None, None, _) => match self.called(key) {
+                Ok(key) => self.assign(&format!("{key}={text}")),
+                Err(invalid) => self.mistake(origin, invalid),
+            },
         }
+    }
+
+    /// The key that `name` is short for in what has been laid down so far.
+    fn called(&self, name: &str) -> Result<Key, Invalid> {
+        if let Ok(preset) = self.clone().finish() {
+            return key_called(&preset, name);
+        }
+        let shape = self.entries.get(CHOOSERS[0]).and_then(|entry| entry.value.as_ref().ok());
+        key_anywhere(shape.map(ToString::to_string).as_deref(), name)
     }
 
     pub(super) fn syntax(&mut self, text: &str, error: &toml::de::Error) {

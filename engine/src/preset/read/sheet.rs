@@ -18,6 +18,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// What is known about one key.
+#[derive(Clone)]
 pub(super) struct SheetEntry {
     pub(super) value: Result<Value, Invalid>,
     pub(super) origin: ValueOrigin,
@@ -55,7 +56,7 @@ impl HeldFiles {
 }
 
 /// The layers laid down so far.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Sheet {
     pub(super) name: String,
     /// Where the rows of profiles come from.

@@ -84,6 +84,25 @@ fn an_assignment_repairs_a_wrong_line() {
 }
 
 #[test]
+fn a_key_may_be_given_by_its_last_part_or_its_symbol() {
+    let whole = set(&["material.work_of_adhesion=0.5", "gap.amplitude=0.003", "gap.shape=sphere"]);
+    // The shape decides after the assignments before.
+    assert_eq!(set(&["gamma=0.5", "A=0.003", "shape=sphere"]), whole);
+    assert_eq!(set(&["γ=0.5", "amplitude=0.003", "shape=sphere"]), whole);
+    assert_eq!(set(&["gamma'=0.04"]), set(&["groups.adhesion=0.04"]));
+    // What the file lacks may follow.
+    let lacking = "[material]\neffective_modulus=1\n[gap]\nshape='sphere'\nradius_of_curvature=1";
+    assert!(
+        (read_with("w.toml", lacking, &["gamma=0.5"]).unwrap().material.work_of_adhesion - 0.5).abs() < 1e-15
+    );
+    let waves = "[material]\neffective_modulus=1\nwork_of_adhesion=0\n[gap]\nshape='harmonics'\nradius_of_curvature=1\n\
+        waves=[{amplitude=1e-3,wavelength=0.1},{amplitude=1e-3,wavelength=0.2}]\n[path]\nstart_contact_radius=0.5";
+    let lines = messages(waves, &["amplitude=2e-3"]);
+    let expected = "is short for several: gap.waves.1.amplitude, gap.waves.2.amplitude";
+    assert!(lines[0].ends_with(expected), "{lines:?}");
+}
+
+#[test]
 fn a_wrong_assignment_is_named() {
     for (assignment, expected) in [
         ("gap.amplitude=-1", "--set gap.amplitude=-1: gap.amplitude = -1.0 is out of range"),

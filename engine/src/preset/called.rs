@@ -1,0 +1,56 @@
+//! Keys as typed: the whole key, its last part, or the symbol on the screen.
+
+use super::groups::{self, GROUPS};
+use super::invalid::Invalid;
+use super::model::{Preset, unknown_key};
+use super::rows::parameter;
+use super::schema::{CHOOSERS, Key, PARAMETERS, Parameter};
+use crate::text::{greek, quote};
+use std::borrow::Cow;
+
+/// Whether a row has this name: its key, the last part of the key, or the symbol on the screen.
+pub fn is_called(row: &Parameter, name: &str) -> bool {
+    let last = row.key.rsplit('.').next().unwrap_or_default();
+    !name.is_empty() && [&*row.key, last, &*row.label, &*greek(&row.label)].contains(&name)
+}
+
+/// The rows of a preset, and the groups.
+pub fn settable(preset: &Preset) -> impl Iterator<Item = Parameter> {
+    preset.rows().map(Cow::into_owned).chain(GROUPS.iter().cloned())
+}
+
+/// The rows with this name: if some have a value in this preset, only those.
+pub fn rows_called(preset: &Preset, name: &str) -> Vec<Parameter> {
+    let rows = settable(preset).filter(|row| is_called(row, name));
+    let (own, others): (Vec<_>, Vec<_>) = rows.partition(|row| preset.get(&row.key).is_some());
+    if own.is_empty() { others } else { own }
+}
+
+/// The key of a preset with this name.
+///
+/// # Errors
+/// There is none, or more than one.
+pub fn key_called(preset: &Preset, name: &str) -> Result<Key, Invalid> {
+    if parameter(name).is_some() || groups::row(name).is_some() {
+        return Ok(name.to_owned().into());
+    }
+    let rows = rows_called(preset, name);
+    one(name, rows.into_iter().map(|row| row.key)).unwrap_or_else(|| Err(preset.unknown_key(name)))
+}
+
+/// The same where the preset is not complete; `shape` is what is known of its gap.
+pub(super) fn key_anywhere(shape: Option<&str>, name: &str) -> Result<Key, Invalid> {
+    let fits = |row: &&Parameter| shape.is_none_or(|shape| row.fits(CHOOSERS[0], shape));
+    let rows = PARAMETERS.iter().filter(fits).chain(&GROUPS).filter(|row| is_called(row, name));
+    one(name, rows.map(|row| row.key.clone())).unwrap_or_else(|| Err(unknown_key(name, shape)))
+}
+
+/// The only one of `keys`; `None` where there are none.
+fn one(name: &str, keys: impl Iterator<Item = Key>) -> Option<Result<Key, Invalid>> {
+    let keys: Vec<Key> = keys.collect();
+    match &keys[..] {
+        [] => None,
+        [key] => Some(Ok(key.clone())),
+        several => Some(Err(Invalid::Several { name: quote(name), keys: several.join(", ") })),
+    }
+}
