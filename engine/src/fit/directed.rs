@@ -1,6 +1,7 @@
 //! Fits in the direction in which the columns run. Where the points leave two directions in doubt, both are fitted and
 //! the better one is taken.
 
+use super::judge::BRANCHES;
 use super::options::{FitError, Options};
 use super::outcome::Fit;
 use super::run::fit_branches;
@@ -105,6 +106,30 @@ pub(super) fn branches_of(preset: &Preset, options: &Options) -> Result<Branches
 /// # Errors
 /// [`FitError`].
 pub fn fit(
+    preset: &Preset,
+    points: &Points,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Fit, FitError> {
+    let mut found = directed(preset, points, options, progress)?;
+    let Some(at) = found.reasons.iter().position(|reason| reason.kind == BRANCHES) else { return Ok(found) };
+    // Whatever the model lacks, two works of adhesion describe it a little better: only a fit shows that they are it.
+    let apart = Options { separate: true, profile: false, bootstrap: None, ..options.clone() };
+    if let Ok(apart) = directed(preset, points, &apart, &ProgressPart::new(progress, [1.0, 1.0])) {
+        let mut reason = found.reasons.remove(at);
+        let is_described = apart.verdict == Verdict::Describes;
+        reason.sentence += if is_described {
+            ". With that, the model describes them"
+        } else {
+            ". Even with that, the model does not describe them"
+        };
+        found.reasons.insert(if is_described { 0 } else { at }, reason);
+    }
+    Ok(found)
+}
+
+/// The fit in the direction in which the columns run.
+fn directed(
     preset: &Preset,
     points: &Points,
     options: &Options,

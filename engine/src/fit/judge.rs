@@ -24,6 +24,7 @@ mod touch;
 mod untold;
 
 pub(super) use range::unseen;
+pub(super) use scores::BRANCHES;
 pub(super) use spring::of_spring;
 
 use super::fitted::Fitted;
@@ -90,8 +91,6 @@ pub(super) struct Evidence<'a> {
 pub(super) fn reasons(evidence: Evidence, preset: &Preset, clipped: Option<Clipped>) -> Vec<Reason> {
     let Evidence { problem, solved, scatter, .. } = evidence;
     let mut reasons: Vec<Reason> = clipped.map(|clipped| of_clipped(preset, clipped)).into_iter().collect();
-    // It asks for no other measurement and no other gap, so it is tried first.
-    reasons.extend(scores::of_branches(evidence));
     reasons.extend(contact::of_contact(evidence));
     reasons.extend(apart::of_apart(problem, solved, scatter));
     // Rows that are not apart can be mistaken for a tilt.
@@ -99,6 +98,7 @@ pub(super) fn reasons(evidence: Evidence, preset: &Preset, clipped: Option<Clipp
     let tilt = if in_contact.is_some() { None } else { scores::of_tilt(evidence) };
     reasons.extend(in_contact.into_iter().chain(tilt));
     reasons.extend(scores::of_shape(evidence));
+    reasons.extend(scores::of_branches(evidence));
     if preset.cohesion().is_some() {
         reasons.extend(range::of_zone(problem, solved));
     } else if !is_pulled(&problem.preset) {

@@ -29,6 +29,8 @@ use nalgebra::DVector;
 const FALSE_ALARM: f64 = 1e-3;
 /// The same for slopes, which move the work of adhesion by more of its errors than of their own.
 const FALSE_SLOPES: f64 = 3e-3;
+/// The kind of the reason that branches differ.
+pub(in crate::fit) const BRANCHES: &str = "branches";
 /// Residuals count as at most this many s.
 const MOST: f64 = 3.0;
 pub(super) const MOST_OF_NEIGHBOURS: f64 = 4.0;
@@ -96,11 +98,11 @@ pub(super) fn of_branches(evidence: Evidence) -> Option<Reason> {
     let [n, t] = score(evidence, &z, None)?;
     (beyond_t(t, scatter.degrees) < FALSE_ALARM).then(|| {
         let sentence = format!(
-            "approach and retraction lie on different sides of the curve, and a work of adhesion for each describes them \
-             better ({} standard errors): --separate work_of_adhesion fits both",
+            "a work of adhesion for approach and one for retraction describe the points better ({} standard errors): \
+             --separate work_of_adhesion",
             short(t.abs(), 2)
         );
-        Reason::new("branches", n, sentence)
+        Reason::new(BRANCHES, n, sentence)
     })
 }
 
