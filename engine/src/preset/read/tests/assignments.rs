@@ -85,10 +85,13 @@ fn an_assignment_repairs_a_wrong_line() {
 
 #[test]
 fn a_key_may_be_given_by_its_last_part_or_its_symbol() {
-    let whole = set(&["material.work_of_adhesion=0.5", "gap.amplitude=0.003", "gap.shape=sphere"]);
-    // The shape decides after the assignments before.
-    assert_eq!(set(&["gamma=0.5", "A=0.003", "shape=sphere"]), whole);
-    assert_eq!(set(&["γ=0.5", "amplitude=0.003", "shape=sphere"]), whole);
+    let whole = set(&["material.work_of_adhesion=0.5", "gap.amplitude=0.003"]);
+    assert_eq!(set(&["gamma=0.5", "A=0.003"]), whole);
+    assert_eq!(set(&["γ=0.5", "amplitude=0.003"]), whole);
+    // The gap that an assignment before chose decides; where it is not complete, its name does.
+    assert_eq!(set(&["shape=sphere", "R=2"]), set(&["gap.shape=sphere", "gap.radius_of_curvature=2"]));
+    let power = ["gap.shape=power-law", "gap.coefficient=1", "gap.exponent=3"];
+    assert_eq!(set(&["shape=power-law", "c=1", power[2]]), set(&power));
     assert_eq!(set(&["gamma'=0.04"]), set(&["groups.adhesion=0.04"]));
     // What the file lacks may follow.
     let lacking = "[material]\neffective_modulus=1\n[gap]\nshape='sphere'\nradius_of_curvature=1";
