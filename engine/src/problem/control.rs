@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn a_stiffness_comes_back_from_reduced_units_as_it_was_typed() {
-        for k in [5.0, 0.3, 500.0, 0.1234567890123] {
+        for k in [5.0, 0.3, 500.0, 0.123_456_789] {
             for unit in [3.7e5, 1.0 / 3.0, 8.1e-7] {
                 let back = Control::Stiffness(k).in_units(unit).as_given(unit);
                 assert_eq!(back.to_string(), format!("stiffness={k}"));
