@@ -24,7 +24,7 @@ fn a_bad_assignment_names_the_key_and_what_was_meant() {
     let home = Home::new();
     for (assignment, said) in [
         ("gap.amplitud=3", ["gap.amplitud", "did you mean gap.amplitude?"]),
-        ("amplitude=3", ["unknown key", "gap.amplitude"]),
+        ("amplitud=3", ["unknown key", "gap.amplitude"]),
         ("gap.amplitude=-3", ["gap.amplitude", "out of range"]),
         ("gap.amplitude=wide", ["gap.amplitude", "number"]),
         ("gap.shape=spere", ["gap.shape", "did you mean sphere?"]),
