@@ -55,7 +55,7 @@ fn of_reading(
     progress: &dyn Progress,
 ) -> Reason {
     let mut preset = preset.clone();
-    let options = Options { profile: false, bootstrap: None, ..options.clone() };
+    let options = options.without_intervals();
     let set = preset.set(COLUMNS, columns.as_str().into());
     let found = set.ok().and_then(|()| fit_own(&preset, &options, progress).ok());
     let is_described = found.as_ref().is_some_and(|found| found.verdict == Verdict::Describes);
@@ -114,7 +114,7 @@ pub fn fit(
     let mut found = directed(preset, points, options, progress)?;
     let Some(at) = found.reasons.iter().position(|reason| reason.kind == BRANCHES) else { return Ok(found) };
     // Whatever the model lacks, two works of adhesion describe it a little better: only a fit shows that they are it.
-    let apart = Options { separate: true, profile: false, bootstrap: None, ..options.clone() };
+    let apart = Options { separate: true, ..options.without_intervals() };
     if let Ok(apart) = directed(preset, points, &apart, &ProgressPart::new(progress, [1.0, 1.0])) {
         let mut reason = found.reasons.remove(at);
         let is_described = apart.verdict == Verdict::Describes;
@@ -146,12 +146,12 @@ fn directed(
         let of = |axis: usize| Some(fit.noise.sigma[axis]).filter(|sigma| *sigma > 0.0);
         [of(0), of(1), of(2)]
     });
-    let along = |turned: Turned, sigma, progress: &ProgressPart| {
+    let along = |turned: Turned, sigma, options: &Options, progress: &ProgressPart| {
         let asked = Asked { turned: Some(turned), sigma, ..options.asked };
         let branches = points.branches(&asked)?;
         fit_branches(preset, &branches, &Options { asked, ..options.clone() }, progress)
     };
-    let second = along(other, sigma, &ProgressPart::new(progress, [0.3, 0.6]));
+    let second = along(other, sigma, &options.without_intervals(), &ProgressPart::new(progress, [0.3, 0.6]));
     let alone = |mut fit: Fit, why: &FitError, [taken, left]: [Turned; 2]| {
         fit.notes.push(format!(
             "the points leave it open which way their columns run: {} is taken, as there is no fit with {} ({why}). \
@@ -166,7 +166,7 @@ fn directed(
         (Ok(first), Err(why)) => return Ok(alone(first, &why, [branches.turned, other])),
         (Err(error), Err(_)) => return Err(error),
         (Err(why), Ok(_)) => {
-            let taken = along(other, options.asked.sigma, &ProgressPart::new(progress, [0.6, 1.0]))?;
+            let taken = along(other, options.asked.sigma, options, &ProgressPart::new(progress, [0.6, 1.0]))?;
             return Ok(alone(taken, &why, [other, branches.turned]));
         }
     };
@@ -193,7 +193,7 @@ fn directed(
     let mut found = if here < there {
         first
     } else {
-        along(other, options.asked.sigma, &ProgressPart::new(progress, [0.6, 1.0]))?
+        along(other, options.asked.sigma, options, &ProgressPart::new(progress, [0.6, 1.0]))?
     };
     found.notes.push(format!(
         "which way the columns run shows only in the fit: with {} chi squared is {}, with {} it is {}. \

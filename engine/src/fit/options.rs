@@ -44,6 +44,14 @@ impl Default for Options {
     }
 }
 
+impl Options {
+    /// The same without profiles and bootstrap, also where a bootstrap would be run unasked: for a fit of which only the
+    /// verdict is wanted.
+    pub(super) fn without_intervals(&self) -> Self {
+        Self { profile: false, bootstrap: Some((0, 0)), ..self.clone() }
+    }
+}
+
 /// Why there is no fit.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FitError {
