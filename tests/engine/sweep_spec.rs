@@ -298,6 +298,18 @@ fn each_mistake_names_its_line_and_what_is_allowed() {
             ),
             "s.toml:5: the axis path.start_force conflicts with the axis path.start_approach",
         ),
+        // The group would win, and the column of the other give a value that no row has.
+        (
+            &format!(
+                "{}\n[[axis]]\nkey = 'gamma'\nvalues = [0.002]",
+                axis("key = 'groups.adhesion'\nvalues = [0.02]")
+            ),
+            "s.toml:5: the axis material.work_of_adhesion conflicts with the axis groups.adhesion",
+        ),
+        (
+            &format!("{}\n[[axis]]\nkey = 'A/λ'\nvalues = [0.02]", axis("key = 'A'\nvalues = [0.002]")),
+            "s.toml:5: the axis groups.amplitude_over_wavelength conflicts with the axis gap.amplitude",
+        ),
         (
             &format!(
                 "combine = 'pairs'\n{}\n[[axis]]\nkey = 'gap.wavelength'\nvalues = [2]",

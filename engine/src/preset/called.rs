@@ -8,6 +8,9 @@ use super::schema::{CHOOSERS, Key, PARAMETERS, Parameter};
 use crate::text::{greek, quote};
 use std::borrow::Cow;
 
+/// The table of the units of the screen.
+const DISPLAY: &str = "display.";
+
 /// Whether a row has this name: its key, the last part of the key, or the symbol on the screen.
 pub fn is_called(row: &Parameter, name: &str) -> bool {
     let last = row.key.rsplit('.').next().unwrap_or_default();
@@ -19,9 +22,11 @@ pub fn settable(preset: &Preset) -> impl Iterator<Item = Parameter> {
     preset.rows().map(Cow::into_owned).chain(GROUPS.iter().cloned())
 }
 
-/// The rows with this name: if some have a value in this preset, only those.
+/// The rows with this name: if some have a value in this preset, only those. What is shown in which unit is no value of
+/// the problem, and has no short names.
 pub fn rows_called(preset: &Preset, name: &str) -> Vec<Parameter> {
-    let rows = settable(preset).filter(|row| is_called(row, name));
+    let rows = settable(preset).filter(|row| row.key == name || !row.key.starts_with(DISPLAY));
+    let rows = rows.filter(|row| is_called(row, name));
     let (own, others): (Vec<_>, Vec<_>) = rows.partition(|row| preset.get(&row.key).is_some());
     if own.is_empty() { others } else { own }
 }
@@ -41,7 +46,8 @@ pub fn key_called(preset: &Preset, name: &str) -> Result<Key, Invalid> {
 /// The same where the preset is not complete; `shape` is what is known of its gap.
 pub(super) fn key_anywhere(shape: Option<&str>, name: &str) -> Result<Key, Invalid> {
     let fits = |row: &&Parameter| shape.is_none_or(|shape| row.fits(CHOOSERS[0], shape));
-    let rows = PARAMETERS.iter().filter(fits).chain(&GROUPS).filter(|row| is_called(row, name));
+    let rows = PARAMETERS.iter().filter(fits).chain(&GROUPS).filter(|row| !row.key.starts_with(DISPLAY));
+    let rows = rows.filter(|row| is_called(row, name));
     one(name, rows.map(|row| row.key.clone())).unwrap_or_else(|| Err(unknown_key(name, shape)))
 }
 

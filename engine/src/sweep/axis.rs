@@ -249,17 +249,22 @@ pub fn overrides(axis: &str, key: &str) -> bool {
     let is_part_of = |part: &str, whole: &str| {
         parameter(part).is_some_and(|row| row.is_part() && row.table() == Some(whole))
     };
-    rival(axis, [key]).is_some()
+    axis == key
+        || rivals(axis).contains(&key)
         || is_part_of(axis, key)
         || is_part_of(key, axis)
         || groups::changed(axis).contains(&key)
         || groups::changed(key) == [axis]
 }
 
-/// The key in `before` that sets the same thing as `key`: the key itself, or another start or turn, of which only the
-/// later one would take effect.
+/// The key in `before` that sets the same thing as `key`: the key itself, another start or turn, of which only the
+/// later one would take effect, or a group that changes the other.
 pub fn rival<'a>(key: &str, before: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    before.into_iter().find(|other| *other == key || rivals(key).contains(other))
+    let changes = |group: &str, key: &str| groups::changed(group).contains(&key);
+    let is_rival = |other: &&str| {
+        *other == key || rivals(key).contains(other) || changes(key, other) || changes(other, key)
+    };
+    before.into_iter().find(is_rival)
 }
 
 /// Reads the values of one key.

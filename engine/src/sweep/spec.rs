@@ -299,8 +299,9 @@ fn assigned<'a>(
         let Some((key, text)) = entry.text(ASSIGNMENTS)?.split_once('=') else { continue };
         let value = DeValue::parse(text.trim()).ok();
         let table = value.as_ref().and_then(|value| value.get_ref().as_table());
-        let whole = key_called(preset, key.trim());
-        let inner = keys_of(whole.as_deref().unwrap_or(key.trim()), table);
+        // An inline table may be that of a whole table, which has no short name.
+        let short = key_called(preset, key.trim()).ok().filter(|_| table.is_none());
+        let inner = keys_of(short.as_deref().unwrap_or(key.trim()), table);
         keys.extend(inner.into_iter().map(|key| (entry.clone(), key)));
     }
     Ok(keys)

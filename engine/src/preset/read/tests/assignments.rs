@@ -93,6 +93,8 @@ fn a_key_may_be_given_by_its_last_part_or_its_symbol() {
     let power = ["gap.shape=power-law", "gap.coefficient=1", "gap.exponent=3"];
     assert_eq!(set(&["shape=power-law", "c=1", power[2]]), set(&power));
     assert_eq!(set(&["gamma'=0.04"]), set(&["groups.adhesion=0.04"]));
+    // The unit of a stiffness on the screen is no value.
+    assert_eq!(set(&["stiffness=3"]), set(&["path.control.stiffness=3"]));
     // What the file lacks may follow.
     let lacking = "[material]\neffective_modulus=1\n[gap]\nshape='sphere'\nradius_of_curvature=1";
     assert!(
