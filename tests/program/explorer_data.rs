@@ -145,6 +145,11 @@ fn a_fit_changes_the_free_keys_as_one_command_and_says_their_errors() {
     session.does(Id::Fit);
     assert!(session.status().starts_with("fitted: χ² "), "{}", session.status());
     let value = |session: &Session, key: &str| session.model.preset.get(key).unwrap().as_number().unwrap();
+    // A session keeps the values, and says that their errors are gone.
+    let document = Document::new(&Snapshot::of(&session.model), Ended::Quit, 0).json().unwrap();
+    let (model, _) = Document::read(&document).unwrap().snapshot().unwrap().resume(None);
+    assert!(model.preset == session.model.preset && model.fitted().is_none());
+    assert!(model.message.unwrap().1.contains("errors and report were not kept"));
     let (modulus, adhesion) = ("material.effective_modulus", "material.work_of_adhesion");
     for (key, truth) in [(modulus, 1e6), (adhesion, 0.05), (data::OFFSET, 12.3e-6), (data::BASELINE, 4e-6)] {
         let (found, error) = (value(&session, key), known_to(&session, key));

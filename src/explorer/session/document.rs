@@ -67,6 +67,7 @@ pub struct Document {
     look: SessionLook,
     pins: Vec<(usize, usize)>,
     journal: KeptJournal<usize>,
+    fitted: bool,
     problems: Problems,
     settled: bool,
     cursor: Option<usize>,
@@ -107,6 +108,7 @@ impl Document {
             look: snapshot.look.clone(),
             pins,
             journal,
+            fitted: snapshot.fitted,
             problems: problems.finish(),
             settled: snapshot.settled,
             cursor: snapshot.history.cursor(),
@@ -184,6 +186,7 @@ impl Document {
             pins: pins.collect::<Result<_, Unreadable>>()?,
             look: self.look,
             journal: self.journal.map(preset)?,
+            fitted: self.fitted,
         })
     }
 }

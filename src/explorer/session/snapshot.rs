@@ -1,12 +1,12 @@
 //! What is kept of a model, and the model restored from it.
 
 use crate::explorer::backgrounds::want_all;
-use crate::explorer::command::{FIRST_LENGTH, LENGTHS};
+use crate::explorer::command::{FIRST_LENGTH, Id, LENGTHS};
 use crate::explorer::effect::Effect;
 use crate::explorer::history::History;
 use crate::explorer::journal::{Journal, KeptJournal};
 use crate::explorer::map_axes::MapAxes;
-use crate::explorer::model::Model;
+use crate::explorer::model::{Level, Model};
 use crate::explorer::pins::Pins;
 use crate::explorer::requests::want_curve;
 use crate::explorer::undo::Undo;
@@ -32,6 +32,8 @@ pub struct Snapshot {
     pub pins: Vec<(usize, Preset)>,
     pub look: SessionLook,
     pub journal: KeptJournal,
+    /// Whether the values are those of a fit, whose report and errors are not kept.
+    pub fitted: bool,
 }
 
 /// How a session is displayed and walked; the fields are as in [`Model`].
@@ -106,6 +108,7 @@ impl Snapshot {
             pins: model.pins.presets().map(|(number, preset)| (number, preset.clone())).collect(),
             look: SessionLook::of(model),
             journal: model.journal.kept(),
+            fitted: model.fitted().is_some(),
         }
     }
 
@@ -119,7 +122,7 @@ impl Snapshot {
     pub fn is_like(&self, other: &Self) -> bool {
         self.session == other.session
             && self.history.revision() == other.history.revision()
-            && (&self.look, self.settled) == (&other.look, other.settled)
+            && (&self.look, self.settled, self.fitted) == (&other.look, other.settled, other.fitted)
             && (&self.source, self.fingerprint) == (&other.source, other.fingerprint)
             && (&self.preset, &self.saved, &self.pins) == (&other.preset, &other.saved, &other.pins)
             && self.journal == other.journal
@@ -149,6 +152,10 @@ impl Snapshot {
         (model.history, model.undo) = (self.history, self.undo);
         model.journal = Journal::of(self.journal);
         model.is_tried = self.settled;
+        if self.fitted {
+            let text = format!("the fit's errors and report were not kept: {} fits again", Id::Fit.named());
+            model.tell(Level::Info, text);
+        }
         self.look.lay_over(&mut model);
         if let Control::Stiffness(k) = model.preset.path.control {
             model.stiffness = Some(k);
