@@ -19,7 +19,7 @@ use pulloff_engine::preset::called::key_called;
 use pulloff_engine::report::number::{short, significant};
 use pulloff_engine::sweep::axis::SweepAxis;
 use pulloff_engine::sweep::spec::Design;
-use pulloff_engine::sweep::{QUANTITIES, Spec};
+use pulloff_engine::sweep::{QUANTITIES, QuantityColumn, Spec};
 use pulloff_engine::text::{quote, show_name, show_path};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -248,6 +248,9 @@ fn quantities() -> String {
     text
 }
 
+/// The quantity that looks for inadmissible states.
+const CHECK: &str = "inadmissible_share";
+
 impl Sweep {
     fn run(&self) -> Result<ExitCode, Failure> {
         let console = self.messages.open();
@@ -374,6 +377,13 @@ impl Sweep {
         console.say(&text);
         console.note(sidecar::units(spec).as_deref());
         with_an_error(&summary.faults, console);
+        let looks_for = |column: &QuantityColumn| column.quantity.name == CHECK;
+        let is_unchecked = spec.columns.iter().any(|column| column.is_unchecked(&spec.preset));
+        if is_unchecked && !spec.columns.iter().any(looks_for) {
+            console.note(Some(&format!(
+                "the rows follow one disc, and inadmissible states of it are not looked for: the quantity {CHECK} does"
+            )));
+        }
         if summary.is_complete()
             && self.shard == Shard::WHOLE
             && !stream::is_stream(&self.results.output)

@@ -125,6 +125,26 @@ fn a_grid_has_every_row_and_each_can_be_repeated() {
 }
 
 #[test]
+fn paths_of_one_disc_are_said_not_to_be_checked_unless_a_quantity_does() {
+    let home = Sweeps::new();
+    for (set, quantities, is_told) in [
+        ("path.contact=one-disc", "'largest_pull'", true),
+        ("path.contact=one-disc", "'largest_pull','inadmissible_share'", false),
+        ("basis.kind=rings", "'snaps'", true),
+        ("basis.kind=rings", "'critical_force'", false),
+        ("path.contact=rings", "'largest_pull'", false),
+    ] {
+        let spec = format!(
+            "preset='wavy-sphere'\nset=['{set}','path.start_contact_radius=0.2']\nquantities=[{quantities}]\n\
+             [[axis]]\nkey='A'\nvalues=[0.002]"
+        );
+        home.file("s.toml", &spec);
+        let said = home.sweep("s.toml", "r.csv", &["--overwrite"]);
+        assert_eq!(said.contains("inadmissible states of it are not looked for"), is_told, "{spec}: {said}");
+    }
+}
+
+#[test]
 fn pairs_go_together_and_units_are_read() {
     let home = Sweeps::new();
     home.file(

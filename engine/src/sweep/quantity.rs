@@ -2,7 +2,9 @@
 
 use super::fault::Fault;
 use super::stage::{Cell, CurveMinima, Fitting, OnPath, PresetValues};
-use crate::problem::Control;
+use crate::preset::Preset;
+use crate::preset::model::BasisSpec;
+use crate::problem::{ContactKind, Control};
 use crate::report::pull::RunReport;
 use crate::text::{closest, quote};
 use crate::units::Quantity;
@@ -206,6 +208,15 @@ impl SweepQuantity {
     pub fn columns(&'static self) -> impl Iterator<Item = QuantityColumn> {
         let last = if self.is_of_control() { Under::ALL.len() } else { 1 };
         Under::ALL[..last].iter().map(move |(under, _)| QuantityColumn { quantity: self, under: *under })
+    }
+}
+
+impl QuantityColumn {
+    /// Whether it is of an unloading of one disc, in problems like `preset`: whether its states are admissible is not
+    /// looked for, which takes far longer.
+    pub fn is_unchecked(&self, preset: &Preset) -> bool {
+        let is_one_disc = preset.basis != BasisSpec::Exact || preset.path.contact == ContactKind::OneDisc;
+        is_one_disc && matches!(self.quantity.of, Stage::Unloading(_))
     }
 }
 
