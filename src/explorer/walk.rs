@@ -55,8 +55,8 @@ pub enum Action {
         rings: Option<Box<Before>>,
         /// Whether it was stable, or at the end of the stable part: then a stable state is sought.
         was_stable: bool,
-        /// Whether the walk had not left the state it began with: then it begins again if there is no such state.
-        begins: bool,
+        /// How the walk begins again if there is no such state; `None` once it has left the state it began with.
+        begin: Option<Begin>,
     },
     /// The first touch of bodies that were apart, and the state it jumps to.
     Begin,
@@ -69,14 +69,22 @@ impl Action {
         is_move || matches!(self, Self::MoveToLimit { .. } | Self::MoveToContacts { .. })
     }
 
+    /// Goes to where a walk on `curve` begins with `begin`, which need not be that of the curve's preset.
+    pub fn beginning(begin: Begin, curve: &CurveData) -> Self {
+        match begin {
+            Begin::Disc if curve.along.is_none() => Self::MoveTo(curve.case.start),
+            Begin::Disc | Begin::Apart => Self::Begin,
+        }
+    }
+
     /// Solves the state of the walker again for other values; `None` before a walk.
-    pub fn solve(history: &History) -> Option<Self> {
+    pub fn solve(history: &History, begin: Begin) -> Option<Self> {
         let node = history.current()?;
         Some(Self::Solve {
             state: node.state.in_units(node.setting.units()),
             rings: Before::of(node),
             was_stable: node.stability.under(node.control) || matches!(node.kind, NodeKind::Limit),
-            begins: history.has_just_begun(),
+            begin: history.has_just_begun().then_some(begin),
         })
     }
 }
@@ -116,6 +124,22 @@ pub enum WalkOutcome {
 
 /// Does what `request` asks; each new state goes to `emit`, which says whether to go on.
 pub fn walk(request: &Request, emit: &mut dyn FnMut(Node) -> bool) -> WalkOutcome {
+    let mut arrive = |reached: Reached| emit(made(request, reached));
+    let end = match (follow(request, &request.action, &mut arrive), &request.action) {
+        (Err(WalkFailure::NotSolved), Action::Solve { begin: Some(begin), .. }) => {
+            let solved = &mut |reached| arrive(Reached { arrival: Arrival::Solved, ..reached });
+            follow(request, &Action::beginning(*begin, &request.curve), solved)
+        }
+        (end, _) => end,
+    };
+    outcome(request, end)
+}
+
+/// Does `action` on the curve of `request`, or along the path of the device.
+fn follow(request: &Request, action: &Action, arrive: &mut Emit<'_>) -> Walked {
+    if request.curve.along.is_some() {
+        return along(request, action, arrive);
+    }
     let case = &request.curve.case;
     let walk = Walk {
         curve: &request.curve.base.curve,
@@ -126,42 +150,36 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Node) -> bool) -> WalkOutcom
         inward: request.inward,
         length: request.length,
     };
-    let mut arrive = |reached: Reached| emit(made(request, reached));
-    let end = match &request.action {
-        _ if request.curve.along.is_some() => along(request, &mut arrive),
-        Action::Steps(count) => walk.steps(*count, false, &mut arrive),
-        Action::ToLimit | Action::ToEvent(None) => walk.steps(RUN_POINTS, true, &mut arrive),
-        Action::ToEvent(Some(end)) => to_end(&walk, *end, &mut arrive),
-        Action::Run(count) => walk.steps(*count, true, &mut arrive),
-        Action::Jump => walk.jump(&mut arrive),
-        Action::MoveTo(s) => walk.move_to(*s, &mut arrive),
+    match action {
+        Action::Steps(count) => walk.steps(*count, false, arrive),
+        Action::ToLimit | Action::ToEvent(None) => walk.steps(RUN_POINTS, true, arrive),
+        Action::ToEvent(Some(end)) => to_end(&walk, *end, arrive),
+        Action::Run(count) => walk.steps(*count, true, arrive),
+        Action::Jump => walk.jump(arrive),
+        Action::MoveTo(s) => walk.move_to(*s, arrive),
         Action::MoveToContacts { contacts, value, at, .. } => {
-            walk.move_to_contacts(contacts, *value, *at, &mut arrive)
+            walk.move_to_contacts(contacts, *value, *at, arrive)
         }
         Action::MoveToLimit { limit, .. } => match request.curve.limits.get(*limit) {
-            Some(limit) => walk.move_to_limit(limit.contact_radius, &mut arrive),
-            None => return WalkOutcome::Stopped("the curve has since changed".to_owned()),
+            Some(limit) => walk.move_to_limit(limit.contact_radius, arrive),
+            None => Err(WalkFailure::Edges("the curve has since changed".to_owned())),
         },
         Action::MoveToState { .. } => Err(WalkFailure::NoEquilibrium("on a path")),
-        Action::Begin => walk.first_touch(&mut arrive),
-        Action::Solve { state, rings: Some(before), .. } => before.follow(&request.curve, state, &mut arrive),
+        Action::Begin => walk.first_touch(arrive),
+        Action::Solve { state, rings: Some(before), .. } => before.follow(&request.curve, state, arrive),
         Action::Solve { state, rings: None, was_stable, .. } => {
             let units = case.units();
             let value = request.control.value(state.approach / units.length, state.force / units.force);
-            solve(&walk, value, state.contact_radius / units.length, *was_stable, &mut arrive)
+            solve(&walk, value, state.contact_radius / units.length, *was_stable, arrive)
         }
-    };
-    let end = match (end, &request.action) {
-        (Err(WalkFailure::NotSolved), Action::Solve { begins: true, .. }) => {
-            let solved = &mut |reached| arrive(Reached { arrival: Arrival::Solved, ..reached });
-            match request.curve.setting.preset.path.begin {
-                Begin::Disc => walk.move_to(walk.range[0], solved),
-                Begin::Apart => walk.first_touch(solved),
-            }
-        }
-        (end, _) => end,
-    };
+    }
+}
+
+/// How a walk ended, in words where there is something to say.
+fn outcome(request: &Request, end: Walked) -> WalkOutcome {
+    let case = &request.curve.case;
     let length = |r: f64| said(&case.shown, Quantity::Length, r * case.units().length);
+    let turn = Id::Reverse.named();
     match end {
         Ok(WalkEnd::Done) if matches!(request.action, Action::ToLimit | Action::ToEvent(_)) => {
             WalkOutcome::Ended(format!("no limit point and no touch within {RUN_POINTS} steps"))
@@ -175,23 +193,19 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Node) -> bool) -> WalkOutcom
             }
             _ => "the path ends here".to_owned(),
         }),
-        Ok(WalkEnd::AtEnd) => WalkOutcome::Ended(format!(
-            "the end contact radius is reached; {} turns round",
-            Id::Reverse.named()
-        )),
+        Ok(WalkEnd::AtEnd) => {
+            WalkOutcome::Ended(format!("the end contact radius is reached; {turn} turns round"))
+        }
         Ok(WalkEnd::EdgesMeet(radius)) => WalkOutcome::Ended(format!(
-            "the branch ends here: two edges meet at r {}; {} turns round",
-            length(radius),
-            Id::Reverse.named()
+            "the branch ends here: two edges meet at r {}; {turn} turns round",
+            length(radius)
         )),
         Ok(WalkEnd::Vanishes(radius)) => WalkOutcome::Ended(format!(
-            "the branch ends here: the contact at r {} shrinks to nothing; {} turns round",
-            length(radius),
-            Id::Reverse.named()
+            "the branch ends here: the contact at r {} shrinks to nothing; {turn} turns round",
+            length(radius)
         )),
         Ok(WalkEnd::OutOfRange) => WalkOutcome::Ended(format!(
-            "nothing found up to three times the start radius; {} turns round",
-            Id::Reverse.named()
+            "nothing found up to three times the start radius; {turn} turns round"
         )),
         Err(WalkFailure::NotSolved) => {
             let held = match request.control {
@@ -210,7 +224,7 @@ pub fn walk(request: &Request, emit: &mut dyn FnMut(Node) -> bool) -> WalkOutcom
 }
 
 /// The same if the states lie on no single curve: along the path of the device.
-fn along(request: &Request, arrive: &mut Emit<'_>) -> Walked {
+fn along(request: &Request, action: &Action, arrive: &mut Emit<'_>) -> Walked {
     let (curve, case) = (&request.curve, &request.curve.case);
     let path = match &curve.along {
         Some(Ok(path)) => path,
@@ -225,7 +239,7 @@ fn along(request: &Request, arrive: &mut Emit<'_>) -> Walked {
         length: request.length,
     };
     let direction = if request.inward { Direction::Unloading } else { Direction::Loading };
-    match &request.action {
+    match action {
         Action::Steps(count) | Action::Run(count) => along.steps(*count, arrive),
         Action::ToLimit | Action::ToEvent(_) => along.steps(RUN_POINTS, arrive),
         Action::Jump => along.jump(arrive),

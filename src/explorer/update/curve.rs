@@ -83,6 +83,6 @@ pub(super) fn curve_came(
 /// Solves the walker's state for the values of the curve, if it does not lie on it.
 pub(super) fn solve_again(model: &mut Model) -> Option<Vec<Effect>> {
     model.history.current().filter(|node| !model.is_on_curve(node) && !node.is_apart())?;
-    let again = Action::solve(&model.history)?;
+    let again = Action::solve(&model.history, model.preset.path.begin)?;
     Some(walk(model, again))
 }

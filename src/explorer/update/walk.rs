@@ -216,7 +216,7 @@ pub(super) fn walked(
         .filter(|node| {
             !model.is_on_curve(node) && !matches!(node.kind, NodeKind::Stale(_)) && !node.is_apart()
         })
-        .and_then(|_| Action::solve(&model.history));
+        .and_then(|_| Action::solve(&model.history, model.preset.path.begin));
     if let (Some(again), false) = (outdated, model.is_computing()) {
         return Some(walk(model, again));
     }
@@ -323,18 +323,10 @@ pub(in crate::explorer) fn restart(model: &mut Model) -> Vec<Effect> {
         // It was given up or failed before, so it is requested again.
         return vec![want_curve(model)];
     }
-    if model.preset.path.begin == Begin::Apart {
-        model.inward = false;
-        return walk(model, Action::Begin);
-    }
-    if model.curve.as_ref().is_some_and(|curve| curve.along.is_some()) {
-        return walk(model, Action::Begin);
-    }
-    model
-        .curve
-        .as_ref()
-        .map(|curve| curve.case.start)
-        .map_or_else(Vec::new, |s| walk(model, Action::MoveTo(s)))
+    let begin = model.preset.path.begin;
+    model.inward = begin == Begin::Disc;
+    let action = model.curve.as_deref().map(|curve| Action::beginning(begin, curve));
+    action.map_or_else(Vec::new, |action| walk(model, action))
 }
 
 pub(in crate::explorer) fn scale_length(model: &mut Model, by: f64) {
