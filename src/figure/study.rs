@@ -125,7 +125,7 @@ pub fn of(data: &StudyData, preset: &Preset, axes: Axes) -> Figure {
         figure.notes.push(format!("{done} of {count}"));
     }
     if data.wish.column.is_unchecked(&data.wish.preset) {
-        figure.notes.push("one disc: inadmissible states are not looked for".to_owned());
+        figure.notes.push("may be inadmissible (one disc)".to_owned());
     }
     let waits = data.outcomes.iter().filter(|outcome| matches!(outcome, StudyOutcome::Waits)).count();
     let missing = places.iter().filter(|(_, y)| y.is_none()).count().saturating_sub(waits);
