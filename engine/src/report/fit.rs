@@ -619,7 +619,7 @@ impl FitReport {
             header.push(parameter.key.clone());
             header.push(format!("{} error", parameter.key));
             row.push(exact(parameter.value));
-            // Who averages over many files sees no verdicts: an error that does not hold is left out.
+            // A mean over many files does not see their verdicts: an error that does not hold is left out.
             let error = parameter.standard_error.filter(|_| parameter.error_holds);
             row.push(error.map_or_else(String::new, exact));
         }

@@ -155,7 +155,7 @@ impl<'a> Rest<'a> {
     }
 }
 
-/// Whether a value is, or ends with `=` and, a number without a unit.
+/// Whether a value is a number without a unit, or ends with one after `=`.
 fn ends_in_number(text: &str) -> bool {
     text.rsplit('=').next().is_some_and(|number| number.parse::<f64>().is_ok())
 }
