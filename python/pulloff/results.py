@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Tuple
 
 from . import _engine
@@ -115,8 +116,9 @@ class Path(Result):
 
     @property
     def largest_pull(self) -> float:
-        """The smallest force on the path, negative where the bodies stick."""
-        return float(self.totals["largest_pull"]["force"])
+        """The smallest force on the path, negative where the bodies stick; NaN where it ends before anything pulls."""
+        state = self.totals["largest_pull"]
+        return math.nan if state is None else float(state["force"])
 
     @property
     def farthest(self) -> float:

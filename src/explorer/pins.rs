@@ -54,7 +54,7 @@ impl Elements {
             return None;
         }
         let [own, at] = [rings, exact].map(|curve| curve.report.as_ref()?.totals.largest_pull.as_ref());
-        let (own, at) = (own?, at?);
+        let (own, at) = (own?, at.filter(|at| at.force < 0.0)?);
         let Case { basis, reduced, .. } = &rings.case;
         let [approach, s] = [own.approach, at.contact_radius].map(|x| x / reduced.units.length);
         let found = solve(&**basis, reduced, Control::Displacement, approach, s, NewtonSettings::default());

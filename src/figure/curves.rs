@@ -182,7 +182,7 @@ fn limit_marks(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut
     let curve = subject.curve;
     let events: Vec<Mark> = events_before(subject, scale, view).collect();
     let totals = subject.path.map(|path| &path.totals);
-    let pull = totals.and_then(|totals| totals.largest_pull.as_ref());
+    let pull = totals.and_then(|totals| totals.largest_pull.as_ref()).filter(|at| at.force < 0.0);
     let far = totals.and_then(|totals| totals.farthest.as_ref());
     let ends = [(Sign::LargestPull, pull), (Sign::Farthest, far)];
     let ends = ends.into_iter().filter_map(|(sign, at)| {

@@ -439,6 +439,15 @@ fn without_adhesion_nothing_snaps_on_a_sphere() {
     for control in ["force", "stiffness=0.3"] {
         assert_eq!(events(&home.json(&["unload", "fig-1-hertz", "--control", control])).len(), 0);
     }
+    // Nothing pulls: before the bodies are apart there is no largest pull, and at last contact it is none.
+    assert!(document["totals"]["largest_pull"].is_null() && table.contains("largest pull: none"), "{table}");
+    let apart = home.json(&["cycle", "fig-1-hertz"]);
+    for at in
+        ["/totals/largest_pull/force", "/totals/farthest/approach", "/totals/largest_pull/contact_radius"]
+    {
+        assert_eq!(number(&apart, at).to_bits(), 0.0f64.to_bits(), "{at}");
+    }
+    assert!(home.quiet(&["cycle", "fig-1-hertz"]).contains("largest pull: 0: nothing pulls\n"));
     let trace = home.json(&["trace", "fig-1-hertz"]);
     assert_eq!(trace["limit_points"], Value::Array(Vec::new()));
     for point in trace["points"].as_array().unwrap() {

@@ -458,6 +458,8 @@ fn a_problem_without_adhesion_or_waves_can_be_walked() {
     assert_eq!(session.kind(), NodeKind::Step);
     session.does(Id::NextEvent);
     assert!(session.status().contains("end contact radius"), "{}", session.status());
+    session.does(Id::MoveTo);
+    assert!(session.status().contains("nothing pulls on this path"), "{}", session.status());
     session.does(Id::MuchMore).set("path.control", "force").set("path.control", "0.15");
     assert!(session.model.curve_error.is_none());
 }

@@ -152,7 +152,8 @@ pub struct PassedReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TotalsReport {
-    /// The state of the smallest force: its force is negative where the bodies stick.
+    /// The state of the smallest force: its force is negative where the bodies stick, and 0 at the last contact where
+    /// nothing pulls. Null where the path ends pressed together, before anything pulls.
     pub largest_pull: Option<StateReport>,
     /// The state of the smallest approach.
     pub farthest: Option<StateReport>,

@@ -162,9 +162,11 @@ fn outcome(report: &PathReport) -> String {
     }
     let shown = |quantity, x| ascii_unit(units, quantity, x, |x| significant(x, 7));
     if let Some(at) = &totals.largest_pull {
-        let name = if at.force < 0.0 { "largest pull" } else { "smallest force" };
         let ratio = ratio(at.force, report.head.problem.critical_force);
-        let _ = writeln!(text, "{name}: {}{ratio}", shown(Quantity::Force, at.force));
+        let none = if at.force < 0.0 { "" } else { ": nothing pulls" };
+        let _ = writeln!(text, "largest pull: {}{ratio}{none}", shown(Quantity::Force, at.force));
+    } else if report.has_reached_its_end {
+        text += "largest pull: none: the bodies are still pressed together where the path ends\n";
     }
     if let Some(at) = &totals.farthest {
         let _ = writeln!(text, "farthest: delta {}", shown(Quantity::Length, at.approach));

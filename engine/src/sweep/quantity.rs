@@ -66,7 +66,8 @@ macro_rules! quantities {
 }
 
 quantities! {
-    "largest_pull" "P" Force "smallest force of the unloading, negative: the largest pull": Stage::Unloading(OnPath::largest_pull);
+    "largest_pull" "P" Force "smallest force of the unloading, negative: the largest pull; 0 or empty where nothing pulls":
+        Stage::Unloading(OnPath::largest_pull);
     "farthest" "δ" Length "smallest approach of the unloading": Stage::Unloading(OnPath::farthest);
     "last_contact_force" "P" Force "force at the last contact of the unloading":
         Stage::Unloading(|path| path.last_contact(|state| state.force));

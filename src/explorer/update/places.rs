@@ -46,6 +46,9 @@ pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
         };
         return model.refuse(format!("there is no path, so it has no largest pull: {why}"));
     };
+    if path.has_reached_its_end && path.totals.largest_pull.as_ref().is_none_or(|at| at.force >= 0.0) {
+        return model.refuse("nothing pulls on this path, so it has no largest pull".to_owned());
+    }
     if let Some(Ok(along)) = &curve.along {
         let least = along.largest_pull();
         let at = along.states.iter().position(|state| least.is_some_and(|least| std::ptr::eq(state, least)));

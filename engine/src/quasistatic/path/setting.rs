@@ -196,14 +196,21 @@ impl Path {
         self.states.first()
     }
 
-    /// The state of the smallest force, the largest pull where that is negative.
+    /// The state of the smallest force: the largest pull, or, where nothing pulls, the last contact, which leaves without
+    /// a force. `None` where the path ends before that, pressed together.
     pub fn largest_pull(&self) -> Option<&PathState> {
-        self.states.iter().min_by(|a, b| a.force.total_cmp(&b.force))
+        self.least(|state| state.force).filter(|state| state.force <= 0.0)
     }
 
     /// The state of the smallest approach.
     pub fn farthest(&self) -> Option<&PathState> {
-        self.states.iter().min_by(|a, b| a.approach.total_cmp(&b.approach))
+        self.least(|state| state.approach)
+    }
+
+    /// The first state in which a number is smallest. Contact that shrinks to nothing ends in none of the states.
+    fn least(&self, of: impl Fn(&PathState) -> f64) -> Option<&PathState> {
+        let last = self.last_contact().and_then(|event| event.before.as_ref());
+        self.states.iter().chain(last).min_by(|a, b| of(a).total_cmp(&of(b)))
     }
 
     /// How the contact ended: the bodies came apart with it, or a zone alone went on holding them.
