@@ -163,13 +163,21 @@ impl Layout {
             return Err(wrong("is not written as a sweep writes it"));
         }
         let last = fields.len() - 1;
-        let is_cell = |at: usize| fields[at].is_empty() || fields[at].parse::<f64>().is_ok();
-        if let Some(at) = (known.len()..last).find(|at| !is_cell(*at)) {
-            return Err(wrong_field(at, "a number or nothing"));
-        }
         let fault = Fault::reason_of(&fields[last]);
         if fault.is_none() && !fields[last].is_empty() {
             return Err(wrong_field(last, "a fault or nothing"));
+        }
+        for at in known.len()..last {
+            let is_count = QuantityColumn::named(&self.columns[at]).is_ok_and(|of| of.quantity.is_count);
+            let (is_cell, expected) = match (&fields[at], is_count) {
+                ("", true) => (fault.is_some(), "a whole number, or nothing in a row with an error"),
+                ("", false) => (true, ""),
+                (cell, true) => (cell.parse::<usize>().is_ok(), "a whole number"),
+                (cell, false) => (cell.parse().is_ok_and(f64::is_finite), "a finite number or nothing"),
+            };
+            if !is_cell {
+                return Err(wrong_field(at, expected));
+            }
         }
         let has_quantity = (known.len()..last).any(|at| !fields[at].is_empty());
         Ok(RowOutcome { fault, has_quantity })

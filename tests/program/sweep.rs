@@ -400,12 +400,24 @@ fn shards_join_to_the_single_run() {
     // A part with a changed row, and one that was stopped.
     let text = home.text("2.csv");
     let row = text.lines().nth(2).unwrap();
+    let with = |at: usize, cell: &str| {
+        let mut cells: Vec<&str> = row.split(',').collect();
+        cells[at] = cell;
+        cells.join(",")
+    };
     for (changed, wrong) in [
         (row.replacen(",0.001,", ",0.0011,", 1), "row 4: column gap.amplitude is 0.0011, expected 0.001"),
         (row.replacen("4,", "7,", 1), "row 4: column row is 7, expected 4"),
         (row.replacen(",0.001,", ",\"0.001\",", 1), "row 4: is not written as a sweep writes it"),
         (row.split_once(',').unwrap().0.to_owned(), "row 4: column gap.amplitude is empty, expected 0.001"),
         (row.replacen(",0.001,0.03,", ",0.001,0.03,x", 1), "row 4: column last_contact_force is x-"),
+        (with(3, "nan"), "row 4: column last_contact_force is nan, expected a finite number or nothing"),
+        (with(3, "1e999"), "row 4: column last_contact_force is 1e999, expected a finite number or nothing"),
+        (with(4, "7.5"), "row 4: column snaps_force is 7.5, expected a whole number"),
+        (
+            with(4, ""),
+            "row 4: column snaps_force is empty, expected a whole number, or nothing in a row with an error",
+        ),
         (format!("{row}why"), "row 4: column error is why, expected a fault or nothing"),
         (format!("{row},"), "row 4: has 9 fields, expected 8"),
     ] {

@@ -70,7 +70,9 @@ pub fn measure(
         if progress.stop() {
             return None;
         }
-        measured.cells.push(cell.map(|cell| work.shown(cell, column.quantity)));
+        let shown = cell.map(|cell| work.shown(cell, column.quantity));
+        // A ratio to nothing, such as that to the pull of a sphere without adhesion, is no value.
+        measured.cells.push(shown.filter(|cell| !matches!(cell, Cell::Number(x) if !x.is_finite())));
     }
     Some(measured)
 }

@@ -20,7 +20,19 @@ pub struct SweepQuantity {
     pub unit: Quantity,
     /// Its meaning in one line, for tables.
     pub meaning: &'static str,
+    /// Whether it is a whole number, which every row has unless it has a fault.
+    pub is_count: bool,
     pub(super) of: Stage,
+}
+
+/// The unit of a quantity: counts are pure numbers.
+macro_rules! unit {
+    (Count) => {
+        Quantity::Number
+    };
+    ($unit:ident) => {
+        Quantity::$unit
+    };
 }
 
 /// What a quantity is computed from. Each stage needs all the stages before it, except that the paths need only the
@@ -44,21 +56,23 @@ pub(super) enum Stage {
     Fit(fn(&Fitting) -> Option<Cell>),
 }
 
-/// Makes [`QUANTITIES`] from the table: name, symbol, unit, meaning, and what it is computed from; or,
+/// Makes [`QUANTITIES`] from the table: name, symbol, unit or `Count`, meaning, and what it is computed from; or,
 /// after `fitted`, the key whose value a fit gives: then its standard error is a quantity too.
 macro_rules! quantities {
     ($($name:literal $symbol:literal $unit:ident $meaning:literal $($fitted:ident $key:literal)? $(: $of:expr)?;)*) => {
         /// The quantities.
         pub static QUANTITIES: &[SweepQuantity] = &[$(
             SweepQuantity {
-                name: $name, symbol: $symbol, unit: Quantity::$unit,
+                name: $name, symbol: $symbol, unit: unit!($unit),
+                is_count: matches!(stringify!($unit).as_bytes(), b"Count"),
                 meaning: concat!(
                     $meaning, $(" ", stringify!($fitted), " to the measured curve; empty where it is not free")?
                 ),
                 of: $(Stage::Fit(|fit| fit.value($key)))? $($of)?,
             },
             $(SweepQuantity {
-                name: concat!($name, "_error"), symbol: "", unit: Quantity::$unit, meaning: "its standard error",
+                name: concat!($name, "_error"), symbol: "", unit: unit!($unit), is_count: false,
+                meaning: "its standard error",
                 of: Stage::Fit(|fit| fit.error($key)),
             },)?
         )*];
@@ -75,7 +89,7 @@ quantities! {
         Stage::Unloading(|path| path.last_contact(|state| state.approach));
     "last_contact_radius" "s" Length "contact radius at the last contact":
         Stage::Unloading(|path| path.last_contact(|state| state.contact_radius));
-    "snaps" "" Number "jumps inward before the last contact": Stage::Unloading(|path| Some(path.snaps()));
+    "snaps" "" Count "jumps inward before the last contact": Stage::Unloading(|path| Some(path.snaps()));
     "snap_loss" "" Energy "energy lost in all of them": Stage::Unloading(|path| Some(path.snap_loss()));
     "last_contact_loss" "" Energy "energy lost at the last contact; empty under a dead load":
         Stage::Unloading(OnPath::last_contact_loss);
@@ -94,9 +108,9 @@ quantities! {
         Stage::Loop(|whole| whole.first_touch(|state| state.force));
     "first_touch_radius" "s" Length "outermost edge of the contact after that jump":
         Stage::Loop(|whole| whole.first_touch(|state| state.contact_radius));
-    "touches" "" Number "crests that touched outside the contact on the way up, after the first touch":
+    "touches" "" Count "crests that touched outside the contact on the way up, after the first touch":
         Stage::Loop(|whole| Some(whole.touches()));
-    "rings_at_most" "" Number "most rings of contact at a time in the stable states of the loop, not counting a disc":
+    "rings_at_most" "" Count "most rings of contact at a time in the stable states of the loop, not counting a disc":
         Stage::Loop(|whole| Some(whole.rings_at_most()));
     "contact_share" "" Number "contact area at the turn over that of the circle within its outermost edge":
         Stage::Loop(OnPath::contact_share);
@@ -106,11 +120,11 @@ quantities! {
         Stage::Pull(|run| run.last_contact.map(|last| Cell::Number(last.time)));
     "dissipated" "" Energy "what the edge dissipates in that pull; empty under a dead load":
         Stage::Pull(|run| run.dissipated.map(Cell::Number));
-    "tension_peaks" "" Number "force minima of that pull with a fall and a rise of more than 1 % of P_c":
+    "tension_peaks" "" Count "force minima of that pull with a fall and a rise of more than 1 % of P_c":
         Stage::Pull(|run| Some(Cell::Count(run.tension_peaks.len())));
     "top_edge_speed" "v" Speed "largest speed of the edge in the snaps of that pull":
         Stage::Pull(|run| Some(Cell::Number(run.top_edge_speed)));
-    "limit_points" "" Number "limit points of the control on the curve": Stage::Limits;
+    "limit_points" "" Count "limit points of the control on the curve": Stage::Limits;
     "start_contact_radius" "s" Length "contact radius at the start, the largest of the curve":
         Stage::Start(|start| Some(start.contact_radius()));
     "least_force" "P" Force "smallest force of the curve": Stage::Curve(|line| line.least(|s| s.force));
@@ -145,11 +159,11 @@ quantities! {
     "fitted_baseline" "P₀" Force "baseline of the force" fitted "data.baseline";
     "fitted_tilt" "" ForcePerLength "tilt of the baseline" fitted "data.tilt";
     "fit_chi_squared" "" Number "chi squared per point of the fit": Stage::Fit(|fit| Some(fit.chi_squared()));
-    "fit_outliers" "" Number "points far from the fitted curve": Stage::Fit(|fit| Some(fit.outliers()));
-    "fit_verdict" "" Number "0 where the model describes the points, 4 where it does not; then no value can be \
+    "fit_outliers" "" Count "points far from the fitted curve": Stage::Fit(|fit| Some(fit.outliers()));
+    "fit_verdict" "" Count "0 where the model describes the points, 4 where it does not; then no value can be \
                              trusted":
         Stage::Fit(|fit| Some(fit.verdict()));
-    "fit_warnings" "" Number "number of reasons and warnings of the fit; pulloff fit lists them":
+    "fit_warnings" "" Count "number of reasons and warnings of the fit; pulloff fit lists them":
         Stage::Fit(|fit| Some(fit.warnings()));
 }
 
