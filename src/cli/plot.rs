@@ -252,6 +252,7 @@ impl PlotArguments {
         for text in notes.iter().chain(&branches.notes) {
             console.note(Some(text));
         }
+        console.warn(branches.swapped().as_slice());
         console.warn(branches.doubt().as_slice());
         Ok(())
     }

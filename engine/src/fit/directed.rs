@@ -148,7 +148,7 @@ fn directed(
     });
     let along = |turned: Turned, sigma, options: &Options, progress: &ProgressPart| {
         let asked = Asked { turned: Some(turned), sigma, ..options.asked };
-        let branches = points.branches(&asked)?;
+        let branches = Branches { looks_swapped: branches.looks_swapped, ..points.branches(&asked)? };
         fit_branches(preset, &branches, &Options { asked, ..options.clone() }, progress)
     };
     let second = along(other, sigma, &options.without_intervals(), &ProgressPart::new(progress, [0.3, 0.6]));

@@ -154,6 +154,7 @@ impl<'a> Posed<'a> {
         let mut warnings = doubts(evidence, &fitted, (&reasons, is_known));
         warnings.extend(too_small(&fitted));
         let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
+        warnings.extend(branches.swapped());
         let fitted_preset = laid(preset, &problem, (&found, closing, &problem.instrument_at(u)), &mut notes);
         let lists =
             |c: nalgebra::DMatrix<f64>| c.row_iter().map(|row| row.iter().copied().collect()).collect();

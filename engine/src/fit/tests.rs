@@ -80,6 +80,7 @@ impl Body<'_> {
             steps: [1e-30; 3],
             segments: Some(Vec::new()),
             time: None,
+            is_said: false,
         };
         for segment in [Segment::Approach, Segment::Retraction] {
             for i in 0..n / 2 {
@@ -218,6 +219,7 @@ fn what_cannot_be_told_apart_is_refused_and_named() {
     let fit = run(&preset(&SPHERE.replace("2.0", "1.5"), 3.9, 0.007, ""), &three, &["R", E, W]);
     close(&fit, &[2.0, 1.3, 0.02], 1e-7);
     assert!(fit.direction.is_none());
+        is_said: false,
     // P over s alone gives E*/R and γ E*.
     let two = Points { abscissa: Abscissa::Radius, x: three.radius.clone().unwrap(), radius: None, ..three };
     close(&run(&preset(SPHERE, 3.9, 0.007, ""), &two, &[E, W]), &[1.3, 0.02], 1e-8);
@@ -267,6 +269,7 @@ fn a_long_free_part_does_not_hide_which_way_the_columns_run() {
         let found = points.branches(&Asked::default()).unwrap();
         let contact = found.list[0].attached.len() as f64;
         assert_eq!((found.turned, found.or), (turned, None), "{share}");
+            is_said: false,
         assert!((contact - share * f64::from(ROWS)).abs() < 4.0, "{share}: {contact}");
     }
 }

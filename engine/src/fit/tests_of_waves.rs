@@ -49,7 +49,16 @@ fn unloaded(preset: &Preset, n: usize) -> Points {
     let x: Vec<f64> = (0..n).map(|i| top + (i as f64 + 0.5) / n as f64 * (bottom - top)).collect();
     let force = x.iter().map(|delta| stable(*delta).unwrap_or(0.0)).collect();
     let segments = Some(vec![Segment::Retraction; n]);
-    Points { abscissa: Abscissa::Approach, x, force, radius: None, steps: [1e-30; 3], segments, time: None }
+    Points {
+        abscissa: Abscissa::Approach,
+        x,
+        force,
+        radius: None,
+        steps: [1e-30; 3],
+        segments,
+        time: None,
+        is_said: false,
+    }
 }
 
 /// Our own loop of a preset up to the control value `top`, `n` samples each way, evenly spaced in δ or in the way of
@@ -95,6 +104,7 @@ fn looped(preset: &Preset, top: f64, n: usize) -> Points {
         steps: [1e-30; 3],
         segments: Some(Vec::new()),
         time: None,
+        is_said: false,
     };
     for (segment, direction) in
         [(Segment::Approach, Direction::Loading), (Segment::Retraction, Direction::Unloading)]
@@ -176,6 +186,7 @@ fn banded(works: [f64; 2], top: f64, n: usize) -> (Points, f64) {
         steps: [1e-30; 3],
         segments,
         time: None,
+        is_said: false,
     };
     (points, turned.contact_radius)
 }
@@ -234,6 +245,7 @@ fn loading_with_rings_of_contact_is_left_out_and_told() {
         steps: [1e-30; 3],
         segments: Some(Vec::new()),
         time: None,
+        is_said: false,
     };
     let mut add = |x: f64, force: f64, segment: Segment| {
         points.x.push(x);

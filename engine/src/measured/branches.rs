@@ -21,7 +21,7 @@ pub use super::points::MeasuredPoint;
 use super::points::{Abscissa, Points, Turned, turn};
 use super::role::Segment;
 use super::sigma::noise;
-use super::signs::{Orientation, UnsignedPoints};
+use super::signs::{Orientation, UnsignedPoints, is_swapped};
 use super::turns::{by_time, one_way, rises, runs};
 use thiserror::Error;
 
@@ -45,6 +45,8 @@ pub struct Branches {
     pub turned: Turned,
     /// Other signs with comparable evidence.
     pub or: Option<Turned>,
+    /// Whether x and P look swapped; the user says that they are not.
+    pub looks_swapped: bool,
     /// Whether nothing but the file itself speaks for the sign of x as it is there.
     pub is_as_in_file: bool,
     /// The ranges of x, P and s over the points that are used.
@@ -68,6 +70,11 @@ impl Branches {
                 signs_text(self.turned)
             )
         })
+    }
+
+    /// A sentence on columns that look swapped.
+    pub fn swapped(&self) -> Option<String> {
+        self.looks_swapped.then(|| format!("{}; they are read as specified", BranchError::Swapped))
     }
 }
 
@@ -141,6 +148,10 @@ impl Points {
             notes.push(format!("{repeated} rows repeat the row before and are left out"));
         }
         let of_radius = self.abscissa == Abscissa::Radius;
+        let looks_swapped = self.looks_swapped(&points, asked);
+        if looks_swapped && !self.is_said {
+            return Err(BranchError::Swapped);
+        }
         let Orientation { turned, or, unless_apart } = self.directed(&mut points, asked, &mut notes)?;
         let free = self.free_part(&points, asked.free, turned)?;
         // Contact radii, which are zero while apart, are never turned.
@@ -200,6 +211,7 @@ impl Points {
             baseline,
             turned,
             or,
+            looks_swapped,
             is_as_in_file,
             ranges,
             notes,
@@ -258,12 +270,19 @@ impl Points {
                 Ok(Orientation { turned, or: None, unless_apart: None })
             }
             None => {
-                let is_in_order = disorder(points, segments) <= UNORDERED;
-                let seen =
-                    UnsignedPoints { abscissa: self.abscissa, segments, is_in_order, free: asked.free };
-                seen.signs(points, notes).ok_or(BranchError::Swapped)
+                let seen = UnsignedPoints { abscissa: self.abscissa, segments, free: asked.free };
+                Ok(seen.signs(points, notes))
             }
         }
+    }
+
+    /// Whether x stands still while P changes, as in columns that are swapped. This shows only if the rows are in order,
+    /// and does not matter where the signs are given.
+    fn looks_swapped(&self, points: &[MeasuredPoint], asked: &Asked) -> bool {
+        asked.turned.is_none()
+            && self.abscissa != Abscissa::Radius
+            && disorder(points, self.segments.as_deref()) <= UNORDERED
+            && is_swapped(points)
     }
 
     /// Which rows are apart, if the user specifies it: converted from the signs of the file to those of `points`.

@@ -74,6 +74,8 @@ pub struct Points {
     pub segments: Option<Vec<Segment>>,
     /// When each was measured, in seconds or in reduced units; `None` if the file does not say.
     pub time: Option<Vec<f64>>,
+    /// Whether the user says which columns they are, which nothing in them refutes.
+    pub is_said: bool,
 }
 
 /// Why columns yield no points.
@@ -262,7 +264,8 @@ impl Measured {
         let time =
             column(ColumnRole::Time).filter(|time| *units != UnitSystem::Reduced || time.unit.is_none());
         let time = time.map(|time| base(time).0);
-        Ok(Points { abscissa, x, force, radius, steps, segments: self.segments.clone(), time })
+        let (segments, is_said) = (self.segments.clone(), self.is_said);
+        Ok(Points { abscissa, x, force, radius, steps, segments, time, is_said })
     }
 }
 

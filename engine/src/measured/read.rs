@@ -71,6 +71,7 @@ pub fn parse(bytes: &[u8], spec: &ColumnSpec) -> Result<Measured, CurveReadError
     let settings = FileSettings::of(&pieces.outline.words);
     let mut measured = Measured {
         header: pieces.header.as_ref().map(|header| header.line),
+        is_said: !spec.0.is_empty(),
         is_computed: pieces.header.as_ref().is_some_and(Header::is_computed),
         ..Measured::default()
     };

@@ -56,6 +56,8 @@ pub struct Measured {
     pub lines: Vec<usize>,
     /// What would give the same columns, if the user said it; empty for two branches side by side.
     pub used: Vec<UsedColumn>,
+    /// Whether the user says which columns they are.
+    pub is_said: bool,
     /// The column of x, in words, if it is read as an approach and its heading may as well mean a position.
     pub open: Option<String>,
     /// How many rows have no number in a column that is used; they are left out.

@@ -29,24 +29,18 @@ pub(super) struct Orientation {
 pub(super) struct UnsignedPoints<'a> {
     pub(super) abscissa: Abscissa,
     pub(super) segments: Option<&'a [Segment]>,
-    /// Whether the rows are in order.
-    pub(super) is_in_order: bool,
     /// Which rows are apart, as the user specifies.
     pub(super) free: FreePart,
 }
 
 impl UnsignedPoints<'_> {
-    /// Sets the signs that the free end and the rise in contact indicate. `None` where x stands still while P changes,
-    /// as in columns that are swapped; this shows only if the rows are in order.
-    pub(super) fn signs(&self, points: &mut [MeasuredPoint], notes: &mut Vec<String>) -> Option<Orientation> {
+    /// Sets the signs that the free end and the rise in contact indicate.
+    pub(super) fn signs(&self, points: &mut [MeasuredPoint], notes: &mut Vec<String>) -> Orientation {
         if self.abscissa == Abscissa::Radius {
-            return Some(self.of_force(points, [false; 2], notes));
+            return self.of_force(points, [false; 2], notes);
         }
         let x: Vec<f64> = points.iter().map(|point| point.x).collect();
         let force: Vec<f64> = points.iter().map(|point| point.force).collect();
-        if self.is_in_order && is_swapped(&x, &force) {
-            return None;
-        }
         // What contact radii or the names of the branches say is no guess.
         let known = by_radii(points).or_else(|| self.by_segments(points));
         let end = match self.free {
@@ -56,7 +50,7 @@ impl UnsignedPoints<'_> {
                     let [x, force] = found.turned;
                     notes.extend(x.then(|| self.turned_x()));
                     notes.extend(force.then(|| PULLED.to_owned()));
-                    return Some(found);
+                    return found;
                 }
                 match known {
                     Some(is_turned) => [!is_turned, is_turned],
@@ -89,7 +83,7 @@ impl UnsignedPoints<'_> {
             turn(points, [true, false]);
             notes.push(self.turned_x());
         }
-        Some(Orientation { unless_apart: other, ..self.of_force(points, turned, notes) })
+        Orientation { unless_apart: other, ..self.of_force(points, turned, notes) }
     }
 
     /// Whether the sign of x is reversed, by the branches that a column names; `None` where they disagree, x stands
@@ -252,11 +246,12 @@ fn pulls(points: &[MeasuredPoint], segments: Option<&[Segment]>) -> Option<bool>
 
 /// Whether x stands still at the beginning or the end of the file while P changes. A position never does this, but the
 /// force of bodies apart does, apart from its noise.
-fn is_swapped(x: &[f64], force: &[f64]) -> bool {
+pub(super) fn is_swapped(points: &[MeasuredPoint]) -> bool {
     /// The rows at either end, one in this many of all, and the shares of both ranges there.
     const ROWS: usize = 20;
     const STILL: f64 = 0.015;
     const GOES_ON: f64 = 0.02;
+    let (x, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
     let count = (x.len() / ROWS).max(END_ROWS).min(x.len());
     let share = |of: &[f64], rows: std::ops::Range<usize>| {
         let (first, last) = of[rows].split_at(count / 2);
@@ -265,7 +260,7 @@ fn is_swapped(x: &[f64], force: &[f64]) -> bool {
     };
     [0..count, x.len() - count..x.len()]
         .into_iter()
-        .any(|rows| share(x, rows.clone()) < STILL && share(force, rows) > GOES_ON)
+        .any(|rows| share(&x, rows.clone()) < STILL && share(&force, rows) > GOES_ON)
 }
 
 /// Whether P rises with x in the outer fifth of x; `None` if it neither rises nor falls.

@@ -150,6 +150,11 @@ fn flipped_signs_are_turned_and_said_and_swapped_columns_refused() {
     // With noise, too, the force of bodies apart stays constant.
     let noisy: Vec<_> = jkr(5e-4).iter().map(|(x, p, back)| (*p, *x, *back)).collect();
     assert!(branches(&csv(&noisy)) == Err(BranchError::Swapped));
+    // Who names the columns is believed, and told.
+    let said = ColumnSpec::parse("approach=1,force=2").unwrap();
+    let points = parse(csv(&swapped).as_bytes(), &said).unwrap().points(&UnitSystem::Reduced, None).unwrap();
+    let told = points.branches(&Asked::default()).unwrap().swapped().unwrap();
+    assert!(told.ends_with("look swapped; they are read as specified"), "{told}");
 }
 
 #[test]

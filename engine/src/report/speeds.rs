@@ -295,7 +295,7 @@ impl SpeedsReport {
             return Err(SpeedsError::Nothing);
         }
         let mut warnings = case.warnings_of_problem();
-        warnings.extend(branches.doubt());
+        warnings.extend(branches.swapped().into_iter().chain(branches.doubt()));
         if rows.len() < of_file.len() {
             warnings.push(format!(
                 "{} rows in contact are left out: no contact with tension at its edge has their force there",

@@ -333,7 +333,8 @@ fn tell_points(model: &mut Model, preset: &Preset) {
             // What was assumed about the columns, and how many rows were left out.
             let of_file = preset.notes_of_reading().unwrap_or_default();
             let notes = of_file.into_iter().chain(branches.notes.iter().cloned());
-            let said: Vec<String> = branches.doubt().into_iter().chain([read]).chain(notes).collect();
+            let said: Vec<String> =
+                branches.swapped().into_iter().chain(branches.doubt()).chain([read]).chain(notes).collect();
             model.tell(Level::Info, said.join("; "));
         }
         Err(why) => model.tell(Level::Error, format!("{name} is not drawn: {why}")),
