@@ -1,10 +1,12 @@
 //! Keys as typed: the whole key, its last part, or the symbol on the screen.
 
+use super::family::parameter_key;
 use super::groups::{self, GROUPS};
 use super::invalid::Invalid;
 use super::model::{Preset, unknown_key};
 use super::rows::parameter;
 use super::schema::{CHOOSERS, Key, PARAMETERS, Parameter};
+use crate::gap::formula::Formula;
 use crate::text::{greek, quote};
 use std::borrow::Cow;
 
@@ -22,13 +24,13 @@ pub fn settable(preset: &Preset) -> impl Iterator<Item = Parameter> {
     preset.rows().map(Cow::into_owned).chain(GROUPS.iter().cloned())
 }
 
-/// The rows with this name: if some have a value in this preset, only those. What is shown in which unit is no value of
-/// the problem, and has no short names.
+/// The rows with this name: if some have a value in this preset, only those; if not, those of its shape, if there are
+/// some. What is shown in which unit is no value of the problem, and has no short names.
 pub fn rows_called(preset: &Preset, name: &str) -> Vec<Parameter> {
     let rows = settable(preset).filter(|row| row.key == name || !row.key.starts_with(DISPLAY));
     let rows = rows.filter(|row| is_called(row, name));
     let (own, others): (Vec<_>, Vec<_>) = rows.partition(|row| preset.get(&row.key).is_some());
-    if own.is_empty() { others } else { own }
+    if own.is_empty() { preferred(others, |row| row.fits(CHOOSERS[0], preset.gap.name())) } else { own }
 }
 
 /// The key of a preset with this name.
@@ -43,12 +45,31 @@ pub fn key_called(preset: &Preset, name: &str) -> Result<Key, Invalid> {
     one(name, rows.into_iter().map(|row| row.key)).unwrap_or_else(|| Err(preset.unknown_key(name)))
 }
 
-/// The same where the preset is not complete; `shape` is what is known of its gap.
-pub(super) fn key_anywhere(shape: Option<&str>, name: &str) -> Result<Key, Invalid> {
+/// Those of `rows` that are `better`, or all of them if none is.
+fn preferred<T>(rows: Vec<T>, better: impl Fn(&T) -> bool) -> Vec<T> {
+    let (better, others): (Vec<T>, Vec<T>) = rows.into_iter().partition(better);
+    if better.is_empty() { others } else { better }
+}
+
+/// The same where the preset is not complete; `shape` and `formula` are what is known of its gap. Of several rows, those
+/// in a table that `is_used`.
+pub(super) fn key_anywhere(
+    shape: Option<&str>,
+    formula: Option<&str>,
+    is_used: &dyn Fn(&str) -> bool,
+    name: &str,
+) -> Result<Key, Invalid> {
     let fits = |row: &&Parameter| shape.is_none_or(|shape| row.fits(CHOOSERS[0], shape));
     let rows = PARAMETERS.iter().filter(fits).chain(&GROUPS).filter(|row| !row.key.starts_with(DISPLAY));
-    let rows = rows.filter(|row| is_called(row, name));
-    one(name, rows.map(|row| row.key.clone())).unwrap_or_else(|| Err(unknown_key(name, shape)))
+    let rows = rows.filter(|row| is_called(row, name)).collect();
+    let rows = preferred(rows, |row: &&Parameter| row.table().is_some_and(is_used));
+    // A formula names its parameters even where they have no values yet.
+    let own = formula.filter(|_| shape.is_none_or(|shape| shape == "formula"));
+    let own = own.and_then(|text| Formula::parse(text).ok());
+    let own = own.filter(|formula| formula.parameters().iter().any(|own| own == name));
+    let own = own.map(|_| parameter_key(name).into());
+    one(name, rows.into_iter().map(|row| row.key.clone()).chain(own))
+        .unwrap_or_else(|| Err(unknown_key(name, shape)))
 }
 
 /// The only one of `keys`; `None` where there are none.

@@ -41,6 +41,9 @@ pub enum Invalid {
     /// A `--set` argument without `=`.
     #[error("an assignment is KEY=VALUE, as in gap.amplitude=0.002")]
     Assignment,
+    /// A `--set` argument without anything before `=`.
+    #[error("nothing stands before the =; an assignment is KEY=VALUE, as in gap.amplitude=0.002")]
+    NoKey,
     /// The name of a table used for a value.
     #[error("{table} is a table, not {found}; set one of its keys, such as {example}")]
     NotTable {
@@ -262,6 +265,7 @@ impl Invalid {
             | Self::UnknownGroup { .. }
             | Self::Syntax { .. }
             | Self::Assignment
+            | Self::NoKey
             | Self::NotTable { .. }
             | Self::MissingTable { .. } => None,
         }

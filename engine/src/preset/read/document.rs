@@ -127,6 +127,9 @@ impl Sheet {
             return self.mistake(origin, Invalid::Assignment);
         };
         let key = key.trim();
+        if key.is_empty() {
+            return self.mistake(origin, Invalid::NoKey);
+        }
         let parsed = DeValue::parse(text.trim());
         let inner = parsed.as_ref().ok().and_then(|value| value.get_ref().as_table());
         if let (family::WAVE_TABLE, Ok(Some(waves))) =
@@ -158,8 +161,11 @@ impl Sheet {
         if let Ok(preset) = self.clone().finish() {
             return key_called(&preset, name);
         }
-        let shape = self.entries.get(CHOOSERS[0]).and_then(|entry| entry.value.as_ref().ok());
-        key_anywhere(shape.map(ToString::to_string).as_deref(), name)
+        let text = |key: &str| Some(self.entries.get(key)?.value.as_ref().ok()?.to_string());
+        let is_used = |table: &str| {
+            self.entries.keys().any(|key| key.rsplit_once('.').is_some_and(|(of, _)| of == table))
+        };
+        key_anywhere(text(CHOOSERS[0]).as_deref(), text("gap.formula").as_deref(), &is_used, name)
     }
 
     pub(super) fn syntax(&mut self, text: &str, error: &toml::de::Error) {

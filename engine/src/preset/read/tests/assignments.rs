@@ -92,6 +92,18 @@ fn a_key_may_be_given_by_its_last_part_or_its_symbol() {
     assert_eq!(set(&["shape=sphere", "R=2"]), set(&["gap.shape=sphere", "gap.radius_of_curvature=2"]));
     let power = ["gap.shape=power-law", "gap.coefficient=1", "gap.exponent=3"];
     assert_eq!(set(&["shape=power-law", "c=1", power[2]]), set(&power));
+    // Of two exponents, that of a table that is used.
+    assert_eq!(set(&["shape=power-law", "c=1", "exponent=3"]), set(&power));
+    // A wave has no exponent, but its edge may have one.
+    assert!(messages(WAVY, &["exponent=3"])[0].contains("edge.exponent"));
+    let both = ["shape=power-law", "edge.reference_speed=1", "exponent=3"];
+    assert!(
+        messages(WAVY, &both).concat().contains("exponent is short for several: gap.exponent, edge.exponent")
+    );
+    // A formula names its parameters before they have values.
+    let formula = ["gap.shape=formula", "gap.formula=r^2/(2*R) + B*r^4", "gap.parameters.R=1"];
+    let of = |last: &'static str| set(&[&formula[..], &[last]].concat());
+    assert_eq!(of("B=2"), of("gap.parameters.B=2"));
     assert_eq!(set(&["gamma'=0.04"]), set(&["groups.adhesion=0.04"]));
     // The unit of a stiffness on the screen is no value.
     assert_eq!(set(&["stiffness=3"]), set(&["path.control.stiffness=3"]));
@@ -117,7 +129,7 @@ fn a_wrong_assignment_is_named() {
             "--set gap.wavelenght=1: unknown key gap.wavelenght; did you mean gap.wavelength?",
         ),
         ("gap=1", "--set gap=1: gap is a table, not \"1\"; set one of its keys, such as gap.shape"),
-        ("=1", "--set =1: unknown key "),
+        ("=1", "--set =1: nothing stands before the =; an assignment is KEY=VALUE"),
         (
             "path.start_contact_radius=0.001",
             "--set path.start_contact_radius=0.001: path.end_contact_radius = 0.002 is not below",
