@@ -21,7 +21,7 @@ use crate::plot::{Width, series, svg, table};
 use crate::print::{FormatError, PictureFormat};
 use crate::store::stream;
 use crate::sweep::SweepResults;
-use crate::sweep::record::statistic;
+use crate::sweep::record::{ROW, statistic};
 use clap::{Args, ValueEnum};
 use pulloff_engine::case::Case;
 use pulloff_engine::preset::{Preset, data};
@@ -132,7 +132,7 @@ pub fn run(arguments: &PlotArguments) -> Result<ExitCode, Failure> {
     let console = arguments.messages.open();
     let format = format(arguments.destination.path())?;
     if let Some(path) = &arguments.sweep {
-        arguments.draw_sweep(path, format)?;
+        arguments.draw_sweep(path, format, &console)?;
         return console.end();
     }
     if arguments.quantity.is_some() {
@@ -161,9 +161,9 @@ pub fn run(arguments: &PlotArguments) -> Result<ExitCode, Failure> {
 
 impl PlotArguments {
     /// Draws the results of a sweep, and writes them as they are drawn where they are wanted.
-    fn draw_sweep(&self, path: &Path, format: PictureFormat) -> Result<(), Failure> {
+    fn draw_sweep(&self, path: &Path, format: PictureFormat, console: &Console) -> Result<(), Failure> {
         let sinks = self.sinks(Inputs::default().with_results(path))?;
-        let (picture, data) = self.of_sweep(path)?;
+        let (picture, data) = self.of_sweep(path, console)?;
         sinks.figure.write(format.bytes(&picture)?)?;
         if let Some((sink, data)) = sinks.data.zip(data) {
             sink.write(data)?;
@@ -258,9 +258,11 @@ impl PlotArguments {
     }
 
     /// The picture of the results of a sweep, with its data where they are wanted.
-    fn of_sweep(&self, path: &Path) -> Result<(String, Option<String>), Failure> {
+    fn of_sweep(&self, path: &Path, console: &Console) -> Result<(String, Option<String>), Failure> {
         let results = SweepResults::open(path).map_err(MapChartError::from)?;
         let quantity = self.quantity_of(&results)?;
+        let partial = results.partial().map_err(MapChartError::from)?;
+        console.warn(partial.map(|has| format!("--sweep {has}: the figure shows no others")).as_slice());
         let axis = match &results.axes[..] {
             [] => {
                 let what = "--sweep: an ensemble without an axis has one row of statistics and nothing to draw it over";
@@ -290,6 +292,11 @@ impl PlotArguments {
     fn quantity_of<'a>(&'a self, results: &'a SweepResults) -> Result<&'a str, Failure> {
         let all = results.quantities();
         match (self.quantity.as_deref(), &all[..]) {
+            (Some(quantity), all) if quantity == ROW || results.axes.iter().any(|axis| axis == quantity) => {
+                let what = if quantity == ROW { "numbers the rows" } else { "is an axis of the sweep" };
+                let others = all.join(", ");
+                Err(Failure::Usage(format!("--quantity {quantity}: {what}; choose one of {others}")))
+            }
             (Some(quantity), _) => Ok(quantity),
             (None, [only]) => Ok(only),
             (None, all) if all.contains(&QUANTITY) => Ok(QUANTITY),

@@ -1,6 +1,7 @@
 //! Reads the results of a sweep: columns by name.
 
 use super::record::{ERROR, ROW, statistic};
+use super::shard::Shard;
 use super::sidecar::{ColumnInfo, Sidecar, SidecarError};
 use crate::mend::mend;
 use pulloff_engine::text::{closest, quote, sanitize, show_path};
@@ -36,6 +37,8 @@ pub struct SweepResults {
     pub is_statistics: bool,
     /// The number of rows of the whole sweep; fewer may exist.
     pub rows: u64,
+    /// The part of the sweep that the results are to have.
+    pub shard: Shard,
 }
 
 impl SweepResults {
@@ -44,8 +47,8 @@ impl SweepResults {
         let (sidecar, _) = Sidecar::read(path)?;
         let axes = sidecar.axes();
         let (is_random, is_statistics) = (sidecar.is_random(), sidecar.is_statistics());
-        let (path, columns, rows) = (path.to_owned(), sidecar.columns, sidecar.rows);
-        Ok(Self { path, columns, axes, is_random, is_statistics, rows })
+        let (path, shard, rows) = (path.to_owned(), sidecar.shard(), sidecar.rows);
+        Ok(Self { path, columns: sidecar.columns, axes, is_random, is_statistics, rows, shard })
     }
 
     /// The title of an axis that shows this column.
@@ -70,6 +73,17 @@ impl SweepResults {
         }
         let is_other = |name: &&str| [ROW, ERROR].contains(name) || self.axes.iter().any(|axis| axis == name);
         names.filter(|name| !is_other(name)).collect()
+    }
+
+    /// How much of the sweep the results have, in words; `None` where they have all of it.
+    /// Errors: As [`texts`](Self::texts).
+    pub fn partial(&self) -> Result<Option<String>, ResultsError> {
+        let found = self.cells(ROW, |_| Some(()))?.len();
+        let part =
+            if self.shard == Shard::WHOLE { String::new() } else { format!(" (shard {})", self.shard) };
+        let (path, rows) = (show_path(&self.path), self.rows);
+        Ok(((found as u64) < rows)
+            .then(|| format!("{path}: has {found} of the {rows} rows of the sweep{part}")))
     }
 
     /// Whether there are statistics of this quantity and no column of its own.

@@ -371,9 +371,38 @@ fn a_sweep_over_one_axis_is_a_curve_with_gaps() {
         let (status, said) = refused(folder.path(), &["--sweep", "r.csv", "--quantity", column]);
         assert!(status == Some(2) && said.contains(words), "{column}: {said}");
     }
+    for (column, words) in [("gap.amplitude", "is an axis of the sweep"), ("row", "numbers the rows")] {
+        let (status, said) = refused(folder.path(), &["--sweep", "r.csv", "--quantity", column]);
+        let words = format!("--quantity {column}: {words}; choose one of kesari_lew");
+        assert!(status == Some(2) && said.contains(&words), "{said}");
+    }
     std::fs::write(&path, &results).unwrap();
     let (status, said) = refused(folder.path(), &["--sweep", "r.csv", "--quantity", "error"]);
     assert!(status == Some(2) && said.contains("the column error is empty in every row"), "{said}");
+}
+
+#[test]
+fn a_part_of_a_sweep_is_drawn_and_said_to_be_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let spec = "preset = \"wavy-sphere\"\nquantities = [\"kesari_lew\"]\n[[axis]]\nkey = \"gap.amplitude\"\n\
+                linear = { from = 1e-3, to = 2e-3, count = 8 }\n";
+    std::fs::write(folder.path().join("s.toml"), spec).unwrap();
+    for (shard, expected) in [
+        (
+            "1/4",
+            "warning: --sweep r.csv: has 2 of the 8 rows of the sweep (shard 1/4): the figure shows no others\n",
+        ),
+        ("1/1", ""),
+    ] {
+        let sweep = ["sweep", "s.toml", "-o", "r.csv", "--shard", shard, "--overwrite", "-q"];
+        assert!(pulloff(folder.path(), &sweep).status.success());
+        let output = pulloff(folder.path(), &["plot", "--sweep", "r.csv", "-o", "r.svg", "--overwrite"]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            output.status.success() && said.contains(expected) && said.is_empty() == expected.is_empty(),
+            "{said}"
+        );
+    }
 }
 
 #[test]
