@@ -189,6 +189,17 @@ fn three_speeds_are_fitted_together() {
     assert_eq!(document["runs"].as_array().unwrap().len(), 3);
     let written = home.text("law.toml");
     assert!(written.contains("reference_speed") && !written.contains("exponent = 0.5\n"), "{written}");
+    // A fast pull alone tells how much G grows, and whether the error of that holds.
+    for (free, status, holds) in
+        [("gamma,v0", 0, "in base units\n"), ("gamma,v0,edge.exponent", 4, "; its error is not known")]
+    {
+        let ended = home.run(&["fit", "fast.csv", "soft.toml", "--free", free]);
+        let growth = ended.out.split_inclusive('\n').find(|line| line.contains("K = gamma/v0^n")).unwrap();
+        assert!(
+            ended.status == status && growth.contains(holds) && growth.contains("+-") == (status == 0),
+            "{growth}"
+        );
+    }
     // A file with another work of adhesion does not follow the law.
     let ended = fit(&["slow.csv", "other.csv"], &[]);
     assert_eq!(ended.status, 4, "{}", ended.err);

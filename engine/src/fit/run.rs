@@ -117,7 +117,6 @@ impl<'a> Posed<'a> {
     ) -> Result<Fit, FitError> {
         let Self { preset, branches, options, problem, starts, solved, mut notes } = self;
         let u = &solved.minimum.parameters;
-        notes.extend(growth(&problem, u, &what));
         let unseen = unseen(&problem, &solved, (&what, &scatter), options.robust, progress);
         let is_unseen = unseen.is_some();
         if let Some(direction) = unseen {
@@ -149,18 +148,20 @@ impl<'a> Posed<'a> {
             Evidence { problem: &problem, solved: &solved, scatter: &scatter, inner: what.inner.as_ref() };
         let mut reasons = reasons(evidence, &found, branches.clipped);
         reasons.extend(of_sparse(branches, preset));
+        let verdict = verdict(ending, what.errors.is_some(), &reasons);
+        notes.extend(growth(&problem, u, &what, verdict));
         let is_known = [Origin::Given, Origin::Apart].contains(&branches.noise.from[1]);
         let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
         let mut warnings = doubts(evidence, &fitted, (&reasons, is_known));
         warnings.extend(too_small(&fitted));
-        let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
         warnings.extend(branches.swapped());
+        let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
         let fitted_preset = laid(preset, &problem, (&found, closing, &problem.instrument_at(u)), &mut notes);
         let lists =
             |c: nalgebra::DMatrix<f64>| c.row_iter().map(|row| row.iter().copied().collect()).collect();
         let left = real.len().saturating_sub(problem.taken()).max(1) as f64;
         Ok(Fit {
-            verdict: verdict(ending, what.errors.is_some(), &reasons),
+            verdict,
             reasons,
             abscissa: branches.abscissa,
             correlations: what.correlations.map(lists),
@@ -201,7 +202,7 @@ fn verdict(ending: Ending, is_determined: bool, reasons: &[Reason]) -> Verdict {
 
 /// How much G of a fast edge grows, G − γ = K vⁿ with K = γ/v₀ⁿ, where its law is fitted. K is known better than γ and
 /// v₀, about which a fast pull alone tells nothing more.
-fn growth(problem: &FitProblem, u: &[f64], what: &Determined) -> Option<String> {
+fn growth(problem: &FitProblem, u: &[f64], what: &Determined, verdict: Verdict) -> Option<String> {
     if !is_pulled(&problem.preset) {
         return None;
     }
@@ -220,9 +221,14 @@ fn growth(problem: &FitProblem, u: &[f64], what: &Determined) -> Option<String> 
         let along = DVector::from_fn(slopes.len(), |j, _| slopes[j] * errors[j]);
         (correlations * &along).dot(&along).max(0.0).sqrt() * value
     });
+    let holds = match (&error, verdict) {
+        (None, _) => "; its error is not known, as the points do not determine all values",
+        (_, Verdict::Describes) => "",
+        _ => "; this error does not hold, as the model does not describe the points",
+    };
     let error = error.map_or_else(String::new, |error| format!(" +- {}", significant(error, 2)));
     Some(format!(
-        "a fast edge costs K v^n more than gamma, with K = gamma/v0^n = {}{error} in base units",
+        "a fast edge costs K v^n more than gamma, with K = gamma/v0^n = {}{error} in base units{holds}",
         significant(value, 4)
     ))
 }

@@ -169,6 +169,10 @@ fn a_spring_is_part_of_the_way_and_can_be_fitted() {
     close(&fit, &[1.3, 0.02], 1e-8);
     let told = fit.notes.iter().find(|note| note.starts_with("with k 10 % larger: E* −")).unwrap();
     assert!(told.contains("; with k 10 % smaller: E* +"), "{told}");
+    // Beside an approach it plays no part.
+    let rigid = Body { compliance: 0.0, ..body }.samples(600);
+    let fit = run(&preset(SPHERE, 3.9, 0.0066, "control={stiffness=0.8}"), &rigid, &[E, W]);
+    assert!(!fit.notes.iter().any(|note| note.contains("with k")), "{:?}", fit.notes);
     let fit = run(&preset(SPHERE, 1.5, 0.015, "control={stiffness=0.9}"), &points, &[E, W, "k"]);
     close(&fit, &[1.3, 0.02, 0.8], 1e-8);
     // A stiffness held at a wrong value shows in χ², where the noise is known.
@@ -215,11 +219,11 @@ fn what_cannot_be_told_apart_is_refused_and_named() {
         steps: [1e-30; 3],
         segments,
         time: None,
+        is_said: false,
     };
     let fit = run(&preset(&SPHERE.replace("2.0", "1.5"), 3.9, 0.007, ""), &three, &["R", E, W]);
     close(&fit, &[2.0, 1.3, 0.02], 1e-7);
     assert!(fit.direction.is_none());
-        is_said: false,
     // P over s alone gives E*/R and γ E*.
     let two = Points { abscissa: Abscissa::Radius, x: three.radius.clone().unwrap(), radius: None, ..three };
     close(&run(&preset(SPHERE, 3.9, 0.007, ""), &two, &[E, W]), &[1.3, 0.02], 1e-8);
@@ -265,11 +269,11 @@ fn a_long_free_part_does_not_hide_which_way_the_columns_run() {
             steps: [1e-30; 3],
             segments: None,
             time: None,
+            is_said: false,
         };
         let found = points.branches(&Asked::default()).unwrap();
         let contact = found.list[0].attached.len() as f64;
         assert_eq!((found.turned, found.or), (turned, None), "{share}");
-            is_said: false,
         assert!((contact - share * f64::from(ROWS)).abs() < 4.0, "{share}: {contact}");
     }
 }

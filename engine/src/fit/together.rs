@@ -363,13 +363,15 @@ fn known(
     let degrees = ((all().map(of_rows).sum::<f64>() - p as f64) / lost).max(1.0);
     let none = |condition, direction| JointUncertainty { condition, direction, covariance: None, degrees };
     let jacobian = with_derivatives(minimum.at.jacobian.clone(), &joint.priors, 1.0);
-    let white = White::of(jacobian.clone(), joint.priors.len());
+    let white = White::of(jacobian, joint.priors.len());
     let Some(White { condition, inner, weakest, .. }) = white else {
         return none(f64::INFINITY, None);
     };
     let Some(inner) = inner else {
         let preset = &joint.curves[0].problem.preset;
-        let words = words(preset, &joint.parameters(), &jacobian, &minimum.parameters, &weakest);
+        // The sentence is about the noise of points, not about values given with an error.
+        let of_points = &minimum.at.jacobian;
+        let words = words(preset, &joint.parameters(), of_points, &minimum.parameters, &weakest);
         return none(condition, Some(words));
     };
     let [mut points, mut bread] = [DMatrix::<f64>::zeros(p, p), DMatrix::zeros(p, p)];

@@ -15,8 +15,11 @@ const ROWS: usize = 240;
 const ROUNDS: usize = 40;
 /// A change of a value, or of its logarithm where it is positive, that counts as none.
 const STILL: f64 = 1e-9;
+/// The same of a logarithm in words, which have a tenth of a per cent.
+const UNSEEN: f64 = 5e-4;
 
-/// `k 10 % larger: E* -8.0 %, γ +7.1 %; …`: what the fit would be with another spring; `None` where there is none, or it is free.
+/// `k 10 % larger: E* -8.0 %, γ +7.1 %; …`: what the fit would be with another spring; `None` where there is none,
+/// it is free, or it moves no value: beside an approach it decides only where the edge snaps.
 pub(in crate::fit) fn of_spring(
     problem: &FitProblem,
     solved: &SolvedFit,
@@ -32,7 +35,7 @@ pub(in crate::fit) fn of_spring(
     // same part.
     let problem = &problem.thinned(ROWS);
     let own = solve(problem, &solved.minimum.parameters, robust, ROUNDS, progress)?.minimum.parameters;
-    let mut told = Vec::new();
+    let (mut told, mut plays) = (Vec::new(), false);
     for (factor, words) in [(1.1, "10 % larger"), (0.9, "10 % smaller")] {
         let mut other = problem.clone();
         other.preset.set(KEY, Value::Number(factor * k)).ok()?;
@@ -44,7 +47,10 @@ pub(in crate::fit) fn of_spring(
             found.minimum.ending == Ending::Converged && moves
         });
         let words = match found {
-            None => format!("{words}: no fit"),
+            None => {
+                plays |= problem.abscissa == Abscissa::Position;
+                format!("{words}: no fit")
+            }
             Some(found) => {
                 let changes: Vec<String> = problem
                     .parameters
@@ -53,6 +59,7 @@ pub(in crate::fit) fn of_spring(
                     .filter(|(_, parameter)| parameter.scale.is_none())
                     .map(|(j, parameter)| {
                         let change = found.minimum.parameters[j] - own[j];
+                        plays |= change.abs() >= UNSEEN;
                         let name = letter(&problem.preset, &parameter.key());
                         format!("{name} {:+.1} %", 100.0 * exp_m1(change)).replace('-', "−")
                     })
@@ -62,5 +69,5 @@ pub(in crate::fit) fn of_spring(
         };
         told.push(words);
     }
-    Some(format!("with k {}", told.join("; with k ")))
+    plays.then(|| format!("with k {}", told.join("; with k ")))
 }
