@@ -92,6 +92,19 @@ fn points_lie_behind_every_view_that_has_their_columns_and_go_again() {
         session.status()
     );
     assert_eq!(drawn(&session, View::ForceApproach)[0].len(), 350);
+    // So does a file whose rows make no branches, and a value that leaves too few of them.
+    let kept = session.model.preset.clone();
+    let jumbled: Vec<String> = (0..40).map(|i| format!("{},{}", (i * 17) % 40, i % 3)).collect();
+    std::fs::write(&path, format!("delta [um],force [mN]\n{}\n", jumbled.join("\n"))).unwrap();
+    for (line, why) in [
+        (format!("data {}", path.display()), "bad.csv: the rows are not in order"),
+        (format!("set {}=698", data::SKIP), "shipped:lens.csv: only 2 rows are left"),
+    ] {
+        says(&mut session, &line);
+        let said = session.status();
+        assert!(said.starts_with(why) && said.ends_with("the data stay as they were"), "{said}");
+        assert_eq!(session.model.preset, kept);
+    }
     session.does(Command::Browse { key: data::FILE.into(), folder: Some(session.folder.path().to_owned()) });
     let Some(Question::File(key, folder)) = session.model.question.take() else { panic!("no folder") };
     assert_eq!((&*key, &*folder.files), (data::FILE, &["bad.csv".to_owned()][..]));

@@ -130,8 +130,9 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
         }
         value => value.and_then(|value| put(&mut preset, key, value)),
     };
-    match result {
-        Ok(said) => {
+    match (result, loses_points(model, &preset)) {
+        (Ok(_), Some(why)) => model.refuse(why),
+        (Ok(said), None) => {
             if row.key == "gap.formula" {
                 let before = before_tried(model).clone();
                 tell_new_parameters(model, &before, &preset);
@@ -145,7 +146,7 @@ pub(super) fn set(model: &mut Model, key: &str, text: &str) -> Vec<Effect> {
             }
             change(model, preset)
         }
-        Err(invalid) => model.refuse(invalid.to_string()),
+        (Err(invalid), _) => model.refuse(invalid.to_string()),
     }
 }
 
@@ -307,9 +308,26 @@ pub(super) fn rows_came(model: &mut Model, rows: Arc<ProfileRows>) -> Vec<Effect
 
 /// The outcome of assignments, after a file was read or at once: reports a measured curve and what was found in it.
 pub(super) fn assigned(model: &mut Model, preset: Preset) -> Vec<Effect> {
+    if let Some(why) = loses_points(model, &preset) {
+        return model.refuse(why);
+    }
     model.untried = None;
     tell_points(model, &preset);
     change(model, preset)
+}
+
+/// Why the data of `preset` yield no points, if those of the session did until now: it keeps them.
+fn loses_points(model: &Model, preset: &Preset) -> Option<String> {
+    let before = before_tried(model);
+    let why = preset.branches()?.err().filter(|_| preset.data != before.data)?;
+    let had_none = before.branches().is_some_and(|branches| branches.is_err());
+    (!had_none).then(|| format!("{}: {why}; the data stay as they were", file_name(preset)))
+}
+
+/// The name of the file of the measured curve, safe to show.
+fn file_name(preset: &Preset) -> String {
+    let path = preset.data.source.as_ref().map(|source| source.path()).unwrap_or_default();
+    path.file_name().map_or_else(String::new, |name| show_name(&name.to_string_lossy()))
 }
 
 /// Reports how many points `preset` has by branch and part, if they differ from before or are read differently.
@@ -318,9 +336,8 @@ fn tell_points(model: &mut Model, preset: &Preset) {
     if model.preset.data.source == preset.data.source && taken(&model.preset) == taken(preset) {
         return;
     }
-    let (Some(source), Some(branches)) = (&preset.data.source, preset.branches()) else { return };
-    let path = source.path();
-    let name = path.file_name().map_or_else(String::new, |name| show_name(&name.to_string_lossy()));
+    let Some(branches) = preset.branches() else { return };
+    let name = file_name(preset);
     match branches {
         Ok(branches) => {
             let parts = branches.list.iter().map(|branch| {
