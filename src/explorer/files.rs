@@ -209,12 +209,13 @@ fn named(store: &Store, start: &Beginning) -> Result<(String, Vec<Assignment>), 
     let none = &[] as &[&str];
     let source = store.resolve(&name).map_err(|error| error.to_string())?;
     let now = store.load(&source, none).map_err(|error| error.to_string())?.preset;
+    let wanted = start.preset.anywhere();
     // Applied to the file as a whole, as a replay does.
     let leads_there = |assignments: &Vec<Assignment>| {
         let laid: Vec<String> = assignments.iter().map(|(key, text)| format!("{key}={text}")).collect();
-        store.load(&source, &laid).is_ok_and(|back| back.preset == start.preset)
+        store.load(&source, &laid).is_ok_and(|back| back.preset == wanted)
     };
-    let ways = [Some(differences(&now, &start.preset)), changes(&now, &start.preset)];
+    let ways = [Some(differences(&now, &wanted)), changes(&now, &wanted)];
     let assignments = ways.into_iter().flatten().find(leads_there).ok_or_else(|| lost(&start.source))?;
     Ok((name, assignments))
 }

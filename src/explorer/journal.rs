@@ -141,7 +141,7 @@ impl Journal {
 
     pub(super) fn begin(&mut self, source: Source, preset: Preset) {
         let inward = preset.path.begin == Begin::Disc;
-        let replay = Replay { preset: preset.clone(), inward, length: FIRST_LENGTH };
+        let replay = Replay { preset: preset.anywhere(), inward, length: FIRST_LENGTH };
         let (start, replay) = (Some(Box::new(Beginning { source, preset })), Some(Box::new(replay)));
         *self = Self { kept: KeptJournal { start, replay, ..KeptJournal::default() }, ..Self::default() };
     }
@@ -244,7 +244,7 @@ impl Journal {
         self.write(command);
         let (Some(replay), Some(node)) = (&mut self.kept.replay, node) else { return };
         if !matches!(node.kind, NodeKind::Stale(_)) {
-            let mut preset = node.setting.preset.clone();
+            let mut preset = node.setting.preset.anywhere();
             preset.title.clone_from(&replay.preset.title);
             preset.path.control = replay.preset.path.control;
             preset.path.begin = replay.preset.path.begin;
@@ -262,14 +262,16 @@ impl Journal {
     /// Writes what a replay needs to have set before the next line: values, direction, step length.
     fn sync(&mut self, preset: &Preset, way: Option<(bool, f64)>, may_fail: bool) {
         let Some(mut replay) = self.kept.replay.take() else { return };
-        if replay.preset != *preset {
-            match changes(&replay.preset, preset) {
+        // The script may be run from another folder.
+        let preset = preset.anywhere();
+        if replay.preset != preset {
+            match changes(&replay.preset, &preset) {
                 Some(all) => self.write_line(may_fail, &Command::Assign(all)),
                 None => {
                     self.kept.broken = Some("a value that was dropped cannot be put in a script".to_owned());
                 }
             }
-            replay.preset = preset.clone();
+            replay.preset = preset;
         }
         if let Some((inward, length)) = way {
             if replay.inward != inward {

@@ -26,8 +26,13 @@ impl Scripts {
 
     /// Runs `script` from standard input.
     fn run(&self, script: &str, arguments: &[&str]) -> Ended {
+        self.run_in("here", script, arguments)
+    }
+
+    /// The same in another folder.
+    fn run_in(&self, folder: &str, script: &str, arguments: &[&str]) -> Ended {
         let mut command = self.0.command(&[&["run", "-"], arguments].concat());
-        command.current_dir(self.at("here"));
+        command.current_dir(self.at(folder));
         let mut child =
             command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         // A refused script may not be read to its end.
@@ -66,6 +71,41 @@ fn a_script_walks_and_exports_and_its_session_walks_again() {
     let curve: serde_json::Value =
         serde_json::from_slice(&fs::read(home.at("here/curve.json")).unwrap()).unwrap();
     assert!(curve["points"].as_array().unwrap().len() > 100);
+}
+
+#[test]
+fn an_exported_script_finds_its_files_from_any_folder() {
+    let home = Scripts::new();
+    fs::create_dir(home.at("there")).unwrap();
+    for (name, factor) in [("a.csv", 0.1), ("b.csv", 0.2)] {
+        let rows: Vec<String> =
+            (0..50).map(|i| format!("{},{}", 0.01 * f64::from(i), factor * f64::from(i * i))).collect();
+        fs::write(home.at("here").join(name), format!("delta,force\n{}\n", rows.join("\n"))).unwrap();
+    }
+    let rows: Vec<String> = (0..20).map(f64::from).map(|i| format!("{i}, {}", i * i / 1000.0)).collect();
+    fs::write(home.at("here/scan.csv"), format!("r, h\n{}\n", rows.join("\n"))).unwrap();
+    let own = "[material]\neffective_modulus=1\nwork_of_adhesion=0.1\n[gap]\nshape='profile'\nfile='scan.csv'\n\
+               [path]\nstart_contact_radius=5\n";
+    fs::write(home.at("here/own.toml"), own).unwrap();
+    for (at, begins) in [
+        "open wavy-sphere data.file=a.csv\nstep 2\nset data.file=b.csv\nstep\n",
+        "open wavy-sphere\nset data.file=a.csv gap.amplitude=0.003\nstep 2\n",
+        "open own.toml\nset data.file=a.csv\nstep 2\n",
+        "open fig-3-jkr\nset gap.shape=profile gap.file=scan.csv path.start_contact_radius=5\nstep\n",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let there = format!("../there/{at}.pulloff");
+        home.quiet(&format!("{begins}export script {there}\nexport walk {at}.csv\n"), &["--anywhere"]);
+        let script = fs::read_to_string(home.at(&format!("there/{at}.pulloff"))).unwrap();
+        let ended = home.run_in("there", &format!("{script}export walk {at}.csv\n"), &[]);
+        assert_eq!((ended.status, &*ended.err), (0, ""), "{script}");
+        let walk = |folder: &str| fs::read_to_string(home.at(&format!("{folder}/{at}.csv"))).unwrap();
+        // A column may hold the names of files.
+        let above = format!("{}/", home.at("here").display());
+        assert_eq!(walk("here"), walk("there").replace(&above, ""), "{script}");
+    }
 }
 
 #[test]

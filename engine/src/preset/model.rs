@@ -181,15 +181,31 @@ impl Preset {
     /// to it if they lie in it or below it, otherwise absolute.
     #[must_use]
     pub fn placed_in(&self, folder: &Path) -> Self {
+        self.renamed(|own, name| moved(own, name, folder))
+    }
+
+    /// The same preset with absolute names for the files relative to the current folder, so that it means the same files
+    /// from any other.
+    #[must_use]
+    pub fn anywhere(&self) -> Self {
+        self.renamed(|own, name| {
+            let is_absolute = name.starts_with(measured::SHIPPED_DATA) || Path::new(name).is_absolute();
+            let path = std::path::absolute(name).ok().filter(|_| own.is_none() && !is_absolute)?;
+            path.to_str().map(str::to_owned)
+        })
+    }
+
+    /// The same preset with its files under the names that `name` makes of their folders and names; `None` keeps one.
+    fn renamed(&self, name: impl Fn(Option<&Path>, &str) -> Option<String>) -> Self {
         let mut preset = self.clone();
         if let Shape::Profile(measured) = &self.gap {
             let rows = measured.rows();
-            if let Some(name) = moved(rows.folder.as_deref(), &rows.name, folder) {
+            if let Some(name) = name(rows.folder.as_deref(), &rows.name) {
                 preset.gap = Shape::Profile(Arc::new(MeasuredGap::clone(measured).named(name)));
             }
         }
         if let Some(source) = &self.data.source
-            && let Some(name) = moved(source.folder.as_deref(), &source.name, folder)
+            && let Some(name) = name(source.folder.as_deref(), &source.name)
         {
             preset.data.source = Some(Arc::new(source.named(name, source.folder.clone())));
         }
