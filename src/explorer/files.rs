@@ -43,7 +43,7 @@ pub fn run(store: &Store, job: Job) -> Done {
                 Ok(()) => {
                     // Found here, its branches need not be found later where nobody may wait for them.
                     let _ = preset.branches();
-                    Done::Assigned(preset)
+                    Done::Assigned(preset, assignments)
                 }
                 Err(invalid) => {
                     let reason = WordedFault::mendable(invalid.to_string());

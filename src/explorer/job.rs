@@ -103,7 +103,8 @@ pub enum Done {
     /// Names and titles of the presets.
     Named(Vec<[String; 2]>),
     Browsed(Key, Box<Folder>),
-    Assigned(Box<Preset>),
+    /// A preset with other values for some keys, and those.
+    Assigned(Box<Preset>, Vec<Assignment>),
     /// A measured curve whose columns must be named, and why.
     Foreign(Box<Foreign>, WordedFault),
     Read(Arc<ProfileRows>),

@@ -89,7 +89,7 @@ fn allowed(model: &mut Model, command: Command) -> Vec<Effect> {
 fn file_came(model: &mut Model, done: Done) -> Vec<Effect> {
     if matches!(
         done,
-        Done::Opened(_) | Done::Read(_) | Done::Assigned(_) | Done::Foreign(..) | Done::Failed(_)
+        Done::Opened(_) | Done::Read(_) | Done::Assigned(..) | Done::Foreign(..) | Done::Failed(_)
     ) {
         model.awaits = Awaits::Nothing;
     }

@@ -105,6 +105,9 @@ fn points_lie_behind_every_view_that_has_their_columns_and_go_again() {
         assert!(said.starts_with(why) && said.ends_with("the data stay as they were"), "{said}");
         assert_eq!(session.model.preset, kept);
     }
+    // A file that is there already is told to be.
+    says(&mut session, &format!("data {}", kept.data.source.as_ref().unwrap().name));
+    assert_eq!(session.status(), "data is already shipped:lens.csv");
     session.does(Command::Browse { key: data::FILE.into(), folder: Some(session.folder.path().to_owned()) });
     let Some(Question::File(key, folder)) = session.model.question.take() else { panic!("no folder") };
     assert_eq!((&*key, &*folder.files), (data::FILE, &["bad.csv".to_owned()][..]));

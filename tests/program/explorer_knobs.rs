@@ -309,3 +309,19 @@ fn a_bare_number_of_an_si_preset_says_that_it_is_si_and_a_unit_may_stand_apart()
         assert!(given.starts_with("stiffness=2000"), "{given}: {}", session.status());
     }
 }
+
+#[test]
+fn a_value_that_is_so_already_is_told_to_be() {
+    let mut session = Session::new("wavy-sphere");
+    for (line, said) in [
+        ("set A=0.0025", "A is already 0.0025"),
+        ("set A=0.0025 lambda=0.05", "A is already 0.0025, λ is already 0.05"),
+        ("set path.rate=none", "rate is already none"),
+        ("control displacement", "control is already displacement"),
+    ] {
+        session.does(parse(line).unwrap().unwrap());
+        assert_eq!(session.status(), said);
+    }
+    session.does(parse("set A=0.003 lambda=0.05").unwrap().unwrap());
+    assert!(!session.status().contains("already"), "{}", session.status());
+}

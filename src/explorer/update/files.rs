@@ -120,7 +120,7 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
             model.question = Some(Question::Preset(listing));
         }
         Done::Browsed(key, folder) => model.question = Some(Question::File(key, folder)),
-        Done::Assigned(preset) => return assigned(model, *preset),
+        Done::Assigned(preset, assignments) => return assigned(model, *preset, &assignments),
         Done::Foreign(foreign, reason) => {
             model.tell(Level::of(&reason), reason.text);
             model.question = Some(Question::Columns(foreign));

@@ -12,7 +12,7 @@ use pulloff_engine::gap::shapes::ProfileRows;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::preset::family::is_parameter;
 use pulloff_engine::preset::invalid::Invalid;
-use pulloff_engine::preset::schema::{Kind, RADIUS_OVER_CURVATURE, START_KEYS};
+use pulloff_engine::preset::schema::{Kind, NONE, RADIUS_OVER_CURVATURE, START_KEYS};
 use pulloff_engine::preset::{Preset, Row, Value, groups};
 use pulloff_engine::problem::Start;
 use pulloff_engine::report::number::{short, with_unit};
@@ -90,6 +90,17 @@ fn tell_idle(model: &mut Model, key: &str, changed: &Preset) {
         let start = Id::Restart.named();
         model.tell(Level::Info, format!("the walker stays; {start} goes to where the path now begins"));
     }
+}
+
+/// Says that the values are the same already.
+fn tell_same(model: &mut Model, assignments: &[Assignment]) {
+    let preset = &model.preset;
+    let said = assignments.iter().filter_map(|(key, _)| {
+        let (row, value) = (preset.row(key)?, preset.get(key).unwrap_or_else(|| NONE.into()));
+        Some(labelled_with(&row, &value, &preset.units, " is already "))
+    });
+    let said = greek(&said.collect::<Vec<_>>().join(", "));
+    model.tell(Level::Info, said);
 }
 
 /// The initial values of a formula's new parameters; a former parameter with a similar name may be what was meant.
@@ -278,7 +289,7 @@ pub(super) fn assign(model: &mut Model, assignments: Vec<Assignment>) -> Vec<Eff
                 tell_bare(model, key, text, &preset);
                 tell_idle(model, key, &preset);
             }
-            assigned(model, preset)
+            assigned(model, preset, &assignments)
         }
         Err(invalid) => model.refuse(invalid.to_string()),
     }
@@ -307,9 +318,12 @@ pub(super) fn rows_came(model: &mut Model, rows: Arc<ProfileRows>) -> Vec<Effect
 }
 
 /// The outcome of assignments, after a file was read or at once: reports a measured curve and what was found in it.
-pub(super) fn assigned(model: &mut Model, preset: Preset) -> Vec<Effect> {
+pub(super) fn assigned(model: &mut Model, preset: Preset, assignments: &[Assignment]) -> Vec<Effect> {
     if let Some(why) = loses_points(model, &preset) {
         return model.refuse(why);
+    }
+    if preset == *before_tried(model) {
+        tell_same(model, assignments);
     }
     model.untried = None;
     tell_points(model, &preset);
