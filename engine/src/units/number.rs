@@ -30,6 +30,14 @@ pub fn short(x: f64, digits: usize) -> String {
     if text.contains('e') { text } else { trim_zeros(&text).to_owned() }
 }
 
+/// `x` with `digits` significant digits in a column whose largest number is `largest`: what rounding has left of zero
+/// is zero.
+pub fn in_column(x: f64, digits: usize, largest: f64) -> String {
+    /// A solver's equations hold to about this share of what they contain.
+    const ROUNDING: f64 = 1e-12;
+    significant(if x.abs() <= ROUNDING * largest.abs() { 0.0 } else { x }, digits)
+}
+
 /// `x` with as many digits as are needed to read back the very same number.
 pub fn exact(x: f64) -> String {
     format!("{x:?}")
@@ -48,9 +56,11 @@ pub fn loss(x: f64) -> String {
     if (0.1..1e5).contains(&x.abs()) { significant(x, 4) } else { format!("{x:.3e}") }
 }
 
-/// `x` with this many decimals.
+/// `x` with this many decimals; a zero has no sign.
 pub fn fixed(x: f64, decimals: usize) -> String {
-    format!("{x:.decimals$}")
+    let text = format!("{x:.decimals$}");
+    let is_zero = text.trim_matches(['-', '0', '.']).is_empty();
+    text.strip_prefix('-').filter(|_| is_zero).map_or_else(|| text.clone(), str::to_owned)
 }
 
 /// A formatted number as in print: −0.5, 1.5×10⁻⁴.
@@ -109,6 +119,11 @@ mod tests {
         ] {
             assert_eq!(significant(x, digits), text);
         }
+        for (x, text) in [(-8e-16, "0"), (8e-12, "8e-12"), (0.0, "0"), (-0.036, "-0.0360")] {
+            assert_eq!(in_column(x, 3, -0.036), text);
+        }
+        assert_eq!(in_column(-8e-16, 3, 1e-15), "-8e-16");
+        assert_eq!([-8e-16, -0.0006].map(|x| fixed(x, 3)), ["0.000", "-0.001"]);
         assert_eq!(short(0.0025, 6), "0.0025");
         assert_eq!(short(200.0, 4), "200");
     }

@@ -9,7 +9,7 @@ use crate::explorer::{Model, View};
 use crate::tui::app::App;
 use pulloff_engine::case::critical_force;
 use pulloff_engine::gap::wave_index;
-use pulloff_engine::report::number::{fixed, loss, significant, with_unit};
+use pulloff_engine::report::number::{fixed, in_column, loss, with_unit};
 use pulloff_engine::units::Quantity;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -38,13 +38,14 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, selected: bool) {
     let chosen = walk_line(model);
     let first = first(path.len(), chosen, rows);
     let critical = divisor(&path);
+    let largest = largest(&path);
     let mut lines =
         vec![Line::styled(theme.whole_words(&theme.text(&head(model, critical)), room), theme.dim())];
     lines.extend(path.iter().enumerate().skip(first).take(rows).map(|(i, (_, node))| {
         let before = i.checked_sub(1).and_then(|before| path.get(before)).map(|(_, node)| *node);
         let here = if i + 1 == path.len() { " @" } else { "" };
         let mark = if i == chosen && selected { '>' } else { ' ' };
-        let text = format!("{mark}{}{here}", row(node, before, critical));
+        let text = format!("{mark}{}{here}", row(node, before, critical, largest));
         let style = if i == chosen && selected { theme.selection() } else { Style::new() };
         Line::styled(theme.whole_words(&theme.text(&text), room), style)
     }));
@@ -90,21 +91,39 @@ fn divisor(path: &[(usize, &Node)]) -> Option<f64> {
     of_each.all(|other| other == Some(first)).then_some(first)
 }
 
-/// A state in one line; `before` is the previous state, and forces are divided by `critical`.
-fn row(node: &Node, before: Option<&Node>, critical: Option<f64>) -> String {
+/// The largest δ, P and s of the walk by their size, in its own units.
+fn largest(path: &[(usize, &Node)]) -> [f64; 3] {
+    path.iter().filter(|(_, node)| !node.is_apart()).fold([0.0; 3], |largest, (_, node)| {
+        let state = node.state.in_units(node.setting.units());
+        let of = [state.approach, state.force, state.contact_radius];
+        std::array::from_fn(|i| f64::max(largest[i], of[i].abs()))
+    })
+}
+
+/// A state in one line; `before` is the previous state, forces are divided by `critical`, and the columns of δ, P and s
+/// go up to `largest`.
+fn row(node: &Node, before: Option<&Node>, critical: Option<f64>, largest: [f64; 3]) -> String {
     let setting = &node.setting;
     let state = node.state.in_units(setting.units());
     let units = &setting.preset.units;
-    let length = |x| significant(units.shown(Quantity::Length, x).number, 4);
+    let cell = |quantity, x, digits, largest| {
+        let [x, largest] = [x, largest].map(|x| units.shown(quantity, x).number);
+        in_column(x, digits, largest)
+    };
+    let length = |x, largest| cell(Quantity::Length, x, 4, largest);
     let force = match critical {
         Some(critical) => fixed(state.force / critical, 3),
-        None => significant(units.shown(Quantity::Force, state.force).number, 3),
+        None => cell(Quantity::Force, state.force, 3, largest[1]),
     };
     let (force, radius, crest) = if node.is_apart() {
         ("apart".to_owned(), "-".to_owned(), "-".to_owned())
     } else {
         let crest = wave_index(node.state.contact_radius, setting.reduced.gap.wavelength());
-        (force, length(state.contact_radius), crest.map_or_else(|| "-".to_owned(), |m| m.to_string()))
+        (
+            force,
+            length(state.contact_radius, largest[2]),
+            crest.map_or_else(|| "-".to_owned(), |m| m.to_string()),
+        )
     };
     let mut said: Vec<String> = Vec::new();
     if let NodeKind::Jump(event) = &node.kind {
@@ -120,7 +139,7 @@ fn row(node: &Node, before: Option<&Node>, critical: Option<f64>) -> String {
     let line = format!(
         "{:>5} {kind:<9} {:>10} {force:>8} {radius:>10} {crest:>5}  {}",
         node.step,
-        length(state.approach),
+        length(state.approach, largest[0]),
         said.join(", ")
     );
     line.trim_end().to_owned()

@@ -355,6 +355,19 @@ fn the_states_walked_are_a_table_that_scrolls_and_leads_back() {
 }
 
 #[test]
+fn what_rounding_leaves_of_zero_is_zero_in_the_table_of_states() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":set path.begin=apart\r");
+    screen.press(KeyCode::Home);
+    screen.keys("nnnn:view walk\r");
+    let approaches: Vec<f64> =
+        screen.app.model.history.path().iter().map(|(_, n)| n.state.approach).collect();
+    let text = screen.text(100, 70);
+    assert!(!text.contains("e-1") && !text.contains("-0.000"), "{approaches:?} {text}");
+    assert!(text.contains(" 0 "), "{approaches:?} {text}");
+}
+
+#[test]
 fn differences_tell_curves_apart_that_are_closer_than_a_dot() {
     let mut screen = Screen::new("wavy-sphere");
     screen.app.model.overlays.smooth = false;
