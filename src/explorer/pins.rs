@@ -6,6 +6,7 @@ use super::command::Id;
 use super::curve::CurveData;
 use pulloff_engine::case::Case;
 use pulloff_engine::preset::model::BasisSpec;
+use pulloff_engine::preset::schema::NONE;
 use pulloff_engine::preset::{Preset, Row, Value};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::{difference, short};
@@ -257,7 +258,12 @@ pub fn name(pinned: &Preset, now: &Preset) -> String {
 
 /// Each value in which `after` differs from `before`, as label and both values: `A 0.0025 → 0.0031`.
 pub fn changes(before: &Preset, after: &Preset) -> Vec<String> {
-    let told = differences(after, before).into_iter().map(|(row, value)| {
+    // A value of its own that is taken away again, as undoing a fit does; those of another gap are no such values.
+    let gone = differences(before, after).into_iter().filter(|(row, _)| {
+        row.is_optional() && !row.key.starts_with("path.control") && after.get(&row.key).is_none()
+    });
+    let gone = gone.map(|(row, _)| (row, Value::from(NONE)));
+    let told = differences(after, before).into_iter().chain(gone).map(|(row, value)| {
         let said =
             |value: &Value, preset: &Preset, digits| labelled_in(&row, value, &preset.units, (" ", digits));
         let Some(was) = before.get(&row.key) else { return said(&value, after, 4) };

@@ -208,6 +208,8 @@ fn a_fit_changes_the_free_keys_as_one_command_and_says_their_errors() {
     assert_eq!(session.model.preset, fitted);
     session.does(Id::Undo);
     assert_eq!(session.model.preset, before);
+    let said = session.status();
+    assert!(["δ0 ", "P0 "].iter().all(|label| said.contains(label)) && said.ends_with(" → none"), "{said}");
     // The residuals of the first guess are far above the noise; those of the fit are noise.
     let typical = |session: &mut Session| {
         session.model.view = View::Residuals;

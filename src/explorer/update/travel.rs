@@ -13,6 +13,7 @@ use crate::explorer::requests::{adopt_parameters, change, take_back, want_curve}
 use crate::explorer::undo::{SessionPlace, Shelved};
 use crate::store::Loaded;
 use pulloff_engine::quasistatic::State;
+use pulloff_engine::text::greek;
 use std::mem;
 use std::sync::Arc;
 
@@ -32,7 +33,7 @@ pub(in crate::explorer) fn travel(model: &mut Model, id: Id, count: usize) -> Ve
         let changed: Vec<String> = changes(&before, &model.preset).into_iter().chain(pinned).collect();
         if !changed.is_empty() {
             let word = if id == Id::Undo { "undone" } else { "redone" };
-            model.tell(Level::Info, format!("{word}: {}", changed.join(", ")));
+            model.tell(Level::Info, greek(&format!("{word}: {}", changed.join(", "))));
         }
     }
     effects
