@@ -109,6 +109,24 @@ fn an_exported_script_finds_its_files_from_any_folder() {
 }
 
 #[test]
+fn a_script_studies_a_quantity_over_a_value() {
+    let home = Scripts::new();
+    home.fails("export study s.csv", &[], 2, "there is no study to export");
+    home.fails("study", &[], 2, "study needs a quantity");
+    home.fails("study largest_pull gap.radius", &[], 2, "unknown key gap.radius");
+    // The study is that of the values at its export.
+    let script = "open fig-3-jkr\nstudy largest_pull work_of_adhesion\nexport study first.csv\n\
+                  set work_of_adhesion=0.5\nstep\nexport study s.csv\nexport study s.toml\nexport figure s.svg study\n";
+    home.quiet(script, &[]);
+    let [first, second] =
+        ["first", "s"].map(|name| fs::read_to_string(home.at(&format!("here/{name}.csv"))).unwrap());
+    assert!(first != second && first.lines().count() > 50);
+    let mut sweep = home.0.command(&["sweep", "s.toml", "--output", "sweep.csv"]);
+    let ended = Ended::of(sweep.current_dir(home.at("here")).output().unwrap());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+}
+
+#[test]
 fn a_script_in_si_takes_units_and_bare_si_numbers() {
     let home = Scripts::new();
     let set = "set material.work_of_adhesion=\"20 mJ/m^2\"\nset material.work_of_adhesion=0.03\n";

@@ -97,7 +97,7 @@ macro_rules! each_command {
             { look: |model| model.look_at(reach::next(model, false)) }
         ChooseView "view" "" "charts" always Nothing Screen "any chart by its name; those with nothing to show say why"
             { takes: takes("chart", view).listing(views) }
-        Study "study" "" "study" curve Nothing Screen "a quantity over the range of the selected value, or of the one named"
+        Study "study" "" "study" curve Nothing Needs("a quantity") "a quantity over the range of the selected value, or of the one named"
             { words: "sweep dependence parameter", takes: takes("quantity [KEY]", quantity).listing(quantities).going_on(quantities) }
         ZoomIn "zoom-in" "+" "closer" curve Nothing Screen "zoom in, about the cross-hair or the walker"
             { look: |model| look::zoom(model, model.view, true, model.cross.unwrap_or(look::MIDDLE)) }

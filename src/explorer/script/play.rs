@@ -3,12 +3,14 @@
 use super::line;
 use super::permissions::{Permission, allowed};
 use super::read::ScriptLine;
-use crate::explorer::command::{Command, by_name};
+use crate::explorer::command::{Command, Id, by_name};
 use crate::explorer::driver::Inline;
 use crate::explorer::effect::Effect;
 use crate::explorer::export::Export;
 use crate::explorer::model::{CurveError, Level, Model};
+use crate::explorer::studies::StudyData;
 use crate::explorer::update::update;
+use crate::explorer::view::View;
 use crate::mend::WordedFault;
 use thiserror::Error;
 
@@ -77,17 +79,28 @@ fn obey(
         *what =
             drawn(model, driver, what.clone(), draws).map_err(|why| WordedFault::mendable(by_name(&why)))?;
     }
+    let before = model.view;
+    let is_study = command.id() == Id::Study;
     let effects = update(model, command);
     driver.settle(model, effects);
+    if is_study {
+        // It is computed while it is looked at: what a later line changes would compute it again.
+        model.view = before;
+    }
     // There is nobody to answer what a screen would ask now.
     model.question = None;
     refusal(model).map_or(Ok(()), Err)
 }
 
-/// Draws what is seen; a view that is not on the screen is shown for that moment.
+/// Draws what is seen; a view that is not on the screen, as is a study made before, is shown for that moment.
 fn drawn(model: &mut Model, driver: &Inline, what: Export, draws: Painter<'_>) -> Result<Export, String> {
     let before = model.view;
-    if let Export::Figure(Some(view)) = what {
+    let view = match what {
+        Export::Figure(view) => view,
+        Export::Study => model.results.found::<StudyData>().map(|_| View::Study),
+        _ => None,
+    };
+    if let Some(view) = view {
         let effects = update(model, Command::Show(view));
         driver.settle(model, effects);
     }
