@@ -5,6 +5,7 @@ use super::command::Id;
 use super::effect::Effect;
 use super::map_axes::{CURVES, MapAxes, can_be_axis, key_of};
 use super::model::{Level, Model};
+use super::pins::letter;
 use super::reach::{pick_walk_line, walk_line};
 use super::script::key_called;
 use super::view::{Axes, Overlay, ScreenPanel, View, Window};
@@ -169,7 +170,11 @@ pub(super) fn pin(model: &mut Model) {
         Ok(number) => {
             model.tell(
                 Level::Info,
-                format!("pinned as {number}: change a value to compare; {} removes it", Id::Pins.named()),
+                format!(
+                    "pinned as {}: change a value to compare; {} removes it",
+                    letter(number),
+                    Id::Pins.named()
+                ),
             );
         }
         Err(reason) => model.tell(Level::Error, reason),
@@ -192,7 +197,7 @@ pub(super) fn in_rings(model: &mut Model) {
     match model.pins.want(preset) {
         Ok(number) => {
             let text = if is_exact { "in ring elements" } else { "exactly" };
-            model.tell(Level::Info, format!("the same problem {text} as pin {number}"));
+            model.tell(Level::Info, format!("the same problem {text} as pin {}", letter(number)));
         }
         Err(reason) => model.tell(Level::Error, reason),
     }
@@ -200,9 +205,9 @@ pub(super) fn in_rings(model: &mut Model) {
 
 pub(super) fn unpin(model: &mut Model, number: Option<usize>) {
     if !model.pins.remove(number) {
-        return model.tell(Level::Error, "no curve is pinned under that number");
+        return model.tell(Level::Error, "no curve is pinned under that letter");
     }
-    let which = number.map_or_else(|| "all pins".to_owned(), |number| format!("pin {number}"));
+    let which = number.map_or_else(|| "all pins".to_owned(), |number| format!("pin {}", letter(number)));
     model.tell(Level::Info, format!("removed {which}; {} brings back what was removed", Id::Undo.named()));
 }
 

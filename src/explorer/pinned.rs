@@ -5,7 +5,7 @@ use super::command::Id;
 use super::curve::CurveData;
 use super::effect::Effect;
 use super::model::{Level, Model};
-use super::pins::Elements;
+use super::pins::{Elements, letter};
 use super::progress::Staged;
 use pulloff_engine::preset::Preset;
 use std::sync::Arc;
@@ -55,9 +55,11 @@ impl Background for PinCurve {
             return Vec::new();
         }
         match elements {
-            _ if curve.is_none() => model.tell(Level::Error, format!("there is no curve for pin {number}")),
+            _ if curve.is_none() => {
+                model.tell(Level::Error, format!("there is no curve for pin {}", letter(*number)));
+            }
             Some(elements) => {
-                let which = format!("pin {number}, {} ring elements", elements.count);
+                let which = format!("pin {}, {} ring elements", letter(*number), elements.count);
                 let said = elements.said(&which, ["largest pull off by", "Newton iterations"]);
                 model.tell(Level::Info, said);
             }

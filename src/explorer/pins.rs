@@ -16,8 +16,22 @@ use std::collections::HashSet;
 use std::mem::{self, discriminant};
 use std::sync::Arc;
 
-/// The most curves that can be pinned: each has its own digit and colour.
-pub const MOST: usize = 6;
+/// The most curves that can be pinned: each has its own letter and colour.
+pub const MOST: usize = LETTERS.len();
+
+/// What the pins are called: digits are those of events, and no mark or other line of a chart has these letters.
+pub(super) const LETTERS: [&str; 6] = ["D", "E", "F", "G", "H", "I"];
+
+/// The letter of the pin with this number.
+pub fn letter(number: usize) -> &'static str {
+    LETTERS[number.saturating_sub(1) % MOST]
+}
+
+/// The number of the pin with this letter; older scripts say the number itself.
+pub(super) fn number_called(name: &str) -> Option<usize> {
+    let of_letter = LETTERS.iter().position(|letter| letter.eq_ignore_ascii_case(name)).map(|at| at + 1);
+    of_letter.or_else(|| name.parse().ok()).filter(|number| (1..=MOST).contains(number))
+}
 
 /// The number of differences that are named; the others are counted.
 const NAMED: usize = 3;
@@ -174,7 +188,7 @@ impl Pins {
             Preset { title, ..(*pinned).clone() } == curve.setting.preset
         };
         if let Some((number, _)) = self.presets().find(same) {
-            return Err(format!("this curve is pinned already, as {number}"));
+            return Err(format!("this curve is pinned already, as {}", letter(number)));
         }
         let number = self.free()?;
         self.shown.push(Pin { number, curve: Arc::clone(curve), elements: None });
@@ -359,7 +373,7 @@ mod tests {
         let mut pins = Pins::default();
         let first = curve("0.001");
         assert_eq!(pins.add(&first), Ok(1));
-        assert!(pins.add(&first).unwrap_err().contains("pinned already, as 1"));
+        assert!(pins.add(&first).unwrap_err().contains("pinned already, as D"));
         for (number, amplitude) in [(2, "0.0011"), (3, "0.0012"), (4, "0.0013"), (5, "0.0014"), (6, "0.0015")]
         {
             assert_eq!(pins.add(&curve(amplitude)), Ok(number));

@@ -8,7 +8,7 @@ use super::subject::Subject;
 use super::walk::{branches, events_before, walk};
 use crate::explorer::View;
 use crate::explorer::curve::CurvePoint;
-use crate::explorer::pins::Pin;
+use crate::explorer::pins::{Pin, letter};
 use pulloff_engine::preset::model::BasisSpec;
 use pulloff_engine::report::number::{fixed, significant};
 use pulloff_engine::report::path::PathStateReport;
@@ -162,7 +162,7 @@ pub fn pinned_scale<'a>(subject: &Subject<'a>, pin: &Pin) -> Scale<'a> {
 fn pins(subject: &Subject<'_>, view: View, figure: &mut Figure) -> Vec<(f64, f64)> {
     let mut all = Vec::new();
     let others = subject.other_pins.iter();
-    figure.notes.extend(others.map(|number| format!("pin {number} has other units")));
+    figure.notes.extend(others.map(|number| format!("pin {} has other units", letter(*number))));
     for pin in &subject.pins {
         let scale = pinned_scale(subject, pin);
         let points: Vec<(f64, f64)> =

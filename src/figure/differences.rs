@@ -7,6 +7,7 @@ use super::bounds::Bounds;
 use super::parts::{Axis, Figure, Line, Mark, Role, Sign};
 use super::subject::Subject;
 use crate::explorer::curve::CurvePoint;
+use crate::explorer::pins::letter;
 use crate::explorer::reach::OF_SHORT_RANGE;
 use pulloff_engine::disc::solution::Solution;
 use pulloff_engine::problem::Control;
@@ -55,7 +56,12 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
             walker.and_then(|state| Some((state, (other.force)(state.contact_radius)?)))
         {
             let at = place([state.contact_radius, state.force - force]);
-            said.push(format!("{} {}", other.name, significant(at.1, 3)));
+            let pin = if let Role::Pin(number) = other.role {
+                format!("{} ", letter(number))
+            } else {
+                String::new()
+            };
+            said.push(format!("{pin}{} {}", other.name, significant(at.1, 3)));
             here.get_or_insert(at);
         }
         figure.lines.push(Line::new(other.role, other.name.clone(), by_approach).broken(true));
@@ -96,15 +102,15 @@ fn others<'a>(subject: &Subject<'a>, notes: &mut Vec<String>) -> Vec<OtherCurve<
         add(Role::Exact, theory.exact_name, &theory.exact, Box::new(move |s| Some(exact.force(s))));
     }
     let mut pinned = Vec::new();
-    notes.extend(subject.other_pins.iter().map(|number| format!("{number} has other units")));
+    notes.extend(subject.other_pins.iter().map(|number| format!("{} has other units", letter(*number))));
     for pin in &subject.pins {
         if pin.curve.case.cohesion.is_some() {
-            notes.push(format!("{} has a range of adhesion", pin.number));
+            notes.push(format!("{} has a range of adhesion", letter(pin.number)));
             continue;
         }
         let state = |at: &CurvePoint| [at.approach, at.force, at.contact_radius];
         let states = pin.curve.points.iter().map(state).collect();
-        let name = format!("{} {}", pin.number, pin.name(subject.preset));
+        let name = pin.name(subject.preset);
         let (solution, units) = (&pin.curve.base.curve.solution, pin.curve.case.units());
         let force = move |s: f64| Some(solution.at(solution.place(s / units.length)?).force * units.force);
         pinned.push(OtherCurve { role: Role::Pin(pin.number), name, states, force: Box::new(force) });

@@ -5,6 +5,7 @@ use super::curves::{pinned_scale, place};
 use super::parts::{Axis, AxisScale, Figure, Role};
 use super::scale::Scale;
 use super::subject::Subject;
+use crate::explorer::pins::letter;
 use crate::explorer::{CurveData, View};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::significant;
@@ -77,7 +78,7 @@ impl What {
                 format!("limit point of {} control {number} of {of}{event}", control_name(control))
             }
             Self::Landing(event) => format!("landing of event {event}"),
-            Self::Pin(number) => format!("on curve {number}"),
+            Self::Pin(number) => format!("on pin {}", letter(number)),
         }
     }
 }

@@ -521,7 +521,7 @@ fn a_pin_in_other_units_is_not_drawn_on_axes_to_which_it_does_not_belong() {
     for view in [View::ForceApproach, View::ForceRadius, View::Differences] {
         let figure = session.figure(view);
         assert!(!figure.lines.iter().any(|line| matches!(line.role, Role::Pin(_))), "{view:?}");
-        let is_told = figure.notes.iter().any(|note| note.contains("1 has other units"));
+        let is_told = figure.notes.iter().any(|note| note.contains("D has other units"));
         assert!(is_told || figure.missing.is_some(), "{view:?}: {:?}", figure.notes);
     }
     // It is back beside a preset in its own units.

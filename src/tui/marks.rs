@@ -1,12 +1,10 @@
 //! How each line and sign of a figure is drawn: its stroke, letter and colour.
 
+use crate::explorer::pins;
 use crate::figure::{Role, Sign};
 use crate::tui::raster::{Meets, RasterStroke, STABLE, UNSTABLE};
 use crate::tui::theme::{Charts, Palette, Theme};
 use ratatui::style::Style;
-
-/// The digits of the pinned curves, by number.
-const DIGITS: [char; 6] = ['1', '2', '3', '4', '5', '6'];
 
 /// Numbers of snaps; from ten on, a single sign stands for many.
 const COUNTS: [&str; 11] = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "*"];
@@ -36,8 +34,9 @@ fn row(role: Role, theme: Theme) -> (RasterStroke, Lettered, u8) {
         Role::Exact => (styles.exact, Shares, false, 'e', Along, 6),
         // Requested by the person, and often with numbers.
         Role::Pin(number) => {
-            let at = number.saturating_sub(1) % DIGITS.len();
-            (styles.pins[at], Shares, false, DIGITS[at], Along, 2)
+            let at = number.saturating_sub(1) % styles.pins.len();
+            let symbol = pins::letter(number).chars().next().unwrap_or('p');
+            (styles.pins[at], Shares, false, symbol, Along, 2)
         }
         Role::Unstable => (styles.curve, Shares, true, UNSTABLE, Never, 1),
         Role::Stable | Role::Body | Role::Edges | Role::Law | Role::Cusps => {

@@ -148,13 +148,13 @@ fn every_view_a_closer_look_and_a_pin() {
     // Back to the Problem panel, where > turns the amplitude.
     pty.keys("\t\t");
     pty.keys("p");
-    pty.wait_for(|screen| screen.contains("pinned as 1"), "a pin");
+    pty.wait_for(|screen| screen.contains("pinned as D"), "a pin");
     pty.keys("}");
-    pty.wait_for(|screen| screen.contains("1 A 0.001"), "the pin by what differs");
+    pty.wait_for(|screen| screen.contains("D A 0.001"), "the pin by what differs");
     pty.keys("P");
     pty.wait_for(|screen| screen.contains("Remove a pinned curve"), "the list of pins");
     pty.keys("\r");
-    pty.wait_for(|screen| !screen.contains("1 A 0.001"), "the pin taken away");
+    pty.wait_for(|screen| !screen.contains("D A 0.001"), "the pin taken away");
     pty.keys("y\r\x1b");
     pty.wait_for(|screen| !screen.contains("Theory"), "the overlays closed");
     pty.keys("qy");

@@ -235,7 +235,10 @@ pub(in crate::explorer) fn axes(rest: &mut Rest<'_>) -> Result<Command, ScriptFa
 }
 
 pub(in crate::explorer) fn pin(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {
-    Ok(Command::Unpin(if rest.takes("all") { None } else { Some(rest.count("a number", pins::MOST)?) }))
+    if rest.takes("all") {
+        return Ok(Command::Unpin(None));
+    }
+    rest.one("pin", pins::number_called, &pins::LETTERS).map(|number| Command::Unpin(Some(number)))
 }
 
 pub(in crate::explorer) fn preset(rest: &mut Rest<'_>) -> Result<Command, ScriptFault> {

@@ -126,7 +126,7 @@ pub(in crate::explorer) fn theories(typing: &Typing<'_>) -> Vec<Offer> {
 pub(in crate::explorer) fn pins_of(typing: &Typing<'_>) -> Vec<Offer> {
     let model = typing.model;
     let pins = model.pins.all().iter();
-    let numbered = pins.map(|pin| Offer::new(pin.number.to_string(), pin.name(&model.preset)));
+    let numbered = pins.map(|pin| Offer::new(pins::letter(pin.number), pin.name(&model.preset)));
     numbered.chain(words(["all"])).collect()
 }
 

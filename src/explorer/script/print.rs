@@ -3,6 +3,7 @@
 use super::lexer::quoted;
 use crate::explorer::command::{Assignment, Command};
 use crate::explorer::export::Export;
+use crate::explorer::pins::letter;
 
 /// The line that reads back as this command; `None` for commands that need a screen.
 pub fn line(command: &Command) -> Option<String> {
@@ -28,7 +29,7 @@ pub fn line(command: &Command) -> Option<String> {
         }
         Command::Overlay(overlay) => format!(" {}", overlay.name()),
         Command::Unpin(None) => " all".to_owned(),
-        Command::Unpin(Some(number)) => format!(" {number}"),
+        Command::Unpin(Some(number)) => format!(" {}", letter(*number)),
         Command::Open(name) => format!(" {}", quoted(name)?),
         Command::OpenWith { name, assignments: all } => format!(" {}{}", quoted(name)?, assignments(all)?),
         Command::SaveAs { name, replace, with_data } => {

@@ -6,6 +6,7 @@ use crate::explorer::curve::CurveData;
 use crate::explorer::effect::Effect;
 use crate::explorer::model::{Level, Model, Walking};
 use crate::explorer::node::{Node, NodeKind};
+use crate::explorer::pins::letter;
 use crate::explorer::requests::{stop, stop_walk, want_curve};
 use crate::explorer::status_line::{back_or_anew, of_before};
 use crate::explorer::walk::{Action, Request, WalkOutcome, from_exact};
@@ -235,7 +236,8 @@ fn tell_of_present(model: &mut Model, number: usize) {
         |critical| format!("{} Pc", significant(state.force / critical, 5)),
     );
     let text = format!(
-        "now on the present curve, not on curve {number}: s {}, P {force}, δ {}",
+        "now on the present curve, not on pin {}: s {}, P {force}, δ {}",
+        letter(number),
         shown(Quantity::Length, state.contact_radius),
         shown(Quantity::Length, state.approach)
     );

@@ -13,6 +13,7 @@
 
 use super::state::App;
 use crate::explorer::model::Level;
+use crate::explorer::pins::letter;
 use crate::explorer::{Command, Effect, Id, ScreenPanel, View, reach};
 use crate::figure::reading::What;
 use crate::figure::{Subject, map, nearest, study};
@@ -256,7 +257,8 @@ impl App {
                 }
                 // It has to wait.
                 (Some(number), _) if self.model.message.is_none() => {
-                    let text = format!("the walker will go to the present curve, not to curve {number}");
+                    let text =
+                        format!("the walker will go to the present curve, not to pin {}", letter(number));
                     self.model.message = Some((Level::Info, text));
                 }
                 _ => {}

@@ -2,7 +2,7 @@
 
 use super::log::snaps;
 use super::parts::{is_selected, pair, panel};
-use crate::explorer::pins::Pin;
+use crate::explorer::pins::{Pin, letter};
 use crate::explorer::{CurveData, Model, ScreenPanel};
 use crate::figure::{Axis, Scale};
 use crate::tui::app::App;
@@ -142,7 +142,7 @@ fn beside(
         };
         head(format!(" {name}"), &now, &pin, &change)
     };
-    let mut lines = vec![head(String::new(), "now", &format!("pin {}", pin.number), "change")];
+    let mut lines = vec![head(String::new(), "now", &format!("pin {}", letter(pin.number)), "change")];
     let totals = [&path.totals, &other.totals];
     let states = [
         ("A", totals.map(|totals| totals.largest_pull.as_ref())),

@@ -396,18 +396,18 @@ fn a_state_of_a_pinned_curve_leads_to_the_present_one_which_is_told() {
     screen.keys("p:set gamma=0.008\ri");
     let reading = |screen: &Screen| screen.text(120, 40).lines().rev().nth(1).unwrap().to_owned();
     for _ in 0..60 {
-        if reading(&screen).contains("on curve 1") {
+        if reading(&screen).contains("on pin D") {
             break;
         }
         screen.press(KeyCode::Up);
     }
-    assert!(reading(&screen).contains("on curve 1"), "{}", screen.text(120, 40));
+    assert!(reading(&screen).contains("on pin D"), "{}", screen.text(120, 40));
     screen.keys("\r");
     let node = screen.app.model.walker().unwrap();
     let state = node.state.in_units(node.setting.units());
     let critical = critical_force(&screen.app.model.preset).unwrap();
     let [s, force] = [state.contact_radius, state.force / critical].map(|x| significant(x, 5));
-    let said = format!("now on the present curve, not on curve 1: s {s}, P {force} Pc, δ ");
+    let said = format!("now on the present curve, not on pin D: s {s}, P {force} Pc, δ ");
     assert!(screen.text(80, 24).contains(&said), "{said} {}", screen.text(80, 24));
 }
 
@@ -434,10 +434,10 @@ fn pins_are_listed_and_taken_away_one_by_one() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("p}p");
     let text = screen.text(120, 40);
-    assert!(text.contains("1 A 0.0025") && text.contains("pinned as 2"), "{text}");
+    assert!(text.contains("D A 0.0025") && text.contains("pinned as E"), "{text}");
     screen.keys("P");
     let text = screen.text(120, 40);
-    assert!(text.contains("1   A 0.0025") && text.contains("2   as now"), "{text}");
+    assert!(text.contains("D   A 0.0025") && text.contains("E   as now"), "{text}");
     screen.keys("\rPj");
     assert!(screen.text(120, 40).contains("> all"));
     screen.keys("\r");
@@ -458,8 +458,8 @@ fn the_ring_elements_lie_over_the_exact_curve_and_go_again() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("#");
     let text = screen.text(120, 40);
-    assert!(text.contains("1 rings 200: A ") && text.contains("now   pin 1 change"), "{text}");
-    let said = " pin 1, 200 ring elements: largest pull off by ";
+    assert!(text.contains("D rings 200: A ") && text.contains("now   pin D change"), "{text}");
+    let said = " pin D, 200 ring elements: largest pull off by ";
     assert!(text.contains(said) && text.contains(" Newton iterations"), "{text}");
     let told = screen.text(80, 24);
     assert!(told.contains(said) && told.contains(" Newton iterations"), "{told}");
@@ -467,7 +467,7 @@ fn the_ring_elements_lie_over_the_exact_curve_and_go_again() {
     screen.keys("]");
     let small = screen.text(80, 24);
     assert!(
-        small.contains("1 rings 200: A ") && small.contains(" Newton") && !small.contains(said),
+        small.contains("D rings 200: A ") && small.contains(" Newton") && !small.contains(said),
         "{small}"
     );
     let pin = &screen.app.model.pins.all()[0];
@@ -479,10 +479,10 @@ fn the_ring_elements_lie_over_the_exact_curve_and_go_again() {
     assert!(screen.app.model.pins.is_empty());
     // Beside the rings, the pin is the exact solution.
     screen.keys(":set basis.kind=rings\r#");
-    assert!(screen.text(120, 40).contains("1 exact: A "), "{}", screen.text(120, 40));
+    assert!(screen.text(120, 40).contains("D exact: A "), "{}", screen.text(120, 40));
     // With other values it is another problem.
     screen.keys("\u{1b}>");
-    assert!(!screen.text(120, 40).contains("1 exact: A "), "{}", screen.text(120, 40));
+    assert!(!screen.text(120, 40).contains("D exact: A "), "{}", screen.text(120, 40));
 }
 
 #[test]

@@ -143,7 +143,7 @@ fn a_pin_has_a_column_in_result_and_the_change_in_per_cent() {
     assert!(!screen.text(120, 40).contains("change"));
     screen.keys("p");
     let text = screen.text(120, 40);
-    assert!(text.contains("now   pin 1 change"), "{text}");
+    assert!(text.contains("now   pin D change"), "{text}");
     assert!(text.contains("+0.0%"), "{text}");
     screen.keys(":set gap.amplitude=0.003\r");
     let text = screen.text(120, 40);

@@ -2,7 +2,7 @@
 
 use super::Screen;
 use crate::explorer::{View, Window};
-use crate::figure::{Bounds, Role, Subject};
+use crate::figure::{Bounds, Role, Sign, Subject};
 use crate::tui::marks::{glyph, letter, look};
 use crate::tui::theme::{Charts, Palette, Theme};
 use crate::tui::view::{charts, places};
@@ -178,6 +178,36 @@ fn compared_curves_look_different_without_colour() {
     for theme in themes() {
         assert!(look(Unstable, theme).is_broken && !look(Stable, theme).is_broken);
     }
+}
+
+#[test]
+fn a_pin_is_called_like_no_mark_and_the_same_everywhere() {
+    let marks = (1..=9).map(Sign::Event).chain([
+        Sign::LastContact(12),
+        Sign::Landing,
+        Sign::Touch,
+        Sign::Turn,
+        Sign::Minimum,
+        Sign::Maximum,
+        Sign::LargestPull,
+        Sign::Farthest,
+        Sign::Cusp,
+        Sign::Swallowtail,
+        Sign::Snaps(3),
+    ]);
+    let marks: Vec<Sign> = marks.collect();
+    for theme in themes() {
+        for pin in (1..=6).map(|number| glyph(Role::Pin(number), theme)) {
+            assert!(marks.iter().all(|sign| letter(*sign, theme) != pin), "{pin} {theme:?}");
+        }
+    }
+    let mut screen = Screen::new("wavy-sphere");
+    screen.app.theme = Theme::new(Palette::Mono, Charts::Ascii, true);
+    screen.keys("p}n");
+    assert!(screen.text(120, 40).contains("pin D change"), "{}", screen.text(120, 40));
+    screen.keys("\x1b");
+    let (chart, list) = (screen.text(120, 40), screen.keys("P").text(120, 40));
+    assert!(chart.contains("D A 0.0025") && list.contains("D   A 0.0025"), "{chart} {list}");
 }
 
 #[test]
