@@ -46,28 +46,34 @@ pub struct Chart<'a> {
     pub cross: Option<(f64, f64)>,
     /// The state nearest to the cross-hair.
     pub nearest: Option<(f64, f64)>,
-    /// Whether it stands beside another chart with the same vertical axis: both have a row for the legend, so that
+    /// Whether it stands beside another chart with the same vertical axis: both keep the same rows for the legend, so that
     /// equal values are on one row.
     pub is_paired: bool,
     /// Whether the parts of a contact under tension look like the others.
     pub hides_tension: bool,
 }
 
-/// How many entries of a legend fit, with an ellipsis if some are left out.
-fn legend_count(legend: &[LegendRow], room: usize) -> usize {
+/// Takes from `rest` the entries that fit into a row, the most important first.
+fn next_row<'a>(rest: &mut Vec<&'a LegendRow>, room: usize) -> Vec<&'a LegendRow> {
     let mut used = 0;
-    let fits = |(at, entry): &(usize, &LegendRow)| {
-        used += if *at == 0 { 0 } else { 2 } + entry.width();
-        let rest = if at + 1 < legend.len() { 2 } else { 0 };
-        used + rest <= room
-    };
-    legend.iter().enumerate().take_while(fits).count()
+    let (row, left) = rest.drain(..).partition(|entry| {
+        let width = entry.width() + if used == 0 { 0 } else { 2 };
+        let fits = used + width <= room;
+        used += if fits { width } else { 0 };
+        fits
+    });
+    *rest = left;
+    row
 }
 
 /// A chart with fewer rows inside has no row for its legend.
 const LEGEND_ROWS: u16 = 8;
 /// The legend may take one row for each of these inside.
 const ROWS_PER_LEGEND_ROW: u16 = 4;
+/// The same for curves, up to the most that they have: their lines are the same in every chart, and rows are what they
+/// need.
+const ROWS_PER_LEGEND_ROW_OF_CURVES: u16 = 8;
+const MOST_OF_CURVES: u16 = 2;
 
 impl Chart<'_> {
     /// Draws the chart with its frame into `area`.
@@ -77,7 +83,7 @@ impl Chart<'_> {
         let mut block: Block<'_> = theme.block(selected).title(Span::styled(title, theme.title(selected)));
         let note = self.note();
         if self.legend_fits(area) {
-            let mut spans = self.legend_spans(&self.legend, 0);
+            let mut spans = self.legend_spans(&self.legend);
             if !note.is_empty() && !spans.is_empty() {
                 spans.push(Span::raw("  "));
             }
@@ -95,12 +101,8 @@ impl Chart<'_> {
             return;
         }
         let Some(plot) = self.plot(area) else { return };
-        let rows = self.legend_rows(area, inner, plot.width);
-        let mut left = self.legend.len();
-        for (y, row) in (inner.y..).zip(&rows) {
-            left -= row.len();
-            let is_last = usize::from(y - inner.y) + 1 == rows.len();
-            let line = Line::from(self.legend_spans(row, if is_last { left } else { 0 }));
+        for (y, row) in (inner.y..).zip(self.legend_rows(area, inner, plot.width).0) {
+            let line = Line::from(self.legend_spans(row));
             buffer.set_line(plot.x, y, &line, plot.width);
         }
         if self.has_note_row(area, inner) {
@@ -164,50 +166,57 @@ impl Chart<'_> {
         !self.is_paired && self.heading() + legend + 4 <= usize::from(area.width)
     }
 
-    /// Continues the legend of the chart beside it from where that one ran out of room; keeps its own if that one was
-    /// complete.
-    pub fn go_on_with_legend(&mut self, area: Rect, beside: Vec<LegendRow>) {
-        let Some(plot) = self.plot(area) else { return };
-        let is_new = |entry: &LegendRow| !beside.iter().any(|other| other.meaning == entry.meaning);
-        let own: Vec<LegendRow> = self.legend.iter().filter(|entry| is_new(entry)).cloned().collect();
-        let shown = legend_count(&beside, usize::from(plot.width));
-        let rest: Vec<LegendRow> = beside.into_iter().skip(shown).chain(own).collect();
+    /// Continues the legend of the chart beside it, in `area`, from where that one ran out of room; keeps its own if that
+    /// one was complete.
+    pub fn go_on_with_legend(&mut self, beside: &Chart<'_>, area: Rect) {
+        let Some(plot) = beside.plot(area) else { return };
+        let (.., left) = beside.legend_rows(area, area.inner(Margin::new(1, 1)), plot.width);
+        let is_new = |entry: &&LegendRow| !beside.legend.iter().any(|other| other.meaning == entry.meaning);
+        let rest: Vec<LegendRow> =
+            left.into_iter().chain(self.legend.iter().filter(is_new)).cloned().collect();
         if !rest.is_empty() {
             self.legend = rest;
         }
     }
 
-    /// These entries of the legend; an ellipsis if some are `left` out.
-    fn legend_spans(&self, entries: &[LegendRow], left: usize) -> Vec<Span<'static>> {
+    /// These entries of the legend.
+    fn legend_spans<'b>(&self, entries: impl IntoIterator<Item = &'b LegendRow>) -> Vec<Span<'static>> {
         let theme = self.theme;
         let mut spans = Vec::new();
-        for (at, entry) in entries.iter().enumerate() {
+        for (at, entry) in entries.into_iter().enumerate() {
             spans.push(Span::raw(if at == 0 { "" } else { "  " }));
             spans.push(Span::styled(entry.glyph.clone(), entry.style));
             spans.push(Span::styled(format!(" {}", theme.text(&entry.meaning)), theme.dim()));
         }
-        if left > 0 {
-            spans.push(Span::styled(theme.glyph(" …", " ."), theme.dim()));
-        }
         spans
     }
 
-    /// The entries of the legend in each of the rows that it takes in a plot of this width. Curves have one: their lines
-    /// are the same in every chart, and rows are what they need.
-    fn legend_rows(&self, area: Rect, inner: Rect, width: u16) -> Vec<&[LegendRow]> {
-        if inner.height < LEGEND_ROWS || self.legend.is_empty() || self.legend_fits(area) {
-            return Vec::new();
+    /// How many rows inside the legend may take.
+    fn most_legend_rows(&self, inner: Rect) -> u16 {
+        match inner.height {
+            0..LEGEND_ROWS => 0,
+            height if self.is_paired || self.compares => {
+                (height / ROWS_PER_LEGEND_ROW_OF_CURVES).min(MOST_OF_CURVES)
+            }
+            height => height / ROWS_PER_LEGEND_ROW,
         }
-        let most =
-            if self.is_paired || self.compares { 1 } else { usize::from(inner.height / ROWS_PER_LEGEND_ROW) };
-        let mut rows = Vec::new();
-        let mut rest = &self.legend[..];
-        while !rest.is_empty() && rows.len() < most {
-            let (row, others) = rest.split_at(legend_count(rest, usize::from(width)).max(1));
-            rows.push(row);
-            rest = others;
-        }
-        rows
+    }
+
+    /// The entries of the legend in each row of a plot of this width, the number of rows kept for them, and the entries
+    /// left: one that does not fit is left out whole, the least important first.
+    fn legend_rows(
+        &self,
+        area: Rect,
+        inner: Rect,
+        width: u16,
+    ) -> (Vec<Vec<&LegendRow>>, u16, Vec<&LegendRow>) {
+        let most = if self.legend_fits(area) { 0 } else { self.most_legend_rows(inner) };
+        let mut rest: Vec<&LegendRow> = self.legend.iter().collect();
+        let rows = (0..most).map(|_| next_row(&mut rest, usize::from(width)));
+        let rows: Vec<_> = rows.take_while(|row| !row.is_empty()).collect();
+        // The plots of a pair have equal heights.
+        let used = u16::try_from(rows.len()).unwrap_or(most);
+        (rows, if self.is_paired { most } else { used }, rest)
     }
 
     /// Whether one of the rows inside is used for the note, which does not fit into the wall; the plots of a pair have
@@ -230,8 +239,8 @@ impl Chart<'_> {
         }
         let gutter = self.y_ticks(inner).iter().map(|(_, label)| label.len()).max().unwrap_or(0);
         let gutter = u16::try_from(gutter + 1).unwrap_or(u16::MAX).min(inner.width / 3);
-        let legend = self.legend_rows(area, inner, inner.width - gutter).len();
-        let above = u16::try_from(legend).unwrap_or(0) + u16::from(self.has_note_row(area, inner));
+        let (_, legend, _) = self.legend_rows(area, inner, inner.width - gutter);
+        let above = legend + u16::from(self.has_note_row(area, inner));
         Some(Rect {
             x: inner.x + gutter,
             y: inner.y + above,

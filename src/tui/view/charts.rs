@@ -20,8 +20,8 @@ use ratatui::style::Modifier;
 pub struct Seat {
     /// Whether it is the first one, to which the cross-hair and the keys belong.
     pub first: bool,
-    /// The view beside it that shares its force axis.
-    pub beside: Option<View>,
+    /// The view beside it that shares its force axis, and where it is.
+    pub beside: Option<(View, Rect)>,
 }
 
 /// Draws one view.
@@ -56,10 +56,12 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App, view: View, seat: Seat
         select_event(model, &mut chart);
     }
     chart.is_paired = seat.beside.is_some();
-    if let Some(beside) = seat.beside.filter(|_| !first) {
+    if let Some((beside, area)) = seat.beside.filter(|_| !first) {
         let other = subject.figure(beside).on_screen();
-        let bounds = other.bounds.part(&model.window(beside));
-        chart.go_on_with_legend(area, legend(&other, &bounds, app.theme));
+        let mut other = self::chart(&other, beside, &model.window(beside), app.theme);
+        other.is_paired = true;
+        select_event(model, &mut other);
+        chart.go_on_with_legend(&other, area);
     }
     chart.draw(frame, area, selected);
 }

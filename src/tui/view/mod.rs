@@ -68,7 +68,7 @@ fn draw_panels(frame: &mut Frame<'_>, app: &App, regions: &Regions, selected: bo
         result::draw(frame, area, app);
     }
     let pair = match &regions.charts[..] {
-        [a, b, ..] if a.0.is_of_force() && b.0.is_of_force() => Some([a.0, b.0]),
+        [a, b, ..] if a.0.is_of_force() && b.0.is_of_force() => Some([*a, *b]),
         _ => None,
     };
     for (i, (view, area)) in regions.charts.iter().enumerate() {

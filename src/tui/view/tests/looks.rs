@@ -60,7 +60,7 @@ fn passed(points: &[(f64, f64)], bounds: &Bounds, plot: Rect) -> HashSet<(u16, u
 fn the_curve_a_pin_and_theory_are_all_seen() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("p:set gap.amplitude=0.006\r");
-    let (model, size) = (&screen.app.model, Rect::new(0, 0, 120, 40));
+    let (model, size) = (&screen.app.model, Rect::new(0, 0, 120, 41));
     let subject = Subject::of(model).unwrap();
     let figure = subject.figure(View::ForceApproach);
     let (_, area) = places(&screen.app, size).unwrap().charts[0];
@@ -78,7 +78,7 @@ fn the_curve_a_pin_and_theory_are_all_seen() {
     ];
     // The states walked are drawn over the curves, and so are the marks.
     let over = lines(&|role| role == Role::Walk);
-    let buffer = screen.draw(120, 40);
+    let buffer = screen.draw(120, 41);
     let is_dots =
         |at: &(u16, u16)| buffer[*at].symbol().chars().all(|c| ('\u{2800}'..='\u{28ff}').contains(&c));
     let is_marked = |at: &(u16, u16)| over.contains(at) || !(is_dots(at) || buffer[*at].symbol() == " ");
@@ -177,6 +177,29 @@ fn compared_curves_look_different_without_colour() {
     // Pattern is stability in every theme.
     for theme in themes() {
         assert!(look(Unstable, theme).is_broken && !look(Stable, theme).is_broken);
+    }
+}
+
+#[test]
+fn no_legend_is_cut() {
+    for preset in ["wavy-sphere", "fig-9-si", "lens"] {
+        let mut screen = Screen::new(preset);
+        for keys in ["", "nx", "p}n"] {
+            screen.keys(keys);
+            for view in View::ALL {
+                screen.keys(&format!(":view {}\r", view.name()));
+                for (width, height) in [(80, 24), (120, 40)] {
+                    let text = screen.text(width, height);
+                    assert!(!text.contains(" …"), "{preset} {width}x{height} {text}");
+                }
+            }
+        }
+    }
+    // Where rows are many, everything is named, in two rows that both charts of a pair keep.
+    let mut screen = Screen::new("wavy-sphere");
+    let text = screen.keys("nx").text(120, 40);
+    for said in ["━ stable", "walked", "1-9 event", "A largest pull", "B farthest", "JKR 1971", "@ here"] {
+        assert!(text.contains(said), "{said} {text}");
     }
 }
 

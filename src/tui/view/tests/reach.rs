@@ -85,7 +85,7 @@ fn a_click_on_the_curve_takes_the_walker_there_and_so_does_the_cross_hair() {
     assert_eq!(screen.app.model.panel, ScreenPanel::Charts);
     // Far from the curve, nothing moves.
     let (before, title) = (at_pull_off, place(&screen, "P/Pc over"));
-    click(&mut screen, Position::new(title.x + 12, title.y + 2));
+    click(&mut screen, Position::new(title.x + 12, title.y + 4));
     let now = screen.app.model.history.current().unwrap().state.contact_radius;
     assert!(now.total_cmp(&before).is_eq());
     assert!(screen.app.model.status().1.contains("no state of the curve"));
