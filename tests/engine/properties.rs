@@ -12,7 +12,7 @@ use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
 use pulloff_engine::problem::{Adhesion, Begin, ContactKind, Control, Start};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::report::path::{EventReport, Extent, StateReport};
-use pulloff_engine::report::{PathReport, TraceReport, json};
+use pulloff_engine::report::{PathReport, TraceReport};
 use pulloff_engine::ritz::Grading;
 
 /// The steps of the independent walk per wave.
