@@ -197,6 +197,11 @@ impl Item {
     pub fn new(text: impl Into<String>, action: Choice) -> Self {
         Self { text: text.into(), note: String::new(), action, delete: None }
     }
+
+    /// A word that a value can be, and what it means, which may be empty.
+    pub fn of_word(word: &str, meaning: &str, action: Choice) -> Self {
+        Self::new(format!("{word:<13} {meaning}").trim_end(), action)
+    }
 }
 
 /// What choosing a line does.
@@ -207,6 +212,13 @@ pub enum Choice {
     Copy(Excerpt),
     /// Continue naming the columns of a measured curve.
     Columns(Box<Choosing>),
+}
+
+impl Choice {
+    /// Sets a key to what `text` says.
+    pub fn set(key: &Key, text: impl Into<String>) -> Self {
+        Self::Command(Command::Set { key: key.clone(), text: text.into() })
+    }
 }
 
 /// The questions, asked one after the other.

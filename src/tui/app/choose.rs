@@ -1,5 +1,6 @@
 //! A list to choose from: the arrows move through it, typed text keeps the lines that contain it.
 
+use super::keys::title;
 use super::state::App;
 use crate::explorer::script::offers::{DEVICES, Typing};
 use crate::explorer::script::parse;
@@ -16,14 +17,16 @@ const PAGE: usize = 10;
 /// The longest text a list is filtered by.
 const FILTER: usize = 40;
 
-/// The line, out of `count`, to which a key leads from `line`; `None` for another key.
-fn turned(key: KeyEvent, line: usize, count: usize) -> Option<usize> {
+/// The line, out of `count`, to which a key or its command leads from `line`; `None` for another key.
+fn turned(key: KeyEvent, id: Option<Id>, line: usize, count: usize) -> Option<usize> {
     let last = count.saturating_sub(1);
-    Some(match key.code {
-        KeyCode::Home => 0,
-        KeyCode::End => last,
-        KeyCode::PageUp => line.saturating_sub(PAGE),
-        KeyCode::PageDown => (line + PAGE).min(last),
+    Some(match (key.code, id) {
+        (KeyCode::Home, _) => 0,
+        (KeyCode::End, _) => last,
+        (KeyCode::PageUp, _) => line.saturating_sub(PAGE),
+        (KeyCode::PageDown, _) => (line + PAGE).min(last),
+        (_, Some(Id::Up)) => line.saturating_sub(1),
+        (_, Some(Id::Down)) => (line + 1).min(last),
         _ => return None,
     })
 }
@@ -40,21 +43,21 @@ impl App {
             }
             ScreenPanel::Here | ScreenPanel::Result | ScreenPanel::Charts => return None,
         };
-        let line = turned(key, line, count)?;
+        let line = turned(key, None, line, count)?;
         Some(self.run(Command::Pick { panel, line: Some(line) }))
     }
 
     pub(super) fn choose_key(&mut self, mut choose: Choose, key: KeyEvent) -> Vec<Effect> {
         let count = choose.shown().len();
         // Letters are text, but before the first one, keys that move through a list or leave it do what they always do.
+        let id = self.keymap.in_list(key);
         let is_command = choose.filter.is_empty()
-            && matches!(self.keymap.in_list(key), Some(Id::Up | Id::Down | Id::Cancel | Id::Quit | Id::Edit));
+            && matches!(id, Some(Id::Up | Id::Down | Id::Cancel | Id::Quit | Id::Edit));
         let is_text = key.modifiers.difference(KeyModifiers::SHIFT).is_empty() && !is_command;
         match key.code {
             KeyCode::Char('D') | KeyCode::Delete => {
                 if let Some(confirm) = choose.current().and_then(|(_, item)| item.delete.clone()) {
-                    self.overlay = Some(Dialog::Confirm(*confirm));
-                    return Vec::new();
+                    return self.lay(Dialog::Confirm(*confirm));
                 }
             }
             KeyCode::Char(c) if is_text => {
@@ -67,27 +70,41 @@ impl App {
                 choose.filter.pop();
                 choose.selected = 0;
             }
-            _ => match (self.keymap.in_list(key), turned(key, choose.selected, count)) {
-                (_, Some(line)) => choose.selected = line,
-                (Some(Id::Up), _) => choose.selected = choose.selected.saturating_sub(1),
-                (Some(Id::Down), _) => choose.selected = (choose.selected + 1).min(count.saturating_sub(1)),
-                (Some(Id::Cancel | Id::Quit), _) => return Vec::new(),
-                (Some(Id::Edit), _) if count > 0 => return self.take(&choose),
+            _ => match (turned(key, id, choose.selected, count), id) {
+                (Some(line), _) => choose.selected = line,
+                (_, Some(Id::Cancel | Id::Quit)) => return Vec::new(),
+                (_, Some(Id::Edit)) if count > 0 => return self.take(&choose),
                 _ => {}
             },
         }
-        choose.picture = choose.current().and_then(|(_, item)| self.picture(&item.action));
-        self.overlay = Some(Dialog::Choose(choose));
-        Vec::new()
+        self.lay_list(choose)
     }
 
-    /// Asks for one of the words that a value can be.
-    pub(super) fn ask_choice(&mut self, row: &Row, words: &[&str], value: Option<&Value>) -> Vec<Effect> {
-        let set = |word: &str| Choice::Command(Command::Set { key: row.key.clone(), text: word.to_owned() });
-        let items = words.iter().map(|word| Item::new(*word, set(word))).collect();
+    /// Puts a list over the screen, with the picture of its selected line.
+    pub(super) fn lay_list(&mut self, mut choose: Choose) -> Vec<Effect> {
+        choose.picture = choose.current().and_then(|(_, item)| self.picture(&item.action));
+        self.lay(Dialog::Choose(choose))
+    }
+
+    pub(super) fn choose(&mut self, title: &str, items: Vec<Item>, selected: usize) -> Vec<Effect> {
+        let (title, filter) = (title.to_owned(), String::new());
+        self.lay_list(Choose { title, items, filter, selected, picture: None })
+    }
+
+    /// Asks for one of the words that a value can be; `meanings` says what some of them are.
+    pub(super) fn ask_word(
+        &mut self,
+        (row, value): (&Row, Option<&Value>),
+        words: &[&str],
+        meanings: &[(&str, &str)],
+        title: &str,
+    ) -> Vec<Effect> {
+        let item = |word: &&str| {
+            let meaning = meanings.iter().find(|(name, _)| name == word).map_or("", |(_, meaning)| meaning);
+            Item::of_word(word, meaning, Choice::set(&row.key, *word))
+        };
         let here = words.iter().position(|word| value.is_some_and(|value| value.to_string() == *word));
-        self.choose(&format!("{}: {}", row.label, row.meaning), items, here.unwrap_or(0));
-        Vec::new()
+        self.choose(title, words.iter().map(item).collect(), here.unwrap_or(0))
     }
 
     /// Asks what the device prescribes; the stiffness of a spring is typed.
@@ -100,18 +117,14 @@ impl App {
             Control::Stiffness(_) => 2,
         };
         let spring = Value::Control(Control::Stiffness(nudge::spring(&model.preset, model.stiffness)));
-        let set = |word: &str| Choice::Command(Command::Set { key: row.key.clone(), text: word.to_owned() });
+        let spring = Choice::Prompt(Box::new(self.value_prompt(&row, Some(spring))));
         let [grips, load, device] = DEVICES;
         let items = vec![
-            Item::new(format!("displacement  {grips}"), set("displacement")),
-            Item::new(format!("force         {load}"), set("force")),
-            Item::new(
-                format!("stiffness ... {device}"),
-                Choice::Prompt(Box::new(self.value_prompt(&row, Some(spring)))),
-            ),
+            Item::of_word("displacement", grips, Choice::set(&row.key, "displacement")),
+            Item::of_word("force", load, Choice::set(&row.key, "force")),
+            Item::of_word("stiffness ...", device, spring),
         ];
-        self.choose(&format!("{}: {}", row.label, row.meaning), items, here);
-        Vec::new()
+        self.choose(&title(&row), items, here)
     }
 
     /// Lists what a command can take, one line each.
@@ -129,8 +142,7 @@ impl App {
         let here = offers.iter().position(|offer| offer.is_here).unwrap_or(0);
         let title = row.help.split([':', ';']).next().unwrap_or_default();
         let title = format!("{}{}", title[..1].to_uppercase(), &title[1..]);
-        self.choose(&title, items.collect(), here);
-        Vec::new()
+        self.choose(&title, items.collect(), here)
     }
 
     fn take(&mut self, choose: &Choose) -> Vec<Effect> {
@@ -154,10 +166,7 @@ impl App {
                 }
                 effects
             }
-            Choice::Prompt(prompt) => {
-                self.overlay = Some(Dialog::Prompt(*prompt));
-                Vec::new()
-            }
+            Choice::Prompt(prompt) => self.lay(Dialog::Prompt(*prompt)),
             Choice::Columns(choosing) => self.columns_chosen(&choosing),
             Choice::Copy(content) => {
                 self.copy(content);

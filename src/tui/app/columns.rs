@@ -45,7 +45,7 @@ impl App {
         self.ask_columns(&Choosing { foreign, step: ColumnQuestion::X, said, unit: None, taken: Vec::new() });
     }
 
-    fn ask_columns(&mut self, choosing: &Choosing) {
+    fn ask_columns(&mut self, choosing: &Choosing) -> Vec<Effect> {
         if let Some((role, number)) = choosing.unit {
             return self.ask_unit(choosing, role, number);
         }
@@ -88,11 +88,11 @@ impl App {
             items.insert(0, Item::new(text, Choice::Command(choosing.done())));
             selected = selected.map(|at| at + 1);
         }
-        self.choose(&format!("{title} ({})", choosing.foreign.shown), items, selected.unwrap_or(0));
+        self.choose(&format!("{title} ({})", choosing.foreign.shown), items, selected.unwrap_or(0))
     }
 
     /// Asks for the unit of a column that names none.
-    fn ask_unit(&mut self, choosing: &Choosing, role: ColumnRole, number: usize) {
+    fn ask_unit(&mut self, choosing: &Choosing, role: ColumnRole, number: usize) -> Vec<Effect> {
         let units: &[&str] = match role {
             ColumnRole::Force => &FORCES,
             ColumnRole::Area => &AREAS,
@@ -104,7 +104,7 @@ impl App {
             Item::new((*unit).to_owned(), Choice::Columns(Box::new(next)))
         };
         let title = format!("Unit of column {number}, {}", meaning(role));
-        self.choose(&title, units.iter().map(item).collect(), 0);
+        self.choose(&title, units.iter().map(item).collect(), 0)
     }
 
     /// Continues with what was chosen.
@@ -117,7 +117,6 @@ impl App {
             let command = choosing.done();
             return self.run(command);
         }
-        self.ask_columns(choosing);
-        Vec::new()
+        self.ask_columns(choosing)
     }
 }

@@ -25,11 +25,10 @@ impl App {
                 item("the preset       the data stay where they are", false),
                 item("save with data   the data are copied beside the preset", true),
             ];
-            self.choose("Save", items, 0);
+            self.choose("Save", items, 0)
         } else {
-            self.overlay = Some(Dialog::Prompt(prompt(false)));
+            self.lay(Dialog::Prompt(prompt(false)))
         }
-        Vec::new()
     }
 
     pub(super) fn ask_export(&mut self) -> Vec<Effect> {
@@ -48,8 +47,7 @@ impl App {
             let prompt = Prompt::new(format!("Export the {name} to"), &note, file, Purpose::File(what));
             Item::new(text, Choice::Prompt(Box::new(prompt)))
         });
-        self.choose("Export", items.collect(), 0);
-        Vec::new()
+        self.choose("Export", items.collect(), 0)
     }
 
     pub(super) fn ask_copy(&mut self) -> Vec<Effect> {
@@ -57,8 +55,7 @@ impl App {
             let [name, meaning] = content.words();
             Item::new(format!("{name:<7} {meaning}"), Choice::Copy(content))
         });
-        self.choose("Copy", items.to_vec(), 0);
-        Vec::new()
+        self.choose("Copy", items.to_vec(), 0)
     }
 
     /// Puts text on the clipboard, if it is not too long.

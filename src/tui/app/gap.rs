@@ -13,7 +13,7 @@ use pulloff_engine::preset::{Key, Value, data};
 use pulloff_engine::text::show_path;
 
 /// What each shape is, in a few words.
-const SHAPES: [(&str, &str); 9] = [
+pub(super) const SHAPES: [(&str, &str); 9] = [
     ("sphere", "paraboloid r²/(2R)"),
     ("wavy-sphere", "paraboloid with one wave"),
     ("exact-sphere", "R - √(R² - r²), up to R"),
@@ -25,22 +25,7 @@ const SHAPES: [(&str, &str); 9] = [
     ("profile", "measured rows in a file"),
 ];
 
-fn set(key: &Key, text: impl Into<String>) -> Choice {
-    Choice::Command(Command::Set { key: key.clone(), text: text.into() })
-}
-
 impl App {
-    pub(super) fn ask_shape(&mut self, words: &[&str]) -> Vec<Effect> {
-        let key: Key = "gap.shape".into();
-        let item = |word: &&str| {
-            let meaning = SHAPES.iter().find(|(name, _)| name == word).map_or("", |(_, meaning)| meaning);
-            Item::new(format!("{word:<13} {meaning}"), set(&key, *word))
-        };
-        let selected = words.iter().position(|word| *word == self.model.preset.gap.name()).unwrap_or(0);
-        self.choose("Gap", words.iter().map(item).collect(), selected);
-        Vec::new()
-    }
-
     /// Asks for the formula once that is the shape.
     pub(super) fn ask_formula_of_shape(&mut self) {
         const KEY: &str = "gap.formula";
@@ -69,10 +54,11 @@ impl App {
         };
         let up = folder.path.parent().map(|parent| go("../".to_owned(), parent.to_owned()));
         let below = folder.folders.iter().map(|name| go(format!("{name}/"), folder.path.join(name)));
-        let files = folder.files.iter().map(|name| Item::new(name.clone(), set(key, folder.name_of(name))));
+        let files =
+            folder.files.iter().map(|name| Item::new(name.clone(), Choice::set(key, folder.name_of(name))));
         let shipped = if is_curve { CURVES } else { DATA }.iter().map(|data| {
             let name = format!("{SHIPPED_DATA}{}", data.name);
-            Item::new(name.clone(), set(key, name))
+            Item::new(name.clone(), Choice::set(key, name))
         });
         let (title, asks, note) = if is_curve {
             (
@@ -88,7 +74,7 @@ impl App {
         let selected =
             usize::from(up.is_some()) + if folder.files.is_empty() { 0 } else { folder.folders.len() };
         let has_curve = is_curve && self.model.preset.data.source.is_some();
-        let none = has_curve.then(|| Item::new("none: remove the curve", set(key, NONE)));
+        let none = has_curve.then(|| Item::new("none: remove the curve", Choice::set(key, NONE)));
         let items = up.into_iter().chain(below).chain(files).chain(shipped).chain([path]).chain(none);
         self.choose(&format!("{title} {}", show_path(&folder.path)), items.collect(), selected);
     }

@@ -1,5 +1,6 @@
 //! Keys and pastes, prompts, questions, and what the explorer answers.
 
+use super::gap::SHAPES;
 use super::state::App;
 use crate::explorer::job::Done;
 use crate::explorer::look::{MIDDLE, make_room};
@@ -10,7 +11,7 @@ use crate::figure::Subject;
 use crate::store::{Listed, Listing, Source};
 use crate::tui::copy::drawn;
 use crate::tui::layout::is_alone;
-use crate::tui::overlay::{Choice, Choose, Confirm, Dialog, Help, Item, LONGEST_LINE, Prompt, Purpose};
+use crate::tui::overlay::{Choice, Confirm, Dialog, Help, Item, LONGEST_LINE, Prompt, Purpose};
 use crate::tui::view::help::ABOUT;
 use crate::tui::view::{cells, places, problem};
 use crossterm::event::{Event, KeyCode, KeyEvent, KeyModifiers};
@@ -23,6 +24,11 @@ use pulloff_engine::text::{sanitize, show_path};
 use pulloff_engine::units::Quantity;
 use ratatui::layout::Rect;
 use tui_input::backend::crossterm::EventHandler;
+
+/// The title of what asks for a value.
+pub(super) fn title(row: &Row) -> String {
+    format!("{}: {}", row.label, row.meaning)
+}
 
 /// The question before the person's own preset is deleted; what ships with the program stays.
 fn deletion(source: &Source) -> Option<Box<Confirm>> {
@@ -208,8 +214,14 @@ impl App {
         self.choose("Open a preset", items, 0);
     }
 
-    pub(super) fn ask(&mut self, question: String, yes: Command) {
-        self.overlay = Some(Dialog::Confirm(Confirm { question, yes }));
+    /// Puts something over the screen, which asks for nothing to be done yet.
+    pub(super) fn lay(&mut self, over: Dialog) -> Vec<Effect> {
+        self.overlay = Some(over);
+        Vec::new()
+    }
+
+    pub(super) fn ask(&mut self, question: String, yes: Command) -> Vec<Effect> {
+        self.lay(Dialog::Confirm(Confirm { question, yes }))
     }
 
     pub(super) fn command_key(&mut self, key: KeyEvent) -> Vec<Effect> {
@@ -255,8 +267,7 @@ impl App {
                     "Not saved; the session keeps it. y quits, Esc stays{}.",
                     saves.unwrap_or_default()
                 );
-                self.ask(question, Id::Quit.into());
-                Vec::new()
+                self.ask(question, Id::Quit.into())
             }
             Id::Save if self.model.source.path().is_none() => self.ask_name(),
             Id::SaveAs => self.ask_name(),
@@ -283,10 +294,7 @@ impl App {
                 self.switch_mouse();
                 Vec::new()
             }
-            Id::About => {
-                self.overlay = Some(Dialog::Help(Help { page: ABOUT, ..Help::default() }));
-                Vec::new()
-            }
+            Id::About => self.lay(Dialog::Help(Help { page: ABOUT, ..Help::default() })),
             Id::NextPanel | Id::PreviousPanel => self.next_panel(id == Id::NextPanel),
             Id::Up | Id::Down if self.model.panel == ScreenPanel::Problem => {
                 self.value_beside(id == Id::Down)
@@ -339,24 +347,21 @@ impl App {
         place.unwrap_or(MIDDLE)
     }
 
-    pub(super) fn choose(&mut self, title: &str, items: Vec<Item>, selected: usize) {
-        let picture = items.get(selected).and_then(|item| self.picture(&item.action));
-        let (title, filter) = (title.to_owned(), String::new());
-        self.overlay = Some(Dialog::Choose(Choose { title, items, filter, selected, picture }));
-    }
-
     pub(super) fn ask_value(&mut self) -> Vec<Effect> {
         let Some((row, value)) = self.model.selected_knob() else { return Vec::new() };
         match (&*row.key, row.kind) {
-            ("gap.shape", Kind::Choice(words)) => return self.ask_shape(words),
+            ("gap.shape", Kind::Choice(words)) => {
+                return self.ask_word((&row, value.as_ref()), words, &SHAPES, "Gap");
+            }
             ("gap.formula", _) => return self.ask_formula(row.key.clone(), value),
             (_, Kind::File | Kind::Points) => return self.browse(row.key.clone()),
-            (_, Kind::Choice(words)) => return self.ask_choice(&row, words, value.as_ref()),
+            (_, Kind::Choice(words)) => {
+                return self.ask_word((&row, value.as_ref()), words, &[], &title(&row));
+            }
             (_, Kind::Control) => return self.ask_control(),
             _ => {}
         }
-        self.overlay = Some(Dialog::Prompt(self.value_prompt(&row, value)));
-        Vec::new()
+        self.lay(Dialog::Prompt(self.value_prompt(&row, value)))
     }
 
     /// Asks for the text of a value.
@@ -382,13 +387,11 @@ impl App {
         };
         let can_go = row.is_optional() && self.model.preset.get(&row.key).is_some();
         let note = if can_go { format!("{note}; {NONE} removes it") } else { note };
-        let title = format!("{}: {}", row.label, row.meaning);
-        Prompt::new(title, &note, text, Purpose::Value(row.key.clone()))
+        Prompt::new(title(row), &note, text, Purpose::Value(row.key.clone()))
     }
 
     pub(super) fn prompt(&mut self, title: &str, note: &str, text: String, purpose: Purpose) -> Vec<Effect> {
-        self.overlay = Some(Dialog::Prompt(Prompt::new(title, note, text, purpose)));
-        Vec::new()
+        self.lay(Dialog::Prompt(Prompt::new(title, note, text, purpose)))
     }
 
     /// Whether a key closes a prompt: one of those that quit, unless it is text.
@@ -409,8 +412,7 @@ impl App {
                 let text = prompt.input.value().to_owned();
                 if let Some(fault) = prompt.formula_error() {
                     prompt.refuse(&fault);
-                    self.overlay = Some(Dialog::Prompt(prompt));
-                    return Vec::new();
+                    return self.lay(Dialog::Prompt(prompt));
                 }
                 let Some(command) = prompt.purpose.clone().command(text) else { return effects };
                 let effects = self.run(command);
@@ -439,8 +441,7 @@ impl App {
     pub(super) fn open_or_ask(&mut self, command: Command) -> Vec<Effect> {
         if self.model.is_unsaved() && matches!(command, Command::Open(_) | Command::OpenWith { .. }) {
             let question = "The preset has unsaved changes. y opens the other and loses them, Esc goes back.";
-            self.ask(question.to_owned(), command);
-            return Vec::new();
+            return self.ask(question.to_owned(), command);
         }
         self.run(command)
     }
@@ -450,10 +451,7 @@ impl App {
             KeyCode::Char('y') => self.run(confirm.yes),
             KeyCode::Char('n') | KeyCode::Esc => Vec::new(),
             _ if self.keymap.command(key) == Some(Id::SaveAs) => self.ask_name(),
-            _ => {
-                self.overlay = Some(Dialog::Confirm(confirm));
-                Vec::new()
-            }
+            _ => self.lay(Dialog::Confirm(confirm)),
         }
     }
 }

@@ -36,8 +36,7 @@ impl App {
             _ if prompt.waits => {}
             KeyCode::Enter => return self.obey_line(prompt),
             KeyCode::Tab if is_empty && prompt.purpose == (Purpose::Line { is_help: true }) => {
-                self.overlay = Some(Dialog::Help(Help::default()));
-                return Vec::new();
+                return self.lay(Dialog::Help(Help::default()));
             }
             KeyCode::Tab => self.take_entry(&mut prompt),
             // The lines typed earlier lie above the list.
@@ -62,8 +61,7 @@ impl App {
                 }
             }
         }
-        self.overlay = Some(Dialog::Prompt(prompt));
-        Vec::new()
+        self.lay(Dialog::Prompt(prompt))
     }
 
     fn is_recalled(&self) -> bool {
@@ -149,8 +147,7 @@ impl App {
             // The text after the cursor is not dropped.
             if !entry.is_whole || prompt.input.cursor() < line.chars().count() {
                 self.take_entry(&mut prompt);
-                self.overlay = Some(Dialog::Prompt(prompt));
-                return Vec::new();
+                return self.lay(Dialog::Prompt(prompt));
             }
             line.clone_from(&entry.line);
         }
@@ -159,8 +156,7 @@ impl App {
             Err(fault) => {
                 prompt.error = Some(format!("column {}: {fault}", fault.column));
                 prompt.fault = Some(fault.column);
-                self.overlay = Some(Dialog::Prompt(prompt));
-                return Vec::new();
+                return self.lay(Dialog::Prompt(prompt));
             }
             Ok(Some(command)) => {
                 self.typed.remember(line.trim());

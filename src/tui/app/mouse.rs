@@ -18,7 +18,7 @@ use crate::explorer::{Command, Effect, Id, ScreenPanel, View, reach};
 use crate::figure::reading::What;
 use crate::figure::{Subject, map, nearest, study};
 use crate::tui::layout::Regions;
-use crate::tui::overlay::Dialog;
+use crate::tui::overlay::{Choose, Dialog, Prompt};
 use crate::tui::terminal::{KeyCode, MouseEvent, MouseEventKind};
 use crate::tui::view::status::{self, Does};
 use crate::tui::view::{cells, charts, header, log, overlays, places, problem, states};
@@ -70,27 +70,17 @@ impl App {
         match (&self.overlay, up) {
             (None, Some(up)) => self.wheel(at, up),
             (None, None) => self.click(at),
-            (Some(Dialog::Prompt(prompt)), None) => match overlays::entry_at(prompt, self.screen, at) {
-                Some(line) if Some(line) == prompt.selected => self.key(KeyCode::Enter.into()),
-                Some(line) => {
-                    self.select_item(line);
-                    Vec::new()
-                }
-                None => Vec::new(),
-            },
+            (Some(Dialog::Prompt(prompt)), None) => {
+                self.click_item(overlays::entry_at(prompt, self.screen, at), prompt.selected)
+            }
             // Above the list are the lines typed earlier, which the wheel does not bring back.
             (Some(Dialog::Prompt(prompt)), Some(true)) if prompt.selected.is_none() => Vec::new(),
             (Some(Dialog::Choose(_) | Dialog::Help(_) | Dialog::Prompt(_)), Some(up)) => {
                 self.key(if up { KeyCode::Up } else { KeyCode::Down }.into())
             }
-            (Some(Dialog::Choose(choose)), None) => match overlays::line_at(choose, self.screen, at) {
-                Some(line) if line == choose.selected => self.key(KeyCode::Enter.into()),
-                Some(line) => {
-                    self.select_item(line);
-                    Vec::new()
-                }
-                None => Vec::new(),
-            },
+            (Some(Dialog::Choose(choose)), None) => {
+                self.click_item(overlays::line_at(choose, self.screen, at), Some(choose.selected))
+            }
             _ => Vec::new(),
         }
     }
@@ -112,20 +102,20 @@ impl App {
         home.flatten().map(|home| self.run(Command::Go(home)))
     }
 
-    /// Selects another line of the list that lies over the screen.
-    fn select_item(&mut self, line: usize) {
+    /// Takes the selected line of the list that lies over the screen, or selects another.
+    fn click_item(&mut self, line: Option<usize>, selected: Option<usize>) -> Vec<Effect> {
+        let Some(line) = line else { return Vec::new() };
+        if Some(line) == selected {
+            return self.key(KeyCode::Enter.into());
+        }
         match self.overlay.take() {
-            Some(Dialog::Choose(mut choose)) => {
-                choose.selected = line;
-                choose.picture = choose.current().and_then(|(_, item)| self.picture(&item.action));
-                self.overlay = Some(Dialog::Choose(choose));
-            }
-            Some(Dialog::Prompt(mut prompt)) => {
-                prompt.selected = Some(line);
-                self.overlay = Some(Dialog::Prompt(prompt));
+            Some(Dialog::Choose(choose)) => return self.lay_list(Choose { selected: line, ..choose }),
+            Some(Dialog::Prompt(prompt)) => {
+                return self.lay(Dialog::Prompt(Prompt { selected: Some(line), ..prompt }));
             }
             other => self.overlay = other,
         }
+        Vec::new()
     }
 
     fn pick(&mut self, panel: ScreenPanel, line: Option<usize>) -> Vec<Effect> {

@@ -77,6 +77,13 @@ pub fn entry_at(prompt: &Prompt, area: Rect, at: Position) -> Option<usize> {
     (line < prompt.entries.len()).then_some(line)
 }
 
+/// A line of a list, marked if it is selected.
+fn line_of(theme: Theme, text: &str, is_selected: bool, width: usize) -> Line<'static> {
+    let mark = if is_selected { '>' } else { ' ' };
+    let text = theme.whole_words(&format!("{mark} {text}"), width);
+    if is_selected { Line::styled(text, theme.selection()) } else { Line::raw(text) }
+}
+
 /// The entries of a line, in this many rows.
 fn entries(app: &App, prompt: &Prompt, rows: usize, width: usize) -> Vec<Line<'static>> {
     /// The columns of the keys, and at most those of the lines.
@@ -91,14 +98,9 @@ fn entries(app: &App, prompt: &Prompt, rows: usize, width: usize) -> Vec<Line<'s
             let keys = entry.id.map_or_else(String::new, |id| app.keymap.keys_of(id));
             let says = theme.text(&theme.symbols(&app.keymap.spelled(&entry.says)));
             let is_selected = prompt.selected == Some(at);
-            let mark = if is_selected { '>' } else { ' ' };
-            let text =
-                theme.whole_words(&format!("{mark} {keys:<KEYS$} {:<longest$} {says}", entry.line), width);
-            match is_selected {
-                true => Line::styled(text, theme.selection()),
-                false if entry.says.starts_with("- ") => Line::styled(text, theme.dim()),
-                false => Line::raw(text),
-            }
+            let text = format!("{keys:<KEYS$} {:<longest$} {says}", entry.line);
+            let line = line_of(theme, &text, is_selected, width);
+            if !is_selected && entry.says.starts_with("- ") { line.style(theme.dim()) } else { line }
         })
         .collect();
     if lines.is_empty() && rows > 0 {
@@ -200,11 +202,7 @@ fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose)
         .skip(first)
         .take(rows)
         .map(|(i, (_, item))| {
-            let chosen = i == choose.selected;
-            let mark = if chosen { '>' } else { ' ' };
-            let text =
-                theme.whole_words(&format!("{mark} {}", theme.text(&item.text)), usize::from(inner.width));
-            if chosen { Line::styled(text, theme.selection()) } else { Line::raw(text) }
+            line_of(theme, &theme.text(&item.text), i == choose.selected, usize::from(inner.width))
         })
         .collect();
     if shown.is_empty() {
