@@ -5,9 +5,8 @@
 //! separate file beside it, which is removed with the lock; a killed process leaves that file behind, empty and
 //! unlocked.
 
-use rustix::fs::{FlockOperation, flock};
 use rustix::io::Errno;
-use std::fs::{File, OpenOptions};
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io;
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
@@ -39,7 +38,7 @@ impl FolderLock {
 /// Errors: The file cannot be locked. A file system without locks grants every one.
 pub fn lock_file(file: &File, patience: Duration) -> io::Result<bool> {
     let deadline = Instant::now() + patience;
-    while !lock(file)? {
+    while !is_granted(file.try_lock())? {
         if Instant::now() >= deadline {
             return Ok(false);
         }
@@ -48,12 +47,17 @@ pub fn lock_file(file: &File, patience: Duration) -> io::Result<bool> {
     Ok(true)
 }
 
-/// Locks a file or folder; false if another process holds the lock. A file system without locks grants every one.
-fn lock(file: &File) -> io::Result<bool> {
-    match flock(file, FlockOperation::NonBlockingLockExclusive) {
-        Ok(()) | Err(Errno::NOTSUP | Errno::NOLCK | Errno::INVAL | Errno::BADF | Errno::NOSYS) => Ok(true),
-        Err(Errno::WOULDBLOCK | Errno::INTR) => Ok(false),
-        Err(other) => Err(other.into()),
+/// Whether a lock was granted: not if another process holds it, or if a signal came before. A file system without locks
+/// grants every one.
+pub(super) fn is_granted(outcome: Result<(), TryLockError>) -> io::Result<bool> {
+    match outcome {
+        Ok(()) => Ok(true),
+        Err(TryLockError::WouldBlock) => Ok(false),
+        Err(TryLockError::Error(error)) => match Errno::from_io_error(&error) {
+            Some(Errno::NOTSUP | Errno::NOLCK | Errno::INVAL | Errno::BADF | Errno::NOSYS) => Ok(true),
+            Some(Errno::INTR) => Ok(false),
+            _ => Err(error),
+        },
     }
 }
 
@@ -76,7 +80,7 @@ impl FileLock {
             let mut options = OpenOptions::new();
             options.write(true).create(true).truncate(false).mode(0o600);
             let file = options.custom_flags(flags.bits().cast_signed()).open(path)?;
-            if lock(&file)? {
+            if is_granted(file.try_lock())? {
                 let ours = file.metadata()?;
                 // The previous holder removes the file; a lock on a file that no longer has a name is worthless.
                 let named = path.symlink_metadata();
@@ -92,7 +96,7 @@ impl FileLock {
 
     /// Whether any process holds the lock of the file `path`.
     pub fn is_held(path: &Path) -> bool {
-        File::open(path).is_ok_and(|file| matches!(lock(&file), Ok(false)))
+        File::open(path).is_ok_and(|file| matches!(is_granted(file.try_lock()), Ok(false)))
     }
 }
 

@@ -3,9 +3,9 @@
 //! A writer that is killed leaves its temporary behind. Nobody mistakes it for anything else, since its name begins
 //! with a dot and ends in `.tmp`, and the next save in the folder removes it: by then the kernel has released the lock.
 
-use rustix::fs::{FlockOperation, Gid, OFlags, Uid, fchown, flock};
-use rustix::io::Errno;
-use std::fs::{self, File, Metadata, OpenOptions, Permissions};
+use super::lock::is_granted;
+use rustix::fs::{Gid, OFlags, Uid, fchown};
+use std::fs::{self, File, Metadata, OpenOptions, Permissions, TryLockError};
 use std::io;
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt, PermissionsExt};
 use std::path::Path;
@@ -57,7 +57,8 @@ pub(super) fn beside(folder: &Path, old: Option<&Metadata>) -> io::Result<NamedT
             None => builder.permissions(Permissions::from_mode(NEW)).tempfile_in(folder)?,
             Some(_) => builder.tempfile_in(folder)?,
         };
-        lock(temporary.as_file())?;
+        // Where there are no locks, nobody can sweep either.
+        while !is_granted(temporary.as_file().lock().map_err(TryLockError::Error))? {}
         // Another process's sweep may have run between the two steps.
         if temporary.as_file().metadata()?.nlink() > 0 {
             break temporary;
@@ -84,19 +85,6 @@ fn give_to(file: &File, old: &Metadata) -> io::Result<()> {
     file.set_permissions(Permissions::from_mode(mode))
 }
 
-/// A file system without locks grants none; nobody can sweep there either.
-fn lock(file: &File) -> io::Result<()> {
-    loop {
-        match flock(file, FlockOperation::LockExclusive) {
-            Ok(()) | Err(Errno::NOTSUP | Errno::NOLCK | Errno::INVAL | Errno::BADF | Errno::NOSYS) => {
-                return Ok(());
-            }
-            Err(Errno::INTR) => {}
-            Err(other) => return Err(other.into()),
-        }
-    }
-}
-
 /// Removes what killed writers left in `folder`. What cannot be removed stays.
 fn sweep(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
@@ -114,7 +102,7 @@ fn sweep_one(path: &Path) {
     let Ok(flags) = i32::try_from(flags.bits()) else { return };
     let Ok(file) = OpenOptions::new().read(true).custom_flags(flags).open(path) else { return };
     let is_file = file.metadata().is_ok_and(|metadata| metadata.is_file());
-    if is_file && flock(&file, FlockOperation::NonBlockingLockExclusive).is_ok() {
+    if is_file && file.try_lock().is_ok() {
         let _ = fs::remove_file(path);
     }
 }
