@@ -120,19 +120,21 @@ pub fn of(data: &StudyData, preset: &Preset, axes: Axes) -> Figure {
         let at = found.iter().find(|(at, _)| (at - x).abs() <= 1e-12 * x.abs());
         figure.marks.extend(at.map(|at| Mark { sign: Sign::Preset, at: *at }));
     }
-    let (done, count) = (data.done(), data.outcomes.len());
-    if done < count {
-        figure.notes.push(format!("{done} of {count}"));
-    }
-    if data.wish.column.is_unchecked(&data.wish.preset) {
-        figure.notes.push("may be inadmissible (one disc)".to_owned());
-    }
-    let waits = data.outcomes.iter().filter(|outcome| matches!(outcome, StudyOutcome::Waits)).count();
-    let missing = places.iter().filter(|(_, y)| y.is_none()).count().saturating_sub(waits);
-    if missing > 0 {
-        figure.notes.push(format!("{missing} without a value: the cross-hair says why"));
-    }
+    figure.notes.extend(notes(data, places.iter().filter(|(_, y)| y.is_none()).count()));
     figure
+}
+
+/// What is not to be seen on the figure, where `without` places have no value.
+fn notes(data: &StudyData, without: usize) -> impl Iterator<Item = String> {
+    let (done, count) = (data.done(), data.outcomes.len());
+    let is_unchecked = data.wish.column.is_unchecked(&data.wish.preset);
+    let missing = without.saturating_sub(count - done);
+    let all = [
+        (done < count).then(|| format!("{done} of {count}")),
+        is_unchecked.then(|| "may be inadmissible (one disc)".to_owned()),
+        (missing > 0).then(|| format!("{missing} without a value: the cross-hair says why")),
+    ];
+    all.into_iter().flatten()
 }
 
 /// The limit of the largest pull at low rates: the quasi-static one, and the first order as far as it holds.

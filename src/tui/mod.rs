@@ -177,6 +177,28 @@ fn is_walk_begun(model: &Model, effects: &[Effect]) -> bool {
         && model.walking.is_some_and(|walking| walking.made == 0)
 }
 
+/// Takes in a key, another event of the terminal or a reply; returns the work that it requests.
+fn take_in<S: FrameSink>(
+    app: &mut App,
+    display: &mut Display<S>,
+    held: &mut HeldKey,
+    incoming: Incoming<Reply>,
+) -> Vec<Effect> {
+    match incoming {
+        Incoming::Key(key) if keymap::is_suspend(key) => terminal::suspend(),
+        Incoming::Key(key) => {
+            fault::point(fault::UI);
+            app.held = held.before(key, Instant::now());
+            return app.key(key);
+        }
+        Incoming::Mouse(mouse) => return app.mouse(mouse),
+        Incoming::Paste(text) => return app.paste(&text),
+        Incoming::Resized | Incoming::Resumed => display.repaint(),
+        Incoming::App(reply) => return app.reply(reply),
+    }
+    Vec::new()
+}
+
 /// Keys and replies in, frames out, until the person quits.
 ///
 /// Everything that has happened is taken in before a frame, and a frame is written before looking at what comes next: a
@@ -202,24 +224,7 @@ fn converse<S: FrameSink>(
         let due = [Some(due), grace].into_iter().flatten().max();
         let first = inbox.next(if dirty { due } else { notice.due() });
         for incoming in first.into_iter().chain(inbox.pending()) {
-            let effects = match incoming {
-                Incoming::Key(key) if keymap::is_suspend(key) => {
-                    terminal::suspend();
-                    Vec::new()
-                }
-                Incoming::Key(key) => {
-                    fault::point(fault::UI);
-                    app.held = held.before(key, Instant::now());
-                    app.key(key)
-                }
-                Incoming::Mouse(mouse) => app.mouse(mouse),
-                Incoming::Paste(text) => app.paste(&text),
-                Incoming::Resized | Incoming::Resumed => {
-                    display.repaint();
-                    Vec::new()
-                }
-                Incoming::App(reply) => app.reply(reply),
-            };
+            let effects = take_in(app, display, &mut held, incoming);
             if !dirty && is_walk_begun(&app.model, &effects) {
                 grace = Some(Instant::now() + GRACE);
             }
