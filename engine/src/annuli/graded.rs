@@ -91,6 +91,57 @@ impl Graded {
     }
 }
 
+/// The angles θ of the points of a ring.
+struct Laid {
+    /// θ at the ends of the pieces.
+    borders: Vec<f64>,
+    /// Each as the distance from a border, and that border.
+    angles: Vec<(usize, f64)>,
+    theta: Vec<f64>,
+    /// dθ/dt at the points,
+    stretches: Vec<f64>,
+    /// and at the ends.
+    stretch: [f64; 2],
+}
+
+impl Laid {
+    /// As many points on each piece between these borders.
+    fn new(borders: Vec<f64>, pieces: &[usize], n: usize) -> Self {
+        let last = pieces.len() - 1;
+        let placed = |j: usize, u: f64| {
+            let at = place(u, borders[j + 1] - borders[j], j == 0, j == last);
+            let stretch = at.slope * n as f64 / (PI * pieces[j] as f64);
+            (at, stretch)
+        };
+        let (mut angles, mut stretches) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        for (j, count) in pieces.iter().enumerate() {
+            for k in 0..*count {
+                let (at, stretch) = placed(j, (k as f64 + 0.5) / *count as f64);
+                let is_lower = at.from_lower < at.to_upper;
+                angles.push(if is_lower { (j, at.from_lower) } else { (j + 1, -at.to_upper) });
+                stretches.push(stretch);
+            }
+        }
+        let theta = angles.iter().map(|(border, off)| borders[*border] + off).collect();
+        let stretch = [placed(0, 0.0).1, placed(last, 1.0).1];
+        Self { borders, angles, theta, stretches, stretch }
+    }
+
+    /// The angle from point i to point k.
+    fn between(&self, i: usize, k: usize) -> f64 {
+        let [(own, off), (other, far)] = [self.angles[i], self.angles[k]];
+        if own == other { far - off } else { (self.borders[other] - self.borders[own]) + (far - off) }
+    }
+
+    /// The sum and the difference of the angles of a point and a border; 2d times the sines of their halves is the
+    /// difference of the radii.
+    fn with_border(&self, k: usize, border: usize) -> [f64; 2] {
+        let (own, off) = self.angles[k];
+        let difference = if own == border { off } else { self.theta[k] - self.borders[border] };
+        [self.theta[k] + self.borders[border], difference]
+    }
+}
+
 /// θ of a radius on a ring.
 pub fn angle_of([a, b]: [f64; 2], r: f64) -> f64 {
     2.0 * atan2((r - a).max(0.0).sqrt(), (b - r).max(0.0).sqrt())
@@ -105,7 +156,7 @@ impl Nodes {
         let [a, b] = ends;
         let (width, last) = (b - a, pieces.len() - 1);
         let inner = breaks.iter().map(|r| angle_of(ends, *r));
-        let borders: Vec<f64> = std::iter::once(0.0).chain(inner).chain([PI]).collect();
+        let laid = Laid::new(std::iter::once(0.0).chain(inner).chain([PI]).collect(), pieces, n);
         let radii_of = |j: usize| {
             if j == 0 {
                 a
@@ -115,31 +166,14 @@ impl Nodes {
                 breaks[j - 1]
             }
         };
-        // θ as the distance from a border, and dθ/dt.
-        let mut angles = Vec::with_capacity(n);
-        let mut stretches = Vec::with_capacity(n);
-        for (j, count) in pieces.iter().enumerate() {
-            let size = borders[j + 1] - borders[j];
-            for k in 0..*count {
-                let u = (k as f64 + 0.5) / *count as f64;
-                let at = place(u, size, j == 0, j == last);
-                angles.push(if at.from_lower < at.to_upper {
-                    (j, at.from_lower)
-                } else {
-                    (j + 1, -at.to_upper)
-                });
-                stretches.push(at.slope * n as f64 / (PI * *count as f64));
-            }
-        }
-        let theta: Vec<f64> = angles.iter().map(|(border, off)| borders[*border] + off).collect();
-        // r minus the radius of a border: 2d times the sines of half the sum and half the difference.
+        // r minus the radius of a border.
         let from_border = |k: usize, border: usize| {
-            let (own, off) = angles[k];
-            let difference = if own == border { off } else { theta[k] - borders[border] };
-            width * sin(0.5 * (theta[k] + borders[border])) * sin(0.5 * difference)
+            let [sum, difference] = laid.with_border(k, border);
+            width * sin(0.5 * sum) * sin(0.5 * difference)
         };
-        let from_inner: Vec<f64> = (0..n).map(|k| width * sin(0.5 * theta[k]).powi(2)).collect();
-        let radii: Vec<f64> = (0..n).map(|k| radii_of(angles[k].0) + from_border(k, angles[k].0)).collect();
+        let from_inner: Vec<f64> = laid.theta.iter().map(|theta| width * sin(0.5 * theta).powi(2)).collect();
+        let own = |k: usize| laid.angles[k].0;
+        let radii: Vec<f64> = (0..n).map(|k| radii_of(own(k)) + from_border(k, own(k))).collect();
         let (first_break, last_break) = (radii_of(1), radii_of(last));
         let (inward, outward) = ((first_break - a).recip(), (b - last_break).recip());
         let in_first = pieces[0];
@@ -154,16 +188,12 @@ impl Nodes {
         let mut quotients = [vec![0.0; n * n], vec![0.0; n * n]];
         for i in 0..n {
             let at = i * n + i;
-            lift[at] = stretches[i] * sin(theta[i]) / sin(rule.angles[i]);
+            lift[at] = laid.stretches[i] * sin(laid.theta[i]) / sin(rule.angles[i]);
             quotients[0][at] = if i < in_first { -inward } else { 0.0 };
             quotients[1][at] = if i >= in_last { outward } else { 0.0 };
             for k in i + 1..n {
-                let difference = if angles[i].0 == angles[k].0 {
-                    angles[k].1 - angles[i].1
-                } else {
-                    (borders[angles[k].0] - borders[angles[i].0]) + (angles[k].1 - angles[i].1)
-                };
-                let product = sin(0.5 * (theta[i] + theta[k])) * sin(0.5 * difference);
+                let sum = laid.theta[i] + laid.theta[k];
+                let product = sin(0.5 * sum) * sin(0.5 * laid.between(i, k));
                 let ratio = product / (rule.sines[i + k + 1] * rule.sines[k - i]);
                 for at in [i * n + k, k * n + i] {
                     apart[at] = width * product;
@@ -181,11 +211,7 @@ impl Nodes {
         for i in in_last..n {
             quotients[1][i * n + in_last..(i + 1) * n].fill(outward);
         }
-        let edge = |j: usize, u: f64| {
-            place(u, borders[j + 1] - borders[j], j == 0, j == last).slope * n as f64
-                / (PI * pieces[j] as f64)
-        };
-        let stretch = [edge(0, 0.0), edge(last, 1.0)];
+        let Laid { borders, stretch, .. } = laid;
         Self {
             ends,
             rule,
