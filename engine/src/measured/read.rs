@@ -44,6 +44,12 @@ pub struct SeenColumn {
     pub role: Option<ColumnRole>,
 }
 
+/// The columns of `side` that are not among the `others`.
+fn alone(side: &[WantedColumn], others: &[WantedColumn]) -> Vec<usize> {
+    let is_alone = |at: &usize| others.iter().all(|other| other.at != *at);
+    side.iter().map(|want| want.at).filter(is_alone).collect()
+}
+
 /// A file in pieces, with the tables to read already chosen.
 struct Pieces<'a> {
     outline: Outline<'a>,
@@ -226,6 +232,40 @@ impl<'a> Pieces<'a> {
         Some(table.separator.cells(table.rows.get(row)?.1))
     }
 
+    /// Reads the rows of these tables, each of a branch, into both sides; the second has no columns where the branches do
+    /// not stand side by side.
+    fn read_rows(
+        &self,
+        all: &[&TextTable<'a>],
+        branches: &[Option<Segment>],
+        mut sides: [(&[WantedColumn], &mut Measured); 2],
+        state: &mut CellFindings,
+    ) {
+        let Some(width) = all.first().map(|table| self.width(table)) else { return };
+        let [own, others] = [sides[0].0, sides[1].0];
+        let is_one = others.is_empty();
+        let alone = [alone(own, others), alone(others, own)];
+        let tables = if self.are_beside { &all[..1] } else { all };
+        for (table, branch) in tables.iter().zip(branches) {
+            let fewest = table.filled().min(width);
+            for (row, (line, _)) in table.rows.iter().enumerate() {
+                let Some(cells) = self.cells(all, table, row) else { continue };
+                let filled = cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
+                if filled > width || cells.len() < fewest {
+                    state.faults.add(*line, CurveFault::Cells { found: cells.len(), expected: width });
+                    continue;
+                }
+                for ((wanted, into), alone) in sides.iter_mut().zip(&alone) {
+                    // Of two branches side by side, one may be shorter.
+                    let is_over = alone.iter().all(|at| cells.get(*at).is_none_or(|cell| cell.is_empty()));
+                    if is_one || !is_over {
+                        state.takes(*line, &cells, wanted, *branch, into);
+                    }
+                }
+            }
+        }
+    }
+
     /// Reads the rows into `measured`.
     fn read(
         &self,
@@ -242,18 +282,17 @@ impl<'a> Pieces<'a> {
         let beside = header.filter(|_| spec.0.is_empty()).and_then(sides);
         let width = self.width(first);
         let [mut wanted, retraction] = match beside {
-            Some([approach, retraction]) => {
+            Some(sides) => {
                 let listed = |side: &[WantedColumn]| {
                     let numbers: Vec<String> = side.iter().map(|want| (want.at + 1).to_string()).collect();
                     numbers.join(" and ")
                 };
+                let [approach, retraction] = sides.each_ref().map(|side| listed(side));
                 measured.notes.push(format!(
-                    "columns {} are the approach, {} the retraction, whose rows are numbered on from those \
-                     of the approach",
-                    listed(&approach),
-                    listed(&retraction)
+                    "columns {approach} are the approach, {retraction} the retraction, whose rows are numbered on \
+                     from those of the approach"
                 ));
-                [approach, retraction]
+                sides
             }
             None => [wanted(spec, header, line, width, &mut measured.notes)?, Vec::new()],
         };
@@ -275,31 +314,8 @@ impl<'a> Pieces<'a> {
         measured.begins(&wanted, all_rows.or(branches.first().copied().flatten().filter(|_| is_said)));
         let mut other = Measured::default();
         other.begins(&retraction, None);
-        let own = |side: &[WantedColumn], others: &[WantedColumn]| -> Vec<usize> {
-            let is_own = |at: &usize| others.iter().all(|other| other.at != *at);
-            side.iter().map(|want| want.at).filter(is_own).collect()
-        };
-        let own = [own(&wanted, &retraction), own(&retraction, &wanted)];
-        let tables = if self.are_beside { &all[..1] } else { &all[..] };
-        for (table, branch) in tables.iter().zip(branches) {
-            let fewest = table.filled().min(width);
-            for (row, (line, _)) in table.rows.iter().enumerate() {
-                let Some(cells) = self.cells(&all, table, row) else { continue };
-                let filled = cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
-                if filled > width || cells.len() < fewest {
-                    state.faults.add(*line, CurveFault::Cells { found: cells.len(), expected: width });
-                    continue;
-                }
-                let sides = [(&wanted, &mut *measured), (&retraction, &mut other)];
-                for ((wanted, into), own) in sides.into_iter().zip(&own) {
-                    // Of two branches side by side, one may be shorter.
-                    let is_over = own.iter().all(|at| cells.get(*at).is_none_or(|cell| cell.is_empty()));
-                    if retraction.is_empty() || !is_over {
-                        state.takes(*line, &cells, wanted, branch.filter(|_| is_said), into);
-                    }
-                }
-            }
-        }
+        let branches = branches.into_iter().map(|branch| branch.filter(|_| is_said)).collect::<Vec<_>>();
+        self.read_rows(&all, &branches, [(&wanted, measured), (&retraction, &mut other)], state);
         measured.skipped += other.skipped;
         if !retraction.is_empty() {
             measured.appends(&other);
