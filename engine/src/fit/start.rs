@@ -287,7 +287,13 @@ pub fn start(
     if scan && problem.loops && problem.pins() {
         return problem.pinned(robust, progress);
     }
-    let (compared, run) = (problem.thinned(COMPARED), problem.thinned(RUN));
+    let ranked = ranked(problem, scan, robust, progress);
+    best_of(&problem.thinned(RUN), ranked, robust, progress)
+}
+
+/// The candidates nearest to the points, each with its distance, the nearest first.
+fn ranked(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progress) -> Vec<(f64, Vec<f64>)> {
+    let compared = problem.thinned(COMPARED);
     let attached = problem.data.iter().filter(|datum| !datum.free);
     let least = attached.map(|datum| datum.point.force).fold(f64::INFINITY, f64::min);
     let others = || problem.of_ranges(robust, progress).or_else(|| problem.of_rates(robust, progress));
@@ -323,14 +329,24 @@ pub fn start(
         }
     }
     by_distance(&mut ranked, BEST);
+    ranked
+}
+
+/// Fits `run` from each candidate, and returns where the best one ends, with what became of all.
+fn best_of(
+    run: &FitProblem,
+    ranked: Vec<(f64, Vec<f64>)>,
+    robust: bool,
+    progress: &dyn Progress,
+) -> Option<(Vec<f64>, Vec<Tried>)> {
     let mut best: Option<(f64, Vec<f64>)> = None;
     let mut tried = Vec::new();
     let count = ranked.len() as f64;
-    let is_pulled = is_pulled(&problem.preset);
+    let is_pulled = is_pulled(&run.preset);
     let mut from: Vec<Vec<f64>> = Vec::new();
     for (i, (before, u)) in ranked.into_iter().enumerate() {
         progress.report(0.6 + 0.4 * i as f64 / count);
-        let solved = solve(&run, &u, robust, ROUNDS, progress);
+        let solved = solve(run, &u, robust, ROUNDS, progress);
         let begun = u.clone();
         let end = solved.map_or((before, u), |SolvedFit { minimum, .. }| {
             let distance = run.distance(&minimum.parameters).unwrap_or(before);
