@@ -23,6 +23,16 @@ impl Turn {
         }
     }
 
+    /// Whether it is a value of what `control` prescribes.
+    pub fn is_prescribed(self, control: Control) -> bool {
+        match self {
+            Self::Control(_) => true,
+            Self::Approach(_) => control == Control::Displacement,
+            Self::Force(_) => control == Control::Force,
+            Self::Radius(_) => false,
+        }
+    }
+
     /// The same turn with lengths `length` times and forces `force` times as large.
     #[must_use]
     pub fn in_units(self, length: f64, force: f64, control: Control) -> Self {

@@ -283,17 +283,11 @@ impl Course<'_, '_> {
             Control::Displacement | Control::Stiffness(_) => crest.gap,
         };
         let Some(turn) = self.turn else { return Ok((crest, first)) };
-        let least = match turn {
-            Turn::Control(_) => first,
-            Turn::Approach(_) if setting.control == Control::Displacement => first,
-            Turn::Force(_) if setting.control == Control::Force => first,
-            _ => f64::NEG_INFINITY,
-        };
-        if turn.value() < least {
+        if turn.is_prescribed(setting.control) && turn.value() < first {
             return Err(if setting.control == Control::Force && balance.work_of_adhesion == 0.0 {
                 PathError::NoTension { load: turn.value() }
             } else {
-                PathError::TurnBeforeTouch { turn: turn.value(), touch: least }
+                PathError::TurnBeforeTouch { turn: turn.value(), touch: first }
             });
         }
         Ok((crest, first))

@@ -61,11 +61,7 @@ pub fn cycle_in_zone(
         return Err(PathError::RadiusBeyondGap { radius, known: table.end() });
     }
     let apart = setting.control.value(-cohesion.range, 0.0);
-    let measured_by_control = matches!(
-        (turn, setting.control),
-        (Turn::Control(_), _) | (Turn::Approach(_), Control::Displacement) | (Turn::Force(_), Control::Force)
-    );
-    if measured_by_control && turn.value() < apart {
+    if turn.is_prescribed(setting.control) && turn.value() < apart {
         return Err(PathError::TurnBeforeTouch { turn: turn.value(), touch: apart });
     }
     let reach = match turn {
