@@ -62,11 +62,18 @@ pub trait Disc: std::fmt::Debug + Send + Sync {
     /// The name of the solution, with its year.
     fn name(&self) -> &'static str;
 
-    /// E*, a stress.
-    fn effective_modulus(&self) -> f64;
+    /// E*, a stress, and γ, a stress times a length.
+    fn material(&self) -> [f64; 2];
 
-    /// γ, a stress times a length.
-    fn work_of_adhesion(&self) -> f64;
+    /// E*.
+    fn effective_modulus(&self) -> f64 {
+        self.material()[0]
+    }
+
+    /// γ.
+    fn work_of_adhesion(&self) -> f64 {
+        self.material()[1]
+    }
 
     /// The shortest wave of the gap, which sets the panels of integrals.
     fn wave(&self) -> Option<f64> {

@@ -37,12 +37,8 @@ impl Disc for Guduru {
         "Guduru 2007"
     }
 
-    fn effective_modulus(&self) -> f64 {
-        self.effective_modulus
-    }
-
-    fn work_of_adhesion(&self) -> f64 {
-        self.work_of_adhesion
+    fn material(&self) -> [f64; 2] {
+        [self.effective_modulus, self.work_of_adhesion]
     }
 
     fn wave(&self) -> Option<f64> {

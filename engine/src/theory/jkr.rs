@@ -64,12 +64,8 @@ impl Disc for Jkr {
         if self.work_of_adhesion > 0.0 { "JKR 1971" } else { "Hertz 1881" }
     }
 
-    fn effective_modulus(&self) -> f64 {
-        self.effective_modulus
-    }
-
-    fn work_of_adhesion(&self) -> f64 {
-        self.work_of_adhesion
+    fn material(&self) -> [f64; 2] {
+        [self.effective_modulus, self.work_of_adhesion]
     }
 
     fn transform(&self, a: f64) -> Transform {

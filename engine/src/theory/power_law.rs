@@ -40,12 +40,8 @@ impl Disc for PowerLawDisc {
         "Sneddon 1965"
     }
 
-    fn effective_modulus(&self) -> f64 {
-        self.effective_modulus
-    }
-
-    fn work_of_adhesion(&self) -> f64 {
-        self.work_of_adhesion
+    fn material(&self) -> [f64; 2] {
+        [self.effective_modulus, self.work_of_adhesion]
     }
 
     fn transform(&self, a: f64) -> Transform {

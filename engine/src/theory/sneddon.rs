@@ -34,12 +34,8 @@ impl Disc for Sneddon {
         "Sneddon 1965"
     }
 
-    fn effective_modulus(&self) -> f64 {
-        self.effective_modulus
-    }
-
-    fn work_of_adhesion(&self) -> f64 {
-        self.work_of_adhesion
+    fn material(&self) -> [f64; 2] {
+        [self.effective_modulus, self.work_of_adhesion]
     }
 
     fn wave(&self) -> Option<f64> {

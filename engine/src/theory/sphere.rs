@@ -36,12 +36,8 @@ impl Disc for Sphere {
         if self.work_of_adhesion > 0.0 { "Maugis 1995" } else { "Sneddon 1965" }
     }
 
-    fn effective_modulus(&self) -> f64 {
-        self.effective_modulus
-    }
-
-    fn work_of_adhesion(&self) -> f64 {
-        self.work_of_adhesion
+    fn material(&self) -> [f64; 2] {
+        [self.effective_modulus, self.work_of_adhesion]
     }
 
     /// NaN from a = R on.
