@@ -277,7 +277,7 @@ mod tests {
     use crate::gap::Shape;
     use crate::gap::shapes::PowerLaw;
     use crate::problem::{Control, Problem};
-    use crate::ritz::fixtures::{check_derivatives, wavy};
+    use crate::ritz::fixtures::{check_derivatives, check_units, wavy};
 
     fn sphere(gamma: f64) -> Reduced {
         let shape = Shape::Sphere { radius_of_curvature: 1.0 };
@@ -356,23 +356,7 @@ mod tests {
 
     #[test]
     fn reduced_answers_do_not_depend_on_the_units() {
-        let exact =
-            |problem: &Reduced| ExactBasis::of(problem, 0.5).unwrap().equilibrium(problem, 0.3).unwrap();
-        let reference = exact(&wavy(0.004));
-        for (modulus, length) in [(2.5e6, 1e-9), (7e10, 3.0)] {
-            let scaled = Problem {
-                effective_modulus: modulus,
-                work_of_adhesion: 0.004 * modulus * length,
-                shape: Shape::WavySphere {
-                    radius_of_curvature: length,
-                    amplitude: 0.0025 * length,
-                    wavelength: 0.05 * length,
-                },
-            };
-            let ours = exact(&scaled.reduced());
-            assert!((ours.approach / reference.approach - 1.0).abs() < 1e-12);
-            assert!((ours.force / reference.force - 1.0).abs() < 1e-12);
-        }
+        check_units(&|problem| Arc::new(ExactBasis::of(problem, 0.5).unwrap()));
     }
 
     #[test]

@@ -30,6 +30,12 @@ impl Normal {
     }
 }
 
+/// No points yet, each of which will be of a branch.
+pub(super) fn no_points(abscissa: Abscissa) -> Points {
+    let (x, force, segments) = (Vec::new(), Vec::new(), Some(Vec::new()));
+    Points { abscissa, x, force, radius: None, steps: [1e-30; 3], segments, time: None, is_said: false }
+}
+
 /// A loading device with a body: δ and P as functions of s.
 pub(super) struct Body<'a> {
     pub(super) state: &'a dyn Fn(f64) -> (f64, f64),
@@ -72,16 +78,8 @@ impl Body<'_> {
     pub(super) fn samples(&self, n: usize) -> Points {
         let (top, fold) = (self.way(self.most), self.way(self.fold()));
         let bottom = fold - 0.4 * (top - fold);
-        let mut points = Points {
-            abscissa: if self.compliance > 0.0 { Abscissa::Position } else { Abscissa::Approach },
-            x: Vec::new(),
-            force: Vec::new(),
-            radius: None,
-            steps: [1e-30; 3],
-            segments: Some(Vec::new()),
-            time: None,
-            is_said: false,
-        };
+        let abscissa = if self.compliance > 0.0 { Abscissa::Position } else { Abscissa::Approach };
+        let mut points = no_points(abscissa);
         for segment in [Segment::Approach, Segment::Retraction] {
             for i in 0..n / 2 {
                 let share = (i as f64 + 0.5) / (n / 2) as f64;

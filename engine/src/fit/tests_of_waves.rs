@@ -1,6 +1,6 @@
 //! Known values from made loops on waves: the path of our own cycle, whose states are found here by the contact radius.
 
-use super::tests::{E, Normal, W, close, preset, run};
+use super::tests::{E, Normal, W, close, no_points, preset, run};
 use super::*;
 use crate::case::Case;
 use crate::measured::{Abscissa, Points, Segment};
@@ -96,16 +96,8 @@ fn looped(preset: &Preset, top: f64, n: usize) -> Points {
         of.unwrap_or(0.0)
     };
     let bottom = cycle.events.iter().map(|event| event.control_value).fold(0.0, f64::min) - 0.3 * top;
-    let mut points = Points {
-        abscissa: if let Control::Stiffness(_) = control { Abscissa::Position } else { Abscissa::Approach },
-        x: Vec::new(),
-        force: Vec::new(),
-        radius: None,
-        steps: [1e-30; 3],
-        segments: Some(Vec::new()),
-        time: None,
-        is_said: false,
-    };
+    let abscissa = if let Control::Stiffness(_) = control { Abscissa::Position } else { Abscissa::Approach };
+    let mut points = no_points(abscissa);
     for (segment, direction) in
         [(Segment::Approach, Direction::Loading), (Segment::Retraction, Direction::Unloading)]
     {
@@ -237,16 +229,7 @@ fn loading_with_rings_of_contact_is_left_out_and_told() {
     let turn = Some(Turn::Approach(0.105));
     let cycle = case.cycle(turn, &PathSetting::new(Control::Displacement), &Unwatched).unwrap();
     assert!(cycle.states.iter().any(|state| state.contacts.len() > 1));
-    let mut points = Points {
-        abscissa: Abscissa::Approach,
-        x: Vec::new(),
-        force: Vec::new(),
-        radius: None,
-        steps: [1e-30; 3],
-        segments: Some(Vec::new()),
-        time: None,
-        is_said: false,
-    };
+    let mut points = no_points(Abscissa::Approach);
     let mut add = |x: f64, force: f64, segment: Segment| {
         points.x.push(x);
         points.force.push(force);

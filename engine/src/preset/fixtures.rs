@@ -9,38 +9,27 @@ use crate::gap::{
     shapes::ExactSphere, shapes::Harmonic, shapes::Harmonics, shapes::MeasuredGap, shapes::PowerLaw,
     shapes::RandomWaves, shapes::Smoothing,
 };
-use crate::preset::data::DataSpec;
-use crate::preset::edge::EdgeSpec;
-use crate::problem::{Adhesion, Begin, ContactKind, Control, Start};
+use crate::problem::{Adhesion, Control, Start};
 use crate::ritz::Grading;
-use crate::units::UnitSystem;
 use proptest::prelude::*;
 use std::sync::Arc;
 
+/// A material whose adhesion has no range.
+fn material(effective_modulus: f64, work_of_adhesion: f64) -> Material {
+    let adhesion = Adhesion::ShortRange;
+    Material { effective_modulus, work_of_adhesion, range_of_action: None, adhesion }
+}
+
 /// The wavy sphere of the paper's Fig. 9.
 pub fn wavy() -> Preset {
+    let gap = Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 };
+    let preset = Preset::new(material(1.0, 0.004), gap, Start::ContactRadius(0.5));
     Preset {
         title: "a wave".to_owned(),
-        units: UnitSystem::Reduced,
-        material: Material {
-            effective_modulus: 1.0,
-            work_of_adhesion: 0.004,
-            range_of_action: None,
-            adhesion: Adhesion::ShortRange,
-        },
-        gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 },
         basis: BasisSpec::Rings { rings: 200, grading: Grading::Uniform },
-        path: PathSpec {
-            control: Control::Displacement,
-            start: Start::ContactRadius(0.5),
-            end_contact_radius: Some(0.002),
-            begin: Begin::Disc,
-            contact: ContactKind::Rings,
-            turn: None,
-        },
-        edge: EdgeSpec::default(),
-        data: DataSpec::default(),
+        path: PathSpec { end_contact_radius: Some(0.002), ..preset.path },
         files: FILES,
+        ..preset
     }
 }
 
@@ -76,29 +65,10 @@ pub fn any_preset() -> impl Strategy<Value = Preset> {
                 1 => Start::Approach(x),
                 _ => Start::Force(x),
             };
-            Preset {
-                title,
-                units: UnitSystem::Reduced,
-                material: Material {
-                    effective_modulus: e,
-                    work_of_adhesion: gamma,
-                    range_of_action: None,
-                    adhesion: Adhesion::ShortRange,
-                },
-                gap,
-                basis,
-                path: PathSpec {
-                    control,
-                    start,
-                    end_contact_radius: end.map(|f| f * over * radius),
-                    begin: Begin::Disc,
-                    contact: ContactKind::Rings,
-                    turn: None,
-                },
-                edge: EdgeSpec::default(),
-                data: DataSpec::default(),
-                files: FILES,
-            }
+            let preset = Preset::new(material(e, gamma), gap, start);
+            let end_contact_radius = end.map(|f| f * over * radius);
+            let path = PathSpec { control, end_contact_radius, ..preset.path };
+            Preset { title, basis, path, files: FILES, ..preset }
         })
 }
 

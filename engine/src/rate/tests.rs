@@ -3,6 +3,7 @@
 use super::law::EdgeLaw;
 use super::pull::{Pull, Puller};
 use super::record::Moment;
+use super::variation::{START, STIFFNESS, VALUES};
 use super::{MovingEdge, PullSettings};
 use crate::disc::Table;
 use crate::gap::Shape;
@@ -181,11 +182,51 @@ fn polynomial(moments: &[Moment], number: usize, at: f64) -> Option<[f64; 4]> {
     Some(sum)
 }
 
+/// How the states of a pull change with one of its values as its derivatives say, and by differences of the pulls
+/// `beside` it, at −2, −1, 1 and 2 steps: the largest error and the largest difference, as shares, and how many states.
+fn compared(here: &Pull, beside: &[Pull; 4], device: Control, value: usize, step: f64) -> [f64; 3] {
+    let begin = here.moments.iter().position(|moment| moment.speed > 0.0).unwrap();
+    let [mut worst, mut most, mut count] = [0.0_f64; 3];
+    for (moment, moved) in here.moments.iter().zip(&here.moved).skip(begin) {
+        let s = moment.contact_radius;
+        // The rest of a dead load falls for ever.
+        if s < 0.02 {
+            break;
+        }
+        let number = usize::from(s > 0.37);
+        let held = [s, moment.control][number];
+        let at = |pull: &Pull, by: f64| {
+            let moving = pull.moments.iter().position(|moment| moment.speed > 0.0)?;
+            polynomial(&pull.moments[moving..], number, held + by)
+        };
+        let [Some(a), Some(b), Some(c), Some(d)] = beside.each_ref().map(|pull| at(pull, 0.0)) else {
+            continue;
+        };
+        let way = 1e-5 * held.abs();
+        let (Some(less), Some(more)) = (at(here, -way), at(here, way)) else { continue };
+        let [by_s, by_delta, by_force] = moved[value];
+        let spring = match device {
+            Control::Stiffness(k) if value == STIFFNESS => moment.force / k,
+            _ => 0.0,
+        };
+        let along = [by_s, device.value(by_delta, by_force) - spring][number];
+        for (k, told, unit) in [(0, by_s, 0.4), (2, by_delta, 0.05), (3, by_force, 0.02)] {
+            let difference = (8.0 * (c[k] - b[k]) - (d[k] - a[k])) / (12.0 * step);
+            let way = (more[k] - less[k]) / (2.0 * way) * along;
+            // Most of a way along the pull is taken away again.
+            let size = unit + told.abs() + way.abs();
+            worst = worst.max((told - way - difference).abs() / size);
+            most = most.max(difference.abs() / size);
+        }
+        count += 1.0;
+    }
+    [worst, most, count]
+}
+
 /// The variational equation says how neighbouring pulls differ: at held control while the edge is slow, at held radius
 /// afterwards.
 #[test]
 fn pulls_beside_each_other_differ_as_their_derivatives_say() {
-    use super::variation::{START, STIFFNESS, VALUES};
     const STEP: f64 = 1e-3;
     let mut wrong = Vec::new();
     let settings = PullSettings {
@@ -216,7 +257,6 @@ fn pulls_beside_each_other_differ_as_their_derivatives_say() {
             puller.pull(&[Part::Apart { rate: rate * v.exp() }], &Unwatched).unwrap()
         };
         let here = pulled([0.0; VALUES]);
-        let begin = here.moments.iter().position(|moment| moment.speed > 0.0).unwrap();
         for value in 0..VALUES {
             // Of fourth order in the step; where a slow pull begins its start is soon forgotten.
             let step = if value == START { 0.25 * STEP } else { STEP };
@@ -225,48 +265,7 @@ fn pulls_beside_each_other_differ_as_their_derivatives_say() {
                 values[value] = share * step;
                 pulled(values)
             });
-            let [mut worst, mut most, mut count] = [0.0_f64; 3];
-            for (moment, moved) in here.moments.iter().zip(&here.moved).skip(begin) {
-                let s = moment.contact_radius;
-                // The rest of a dead load falls for ever.
-                if s < 0.02 {
-                    break;
-                }
-                let number = usize::from(s > 0.37);
-                let held = [s, moment.control][number];
-                let at = |pull: &Pull, by: f64| {
-                    let moving = pull.moments.iter().position(|moment| moment.speed > 0.0)?;
-                    polynomial(&pull.moments[moving..], number, held + by)
-                };
-                let Some([a, b, c, d]) = beside
-                    .iter()
-                    .map(|pull| at(pull, 0.0))
-                    .collect::<Option<Vec<_>>>()
-                    .and_then(|all| <[[f64; 4]; 4]>::try_from(all).ok())
-                else {
-                    continue;
-                };
-                let way = 1e-5 * held.abs();
-                let (Some(less), Some(more)) = (at(&here, -way), at(&here, way)) else { continue };
-                let [by_s, by_delta, by_force] = moved[value];
-                let spring = if value == STIFFNESS
-                    && let Control::Stiffness(k) = device
-                {
-                    moment.force / k
-                } else {
-                    0.0
-                };
-                let along = [by_s, device.value(by_delta, by_force) - spring][number];
-                for (k, told, unit) in [(0, by_s, 0.4), (2, by_delta, 0.05), (3, by_force, 0.02)] {
-                    let difference = (8.0 * (c[k] - b[k]) - (d[k] - a[k])) / (12.0 * step);
-                    let way = (more[k] - less[k]) / (2.0 * way) * along;
-                    // Most of a way along the pull is taken away again.
-                    let size = unit + told.abs() + way.abs();
-                    worst = worst.max((told - way - difference).abs() / size);
-                    most = most.max(difference.abs() / size);
-                }
-                count += 1.0;
-            }
+            let [worst, most, count] = compared(&here, &beside, device, value, step);
             println!("{device:?} {value}: {worst:e} of {most:e}, {count}");
             // The polynomials are known to 1e-8, which is divided by the step.
             if count < 30.0 || worst > 1e-4 {

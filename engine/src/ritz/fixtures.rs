@@ -3,15 +3,35 @@
 use crate::disc::{Basis, Evaluation};
 use crate::gap::Shape;
 use crate::problem::{Problem, Reduced};
+use std::sync::Arc;
 
 /// The wavy sphere of the paper's Fig. 9 with another work of adhesion.
 pub fn wavy(gamma: f64) -> Reduced {
+    scaled(gamma, 1.0, 1.0).reduced()
+}
+
+/// The same in units of this modulus and length.
+fn scaled(gamma: f64, modulus: f64, length: f64) -> Problem {
     Problem {
-        effective_modulus: 1.0,
-        work_of_adhesion: gamma,
-        shape: Shape::WavySphere { radius_of_curvature: 1.0, amplitude: 0.0025, wavelength: 0.05 },
+        effective_modulus: modulus,
+        work_of_adhesion: gamma * modulus * length,
+        shape: Shape::WavySphere {
+            radius_of_curvature: length,
+            amplitude: 0.0025 * length,
+            wavelength: 0.05 * length,
+        },
     }
-    .reduced()
+}
+
+/// Holds what a basis answers to the same problem in other units.
+pub fn check_units(basis: &dyn Fn(&Reduced) -> Arc<dyn Basis>) {
+    let answer = |problem: &Reduced| basis(problem).equilibrium(problem, 0.3).unwrap();
+    let reference = answer(&wavy(0.004));
+    for (modulus, length) in [(2.5e6, 1e-9), (7e10, 3.0)] {
+        let ours = answer(&scaled(0.004, modulus, length).reduced());
+        assert!((ours.approach / reference.approach - 1.0).abs() < 1e-12);
+        assert!((ours.force / reference.force - 1.0).abs() < 1e-12);
+    }
 }
 
 /// Holds every derivative a basis gives at (s, δ) against central differences, P against ∂U/∂δ among them, and

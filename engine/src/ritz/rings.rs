@@ -411,10 +411,8 @@ impl Basis for Rings {
 
 #[cfg(test)]
 mod tests {
-    use super::super::fixtures::{check_derivatives, wavy};
+    use super::super::fixtures::{check_derivatives, check_units, wavy};
     use super::*;
-    use crate::gap::Shape;
-    use crate::problem::Problem;
     use crate::progress::{Heard, until};
 
     fn rings(rings: usize, grading: Grading) -> Rings {
@@ -536,23 +534,7 @@ mod tests {
 
     #[test]
     fn reduced_answers_do_not_depend_on_the_units() {
-        let rings = Rings::shared(50).unwrap();
-        let reference = rings.equilibrium(&wavy(0.004), 0.3).unwrap();
-        for (modulus, length) in [(2.5e6, 1e-9), (7e10, 3.0)] {
-            let scaled = Problem {
-                effective_modulus: modulus,
-                work_of_adhesion: 0.004 * modulus * length,
-                shape: Shape::WavySphere {
-                    radius_of_curvature: length,
-                    amplitude: 0.0025 * length,
-                    wavelength: 0.05 * length,
-                },
-            };
-            let reduced = scaled.reduced();
-            let ours = rings.equilibrium(&reduced, 0.3).unwrap();
-            assert!((ours.approach / reference.approach - 1.0).abs() < 1e-12);
-            assert!((ours.force / reference.force - 1.0).abs() < 1e-12);
-        }
+        check_units(&|_| Rings::shared(50).unwrap());
     }
 
     #[test]

@@ -193,8 +193,10 @@ fn the_table_is_total() {
         | Shape::Profile(_) => {}
     }
     assert_eq!(PARAMETERS.iter().map(|row| &row.key).collect::<Vec<_>>(), FIELDS);
+}
 
-    // Every row can be read back after it has been set.
+#[test]
+fn every_row_can_be_read_back_after_it_has_been_set() {
     for row in PARAMETERS {
         let mut preset = wavy();
         let value = another(&row.key);
