@@ -5,11 +5,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
+use crate::support::presets::reduced;
 use pulloff_engine::case::Case;
 use pulloff_engine::gap::Shape;
-use pulloff_engine::preset::data::DataSpec;
-use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
-use pulloff_engine::problem::{Adhesion, Begin, ContactKind, Control, Start};
+use pulloff_engine::preset::{BasisSpec, Preset};
+use pulloff_engine::problem::{ContactKind, Control, Start};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::report::path::{EventReport, Extent, StateReport};
 use pulloff_engine::report::{PathReport, TraceReport};
@@ -49,32 +49,15 @@ fn draw(random: &mut fastrand::Rng, wild: bool) -> Preset {
         1 => Start::Force(log_between(random, 1e-4, 0.3) * modulus * radius * radius),
         _ => Start::ContactRadius(log_between(random, 0.02, if wild { 5.0 } else { 1.0 }) * radius),
     };
-    Preset {
-        title: String::new(),
-        data: DataSpec::default(),
-        edge: pulloff_engine::preset::EdgeSpec::default(),
-        files: pulloff::store::FILES,
-        units: pulloff_engine::units::UnitSystem::Reduced,
-        material: Material {
-            effective_modulus: modulus,
-            work_of_adhesion: gamma * modulus * radius,
-            range_of_action: None,
-            adhesion: Adhesion::ShortRange,
-        },
-        gap: shape,
-        basis: BasisSpec::Rings {
+    reduced(
+        [modulus, gamma * modulus * radius],
+        shape,
+        BasisSpec::Rings {
             rings: any(random, if wild { WILD_RINGS } else { RINGS }),
             grading: any(random, &Grading::ALL),
         },
-        path: PathSpec {
-            control: control.in_units(1.0 / (modulus * radius)),
-            start,
-            end_contact_radius: None,
-            begin: Begin::Disc,
-            contact: ContactKind::OneDisc,
-            turn: None,
-        },
-    }
+        (control.in_units(1.0 / (modulus * radius)), start, ContactKind::OneDisc),
+    )
 }
 
 const RINGS: &[usize] = &[30, 60, 100, 150];
@@ -321,29 +304,12 @@ fn unloading_agrees_with_a_walk_on_the_explicit_curve() {
 
 /// A wavy sphere with E* = R = 1 and 100 rings.
 fn wavy(gamma: f64, amplitude: f64, wavelength: f64, control: Control, start: f64) -> Preset {
-    Preset {
-        title: String::new(),
-        data: DataSpec::default(),
-        edge: pulloff_engine::preset::EdgeSpec::default(),
-        files: pulloff::store::FILES,
-        units: pulloff_engine::units::UnitSystem::Reduced,
-        material: Material {
-            effective_modulus: 1.0,
-            work_of_adhesion: gamma,
-            range_of_action: None,
-            adhesion: Adhesion::ShortRange,
-        },
-        gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
-        basis: BasisSpec::Rings { rings: 100, grading: Grading::Uniform },
-        path: PathSpec {
-            control,
-            start: Start::ContactRadius(start),
-            end_contact_radius: None,
-            begin: Begin::Disc,
-            contact: ContactKind::OneDisc,
-            turn: None,
-        },
-    }
+    reduced(
+        [1.0, gamma],
+        Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
+        BasisSpec::Rings { rings: 100, grading: Grading::Uniform },
+        (control, Start::ContactRadius(start), ContactKind::OneDisc),
+    )
 }
 
 #[test]

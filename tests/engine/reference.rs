@@ -5,8 +5,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
+use crate::support::presets::reference;
 use pulloff_engine::disc::{Basis, ExactBasis};
-use pulloff_engine::gap::Shape;
 use pulloff_engine::problem::{Control, Problem};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::quasistatic::path::{PathSetting, unload};
@@ -22,19 +22,8 @@ struct Case {
 }
 
 fn case(text: &str) -> Case {
-    let data: Value = serde_json::from_str(text).unwrap();
-    let number = |value: &Value| value.as_f64().unwrap();
-    let profile = &data["case"]["profile"];
-    let problem = Problem {
-        effective_modulus: 1.0,
-        work_of_adhesion: number(&data["case"]["w"]),
-        shape: Shape::WavySphere {
-            radius_of_curvature: number(&profile["R"]),
-            amplitude: number(&profile["A"]),
-            wavelength: number(&profile["lambda"]),
-        },
-    };
-    let start = number(&data["case"]["a_start"]);
+    let (data, problem) = reference(text);
+    let start = data["case"]["a_start"].as_f64().unwrap();
     Case { data, problem, start }
 }
 

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test by panicking")]
 
+use crate::support::presets::reference;
 use pulloff_engine::gap::{Breaks, Gap, Jet, Shape};
 use pulloff_engine::gap::{shapes::ExactSphere, shapes::PowerLaw, shapes::ProfileGap, shapes::Smoothing};
 use pulloff_engine::problem::{Control, Problem};
@@ -15,23 +16,6 @@ use std::sync::Arc;
 
 fn by_quadrature(problem: &Problem) -> Exact {
     Exact::by_quadrature(problem.effective_modulus, problem.work_of_adhesion, Arc::new(problem.shape.clone()))
-}
-
-/// A reference table with its problem.
-fn reference(text: &str) -> (Value, Problem) {
-    let data: Value = serde_json::from_str(text).unwrap();
-    let number = |value: &Value| value.as_f64().unwrap();
-    let profile = &data["case"]["profile"];
-    let problem = Problem {
-        effective_modulus: 1.0,
-        work_of_adhesion: number(&data["case"]["w"]),
-        shape: Shape::WavySphere {
-            radius_of_curvature: number(&profile["R"]),
-            amplitude: number(&profile["A"]),
-            wavelength: number(&profile["lambda"]),
-        },
-    };
-    (data, problem)
 }
 
 fn problems() -> Vec<Problem> {

@@ -13,6 +13,7 @@ use pulloff::explorer::{Command, Effect, Id, Inline, Model, Node, Reply, answer,
 use pulloff::store::Store;
 use std::collections::VecDeque;
 use std::path::Path;
+use tempfile::TempDir;
 
 /// Small problems, so that many walks are quick: exact and in rings, in reduced units and in SI.
 const PROBLEMS: [(&str, &[&str]); 3] = [
@@ -163,17 +164,23 @@ fn replayed(model: &mut Model, driver: &Inline, folder: &Path) -> (String, Strin
     (walked, back, text)
 }
 
+/// A session on one of the problems, in a folder of its own.
+fn begun(seed: u64) -> (TempDir, Model, Inline) {
+    let (name, assignments) = PROBLEMS[usize::try_from(seed).unwrap() % PROBLEMS.len()];
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::at(folder.path().join("presets"), &[]);
+    let (mut model, effects) = open(store.load(&store.resolve(name).unwrap(), assignments).unwrap());
+    let driver = Inline::new(store);
+    driver.settle(&mut model, effects);
+    (folder, model, driver)
+}
+
 #[test]
 fn a_replay_walks_the_same_states_whatever_was_done() {
     let mut steps = 0;
     for seed in 0..12 {
         let mut rng = Rng::with_seed(seed);
-        let (name, assignments) = PROBLEMS[usize::try_from(seed).unwrap() % PROBLEMS.len()];
-        let folder = tempfile::tempdir().unwrap();
-        let store = Store::at(folder.path().join("presets"), &[]);
-        let (mut model, effects) = open(store.load(&store.resolve(name).unwrap(), assignments).unwrap());
-        let driver = Inline::new(store);
-        driver.settle(&mut model, effects);
+        let (folder, mut model, driver) = begun(seed);
         let mut done = Vec::new();
         for _ in 0..24 {
             let command = any_command(&mut rng);
@@ -193,12 +200,7 @@ fn late_answers_and_pauses_are_journaled_as_they_took_effect() {
     let mut paused = 0;
     for seed in 100..124 {
         let mut rng = Rng::with_seed(seed);
-        let (name, assignments) = PROBLEMS[usize::try_from(seed).unwrap() % PROBLEMS.len()];
-        let folder = tempfile::tempdir().unwrap();
-        let store = Store::at(folder.path().join("presets"), &[]);
-        let (mut model, effects) = open(store.load(&store.resolve(name).unwrap(), assignments).unwrap());
-        let driver = Inline::new(store);
-        driver.settle(&mut model, effects);
+        let (folder, mut model, driver) = begun(seed);
         let mut late = Late { inline: driver, pending: VecDeque::new(), replies: VecDeque::new() };
         for _ in 0..40 {
             let command = match rng.u8(..8) {

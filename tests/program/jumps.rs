@@ -3,12 +3,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
+use crate::support::presets::reduced;
 use pulloff::explorer::walk::{Action, Request, WalkOutcome, walk};
 use pulloff::explorer::{CurveData, NodeKind, Staged};
 use pulloff_engine::gap::Shape;
-use pulloff_engine::preset::data::DataSpec;
-use pulloff_engine::preset::{BasisSpec, Material, PathSpec, Preset};
-use pulloff_engine::problem::{Adhesion, Begin, Control, Start};
+use pulloff_engine::preset::{BasisSpec, Preset};
+use pulloff_engine::problem::{ContactKind, Control, Start};
 use pulloff_engine::quasistatic::Extremum;
 use pulloff_engine::quasistatic::walk::At;
 use std::sync::Arc;
@@ -16,29 +16,9 @@ use std::sync::Arc;
 const START: f64 = 0.45;
 
 fn preset(amplitude: f64, wavelength: f64, work_of_adhesion: f64, control: Control) -> Preset {
-    Preset {
-        title: String::new(),
-        data: DataSpec::default(),
-        edge: pulloff_engine::preset::EdgeSpec::default(),
-        files: pulloff::store::FILES,
-        units: pulloff_engine::units::UnitSystem::Reduced,
-        material: Material {
-            effective_modulus: 1.0,
-            work_of_adhesion,
-            range_of_action: None,
-            adhesion: Adhesion::ShortRange,
-        },
-        gap: Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength },
-        basis: BasisSpec::Exact,
-        path: PathSpec {
-            start: Start::ContactRadius(START),
-            control,
-            end_contact_radius: None,
-            begin: Begin::Disc,
-            contact: pulloff_engine::problem::ContactKind::Rings,
-            turn: None,
-        },
-    }
+    let gap = Shape::WavySphere { radius_of_curvature: 1.0, amplitude, wavelength };
+    let start = Start::ContactRadius(START);
+    reduced([1.0, work_of_adhesion], gap, BasisSpec::Exact, (control, start, ContactKind::Rings))
 }
 
 /// The outcomes of the jumps from every limit point of a problem: how many land or pull off, inward and outward, and

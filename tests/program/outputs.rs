@@ -2,12 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
-use crate::support::home::{Ended, Home};
+use crate::support::home::Home;
 use rustix::fs::{CWD, FileType, Mode, mknodat};
 use std::fs::{self, Permissions};
 use std::io::Write;
 use std::os::unix::fs::{FileTypeExt, PermissionsExt};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 const PRESET: &str = "units = \"reduced\"\ntitle = \"piped\"\n[material]\neffective_modulus = 1.0\n\
     work_of_adhesion = 0.004\n[gap]\nshape = \"sphere\"\nradius_of_curvature = 1.0\n[path]\n\
@@ -16,18 +16,9 @@ const PRESET: &str = "units = \"reduced\"\ntitle = \"piped\"\n[material]\neffect
 const SPEC: &str = "preset = \"wavy-sphere\"\nset = [\"path.start_contact_radius=0.3\", \"gap.wavelength=0.1\"]\n\
     quantities = [\"last_contact_force\"]\n[[axis]]\nkey = \"gap.amplitude\"\nvalues = [0.001, 0.002]\n";
 
-/// Runs a shell line in the home, with the program as `$pulloff`.
-fn shell(home: &Home, line: &str) -> Ended {
-    let mut command = Command::new("bash");
-    command.env_clear().env("HOME", home.folder()).env("XDG_CONFIG_HOME", home.path("config"));
-    command.env("PATH", "/usr/bin:/bin").env("pulloff", env!("CARGO_BIN_EXE_pulloff"));
-    command.current_dir(home.folder()).stdin(Stdio::null()).args(["-c", line]);
-    Ended::of(command.output().unwrap())
-}
-
-/// The same for a line that succeeds; returns its output.
+/// Runs a line of the shell that succeeds; returns its output.
 fn piped(home: &Home, line: &str) -> String {
-    let ended = shell(home, line);
+    let ended = home.shell(line);
     assert_eq!(ended.status, 0, "{line}: {}", ended.err);
     ended.out
 }
@@ -74,7 +65,7 @@ fn results_go_straight_into_standard_output_pipes_and_devices() {
         piped(&home, &format!("{{ echo before >&3; $pulloff {command} -o /dev/fd/3 2>err; }} 3>file"));
         assert!(home.text("file") == format!("before\n{plain}"), "{command}");
         // A reader that goes away ends the program quietly.
-        let gone = shell(&home, &format!("set -o pipefail; $pulloff {command} -o /dev/fd/3 3>&1 >&2 | true"));
+        let gone = home.shell(&format!("set -o pipefail; $pulloff {command} -o /dev/fd/3 3>&1 >&2 | true"));
         assert!(gone.status == 0 && !gone.err.contains("roken pipe"), "{command}: {}", gone.err);
     }
     assert!(home.path("pipe").symlink_metadata().unwrap().file_type().is_fifo());
@@ -179,10 +170,10 @@ fn presets_specs_and_scripts_come_through_pipes() {
         }
     }
     // A fault is reported with name and line, and a preset that is too large is not read to its end.
-    let bad = shell(&home, "echo 'rings = ' | $pulloff trace -");
+    let bad = home.shell("echo 'rings = ' | $pulloff trace -");
     assert!(bad.status == 2 && bad.err.starts_with("pulloff: standard input:1: "), "{}", bad.err);
     for (command, limit) in [("trace", "1048576"), ("run", "1048576"), ("sweep -o x.csv", "1048576")] {
-        let endless = shell(&home, &format!("yes '#' | $pulloff {command} -"));
+        let endless = home.shell(&format!("yes '#' | $pulloff {command} -"));
         let said = format!("pulloff: standard input: has more than the {limit} bytes that are read\n");
         assert_eq!((endless.status, endless.err), (2, said), "{command}");
     }
@@ -219,7 +210,7 @@ fn read_only_files_are_not_replaced() {
         "run save.pulloff --preset mine --overwrite --anywhere",
         "run export.pulloff --overwrite",
     ] {
-        let ended = shell(&home, &format!("$pulloff {line}"));
+        let ended = home.shell(&format!("$pulloff {line}"));
         assert!(ended.err.contains("is read-only and is not replaced"), "{line}: {}", ended.err);
         assert_ne!(ended.status, 0, "{line}");
     }
@@ -239,8 +230,8 @@ fn a_script_that_came_through_a_pipe_has_no_preset_to_save_back_to() {
     home.file("p.toml", PRESET);
     home.file("save.pulloff", "save replace\n");
     home.file("script.pulloff", "step\nexport script s.pulloff\n");
-    let save = shell(&home, "cat p.toml | $pulloff run save.pulloff --overwrite --preset -");
+    let save = home.shell("cat p.toml | $pulloff run save.pulloff --overwrite --preset -");
     assert!(save.err.contains("the preset has no file of its own; save it under a name"), "{}", save.err);
-    let script = shell(&home, "cat p.toml | $pulloff run script.pulloff --preset -");
+    let script = home.shell("cat p.toml | $pulloff run script.pulloff --preset -");
     assert!(script.err.contains("a script cannot open it: save it under a name"), "{}", script.err);
 }

@@ -2,13 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test fails the test by panicking")]
 
-use crate::support::home::{Ended, Home};
+use crate::support::home::Home;
 use pulloff::cli::Status;
 use rustix::fs::{CWD, FileType, Mode, mknodat};
 use rustix::process::Signal;
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt;
-use std::process::{Command, Stdio};
 
 const SPEC: &str = "preset = \"wavy-sphere\"\nset = [\"path.start_contact_radius=0.3\", \"gap.wavelength=0.1\"]\n\
     quantities = [\"snaps\"]\n[[axis]]\nkey = \"gap.amplitude\"\nvalues = [0.001, 0.002]\n";
@@ -182,15 +181,6 @@ fn what_the_person_can_mend_is_2() {
     assert_eq!(home.text("marked.csv"), "mine");
 }
 
-/// Runs a line of the shell in the home, with the program as `$pulloff`.
-fn shell(home: &Home, line: &str) -> Ended {
-    let mut command = Command::new("bash");
-    command.env_clear().env("HOME", home.folder()).env("XDG_CONFIG_HOME", home.path("config"));
-    command.env("PATH", "/usr/bin:/bin").env("pulloff", env!("CARGO_BIN_EXE_pulloff"));
-    command.current_dir(home.folder()).stdin(Stdio::null()).args(["-c", line]);
-    Ended::of(command.output().unwrap())
-}
-
 #[test]
 fn what_failed_is_1() {
     let home = home();
@@ -207,7 +197,7 @@ fn what_failed_is_1() {
         "completions bash >/dev/full",
         "sweep quantities >/dev/full",
     ] {
-        let ended = shell(&home, &format!("$pulloff {line}"));
+        let ended = home.shell(&format!("$pulloff {line}"));
         assert_eq!(ended.status, 1, "{line}: {}", ended.err);
         assert!(ended.err.contains("No space left on device"), "{line}: {}", ended.err);
     }
@@ -227,16 +217,16 @@ fn what_failed_is_1() {
         ("sweep merge none-1.csv none-2.csv -o joined.csv", 1),
         ("sweep merge none-1.csv none-2.csv -o -", 1),
     ] {
-        let ended = shell(&home, &format!("$pulloff {line}"));
+        let ended = home.shell(&format!("$pulloff {line}"));
         assert_eq!(ended.status, status, "{line}: {}", ended.err);
         assert_eq!(status == 1, ended.err.contains("every row failed"), "{line}: {}", ended.err);
     }
     assert!(home.text("joined.csv") == home.text("none.csv"));
     home.file("some.toml", &spec("[-1.0, 0.1]"));
-    assert_eq!(shell(&home, "$pulloff sweep some.toml -o some.csv").status, 0);
+    assert_eq!(home.shell("$pulloff sweep some.toml -o some.csv").status, 0);
     // A curve that could not be followed to its end.
     let coarse = "trace fig-9 --set basis.rings=5";
-    let ended = shell(&home, &format!("$pulloff {coarse}"));
+    let ended = home.shell(&format!("$pulloff {coarse}"));
     assert_eq!(ended.status, 1, "{}", ended.err);
 }
 
@@ -336,7 +326,7 @@ fn a_file_larger_than_the_limit_is_a_failure_and_nothing_is_lost() {
         "trace fig-9 -o /dev/stdout >new.csv",
         "run fine.pulloff --preset fig-9 --overwrite",
     ] {
-        let ended = shell(&home, &format!("ulimit -f 1; $pulloff {line}"));
+        let ended = home.shell(&format!("ulimit -f 1; $pulloff {line}"));
         assert_eq!(ended.status, 1, "{line}: {}", ended.err);
         assert!(
             ended.err.contains("over the limit on the size of files (ulimit -f)"),
@@ -352,12 +342,12 @@ fn a_file_larger_than_the_limit_is_a_failure_and_nothing_is_lost() {
     // A sweep keeps its complete rows, and continues from them.
     let many = SPEC.replace("values = [0.001, 0.002]", "linear = { from = 0.001, to = 0.002, count = 300 }");
     home.file("many.toml", &many.replace("\"snaps\"", "\"snaps\", \"enhancement\", \"last_contact_force\""));
-    let limited = shell(&home, "ulimit -f 6; $pulloff sweep many.toml -o r.csv");
+    let limited = home.shell("ulimit -f 6; $pulloff sweep many.toml -o r.csv");
     assert_eq!(limited.status, 1, "{}", limited.err);
     assert!(limited.err.contains("r.csv: cannot write: over the limit"), "{}", limited.err);
     let rows = home.text("r.csv").lines().count();
     assert!(rows > 2 && rows < 301, "{rows}");
-    let rest = shell(&home, "$pulloff sweep many.toml -o r.csv && $pulloff sweep many.toml -o whole.csv");
+    let rest = home.shell("$pulloff sweep many.toml -o r.csv && $pulloff sweep many.toml -o whole.csv");
     assert!(rest.status == 0 && rest.err.contains("300 of 300 rows in r.csv ("), "{}", rest.err);
     assert!(home.text("r.csv") == home.text("whole.csv"));
 }

@@ -60,6 +60,15 @@ impl Home {
         command
     }
 
+    /// Runs a line of the shell in the home, with the program as `$pulloff`.
+    pub fn shell(&self, line: &str) -> Ended {
+        let mut command = Command::new("bash");
+        command.env_clear().env("HOME", self.folder()).env("XDG_CONFIG_HOME", self.path("config"));
+        command.env("PATH", "/usr/bin:/bin").env("pulloff", env!("CARGO_BIN_EXE_pulloff"));
+        command.current_dir(self.folder()).stdin(Stdio::null()).args(["-c", line]);
+        Ended::of(command.output().expect("a run"))
+    }
+
     pub fn run(&self, arguments: &[&str]) -> Ended {
         Ended::of(self.command(arguments).output().expect("a run"))
     }

@@ -13,6 +13,7 @@
 
 pub mod home;
 pub mod hostile;
+pub mod presets;
 pub mod problems;
 pub mod pty;
 pub mod quadrature;
