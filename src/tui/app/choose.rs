@@ -168,10 +168,7 @@ impl App {
             }
             Choice::Prompt(prompt) => self.lay(Dialog::Prompt(*prompt)),
             Choice::Columns(choosing) => self.columns_chosen(&choosing),
-            Choice::Copy(content) => {
-                self.copy(content);
-                Vec::new()
-            }
+            Choice::Copy(content) => self.copy(content),
         }
     }
 }

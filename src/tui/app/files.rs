@@ -59,23 +59,16 @@ impl App {
     }
 
     /// Puts text on the clipboard, if it is not too long.
-    pub(super) fn copy(&mut self, content: Excerpt) {
-        let text = copy::text(self, content);
-        let (level, told) = if text.len() > copy::LONGEST {
-            let export = Id::Export.named();
-            let told =
-                format!("{} bytes are more than terminals take: {export} exports to a file", text.len());
-            (Level::Error, told)
-        } else {
-            let told = format!(
-                "{} of {} bytes sent to the terminal's clipboard; if none arrive, {} exports to a file",
-                content.words()[0],
-                text.len(),
-                Id::Export.named()
-            );
-            self.clipboard = Some(text);
-            (Level::Info, told)
-        };
-        self.model.message = Some((level, told));
+    pub(super) fn copy(&mut self, content: Excerpt) -> Vec<Effect> {
+        let (text, export) = (copy::text(self, content), Id::Export.named());
+        let bytes = text.len();
+        if bytes > copy::LONGEST {
+            let told = format!("{bytes} bytes are more than terminals take: {export} exports to a file");
+            return self.say(Level::Error, told);
+        }
+        self.clipboard = Some(text);
+        let name = content.words()[0];
+        let told = format!("{name} of {bytes} bytes sent to the terminal's clipboard");
+        self.say(Level::Info, format!("{told}; if none arrive, {export} exports to a file"))
     }
 }

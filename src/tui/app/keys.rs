@@ -149,10 +149,7 @@ impl App {
         if let Command::Export { what, .. } = &mut command {
             match drawn(self, what.clone()) {
                 Ok(page) => *what = page,
-                Err(why) => {
-                    self.model.message = Some((Level::Error, format!("not exported: {why}")));
-                    return Vec::new();
-                }
+                Err(why) => return self.say(Level::Error, format!("not exported: {why}")),
             }
         }
         let (view, goes) = (self.model.view, matches!(command, Command::Go(_) | Command::Show(_)));
@@ -220,6 +217,12 @@ impl App {
         Vec::new()
     }
 
+    /// Says something on the status line, which is all that is done.
+    pub(super) fn say(&mut self, level: Level, text: impl Into<String>) -> Vec<Effect> {
+        self.model.message = Some((level, text.into()));
+        Vec::new()
+    }
+
     pub(super) fn ask(&mut self, question: String, yes: Command) -> Vec<Effect> {
         self.lay(Dialog::Confirm(Confirm { question, yes }))
     }
@@ -245,8 +248,7 @@ impl App {
                 return effects;
             }
             let text = format!("that key does nothing here; {} shows all keys", self.keymap.first(Id::Help));
-            self.model.message = Some((Level::Info, text));
-            return Vec::new();
+            return self.say(Level::Info, text);
         };
         self.act(id)
     }
@@ -290,10 +292,7 @@ impl App {
                 self.enlarged = !self.enlarged;
                 Vec::new()
             }
-            Id::Mouse => {
-                self.switch_mouse();
-                Vec::new()
-            }
+            Id::Mouse => self.switch_mouse(),
             Id::About => self.lay(Dialog::Help(Help { page: ABOUT, ..Help::default() })),
             Id::NextPanel | Id::PreviousPanel => self.next_panel(id == Id::NextPanel),
             Id::Up | Id::Down if self.model.panel == ScreenPanel::Problem => {

@@ -37,17 +37,14 @@ type PlotPlace = (Rect, (f64, f64));
 
 impl App {
     /// Takes the mouse, or leaves it to the terminal.
-    pub(super) fn switch_mouse(&mut self) {
+    pub(super) fn switch_mouse(&mut self) -> Vec<Effect> {
         self.mouse = !self.mouse;
-        let told = if self.mouse {
-            format!(
-                "the mouse is taken: click and wheel; {} leaves it to the terminal again",
-                Id::Mouse.named()
-            )
-        } else {
-            "the mouse is left to the terminal, to select text".to_owned()
-        };
-        self.model.message = Some((Level::Info, told));
+        if !self.mouse {
+            return self.say(Level::Info, "the mouse is left to the terminal, to select text");
+        }
+        let back = Id::Mouse.named();
+        let told = format!("the mouse is taken: click and wheel; {back} leaves it to the terminal again");
+        self.say(Level::Info, told)
     }
 
     /// The mouse was pressed or its wheel turned.
@@ -207,8 +204,7 @@ impl App {
             Some(_) if !view.is_table() && !view.leads_somewhere() => {
                 let text =
                     format!("no point of {} is a state to go to: views of the curve have them", view.name());
-                self.model.message = Some((Level::Info, text));
-                Vec::new()
+                self.say(Level::Info, text)
             }
             Some(share) if !self.model.view.is_table() => self.go_to(self.model.view, share, None),
             _ => self.run(Id::Edit.into()),
@@ -255,7 +251,6 @@ impl App {
             }
             return effects;
         }
-        self.model.message = Some((Level::Info, "no state of the curve is near there".to_owned()));
-        Vec::new()
+        self.say(Level::Info, "no state of the curve is near there")
     }
 }
