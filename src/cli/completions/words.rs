@@ -2,6 +2,7 @@
 
 use crate::cli::problem;
 use crate::explorer::archive::Archive;
+use crate::explorer::script::offers::CONTROLS;
 use crate::store::Source;
 use clap::{Arg, Command};
 use clap_complete::engine::{ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter};
@@ -191,8 +192,7 @@ fn axes(current: &OsStr) -> Vec<CompletionCandidate> {
 }
 
 fn controls(current: &OsStr) -> Vec<CompletionCandidate> {
-    let words = ["displacement", "force", "stiffness="];
-    words.into_iter().filter_map(|word| candidate(typed(current), word.to_owned(), "")).collect()
+    CONTROLS.into_iter().filter_map(|word| candidate(typed(current), word.to_owned(), "")).collect()
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ use pulloff_engine::sweep::{QUANTITIES, SweepQuantity};
 use pulloff_engine::units::Quantity;
 
 /// What a device can prescribe.
-const CONTROLS: [&str; 3] = ["displacement", "force", "stiffness="];
+pub const CONTROLS: [&str; 3] = ["displacement", "force", "stiffness="];
 /// What the device does under each of these controls.
 pub const DEVICES: [&str; 3] = ["fixed grips hold δ", "a dead load holds P", "a spring holds its far end"];
 
