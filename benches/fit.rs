@@ -67,7 +67,16 @@ fn unloaded(preset: &Preset) -> Points {
     let x: Vec<f64> = (0..POINTS).map(|i| top + (i as f64 + 0.5) / POINTS as f64 * (bottom - top)).collect();
     let force = x.iter().map(|delta| force(*delta) + 2e-4 * normal()).collect();
     let segments = Some(vec![Segment::Retraction; POINTS]);
-    Points { abscissa: Abscissa::Approach, x, force, radius: None, steps: [1e-9; 3], segments, time: None }
+    Points {
+        abscissa: Abscissa::Approach,
+        x,
+        force,
+        radius: None,
+        steps: [1e-9; 3],
+        segments,
+        time: None,
+        is_said: false,
+    }
 }
 
 fn fits(bencher: Bencher, preset: &Preset, bootstrap: Option<(usize, u64)>) {

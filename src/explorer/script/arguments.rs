@@ -145,14 +145,24 @@ impl<'a> Rest<'a> {
         while let Some(word) = self.next() {
             match all.last_mut() {
                 // A unit after its number.
-                Some((_, number)) if !word.text.contains('=') && ends_in_number(number) => {
+                Some((_, number)) if is_value(word) && ends_in_number(number) => {
                     *number = format!("{number} {}", word.text);
+                }
+                // A value after its key, as behind `:` without `set`.
+                None if is_value(word) && self.words.first().is_some_and(is_value) => {
+                    let value = self.next().map_or("", |value| &value.text);
+                    all.push((key(&word.text, word.column)?, value.to_owned()));
                 }
                 _ => all.push(assignment(word, key)?),
             }
         }
         Ok(all)
     }
+}
+
+/// Whether a word is no assignment of its own.
+fn is_value(word: &Word) -> bool {
+    !word.text.contains('=')
 }
 
 /// Whether a value is a number without a unit, or ends with one after `=`.

@@ -8,15 +8,15 @@
 //! | line | does |
 //! |---|---|
 //! | `open PRESET [KEY=VALUE ...]` | opens a preset, by name or path, with other values |
-//! | `set KEY=VALUE ...` | other values, as one change; a bare number is SI in an SI preset |
+//! | `set KEY=VALUE ...`, `set KEY VALUE` | other values, as one change; a bare number is SI in an SI preset |
 //! | `control displacement`, `force`, `stiffness=K`, or nothing | what is controlled, or the next of them |
 //! | `step [N]`, `step-length X`, `halve-step`, `double-step`, `reverse` | steps, their length, their direction |
 //! | `next-event`, `run [N]`, `jump`, `restart` | as the keys with these names |
 //! | `undo [N]`, `redo [N]` | N commands undone or redone |
 //! | `undo N states`, `redo N states` | N single states along the walk, with their values |
 //! | `move-to A`, `move-to event N`, `move-to S` | to the largest pull, an event of the path, a contact radius |
-//! | `events`, `pin`, `pins N`, `pins all` | whose events are listed; curves pinned and removed |
-//! | `export WHAT FILE [replace]` | writes `curve`, `walk`, `events`, `script` or `study` |
+//! | `events`, `pin`, `pins D`, `pins all` | whose events are listed; curves pinned and removed |
+//! | `export WHAT FILE [replace]` | writes `curve`, `walk`, `events`, `script`, `pull` or `study` |
 //! | `export figure FILE [VIEW] [replace]`, `export screen FILE [replace]` | draws a view, the screen |
 //! | `save [replace]`, `save-as NAME [with-data] [replace]` | saves the preset |
 //! | `quit` | ends the script |

@@ -105,6 +105,8 @@ fn a_script_is_read_with_comments_quotes_and_synonyms() {
         parse("set gap.wavelength=3 um title=x").unwrap(),
         Some(set(&[("gap.wavelength", "3 um"), ("title", "x")]))
     );
+    // A value may follow its key, and its unit that.
+    assert_eq!(parse("set gap.wavelength 3 um").unwrap(), Some(set(&[("gap.wavelength", "3 um")])));
     assert!(lines.iter().all(|line| line.may_fail == (line.number == 6)));
 }
 
