@@ -27,10 +27,9 @@ pub fn letter(number: usize) -> &'static str {
     LETTERS[number.saturating_sub(1) % MOST]
 }
 
-/// The number of the pin with this letter; older scripts say the number itself.
+/// The number of the pin with this letter.
 pub(super) fn number_called(name: &str) -> Option<usize> {
-    let of_letter = LETTERS.iter().position(|letter| letter.eq_ignore_ascii_case(name)).map(|at| at + 1);
-    of_letter.or_else(|| name.parse().ok()).filter(|number| (1..=MOST).contains(number))
+    LETTERS.iter().position(|letter| letter.eq_ignore_ascii_case(name)).map(|at| at + 1)
 }
 
 /// The number of differences that are named; the others are counted.

@@ -5,7 +5,7 @@
 //! | 40x10 | the selected one alone |
 //! | 60x16 | Problem with the state in its last line; one chart; the log |
 //! | 80x16 | the same with both charts side by side |
-//! | 120x36 | Problem, Here and Result in a column of 27; both charts; the log below, whole |
+//! | 120x36 | Problem, Here and Result in a column of 27 or more; both charts; the log below, whole |
 //! | 160x45 | the same with a third chart |
 //!
 //! Charts of the force share its axis: an event stands on the same row in both. The pane chosen with `z` fills the
@@ -46,8 +46,9 @@ const ARRANGEMENTS: [Arrangement; 5] = [
     Arrangement { from: SMALLEST, shape: PaneLayout::Alone, charts: 1 },
 ];
 
-/// The width inside the column.
-pub const COLUMN: u16 = 27;
+/// The least width inside the column, and how many more columns of a screen give it one more.
+const COLUMN: u16 = 27;
+const PER_COLUMN: u16 = 10;
 /// Lines of values where panes are stacked; the state has one more line.
 pub const VALUE_LINES: u16 = 2;
 /// The rows of the log with its walls, for screens up to this many rows.
@@ -108,6 +109,11 @@ pub fn is_alone(area: Rect, is_whole: bool) -> bool {
     is_whole || arrangement(area).is_some_and(|found| found.shape == PaneLayout::Alone)
 }
 
+/// The width inside the column on a screen of this size that has one.
+pub fn column_width(area: Rect) -> u16 {
+    COLUMN + area.width.saturating_sub(120) / PER_COLUMN
+}
+
 fn arrangement(area: Rect) -> Option<Arrangement> {
     let fits = |it: &Arrangement| area.width >= it.from.0 && area.height >= it.from.1;
     ARRANGEMENTS.into_iter().find(fits)
@@ -151,7 +157,7 @@ pub fn regions(area: Rect, wants: Wants) -> Option<Regions> {
         regions.problem = Some(problem);
         charts
     } else {
-        let (side, charts) = split_left(main, COLUMN + 2);
+        let (side, charts) = split_left(main, column_width(area) + 2);
         column(&mut regions, side, wants);
         charts
     };
@@ -258,8 +264,8 @@ mod tests {
             ((80, 24), &[(41, 13), (40, 13)], [Some(3), None, None, Some(3)]),
             ((100, 30), &[(51, 16), (50, 16)], [Some(3), None, None, Some(6)]),
             ((120, 40), &[(47, 30), (46, 30)], [Some(8), Some(9), Some(9), Some(6)]),
-            ((160, 45), &[(45, 35), (45, 35), (44, 35)], [Some(10), Some(12), Some(9), Some(6)]),
-            ((200, 60), &[(58, 50), (58, 50), (58, 50)], [Some(22), Some(15), Some(9), Some(6)]),
+            ((160, 45), &[(44, 35), (43, 35), (43, 35)], [Some(10), Some(12), Some(9), Some(6)]),
+            ((200, 60), &[(56, 50), (55, 50), (55, 50)], [Some(22), Some(15), Some(9), Some(6)]),
         ];
         let pair = [ForceApproach, ForceRadius, Contact];
         for ((width, height), charts, lines) in TABLE {

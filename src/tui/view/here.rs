@@ -178,10 +178,13 @@ fn state(theme: Theme, model: &Model, node: &Node, width: usize) -> Vec<Line<'st
     }
     let zone = node.on_path.filter(|_| model.is_on_curve(node));
     let zone = zone.and_then(|at| model.curve.as_ref()?.zone(at));
+    let of_each = stable(model, node);
+    // With a spring there are three.
+    let between = if of_each.len() > 2 { " " } else { "  " };
     let mut flags = vec![Span::styled(" stable", theme.dim())];
-    for [name, word] in stable(model, node) {
+    for [name, word] in of_each {
         let word = if word == "yes" { Span::raw(word) } else { Span::styled(word, theme.error()) };
-        flags.extend([Span::styled(theme.text(&format!("  {name} ")), theme.dim()), word]);
+        flags.extend([Span::styled(theme.text(&format!("{between}{name} ")), theme.dim()), word]);
     }
     let way = if model.inward {
         theme.glyph("← inward", "< inward")

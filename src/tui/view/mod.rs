@@ -15,7 +15,7 @@ pub mod states;
 pub mod status;
 
 use super::app::App;
-use super::layout::{COLUMN, Regions, SMALLEST, Wants, regions};
+use super::layout::{Regions, SMALLEST, Wants, column_width, regions};
 use super::overlay::Dialog;
 use crate::explorer::ScreenPanel;
 use ratatui::Frame;
@@ -90,7 +90,7 @@ pub fn places(app: &App, area: Rect) -> Option<Regions> {
     let notes = model.curve.as_ref().map_or(0, |curve| curve.base.notes.len());
     let bar = usize::from(model.path().is_some_and(|path| path.turn.is_some()));
     let log = model.log().entries.len() + model.shown_inadmissible().len().min(PARTS) + notes + bar;
-    let problem = problem::rows(app, COLUMN);
+    let problem = problem::rows(app, column_width(area));
     let (panel, is_whole) = (model.panel, app.enlarged);
     regions(area, Wants { view: model.view, log, problem, panel, is_whole })
 }
