@@ -15,6 +15,9 @@ const ROOM: f64 = 0.04;
 /// At least this many doubles must be distinguishable across a range; on a narrower one there is nothing to see.
 const PLACES: f64 = 1e3;
 
+/// Values that differ by no more than this share of the largest are equal: what they differ by is rounding.
+const EQUAL: f64 = 1e-9;
+
 impl Bounds {
     /// The range of `points` with a small margin; finite and ascending whatever the points are.
     pub fn of(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
@@ -67,7 +70,7 @@ fn roomy([lo, hi]: [f64; 2]) -> [f64; 2] {
         return [0.0, 1.0];
     }
     let range = hi - lo;
-    if !range.is_finite() || range <= f64::EPSILON * lo.abs().max(hi.abs()) || range == 0.0 {
+    if !range.is_finite() || range <= EQUAL * lo.abs().max(hi.abs()) {
         let half = (0.5 * lo.abs()).max(0.5 * hi.abs());
         let half = if half > 0.0 && half.is_finite() { half } else { 0.5 };
         return [0.5 * lo + 0.5 * hi - half, 0.5 * lo + 0.5 * hi + half];
@@ -97,6 +100,8 @@ mod tests {
             vec![(-1e300, 1e300), (1e300, -1e300)],
             vec![(1.0, f64::INFINITY), (2.0, 3.0)],
             vec![(1.0, 1e-300), (1.0 + 1e-15, 2e-300)],
+            // A constant, to rounding.
+            vec![(0.0, -1.0), (1.0, -1.0 - 1e-12)],
         ] {
             let whole = Bounds::of(points.clone());
             for Bounds { x, y } in [whole, whole.part(&deepest), whole.part(&widest)] {
@@ -104,6 +109,8 @@ mod tests {
                     assert!(lo.is_finite() && hi.is_finite() && lo < hi, "{points:?}: {lo} {hi}");
                 }
             }
+            let of_rounding = points.contains(&(1.0, -1.0 - 1e-12));
+            assert!(!of_rounding || whole.y[1] - whole.y[0] > 0.1, "{whole:?}");
         }
     }
 
