@@ -65,12 +65,17 @@ impl Bounds {
     }
 }
 
+/// Whether a range is that of one value, to rounding.
+pub fn is_level([lo, hi]: [f64; 2]) -> bool {
+    hi - lo <= EQUAL * lo.abs().max(hi.abs())
+}
+
 fn roomy([lo, hi]: [f64; 2]) -> [f64; 2] {
     if !(lo.is_finite() && hi.is_finite()) {
         return [0.0, 1.0];
     }
     let range = hi - lo;
-    if !range.is_finite() || range <= EQUAL * lo.abs().max(hi.abs()) {
+    if !range.is_finite() || is_level([lo, hi]) {
         let half = (0.5 * lo.abs()).max(0.5 * hi.abs());
         let half = if half > 0.0 && half.is_finite() { half } else { 0.5 };
         return [0.5 * lo + 0.5 * hi - half, 0.5 * lo + 0.5 * hi + half];

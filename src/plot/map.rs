@@ -4,6 +4,7 @@
 use super::Width;
 use super::ink;
 use super::svg::{cropped, entry, filled, finish, frame, hatched, hatches, line, outline, plain};
+use crate::figure::bounds::is_level;
 use crate::figure::{AxisScale, Line};
 use crate::mend::mend;
 use crate::sweep::SweepResults;
@@ -15,6 +16,7 @@ use kuva::render::color::Color;
 use kuva::render::layout::ComputedLayout;
 use kuva::render::plots::Plot;
 use kuva::render::render::{Primitive, render_multiple};
+use pulloff_engine::report::number::short;
 use pulloff_engine::text::quote;
 use std::collections::VecDeque;
 
@@ -178,14 +180,18 @@ impl MapChart {
         [known().fold(f64::INFINITY, f64::min), known().fold(f64::NEG_INFINITY, f64::max)]
     }
 
-    /// The counts of a counted quantity with their colours, or ranges of counts where there are many; `None` for any
-    /// other quantity.
+    /// The counts of a counted quantity with their colours, or ranges of counts where there are many, or the one value
+    /// of any quantity; `None` where values are many.
     fn counts(&self) -> Option<Vec<Count>> {
+        let [least, most] = self.range();
+        // One colour for one value, whose last digits say nothing.
+        if is_level([least, most]) {
+            return Some(vec![Count { from: least, to: most, color: ColorMap::Viridis.map(0.0) }]);
+        }
         let is_count = |cell: &f64| !cell.is_finite() || (*cell >= 0.0 && cell.fract() == 0.0);
         if !self.cells.iter().flatten().all(is_count) {
             return None;
         }
-        let [least, most] = self.range();
         let wide = ((most - least + 1.0) / COUNTS).ceil();
         let firsts = std::iter::successors(Some(least), |first| Some(first + wide));
         let all = firsts.take_while(|first| *first <= most).map(|from| {
@@ -277,7 +283,7 @@ impl Count {
 
     fn name(&self) -> String {
         let (from, to) = (self.from, self.to);
-        if from < to { format!("{from}-{to}") } else { format!("{from}") }
+        if is_level([from, to]) { short(from, 6) } else { format!("{from}-{to}") }
     }
 }
 
@@ -350,5 +356,8 @@ mod tests {
         let many = map(vec![vec![0.0, 10.0, 20.0]; 3]);
         assert_eq!(names(&many)[..2], ["snaps 0-1", "2-3"]);
         assert_eq!(names(&many).last().map(String::as_str), Some("20"));
+        // One value, to rounding, has one colour.
+        let level = map(vec![vec![-1.5, -1.5 - 1e-13, -1.5]; 3]);
+        assert_eq!(names(&level), ["snaps -1.5"]);
     }
 }
