@@ -425,7 +425,8 @@ impl PullReport {
         for peak in &run.tension_peaks {
             line("tension peak", &at(peak));
         }
-        line("largest pull", &at(&run.peak));
+        // Bodies that are pressed together all the time do not pull.
+        line(if run.peak.force < 0.0 { "largest pull" } else { "least force" }, &at(&run.peak));
         let last = run.last_contact.map_or("not reached".to_owned(), |last| {
             let quantity = if self.control == Control::Force { Quantity::Force } else { Quantity::Length };
             format!(

@@ -114,8 +114,8 @@ quantities! {
         Stage::Loop(|whole| Some(whole.rings_at_most()));
     "contact_share" "" Number "contact area at the turn over that of the circle within its outermost edge":
         Stage::Loop(OnPath::contact_share);
-    "peak_force" "P" Force "largest pull at path.rate, or by path.steps, as the least force on the way":
-        Stage::Pull(|run| Some(Cell::Number(run.peak.force)));
+    "peak_force" "P" Force "largest pull at path.rate, or by path.steps, as the least force on the way; empty where it is a compression":
+        Stage::Pull(|run| Some(run.peak.force).filter(|force| *force < 0.0).map(Cell::Number));
     "last_contact_time" "t" Time "time of that pull at which the bodies come apart":
         Stage::Pull(|run| run.last_contact.map(|last| Cell::Number(last.time)));
     "dissipated" "" Energy "what the edge dissipates in that pull; empty under a dead load":
