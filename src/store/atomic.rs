@@ -6,6 +6,7 @@
 //! untouched. A temporary left by a kill is removed by the next save in the folder.
 
 use super::file::{Fingerprint, kind_of, read_bytes};
+use super::lock::FileLock;
 use super::temporary;
 use crate::mend::mend;
 use pulloff_engine::text::show_path;
@@ -49,6 +50,8 @@ pub enum WriteError {
     /// The content read back differs from what was written.
     #[error("{path}: what was written does not read back: {why}")]
     NotReadBack { path: String, why: String },
+    #[error("{path}: another pulloff is writing it")]
+    Busy { path: String },
     #[error("{path}: another pulloff is saving in this folder; try again")]
     Locked { path: String },
     #[error("{path}: cannot {doing}: {cause}")]
@@ -57,7 +60,7 @@ pub enum WriteError {
 
 mend!(
     WriteError, as cause of Io, never NotReadBack,
-    always Exists | Changed | ReadOnly | NotRegular | Locked
+    always Exists | Changed | ReadOnly | NotRegular | Busy | Locked
 );
 
 /// The system's message about a failed write, completed where it is too brief.
@@ -135,6 +138,7 @@ impl<'a> Begun<'a> {
         let target = follow(path)?;
         let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
         let old = guard(path, &target, overwrite)?;
+        free(path, &target)?;
         // Opened while an error still leaves everything as it was.
         let folder = File::open(folder_of(&target)).map_err(failed("open its folder"))?;
         let writing = temporary::begin();
@@ -149,6 +153,7 @@ impl<'a> Begun<'a> {
         let failed = |doing| move |cause| WriteError::Io { path: show_path(path), doing, cause };
         // Another process may have written in between; from here to the rename, the time is as short as it can be.
         let old = guard(path, &target, overwrite)?;
+        free(path, &target)?;
         let file = if old.is_none() {
             // Nothing was there, so nothing is replaced, even if something appears now.
             temporary.persist_noclobber(&target)
@@ -217,6 +222,11 @@ fn guard(path: &Path, target: &Path, overwrite: Overwrite) -> Result<Option<Meta
     Ok(Some(metadata))
 }
 
+/// Refuses a file that another process holds: what it goes on to write would be lost.
+fn free(path: &Path, target: &Path) -> Result<(), WriteError> {
+    if FileLock::is_held(target) { Err(WriteError::Busy { path: show_path(path) }) } else { Ok(()) }
+}
+
 /// Refuses a read-only file: a rename would succeed anyway, against its owner's wishes.
 fn writable(path: &Path, target: &Path, metadata: &Metadata) -> Result<(), WriteError> {
     // Nothing is forbidden to root, but the owner may still want the file unchanged.
@@ -272,6 +282,20 @@ mod tests {
 
     fn mode(path: &Path) -> u32 {
         path.metadata().unwrap().mode() & 0o7777
+    }
+
+    #[test]
+    fn a_file_that_another_writes_is_not_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.csv");
+        write_atomically(&path, b"old", Overwrite::Never).unwrap();
+        let written = File::open(&path).unwrap();
+        written.lock().unwrap();
+        let refused = write_atomically(&path, b"new", Overwrite::Always).unwrap_err();
+        assert!(matches!(refused, WriteError::Busy { .. }), "{refused}");
+        drop(written);
+        write_atomically(&path, b"new", Overwrite::Always).unwrap();
+        assert_eq!((fs::read(&path).unwrap(), names(folder.path()).len()), (b"new".to_vec(), 1));
     }
 
     #[test]
