@@ -4,7 +4,7 @@
 
 use pulloff_engine::sweep::axis::SweepAxis;
 use pulloff_engine::sweep::spec::{Design, Spec, values};
-use pulloff_engine::sweep::{Fault, MeasuredQuantities, QuantityColumn};
+use pulloff_engine::sweep::{Cell, Fault, MeasuredQuantities, QuantityColumn};
 use pulloff_engine::text::quote;
 use std::fmt;
 
@@ -167,13 +167,19 @@ impl Layout {
         if fault.is_none() && !fields[last].is_empty() {
             return Err(wrong_field(last, "a fault or nothing"));
         }
+        // As a sweep writes them.
+        let is_count = |cell: &str| cell.parse().is_ok_and(|n: usize| n.to_string() == cell);
+        let is_number = |cell: &str| {
+            cell.parse().is_ok_and(|x: f64| x.is_finite() && Cell::Number(x).to_string() == cell)
+        };
         for at in known.len()..last {
-            let is_count = QuantityColumn::named(&self.columns[at]).is_ok_and(|of| of.quantity.is_count);
-            let (is_cell, expected) = match (&fields[at], is_count) {
+            let counts = QuantityColumn::named(&self.columns[at]).is_ok_and(|of| of.quantity.is_count);
+            let (is_cell, expected) = match (&fields[at], counts) {
                 ("", true) => (fault.is_some(), "a whole number, or nothing in a row with an error"),
                 ("", false) => (true, ""),
-                (cell, true) => (cell.parse::<usize>().is_ok(), "a whole number"),
-                (cell, false) => (cell.parse().is_ok_and(f64::is_finite), "a finite number or nothing"),
+                (cell, true) => (is_count(cell), "a whole number"),
+                // The numbers of members in statistics are counts, too.
+                (cell, false) => (is_number(cell) || is_count(cell), "a finite number or nothing"),
             };
             if !is_cell {
                 return Err(wrong_field(at, expected));
