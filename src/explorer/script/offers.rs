@@ -127,7 +127,10 @@ pub(in crate::explorer) fn pins_of(typing: &Typing<'_>) -> Vec<Offer> {
     let model = typing.model;
     let pins = model.pins.all().iter();
     let numbered = pins.map(|pin| Offer::new(pins::letter(pin.number), pin.name(&model.preset)));
-    numbered.chain(words(["all"])).collect()
+    // A letter means a pin, and neither a word that begins with it nor a description.
+    let is_letter = typing.word.chars().count() == 1;
+    let is_meant = |offer: &Offer| !is_letter || offer.word.eq_ignore_ascii_case(typing.word);
+    numbered.chain(words(["all"])).filter(is_meant).collect()
 }
 
 /// The branches of the walk: how many steps, where each ended, and in which values it differs from the current ones.

@@ -220,7 +220,8 @@ mod tests {
             let entry = found.first().map(|entry| (&*entry.line, entry.is_whole));
             assert_eq!(entry, Some((first, is_whole)), "{line}: {found:?}");
         }
-        for line in ["zzz", "set title=\"a ", "quit 3"] {
+        // One letter is that of a pin, not the beginning of `all`.
+        for line in ["zzz", "set title=\"a ", "quit 3", "pins A", "pins L"] {
             assert_eq!(found(line), [], "{line}");
         }
     }
