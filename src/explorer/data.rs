@@ -51,8 +51,7 @@ impl Foreign {
                 CurveReadError::Unknown { .. }
                 | CurveReadError::Lacks { .. }
                 | CurveReadError::NoColumn { .. }
-                | CurveReadError::Signal { .. }
-                | CurveReadError::Unit { .. },
+                | CurveReadError::Signal { .. },
             ) => {}
             _ => return None,
         }

@@ -125,7 +125,8 @@ fn by_factors(x: f64, factor: f64) -> Vec<Value> {
 fn between(lo: f64, x: f64, hi: f64) -> Vec<Value> {
     let at = |k: i32| {
         let end = if k < 0 { lo } else { hi };
-        x + (end - x) * f64::from(k.abs()) / f64::from(BESIDE)
+        // The whole way is exactly the end.
+        x + (end - x) * (f64::from(k.abs()) / f64::from(BESIDE))
     };
     let mut all: Vec<f64> = (-BESIDE..=BESIDE).map(|k| if k == 0 { x } else { tidy(at(k)) }).collect();
     all.dedup();
@@ -358,6 +359,7 @@ mod tests {
             (&preset(&[]), "gap.amplitude", "gap.amplitude"),
             (&preset(&[]), "gap.wavelength", "gap.wavelength"),
             (&preset(&[]), "groups.adhesion", "groups.adhesion"),
+            (&preset(&[]), "groups.amplitude_over_wavelength", "groups.amplitude_over_wavelength"),
             (&preset(&[("path.start_approach", "-0.002")]), "path.start_approach", "path.start_approach"),
             (&spring, "path.control", "path.control.stiffness"),
             (&rings, "basis.rings", "basis.rings"),
@@ -367,6 +369,7 @@ mod tests {
             let numbers: Vec<f64> = values.iter().filter_map(number).collect();
             assert_eq!(numbers.len(), values.len());
             assert!(numbers.windows(2).all(|pair| pair[0] < pair[1]) && numbers.len() > 20, "{numbers:?}");
+            assert!(numbers[0] == 0.0 || !key.contains("amplitude"), "{key}: {numbers:?}");
             let own = preset.get(&found).and_then(|value| number(&value)).unwrap();
             assert!(numbers.iter().any(|x| x.to_bits() == own.to_bits()), "{key}: {own} of {numbers:?}");
         }
@@ -420,7 +423,7 @@ mod tests {
         };
         let data = of("material.work_of_adhesion", own);
         let figure = study::of(&data, &preset, Axes::Reduced);
-        assert_eq!(figure.y.title(), "largest pull (P/Pc at each gamma)");
+        assert_eq!(figure.y.title(), "largest pull (P/Pc at each γ)");
         let line = figure.lines.iter().find(|line| line.role == Role::Body).unwrap();
         assert_eq!(line.points.len(), 3);
         assert!(study::reading(&data, &preset, Axes::Reduced, 0.0).unwrap().contains("none: "));

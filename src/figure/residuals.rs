@@ -28,13 +28,13 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         Axis::pure("r/σ".to_owned()),
     );
     let residuals = match subject.distances {
+        _ if subject.preset.data.source.is_none() => {
+            figure.missing = Some(NO_POINTS.to_owned());
+            return figure;
+        }
         Some(Ok((_, residuals))) => residuals,
         Some(Err(reason)) => {
             figure.missing = Some(format!("no residuals: {reason}"));
-            return figure;
-        }
-        None if subject.preset.data.source.is_none() => {
-            figure.missing = Some(NO_POINTS.to_owned());
             return figure;
         }
         None => {

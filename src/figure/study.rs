@@ -10,6 +10,7 @@ use pulloff_engine::report::number::{significant, with_unit};
 use pulloff_engine::sweep::ensemble::quantiles;
 use pulloff_engine::sweep::quantity::Under;
 use pulloff_engine::sweep::{Cell, QuantityColumn};
+use pulloff_engine::text::greek;
 use pulloff_engine::units::Quantity;
 
 /// With fewer other surfaces than this, no quantiles are drawn.
@@ -60,7 +61,7 @@ pub fn of(data: &StudyData, preset: &Preset, axes: Axes) -> Figure {
     let quantity = wish.column.quantity.unit;
     let row = row(data, preset);
     let shown = |x: f64| row.as_ref().map_or(x, |row| row.shown(units, x).number);
-    let label = row.as_ref().map_or_else(|| wish.key.to_string(), |row| row.label.to_string());
+    let label = row.as_ref().map_or_else(|| wish.key.to_string(), |row| greek(&row.label));
     let unit = row.as_ref().and_then(|row| row.unit_in(units)).map_or_else(String::new, ToString::to_string);
     let x = Axis { shown: unit, ..Axis::pure(label).running(scale_of(data)) };
     let critical = data.divisors(axes);
@@ -263,7 +264,7 @@ pub fn reading(data: &StudyData, preset: &Preset, axes: Axes, x: f64) -> Option<
             }
         }
     };
-    Some(format!("{} {value}: {} {found}", row.label, words(data.wish.column)))
+    Some(format!("{} {value}: {} {found}", greek(&row.label), words(data.wish.column)))
 }
 
 /// The point of the drawn study nearest to `x`, both on the axes of its figure on the screen; `None` where `x` is
