@@ -456,6 +456,16 @@ impl Case {
         warnings
     }
 
+    /// A warning, if an unloading starts beyond the pull that a larger contact exerts.
+    pub fn warning_of_start(&self, path: &Path) -> Option<String> {
+        let start = path.start().filter(|_| path.pulls_most_at_start())?;
+        let radius = said(&self.shown, Quantity::Length, start.contact_radius * self.units().length);
+        Some(format!(
+            "the path pulls most at its start, where the contact radius is {radius}: from a larger contact the largest \
+             pull is larger"
+        ))
+    }
+
     /// A warning, if a contact of radius `largest` (reduced) is larger than the bodies are round.
     pub fn warning_of_size(&self, largest: f64) -> Option<String> {
         let radius = self.problem.shape.radius_of_curvature()?;

@@ -211,6 +211,14 @@ impl CurveData {
         Ok(Self { base, case, setting, points, limits, other_limits, unloading, along, report, checked })
     }
 
+    /// The warnings about the problem, and about the path where it starts with a disc.
+    pub fn warnings(&self) -> Vec<String> {
+        let unloading =
+            self.unloading.as_ref().ok().filter(|_| self.setting.preset.path.begin == Begin::Disc);
+        let of_start = unloading.and_then(|path| self.case.warning_of_start(path));
+        self.base.warnings.iter().cloned().chain(of_start).collect()
+    }
+
     /// The outer edge of the zone (reduced) in this state of the path, where adhesion has a range.
     pub fn zone(&self, at: usize) -> Option<f64> {
         self.along.as_ref()?.as_ref().ok()?.states.get(at)?.zone

@@ -12,6 +12,7 @@ use crate::mend::WordedFault;
 use crate::print::PictureFormat;
 use crate::store::{Listed, Overwrite, Source, Store, StoreError, WriteError, write_atomically};
 use pulloff_engine::preset::changes::{changes, differences};
+use pulloff_engine::preset::schema::NONE;
 use pulloff_engine::preset::{Invalid, Preset, Value, data as data_keys};
 use pulloff_engine::progress::Unwatched;
 use pulloff_engine::report::columns;
@@ -22,8 +23,12 @@ use pulloff_engine::text::show_path;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Gives `preset` other values; a measured curve comes last, together with the values that describe its columns.
+/// Gives `preset` other values; a measured curve comes last, together with the values that describe its columns. One that
+/// is taken away, or replaced, no longer refuses what it states otherwise.
 fn assign(preset: &mut Preset, assignments: &[Assignment]) -> Result<(), Invalid> {
+    if assignments.iter().any(|(key, _)| key == data_keys::FILE) {
+        preset.assign(data_keys::FILE, NONE)?;
+    }
     let is_curve = |assignment: &&Assignment| [data_keys::FILE, data_keys::COLUMNS].contains(&&*assignment.0);
     let (curve, others): (Vec<_>, Vec<_>) = assignments.iter().partition(is_curve);
     preset.assign_all(&others.into_iter().cloned().collect::<Vec<_>>())?;
@@ -225,7 +230,7 @@ fn text(content: &Content, as_json: bool) -> Result<String, Box<dyn std::error::
     let walked = |curve: &CurveData, points: Vec<WalkRow>, events: &[EventReport]| {
         json(&WalkReport {
             head: Head::new("walk", &curve.setting.preset, &curve.case),
-            warnings: curve.base.warnings.clone(),
+            warnings: curve.warnings(),
             notes: curve.base.notes.clone(),
             points,
             events: events.to_vec(),

@@ -139,7 +139,7 @@ impl Model {
             Err(reason) => return Some(format!("No pull: {reason}")),
             Ok(report) => report,
         };
-        let known = self.curve.as_ref().map_or(&[][..], |curve| &curve.base.warnings);
+        let known = self.curve.as_ref().map_or_else(Vec::new, |curve| curve.warnings());
         let warning = report.warnings.iter().find(|warning| !known.contains(warning));
         let events = self.path().map_or(&[][..], |path| &path.events);
         let jumps = events.iter().filter(|event| matches!(event.kind, "snap" | "last-contact")).count();

@@ -45,3 +45,39 @@ fn a_gap_of_any_height_has_no_message_from_inside() {
         );
     }
 }
+
+/// A path that starts closer than the largest pull says so; one that starts further out does not.
+#[test]
+fn a_start_beyond_the_largest_pull_is_told() {
+    let home = Home::new();
+    let told = |radius: &str| {
+        let start = format!("path.start_contact_radius={radius}");
+        let ended = home.run(&["unload", "lens", "--set", "data.file=none", "--set", &start]);
+        assert_eq!(ended.status, 0, "{}", ended.err);
+        ended.err.contains("the path pulls most at its start")
+    };
+    assert!(told("20um") && !told("100um"));
+    // Nothing is told of a start that is exactly the one asked for.
+    let ended = home.run(&["unload", "fig-1-hertz"]);
+    assert!(
+        !ended.err.contains("is unstable") && !ended.out.contains("is unstable"),
+        "{}{}",
+        ended.out,
+        ended.err
+    );
+}
+
+/// Of values given together, the refusal is that of all of them.
+#[test]
+fn values_given_together_are_refused_together() {
+    let home = Home::new();
+    home.file(
+        "all.pulloff",
+        "open fig-3-jkr\nset material.adhesion=dugdale material.cohesive_strength=0.177\n",
+    );
+    let ended = home.run(&["run", "all.pulloff"]);
+    assert!(ended.status == 2 && ended.err.contains("basis"), "{}", ended.err);
+    let lens = "set data.file=none gap.radius_of_curvature=\"5 mm\" path.control=displacement";
+    home.file("lens.pulloff", &format!("open lens\n{lens}\n"));
+    assert_eq!(home.run(&["run", "lens.pulloff"]).status, 0);
+}

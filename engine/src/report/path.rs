@@ -319,6 +319,7 @@ impl PathReport {
             if is_loop || in_zone { case.warnings_of_problem() } else { case.warnings(begins) };
         let radii = path.states.iter().map(|state| state.contact_radius);
         warnings.extend(case.warning_of_size(radii.fold(begins, f64::max)));
+        warnings.extend(case.warning_of_start(path));
         warnings.extend(path.warnings.iter().map(|w| w.words(&printer)));
         let mut notes = if is_loop || in_zone { problem_notes(case) } else { case.notes(begins) };
         notes.extend(note_of_range(preset, case));

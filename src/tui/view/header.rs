@@ -93,8 +93,8 @@ fn width(spans: &[Span<'_>]) -> usize {
 }
 
 fn warnings(app: &App) -> Vec<String> {
-    let warnings = app.model.curve.iter().flat_map(|curve| &curve.base.warnings);
-    warnings.map(|text| app.theme.text(text)).collect()
+    let warnings = app.model.curve.iter().flat_map(|curve| curve.warnings());
+    warnings.map(|text| app.theme.text(&text)).collect()
 }
 
 /// Whether there is room for the places: a job under way needs it more.

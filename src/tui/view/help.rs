@@ -130,9 +130,9 @@ impl HelpLine {
 
 /// The full text of what narrow screens cut elsewhere: the status, warnings, notes.
 pub fn now(app: &App) -> Vec<String> {
-    let base = app.model.curve.as_ref().map(|curve| &curve.base);
-    let warnings = base.iter().flat_map(|base| base.warnings.iter().map(|text| format!("! {text}")));
-    let notes = base.iter().flat_map(|base| base.notes.iter().cloned());
+    let curve = app.model.curve.as_ref();
+    let warnings = curve.iter().flat_map(|curve| curve.warnings()).map(|text| format!("! {text}"));
+    let notes = curve.iter().flat_map(|curve| curve.base.notes.iter().cloned());
     [app.keymap.spelled(&app.model.status().1)].into_iter().chain(warnings).chain(notes).collect()
 }
 

@@ -189,17 +189,13 @@ impl Preset {
     /// needs a later one.
     ///
     /// # Errors
-    /// As [`assign`](Self::assign), for the first one refused either way; the preset is left as it was.
+    /// As [`assign`](Self::assign), for all at once; the preset is left as it was.
     pub fn assign_all(&mut self, assignments: &[(Key, String)]) -> Result<(), Invalid> {
         let mut changed = self.clone();
-        let refused = assignments.iter().try_for_each(|(key, text)| changed.assign(key, text));
-        if let Err(refused) = refused {
+        if assignments.iter().try_for_each(|(key, text)| changed.assign(key, text)).is_err() {
             changed = self.clone();
             let values = assignments.iter().map(|(key, text)| Ok((&**key, self.assigned(key, text)?)));
-            let at_once = values.collect::<Result<Vec<_>, Invalid>>().and_then(|all| changed.set_all(all));
-            if at_once.is_err() {
-                return Err(refused);
-            }
+            changed.set_all(values.collect::<Result<Vec<_>, Invalid>>()?)?;
         }
         *self = changed;
         Ok(())

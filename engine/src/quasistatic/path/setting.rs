@@ -202,6 +202,12 @@ impl Path {
         self.least(|state| state.force).filter(|state| state.force <= 0.0)
     }
 
+    /// Whether an unloading pulls most where it starts, so that it would pull more from a larger contact.
+    pub fn pulls_most_at_start(&self) -> bool {
+        let most = self.largest_pull().filter(|most| most.force < 0.0 && self.turn.is_none());
+        most.zip(self.start()).is_some_and(|(most, start)| std::ptr::eq(most, start))
+    }
+
     /// The state of the smallest approach.
     pub fn farthest(&self) -> Option<&PathState> {
         self.least(|state| state.approach)

@@ -29,6 +29,8 @@ const OUTWARD_REACH: f64 = 1000.0;
 
 /// How far beyond the start the table for rings reaches at first.
 const BEYOND: f64 = 1.3;
+/// A start that differs by no more than this share is the one asked for.
+const SAME: f64 = 1e-9;
 
 /// Unloads along `curve`, from its outermost state down to its innermost.
 ///
@@ -58,7 +60,7 @@ pub fn unload(curve: &Curve, setting: &PathSetting<'_>, progress: &dyn Progress)
     };
     let curve = longer.as_ref().unwrap_or(curve);
     let start = curve.state(here.place);
-    let asked = asked.filter(|_| start.contact_radius > from).map(|state| {
+    let asked = asked.filter(|_| start.contact_radius > from * (1.0 + SAME)).map(|state| {
         let value = control.value(state.approach, state.force);
         let falls = landscape::falls(curve, control, value, from, start.contact_radius);
         AskedState { state, why: WhyNot::Unstable { falls } }
