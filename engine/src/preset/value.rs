@@ -1,7 +1,8 @@
 //! One parameter's value, and its check against the parameter's row.
 
+use super::data;
 use super::invalid::Invalid;
-use super::schema::{AUTO, Kind, LARGEST, NONE, Parameter, SMALLEST};
+use super::schema::{AUTO, Fallback, Kind, LARGEST, NONE, Parameter, SMALLEST};
 use crate::gap::shapes::ProfileRows;
 use crate::measured::PointsFile;
 use crate::problem::Control;
@@ -168,6 +169,14 @@ impl Parameter {
             (Kind::File, Value::Profile(rows)) => Ok(Value::Profile(rows)),
             (Kind::Points, Value::Points(source)) => Ok(Value::Points(source)),
             (Kind::File | Kind::Points, Value::Text(name)) => Ok(Value::Text(name)),
+            // The rows that are apart may be none at all.
+            (Kind::Text { .. }, Value::Text(word))
+                if word == NONE
+                    && matches!(self.fallback, Fallback::Text(""))
+                    && self.key != data::FREE_PART =>
+            {
+                Ok(Value::Text(String::new()))
+            }
             (Kind::Text { max_chars }, Value::Text(text)) => {
                 if text.chars().nth(max_chars).is_some() {
                     Err(self.out_of_range(&format!("\"{}\"", quote(&text))))

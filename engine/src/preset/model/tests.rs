@@ -337,6 +337,17 @@ fn adhesion_without_a_range_has_none() {
 }
 
 #[test]
+fn none_takes_a_text_away_too() {
+    let mut preset = wavy();
+    preset.assign("data.columns", "approach=1,force=2").unwrap();
+    for (key, text) in [("data.columns", "none"), ("data.free", "none"), ("data.free_part", "none")] {
+        preset.assign(key, text).unwrap();
+    }
+    let data = &preset.data;
+    assert_eq!([&*data.columns, &*data.free, &*data.free_part], ["", "", "none"]);
+}
+
+#[test]
 fn graded_rings_have_a_bound_of_their_own() {
     let mut preset = wavy();
     preset.set("basis.grading", "edge".into()).unwrap();
