@@ -306,7 +306,7 @@ impl Model {
             return (if from_disc { 0 } else { behind }, false);
         }
         let begins = events.iter().position(|event| is_there(event.before.as_ref()));
-        let pull = self.path().and_then(|path| radius(path.totals.largest_pull.as_ref()));
+        let pull = self.path().and_then(|path| radius(path.totals.pull()));
         let is_pull = pull.is_some_and(|pull| is_near(pull, s));
         let is_on_path = begins.is_some() || is_pull;
         // Bodies are pulled hardest on their way apart, whichever way the walker has turned since.

@@ -67,8 +67,8 @@ impl Elements {
         if (Preset { basis: BasisSpec::Exact, ..rings.setting.preset.clone() }) != exact.setting.preset {
             return None;
         }
-        let [own, at] = [rings, exact].map(|curve| curve.report.as_ref()?.totals.largest_pull.as_ref());
-        let (own, at) = (own?, at.filter(|at| at.force < 0.0)?);
+        let [own, at] = [rings, exact].map(|curve| curve.report.as_ref()?.totals.pull());
+        let (own, at) = (own?, at?);
         let Case { basis, reduced, .. } = &rings.case;
         let [approach, s] = [own.approach, at.contact_radius].map(|x| x / reduced.units.length);
         let found = solve(&**basis, reduced, Control::Displacement, approach, s, NewtonSettings::default());

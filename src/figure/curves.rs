@@ -139,7 +139,7 @@ fn theory(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut Figu
         }
         // The estimate is the force under a dead load, over P_c; the smallest force of the path itself is given beside it.
         let critical = subject.curve.base.critical_force;
-        let ours = subject.curve.report.as_ref().and_then(|report| report.totals.largest_pull.as_ref());
+        let ours = subject.curve.report.as_ref().and_then(|report| report.totals.pull());
         let ours = ours.map(|state| -state.force / critical);
         figure.notes.push(format!(
             "Kesari-Lew peak {}, here {}, n = s/λ = {}",
@@ -182,7 +182,7 @@ fn limit_marks(subject: &Subject<'_>, scale: Scale<'_>, view: View, figure: &mut
     let curve = subject.curve;
     let events: Vec<Mark> = events_before(subject, scale, view).collect();
     let totals = subject.path.map(|path| &path.totals);
-    let pull = totals.and_then(|totals| totals.largest_pull.as_ref()).filter(|at| at.force < 0.0);
+    let pull = totals.and_then(|totals| totals.pull());
     let far = totals.and_then(|totals| totals.farthest.as_ref());
     let ends = [(Sign::LargestPull, pull), (Sign::Farthest, far)];
     let ends = ends.into_iter().filter_map(|(sign, at)| {

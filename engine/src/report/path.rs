@@ -175,6 +175,13 @@ pub struct TotalsReport {
     pub dead_band: Option<DeadBandReport>,
 }
 
+impl TotalsReport {
+    /// The largest pull, if anything pulls.
+    pub fn pull(&self) -> Option<&StateReport> {
+        self.largest_pull.as_ref().filter(|at| at.force < 0.0)
+    }
+}
+
 /// What a loop loses besides its jumps: together with `dissipated`, the work of the loop, loading and unloading.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]

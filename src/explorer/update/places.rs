@@ -46,7 +46,7 @@ pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
         };
         return model.refuse(format!("there is no path, so it has no largest pull: {why}"));
     };
-    if path.has_reached_its_end && path.totals.largest_pull.as_ref().is_none_or(|at| at.force >= 0.0) {
+    if path.has_reached_its_end && path.totals.pull().is_none() {
         return model.refuse("nothing pulls on this path, so it has no largest pull".to_owned());
     }
     if let Some(Ok(along)) = &curve.along {
@@ -55,7 +55,7 @@ pub(in crate::explorer) fn to_largest_pull(model: &mut Model) -> Vec<Effect> {
         let command = Id::MoveTo.into();
         return at.map_or_else(Vec::new, |at| walk(model, Action::MoveToState { at, command }));
     }
-    let Some(pull) = &path.totals.largest_pull else { return Vec::new() };
+    let Some(pull) = path.totals.pull() else { return Vec::new() };
     let radius = pull.contact_radius;
     // Under a dead load an event begins there, and it is reached as that event.
     let begins = |event: &EventReport| {

@@ -175,7 +175,7 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
             with_unit(units, Quantity::Force, force, false, |x| significant(x, 4))
         }
     };
-    let pull = path.totals.largest_pull.as_ref();
+    let pull = path.totals.pull();
     let pull = pull.map_or_else(String::new, |at| format!("A {}  ", force(at.force)));
     // Beside a pull at a rate all of these are numbers of another path.
     let [slow, short] = if model.is_pulled() { ["quasi-static: ", "q-static "] } else { ["", ""] };

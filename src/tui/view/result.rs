@@ -92,7 +92,7 @@ fn lines(theme: Theme, model: &Model, path: &PathReport) -> Vec<Line<'static>> {
     };
     let totals = &path.totals;
     let mut lines = Vec::new();
-    for (name, at) in [(" A largest pull", &totals.largest_pull), (" B farthest", &totals.farthest)] {
+    for (name, at) in [(" A largest pull", totals.pull()), (" B farthest", totals.farthest.as_ref())] {
         let Some(at) = at else { continue };
         lines.push(Line::raw(name.to_owned()));
         lines.push(head("  ", shown(&force.symbol, scale.force(at.force))));
@@ -144,10 +144,8 @@ fn beside(
     };
     let mut lines = vec![head(String::new(), "now", &format!("pin {}", letter(pin.number)), "change")];
     let totals = [&path.totals, &other.totals];
-    let states = [
-        ("A", totals.map(|totals| totals.largest_pull.as_ref())),
-        ("B", totals.map(|totals| totals.farthest.as_ref())),
-    ];
+    let states =
+        [("A", totals.map(|totals| totals.pull())), ("B", totals.map(|totals| totals.farthest.as_ref()))];
     for (name, [now, was]) in states {
         let both = |value: &dyn Fn(&StateReport) -> f64| [now, was].map(|at| at.map(value));
         lines.push(row(&format!("{name} P"), both(&|at| scale.force(at.force))));
