@@ -384,6 +384,11 @@ impl Model {
         self.curve.as_ref().is_some_and(|curve| is_on_curve(curve, node))
     }
 
+    /// Whether the state was computed for the problem of the curve, whatever was controlled.
+    pub fn is_of_present_values(&self, node: &Node) -> bool {
+        self.curve.as_ref().is_some_and(|curve| curve.base.is_of(&node.setting.preset))
+    }
+
     /// The views on the screen, the first one first.
     pub fn shown_views(&self) -> Vec<View> {
         std::iter::once(self.view).chain(self.view.companions()).take(self.views.max(1)).collect()

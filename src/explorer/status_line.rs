@@ -208,9 +208,13 @@ fn happened(model: &Model, node: &Node) -> Option<String> {
             EventKind::LastContact if event.after.is_some() => {
                 format!("Contact has ended, but the zone still holds: {next} goes on")
             }
+            // What was lost is none of the losses of the present values.
+            EventKind::LastContact | EventKind::SnapOff if !model.is_of_present_values(node) => {
+                format!("The bodies came apart at other values: {} starts again", Id::Restart.named())
+            }
             EventKind::LastContact | EventKind::SnapOff => {
                 let what = if event.kind == EventKind::SnapOff { "Snap-off" } else { "Last contact" };
-                format!("{what}: the bodies are apart{}. {}", lost.unwrap_or_default(), back_or_anew())
+                format!("{what}: apart{}. {}", lost.unwrap_or_default(), back_or_anew())
             }
             _ => {
                 format!(

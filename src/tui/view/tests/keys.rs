@@ -53,6 +53,9 @@ fn sentences_name_the_keys_of_a_person() {
     says(&screen, "F4 goes back, F6 starts again");
     screen.press(KeyCode::F(3));
     says(&screen, "the bodies are apart: F4 goes back, F6 starts again");
+    // What was lost there is no loss of other values.
+    screen.keys(":A 0.001\r");
+    says(&screen, "came apart at other values: F6 starts again");
 }
 
 #[test]
