@@ -104,8 +104,12 @@ fn entries(app: &App, prompt: &Prompt, rows: usize, width: usize) -> Vec<Line<'s
         })
         .collect();
     if lines.is_empty() && rows > 0 {
-        // A line that can be run needs no list.
-        let said = if parse(prompt.input.value()).is_ok() { "Enter runs it" } else { "nothing matches" };
+        // A line that can be run needs no list; below one that was refused stands why.
+        let said = match parse(prompt.input.value()) {
+            _ if prompt.error.is_some() => "",
+            Ok(_) => "Enter runs it",
+            Err(_) => "nothing matches",
+        };
         lines.push(Line::styled(format!("  {said}"), theme.dim()));
     }
     lines.resize(rows, Line::default());
