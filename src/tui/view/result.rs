@@ -26,11 +26,17 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     let inner = block.inner(area);
     frame.render_widget(block, area);
     let lines = match (model.path(), pinned) {
-        (Some(path), Some(pinned)) => beside(theme, model, path, pinned),
+        (Some(path), Some(pinned)) => beside(theme, model, unloading(model).unwrap_or(path), pinned),
         (Some(path), None) => lines(theme, model, path),
         (None, _) => vec![Line::styled(" no path yet", theme.dim())],
     };
     frame.render_widget(Paragraph::new(lines), inner);
+}
+
+/// The unloading from the start where the path is a loop: a pin has no loop to compare with.
+fn unloading(model: &Model) -> Option<&PathReport> {
+    model.path().filter(|path| path.turn.is_some())?;
+    model.curve.as_ref()?.report.as_ref()
 }
 
 /// Its name; that its numbers are not those of the pull at a rate; and beside a pin, what the rows are given in, as much
@@ -48,7 +54,12 @@ fn title(model: &Model, pin: Option<&Pin>, room: usize) -> String {
     let [length, force, radius] = scale.state_axes();
     // Otherwise it would be taken for P/Pc, which it is without a pin.
     let is_raw = scale.force.is_none() && Scale::of(curve, model.axes).force.is_some();
-    let mut title = if is_pulled { "Result q-static" } else { "Result" }.to_owned();
+    let mut title = match (is_pulled, unloading(model)) {
+        (true, _) => "Result q-static",
+        (false, Some(_)) => "Unloading",
+        (false, None) => "Result",
+    }
+    .to_owned();
     for axis in [force, length, radius, energy] {
         let unit = if axis.shown.is_empty() { String::new() } else { format!(" {}", axis.shown) };
         let is_raw = is_raw && axis.symbol == "P" && unit.is_empty();

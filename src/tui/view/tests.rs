@@ -412,6 +412,20 @@ fn a_state_of_a_pinned_curve_leads_to_the_present_one_which_is_told() {
 }
 
 #[test]
+fn a_pin_beside_a_loop_is_compared_by_its_unloading() {
+    let mut screen = Screen::new("fig-9-weak");
+    screen.keys("p");
+    let text = screen.text(120, 40);
+    assert!(text.contains("Unloading P/Pc δ/R s/λ W"), "{text}");
+    // The pin is the present curve.
+    for name in ["A P", "snaps", "W "] {
+        let row = text.lines().find_map(|line| line.strip_prefix(&format!("│ {name}"))).unwrap();
+        let [now, pin] = [0, 1].map(|at| row.split_whitespace().nth(at).unwrap());
+        assert_eq!(now, pin, "{name}: {text}");
+    }
+}
+
+#[test]
 fn a_pin_with_another_critical_force_is_compared_in_forces() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys("p");
