@@ -34,9 +34,6 @@ pub const DIGITS_WANTED: f64 = 11.0;
 /// Beyond this many radii of a disc the gap around it follows from the pressure inside, and needs no table out there.
 pub const FAR: f64 = 2.0;
 
-/// How often a table is refined towards the axis while its innermost disc is not yet unstable.
-const TIMES_FINER: i32 = 40;
-
 /// The exact basis of one gap.
 #[derive(Debug, Clone)]
 pub struct ExactBasis {
@@ -189,22 +186,12 @@ impl Basis for ExactBasis {
         to: f64,
         progress: &dyn Progress,
     ) -> Result<Option<Arc<dyn Solution>>, Stopped> {
-        let gamma = problem.work_of_adhesion;
-        let to = to.max(self.reach);
-        let table = |fineness| match self.table.up_to_while(to, fineness, progress) {
+        match ExactSolution::refined(&self.table, to.max(self.reach), problem.work_of_adhesion, progress) {
             Err(TableError::Stopped(stopped)) => Err(stopped),
             // A gap without a table has no equilibria.
-            found => Ok(found.ok()),
-        };
-        let Some(mut panels) = table(0)? else { return Ok(None) };
-        for fineness in 1..TIMES_FINER {
-            if ExactSolution::begins_unstable(&panels, gamma) || !panels.smallest().is_normal() {
-                break;
-            }
-            let Some(finer) = table(fineness)? else { return Ok(None) };
-            panels = finer;
+            Err(_) => Ok(None),
+            Ok(found) => Ok((!found.is_empty()).then(|| Arc::new(found) as Arc<dyn Solution>)),
         }
-        Ok((panels.reach() > 0.0).then(|| Arc::new(ExactSolution::new(panels, gamma)) as Arc<dyn Solution>))
     }
 
     fn pressure(&self, problem: &Reduced, s: f64, delta: f64) -> Vec<(f64, f64)> {

@@ -2,11 +2,17 @@
 
 use super::panels::Panels;
 use super::span::Place;
+use super::spans::TableError;
+use super::table::Table;
 use crate::gap::panels::Span;
 use crate::problem::Control;
+use crate::progress::Progress;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Debug;
 use std::sync::Arc;
+
+/// How often a table is refined towards the axis while its innermost disc is not yet unstable.
+const TIMES_FINER: i32 = 40;
 
 /// One equilibrium with the slopes of the curve with respect to the variable v of its panel, finite everywhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -123,6 +129,27 @@ impl ExactSolution {
         Self { panels, work_of_adhesion }
     }
 
+    /// The equilibria of the gap of `table` up to the radius `reach` under the adhesion γ. The table is refined towards the
+    /// axis until the innermost disc is unstable: smaller ones then are, and no limit point lies among them.
+    ///
+    /// # Errors
+    /// [`TableError`].
+    pub fn refined(
+        table: &Table,
+        reach: f64,
+        work_of_adhesion: f64,
+        progress: &dyn Progress,
+    ) -> Result<Self, TableError> {
+        let mut panels = table.up_to_while(reach, 0, progress)?;
+        for fineness in 1..TIMES_FINER {
+            if Self::begins_unstable(&panels, work_of_adhesion) || !panels.smallest().is_normal() {
+                break;
+            }
+            panels = table.up_to_while(reach, fineness, progress)?;
+        }
+        Ok(Self::new(panels, work_of_adhesion))
+    }
+
     /// The equilibrium at s, from g, dg/dv and ∫g there.
     fn local(&self, [s, stretch]: [f64; 2], [value, by_variable, area]: [f64; 3]) -> Local {
         let root = (TAU * self.work_of_adhesion * s).sqrt();
@@ -145,7 +172,7 @@ impl ExactSolution {
     }
 
     /// Whether the disc that ends with the innermost panel is unstable under every control, as all smaller ones then are.
-    pub fn begins_unstable(panels: &Panels, work_of_adhesion: f64) -> bool {
+    fn begins_unstable(panels: &Panels, work_of_adhesion: f64) -> bool {
         let Some(first) = panels.list().first() else { return true };
         let values = panels.values(Place { panel: 0, x: 1.0 });
         work_of_adhesion == 0.0 || values.slope * first.span.hi.sqrt() < Self::edge(work_of_adhesion)

@@ -82,6 +82,30 @@ fn agrees(found: &Path, reference: &Value, tolerance: f64, losses: f64) {
     assert!((by_work / sum - 1.0).abs() < losses);
 }
 
+/// A corner on the axis: δ = s² + πts/2 − √(2πγs) on h = r²/2 + tr, least where 2s + πt/2 = √(πγ/2s), however small that is
+/// beside the gap that the loop needs.
+#[test]
+fn the_last_contact_on_a_corner_at_the_axis_is_as_small_as_it_is() {
+    const SLOPE: f64 = 0.26;
+    for gamma in [1e-3, 1e-5, 1e-7, 1e-9] {
+        let text = "r^2/2 + 0.26*r";
+        let gap = TypedGap::new(text, Vec::<FormulaParameter>::new(), Some(10.0)).unwrap();
+        let gap = Arc::new(Shape::Formula(Arc::new(gap)));
+        let found = looped(gap, gamma, Control::Displacement, Turn::Radius(0.4), Losses::Twice);
+        let slope = |s: f64| 2.0 * s + 0.25 * TAU * SLOPE - (0.25 * TAU * gamma / s).sqrt();
+        let (mut lo, mut hi) = (1e-20, 1.0);
+        for _ in 0..200 {
+            let middle = 0.5 * (lo + hi);
+            if slope(middle) < 0.0 { lo = middle } else { hi = middle }
+        }
+        let approach = lo * lo + 0.25 * TAU * SLOPE * lo - (TAU * gamma * lo).sqrt();
+        let last = found.last_contact().unwrap().before.as_ref().unwrap();
+        let off = [last.contact_radius / lo - 1.0, last.approach / approach - 1.0];
+        assert!(off[0].abs() < 1e-6 && off[1].abs() < 1e-9, "{gamma}: {off:?}");
+        assert!(found.events.iter().all(|event| event.dissipated.is_none_or(|lost| lost >= 0.0)), "{gamma}");
+    }
+}
+
 #[test]
 fn the_loop_of_figure_9_is_that_of_another_program() {
     let turn = Turn::Control(0.14);

@@ -7,7 +7,7 @@ use super::lane::Lane;
 use super::record::Record;
 use super::setting::{Path, PathSetting, PathStop, TurnReached, measure};
 use crate::annuli::{AnnuliError, Contacts, ContactsError, GapMinimum, Ground, points};
-use crate::disc::Table;
+use crate::disc::{Table, TableError};
 use crate::gap::Form;
 use crate::problem::{ContactKind, Control, Turn};
 use crate::progress::{Progress, Stopped};
@@ -144,14 +144,19 @@ pub fn cycle_on(
         return Err(PathError::BadTurn(turn.value()));
     }
     let growing = setting.closing_below(gamma).unwrap_or(gamma);
-    let lane = lane(ground, growing, setting.control);
+    let lane = lane(ground, growing, setting.control, progress)?;
     let balance = balance(ground, growing, setting, lane.as_ref(), progress);
     Course { turn: Some(turn), ..Course::new(&balance, setting, Direction::Loading) }.whole(turn, gamma)
 }
 
 /// The equilibria of one disc that adheres.
-pub(super) fn lane(ground: &Ground, gamma: f64, control: Control) -> Option<Lane> {
-    (gamma > 0.0).then(|| Lane::new(ground, gamma, control))
+pub(super) fn lane(
+    ground: &Ground,
+    gamma: f64,
+    control: Control,
+    progress: &dyn Progress,
+) -> Result<Option<Lane>, TableError> {
+    (gamma > 0.0).then(|| Lane::new(ground, gamma, control, progress)).transpose()
 }
 
 /// The balance that holds contacts on a path.
@@ -321,7 +326,7 @@ impl Course<'_, '_> {
             return Ok(finished(self.record, stop));
         }
         let Balance { ground, progress, .. } = *self.balance;
-        let lane = lane(ground, gamma, self.setting.control);
+        let lane = lane(ground, gamma, self.setting.control, progress)?;
         let edges = held.state.contacts.edges().iter().map(|edge| edge.radius).collect();
         let pinned = RefCell::new(edges);
         let balance = Balance {
@@ -503,7 +508,7 @@ mod tests {
     /// The loop of a gap, with discs on the exact panels or followed step by step like any contact.
     fn looped(ground: &Ground, gamma: f64, control: Control, turn: Turn, on_lane: bool) -> Path {
         let setting = PathSetting::new(control);
-        let lane = on_lane.then(|| Lane::new(ground, gamma, control));
+        let lane = on_lane.then(|| Lane::new(ground, gamma, control, &Unwatched).unwrap());
         let balance = balance(ground, gamma, &setting, lane.as_ref(), &Unwatched);
         let course = Course { turn: Some(turn), ..Course::new(&balance, &setting, Direction::Loading) };
         course.whole(turn, gamma).unwrap()

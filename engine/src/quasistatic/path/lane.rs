@@ -8,8 +8,9 @@
 
 use crate::annuli::Ground;
 use crate::disc::solution::ExactSolution;
-use crate::disc::{Place, Solution};
+use crate::disc::{Place, Solution, TableError};
 use crate::problem::{Control, Turn};
+use crate::progress::Progress;
 use crate::quasistatic::curve::Curve;
 use crate::quasistatic::energy;
 use crate::quasistatic::jump::{self, EdgeDirection};
@@ -31,9 +32,18 @@ pub struct Lane {
 
 impl Lane {
     /// The equilibria under the adhesion `gamma` (E* = 1), which is positive, and a device.
-    pub fn new(ground: &Ground, gamma: f64, control: Control) -> Self {
-        let solution: Arc<dyn Solution> = Arc::new(ExactSolution::new(Arc::clone(&ground.panels), gamma));
-        Self::on(&solution, control, &|of| Arc::new(Monotone::of(&*solution, of)))
+    ///
+    /// # Errors
+    /// [`TableError`].
+    pub fn new(
+        ground: &Ground,
+        gamma: f64,
+        control: Control,
+        progress: &dyn Progress,
+    ) -> Result<Self, TableError> {
+        let solution = ExactSolution::refined(&ground.table, ground.reach(), gamma, progress)?;
+        let solution: Arc<dyn Solution> = Arc::new(solution);
+        Ok(Self::on(&solution, control, &|of| Arc::new(Monotone::of(&*solution, of))))
     }
 
     /// The equilibria of a curve, as far out as its solution goes.

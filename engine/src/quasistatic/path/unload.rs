@@ -129,7 +129,7 @@ fn with_rings(
             let whole = cycle_on(ground, gamma, Turn::Control(value), setting, progress)?;
             return Ok(Path { asked, ..way_back(whole) });
         }
-        let lane = lane(ground, gamma, control);
+        let lane = lane(ground, gamma, control, progress)?;
         let balance = balance(ground, gamma, setting, lane.as_ref(), progress);
         let held = match grown(&balance, setting, start.contact_radius, value) {
             // The bodies press at the crest and open the disc, so no equilibrium contains it. Loading from bodies
