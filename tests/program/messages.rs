@@ -35,7 +35,7 @@ fn rounding_on_the_axis_is_no_news() {
 #[test]
 fn a_gap_of_any_height_has_no_message_from_inside() {
     let home = Home::new();
-    for amplitude in ["1e10", "1e20", "1e30"] {
+    for amplitude in ["1e15", "1e20", "1e30"] {
         let ended = home.run(&["cycle", "--set", &format!("gap.amplitude={amplitude}")]);
         assert!(!ended.err.contains("must lie outside"), "{amplitude}: {}", ended.err);
         assert!(

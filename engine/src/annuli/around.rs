@@ -11,6 +11,7 @@ use super::ground::{DiscNodes, Ground};
 use super::state::AnnuliState;
 use crate::disc::{chebyshev, outside};
 use crate::elementary::{asin, sin};
+use crate::progress::{Progress, Stopped};
 use std::f64::consts::{FRAC_2_PI, PI};
 use wide::f64x4;
 
@@ -142,7 +143,10 @@ impl<'a> Around<'a> {
     /// The minima of the gap outside the contacts, from the axis outward: those between contacts, and those beyond the
     /// last contact up to the radius `to`. The axis itself counts as one where it lies outside and the gap rises from
     /// it, and so does a corner.
-    pub fn crests(&self, to: f64) -> Vec<GapMinimum> {
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn crests(&self, to: f64, progress: &dyn Progress) -> Result<Vec<GapMinimum>, Stopped> {
         let contacts = &self.state.contacts;
         let mut intervals = contacts.gaps();
         let outermost = contacts.outermost();
@@ -156,10 +160,10 @@ impl<'a> Around<'a> {
             let from = if lo > 0.0 { lo + beside } else { 0.0 };
             let until = if hi < to || outermost >= to { hi - beside } else { hi };
             if until > from {
-                self.minima([from, until], &mut found);
+                self.minima([from, until], progress, &mut found)?;
             }
         }
-        found
+        Ok(found)
     }
 
     /// Radii of an interval including both ends, closer together where the gap is fine.
@@ -187,10 +191,17 @@ impl<'a> Around<'a> {
     }
 
     /// Adds the minima of an interval to those found.
-    fn minima(&self, [from, to]: [f64; 2], found: &mut Vec<GapMinimum>) {
+    fn minima(
+        &self,
+        [from, to]: [f64; 2],
+        progress: &dyn Progress,
+        found: &mut Vec<GapMinimum>,
+    ) -> Result<(), Stopped> {
         let radii = self.radii([from, to]);
         let (count, at) = (radii.len() - 1, |k: usize| radii[k]);
-        let gaps: Vec<f64> = (0..=count).map(|k| self.gap(at(k))).collect();
+        // Far out on a fine gap each of these takes long.
+        let gap = |k: usize| progress.go_on().map(|()| self.gap(at(k)));
+        let gaps = (0..=count).map(gap).collect::<Result<Vec<f64>, _>>()?;
         if from == 0.0 && gaps[0] <= gaps[1] {
             let dimple = self.ground.is_dimpled();
             found.push(if dimple {
@@ -213,6 +224,7 @@ impl<'a> Around<'a> {
                 found.push(GapMinimum { radius: *corner, gap });
             }
         }
+        Ok(())
     }
 
     /// The minimum between two radii, by a Chebyshev series, or by one on each side of a corner of the gap.

@@ -2,6 +2,7 @@ use super::*;
 use crate::disc::{Basis, ExactBasis};
 use crate::gap::Gap;
 use crate::gap::{shapes::Harmonic, shapes::Harmonics};
+use crate::progress::Stopped;
 use crate::ritz::fixtures::wavy;
 use std::sync::Arc;
 
@@ -232,4 +233,25 @@ fn a_graded_angle_converges() {
     let state = ground.state(&contacts, Wanted::Values).unwrap();
     let around = Around::new(&ground, &state, 0.02);
     assert!(around.pressure(0.15).is_finite() && around.pressure(0.19).is_finite());
+}
+
+/// A search for crests asks at every radius, for on a wide fine gap it takes minutes.
+#[test]
+fn a_search_for_crests_can_be_stopped() {
+    let ground = fig9();
+    let contacts = rings(0.1, &[[0.15, 0.19]]);
+    let state = ground.state(&contacts, Wanted::Values).unwrap();
+    let around = Around::new(&ground, &state, 0.02);
+    let asked = std::cell::Cell::new(0);
+    let search = |most: usize| {
+        asked.set(0);
+        around.crests(0.5, &|| {
+            asked.set(asked.get() + 1);
+            asked.get() > most
+        })
+    };
+    assert!(search(usize::MAX).is_ok_and(|crests| !crests.is_empty()));
+    assert!(asked.get() > 20);
+    assert_eq!(search(10), Err(Stopped));
+    assert_eq!(asked.get(), 11);
 }

@@ -176,7 +176,7 @@ impl Profile {
         let known = outer.into_iter().filter(|r| *r > outermost + beside && *r <= ground.reach());
         outside.extend(known.map(|r| at(r, around.gap(r))));
         let wave = problem.gap.wavelength();
-        let crests = around.crests(ground.can_touch_up_to(delta));
+        let crests = around.crests(ground.can_touch_up_to(delta), &Unwatched).unwrap_or_default();
         let nearest = crests.into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).map(|crest| Crest {
             radius: crest.radius,
             gap: crest.gap,

@@ -17,7 +17,7 @@ use crate::annuli::{
 };
 use crate::disc::outside;
 use crate::problem::{ContactKind, Control};
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use nalgebra::{DMatrix, DVector};
 use std::cell::RefCell;
 use std::f64::consts::{PI, TAU};
@@ -271,9 +271,12 @@ impl Balance<'_> {
 
     /// The least gap outside the contacts and its radius, among crests only; `None` where nothing can come near, or
     /// where only one disc is followed.
-    pub fn least_gap(&self, held: &HeldEdges) -> Option<GapMinimum> {
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn least_gap(&self, held: &HeldEdges) -> Result<Option<GapMinimum>, Stopped> {
         if self.contact == ContactKind::OneDisc {
-            return None;
+            return Ok(None);
         }
         let to = self.ground.can_touch_up_to(held.approach);
         let contacts = &held.state.contacts;
@@ -283,7 +286,7 @@ impl Balance<'_> {
             let opening = (TAU * self.work_of_adhesion * contacts.disc).sqrt();
             let overlap = -ROUNDING * (held.approach.abs() + opening);
             if end <= contacts.disc {
-                return None;
+                return Ok(None);
             }
             let (panels, s) = (&self.ground.panels, contacts.disc);
             let least = outside::least_gap(panels, s, held.approach, end, overlap, self.progress);
@@ -294,16 +297,19 @@ impl Balance<'_> {
             let overlaps = found.is_some_and(|crest| crest.gap < 0.0);
             // A search that gave up says nothing about what lies beyond: that is sampled, as it is around rings.
             if overlaps || least.given_up.is_none() {
-                return found;
+                return Ok(found);
             }
         }
-        self.crests(held).into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap))
+        Ok(self.crests(held)?.into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap)))
     }
 
     /// The minima of the gap outside the contacts that could touch, from the axis outward.
-    pub fn crests(&self, held: &HeldEdges) -> Vec<GapMinimum> {
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn crests(&self, held: &HeldEdges) -> Result<Vec<GapMinimum>, Stopped> {
         let around = Around::new(self.ground, &held.state, held.approach);
-        around.crests(self.ground.can_touch_up_to(held.approach))
+        around.crests(self.ground.can_touch_up_to(held.approach), self.progress)
     }
 }
 

@@ -150,7 +150,7 @@ impl Balance<'_> {
                 }
             }
             last = f64::INFINITY;
-            if sense > 0.0 && self.least_gap(&held).is_some_and(|crest| crest.gap < 0.0) {
+            if sense > 0.0 && self.least_gap(&held)?.is_some_and(|crest| crest.gap < 0.0) {
                 // Checked with all digits: beside an edge the gap is as small as the error.
                 let held = self.held(&contacts, &points(self.ground, &contacts), value)?;
                 if let Some(touched) = self.touched(&held, value, passed)? {
@@ -210,7 +210,7 @@ impl Balance<'_> {
         value: f64,
         passed: &mut Vec<Passed>,
     ) -> Result<Option<Contacts>, PathError> {
-        let Some(crest) = self.least_gap(held).filter(|crest| crest.gap < 0.0) else { return Ok(None) };
+        let Some(crest) = self.least_gap(held)?.filter(|crest| crest.gap < 0.0) else { return Ok(None) };
         passed.push(Passed { kind: PassedKind::Touch, radius: crest.radius });
         self.seeded(&held.state.contacts, crest.radius, value).map(Some)
     }

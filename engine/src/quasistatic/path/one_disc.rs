@@ -41,7 +41,7 @@ impl Course<'_, '_> {
         let at_end = self.disc(&solution.at(to))?;
         // What could touch may lie beyond the table.
         self.counted(&at_end)?;
-        if let Some(crest) = self.balance.least_gap(&at_end).filter(|crest| crest.gap < 0.0) {
+        if let Some(crest) = self.balance.least_gap(&at_end)?.filter(|crest| crest.gap < 0.0) {
             let (place, crest) = self.touch_between(lane, [from.place, to], crest)?;
             (to, end) = (place, CourseEnd::Touch(crest));
         }
@@ -76,7 +76,7 @@ impl Course<'_, '_> {
             (to, crest) = self.touch_of(lane, [from, to], crest)?;
             let held = self.disc(&lane.solution.at(to))?;
             let rounding = -TOUCHES * self.balance.ground.wave;
-            match self.balance.least_gap(&held).filter(|other| other.gap < rounding) {
+            match self.balance.least_gap(&held)?.filter(|other| other.gap < rounding) {
                 Some(other) => crest = other,
                 None => break,
             }

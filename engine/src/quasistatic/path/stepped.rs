@@ -231,11 +231,11 @@ impl TakenStep<'_, '_> {
         let mut overlap = 0.0;
         for _ in 0..CRESTS {
             let crest = if past {
-                let mut crests = balance.crests(&self.end.held);
+                let mut crests = balance.crests(&self.end.held)?;
                 crests.retain(|crest| crest.gap < overlap && at_start(*crest).gap > ROUNDING * wave);
                 crests.into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap))
             } else {
-                balance.least_gap(&self.end.held).filter(|crest| crest.gap < overlap)
+                balance.least_gap(&self.end.held)?.filter(|crest| crest.gap < overlap)
             };
             let Some(crest) = crest else { break };
             overlap = -ROUNDING * wave;

@@ -233,7 +233,7 @@ impl Course<'_, '_> {
                 Some(pressure)
             })?;
         }
-        let touches = self.balance.least_gap(&best).is_some_and(|crest| crest.gap < 0.0);
+        let touches = self.balance.least_gap(&best).ok()?.is_some_and(|crest| crest.gap < 0.0);
         (!touches && before.is_none_or(|before| best.approach <= before)).then_some((radius, best))
     }
 }

@@ -10,6 +10,7 @@ use crate::disc::Table;
 use crate::elementary::sin;
 use crate::gap::wave_index;
 use crate::problem::Control;
+use crate::progress::Unwatched;
 use crate::quasistatic::admissible::{Admissibility, Crest, Judge};
 use crate::quasistatic::equilibrium::{Equilibrium, Scales};
 use crate::quasistatic::path::{self, Balance, HeldEdges, PathStep};
@@ -197,7 +198,7 @@ fn admissibility(equilibrium: &Equilibrium, ground: &Ground, held: &HeldEdges) -
     /// A touch that has just been located does not overlap yet: its gap may be this far below zero, in waves.
     const TOUCHES: f64 = 1e-11;
     let around = Around::new(ground, &held.state, held.approach);
-    let crests = around.crests(ground.can_touch_up_to(held.approach));
+    let crests = around.crests(ground.can_touch_up_to(held.approach), &Unwatched).unwrap_or_default();
     let nearest = crests.into_iter().min_by(|a, b| a.gap.total_cmp(&b.gap)).map(|crest| Crest {
         radius: crest.radius,
         gap: crest.gap,
