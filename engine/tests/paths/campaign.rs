@@ -258,7 +258,7 @@ fn faults(number: u64) -> Vec<String> {
         let off = kappa.iter().fold(0.0_f64, |most, kappa| most.max((kappa / root - 1.0).abs()));
         let force = (anew.force_at(state.approach) - state.force).abs() / state.force.abs().max(1e-4);
         let around = Around::new(&ground, &anew, state.approach);
-        let crests = around.crests(ground.can_touch_up_to(state.approach));
+        let crests = around.crests(ground.can_touch_up_to(state.approach), &Unwatched).unwrap();
         let gap = crests.iter().map(|crest| crest.gap).fold(f64::INFINITY, f64::min);
         if !(off < 1e-6 && force < 1e-8 && gap > -1e-9 * ground.wave) {
             faults.push(format!("{name}: κ {off:e}, force {force:e}, gap {gap:e}: {state:?}"));

@@ -106,6 +106,50 @@ fn the_last_contact_on_a_corner_at_the_axis_is_as_small_as_it_is() {
     }
 }
 
+/// Without adhesion a cone h = cr pressed by δ takes P = 2δ²/(πc) on s = 2δ/(πc) (Sneddon 1965,
+/// 10.1016/0020-7225(65)90019-4), and nothing is lost: its first contact is smaller than any seed.
+#[test]
+fn a_cone_without_adhesion_is_sneddons() {
+    const SLOPE: f64 = 0.2;
+    for (control, turn) in [(Control::Displacement, Turn::Approach(0.1)), (Control::Force, Turn::Force(0.05))]
+    {
+        let gap = Arc::new(Shape::Cone { slope: SLOPE });
+        let found = looped(gap, 0.0, control, turn, Losses::Twice);
+        let far = found.states.iter().filter(|state| state.contact_radius > 1e-3);
+        let mut seen = 0;
+        for state in far {
+            let PathState { approach, force, contact_radius, .. } = *state;
+            let off = [
+                force / (approach * approach * 4.0 / (TAU * SLOPE)) - 1.0,
+                contact_radius / (approach * 4.0 / (TAU * SLOPE)) - 1.0,
+            ];
+            assert!(off.iter().all(|off| off.abs() < 1e-8), "{state:?} {off:?}");
+            seen += 1;
+        }
+        assert!(seen > 20, "{seen}");
+        assert!(found.totals.dissipated.is_none_or(|lost| lost.abs() < 1e-12), "{:?}", found.totals);
+    }
+}
+
+/// With hardly any adhesion a seed may be wider than the contact it becomes: the edges come back from there.
+#[test]
+fn a_loop_with_hardly_any_adhesion_is_nearly_that_without() {
+    let at = |gamma: f64| {
+        let found =
+            looped(wavy(0.002, 0.1), gamma, Control::Displacement, Turn::Approach(0.03), Losses::Twice);
+        let turned = found.states.iter().max_by(|a, b| a.approach.total_cmp(&b.approach)).unwrap();
+        (turned.force, turned.contact_area, found.totals.dissipated.unwrap())
+    };
+    let none = at(0.0);
+    for gamma in [1e-7, 1e-8, 1e-9] {
+        let little = at(gamma);
+        assert!(
+            (little.0 / none.0 - 1.0).abs() < 3.0 * gamma.sqrt() && little.2 > 0.0,
+            "{gamma}: {little:?} {none:?}"
+        );
+    }
+}
+
 #[test]
 fn the_loop_of_figure_9_is_that_of_another_program() {
     let turn = Turn::Control(0.14);
@@ -449,7 +493,7 @@ fn is_the_one_solution(ground: &Ground, found: &Path, name: &str) {
                 assert!(around.pressure(r) > -1e-8, "{name} {r} {}", around.pressure(r));
             }
         }
-        assert!(balance.least_gap(&held).is_none_or(|crest| crest.gap > -1e-10), "{name}");
+        assert!(balance.least_gap(&held).unwrap().is_none_or(|crest| crest.gap > -1e-10), "{name}");
     }
 }
 
@@ -551,7 +595,7 @@ fn a_wave_with_a_corner_is_that_of_another_program() {
         (balance.solve(&contacts, delta).unwrap(), force, contacts)
     };
     let (early, _, _) = solved(&expected["events"][2]["before"]);
-    assert!(balance.least_gap(&early).unwrap().gap > 1e-7);
+    assert!(balance.least_gap(&early).unwrap().unwrap().gap > 1e-7);
     let (landed, force, contacts) = solved(&expected["events"][2]["after"]);
     assert!((landed.force - force).abs() < 1e-11, "{} {force}", landed.force);
     for (ours, theirs) in landed.state.contacts.edges().iter().zip(contacts.edges()) {

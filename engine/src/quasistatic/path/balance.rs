@@ -29,9 +29,10 @@ const ITERATIONS: usize = 30;
 pub const CONVERGED: f64 = 1e-12;
 const STALLED: f64 = 1e-9;
 
-/// A Newton step is cut to this many waves, and so that no width falls below this share of itself.
+/// A Newton step is cut to this many waves.
 const LONGEST: f64 = 0.1;
-const LEFT: f64 = 0.4;
+/// A step leaves at least this share of every width.
+pub const LEFT: f64 = 0.4;
 
 /// A gap below zero by less than this share of |δ| + √(2πγs) is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -230,18 +231,8 @@ impl Balance<'_> {
                 return Ok(held);
             }
             last = size;
-            let mut share = (LONGEST / size).min(1.0);
-            let next = loop {
-                let next = moved(&contacts, &(&step * share));
-                if keeps_widths(&contacts, &next, LEFT) {
-                    break next;
-                }
-                share *= 0.5;
-                if share < 1e-6 {
-                    return Err(NotFound::Unfinished { step: size });
-                }
-            };
-            contacts = next;
+            contacts = part_way(&contacts, &step, (LONGEST / size).min(1.0))
+                .ok_or(NotFound::Unfinished { step: size })?;
         }
         Err(NotFound::Unfinished { step: last })
     }
@@ -324,6 +315,13 @@ pub fn moved(contacts: &Contacts, by: &DVector<f64>) -> Contacts {
     let radii: Vec<f64> =
         contacts.edges().iter().zip(by.iter()).map(|(edge, by)| edge.radius + edge.sign * by).collect();
     contacts.with_edges(&radii)
+}
+
+/// The contacts after at most the share `most` of a step, halved until no width falls below [`LEFT`] of itself.
+pub fn part_way(contacts: &Contacts, step: &DVector<f64>, most: f64) -> Option<Contacts> {
+    const HALVINGS: usize = 20;
+    let shares = std::iter::successors(Some(most), |share| Some(0.5 * share)).take(HALVINGS);
+    shares.map(|share| moved(contacts, &(step * share))).find(|next| keeps_widths(contacts, next, LEFT))
 }
 
 /// Whether every width of `next` is at least this share of what it was.

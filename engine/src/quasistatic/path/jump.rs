@@ -9,7 +9,7 @@
 //! whatever the mobilities. Started where all G ≥ γ, it only shrinks, to the greatest equilibrium inside its start. On
 //! the way contacts merge, touch and vanish.
 
-use super::balance::{Balance, CONVERGED, HeldEdges, keeps_widths, moved};
+use super::balance::{Balance, CONVERGED, HeldEdges, LEFT, keeps_widths, moved, part_way};
 use super::error::PathError;
 use super::event::{Passed, PassedKind};
 use crate::annuli::{Contacts, points, points_on_the_way};
@@ -23,9 +23,6 @@ const STEPS: usize = 4000;
 /// The longest step, and the longest Newton step that may go back, in waves.
 const LONGEST: f64 = 0.03;
 const BACK: f64 = 0.02;
-
-/// The share of every width that a step leaves.
-const LEFT: f64 = 0.4;
 
 /// The kick at a limit point in waves, and as a share of the narrowest width.
 const KICK: f64 = 2e-3;
@@ -128,25 +125,26 @@ impl Balance<'_> {
                 continue;
             }
             let lowest = Self::least_eigenvalue(&held);
-            if lowest > 0.0 {
-                let newton = held.jacobian.clone().lu().solve(&-&held.excess);
-                if let Some(step) = newton.filter(|step| step.iter().all(|x| x.is_finite())) {
-                    let size = step.component_div(&self.scales(&contacts).edges).amax();
-                    if last.is_finite() && size <= CONVERGED || (size <= 1e-10 && size > 0.3 * last) {
-                        if sense < 0.0 {
-                            return Ok(Some(held));
-                        }
-                        let Some(touched) = self.touched(&held, value, passed)? else {
-                            return Ok(Some(held));
-                        };
-                        (contacts, last) = (touched, f64::INFINITY);
-                        continue;
+            let newton = (lowest > 0.0).then(|| held.jacobian.clone().lu().solve(&-&held.excess)).flatten();
+            let newton = newton.filter(|step| step.iter().all(|x| x.is_finite()));
+            let scales = self.scales(&contacts).edges;
+            let size_of = |step: &DVector<f64>| step.component_div(&scales).amax();
+            if let Some(step) = &newton {
+                let size = size_of(step);
+                if last.is_finite() && size <= CONVERGED || (size <= 1e-10 && size > 0.3 * last) {
+                    if sense < 0.0 {
+                        return Ok(Some(held));
                     }
-                    let next = moved(&contacts, &step);
-                    if size <= BACK && keeps_widths(&contacts, &next, LEFT) {
-                        (contacts, last) = (next, size);
-                        continue;
-                    }
+                    let Some(touched) = self.touched(&held, value, passed)? else {
+                        return Ok(Some(held));
+                    };
+                    (contacts, last) = (touched, f64::INFINITY);
+                    continue;
+                }
+                let next = moved(&contacts, step);
+                if size <= BACK && keeps_widths(&contacts, &next, LEFT) {
+                    (contacts, last) = (next, size);
+                    continue;
                 }
             }
             last = f64::INFINITY;
@@ -158,7 +156,13 @@ impl Balance<'_> {
                     continue;
                 }
             }
-            contacts = moved(&contacts, &self.damped(&held, lowest, sense, mobility)?);
+            let step = self.damped(&held, lowest, sense, mobility)?;
+            // Where no edge is driven on, the last step went beyond the equilibrium, and the edges come back.
+            let back = newton.filter(|_| size_of(&step) <= CONVERGED);
+            contacts = match back.and_then(|step| part_way(&contacts, &step, 1.0)) {
+                Some(back) => back,
+                None => moved(&contacts, &step),
+            };
         }
         Err(PathError::NoLanding { control_value: value, steps: STEPS })
     }
