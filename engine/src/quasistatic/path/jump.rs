@@ -96,6 +96,9 @@ impl Balance<'_> {
         mobility: Mobility<'_>,
         passed: &mut Vec<Passed>,
     ) -> Result<Option<HeldEdges>, PathError> {
+        // A seed may be wider than the contact it becomes; all else only grows while the control goes up.
+        let kept: Vec<[f64; 2]> =
+            start.intervals().into_iter().filter(|[a, b]| b - a > 2.0 * self.narrow()).collect();
         let mut contacts = start;
         let mut last = f64::INFINITY;
         for _ in 0..STEPS {
@@ -158,11 +161,11 @@ impl Balance<'_> {
             }
             let step = self.damped(&held, lowest, sense, mobility)?;
             // Where no edge is driven on, the last step went beyond the equilibrium, and the edges come back.
-            let back = newton.filter(|_| size_of(&step) <= CONVERGED);
-            contacts = match back.and_then(|step| part_way(&contacts, &step, 1.0)) {
-                Some(back) => back,
-                None => moved(&contacts, &step),
-            };
+            let back = newton
+                .filter(|_| size_of(&step) <= CONVERGED)
+                .and_then(|step| part_way(&contacts, &step, 1.0))
+                .filter(|back| kept.iter().all(|kept| covers(back, *kept)));
+            contacts = back.unwrap_or_else(|| moved(&contacts, &step));
         }
         Err(PathError::NoLanding { control_value: value, steps: STEPS })
     }
@@ -257,6 +260,11 @@ impl Balance<'_> {
         }
         contacts
     }
+}
+
+/// Whether the radii between two are in contact.
+fn covers(contacts: &Contacts, [from, to]: [f64; 2]) -> bool {
+    contacts.intervals().iter().any(|[a, b]| *a <= from && to <= *b)
 }
 
 /// The contacts with one more from `crest` − `half` to `crest` + `half`, a disc at the axis.
