@@ -139,7 +139,7 @@ pub fn run(arguments: &PlotArguments) -> Result<ExitCode, Failure> {
         let what = "--quantity: is a column of a sweep's results; give them with --sweep RESULTS.csv";
         return Err(Failure::Usage(what.to_owned()));
     }
-    let loaded = arguments.problem.load(&console)?;
+    let loaded = arguments.problem.load_for(arguments.measured.is_some(), &console)?;
     let inputs = arguments.problem.inputs(&loaded);
     let measured = arguments.measured.iter();
     let sinks =

@@ -7,6 +7,7 @@ use crate::store::file::LARGEST;
 use crate::store::stream::{self, STANDARD};
 use crate::store::{Loaded, Source, Store, StoreError};
 use clap::Args;
+use pulloff_engine::preset::data;
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
@@ -89,6 +90,17 @@ impl ProblemArguments {
             assigned.map_err(|invalid| Failure::Usage(format!("--control: {invalid}")))?;
         }
         Ok(loaded)
+    }
+
+    /// Loads the preset with the changes for the points of another file where there `is_another`: the preset's own
+    /// file is left out where its settings contradict the changes.
+    pub fn load_for(&self, is_another: bool, console: &Console) -> Result<Loaded, Failure> {
+        self.load(console).or_else(|failure| {
+            let mut alone = Self { preset: self.preset.clone(), changes: self.changes.clone() };
+            alone.changes.assignments.insert(0, format!("{}=none", data::FILE));
+            // A pipe can be read only once, and then the second failure would be another.
+            if is_another { alone.load(console).map_err(|_| failure) } else { Err(failure) }
+        })
     }
 
     /// The files that the problem is read from.

@@ -49,7 +49,7 @@ pub fn run(arguments: &SpeedsArguments) -> Result<ExitCode, Failure> {
         }
     };
     let problem = ProblemArguments { preset, changes: arguments.changes.clone() };
-    let mut loaded = problem.load(&console)?;
+    let mut loaded = problem.load_for(file.is_some(), &console)?;
     let inputs = problem.inputs(&loaded);
     let inputs = file.map_or(inputs.clone(), |file| inputs.with("the points", file));
     let sink = arguments.destination.sink(inputs)?;

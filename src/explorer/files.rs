@@ -146,7 +146,7 @@ fn export(store: &Store, content: &Content, path: String, replace: bool) -> Done
     };
     let overwrite = if replace { Overwrite::Always } else { Overwrite::Never };
     match write_atomically(&target(&path), &bytes, overwrite) {
-        Ok(_) => Done::Exported(path, units(content, &bytes).filter(|_| !as_json)),
+        Ok(_) => Done::Exported(path, note(content, &bytes, as_json)),
         Err(WriteError::Exists { .. }) => Done::FileExists(content.export(), path),
         Err(error) => Done::Failed(WordedFault::of("not exported: ", &error)),
     }
@@ -158,12 +158,14 @@ fn picture(svg: &str, path: &str) -> Result<Vec<u8>, WordedFault> {
     format.bytes(svg).map_err(|error| WordedFault::of("", &error))
 }
 
-/// The units of the columns of `csv`, as the commands note them.
-fn units(content: &Content, csv: &[u8]) -> Option<String> {
+/// What an export of these bytes says of itself: the units of the columns of a CSV file, as the commands note them.
+fn note(content: &Content, csv: &[u8], as_json: bool) -> Option<String> {
     let preset = match content {
+        Content::Script(..) => return Some("without pins, studies and exports".to_owned()),
+        _ if as_json => return None,
         Content::Curve(curve) | Content::Walk(curve, _) | Content::Events(curve, _) => &curve.setting.preset,
         Content::Pull(_, preset) => preset,
-        Content::Script(..) | Content::Study(..) | Content::Page(_) => return None,
+        Content::Study(..) | Content::Page(_) => return None,
     };
     let columns: Vec<&str> = std::str::from_utf8(csv).ok()?.lines().next()?.split(',').collect();
     columns::units(&columns, preset.path.control, &preset.units)

@@ -23,6 +23,7 @@ use pulloff_engine::problem::{Begin, Control, Turn};
 use pulloff_engine::quasistatic::Path;
 use pulloff_engine::quasistatic::walk::At;
 use pulloff_engine::report::path::EventReport;
+use pulloff_engine::stability::MapAxis;
 use pulloff_engine::sweep::quantity::Under;
 use pulloff_engine::sweep::{QUANTITIES, QuantityColumn};
 use std::collections::VecDeque;
@@ -140,6 +141,8 @@ pub struct Model {
     pub fit: Option<Arc<Fit>>,
     /// The quantity being studied.
     pub studied: QuantityColumn,
+    /// The range it is studied over while its key is selected; `None` for the usual one.
+    pub studied_over: Option<MapAxis>,
     /// The last stiffness of the device, in the user's units.
     pub stiffness: Option<f64>,
     /// Whether the line of the device is drawn; `None` draws it only for a spring.
@@ -235,6 +238,7 @@ impl Model {
             retitled: None,
             fit: None,
             studied: QuantityColumn { quantity: &QUANTITIES[0], under: Under::Own },
+            studied_over: None,
             stiffness,
             device: None,
             history: History::default(),

@@ -4,6 +4,7 @@
 //! If the surface is one of many, drawn with a seed, other surfaces are computed after it, one by one.
 
 use super::Axes;
+use super::map_axes::typed;
 use pulloff_engine::case::critical_force;
 use pulloff_engine::gap::shapes::split_mix::SplitMix64;
 use pulloff_engine::preset::edge::RATE;
@@ -12,6 +13,7 @@ use pulloff_engine::preset::{Key, Preset, Row, Value};
 use pulloff_engine::problem::Control;
 use pulloff_engine::progress::Progress;
 use pulloff_engine::report::slow::SlowPulls;
+use pulloff_engine::stability::MapAxis;
 use pulloff_engine::sweep::measure::measure;
 use pulloff_engine::sweep::{Cell, Fault, QuantityColumn};
 use pulloff_engine::units::Quantity;
@@ -64,6 +66,8 @@ pub struct StudyWish {
     pub column: QuantityColumn,
     /// The values, ascending.
     pub values: Vec<Value>,
+    /// The range that was asked for; `None` for the usual one around the preset's value.
+    pub over: Option<MapAxis>,
 }
 
 /// A study, or the part of it that is done.
@@ -79,6 +83,36 @@ pub struct StudyData {
     pub slow: Option<SlowPulls>,
     /// `P_c` at each value; NaN where there is none.
     critical: Vec<f64>,
+}
+
+/// The range of a study as typed, KEY=FROM..TO or KEY=log:FROM..TO.
+/// Errors: In words.
+pub fn typed_range(preset: &Preset, text: &str) -> Result<MapAxis, String> {
+    let axis = typed(preset, text)?;
+    for end in axis.range {
+        let set = preset.clone().set(&axis.key, end.into());
+        set.map_err(|invalid| format!("no range of a study: {invalid}"))?;
+    }
+    Ok(axis)
+}
+
+/// Whether the values of `axis` are those of this row.
+pub fn is_over(axis: &MapAxis, row: &Row) -> bool {
+    *row.key == *axis.key || (row.kind == Kind::Control && axis.key == STIFFNESS)
+}
+
+/// The key of `axis` and its values in ascending order, with that of the preset where it lies between them.
+pub fn values_of(axis: &MapAxis, preset: &Preset) -> (Key, Vec<Value>) {
+    let spread = (0..=2 * BESIDE).map(|k| match f64::from(k) / f64::from(2 * BESIDE) {
+        share if share > 0.0 && share < 1.0 => tidy(axis.value(share)),
+        share => axis.value(share),
+    });
+    let own = preset.get(&axis.key).and_then(|own| number(&own));
+    let [lo, hi] = axis.range;
+    let mut all: Vec<f64> = spread.chain(own.filter(|x| (lo..=hi).contains(x))).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    (axis.key.clone().into(), all.into_iter().map(Value::from).collect())
 }
 
 /// The key that is varied and its values in ascending order, including that of the preset.
@@ -318,7 +352,7 @@ impl StudyWish {
     /// Whether it is the one wanted, although the value may be another one within the range.
     pub(super) fn is_like(&self, wanted: &Self) -> bool {
         let (preset, key) = (&wanted.preset, &wanted.key);
-        if self.key != *key || self.column != wanted.column {
+        if self.key != *key || self.column != wanted.column || self.over != wanted.over {
             return false;
         }
         if self.preset == *preset {
@@ -327,7 +361,7 @@ impl StudyWish {
         let ends = [self.values.first(), self.values.last()].map(|value| value.and_then(number));
         let (Some(value), [Some(lo), Some(hi)]) = (preset.get(key), ends) else { return false };
         let mut moved = self.preset.clone();
-        number(&value).is_some_and(|x| (lo..=hi).contains(&x))
+        number(&value).is_some_and(|x| self.over.is_some() || (lo..=hi).contains(&x))
             && moved.set(key, value).is_ok()
             && moved == *preset
     }
@@ -384,11 +418,38 @@ mod tests {
     }
 
     #[test]
+    fn a_range_as_typed_has_its_ends_and_the_value_itself() {
+        let flat = preset(&[("gap.amplitude", "0")]);
+        let axis = typed_range(&flat, "A=log:0.001..0.02").unwrap();
+        assert!(
+            is_over(&axis, &row(&flat, "gap.amplitude")) && !is_over(&axis, &row(&flat, "gap.wavelength"))
+        );
+        let numbers = |(_, values): (Key, Vec<Value>)| values.iter().filter_map(number).collect::<Vec<f64>>();
+        let without = numbers(values_of(&axis, &flat));
+        assert_eq!((without[0], *without.last().unwrap(), without.len()), (0.001, 0.02, 101));
+        let own = preset(&[("gap.amplitude", "0.0033333333")]);
+        let with = numbers(values_of(&axis, &own));
+        assert!(with.len() == 102 && with.contains(&0.0033333333) && with.is_sorted());
+        // A device under fixed grips becomes a spring.
+        let spring = typed_range(&flat, "path.control.stiffness=0.1..2").unwrap();
+        assert!(is_over(&spring, &row(&flat, "path.control")));
+        for (text, why) in [
+            ("A=-1..1", "gap.amplitude"),
+            ("A=log:0..1", "must begin above zero"),
+            ("compliance=0..1", "compliance"),
+            ("A=1", "KEY=FROM..TO"),
+        ] {
+            let said = typed_range(&flat, text).unwrap_err();
+            assert!(said.contains(why), "{text}: {said}");
+        }
+    }
+
+    #[test]
     fn a_study_is_a_row_each_whatever_the_threads_and_ends_when_told() {
         let preset = preset(&[]);
         let (key, values) = range(&preset, &row(&preset, "gap.amplitude")).unwrap();
         let column = QuantityColumn::named("largest_pull").unwrap();
-        let wish = StudyWish { preset: preset.clone(), key: key.clone(), column, values };
+        let wish = StudyWish { preset: preset.clone(), key: key.clone(), column, values, over: None };
         let [one, three] = [1, 3].map(|threads| wish.run(threads, &Unwatched, &mut |_| {}).unwrap());
         assert_eq!(one.outcomes, three.outcomes);
         assert_eq!(one.done(), one.outcomes.len());
@@ -408,6 +469,10 @@ mod tests {
         moved = preset;
         moved.set(&key, 0.0051.into()).unwrap();
         assert!(!is_of(&moved));
+        // Of a range that was asked for, whatever the value.
+        let over = MapAxis::new(&key, [0.001, 0.004], false, 1.0).ok();
+        let asked = StudyWish { over, ..wish.clone() };
+        assert!(!one.wish.is_like(&asked) && asked.is_like(&StudyWish { preset: moved, ..asked.clone() }));
     }
 
     #[test]
@@ -418,7 +483,8 @@ mod tests {
         let of = |key: &'static str, x: f64| {
             let values = [0.0, 1.0, 1.5, 2.0].map(|factor| Value::from(factor * x)).to_vec();
             let column = QuantityColumn::named("largest_pull").unwrap();
-            let wish = StudyWish { preset: preset.clone(), key: Key::Borrowed(key), column, values };
+            let wish =
+                StudyWish { preset: preset.clone(), key: Key::Borrowed(key), column, values, over: None };
             wish.run(2, &Unwatched, &mut |_| {}).unwrap()
         };
         let data = of("material.work_of_adhesion", own);
@@ -453,7 +519,7 @@ mod tests {
         let values = [0.003, 0.004, 0.006].map(Value::from).to_vec();
         let column = QuantityColumn::named("enhancement").unwrap();
         let key = Key::Borrowed("material.work_of_adhesion");
-        let wish = StudyWish { preset: preset.clone(), key, column, values };
+        let wish = StudyWish { preset: preset.clone(), key, column, values, over: None };
         let [one, three] = [1, 3].map(|threads| wish.run(threads, &Unwatched, &mut |_| {}).unwrap());
         let bits =
             |data: &StudyData| -> Vec<u64> { data.others.iter().flatten().map(|x| x.to_bits()).collect() };

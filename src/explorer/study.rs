@@ -3,7 +3,7 @@
 use super::background::{Background, Tell, Want, Watcher};
 use super::command::Id;
 use super::model::Model;
-use super::studies::{StudyData, StudyWish, range, threads};
+use super::studies::{StudyData, StudyWish, is_over, range, threads, values_of};
 use super::view::View;
 use pulloff_engine::preset::{Key, Value};
 
@@ -11,6 +11,9 @@ use pulloff_engine::preset::{Key, Value};
 /// Errors: Why it has no range, in words.
 pub fn study_range(model: &Model) -> Result<(Key, Vec<Value>), String> {
     let Some((row, _)) = model.selected_knob() else { return Err("no value is selected".to_owned()) };
+    if let Some(axis) = model.studied_over.as_ref().filter(|axis| is_over(axis, &row)) {
+        return Ok(values_of(axis, &model.preset));
+    }
     range(&model.preset, &row).map_err(|why| format!("{why}; select another in Problem"))
 }
 
@@ -24,7 +27,8 @@ impl Background for StudyData {
             return Want::Later;
         }
         let Ok((key, values)) = study_range(model) else { return Want::Later };
-        Want::Now(StudyWish { preset: model.preset.clone(), key, column: model.studied, values })
+        let over = model.studied_over.clone().filter(|axis| *axis.key == *key);
+        Want::Now(StudyWish { preset: model.preset.clone(), key, column: model.studied, values, over })
     }
 
     fn is_same(asked: &StudyWish, wanted: &StudyWish) -> bool {

@@ -223,7 +223,7 @@ fn rates() -> Result<PaperSheet, PaperError> {
     let preset = shipped("fig-9", &["basis.kind=exact", &exponent, "path.rate=1"])?;
     let column = QuantityColumn::named("peak_force").map_err(|_| PaperError::Missing("peak_force"))?;
     let values = rates.iter().map(|rate| (*rate).into()).collect();
-    let wish = StudyWish { preset: preset.clone(), key: Key::Borrowed(RATE), column, values };
+    let wish = StudyWish { preset: preset.clone(), key: Key::Borrowed(RATE), column, values, over: None };
     let data = wish.run(threads(), &Unwatched, &mut |_| {}).ok_or(PaperError::Missing("the study"))?;
     let mut figure = study::of(&data, &preset, Axes::Raw);
     // No preset is being varied here.

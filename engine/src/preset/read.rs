@@ -68,8 +68,15 @@ pub fn read_in<S: AsRef<str>>(
         Ok(document) => sheet.lay("", document.get_ref(), &LayerOrigin::File(text)),
         Err(error) => sheet.syntax(text, &error),
     }
+    let mut assignments: Vec<&str> = assignments.iter().map(AsRef::as_ref).collect();
+    // The shape and its formula decide which short names there are.
+    assignments.sort_by_key(|text| match text.split('=').next().unwrap_or_default().trim() {
+        "gap.shape" | "shape" => 0,
+        "gap.formula" | "formula" => 1,
+        _ => 2,
+    });
     for assignment in assignments {
-        sheet.assign(assignment.as_ref());
+        sheet.assign(assignment);
     }
     sheet.finish()
 }

@@ -185,7 +185,8 @@ impl FitArguments {
     /// Reads the files, the preset and the options.
     pub(super) fn read(&self, console: &Console) -> Result<(Vec<PathBuf>, Loaded, Options), Failure> {
         let (preset, mut files) = measured::apart(&self.paths);
-        let loaded = problem::ProblemArguments { preset, changes: self.changes.clone() }.load(console)?;
+        let problem = problem::ProblemArguments { preset, changes: self.changes.clone() };
+        let loaded = problem.load_for(!files.is_empty(), console)?;
         files = files::measured(files, console)?;
         if files.is_empty() {
             files.extend(own(&loaded.preset));

@@ -98,7 +98,7 @@ macro_rules! each_command {
         ChooseView "view" "" "charts" always Nothing Screen "any chart by its name; those with nothing to show say why"
             { takes: takes("chart", view).listing(views) }
         Study "study" "" "study" curve Nothing Needs("a quantity") "a quantity over the range of the selected value, or of the one named"
-            { words: "sweep dependence parameter", takes: takes("quantity [KEY]", quantity).listing(quantities).going_on(quantities) }
+            { words: "sweep dependence parameter", takes: takes("quantity [KEY[=[log:]FROM..TO]]", quantity).listing(quantities).going_on(quantities) }
         ZoomIn "zoom-in" "+" "closer" curve Nothing Screen "zoom in, about the cross-hair or the walker"
             { look: |model| look::zoom(model, model.view, true, model.cross.unwrap_or(look::MIDDLE)) }
         ZoomOut "zoom-out" "-" "wider" curve Nothing Screen "zoom out"

@@ -25,7 +25,11 @@ pub fn line(command: &Command) -> Option<String> {
         Command::Go(home) => format!(" {}", home.name()),
         Command::Show(view) => format!(" {}", view.name()),
         Command::Study { column, over } => {
-            format!(" {}{}", column.name(), over.as_ref().map_or_else(String::new, |key| format!(" {key}")))
+            format!(
+                " {}{}",
+                column.name(),
+                over.as_ref().map_or(Some(String::new()), |over| Some(format!(" {}", quoted(over)?)))?
+            )
         }
         Command::Overlay(overlay) => format!(" {}", overlay.name()),
         Command::Unpin(None) => " all".to_owned(),

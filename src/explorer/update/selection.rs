@@ -7,10 +7,11 @@ use crate::explorer::fit::{FitProgress, fit};
 use crate::explorer::model::{Level, Model};
 use crate::explorer::requests::stop;
 use crate::explorer::script::key_called;
-use crate::explorer::studies::range;
+use crate::explorer::studies::{is_over, range, typed_range};
 use crate::explorer::view::{ScreenPanel, View};
 use crate::explorer::{look, reach};
 use pulloff_engine::preset::{Row, Value, groups};
+use pulloff_engine::stability::MapAxis;
 use pulloff_engine::sweep::QuantityColumn;
 use pulloff_engine::text::{greek, show_name};
 
@@ -34,25 +35,33 @@ pub(in crate::explorer) fn cancel(model: &mut Model) -> Vec<Effect> {
     }
 }
 
-/// Shows a quantity over the range of the selected value, which becomes the one called `over` if that is given.
+/// Shows a quantity over the range of the selected value, which becomes the one called `over` if that is given, alone
+/// or with a range.
 pub(super) fn study(model: &mut Model, column: QuantityColumn, over: Option<String>) -> Vec<Effect> {
     if let Some(name) = over {
-        let key = match key_called(&model.preset, &name) {
-            Ok(key) => key,
+        match study_over(model, &name) {
+            Ok((at, range)) => (model.parameter, model.studied_over) = (at, range),
             Err(why) => return model.refuse(why),
-        };
-        let knobs = model.knobs();
-        let Some(at) = knobs.iter().position(|(row, _)| row.key == key) else {
-            return model.refuse(format!("{key} has no value here: nothing to vary"));
-        };
-        if let Err(why) = range(&model.preset, &knobs[at].0) {
-            return model.refuse(why);
         }
-        model.parameter = at;
     }
     model.studied = column;
     reach::show(model, View::Study);
     Vec::new()
+}
+
+/// The place in Problem of the value called `over`, and the range given with it.
+/// Errors: Why there is no study over it, in words.
+fn study_over(model: &Model, over: &str) -> Result<(usize, Option<MapAxis>), String> {
+    let knobs = model.knobs();
+    let named = |key: &str| format!("{key} has no value here: nothing to vary");
+    if over.contains('=') {
+        let axis = typed_range(&model.preset, over)?;
+        let at = knobs.iter().position(|(row, _)| is_over(&axis, row)).ok_or_else(|| named(&axis.key))?;
+        return Ok((at, Some(axis)));
+    }
+    let key = key_called(&model.preset, over)?;
+    let at = knobs.iter().position(|(row, _)| row.key == key).ok_or_else(|| named(&key))?;
+    range(&model.preset, &knobs[at].0).map(|_| (at, None))
 }
 
 pub(in crate::explorer) fn next_panel(model: &mut Model, by: usize) {

@@ -104,6 +104,8 @@ fn a_key_may_be_given_by_its_last_part_or_its_symbol() {
     let formula = ["gap.shape=formula", "gap.formula=r^2/(2*R) + B*r^4", "gap.parameters.R=1"];
     let of = |last: &'static str| set(&[&formula[..], &[last]].concat());
     assert_eq!(of("B=2"), of("gap.parameters.B=2"));
+    // Whatever the order.
+    assert_eq!(set(&["B=2", formula[1], formula[2], formula[0]]), of("B=2"));
     assert_eq!(set(&["gamma'=0.04"]), set(&["groups.adhesion=0.04"]));
     // The unit of a stiffness on the screen is no value.
     assert_eq!(set(&["stiffness=3"]), set(&["path.control.stiffness=3"]));
