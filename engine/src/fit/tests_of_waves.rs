@@ -48,14 +48,18 @@ fn unloaded(preset: &Preset, n: usize) -> Points {
     let bottom = bottom - 0.3 * (top - bottom);
     let x: Vec<f64> = (0..n).map(|i| top + (i as f64 + 0.5) / n as f64 * (bottom - top)).collect();
     let force = x.iter().map(|delta| stable(*delta).unwrap_or(0.0)).collect();
-    let segments = Some(vec![Segment::Retraction; n]);
+    over_approach(x, force, vec![Segment::Retraction; n])
+}
+
+/// Points over the approach, exact.
+fn over_approach(x: Vec<f64>, force: Vec<f64>, segments: Vec<Segment>) -> Points {
     Points {
         abscissa: Abscissa::Approach,
         x,
         force,
         radius: None,
         steps: [1e-30; 3],
-        segments,
+        segments: Some(segments),
         time: None,
         is_said: false,
     }
@@ -169,18 +173,7 @@ fn banded(works: [f64; 2], top: f64, n: usize) -> (Points, f64) {
         }
     }
     let turned = cycle.states.iter().max_by(|a, b| a.approach.total_cmp(&b.approach)).unwrap();
-    let segments = Some(segments);
-    let points = Points {
-        abscissa: Abscissa::Approach,
-        x,
-        force,
-        radius: None,
-        steps: [1e-30; 3],
-        segments,
-        time: None,
-        is_said: false,
-    };
-    (points, turned.contact_radius)
+    (over_approach(x, force, segments), turned.contact_radius)
 }
 
 #[test]
