@@ -266,7 +266,7 @@ fn labelled_in(row: &Row, value: &Value, units: &UnitSystem, (between, digits): 
 /// The values of `pinned` that differ from those of `now`, as labels and values; only the first few.
 pub fn name(pinned: &Preset, now: &Preset) -> String {
     // A value that only the other preset has is not named.
-    named(&differences(pinned, now), &now.units).unwrap_or_else(|| "as now".to_owned())
+    named(&differences(pinned, now), &now.units).unwrap_or_else(|| "same values".to_owned())
 }
 
 /// Each value in which `after` differs from `before`, as label and both values: `A 0.0025 → 0.0031`.
@@ -339,8 +339,8 @@ mod tests {
     fn a_pin_is_named_by_what_differs() {
         let now = preset(&[]);
         for (changes, expected) in [
-            (&[][..], "as now"),
-            (&[("title", "another")], "as now"),
+            (&[][..], "same values"),
+            (&[("title", "another")], "same values"),
             (&[("gap.amplitude", "0.002")], "A 0.002"),
             (&[("path.control.stiffness", "0.3")], "k 0.3"),
             (&[("path.control", "force")], "control force"),

@@ -451,7 +451,7 @@ fn pins_are_listed_and_taken_away_one_by_one() {
     assert!(text.contains("D A 0.0025") && text.contains("pinned as E"), "{text}");
     screen.keys("P");
     let text = screen.text(120, 40);
-    assert!(text.contains("D   A 0.0025") && text.contains("E   as now"), "{text}");
+    assert!(text.contains("D   A 0.0025") && text.contains("E   same values"), "{text}");
     screen.keys("\rPj");
     assert!(screen.text(120, 40).contains("> all"));
     screen.keys("\r");
