@@ -74,9 +74,12 @@ impl Branches {
 
     /// A sentence on columns that look swapped.
     pub fn swapped(&self) -> Option<String> {
-        self.looks_swapped.then(|| format!("{}; they are read as specified", BranchError::Swapped))
+        self.looks_swapped.then(|| format!("{SWAPPED}; they are read as specified"))
     }
 }
+
+const SWAPPED: &str = "the force column keeps changing where x stands still at one end, as the position does where bodies are \
+    apart: the columns of x and force look swapped";
 
 /// Why points yield no branches.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -96,10 +99,7 @@ pub enum BranchError {
         share: f64,
     },
     /// x and P are swapped.
-    #[error(
-        "the force column keeps changing where x stands still at one end, as the position does where bodies \
-         are apart: the columns of x and force look swapped"
-    )]
+    #[error("{SWAPPED}; if they are not, name them, as in data.columns = \"approach=1,force=2\"")]
     Swapped,
     /// A contact radius among the rows used is negative.
     #[error("row {row}: the contact radius {radius:?} is negative: are the columns swapped?")]

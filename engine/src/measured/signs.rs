@@ -4,7 +4,7 @@
 use super::apart::jump;
 use super::asked::{FreePart, ValueRange};
 use super::ends::{free_end, still_end};
-use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, median, noise_of, range};
+use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, median, noise_of, range, scatter_over};
 use super::points::{Abscissa, MeasuredPoint, Turned, turn};
 use super::role::Segment;
 use super::turns::{one_way, runs};
@@ -251,6 +251,8 @@ pub(super) fn is_swapped(points: &[MeasuredPoint]) -> bool {
     const ROWS: usize = 20;
     const STILL: f64 = 0.015;
     const GOES_ON: f64 = 0.02;
+    /// So many standard deviations of a row, over the root of the rows of a half.
+    const CERTAIN: f64 = 8.0;
     let (x, force): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.x, point.force)).unzip();
     let count = (x.len() / ROWS).max(END_ROWS).min(x.len());
     let share = |of: &[f64], rows: std::ops::Range<usize>| {
@@ -258,9 +260,13 @@ pub(super) fn is_swapped(points: &[MeasuredPoint]) -> bool {
         let middles = [first, last].map(|half| median(half.to_vec()).unwrap_or(0.0));
         (middles[0] - middles[1]).abs() / range(of.iter().copied())
     };
+    // Among few rows two medians of noise may be as far apart.
+    let rows: Vec<f64> = (0..x.len()).map(|row| row as f64).collect();
+    let noise = scatter_over(&rows, &force).unwrap_or(0.0) / range(force.iter().copied());
+    let goes_on = GOES_ON.max(CERTAIN * noise / ((count / 2) as f64).sqrt());
     [0..count, x.len() - count..x.len()]
         .into_iter()
-        .any(|rows| share(&x, rows.clone()) < STILL && share(&force, rows) > GOES_ON)
+        .any(|rows| share(&x, rows.clone()) < STILL && share(&force, rows) > goes_on)
 }
 
 /// Whether P rises with x in the outer fifth of x; `None` if it neither rises nor falls.
