@@ -97,7 +97,7 @@ pub fn run(arguments: &MapArguments) -> Result<ExitCode, Failure> {
     if let Some(onset) = &report.onset {
         let smallest = onset.amplitude_over_wavelength;
         console.note(Some(&format!(
-            "under {} control this preset snaps from A/lambda = {smallest:.6} upwards",
+            "under {} control the smallest A/lambda at which this preset snaps is {smallest:.6}",
             onset.control
         )));
     }

@@ -64,8 +64,10 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
             said.push(format!("{pin}{} {}", other.name, significant(at.1, 3)));
             here.get_or_insert(at);
         }
-        figure.lines.push(Line::new(other.role, other.name.clone(), by_approach).broken(true));
-        figure.lines.push(Line::new(other.role, other.name.clone(), by_radius));
+        figure
+            .lines
+            .push(Line::new(other.role, format!("{}, at equal δ", other.name), by_approach).broken(true));
+        figure.lines.push(Line::new(other.role, format!("{}, at equal s", other.name), by_radius));
     }
     figure.bounds = Bounds::of(figure.lines.iter().flat_map(|line| line.points.iter().copied()));
     if let Some(at) = here {

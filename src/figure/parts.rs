@@ -350,13 +350,10 @@ impl Figure {
         self
     }
 
-    /// The position of the walker, if it is on the figure.
-    pub fn walker(&self) -> Option<(f64, f64)> {
-        self.marks
-            .iter()
-            .rev()
-            .find(|mark| matches!(mark.sign, Sign::Walker | Sign::Stray))
-            .map(|mark| mark.at)
+    /// Where one is on the figure: the walker, or the preset on a map and in a study.
+    pub fn here(&self) -> Option<(f64, f64)> {
+        let is_here = |mark: &&Mark| matches!(mark.sign, Sign::Walker | Sign::Stray | Sign::Preset);
+        self.marks.iter().rev().find(is_here).map(|mark| mark.at)
     }
 }
 

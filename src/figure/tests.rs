@@ -76,7 +76,7 @@ fn the_curve_has_its_pieces_its_limit_points_and_the_walk() {
         assert_eq!((signs(&figure, Sign::Landing), signs(&figure, Sign::Walker)), (1, 1));
         assert_eq!((count(&figure, Role::Walk), count(&figure, Role::Jump)), (2, 1));
         assert_eq!((count(&figure, Role::Smooth), count(&figure, Role::Exact)), (1, 0));
-        assert!(figure.walker().is_some() && is_fit(&figure));
+        assert!(figure.here().is_some() && is_fit(&figure));
     }
     let titles = View::ALL.map(|view| session.figure(view).title);
     assert_eq!(titles[..4], ["P/Pc over δ/R", "P/Pc over Δ/R", "P/Pc over s/λ", "s/λ over δ/R"]);
@@ -427,7 +427,7 @@ fn the_inside_of_a_state_is_drawn_with_its_edge_and_crests() {
     let energy = session.figure(View::Energy);
     assert_eq!((energy.y.symbol.as_str(), count(&energy, Role::Body)), ("U", 1));
     // The walker sits on the landscape, in a minimum.
-    let at = energy.walker().unwrap();
+    let at = energy.here().unwrap();
     let mut minima = energy.marks.iter().filter(|mark| mark.sign == Sign::Minimum);
     assert!(minima.any(|mark| (mark.at.0 - at.0).abs() < 1e-6 * at.0), "{:?} {at:?}", energy.marks);
     session.does(Id::Axes);
@@ -456,7 +456,7 @@ fn the_barrier_appears_shrinks_and_is_gone_at_the_limit_point() {
         assert_eq!(count(&figure, Role::Barrier), 1);
         assert!(figure.notes[0].starts_with("barrier "), "{:?}", figure.notes);
         // Inward of the walker, and above it.
-        let walker = figure.walker().unwrap();
+        let walker = figure.here().unwrap();
         assert!(mark.at.0 < walker.0 && mark.at.1 > walker.1, "{mark:?} {walker:?}");
         heights.push(mark.at.1 - walker.1);
     }
@@ -495,7 +495,7 @@ fn differences_are_those_of_the_curves_at_equal_radius_and_at_equal_approach() {
         let force = ours.base.curve.equilibrium.state(&point).force * ours.case.units().force;
         assert!((y - scale.force(force - at.force)).abs() < 1e-9, "{x}: {y}");
     }
-    assert!(is_fit(&figure) && figure.walker().is_some());
+    assert!(is_fit(&figure) && figure.here().is_some());
     // The value at the walker belongs to its own state, far from a limit point and on it; checked against a closed form.
     session.does(Id::NextEvent);
     let figure = session.figure(View::Differences);
@@ -504,7 +504,7 @@ fn differences_are_those_of_the_curves_at_equal_radius_and_at_equal_approach() {
     let state = node.state.in_units(node.setting.units());
     let scale = Subject::of(&session.model).unwrap().scale();
     let expected = scale.force(state.force - jkr.force(state.contact_radius));
-    assert!((figure.walker().unwrap().1 - expected).abs() < 1e-12 * expected.abs(), "{expected}");
+    assert!((figure.here().unwrap().1 - expected).abs() < 1e-12 * expected.abs(), "{expected}");
     session.does(Id::Undo);
     let (count, most) = largest(&of(Role::Pin(1), true));
     assert!(count > 100 && most > 0.0 && most < 1e-2, "{count} points, {most}");

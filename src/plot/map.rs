@@ -166,7 +166,7 @@ impl MapChart {
             .with_legend(plain(&self.quantity));
         let line = self.snaps.as_ref().map(|snaps| {
             ContourPlot::new()
-                .with_grid(counts(snaps), x.clone(), y.clone())
+                .with_grid(snapping(snaps), x.clone(), y.clone())
                 .with_levels(&[ONE_SNAP])
                 .with_line_color("black")
                 .with_line_width(1.2)
@@ -204,7 +204,7 @@ impl MapChart {
     /// The legend of everything that is drawn besides the colours.
     fn legend(&self) -> Vec<LegendEntry> {
         let snaps =
-            self.snaps.as_ref().map(|snaps| counts(snaps).into_iter().flatten().collect::<Vec<f64>>());
+            self.snaps.as_ref().map(|snaps| snapping(snaps).into_iter().flatten().collect::<Vec<f64>>());
         let begins =
             |snaps: &Vec<f64>| snaps.iter().any(|n| *n < ONE_SNAP) && snaps.iter().any(|n| *n > ONE_SNAP);
         let counts = self.counts();
@@ -287,9 +287,11 @@ impl Count {
     }
 }
 
-/// Snap counts, zero where nothing is known.
-fn counts(snaps: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    snaps.iter().map(|row| row.iter().map(|n| if n.is_finite() { *n } else { 0.0 }).collect()).collect()
+/// Which cells snap, as 0 and 1, 0 where nothing is known: the line between them is then half a cell from either,
+/// however many snaps there are beyond it.
+fn snapping(snaps: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let snaps = snaps.iter().map(|row| row.iter().map(|n| f64::from(*n > ONE_SNAP)));
+    snaps.map(Iterator::collect).collect()
 }
 
 /// The borders of the cells of an axis: its ends, and half-way between neighbours.

@@ -268,7 +268,7 @@ fn legend(figure: &Figure) -> Vec<LegendEntry> {
         }
     };
     for line in named {
-        let Stroke { color, dashes, .. } = ink::stroke(line.role);
+        let Stroke { color, dashes, .. } = stroke(line);
         add(entry(&line.name, color, LegendShape::Line, dashes));
     }
     let shown = figure.marks.iter().filter(|mark| figure.bounds.share(mark.at).is_some());
@@ -349,8 +349,14 @@ fn plots(figure: &Figure) -> Vec<Plot> {
     plots
 }
 
+/// The stroke of a line: that of its role, or dots where it is a second, broken line of that role.
+fn stroke(line: &Line) -> Stroke {
+    let whole = ink::stroke(line.role);
+    if line.is_broken { Stroke { dashes: "1 1.8", ..whole } } else { whole }
+}
+
 pub(super) fn line(line: &Line) -> Vec<Drawn> {
-    let Stroke { color, width, dashes } = ink::stroke(line.role);
+    let Stroke { color, width, dashes } = stroke(line);
     line.points
         .split(|(x, y)| !(x.is_finite() && y.is_finite()))
         .filter(|piece| piece.len() > 1)

@@ -30,7 +30,7 @@ fn the_rows_are_points_of_lines_and_the_smallest_amplitude_is_said() {
     let home = tempfile::tempdir().unwrap();
     let output = pulloff(home.path(), &[&["map", "wavy-sphere"][..], &MAP].concat());
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.contains("snaps from A/lambda = 0.001215"), "{said}");
+    assert!(said.contains("smallest A/lambda at which this preset snaps is 0.001215"), "{said}");
     let text = String::from_utf8(output.stdout).unwrap();
     let mut rows = csv::Reader::from_reader(text.as_bytes());
     let header: Vec<String> = rows.headers().unwrap().iter().map(str::to_owned).collect();

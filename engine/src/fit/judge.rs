@@ -48,6 +48,8 @@ use nalgebra::DMatrix;
 /// A contact this wide, or an approach this deep, in units of R, is not that of a soft ball.
 const WIDE: f64 = 0.5;
 const DEEP: f64 = 1.0;
+/// The works of adhesion that surfaces have as a rule, in J/m².
+const ADHESIONS: [f64; 2] = [1e-4, 10.0];
 /// The range of moduli of everything people press, in Pa.
 const MODULI: [f64; 2] = [10.0, 1e12];
 /// Residuals below this share of the noise are rounding, in which there is always some order.
@@ -219,6 +221,16 @@ pub(super) fn doubts(
                 "{} is only {} standard errors above 0: the points hardly distinguish it from no adhesion",
                 fitted.key,
                 short(fitted.value / error, 2)
+            ));
+        } else if matches!(problem.preset.units, UnitSystem::Si(_))
+            && !(ADHESIONS[0]..=ADHESIONS[1]).contains(&fitted.value)
+        {
+            doubts.push(format!(
+                "{} = {} J/m^2: surfaces have {:?} to {:?} J/m^2 as a rule: check the unit of the force",
+                fitted.key,
+                significant(fitted.value, 3),
+                ADHESIONS[0],
+                ADHESIONS[1]
             ));
         }
     }

@@ -58,7 +58,7 @@ pub struct FitArguments {
     /// Use only rows in this range, in the file's own numbers: x=LO..HI or force=LO..HI (repeatable)
     #[arg(long, value_name = "x=LO..HI", allow_hyphen_values = true)]
     pub(super) range: Vec<String>,
-    /// Standard deviation of x; that of the free part, or the last digit, when left out
+    /// Standard deviation of x; when left out that of the free part, or the last digit, at least 1e-4 of the range
     #[arg(long, value_name = "LENGTH")]
     pub(super) sigma_x: Option<String>,
     /// Standard deviation of the force; that of the free part when left out

@@ -281,7 +281,7 @@ impl App {
                 self.ask_argument(row_of(id))
             }
             Id::ZoomIn | Id::ZoomOut => {
-                let about = self.walker_place();
+                let about = self.place_here();
                 self.run(Command::Zoom { view: self.model.view, closer: id == Id::ZoomIn, about })
             }
             Id::Cancel if self.enlarged && !self.model.is_busy() && self.model.cross.is_none() => {
@@ -334,14 +334,14 @@ impl App {
 
     /// The cross-hair, or else where the walker stands in the window of the first view, or else the middle of that
     /// window.
-    pub(super) fn walker_place(&self) -> (f64, f64) {
+    pub fn place_here(&self) -> (f64, f64) {
         let view = self.model.view;
         if let Some(cross) = self.model.cross {
             return cross;
         }
         let place = Subject::of(&self.model).and_then(|subject| {
             let figure = subject.figure(view).on_screen();
-            figure.bounds.part(&self.model.window(view)).share(figure.walker()?)
+            figure.bounds.part(&self.model.window(view)).share(figure.here()?)
         });
         place.unwrap_or(MIDDLE)
     }

@@ -67,7 +67,7 @@ const SHORT: &[(&str, &str)] = &[
     ("dA/dδ", "how fast the area of contact grows with the approach along the curve"),
     ("c7", "on maps: the line of limit points at the seventh crest from the axis"),
     (
-        "snaps from",
+        "first snap",
         "the least amplitude with a snap before the last contact under this control; it depends on where between two crests the last contact is",
     ),
     ("snap", "a jump of the edge, at constant control, before the bodies come apart"),

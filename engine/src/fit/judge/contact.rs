@@ -11,11 +11,12 @@
 //! 20 000 simulated series of 8 to 300 rows), runs 1 in 1000.
 
 use super::super::chance::{beyond_f, beyond_t};
+use super::super::problem::{FitProblem, Target};
 use super::super::scatter::ScatterRow;
 use super::super::verdict::Reason;
 use super::{Evidence, ROUNDING, runs};
 use crate::elementary::{hypot, ln};
-use crate::measured::Segment;
+use crate::measured::{Abscissa, Segment};
 use crate::units::Quantity;
 use crate::units::number::{said, short};
 use nalgebra::DVector;
@@ -61,8 +62,9 @@ pub(super) fn of_contact(evidence: Evidence) -> Vec<Reason> {
             ratio,
             format!(
                 "in contact the residuals are {} times the noise of neighbouring points: the model does not \
-                 describe this, or a held value is wrong (most likely the stiffness of the device)",
-                short(ratio, 3)
+                 describe this{}",
+                short(ratio, 3),
+                held(evidence.problem)
             ),
         ));
     }
@@ -70,6 +72,23 @@ pub(super) fn of_contact(evidence: Evidence) -> Vec<Reason> {
         reasons.extend(of_runs(evidence));
     }
     reasons
+}
+
+/// The held values that are wrong most often, as the end of a sentence.
+fn held(problem: &FitProblem) -> String {
+    let is_free = |wanted: &dyn Fn(&Target) -> bool| problem.parameters.iter().any(|p| wanted(&p.target));
+    let offset = problem.abscissa != Abscissa::Radius && !is_free(&|target| *target == Target::Offset);
+    let is_stiffness =
+        |target: &Target| matches!(target, Target::Key(key) if key.starts_with("path.control"));
+    let likely = [
+        offset.then_some("data.offset, where x is zero"),
+        (!is_free(&is_stiffness)).then_some("the stiffness of the device"),
+    ];
+    let likely: Vec<&str> = likely.into_iter().flatten().collect();
+    if likely.is_empty() {
+        return String::new();
+    }
+    format!(", or a held value is wrong (most likely {})", likely.join(", or "))
 }
 
 /// Whether the means along the path are off the curve.
@@ -97,7 +116,7 @@ fn of_bins(evidence: Evidence, s: f64) -> Vec<Reason> {
                  is {} standard errors",
                 worst.count,
                 worst.segment.name(),
-                if problem.abscissa == crate::measured::Abscissa::Radius { "s" } else { "x" },
+                if problem.abscissa == Abscissa::Radius { "s" } else { "x" },
                 shown(worst.x[0]),
                 shown(worst.x[1]),
                 short(off(worst), 2).replace('-', "−")

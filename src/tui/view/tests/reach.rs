@@ -450,6 +450,20 @@ fn what_cannot_be_studied_says_why_at_the_view_and_at_the_value() {
 }
 
 #[test]
+fn a_study_is_zoomed_about_the_value_of_the_preset_and_may_have_its_own_range() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys(":study largest_pull gamma=0.003..0.005\r").text(120, 40);
+    let study = screen.app.model.results.share::<StudyData>().unwrap();
+    assert_eq!(study.wish.values[0], 0.003.into());
+    let inside = |place: (f64, f64)| [place.0, place.1].iter().all(|share| (0.0..=1.0).contains(share));
+    let before = screen.app.place_here();
+    assert!(inside(before) && before.1 != 0.5, "{before:?}");
+    screen.keys("+++").text(120, 40);
+    let after = screen.app.place_here();
+    assert!((after.0 - before.0).abs() + (after.1 - before.1).abs() < 1e-9, "{before:?} {after:?}");
+}
+
+#[test]
 fn a_study_over_decades_has_powers_of_ten_along_its_axis() {
     let mut screen = Screen::new("wavy-sphere");
     screen.keys(":set edge.reference_speed=1 edge.exponent=0.5 path.rate=0.01\r");
