@@ -177,7 +177,7 @@ fn it_starts_takes_keys_within_the_budget_and_gives_the_terminal_back() {
     session.wait_until_up();
     let pty = &mut session.pty;
     // The last of what is computed beside the curve: nothing of the first frames counts as an answer to a key.
-    pty.wait_for(|screen| screen.contains("first snap at"), "the onset of snaps");
+    pty.wait_for(|screen| screen.contains("first snap A"), "the onset of snaps");
     let before = pty.raw().len();
     for _ in 0..10 {
         pty.keys("j");

@@ -308,7 +308,7 @@ fn group_lines(
 /// The amplitude from which the problem snaps, under its control.
 fn onset(theme: Theme, model: &Model) -> Option<Line<'static>> {
     let text = format!("{} ({})", short(model.snaps_from()?, 3), symbol(model.preset.path.control));
-    Some(Line::from(pair(theme, " first snap at A/λ ", &text).to_vec()))
+    Some(Line::from(pair(theme, " first snap A/λ ", &text).to_vec()))
 }
 
 /// What is found of the gap, not given: R of the paraboloid nearest to the rows of a profile, by which `P_c` and the axes
