@@ -75,7 +75,7 @@ struct ResultsArguments {
 /// A spec, for the help.
 const EXAMPLE: &str = "A spec:
   preset = \"wavy-sphere\"
-  quantities = [\"largest_pull_force\", \"snaps\"]
+  quantities = [\"largest_pull\", \"snaps\"]
   [[axis]]
   key = \"gap.amplitude\"
   linear = { from = 0, to = 0.005, count = 51 }

@@ -268,9 +268,13 @@ impl Sidecar {
     pub fn read(results: &Path) -> Result<(Self, String), SidecarError> {
         let path = path(results);
         // It contains every value of every axis.
-        let (text, _) = read_text(&path, 4 * file::LARGEST)?;
         let unknown =
             |what: &str| SidecarError::Unknown { path: show_path(&path), what: sanitize(what, 120) };
+        if results.is_file() && !path.exists() {
+            let what = format!("is not the results of a sweep: there is no {} beside it", show_path(&path));
+            return Err(SidecarError::Unknown { path: show_path(results), what });
+        }
+        let (text, _) = read_text(&path, 4 * file::LARGEST)?;
         let sidecar: Self = toml::from_str(&text).map_err(|error| unknown(error.message()))?;
         sidecar.shard.parse::<Shard>().map_err(|error| unknown(&format!("shard: {error}")))?;
         Ok((sidecar, text))

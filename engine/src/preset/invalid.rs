@@ -109,7 +109,7 @@ pub enum Invalid {
         allowed: String,
     },
     /// A parameter of a newly chosen formula that has not been given a value.
-    #[error("the formula needs a value for {key}, as in {key}=1{}", hint(.meant.as_ref()))]
+    #[error("the formula needs a value for {key}, as in {key}=1{}", of_unset(.key, .meant.as_ref()))]
     Unset {
         /// The key.
         key: Key,
@@ -236,6 +236,11 @@ pub enum Invalid {
 
 fn hint(key: Option<&Key>) -> String {
     key.map_or_else(String::new, |key| format!("; did you mean {key}?"))
+}
+
+/// What a parameter without a value may have been meant as.
+fn of_unset(key: &Key, meant: Option<&Key>) -> String {
+    if meant.is_none() && key.ends_with(".x") { "; the radius is r".to_owned() } else { hint(meant) }
 }
 
 impl Invalid {

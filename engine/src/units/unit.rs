@@ -69,7 +69,7 @@ pub enum UnitError {
         found: String,
     },
     /// A name that is not a unit.
-    #[error("column {}: unknown unit {name}", place.column)]
+    #[error("column {}: unknown unit {name}{}", place.column, meant(.name))]
     Unknown {
         /// Where.
         place: TextPlace,
@@ -88,6 +88,24 @@ pub enum UnitError {
         /// Where.
         place: TextPlace,
     },
+}
+
+/// The units that differ from `name` in upper and lower case alone, as the end of a sentence.
+fn meant(name: &str) -> String {
+    const LONGEST: usize = 5;
+    let letters: Vec<char> = name.chars().collect();
+    if letters.len() > LONGEST {
+        return String::new();
+    }
+    let other = |letter: char, is_upper: bool| {
+        if is_upper { letter.to_ascii_uppercase() } else { letter.to_ascii_lowercase() }
+    };
+    let spelt =
+        |ways: usize| letters.iter().enumerate().map(|(i, c)| other(*c, ways >> i & 1 == 1)).collect();
+    let mut found: Vec<String> =
+        (0..1 << letters.len()).map(spelt).filter(|text: &String| lookup(text).is_some()).collect();
+    found.dedup();
+    if found.is_empty() { String::new() } else { format!("; did you mean {}?", found.join(" or ")) }
 }
 
 type UnitInput<'a> = LocatingSlice<&'a str>;
@@ -321,7 +339,9 @@ mod tests {
             ("3 µm/", "column 6: expected a unit such as um, mN, kPa or mJ/m^2, found the end"),
             ("3 (m)", "column 3: expected a unit such as um, mN, kPa or mJ/m^2, found '('"),
             ("3 furlong", "column 3: unknown unit furlong"),
-            ("3 Nm", "column 3: unknown unit Nm"),
+            ("3 Nm", "column 3: unknown unit Nm; did you mean nm?"),
+            ("3 kpa", "column 3: unknown unit kpa; did you mean kPa?"),
+            ("3 mpa", "column 3: unknown unit mpa; did you mean mPa or MPa?"),
             ("3 1/", "column 5: expected a unit such as um, mN, kPa or mJ/m^2, found the end"),
             (
                 "3 um/75",

@@ -109,7 +109,7 @@ macro_rules! each_command {
         Map "map" "" "map" curve Nothing Screen
             "where snaps happen over the selected value; again: the map of it and the adhesion" { words: "phase diagram threshold onset", look: look::map,
             takes: takes("KEY[=[log:]FROM..TO] [another, control, approach or force]", axes).going_on(axes_of) }
-        Axes "axes" "a" "axes" always Nothing Screen "axes in P/Pc, delta, s/lambda, or raw values" { look: look::axes }
+        Axes "axes" "a" "axes" always Nothing Screen "axes in P/Pc, delta, s/lambda, or raw values" { words: "axis units raw", look: look::axes }
         Overlays "overlays" "y" "theory" curve Nothing Screen
             "theory over the curve: smooth sphere, exact solution, envelope, the line of the loading device"
             { takes: takes("theory", theory).listing(theories) }

@@ -409,7 +409,7 @@ fn a_study_is_looked_at_read_taken_over_and_exported() {
     screen.keys(&format!(":export study {}\r", toml.display()));
     let csv = std::fs::read_to_string(csv).unwrap();
     let rows: Vec<&str> = csv.lines().collect();
-    assert_eq!((rows[0], rows.len()), ("gap.amplitude,largest_pull,fault", 102));
+    assert_eq!((rows[0], rows.len()), ("gap.amplitude,largest_pull,error", 102));
     let store = Store::at(screen.folder.path(), &[]);
     let load = |name: &str, over: &[&str]| {
         let source = store.resolve(name).map_err(|error| error.to_string())?;
