@@ -3,7 +3,7 @@
 //! Sums under the disc are taken over v, with a = a₁ tanh v and a₁ the inner edge of the first ring: 1/√(r² − a²) for r
 //! ≥ a₁ is then analytic for |Im v| < π/2, however near to the disc the ring begins.
 
-use crate::disc::{Panel, Panels, Table, TableError, outside};
+use crate::disc::{Panel, Panels, Place, Table, TableError, outside};
 use crate::elementary::{cbrt, cosh, ln, tanh};
 use crate::gap::{Form, Gap};
 use crate::progress::Progress;
@@ -254,7 +254,22 @@ impl Ground {
             return if delta > 0.0 { beyond } else { 0.0 };
         }
         let after = self.least.partition_point(|least| *least < delta);
-        after.checked_sub(1).map_or(0.0, |panel| self.panels.list()[panel].span.hi)
+        (0..after).rev().find_map(|panel| self.last_below(panel, delta)).unwrap_or(0.0)
+    }
+
+    /// A radius on a panel beyond which g stays above δ, at most about twice as far from its inner end as need be; `None`
+    /// where g stays above on the panel. A panel may be much wider than what can touch.
+    fn last_below(&self, panel: usize, delta: f64) -> Option<f64> {
+        const HALVINGS: usize = 30;
+        let mut hi = 1.0;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (hi - 1.0);
+            if lowest(&self.panels, panel, [middle, hi]) < delta {
+                return Some(self.panels.radius(Place { panel, x: hi }));
+            }
+            hi = middle;
+        }
+        None
     }
 
     /// ∫₀^s g/√(r² − a²) da for r ≥ `edge` > s as Σ w/√((r² − edge²) + below): [below, w].
@@ -299,19 +314,22 @@ fn samples(panels: &Panels) -> Vec<f64> {
     list.iter().flat_map(|panel| on(panel)).collect()
 }
 
-/// The smallest g from the inner end of each panel outward: ascending.
-fn least(panels: &Panels) -> Vec<f64> {
-    /// Places sampled on a panel, and what may be missed between them, as a share of the range.
+/// A lower bound of g between two places of a panel.
+fn lowest(panels: &Panels, panel: usize, [from, to]: [f64; 2]) -> f64 {
+    /// Places sampled, and what may be missed between them, as a share of the range.
     const PLACES: u32 = 24;
     const MISSED: f64 = 0.01;
-    let of = |panel: usize| {
-        let values = (0..=PLACES).map(|k| {
-            let x = 2.0 * f64::from(k) / f64::from(PLACES) - 1.0;
-            panels.value(crate::disc::Place { panel, x })
-        });
-        let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), g| (lo.min(g), hi.max(g)));
-        lo - MISSED * (hi - lo)
-    };
+    let values = (0..=PLACES).map(|k| {
+        let x = from + (to - from) * f64::from(k) / f64::from(PLACES);
+        panels.value(Place { panel, x })
+    });
+    let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), g| (lo.min(g), hi.max(g)));
+    lo - MISSED * (hi - lo)
+}
+
+/// The smallest g from the inner end of each panel outward: ascending.
+fn least(panels: &Panels) -> Vec<f64> {
+    let of = |panel| lowest(panels, panel, [-1.0, 1.0]);
     let mut least: Vec<f64> = (0..panels.list().len()).map(of).collect();
     for panel in (1..least.len()).rev() {
         least[panel - 1] = least[panel - 1].min(least[panel]);

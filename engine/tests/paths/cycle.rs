@@ -10,6 +10,7 @@ use crate::support::{Numbers, numbers, random_gap, reference, wavy};
 use pulloff_engine::Case;
 use pulloff_engine::annuli::{Around, Contacts, Ground};
 use pulloff_engine::disc::Table;
+use pulloff_engine::gap::shapes::PowerLaw;
 use pulloff_engine::gap::{Gap, Shape};
 use pulloff_engine::gap::{formula::FormulaParameter, formula::TypedGap};
 use pulloff_engine::preset::{self, shipped};
@@ -103,6 +104,26 @@ fn the_last_contact_on_a_corner_at_the_axis_is_as_small_as_it_is() {
         let off = [last.contact_radius / lo - 1.0, last.approach / approach - 1.0];
         assert!(off[0].abs() < 1e-6 && off[1].abs() < 1e-9, "{gamma}: {off:?}");
         assert!(found.events.iter().all(|event| event.dissipated.is_none_or(|lost| lost >= 0.0)), "{gamma}");
+    }
+}
+
+/// A polynomial is known exactly on one panel, however far out it goes, and most of that cannot touch.
+#[test]
+fn the_loop_of_a_polynomial_is_that_of_its_power() {
+    for (power, gamma) in [(4.0, 1e-3), (6.0, 1e-3), (8.0, 1e-3), (4.0, 0.0), (8.0, 0.0)] {
+        for control in [Control::Displacement, Control::Force] {
+            let text = format!("r^{power}");
+            let formula = TypedGap::new(&text, Vec::<FormulaParameter>::new(), None).unwrap();
+            let gaps: [Arc<dyn Gap>; 2] = [
+                Arc::new(Shape::Formula(Arc::new(formula))),
+                Arc::new(PowerLaw { factor: 1.0, exponent: power }),
+            ];
+            let [typed, exact] =
+                gaps.map(|gap| looped(gap, gamma, control, Turn::Radius(0.6), Losses::Twice));
+            let ends = |path: &Path| path.states.iter().map(|state| state.force).fold(0.0_f64, f64::min);
+            assert_eq!(typed.events.len(), exact.events.len(), "{text} {gamma} {control:?}");
+            assert!((ends(&typed) - ends(&exact)).abs() < 1e-9, "{text} {gamma} {control:?}");
+        }
     }
 }
 

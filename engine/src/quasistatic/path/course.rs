@@ -93,6 +93,7 @@ pub(in crate::quasistatic) fn on_ground<T>(
 ) -> Result<T, PathError> {
     /// How many times the gap may be searched further out for its least value.
     const FURTHER: usize = 6;
+    let mut last = PathError::NeverTouches { searched: reach };
     for round in 0..40 {
         let ground = Ground::new(Arc::clone(table), reach, progress)?;
         let whole = ground.reach() >= table.end() * (1.0 - 1e-9);
@@ -102,14 +103,14 @@ pub(in crate::quasistatic) fn on_ground<T>(
         }
         match find(&ground) {
             Err(
-                PathError::BeyondGap { .. }
+                error @ (PathError::BeyondGap { .. }
                 | PathError::RadiusBeyondGap { .. }
-                | PathError::State(AnnuliError::BeyondGap { .. }),
+                | PathError::State(AnnuliError::BeyondGap { .. })),
             ) if !whole => {
-                reach = 2.0 * ground.reach();
+                (reach, last) = (2.0 * ground.reach(), error);
             }
-            Err(PathError::NeverTouches { .. }) if !whole && round < FURTHER => {
-                reach = 2.0 * ground.reach();
+            Err(error @ PathError::NeverTouches { .. }) if !whole && round < FURTHER => {
+                (reach, last) = (2.0 * ground.reach(), error);
             }
             // A crest further out would have touched unseen.
             Ok(found) if !whole && BEYOND * ground.can_touch_up_to(highest(&found)) > ground.reach() => {
@@ -118,7 +119,7 @@ pub(in crate::quasistatic) fn on_ground<T>(
             other => return other,
         }
     }
-    Err(PathError::NeverTouches { searched: reach })
+    Err(last)
 }
 
 /// The largest approach of a path.
@@ -304,7 +305,10 @@ impl Course<'_, '_> {
         if balance.work_of_adhesion == 0.0 {
             return self.without_adhesion(crest, turn);
         }
-        let held = self.loaded(crest, first)?;
+        let held = self.loaded(crest, first).map_err(|error| match self.record.states.last() {
+            Some(last) => beyond(error, last.approach, last.force),
+            None => error,
+        })?;
         let reached = self.measure(&held);
         let at_turn = self.state(&held);
         let more = gamma - balance.work_of_adhesion;
