@@ -427,9 +427,9 @@ mod tests {
         let numbers = |(_, values): (Key, Vec<Value>)| values.iter().filter_map(number).collect::<Vec<f64>>();
         let without = numbers(values_of(&axis, &flat));
         assert_eq!((without[0], *without.last().unwrap(), without.len()), (0.001, 0.02, 101));
-        let own = preset(&[("gap.amplitude", "0.0033333333")]);
+        let own = preset(&[("gap.amplitude", "0.0033")]);
         let with = numbers(values_of(&axis, &own));
-        assert!(with.len() == 102 && with.contains(&0.0033333333) && with.is_sorted());
+        assert!(with.len() == 102 && with.contains(&0.0033) && with.is_sorted());
         // A device under fixed grips becomes a spring.
         let spring = typed_range(&flat, "path.control.stiffness=0.1..2").unwrap();
         assert!(is_over(&spring, &row(&flat, "path.control")));

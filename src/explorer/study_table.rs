@@ -2,7 +2,6 @@
 
 use super::command::Assignment;
 use super::studies::{StudyData, StudyOutcome, number};
-use crate::sweep::record::ERROR;
 use pulloff_engine::report::rows::{RowsError, csv as written};
 use pulloff_engine::sweep::Cell;
 use pulloff_engine::sweep::axis::{AxisValues, SweepAxis, overrides};
@@ -12,7 +11,7 @@ use std::collections::BTreeMap;
 /// A row for each value: the key, the quantity, and why there is no result, as in the results of a sweep.
 pub(super) fn csv(study: &StudyData) -> Result<String, RowsError> {
     let (key, name) = (study.wish.key.to_string(), study.wish.column.name());
-    let columns = [&*key, &*name, ERROR];
+    let columns = [&*key, &*name, "error"];
     let rows = study.wish.values.iter().zip(&study.outcomes).map(|(value, outcome)| {
         let [found, fault] = match outcome {
             StudyOutcome::Waits => [Value::Null, Value::Null],
