@@ -21,8 +21,9 @@
 //! tension until an edge runs, and there is no edge inside. So the limit γ → 0 differs from γ = 0: states that any
 //! adhesion allows, however weak, are refused without it.
 
-use crate::disc::{Table, outside};
+use crate::disc::{Panels, Table, outside};
 use crate::elementary::{pow, sin};
+use crate::gap::panels::Variable;
 use crate::gap::wave_index;
 use crate::gap::{Form, Gap};
 use crate::problem::Reduced;
@@ -82,6 +83,17 @@ pub struct Crest {
     pub wave: Option<u64>,
 }
 
+/// The error of g in the panel beside the axis where the edge of a disc of radius `s` lies in it, 0 elsewhere: there a
+/// high power of r is resolved to fewer digits than on any other panel.
+fn error_beside_axis(panels: &Panels, s: f64) -> f64 {
+    const SHARE: f64 = 1e-6;
+    let panel = panels.place(s).panel;
+    if panels.list()[panel].span.variable != Variable::Fifth {
+        return 0.0;
+    }
+    SHARE * panels.value_series(panel).iter().map(|c| c.abs()).sum::<f64>()
+}
+
 /// What a state must satisfy beyond equilibrium, in reduced units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Admissibility {
@@ -132,15 +144,12 @@ impl Judge {
     /// `progress` says stop, nothing is known about the gap outside.
     pub fn verdict(&self, s: f64, delta: f64, progress: &dyn Progress) -> Admissibility {
         let (end, known_to) = self.search_end(s, delta);
-        let overlap = -ROUNDING * (delta.abs() + self.opening(s));
-        let searched = if end > s {
-            let panels = self.table.up_to_while(end, 0, progress).ok();
-            panels.map(|panels| {
-                outside::least_gap(&panels, s, delta, end.min(panels.reach()), overlap, progress)
-            })
-        } else {
-            None
-        };
+        let mut overlap = -ROUNDING * (delta.abs() + self.opening(s));
+        let panels = if end > s { self.table.up_to_while(end, 0, progress).ok() } else { None };
+        let searched = panels.map(|panels| {
+            overlap = overlap.min(-error_beside_axis(&panels, s));
+            outside::least_gap(&panels, s, delta, end.min(panels.reach()), overlap, progress)
+        });
         let known_to = searched.and_then(|searched| searched.given_up).or(known_to);
         let least = searched.and_then(|searched| searched.at);
         let nearest = least.filter(|[_, gap]| *gap < overlap).map(|[radius, gap]| Crest {
@@ -394,6 +403,21 @@ mod tests {
                 }
             }
             assert!(seen[0] > 0 && seen[1] > 0, "{seen:?}");
+        }
+    }
+
+    #[test]
+    fn a_flat_tip_overlaps_nowhere_however_small_the_disc() {
+        use crate::gap::formula::TypedGap;
+        for text in ["r^6", "r^8"] {
+            let shape = Shape::Formula(Arc::new(TypedGap::new(text, Vec::new(), None).unwrap()));
+            let problem = Problem { effective_modulus: 1.0, work_of_adhesion: 0.0, shape }.reduced();
+            let table = Arc::new(Table::new(Arc::clone(&problem.gap), 0.65, &Unwatched).unwrap());
+            let (judge, basis) = (Judge::new(&problem, &table), ExactBasis::new(table, 0.65));
+            for k in 0..200 {
+                let s = 0.6 * 0.94_f64.powi(k);
+                assert!(at(&problem, &judge, &basis, s).holds, "{text} {s}");
+            }
         }
     }
 
