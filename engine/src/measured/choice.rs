@@ -134,6 +134,14 @@ pub(super) fn wanted(
         }
     }
     if wanted.is_empty() {
+        // A row with a word in it is taken for a header.
+        let heads = header.map_or(&[][..], |header| &header.heads);
+        let is_number = |(name, _): &&ColumnHead| name.parse::<f64>().is_ok();
+        if let (true, Some((word, _))) =
+            (heads.iter().any(|head| is_number(&head)), heads.iter().find(|head| !is_number(head)))
+        {
+            return Err(CurveReadError::NotNumber { line, text: quote(word) });
+        }
         return Err(CurveReadError::Unknown { line, cells, names: known() });
     }
     Ok(wanted)

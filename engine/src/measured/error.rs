@@ -149,6 +149,14 @@ pub enum CurveReadError {
         /// The names of the header, safe to show.
         names: String,
     },
+    /// A row, in place of a header, in which not all cells are numbers.
+    #[error("line {line}: \"{text}\" is not a number, in a row of numbers")]
+    NotNumber {
+        /// The row.
+        line: usize,
+        /// The cell, safe to show.
+        text: String,
+    },
     /// Two columns of lengths.
     #[error(
         "line {line}: the columns {names} are lengths, like those of a profile: a profile belongs in \

@@ -134,6 +134,14 @@ fn the_free_part_the_jump_and_the_noise_are_found() {
     }
 }
 
+#[test]
+fn a_word_in_the_first_row_is_no_header() {
+    let rows: String = (0..20).map(|i| format!("0.{i},{i}\n")).collect();
+    let text = format!("delta [mm],force [mN]\n0.1,abc\n{rows}");
+    let error = parse(text.as_bytes(), &ColumnSpec::default()).unwrap_err().to_string();
+    assert_eq!(error, "line 2: \"abc\" is not a number, in a row of numbers");
+}
+
 /// Where δ is least it changes as little as the position of bodies apart, and noise moves the force.
 #[test]
 fn columns_in_their_places_do_not_look_swapped_however_noisy_they_are() {
