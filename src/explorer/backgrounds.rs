@@ -8,7 +8,7 @@ use super::fitting::Distances;
 use super::loops::LoopData;
 use super::maps::MapData;
 use super::model::Model;
-use super::onset::SnapsFrom;
+use super::onset::FirstSnap;
 use super::pinned::PinCurve;
 use super::profile::StateInside;
 use super::pulls::PullData;
@@ -27,7 +27,7 @@ pub static KINDS: [ResultKind; 11] = [
     ResultKind::of::<MapData>(),
     ResultKind::of::<Distances>(),
     ResultKind::of::<SpeedsData>(),
-    ResultKind::of::<SnapsFrom>(),
+    ResultKind::of::<FirstSnap>(),
 ];
 
 /// Requests everything that is wanted now.

@@ -120,7 +120,7 @@ pub enum Done {
     Conflict,
     /// A preset of this name exists: not saved. Says whether its data were to be copied.
     NameTaken(String, bool),
-    /// A document is in this file; the units of its columns, where it is CSV of a preset in SI.
+    /// A document is in this file; what it says of itself, such as the units of its columns.
     Exported(String, Option<String>),
     FileExists(Export, String),
     Failed(WordedFault),

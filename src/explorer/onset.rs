@@ -9,13 +9,13 @@ use pulloff_engine::stability::Onset;
 
 /// Where snaps begin for the adhesion, device and start of a preset.
 #[derive(Debug, Clone)]
-pub struct SnapsFrom {
+pub struct FirstSnap {
     preset: Preset,
     /// A/λ; `None` for a gap that does not have exactly one wave, and where nothing snaps.
     pub amplitude_over_wavelength: Option<f64>,
 }
 
-impl Background for SnapsFrom {
+impl Background for FirstSnap {
     type Key = Preset;
     const NAME: &'static str = "onset";
 
@@ -55,8 +55,8 @@ fn is_alike(one: &Preset, other: &Preset) -> bool {
 
 impl Model {
     /// The smallest A/λ at which the problem snaps, if known.
-    pub fn snaps_from(&self) -> Option<f64> {
-        let found = self.results.found::<SnapsFrom>();
+    pub fn first_snap(&self) -> Option<f64> {
+        let found = self.results.found::<FirstSnap>();
         found.filter(|found| is_alike(&found.preset, &self.preset))?.amplitude_over_wavelength
     }
 }

@@ -5,7 +5,7 @@
 use crate::support::session::Session;
 use pulloff::explorer::map_axes::MapAxes;
 use pulloff::explorer::maps::MapData;
-use pulloff::explorer::onset::SnapsFrom;
+use pulloff::explorer::onset::FirstSnap;
 use pulloff::explorer::session::{Document, Ended, Snapshot};
 use pulloff::explorer::{Command, Id, ScreenPanel, View};
 use pulloff::figure::{Figure, Role, Sign, Subject};
@@ -89,15 +89,15 @@ fn pressed_again_it_is_the_map_of_the_number_and_the_adhesion_and_any_axes_can_b
 #[test]
 fn where_snaps_begin_follows_the_device_and_is_not_sought_again_for_another_amplitude() {
     let mut session = Session::new("wavy-sphere");
-    let first = session.model.snaps_from().unwrap();
+    let first = session.model.first_snap().unwrap();
     assert!((first - 1.2152e-3).abs() < 1e-6, "{first}");
-    let known = session.model.results.share::<SnapsFrom>().unwrap();
+    let known = session.model.results.share::<FirstSnap>().unwrap();
     session.set("gap.amplitude", "0.001");
-    assert!(std::sync::Arc::ptr_eq(&known, &session.model.results.share::<SnapsFrom>().unwrap()));
-    assert_eq!(session.model.snaps_from(), Some(first));
+    assert!(std::sync::Arc::ptr_eq(&known, &session.model.results.share::<FirstSnap>().unwrap()));
+    assert_eq!(session.model.first_snap(), Some(first));
     session.set("path.control", "force");
-    let dead = session.model.snaps_from().unwrap();
+    let dead = session.model.first_snap().unwrap();
     assert!((dead - 2.430e-3).abs() < 1e-6, "{dead}");
     session.set("material.work_of_adhesion", "0");
-    assert_eq!(session.model.snaps_from(), None);
+    assert_eq!(session.model.first_snap(), None);
 }

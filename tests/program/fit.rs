@@ -5,6 +5,7 @@
 use crate::support::home::Home;
 use rustix::process::Signal;
 use serde_json::Value;
+use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
 use std::fs;
 
@@ -667,4 +668,31 @@ fn the_signs_of_residuals_are_said() {
     let said = "note: units of the CSV: x in m; force in N; the signs of x and force are those of the fit, turned against the \
                 file: x=-,force=-\n";
     assert!(ended.err.contains(said), "{}", ended.err);
+}
+
+/// A ball of 10 mm, 50 kPa and 40 mJ/m², retracted, with the force in N though it is in mN, or with δ measured from
+/// elsewhere.
+#[test]
+fn a_wrong_unit_of_the_force_and_a_held_offset_are_suspected() {
+    let home = Home::new();
+    let rows = |offset: f64| -> String {
+        let row = |i: i32| {
+            let s = 2.2e-3 - 2e-5 * f64::from(i);
+            let force = 4.0 * 5e4 * s.powi(3) / 0.03 - (8.0 * PI * 0.04 * 5e4 * s.powi(3)).sqrt();
+            let approach = s * s / 0.01 - (TAU * 0.04 * s / 5e4).sqrt();
+            let noise = 1e-3 * f64::from(i * 7919 % 101 - 50) / 50.0;
+            format!("{:.6},{:.6}\n", approach * 1e3 + offset, force * 1e3 + noise)
+        };
+        (0..80).map(row).collect()
+    };
+    home.file("newton.csv", &format!("delta [mm],force [N]\n{}", rows(0.0)));
+    home.file("offset.csv", &format!("delta [mm],force [mN]\n{}", rows(0.05)));
+    let fit = |file: &str| {
+        let set = ["--set", "R=10 mm", "--control=displacement", "--free=E*,gamma", "--accept"];
+        home.run(&[&["fit", file, "lens"][..], &set].concat())
+    };
+    let newton = fit("newton.csv");
+    assert!(newton.err.contains("check the unit of the force"), "{}", newton.err);
+    let offset = fit("offset.csv");
+    assert!(offset.err.contains("most likely data.offset, where x is zero"), "{}", offset.err);
 }

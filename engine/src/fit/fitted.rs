@@ -96,6 +96,29 @@ pub(super) fn values(
     problem.parameters.iter().enumerate().map(of).collect()
 }
 
+/// Takes away the bootstrap of values that nearly all its fits left where they were, as they do where the path has a
+/// corner in them: its interval has no width. Returns a sentence on them.
+pub(super) fn unmoved(fitted: &mut [Fitted]) -> Option<String> {
+    // Of points without noise all fits are the same.
+    const EXACT: f64 = 1e-9;
+    let is_noisy = |of: &Fitted| of.standard_error.is_some_and(|error| error > EXACT * of.value.abs());
+    let stuck =
+        fitted.iter_mut().filter(|of| is_noisy(of) && of.bootstrap.is_some_and(|found| found.half() <= 0.0));
+    let keys: Vec<String> = stuck
+        .map(|of| {
+            of.bootstrap = None;
+            of.key.clone()
+        })
+        .collect();
+    (!keys.is_empty()).then(|| {
+        format!(
+            "nearly all fits of the bootstrap left {} where it was: the model has a corner there, and there is no \
+             interval by the bootstrap",
+            keys.join(" and ")
+        )
+    })
+}
+
 /// A sentence on the standard error that the bootstrap finds to be too small by most.
 pub(super) fn too_small(fitted: &[Fitted]) -> Option<String> {
     let all = fitted.iter().filter_map(|of| Some((of.too_small()?, of)));
@@ -107,4 +130,28 @@ pub(super) fn too_small(fitted: &[Fitted]) -> Option<String> {
             short(times, 2)
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bootstrap_that_moves_nothing_gives_no_interval() {
+        let of = |error: f64, interval: [f64; 2]| Fitted {
+            key: format!("{error}"),
+            value: 2.0,
+            standard_error: Some(error),
+            degrees: None,
+            interval: None,
+            start: 1.0,
+            profile: None,
+            bootstrap: Some(Bootstrapped { error: 0.0, interval }),
+        };
+        let mut fitted = [of(0.1, [2.0, 2.0]), of(0.2, [1.9, 2.1]), of(1e-13, [2.0, 2.0])];
+        let said = unmoved(&mut fitted).unwrap();
+        assert!(said.contains("left 0.1 where it was"), "{said}");
+        assert_eq!(fitted.map(|of| of.bootstrap.is_some()), [false, true, true]);
+        assert_eq!(unmoved(&mut [of(0.2, [1.9, 2.1])]), None);
+    }
 }

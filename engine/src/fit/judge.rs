@@ -226,7 +226,7 @@ pub(super) fn doubts(
             && !(ADHESIONS[0]..=ADHESIONS[1]).contains(&fitted.value)
         {
             doubts.push(format!(
-                "{} = {} J/m^2: surfaces have {:?} to {:?} J/m^2 as a rule: check the unit of the force",
+                "{} = {} J/m^2 is unusual, as surfaces have {:?} to {:?} J/m^2: check the unit of the force",
                 fitted.key,
                 significant(fitted.value, 3),
                 ADHESIONS[0],

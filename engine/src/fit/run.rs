@@ -1,7 +1,7 @@
 //! A whole fit, in order: branches, start, minimum, errors, doubts.
 
 use super::determined::{Determined, determined};
-use super::fitted::{too_small, values};
+use super::fitted::{too_small, unmoved, values};
 use super::intervals::intervals;
 use super::judge::{Evidence, doubts, of_sparse, of_spring, reasons, unseen};
 use super::laid::laid;
@@ -154,6 +154,7 @@ impl<'a> Posed<'a> {
         let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
         let mut warnings = doubts(evidence, &fitted, (&reasons, is_known));
         warnings.extend(too_small(&fitted));
+        warnings.extend(unmoved(&mut fitted));
         warnings.extend(branches.swapped());
         let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
         let fitted_preset = laid(preset, &problem, (&found, closing, &problem.instrument_at(u)), &mut notes);

@@ -160,9 +160,9 @@ pub(super) fn file_done(model: &mut Model, done: Done) -> Vec<Effect> {
             model.tell(Level::Error, format!("a preset called {name} exists: not saved"));
             model.question = Some(Question::ReplacePreset(name, with_data));
         }
-        Done::Exported(path, units) => {
-            let units = units.map_or_else(String::new, |units| format!("; {units}"));
-            model.tell(Level::Info, format!("exported to {path}{units}"));
+        Done::Exported(path, note) => {
+            let note = note.map_or_else(String::new, |note| format!("; {note}"));
+            model.tell(Level::Info, format!("exported to {path}{note}"));
         }
         Done::FileExists(what, path) => {
             model.tell(Level::Error, format!("{path} exists: not exported"));

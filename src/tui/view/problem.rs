@@ -93,7 +93,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
 pub fn rows(app: &App, width: u16) -> usize {
     let all = app.model.knobs();
     let parameters = all.iter().take_while(|(row, _)| groups::row(&row.key).is_none()).count();
-    let onset = usize::from(app.model.snaps_from().is_some());
+    let onset = usize::from(app.model.first_snap().is_some());
     parameters + group_lines(app, &all[parameters..], None, width).len() + onset
 }
 
@@ -307,7 +307,7 @@ fn group_lines(
 
 /// The amplitude from which the problem snaps, under its control.
 fn onset(theme: Theme, model: &Model) -> Option<Line<'static>> {
-    let text = format!("{} ({})", short(model.snaps_from()?, 3), symbol(model.preset.path.control));
+    let text = format!("{} ({})", short(model.first_snap()?, 3), symbol(model.preset.path.control));
     Some(Line::from(pair(theme, " first snap A/λ ", &text).to_vec()))
 }
 

@@ -7,7 +7,7 @@
 //! An edge that advances eases every other (the derivative of their κ with respect to it is negative), so this flow
 //! keeps order. Started where all G ≤ γ, it only grows, and ends in the least equilibrium that contains its start,
 //! whatever the mobilities. Started where all G ≥ γ, it only shrinks, to the greatest equilibrium inside its start. On
-//! the way contacts merge, touch and vanish.
+//! the way contacts merge, touch and vanish. Only a seed may be wider than the contact it becomes: its edges come back.
 
 use super::balance::{Balance, CONVERGED, HeldEdges, LEFT, keeps_widths, moved, part_way};
 use super::error::PathError;
@@ -160,11 +160,9 @@ impl Balance<'_> {
                 }
             }
             let step = self.damped(&held, lowest, sense, mobility)?;
-            // Where no edge is driven on, the last step went beyond the equilibrium, and the edges come back.
-            let back = newton
-                .filter(|_| size_of(&step) <= CONVERGED)
-                .and_then(|step| part_way(&contacts, &step, 1.0))
-                .filter(|back| kept.iter().all(|kept| covers(back, *kept)));
+            // Where no edge is driven on, the last step went beyond the equilibrium.
+            let is_beyond = sense > 0.0 && size_of(&step) <= CONVERGED;
+            let back = newton.filter(|_| is_beyond).and_then(|step| back(&contacts, &step, &kept));
             contacts = back.unwrap_or_else(|| moved(&contacts, &step));
         }
         Err(PathError::NoLanding { control_value: value, steps: STEPS })
@@ -262,9 +260,11 @@ impl Balance<'_> {
     }
 }
 
-/// Whether the radii between two are in contact.
-fn covers(contacts: &Contacts, [from, to]: [f64; 2]) -> bool {
-    contacts.intervals().iter().any(|[a, b]| *a <= from && to <= *b)
+/// The contacts on the way back to an equilibrium that a step overran; `None` where something `kept` would open.
+fn back(contacts: &Contacts, newton: &DVector<f64>, kept: &[[f64; 2]]) -> Option<Contacts> {
+    let found = part_way(contacts, newton, 1.0)?;
+    let contains = |[from, to]: [f64; 2]| found.intervals().iter().any(|[a, b]| *a <= from && to <= *b);
+    kept.iter().all(|kept| contains(*kept)).then_some(found)
 }
 
 /// The contacts with one more from `crest` − `half` to `crest` + `half`, a disc at the axis.
