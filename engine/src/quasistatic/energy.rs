@@ -48,11 +48,17 @@ pub fn loss(control: Control, before: &State, after: Option<&State>) -> Option<f
     let Some(after) = after else {
         return (control != Control::Force).then(|| potential(control, 0.0, before));
     };
-    // The device's part as a product: its energy can be a billion times the loss, and a difference would cancel.
+    // The device's part as a product: its energy can be a billion times the loss, and a difference would cancel. The
+    // spring shortens by δ₁ − δ₂ = (P₂ − P₁)/k, which is taken from where it has more digits.
+    let opened = before.approach - after.approach;
     let device = match control {
         Control::Displacement => 0.0,
-        Control::Force => -before.force * (before.approach - after.approach),
-        Control::Stiffness(k) => 0.5 * (before.force - after.force) * (before.force + after.force) / k,
+        Control::Force => -before.force * opened,
+        Control::Stiffness(k) => {
+            let is_soft = k * before.approach.abs() < before.force.abs();
+            let shortened = if is_soft { -opened } else { (before.force - after.force) / k };
+            0.5 * (before.force + after.force) * shortened
+        }
     };
     Some(before.energy - after.energy + device)
 }

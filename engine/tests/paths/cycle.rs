@@ -171,6 +171,57 @@ fn a_loop_with_hardly_any_adhesion_is_nearly_that_without() {
     }
 }
 
+/// Gaps whose loops once ended in an error at some small work of adhesion, or at none.
+#[test]
+fn loops_with_hardly_any_adhesion_turn_where_those_without_do() {
+    let formula = |text: &str| -> Arc<dyn Gap> {
+        Arc::new(Shape::Formula(Arc::new(
+            TypedGap::new(text, Vec::<FormulaParameter>::new(), Some(1.0)).unwrap(),
+        )))
+    };
+    let cases: [(Arc<dyn Gap>, f64, &[f64]); 3] = [
+        // Where holes of 1e-4 close, the other edges move with the control alone.
+        (wavy(0.0025, 0.05), 0.14, &[1e-11]),
+        // A hole at the axis, so narrow that its edge is known to a few digits.
+        (formula("r^2/2 + 0.06*abs(r - 0.12) - 0.0072"), 0.08, &[1e-7, 1e-9]),
+        // A flat ring between two corners, past which a seed runs.
+        (formula("max(0.01 - r^2, 0) + max(r - 0.2, 0)^2"), 0.03, &[1e-6, 1e-9]),
+    ];
+    for (number, (gap, turn, gammas)) in cases.into_iter().enumerate() {
+        let at = |gamma: f64| {
+            let turn = Turn::Approach(turn);
+            let found = looped(Arc::clone(&gap), gamma, Control::Displacement, turn, Losses::Once);
+            let turned = found.states.iter().max_by(|a, b| a.approach.total_cmp(&b.approach)).unwrap();
+            (turned.force, turned.contact_area, found.totals.dissipated.unwrap())
+        };
+        let none = at(0.0);
+        assert!(none.2.abs() < 1e-12 * none.0, "{number}: {none:?}");
+        for gamma in gammas {
+            let little = at(*gamma);
+            // A hole that is about to close narrows by far more than the force changes.
+            let off = [(little.0 / none.0 - 1.0) / gamma.sqrt(), little.1 / none.1 - 1.0];
+            assert!(off[0].abs() < 1.0 && off[1].abs() < 0.03 && little.2 > 0.0, "{number} {gamma}: {off:?}");
+        }
+    }
+}
+
+/// Behind a spring that hardly feels the jump, its energy is far larger than the loss.
+#[test]
+fn losses_behind_soft_springs_are_those_under_a_dead_load() {
+    let lost = |control: Control| {
+        let found = looped(wavy(0.002, 0.1), 1e-3, control, Turn::Radius(0.4), Losses::Once);
+        let snaps = found.events.iter().filter(|event| event.kind == EventKind::Snap);
+        snaps.map(|event| event.dissipated.unwrap()).collect::<Vec<_>>()
+    };
+    let dead = lost(Control::Force);
+    assert!(!dead.is_empty());
+    for k in [1e-9, 1e-12, 1e-16, 1e-20] {
+        let soft = lost(Control::Stiffness(k));
+        let near = |(a, b): (&f64, &f64)| (a / b - 1.0).abs() < 1e-6;
+        assert!(soft.len() == dead.len() && soft.iter().zip(&dead).all(near), "{k}: {soft:?} {dead:?}");
+    }
+}
+
 #[test]
 fn the_loop_of_figure_9_is_that_of_another_program() {
     let turn = Turn::Control(0.14);

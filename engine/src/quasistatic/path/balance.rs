@@ -128,6 +128,13 @@ impl Balance<'_> {
         Ok(held)
     }
 
+    /// Whether what is left of κ − √γ at every edge may be rounding: where a hole is narrow, solving for the pressures
+    /// loses digits, and corrections stall at the error that this leaves in the edges.
+    pub fn is_rounding(&self, held: &HeldEdges) -> bool {
+        const SHARE: f64 = 1e-8;
+        held.excess.amax() <= SHARE * self.work_of_adhesion.sqrt()
+    }
+
     /// Whether an edge at this radius is held.
     pub fn is_pinned(&self, radius: f64) -> bool {
         self.pinned.is_some_and(|pinned| pinned.borrow().iter().any(|held| is_same(*held, radius)))

@@ -21,7 +21,7 @@ pub const FIRST: f64 = 0.02;
 pub const LONGEST: f64 = 0.15;
 
 /// The number of past points from which a step is predicted.
-pub const PAST: usize = 2;
+const PAST: usize = 2;
 
 /// The way of a step is known once a state lies on it to this accuracy, in the units of the arc length: the balance of
 /// loops then closes within 1e-8 of their losses.
@@ -33,6 +33,22 @@ const NODES_AT_CORNERS: usize = 12;
 /// Above this share of the most points, a step that fails is taken to need more.
 const NEARLY: f64 = 0.8;
 
+/// The length of the step after one of this length from `before`, which is kept in `past` for its prediction.
+pub(super) fn next_length(
+    past: &mut Vec<PathPoint>,
+    before: PathPoint,
+    length: f64,
+    side: SingularSide,
+) -> f64 {
+    if side != SingularSide::Smooth {
+        past.clear();
+        return FIRST;
+    }
+    past.push(before);
+    past.drain(..past.len().saturating_sub(PAST));
+    (GROWTH * length).min(LONGEST)
+}
+
 impl Course<'_, '_> {
     /// Follows stable states from `held` to what ends them.
     pub(super) fn stretch(&mut self, held: &HeldEdges) -> Result<(CourseEnd, HeldEdges), PathError> {
@@ -42,7 +58,7 @@ impl Course<'_, '_> {
         let (mut length, mut past) = (FIRST, Vec::new());
         loop {
             self.counted(&point.held)?;
-            let taken = balance.step(&point, length, &past, &|next| !self.goes_back(next));
+            let taken = balance.step(&point, length, &past, &|next| !self.goes_back(&point, next));
             let mut taken = taken.ok_or_else(|| self.stopped(&point.held))?;
             let to_held = &taken.end.held;
             let forth = (to_held.control_value - point.held.control_value) * sense > 0.0;
@@ -66,14 +82,7 @@ impl Course<'_, '_> {
                 return Ok((end, next.held));
             }
             let before = std::mem::replace(&mut point, next.rescaled(balance));
-            if side == SingularSide::Smooth {
-                past.push(before);
-                past.drain(..past.len().saturating_sub(PAST));
-                length = (GROWTH * length).min(LONGEST);
-            } else {
-                past.clear();
-                length = FIRST;
-            }
+            length = next_length(&mut past, before, length, side);
         }
     }
 
@@ -100,12 +109,22 @@ impl Course<'_, '_> {
         found.into_iter().map(|(_, point)| point).collect()
     }
 
-    /// Whether an edge moves against the control. Stable edges that adhere never do, because they ease each other.
-    fn goes_back(&self, at: &PathPoint) -> bool {
+    /// Whether an edge moves back at the end of a step. Stable edges that adhere never do, because they ease each other.
+    /// Beyond a limit point the control itself moves back, and with it the edges that the instability hardly moves:
+    /// by no more than they had moved with the control before.
+    fn goes_back(&self, from: &PathPoint, to: &PathPoint) -> bool {
         /// A part of the tangent that counts as zero.
         const NOTHING: f64 = 1e-9;
+        /// How much the motion of an edge with the control may change within a step.
+        const CHANGES: f64 = 2.0;
         let sense = self.record.direction.sense();
-        at.along_edges().iter().any(|part| part * sense < -NOTHING)
+        let back = -to.along_control() / from.along_control();
+        let back = if back.is_finite() { CHANGES * back.max(0.0) } else { 0.0 };
+        let (before, after) = (from.along_edges(), to.along_edges());
+        before
+            .iter()
+            .zip(&after)
+            .any(|(before, after)| sense * after < -NOTHING - back * (sense * before).max(0.0))
     }
 
     /// Counts a step, and asks whether to go on.

@@ -130,6 +130,7 @@ impl Balance<'_> {
             let lowest = Self::least_eigenvalue(&held);
             let newton = (lowest > 0.0).then(|| held.jacobian.clone().lu().solve(&-&held.excess)).flatten();
             let newton = newton.filter(|step| step.iter().all(|x| x.is_finite()));
+            let newton = newton.map(|step| self.beside_corners(&contacts, step));
             let scales = self.scales(&contacts).edges;
             let size_of = |step: &DVector<f64>| step.component_div(&scales).amax();
             if let Some(step) = &newton {
@@ -166,6 +167,28 @@ impl Balance<'_> {
             contacts = back.unwrap_or_else(|| moved(&contacts, &step));
         }
         Err(PathError::NoLanding { control_value: value, steps: STEPS })
+    }
+
+    /// A step of Newton's method, changed where an edge that covers a corner of the gap goes back towards it. κ varies
+    /// there as the square root of the distance, in which the step is Newton's then; in the distance itself it would
+    /// end on the other side, where nothing holds the edge.
+    fn beside_corners(&self, contacts: &Contacts, mut step: DVector<f64>) -> DVector<f64> {
+        /// The least share of the root that is left.
+        const LEAST: f64 = 0.25;
+        /// Nearer than this, in waves, an edge may cross the corner.
+        const ON: f64 = 1e-9;
+        let corners = self.ground.stops();
+        for (edge, way) in contacts.edges().iter().zip(step.iter_mut()).filter(|(_, way)| **way < 0.0) {
+            let covered = |corner: &f64| edge.sign * (edge.radius - corner);
+            let behind =
+                corners.iter().map(covered).filter(|distance| *distance > 0.0).min_by(f64::total_cmp);
+            if let Some(distance) = behind.filter(|distance| *distance > ON * self.ground.wave) {
+                let root = distance.sqrt();
+                let left = (root + 0.5 * *way / root).max(LEAST * root);
+                *way = way.max(left * left - distance);
+            }
+        }
+        step
     }
 
     /// A step of the flow.

@@ -266,13 +266,17 @@ impl<'a, 'b> PathStep<'a, 'b> {
         let mut offset = guess.clone();
         let mut last = f64::INFINITY;
         for rounds in 1..=ITERATIONS {
-            let (held, lu, right) = self.equations(&offset, length)?;
+            let (mut held, lu, right) = self.equations(&offset, length)?;
             let step = lu.solve(&right)?;
             let size = step.amax();
             if !size.is_finite() {
                 return None;
             }
-            if size <= converged || (size <= STALLED && size > 0.3 * last) {
+            let stalls = size > 0.3 * last;
+            if size <= converged || stalls && (size <= STALLED || self.balance.is_rounding(&held)) {
+                if size > STALLED {
+                    held.state.digits = held.state.digits.min(-size.log10());
+                }
                 let mut unit = DVector::zeros(n + 1);
                 unit[n] = 1.0;
                 let rate = lu.solve(&unit)?;

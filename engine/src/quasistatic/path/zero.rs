@@ -9,10 +9,8 @@ use super::balance::HeldEdges;
 use super::course::Course;
 use super::error::PathError;
 use super::event::{Direction, Event, EventKind, PathState};
-use super::follow::{FIRST, LONGEST, PAST};
-use super::point::{GROWTH, PathStep};
+use super::follow::{FIRST, next_length};
 use super::setting::{Path, PathStop, TurnReached};
-use super::stepped::{SingularSide, TakenStep};
 use crate::annuli::{Around, Contacts, GapMinimum};
 use crate::disc::chebyshev;
 use crate::problem::{Control, Turn};
@@ -123,21 +121,15 @@ impl Course<'_, '_> {
 
     /// Follows the contacts up to the next event and past it.
     fn risen(&mut self, from: &HeldEdges) -> Result<HeldEdges, PathError> {
-        const SHORTEST: f64 = 1e-10;
         let lost = |held: &HeldEdges| PathError::Lost { control_value: held.control_value };
         let mut point = self.balance.point(from.clone(), 1.0).ok_or_else(|| lost(from))?;
         let (mut length, mut past) = (FIRST, Vec::new());
         loop {
             self.counted(&point.held)?;
-            let step = PathStep::new(self.balance, &point).after(&past);
-            let Some(next) = step.taken(length) else {
-                length *= 0.5;
-                if length < SHORTEST {
-                    return Err(self.stopped(&point.held));
-                }
-                continue;
-            };
-            let mut taken = TakenStep { step, length, end: next, side: SingularSide::Smooth };
+            let taken = self.balance.step(&point, length, &past, &|_| true);
+            let mut taken = taken.ok_or_else(|| self.stopped(&point.held))?;
+            let side = taken.side;
+            length = taken.length;
             let crest = taken.to_touch(false)?;
             let next = taken.end;
             // A gap that closes does so before that touch, or is examined again after it.
@@ -170,9 +162,8 @@ impl Course<'_, '_> {
                 let (contacts, delta) = (next.contacts().clone(), next.held.approach);
                 return self.begun(&contacts, crest.radius, delta);
             }
-            past.push(std::mem::replace(&mut point, next));
-            past.drain(..past.len().saturating_sub(PAST));
-            length = (GROWTH * length).min(LONGEST);
+            let before = std::mem::replace(&mut point, next.rescaled(self.balance));
+            length = next_length(&mut past, before, length, side);
         }
     }
 
