@@ -107,8 +107,8 @@ pub fn typed(preset: &Preset, text: &str) -> Result<MapAxis, String> {
         let row = preset.row(key).ok_or_else(|| {
             preset.clone().set(key, 1.0.into()).err().map_or_else(expected, |invalid| invalid.to_string())
         })?;
-        if !row.kind.is_number() {
-            return Err("an axis must be a number of the preset, a group, or compliance".to_owned());
+        if !row.kind.is_number() && !matches!(row.kind, Kind::Integer { .. }) {
+            return Err("a range must be of a number of the preset, a group, or compliance".to_owned());
         }
         preset.number(&row, text.trim()).map_err(|invalid| invalid.to_string())
     };

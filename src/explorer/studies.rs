@@ -90,10 +90,20 @@ pub struct StudyData {
 pub fn typed_range(preset: &Preset, text: &str) -> Result<MapAxis, String> {
     let axis = typed(preset, text)?;
     for end in axis.range {
-        let set = preset.clone().set(&axis.key, end.into());
+        let set = preset.clone().set(&axis.key, value_of(preset, &axis.key, end));
         set.map_err(|invalid| format!("no range of a study: {invalid}"))?;
     }
     Ok(axis)
+}
+
+/// A number as a value of `key`: the nearest whole one where it takes no others.
+fn value_of(preset: &Preset, key: &str, x: f64) -> Value {
+    match preset.row(key).map(|row| row.kind) {
+        // Between the bounds of the row, which a float holds.
+        #[expect(clippy::cast_possible_truncation)]
+        Some(Kind::Integer { .. }) => (x.round() as i64).into(),
+        _ => x.into(),
+    }
 }
 
 /// Whether the values of `axis` are those of this row.
@@ -111,8 +121,9 @@ pub fn values_of(axis: &MapAxis, preset: &Preset) -> (Key, Vec<Value>) {
     let [lo, hi] = axis.range;
     let mut all: Vec<f64> = spread.chain(own.filter(|x| (lo..=hi).contains(x))).collect();
     all.sort_by(f64::total_cmp);
+    let mut all: Vec<Value> = all.into_iter().map(|x| value_of(preset, &axis.key, x)).collect();
     all.dedup();
-    (axis.key.clone().into(), all.into_iter().map(Value::from).collect())
+    (axis.key.clone().into(), all)
 }
 
 /// The key that is varied and its values in ascending order, including that of the preset.
@@ -430,6 +441,9 @@ mod tests {
         let own = preset(&[("gap.amplitude", "0.0033")]);
         let with = numbers(values_of(&axis, &own));
         assert!(with.len() == 102 && with.contains(&0.0033) && with.is_sorted());
+        let rings = preset(&[("basis.kind", "rings"), ("basis.rings", "50")]);
+        let (_, whole) = values_of(&typed_range(&rings, "basis.rings=20..60").unwrap(), &rings);
+        assert!(whole.len() == 41 && whole.contains(&Value::Integer(50)), "{whole:?}");
         // A device under fixed grips becomes a spring.
         let spring = typed_range(&flat, "path.control.stiffness=0.1..2").unwrap();
         assert!(is_over(&spring, &row(&flat, "path.control")));

@@ -37,7 +37,8 @@ pub(super) fn spec(study: &StudyData, name: &str, over: &[Assignment]) -> String
     let over = over.iter().filter(|(key, _)| !overrides(&wish.key, key));
     let over: Vec<String> = over.map(|(key, value)| text(&format!("{key}={value}"))).collect();
     let set = if over.is_empty() { String::new() } else { format!("set = [{}]\n", over.join(", ")) };
-    let axis = SweepAxis { key: wish.key.to_string(), points: AxisValues::Values(wish.values.clone()) };
+    let values = wish.values.iter().map(|value| wish.preset.with_unit(&wish.key, value)).collect();
+    let axis = SweepAxis { key: wish.key.to_string(), points: AxisValues::Values(values) };
     format!(
         "preset = {}\n{set}quantities = [{}]\n\n[[axis]]\nkey = {}\n{}\n",
         text(name),

@@ -126,6 +126,45 @@ fn a_script_studies_a_quantity_over_a_value() {
     assert_eq!(ended.status, 0, "{}", ended.err);
 }
 
+/// A bare number of a formula's parameter is in the parameter's own unit, in a study, in its sweep, and in any sweep.
+#[test]
+fn a_parameter_with_a_unit_is_counted_in_it_by_studies_and_sweeps() {
+    let home = Scripts::new();
+    let gap = "formula = \"r^2/(2*R) + A*(1 - cos(2*pi*r/L))\"\nparameters.R = { value = 5, unit = \"mm\" }\n\
+               parameters.A = { value = 1, unit = \"um\" }\nparameters.L = { value = 250, unit = \"um\" }\n";
+    let si = fs::read_to_string("presets/fig-9-si.toml").unwrap();
+    let (head, rest) = si.split_once("[gap]").unwrap();
+    let (_, tail) = rest.split_once("\n[").unwrap();
+    fs::write(home.at("here/f.toml"), format!("{head}[gap]\nshape = \"formula\"\n{gap}\n[{tail}")).unwrap();
+    home.quiet("open f.toml\nstudy largest_pull R=4..6\nexport study s.csv\nexport study s.toml", &[]);
+    let spec = "preset = \"f.toml\"\nquantities = [\"largest_pull\"]\n[[axis]]\nkey = \"R\"\n";
+    let own = format!("{spec}values = [5, \"5 mm\", 5.0, \"5\", \"5000 um\"]\n");
+    let even = format!("{spec}linear = {{ from = 4, to = 6, count = 3 }}\n");
+    fs::write(home.at("here/own.toml"), own).unwrap();
+    fs::write(home.at("here/even.toml"), even).unwrap();
+    let rows = |name: &str| -> Vec<[f64; 2]> {
+        let text = fs::read_to_string(home.at(&format!("here/{name}"))).unwrap();
+        let cells = text.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
+        cells.map(|cells| [1, 2].map(|at| cells[at].parse().unwrap())).collect()
+    };
+    for name in ["s", "own", "even"] {
+        let spec = format!("{name}.toml");
+        let mut sweep = home.0.command(&["sweep", &spec, "--output", &format!("{name}-rows.csv")]);
+        let ended = Ended::of(sweep.current_dir(home.at("here")).output().unwrap());
+        assert_eq!(ended.status, 0, "{}", ended.err);
+    }
+    let swept = rows("s-rows.csv");
+    let [first, last] = [swept[0][0], swept[swept.len() - 1][0]];
+    assert_eq!((first, last), (4e-3, 6e-3));
+    assert!(rows("own-rows.csv").iter().all(|row| *row == rows("own-rows.csv")[0] && row[0] == 5e-3));
+    assert_eq!(rows("even-rows.csv").iter().map(|row| row[0]).collect::<Vec<_>>(), [4e-3, 5e-3, 6e-3]);
+    let studied = fs::read_to_string(home.at("here/s.csv")).unwrap();
+    for (line, [value, pull]) in studied.lines().skip(1).zip(&swept) {
+        let cells: Vec<f64> = line.split(',').take(2).map(|cell| cell.parse().unwrap()).collect();
+        assert_eq!(cells, [*value, *pull]);
+    }
+}
+
 #[test]
 fn a_script_in_si_takes_units_and_bare_si_numbers() {
     let home = Scripts::new();

@@ -232,6 +232,11 @@ impl Parameter {
         self.unit.as_ref().filter(|_| *units != UnitSystem::Reduced)
     }
 
+    /// A bare number of it in SI or reduced units.
+    pub fn in_own_unit(&self, units: &UnitSystem, x: f64) -> f64 {
+        self.own_unit_in(units).map_or(x, |unit| unit.to_si(x))
+    }
+
     /// How a number of it, in SI or reduced units, is shown.
     pub fn shown<'a>(&'a self, units: &'a UnitSystem, x: f64) -> Shown<'a> {
         let unit = self.unit_in(units);

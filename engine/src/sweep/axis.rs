@@ -6,7 +6,7 @@ use crate::elementary::{cos, ln, pow};
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::preset::called::key_called;
 use crate::preset::rows::parameter;
-use crate::preset::schema::rivals;
+use crate::preset::schema::{Parameter, rivals};
 use crate::preset::{Invalid, Preset, Value, groups, model};
 use crate::problem::Control;
 use crate::report::number::exact;
@@ -308,8 +308,15 @@ impl KeyReader<'_> {
         let Some(preset) = self.preset else {
             return if let DeValue::Table(_) = entry.value { Self::stiffness(entry) } else { of_toml() };
         };
+        let read =
+            |row: &Parameter, text: &str| preset.read(row, text).map_err(|e| entry.fault(&e.to_string()));
         let value = match (entry.value, preset.row(self.key)) {
-            (DeValue::String(text), Some(row)) => row.parse(text).map_err(|e| entry.fault(&e.to_string()))?,
+            (DeValue::String(text), Some(row)) => read(&row, text)?,
+            (_, Some(row)) if row.kind.is_number() => match of_toml()? {
+                Value::Number(x) => read(&row, &exact(x))?,
+                Value::Integer(n) => read(&row, &n.to_string())?,
+                other => other,
+            },
             _ => of_toml()?,
         };
         preset.resolved(self.key, value).map_err(|e| entry.fault(&e.to_string()))
@@ -439,10 +446,15 @@ impl KeyReader<'_> {
         let mean = self.number(&section.need("mean", "a value of the key")?)?;
         let deviation = section.need("deviation", "above 0")?;
         // Not a value of the key itself: the key's range may lie far from 0.
-        let x = match Value::from_toml(deviation.value) {
-            Ok(Value::Number(x)) => x,
-            Ok(Value::Integer(n)) => n as f64,
-            _ => self.number(&deviation)?,
+        let bare = match Value::from_toml(deviation.value) {
+            Ok(Value::Number(x)) => Some(x),
+            Ok(Value::Integer(n)) => Some(n as f64),
+            _ => None,
+        };
+        let own = self.preset.and_then(|preset| preset.row(self.key).map(|row| (row, &preset.units)));
+        let x = match bare {
+            Some(x) => own.map_or(x, |(row, units)| row.in_own_unit(units, x)),
+            None => self.number(&deviation)?,
         };
         if !(x > 0.0 && x.is_finite()) {
             let what =

@@ -181,8 +181,24 @@ impl Preset {
     /// The value that an assignment gives to a key.
     fn assigned(&self, key: &str, text: &str) -> Result<Value, Invalid> {
         let row = self.row(key).ok_or_else(|| self.unknown_key(key))?;
-        let own = row.own_unit_in(&self.units).is_some();
-        if own { self.typed(&row, text) } else { row.parse(text) }
+        self.read(&row, text)
+    }
+
+    /// The value of a row that a text gives: a bare number is in the row's own unit if it has one.
+    ///
+    /// # Errors
+    /// As [`Parameter::parse`].
+    pub fn read(&self, row: &Parameter, text: &str) -> Result<Value, Invalid> {
+        if row.own_unit_in(&self.units).is_some() { self.typed(row, text) } else { row.parse(text) }
+    }
+
+    /// A value in SI or reduced units with its unit, where a bare number would be in the row's own.
+    pub fn with_unit(&self, key: &str, value: &Value) -> Value {
+        match (self.row(key), value) {
+            (Some(row), Value::Number(x)) => row.exact_in_si(&self.units, *x).map(Value::Typed),
+            _ => None,
+        }
+        .unwrap_or_else(|| value.clone())
     }
 
     /// Gives several keys the values of texts, one after the other as on a command line, or all at once if one of them
@@ -229,8 +245,9 @@ impl Preset {
     /// # Errors
     /// As [`Parameter::parse`]; a unit of another dimension; a word.
     pub fn number(&self, row: &Parameter, text: &str) -> Result<f64, Invalid> {
-        match self.resolved(&row.key, row.parse(text)?)? {
+        match self.resolved(&row.key, self.read(row, text)?)? {
             Value::Number(x) => Ok(x),
+            Value::Integer(n) => Ok(n as f64),
             _ => Err(row.wrong_type(format!("the text \"{}\"", quote(text)))),
         }
     }
