@@ -17,6 +17,7 @@ use crate::problem::{
 };
 use crate::progress::{Progress, Stopped, Unwatched};
 use crate::quasistatic::admissible::{Judge, falls};
+use crate::quasistatic::beyond::is_smaller_beyond;
 use crate::quasistatic::path::{
     Losses, Path, PathError, PathSetting, ZoneStartError, Zones, cycle, cycle_in_zone, start_in_zone, unload,
     unload_in_zone,
@@ -456,14 +457,29 @@ impl Case {
         warnings
     }
 
-    /// A warning, if an unloading starts beyond the pull that a larger contact exerts.
+    /// A warning, if an unloading starts where larger contacts pull more than all on its way.
     pub fn warning_of_start(&self, path: &Path) -> Option<String> {
-        let start = path.start().filter(|_| path.pulls_most_at_start())?;
-        let radius = said(&self.shown, Quantity::Length, start.contact_radius * self.units().length);
+        let start = path.start().filter(|start| start.rings() == 0)?.contact_radius;
+        if !self.is_cut_off(path, Control::Force) {
+            return None;
+        }
+        let radius = said(&self.shown, Quantity::Length, start * self.units().length);
         Some(format!(
-            "the path pulls most at its start, where the contact radius is {radius}: from a larger contact the largest \
-             pull is larger"
+            "contacts larger than that at the start, {radius}, pull more: start further out for the largest pull"
         ))
+    }
+
+    /// Whether a stable contact larger than that at the start of an unloading has a smaller force, or a smaller approach,
+    /// as `of` says, than all on its way.
+    pub fn is_cut_off(&self, path: &Path, of: Control) -> bool {
+        let least = if of == Control::Force { path.largest_pull() } else { path.farthest() };
+        let ends = path.start().zip(least).filter(|(start, least)| start.rings() + least.rings() == 0);
+        let radii = ends.map(|(start, least)| [start.contact_radius, least.contact_radius]);
+        let radii = radii.filter(|_| path.turn.is_none() && self.cohesion.is_none());
+        radii.is_some_and(|[start, least]| {
+            of == Control::Force && path.pulls_most_at_start()
+                || is_smaller_beyond(&self.table, &self.reduced, [start, least], of, Some(path.control))
+        })
     }
 
     /// A warning, if a contact of radius `largest` (reduced) is larger than the bodies are round.

@@ -10,6 +10,7 @@
 //! | [`jump`] | where the edge lands when it runs at constant control |
 //! | [`descent`] | the way down at a falling control, jump by jump |
 //! | [`ascent`] | the way up at a rising control, one disc alone |
+//! | [`beyond`] | whether larger contacts than that at the start pull more |
 //! | [`energy`] | what a jump dissipates, computed twice |
 //! | [`landscape`] | the potential over the contact radius at a held control: minima, maxima, barriers |
 //! | [`path`] | what happens on the way of a device: an unloading, a whole loop, with rings of contact |
@@ -22,6 +23,7 @@
 
 pub mod admissible;
 pub mod ascent;
+pub mod beyond;
 pub mod curve;
 pub mod descent;
 pub mod energy;

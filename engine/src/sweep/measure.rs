@@ -91,6 +91,18 @@ impl Workings<'_> {
                 let contact = self.start()?.case.setting_of_unloading().contact;
                 self.on_path(of, self.control(column)?, Some(contact))
             }
+            Stage::Least(of, what) => {
+                let contact = Some(self.start()?.case.setting_of_unloading().contact);
+                let control = self.control(column)?;
+                let found = self.on_path(of, control, contact)?;
+                let kept = self.paths.iter().find(|(asked, _)| *asked == (control, contact));
+                let path = kept.and_then(|(_, on)| on.as_ref().ok()).map(|on| &on.path);
+                let case = &self.start()?.case;
+                if path.is_some_and(|path| case.is_cut_off(path, what)) {
+                    return Err(Fault::small_start());
+                }
+                Ok(found)
+            }
             Stage::Passed => self.inadmissible_share(self.control(column)?),
             Stage::Loop(of) => self.on_path(of, self.control(column)?, None),
             Stage::Pull(of) => self.pull().map(of),

@@ -46,6 +46,8 @@ pub(super) enum Stage {
     /// The limit points of a control on the curve.
     Limits,
     Unloading(fn(&OnPath) -> Option<Cell>),
+    /// What is smallest along the unloading, force or approach, unless it is smaller in a contact larger than its start.
+    Least(fn(&OnPath) -> Option<Cell>, Control),
     /// The states passed that are not admissible: finding them takes longer than everything else.
     Passed,
     /// The whole loop of loading and unloading, from energies alone.
@@ -81,8 +83,8 @@ macro_rules! quantities {
 
 quantities! {
     "largest_pull" "P" Force "smallest force of the unloading, negative: the largest pull; 0 or empty where nothing pulls":
-        Stage::Unloading(OnPath::largest_pull);
-    "farthest" "δ" Length "smallest approach of the unloading": Stage::Unloading(OnPath::farthest);
+        Stage::Least(OnPath::largest_pull, Control::Force);
+    "farthest" "δ" Length "smallest approach of the unloading": Stage::Least(OnPath::farthest, Control::Displacement);
     "last_contact_force" "P" Force "force at the last contact of the unloading":
         Stage::Unloading(|path| path.last_contact(|state| state.force));
     "last_contact_approach" "δ" Length "approach at the last contact":

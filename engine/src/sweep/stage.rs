@@ -3,14 +3,14 @@
 
 use super::fault::Fault;
 use crate::case::{Case, CaseError};
-use crate::disc::{ExactSolution, Solution};
 use crate::fit::least_squares::Ending;
 use crate::fit::{Fit, Fitted, Options, Verdict, fit_own};
 use crate::preset::Preset;
 use crate::problem::{Control, Groups, Problem};
 use crate::progress::Progress;
+use crate::quasistatic::beyond::is_smaller_beyond;
 use crate::quasistatic::monotone::weighted;
-use crate::quasistatic::{Curve, Detail, Equilibrium, Event, EventKind, Monotone, Path, PathState, State};
+use crate::quasistatic::{Curve, Detail, Equilibrium, Event, EventKind, Path, PathState, State};
 use crate::report::number::exact;
 use crate::theory::jkr::Jkr;
 use crate::theory::worst_phase::WorstPhase;
@@ -60,14 +60,6 @@ struct LeastState {
     is_cut_off: OnceCell<bool>,
     control: Control,
 }
-
-/// Smaller values are looked for up to this many start radii, and waves, further out.
-const REACH: f64 = 1.5;
-
-const WAVES: f64 = 2.0;
-
-/// Relative differences below this do not count.
-const SMALLER: f64 = 1e-3;
 
 /// An unloading or a loop under one control, reduced.
 pub(super) struct OnPath {
@@ -268,32 +260,12 @@ impl CurveMinima {
     fn smallest(&self, which: usize) -> Result<&State, Fault> {
         let LeastState { state, is_cut_off, control } = &self.least[which];
         let is_cut_off = is_cut_off.get_or_init(|| {
-            state.contact_radius >= self.curve.outermost() || self.is_smaller_beyond(state, *control)
+            let (start, Equilibrium { problem, table, .. }) =
+                (self.curve.outermost(), &self.curve.equilibrium);
+            let here = state.contact_radius;
+            here >= start || is_smaller_beyond(table, problem, [start, here], *control, None)
         });
         if *is_cut_off { Err(Fault::small_start()) } else { Ok(state) }
-    }
-
-    /// Whether the controlled quantity is smaller in a contact larger than the start, by the exact solution.
-    fn is_smaller_beyond(&self, state: &State, control: Control) -> bool {
-        let Equilibrium { problem, table, .. } = &self.curve.equilibrium;
-        let start = self.curve.outermost();
-        let waves = problem.gap.feature_length().map_or(0.0, |wave| WAVES * wave);
-        let far = (REACH * start + waves).min(problem.largest_contact());
-        let Ok(panels) = table.up_to(far) else { return false };
-        let exact = ExactSolution::new(panels, problem.work_of_adhesion);
-        let Some(here) = exact.place(state.contact_radius).map(|place| exact.at(place)) else { return false };
-        let here = weighted(control, here.approach, here.force);
-        let [Some(first), Some(last)] = [start, far].map(|s| exact.place(s)) else { return false };
-        let monotone = Monotone::on(&exact, control, first.panel..last.panel + 1);
-        let ends = monotone.stretches.iter().flat_map(|stretch| {
-            let [inner, outer] = stretch.radii;
-            [(inner, stretch.values[0]), (outer, stretch.values[1])]
-        });
-        let least = ends
-            .filter(|(s, _)| *s > start && *s <= far)
-            .map(|(_, value)| value)
-            .fold(f64::INFINITY, f64::min);
-        start < far && least < here - SMALLER * here.abs()
     }
 }
 
