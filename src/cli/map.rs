@@ -13,7 +13,8 @@ use crate::print::PictureFormat;
 use crate::store::stream;
 use crate::sweep::SweepResults;
 use clap::Args;
-use pulloff_engine::preset::Preset;
+use pulloff_engine::preset::changes::differences;
+use pulloff_engine::preset::{Preset, read};
 use pulloff_engine::report::map::Ordinate;
 use pulloff_engine::report::{MapReport, json, table};
 use pulloff_engine::stability::MapAxis;
@@ -154,8 +155,35 @@ impl MapArguments {
                 y.name()
             )));
         }
+        if let Some(other) = other_problem(&results.preset, preset, x, y) {
+            let what = format!("--over {}: is a sweep of another problem: {other}", shown(path));
+            return Err(Failure::Usage(what));
+        }
         Ok(Some(MapChart::of(&results, &results.axes, &self.quantity)?))
     }
+}
+
+/// In which value of the problem the swept preset, of this text, differs from the present one; `None` if they differ in
+/// the values of the axes at most. How the pressure is found, and where a path begins and ends, may differ.
+fn other_problem(swept: &str, preset: &Preset, x: &MapAxis, y: &Ordinate) -> Option<String> {
+    let at_start = |preset: &Preset| {
+        let mut preset = preset.clone();
+        let axes = [Some(x), if let Ordinate::Key(y) = y { Some(y) } else { None }];
+        for axis in axes.into_iter().flatten() {
+            // The compliance is no key.
+            let _ = preset.set(&axis.key, axis.range[0].into());
+        }
+        preset
+    };
+    let [swept, own] = [&read("the swept preset", swept).ok()?, preset].map(at_start);
+    let is_device = |key: &str| key == "path.control" && [x.key.as_str(), y.name()].contains(&"compliance");
+    let problem = |key: &str| {
+        let parts = ["gap.", "material.", "path.control", "units"];
+        parts.iter().any(|part| key.starts_with(part)) && !is_device(key)
+    };
+    let (key, here) = differences(&swept, &own).into_iter().find(|(key, _)| problem(key))?;
+    let there = swept.get(&key).map_or_else(|| "not given".to_owned(), |value| value.to_string());
+    Some(format!("{key} is {there} there, and {here} here"))
 }
 
 /// An axis, as typed after an option.

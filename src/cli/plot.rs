@@ -263,6 +263,8 @@ impl PlotArguments {
         let quantity = self.quantity_of(&results)?;
         let partial = results.partial().map_err(MapChartError::from)?;
         console.warn(partial.map(|has| format!("--sweep {has}: the figure shows no others")).as_slice());
+        let without = results.without(quantity).map_err(MapChartError::from)?;
+        console.warn(without.map(|rows| format!("--sweep {rows}")).as_slice());
         let axis = match &results.axes[..] {
             [] => {
                 let what = "--sweep: an ensemble without an axis has one row of statistics and nothing to draw it over";

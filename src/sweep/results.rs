@@ -35,6 +35,8 @@ pub struct SweepResults {
     pub is_random: bool,
     /// Whether the rows are statistics of an ensemble.
     pub is_statistics: bool,
+    /// The text of the swept preset.
+    pub preset: String,
     /// The number of rows of the whole sweep; fewer may exist.
     pub rows: u64,
     /// The part of the sweep that the results are to have.
@@ -48,7 +50,8 @@ impl SweepResults {
         let axes = sidecar.axes();
         let (is_random, is_statistics) = (sidecar.is_random(), sidecar.is_statistics());
         let (path, shard, rows) = (path.to_owned(), sidecar.shard(), sidecar.rows);
-        Ok(Self { path, columns: sidecar.columns, axes, is_random, is_statistics, rows, shard })
+        let preset = sidecar.preset().to_owned();
+        Ok(Self { path, columns: sidecar.columns, axes, is_random, is_statistics, preset, rows, shard })
     }
 
     /// The title of an axis that shows this column.
@@ -84,6 +87,22 @@ impl SweepResults {
         let (path, rows) = (show_path(&self.path), self.rows);
         Ok(((found as u64) < rows)
             .then(|| format!("{path}: has {found} of the {rows} rows of the sweep{part}")))
+    }
+
+    /// How many rows have no value of a quantity, in words; `None` where all have one.
+    /// Errors: As [`texts`](Self::texts).
+    pub fn without(&self, quantity: &str) -> Result<Option<String>, ResultsError> {
+        let median = statistic(quantity, "q50");
+        let column = if self.has_statistics_of(quantity) { &median } else { quantity };
+        let cells = self.cells(column, |cell| Some(cell.is_empty()))?;
+        let empty = cells.iter().filter(|is_empty| **is_empty).count();
+        Ok((empty > 0).then(|| {
+            format!(
+                "{}: {empty} of {} rows have no {quantity} and are left out",
+                show_path(&self.path),
+                cells.len()
+            )
+        }))
     }
 
     /// Whether there are statistics of this quantity and no column of its own.

@@ -72,6 +72,8 @@ pub struct Sidecar {
 /// The part of the canonical form that is read.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 struct Canonical {
+    /// The text of the preset.
+    preset: String,
     axis: Vec<AxisKey>,
     /// How rows are drawn, if they are.
     random: Option<Draws>,
@@ -278,6 +280,11 @@ impl Sidecar {
         let sidecar: Self = toml::from_str(&text).map_err(|error| unknown(error.message()))?;
         sidecar.shard.parse::<Shard>().map_err(|error| unknown(&format!("shard: {error}")))?;
         Ok((sidecar, text))
+    }
+
+    /// The text of the swept preset.
+    pub fn preset(&self) -> &str {
+        &self.sweep.preset
     }
 
     /// The layout of the results beside this file, whose content is `text`.

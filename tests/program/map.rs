@@ -140,7 +140,16 @@ fn results_of_another_sweep_are_not_drawn_under_the_lines() {
                 [[axis]]\nkey = \"groups.adhesion\"\nvalues = [0.01, 0.02]\n";
     fs::write(home.path().join("sweep.toml"), spec).unwrap();
     text(home.path(), &["sweep", "sweep.toml", "-o", "sweep.csv"]);
+    // The same axes, on a gap whose other values differ.
+    let same = spec.replace("gap.amplitude", "groups.amplitude_over_wavelength").replace("[1e-4, 2e-4]", "[0.005, 0.01]");
+    fs::write(home.path().join("same.toml"), same).unwrap();
+    text(home.path(), &["sweep", "same.toml", "-o", "same.csv"]);
+    let own = ["--set", "gap.wavelength=0.1"];
     for (more, words) in [
+        (
+            &[&["--over", "same.csv", "-o", "a.svg"][..], &own].concat()[..],
+            "same.csv: is a sweep of another problem: gap.wavelength is 0.05 there, and 0.1 here",
+        ),
         (
             &["--over", "sweep.csv", "-o", "a.svg"][..],
             "is a sweep over gap.amplitude and groups.adhesion, not over",
@@ -166,7 +175,7 @@ fn refusals_name_what_is_wrong_and_keep_files() {
         (over("gap.amplitude"), "KEY=FROM..TO"),
         (over("groups.adhesion=1..0.5"), "from a number to a larger one"),
         (over("groups.adhesion=log:0..1"), "must begin above zero"),
-        (over("basis.kind=1..2"), "an axis must be a number"),
+        (over("basis.kind=1..2"), "a range must be of a number"),
         (over("gap.wavelength=1e-9..1"), "waves; a map takes at most 3000"),
         (over("gap.amplitude=nan..1"), "gap.amplitude = NaN is out of range"),
         (over("gap.amplitude=0..inf"), "gap.amplitude = inf is out of range"),
