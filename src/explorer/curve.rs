@@ -212,7 +212,19 @@ impl CurveData {
         let setting = Arc::new(Setting::new(preset.clone(), curve.equilibrium.scales));
         let along = along.map(|path| path.map(Arc::new));
         let checked = case.cohesion.is_some();
-        Ok(Self { base, case, setting, points, limits, other_limits, unloading, along, report, of_start, checked })
+        Ok(Self {
+            base,
+            case,
+            setting,
+            points,
+            limits,
+            other_limits,
+            unloading,
+            along,
+            report,
+            of_start,
+            checked,
+        })
     }
 
     /// The warnings about the problem, and about the path where it starts with a disc.

@@ -46,8 +46,16 @@ impl Drawn {
     }
 }
 
+/// The exponents of the law from which a pull is drawn.
+#[derive(Debug, Clone, Copy)]
+enum Exponents {
+    UpToOne,
+    /// From 1 on, where the edge begins to move with a speed of no bounded slope.
+    UpToTwo,
+}
+
 /// The pull of a problem number; `None` where the problem has no adhesion or no start.
-fn drawn(number: u64) -> Option<Drawn> {
+fn drawn(number: u64, exponents: Exponents) -> Option<Drawn> {
     let problem = draw(number).ok()?;
     let case = Case::new(&problem.preset).ok()?;
     let gamma = case.reduced.work_of_adhesion;
@@ -58,7 +66,11 @@ fn drawn(number: u64) -> Option<Drawn> {
     let mut random = fastrand::Rng::with_seed(number ^ 0x5EED);
     let mut scale = |from: i32, to: i32| 10.0_f64.powf(f64::from(from) + f64::from(to - from) * random.f64());
     let (rate, stiffness) = (scale(-8, 3), scale(-6, 6));
-    let exponent = 0.1 + 0.9 * random.f64();
+    let (exponent, rate, stiffness) = match exponents {
+        Exponents::UpToOne => (0.1 + 0.9 * random.f64(), rate, stiffness),
+        // With slower pulls and softer springs the drive of the edge is lost in rounding.
+        Exponents::UpToTwo => (1.0 + random.f64(), rate.max(1e-3), stiffness.max(1e-3)),
+    };
     let control = [Control::Displacement, Control::Force, Control::Stiffness(stiffness)][random.usize(0..3)];
     let closing = if random.bool() { gamma } else { gamma * (0.2 + 0.8 * random.f64()) };
     let edge = MovingEdge { law: EdgeLaw::symmetric(exponent), opening: gamma, closing };
@@ -77,13 +89,15 @@ fn drawn(number: u64) -> Option<Drawn> {
 }
 
 /// What is wrong with the pull of a problem number; `None` where there is no pull.
-fn judged(number: u64) -> Option<Result<(f64, String), String>> {
-    let drawn = drawn(number)?;
+fn judged(number: u64, exponents: Exponents) -> Option<Result<(f64, String), String>> {
+    let drawn = drawn(number, exponents)?;
     let words = drawn.words.clone();
     let pull = match drawn.puller().pull(&drawn.parts, &Unwatched) {
         Ok(pull) => pull,
         // Where a gap is unknown it is not pulled, and where bodies touch ahead of the edge there is more than one disc.
         Err(RateError::Beyond { .. } | RateError::Pressed { .. }) => return None,
+        // The edge may begin too slowly; that is told.
+        Err(RateError::TooManySteps { .. }) if matches!(exponents, Exponents::UpToTwo) => return None,
         Err(error) => return Some(Err(format!("{words}: {error:?}"))),
     };
     Some(
@@ -103,15 +117,16 @@ fn faults(drawn: &Drawn, pull: &Pull) -> Option<String> {
     let last = pull.moments.last().map_or(0.0, |moment| moment.dissipated);
     let falls = |pair: &[Moment]| pair[1].dissipated < pair[0].dissipated - BALANCE * last;
     if pull.moments.windows(2).any(falls) {
-        return Some("gains energy".to_owned());
+        let worst = pull.moments.windows(2).map(|pair| pair[0].dissipated - pair[1].dissipated);
+        return Some(format!("gains {:e} of {last:e}", worst.fold(0.0, f64::max)));
     }
     let only_opens = drawn.parts.len() == 1;
     let grows = |pair: &[Moment]| pair[1].contact_radius > pair[0].contact_radius * (1.0 + 10.0 * BALANCE);
     (only_opens && pull.moments.windows(2).any(grows)).then(|| "grows while it is pulled".to_owned())
 }
 
-fn campaign(numbers: Range<u64>) {
-    let found: Vec<_> = numbers.into_par_iter().filter_map(judged).collect();
+fn campaign(numbers: Range<u64>, exponents: Exponents) {
+    let found: Vec<_> = numbers.into_par_iter().filter_map(|number| judged(number, exponents)).collect();
     let (right, wrong): (Vec<_>, Vec<_>) = found.into_iter().partition(Result::is_ok);
     let worst = right.iter().filter_map(|found| found.as_ref().ok()).max_by(|a, b| a.0.total_cmp(&b.0));
     println!("{} pulls right, {} wrong, worst {worst:?}", right.len(), wrong.len());
@@ -121,7 +136,12 @@ fn campaign(numbers: Range<u64>) {
 
 #[test]
 fn fifty_random_pulls_close_their_balance() {
-    campaign(0..50);
+    campaign(0..50, Exponents::UpToOne);
+}
+
+#[test]
+fn thirty_pulls_with_an_exponent_above_one_close_their_balance() {
+    campaign(0..30, Exponents::UpToTwo);
 }
 
 #[test]
@@ -132,7 +152,9 @@ fn five_hundred_random_pulls_close_their_balance() {
         let (from, to) = text.split_once("..")?;
         Some(from.parse().ok()?..to.parse().ok()?)
     });
-    campaign(range.unwrap_or(0..600));
+    let range = range.unwrap_or(0..600);
+    campaign(range.clone(), Exponents::UpToOne);
+    campaign(range, Exponents::UpToTwo);
 }
 
 /// Only the ratio of the two speeds matters, and exactly so.

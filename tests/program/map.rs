@@ -141,7 +141,9 @@ fn results_of_another_sweep_are_not_drawn_under_the_lines() {
     fs::write(home.path().join("sweep.toml"), spec).unwrap();
     text(home.path(), &["sweep", "sweep.toml", "-o", "sweep.csv"]);
     // The same axes, on a gap whose other values differ.
-    let same = spec.replace("gap.amplitude", "groups.amplitude_over_wavelength").replace("[1e-4, 2e-4]", "[0.005, 0.01]");
+    let same = spec
+        .replace("gap.amplitude", "groups.amplitude_over_wavelength")
+        .replace("[1e-4, 2e-4]", "[0.005, 0.01]");
     fs::write(home.path().join("same.toml"), same).unwrap();
     text(home.path(), &["sweep", "same.toml", "-o", "same.csv"]);
     let own = ["--set", "gap.wavelength=0.1"];

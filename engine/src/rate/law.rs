@@ -71,7 +71,8 @@ pub struct MotionLaw {
 impl MotionLaw {
     /// The speed at a drive, and its derivative; odd in the drive, so that a rest is a simple root.
     pub fn speed(self, drive: f64) -> [f64; 2] {
-        let size = drive.abs();
+        // Above n = 1 the slope has no bound at rest.
+        let size = drive.abs().max(f64::MIN_POSITIVE);
         let inverse = 1.0 / self.exponent;
         let slope = power(size, inverse - 1.0);
         [self.speed * drive * slope, self.speed * inverse * slope]

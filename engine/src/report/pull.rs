@@ -551,18 +551,21 @@ fn limits(
         format!("at the rate {}: ", shown(&case.shown, quantity, *rate))
     });
     let mut warnings = Vec::new();
-    let ratio = pull.moments.iter().filter(|moment| moment.contact_radius > 0.0);
     // Towards the last contact G grows without bound whatever the rate: what matters is what the edge passes before
-    // that.
-    let before_end = ratio.filter(|moment| moment.contact_radius >= pull.peak.contact_radius);
-    let highest = before_end
-        .map(|moment| moment.energy_release_rate / case.reduced.work_of_adhesion)
-        .fold(0.0, f64::max);
-    if let Some(bound) = spec.highest_ratio.filter(|bound| highest > *bound) {
+    // that, up to the largest pull and in every snap.
+    let inner = pull.snaps.iter().map(|snap| snap.to).fold(pull.peak.contact_radius, f64::min);
+    let watched = pull.moments.iter().filter(|moment| moment.contact_radius >= inner.max(f64::MIN_POSITIVE));
+    let ratios =
+        watched.map(|at| [at.energy_release_rate / case.reduced.work_of_adhesion, at.contact_radius]);
+    let highest = ratios.max_by(|a, b| a[0].total_cmp(&b[0]));
+    if let Some((bound, [ratio, radius])) =
+        spec.highest_ratio.zip(highest).filter(|(bound, at)| at[0] > *bound)
+    {
+        let radius = shown(&case.shown, Quantity::Length, radius * case.units().length);
         warnings.push(format!(
-            "{at}G/gamma reaches {} before the largest pull is over, above edge.highest_ratio = {bound}: the law of \
-             the edge does not extend that far",
-            significant(highest, 4)
+            "{at}G/gamma reaches {} at the contact radius {radius}, above edge.highest_ratio = {bound}: the law of the \
+             edge does not extend that far",
+            significant(ratio, 4)
         ));
     }
     if let Some(tau) = spec.relaxation_time {
