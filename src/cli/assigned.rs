@@ -8,8 +8,8 @@ use pulloff_engine::preset::{Preset, Value, groups};
 use pulloff_engine::units::number::short;
 use pulloff_engine::units::parse_quantity;
 
-/// A bare number further than this factor from the preset's own value is reported.
-const FAR: f64 = 1e3;
+/// A bare number further than this factor from the preset's own value is reported: half of that between mm and um.
+const FAR: f64 = 500.0;
 
 /// Reports what the assignments changed in the preset from `source`, which is now `after`.
 pub(super) fn report(

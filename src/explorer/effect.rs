@@ -61,6 +61,6 @@ pub enum Reply {
         outcome: Option<WalkOutcome>,
     },
     /// A message about the session for the person.
-    Notice(String),
+    SessionSaved(Result<(), String>),
     File(Box<Done>),
 }

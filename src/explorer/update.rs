@@ -164,7 +164,11 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
             Some(kind) => (kind.keep)(model, found),
             None => Vec::new(),
         },
-        Reply::Notice(text) => model.refuse(text),
+        Reply::SessionSaved(result) => {
+            model.is_session_kept = result.is_ok();
+            let works = || "session saving works again".to_owned();
+            model.refuse(result.err().map_or_else(works, |why| format!("the session is not being saved: {why}")))
+        }
         Reply::File(done) => file_came(model, *done),
     };
     effects.extend(go_on(model));

@@ -133,9 +133,9 @@ pub fn run(
     terminal::set_last_words(Box::new(move || drop(last.finish(Ended::Dropped, PATIENCE[1]))));
     let (guard, mut display, inbox) = terminal::enter::<Reply>()?;
     let teller = inbox.sender();
-    autosave.start(move |text| {
+    autosave.start(move |result| {
         // Fails only if the screen is gone.
-        let _ = teller.send(Reply::Notice(text));
+        let _ = teller.send(Reply::SessionSaved(result));
     })?;
     let sender = inbox.sender();
     let workers = Workers::start(store, move |reply| {

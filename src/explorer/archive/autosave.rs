@@ -58,7 +58,7 @@ impl Autosave {
     }
 
     /// Starts the thread that writes; what the person should know goes to `tell`.
-    pub fn start(&self, tell: impl Fn(String) + Send + 'static) -> std::io::Result<()> {
+    pub fn start(&self, tell: impl Fn(Result<(), String>) + Send + 'static) -> std::io::Result<()> {
         let keeper = self.clone();
         thread::Builder::new().name("session".to_owned()).spawn(move || keeper.work(&tell))?;
         Ok(())
@@ -107,8 +107,8 @@ impl Autosave {
     }
 
     /// Writes what arrives, until the session is over.
-    fn work(&self, tell: &dyn Fn(String)) {
-        let mut told = None;
+    fn work(&self, tell: &dyn Fn(Result<(), String>)) {
+        let mut told = Ok(());
         let mut seen = 0;
         loop {
             let Some((newest, left)) = self.next(&mut seen) else { return };
@@ -126,11 +126,10 @@ impl Autosave {
                 result.and(self.write(&mut writer, &newest, Ended::Running))
             };
             drop(newest);
-            let failure =
-                result.err().map(|error| format!("the session is not being saved: {}", error.brief()));
-            if failure != told {
-                tell(failure.clone().unwrap_or_else(|| "session saving works again".to_owned()));
-                told = failure;
+            let result = result.map_err(|error| error.brief());
+            if result != told {
+                tell(result.clone());
+                told = result;
             }
             thread::sleep(PAUSE.max(begun.elapsed() * SHARE));
         }

@@ -265,10 +265,8 @@ impl App {
             Id::Quit if self.model.is_unsaved() => {
                 let saves =
                     self.keymap.keys(Id::SaveAs).first().map(|key| format!(", {} saves", key.label()));
-                let question = format!(
-                    "Not saved; the session keeps it. y quits, Esc stays{}.",
-                    saves.unwrap_or_default()
-                );
+                let kept = if self.model.is_session_kept { "; the session keeps it" } else { ", nor is the session" };
+                let question = format!("Not saved{kept}. y quits, Esc stays{}.", saves.unwrap_or_default());
                 self.ask(question, Id::Quit.into())
             }
             Id::Save if self.model.source.path().is_none() => self.ask_name(),

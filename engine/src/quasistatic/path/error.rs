@@ -29,6 +29,8 @@ pub enum PathError {
         contact_radius: f64,
         /// The largest radius searched, a length.
         searched: f64,
+        /// Whether the gap is smaller there than on the axis.
+        falls: bool,
     },
     /// The turn lies beyond what is known of the gap.
     BeyondGap {
@@ -132,12 +134,17 @@ impl PathError {
                     "without adhesion a dead load of {load} carries no contact: turn at a force above {none}"
                 )
             }
-            Self::UnstableStart { contact_radius, searched } => {
+            Self::UnstableStart { contact_radius, searched, falls } => {
                 let (start, searched) = (length(contact_radius), length(searched));
                 let under = printer.under_control();
+                let why = if falls {
+                    "; the gap is smaller there than on the axis: a gap has the opposite sign of a body's height"
+                } else {
+                    ""
+                };
                 format!(
                     "the start state (contact radius {start}) is unstable{under}, and there is no stable state \
-                     further out, up to the contact radius {searched}"
+                     further out, up to the contact radius {searched}{why}"
                 )
             }
             Self::BeyondGap { radius, approach, force: load } => {

@@ -44,7 +44,7 @@ pub fn unload(curve: &Curve, setting: &PathSetting<'_>, progress: &dyn Progress)
     let gamma = curve.equilibrium.problem.work_of_adhesion;
     let growing = match setting.closing_below(gamma) {
         Some(closing) => {
-            let none = PathError::UnstableStart { contact_radius: from, searched: from };
+            let none = PathError::UnstableStart { contact_radius: from, searched: from, falls: false };
             Some(curve.under(closing, progress)?.ok_or(none)?)
         }
         None => None,
@@ -205,7 +205,9 @@ fn run_outward(curve: &mut Curve, control: Control, from: f64) -> Result<Landing
             return Ok(landing);
         }
         if reach >= limit {
-            return Err(PathError::UnstableStart { contact_radius: from, searched: reach });
+            let gap = &curve.equilibrium.problem.gap;
+            let falls = gap.jet(reach).value < gap.jet(0.0).value;
+            return Err(PathError::UnstableStart { contact_radius: from, searched: reach, falls });
         }
     }
 }
