@@ -34,7 +34,7 @@ impl Computed {
     pub fn open(&self, usual: Format) -> Result<Opened, Failure> {
         let console = self.messages.open();
         let format = self.format.of(self.destination.path(), usual)?;
-        let loaded = self.problem.load(&console)?;
+        let loaded = self.problem.load_for(true, &console)?;
         let sink = self.destination.sink(self.problem.inputs(&loaded))?;
         Ok(Opened { console, format, preset: loaded.preset, sink })
     }

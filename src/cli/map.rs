@@ -75,7 +75,7 @@ enum MapOutput {
 pub fn run(arguments: &MapArguments) -> Result<ExitCode, Failure> {
     let console = arguments.messages.open();
     let written = arguments.written()?;
-    let loaded = arguments.problem.load(&console)?;
+    let loaded = arguments.problem.load_for(true, &console)?;
     let inputs = arguments.problem.inputs(&loaded);
     let inputs = arguments.over.iter().fold(inputs, |inputs, path| inputs.with_results(path));
     let sink = arguments.destination.sink(inputs)?;

@@ -92,14 +92,14 @@ impl ProblemArguments {
         Ok(loaded)
     }
 
-    /// Loads the preset with the changes for the points of another file where there `is_another`: the preset's own
-    /// file is left out where its settings contradict the changes.
-    pub fn load_for(&self, is_another: bool, console: &Console) -> Result<Loaded, Failure> {
+    /// Loads the preset with the changes where its own measured curve is not used, if `is_unused`: its file is left out
+    /// where its settings contradict the changes.
+    pub fn load_for(&self, is_unused: bool, console: &Console) -> Result<Loaded, Failure> {
         self.load(console).or_else(|failure| {
             let mut alone = Self { preset: self.preset.clone(), changes: self.changes.clone() };
             alone.changes.assignments.insert(0, format!("{}=none", data::FILE));
             // A pipe can be read only once, and then the second failure would be another.
-            if is_another { alone.load(console).map_err(|_| failure) } else { Err(failure) }
+            if is_unused { alone.load(console).map_err(|_| failure) } else { Err(failure) }
         })
     }
 

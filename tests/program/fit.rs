@@ -282,6 +282,18 @@ fn rows_are_mended_by_hand_and_counted() {
     assert_eq!(data.matches("\"measured approach, apart\",").count(), 102);
 }
 
+/// A preset's own measured curve, which states another radius, is no obstacle where it is not used.
+#[test]
+fn what_does_not_use_the_points_takes_values_that_contradict_them() {
+    let home = Home::new();
+    for command in ["trace", "unload", "cycle"] {
+        let ended = home.run(&[command, "lens", "--set", "R=5mm"]);
+        assert_eq!((ended.status, ended.err.contains("lens.csv")), (0, false), "{command}: {}", ended.err);
+    }
+    let ended = home.run(&["plot", "lens", "--set", "R=5mm", "-o", "a.svg"]);
+    assert!(ended.status == 2 && ended.err.contains("states a tip radius"), "{}", ended.err);
+}
+
 #[test]
 fn what_is_not_determined_has_a_status_of_its_own() {
     let home = Home::new();

@@ -88,6 +88,15 @@ fn ranges_steps_and_rows() {
     assert!(text.lines().count() > 100);
 }
 
+/// The snap after the largest pull is the fastest.
+#[test]
+fn a_snap_beyond_the_range_of_the_law_is_told() {
+    let set = ["--set", "edge.highest_ratio=2", "--rate", "0.01"];
+    let output = pulloff(&[&WAVY[..], &set].concat()).success();
+    let said = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+    assert!(said.contains("G/gamma reaches 2.438 at the contact radius 0.118190, above"), "{said}");
+}
+
 #[test]
 fn what_cannot_be_says_what_could() {
     for (arguments, said) in [
@@ -97,6 +106,7 @@ fn what_cannot_be_says_what_could() {
         (vec!["wavy-sphere", "--set", "edge.exponent=0.5", "--rate", "log:1..2"], "log:FROM..TO:COUNT"),
         (vec!["wavy-sphere", "--set", "edge.exponent=9"], "edge.exponent"),
         (vec!["wavy-sphere", "--set", "path.steps=jump"], "to VALUE at RATE"),
+        (vec!["wavy-sphere", "--set", "path.steps=apart at 1; hold 1"], "nothing follows \"apart\""),
         (vec!["fig-9-si", "--set", "edge.exponent=0.5", "--rate", "1 um/s"], "edge.reference_speed"),
         (vec!["wavy-sphere", "--set", "material.closing_work_of_adhesion=1"], "out of range"),
     ] {

@@ -73,7 +73,14 @@ impl Preset {
         if self.edge.steps.trim().is_empty() {
             return Ok(self.edge.rate.map(|rate| Part::Apart { rate }).into_iter().collect());
         }
-        self.edge.steps.split(';').map(|text| self.step(text.trim())).collect()
+        let steps: Vec<Part> =
+            self.edge.steps.split(';').map(|text| self.step(text.trim())).collect::<Result<_, _>>()?;
+        if let Some(at) = steps.iter().position(|step| matches!(step, Part::Apart { .. }))
+            && at + 1 < steps.len()
+        {
+            return Err("nothing follows \"apart\": the bodies have come apart".to_owned());
+        }
+        Ok(steps)
     }
 
     fn step(&self, text: &str) -> Result<Part, String> {
