@@ -14,7 +14,7 @@ use crate::store::stream;
 use crate::sweep::SweepResults;
 use clap::Args;
 use pulloff_engine::preset::changes::differences;
-use pulloff_engine::preset::{Preset, read};
+use pulloff_engine::preset::{Preset, groups, read};
 use pulloff_engine::report::map::Ordinate;
 use pulloff_engine::report::{MapReport, json, table};
 use pulloff_engine::stability::MapAxis;
@@ -177,9 +177,11 @@ fn other_problem(swept: &str, preset: &Preset, x: &MapAxis, y: &Ordinate) -> Opt
     };
     let [swept, own] = [&read("the swept preset", swept).ok()?, preset].map(at_start);
     let is_device = |key: &str| key == "path.control" && [x.key.as_str(), y.name()].contains(&"compliance");
+    let follows =
+        |key: &str| [x.key.as_str(), y.name()].iter().any(|axis| groups::changed(axis).contains(&key));
     let problem = |key: &str| {
         let parts = ["gap.", "material.", "path.control", "units"];
-        parts.iter().any(|part| key.starts_with(part)) && !is_device(key)
+        parts.iter().any(|part| key.starts_with(part)) && !is_device(key) && !follows(key)
     };
     let (key, here) = differences(&swept, &own).into_iter().find(|(key, _)| problem(key))?;
     let there = swept.get(&key).map_or_else(|| "not given".to_owned(), |value| value.to_string());

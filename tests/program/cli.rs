@@ -46,7 +46,7 @@ const UNLOAD_HEADER: &str = "number,kind,direction,control,radius,\
                              after_wave,after_rings,after_area,after_energy,dissipated,dissipated_by_area,\
                              admissible";
 /// A short case: enough rings for the few waves that it crosses.
-const SHORT: &[&str] = &["fig-9", "--set", "basis.rings=60", "--set", "path.start_contact_radius=0.25"];
+const SHORT: &[&str] = &["fig-9", "--set", "basis.rings=60", "--set", "path.start_contact_radius=0.3"];
 
 fn short<'a>(command: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     [&[command], SHORT, more].concat()
@@ -100,7 +100,7 @@ fn trace_writes_one_csv_row_per_point() {
         assert_eq!(row[12], "true");
     }
     // From the start exactly to the end.
-    assert_eq!(rows[0][1].parse::<f64>().unwrap().to_bits(), 0.25f64.to_bits());
+    assert_eq!(rows[0][1].parse::<f64>().unwrap().to_bits(), 0.3f64.to_bits());
     assert_eq!(rows.last().unwrap()[1].parse::<f64>().unwrap().to_bits(), 0.002f64.to_bits());
 }
 

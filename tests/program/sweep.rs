@@ -135,7 +135,7 @@ fn paths_of_one_disc_are_said_not_to_be_checked_unless_a_quantity_does() {
         ("path.contact=rings", "'largest_pull'", false),
     ] {
         let spec = format!(
-            "preset='wavy-sphere'\nset=['{set}','path.start_contact_radius=0.2']\nquantities=[{quantities}]\n\
+            "preset='wavy-sphere'\nset=['{set}','path.start_contact_radius=0.3']\nquantities=[{quantities}]\n\
              [[axis]]\nkey='A'\nvalues=[0.002]"
         );
         home.file("s.toml", &spec);

@@ -218,7 +218,10 @@ impl SweepQuantity {
     /// Whether it depends on the control. Then `NAME` is under the preset's own, and `NAME_displacement` and
     /// `NAME_force` are under these two.
     pub fn is_of_control(&self) -> bool {
-        matches!(self.of, Stage::Limits | Stage::Unloading(_) | Stage::Passed | Stage::Loop(_))
+        matches!(
+            self.of,
+            Stage::Limits | Stage::Unloading(_) | Stage::Least(..) | Stage::Passed | Stage::Loop(_)
+        )
     }
 
     /// Its columns, one under each control that matters.
@@ -233,7 +236,7 @@ impl QuantityColumn {
     /// looked for, which takes far longer.
     pub fn is_unchecked(&self, preset: &Preset) -> bool {
         let is_one_disc = preset.basis != BasisSpec::Exact || preset.path.contact == ContactKind::OneDisc;
-        is_one_disc && matches!(self.quantity.of, Stage::Unloading(_))
+        is_one_disc && matches!(self.quantity.of, Stage::Unloading(_) | Stage::Least(..))
     }
 }
 
