@@ -116,8 +116,11 @@ fn a_script_studies_a_quantity_over_a_value() {
     home.fails("study largest_pull gap.radius", &[], 2, "unknown key gap.radius");
     // The study is that of the values at its export.
     let script = "open fig-3-jkr\nstudy largest_pull work_of_adhesion\nexport study first.csv\n\
-                  set work_of_adhesion=0.5\nstep\nexport study s.csv\nexport study s.toml\nexport figure s.svg study\n";
+                  set work_of_adhesion=0.5\nstep\nexport study s.csv\nexport study s.toml\nexport figure s.svg study\n\
+                  study largest_pull work_of_adhesion\nexport figure seen.svg\n";
     home.quiet(script, &[]);
+    let [named, seen] = ["s", "seen"].map(|name| fs::read(home.at(&format!("here/{name}.svg"))).unwrap());
+    assert!(named == seen);
     let [first, second] =
         ["first", "s"].map(|name| fs::read_to_string(home.at(&format!("here/{name}.csv"))).unwrap());
     assert!(first != second && first.lines().count() > 50);

@@ -48,8 +48,17 @@ pub fn play(
             return Err(Failed { number: 0, command: "the preset".to_owned(), reason });
         }
     }
+    let mut before_study = None;
     for each in lines {
+        if !matches!(each.command, Command::Export { .. }) {
+            // A study is computed while it is looked at: what this line changes would compute it again.
+            model.view = before_study.take().unwrap_or(model.view);
+        }
+        let before = model.view;
         let result = obey(model, driver, each, permission, draws);
+        if each.command.id() == Id::Study {
+            before_study = Some(before);
+        }
         if let (Err(reason), false) = (result, each.may_fail) {
             let command = line(&each.command).unwrap_or_default();
             return Err(Failed { number: each.number, command, reason });
@@ -79,14 +88,8 @@ fn obey(
         *what =
             drawn(model, driver, what.clone(), draws).map_err(|why| WordedFault::mendable(by_name(&why)))?;
     }
-    let before = model.view;
-    let is_study = command.id() == Id::Study;
     let effects = update(model, command);
     driver.settle(model, effects);
-    if is_study {
-        // It is computed while it is looked at: what a later line changes would compute it again.
-        model.view = before;
-    }
     // There is nobody to answer what a screen would ask now.
     model.question = None;
     refusal(model).map_or(Ok(()), Err)
