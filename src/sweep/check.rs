@@ -1,5 +1,6 @@
 //! Checks results without computing anything: whether they belong to the sweep beside them, and how far they are.
 
+use super::ensemble::members;
 use super::output::{FaultCounts, OutputError};
 use super::rows::{RowFault, RowReader};
 use super::shard::Shard;
@@ -33,7 +34,8 @@ impl Checked {
     }
 }
 
-/// Checks the results at `path`: the hash beside them, the header, and the number, axes and cells of each row.
+/// Checks the results at `path`: the hash beside them, the header, and the number, axes and cells of each row; those of
+/// an ensemble, then its members.
 /// Errors: The first line that is not the expected one, and [`OutputError::NotOurs`].
 pub fn check(path: &Path) -> Result<Checked, OutputError> {
     let shown = || show_path(path);
@@ -59,6 +61,13 @@ pub fn check(path: &Path) -> Result<Checked, OutputError> {
             Err(RowFault::Wrong(what)) => {
                 return Err(OutputError::Changed { path: shown(), line: reader.lines, what });
             }
+        }
+    }
+    if sidecar.is_statistics() {
+        // They are as good, and as complete, as the rows of the members that they are of.
+        let members = check(&members(path))?;
+        if members.rows < members.of {
+            return Ok(members);
         }
     }
     let (rows, is_torn) = (reader.rows(), reader.is_torn());

@@ -100,6 +100,17 @@ fn statistics_are_those_of_a_plain_loop_over_the_surfaces() {
         let Ended { status, out, err } = home.run(&["sweep", "check", file]);
         assert!(status == 0 && out.contains(rows), "{out} {err}");
     }
+    // Statistics of members that are not all there, or are not theirs, are not complete.
+    let all = home.text("r.members.csv");
+    let fewer: String = all.split_inclusive('\n').take(20).collect();
+    home.file("r.members.csv", &fewer);
+    let Ended { out, err, .. } = home.run(&["sweep", "check", "r.csv"]);
+    assert!(out.contains("19 of 36 rows"), "{out} {err}");
+    home.file("r.members.csv", &all.replace(",0.", ",x."));
+    assert_ne!(home.run(&["sweep", "check", "r.csv"]).status, 0);
+    std::fs::remove_file(home.path("r.members.csv")).unwrap();
+    let Ended { status, err, .. } = home.run(&["sweep", "check", "r.csv"]);
+    assert!(status != 0 && err.contains("r.members.csv"), "{err}");
 }
 
 #[test]
