@@ -12,6 +12,7 @@
 use super::balance::{Balance, CONVERGED, HeldEdges, LEFT, keeps_widths, moved, part_way};
 use super::error::PathError;
 use super::event::{Passed, PassedKind};
+use super::lane::Lane;
 use crate::annuli::{Contacts, points, points_on_the_way};
 use crate::elementary::cbrt;
 use crate::quasistatic::jump::EdgeDirection;
@@ -97,74 +98,14 @@ impl Balance<'_> {
         passed: &mut Vec<Passed>,
     ) -> Result<Option<HeldEdges>, PathError> {
         // A seed may be wider than the contact it becomes; all else only grows while the control goes up.
-        let kept: Vec<[f64; 2]> =
-            start.intervals().into_iter().filter(|[a, b]| b - a > 2.0 * self.narrow()).collect();
-        let mut contacts = start;
-        let mut last = f64::INFINITY;
+        let kept = start.intervals().into_iter().filter(|[a, b]| b - a > 2.0 * self.narrow()).collect();
+        let last = f64::INFINITY;
+        let mut run = EdgeRun { balance: self, value, sense, mobility, kept, contacts: start, last, passed };
         for _ in 0..STEPS {
             self.progress.go_on()?;
-            contacts = self.tidied(contacts, sense, passed);
-            if contacts.is_empty() {
-                return Ok(None);
+            if let Some(landed) = run.step()? {
+                return Ok(landed);
             }
-            if let Some(lane) = self.lane_of(&contacts) {
-                let run = if sense > 0.0 { EdgeDirection::Outward } else { EdgeDirection::Inward };
-                if self.is_pinned(contacts.disc) {
-                    let held = self.held(&contacts, &points(self.ground, &contacts), value)?;
-                    if !self.lets_go(&held) {
-                        return Ok(Some(held));
-                    }
-                }
-                let Some(held) = self.disc_run(lane, &contacts, value, run)? else { return Ok(None) };
-                let touched = if sense > 0.0 { self.touched(&held, value, passed)? } else { None };
-                let Some(touched) = touched else { return Ok(Some(held)) };
-                (contacts, last) = (touched, f64::INFINITY);
-                continue;
-            }
-            // Only the end of the run, which Newton's method finds, needs all digits.
-            let resolution = if last.is_finite() { points } else { points_on_the_way };
-            let held = self.held(&contacts, &resolution(self.ground, &contacts), value)?;
-            if sense < 0.0 && self.lets_go(&held) {
-                continue;
-            }
-            let lowest = Self::least_eigenvalue(&held);
-            let newton = (lowest > 0.0).then(|| held.jacobian.clone().lu().solve(&-&held.excess)).flatten();
-            let newton = newton.filter(|step| step.iter().all(|x| x.is_finite()));
-            let newton = newton.map(|step| self.beside_corners(&contacts, step));
-            let scales = self.scales(&contacts).edges;
-            let size_of = |step: &DVector<f64>| step.component_div(&scales).amax();
-            if let Some(step) = &newton {
-                let size = size_of(step);
-                if last.is_finite() && size <= CONVERGED || (size <= 1e-10 && size > 0.3 * last) {
-                    if sense < 0.0 {
-                        return Ok(Some(held));
-                    }
-                    let Some(touched) = self.touched(&held, value, passed)? else {
-                        return Ok(Some(held));
-                    };
-                    (contacts, last) = (touched, f64::INFINITY);
-                    continue;
-                }
-                let next = moved(&contacts, step);
-                if size <= BACK && keeps_widths(&contacts, &next, LEFT) {
-                    (contacts, last) = (next, size);
-                    continue;
-                }
-            }
-            last = f64::INFINITY;
-            if sense > 0.0 && self.least_gap(&held)?.is_some_and(|crest| crest.gap < 0.0) {
-                // Checked with all digits: beside an edge the gap is as small as the error.
-                let held = self.held(&contacts, &points(self.ground, &contacts), value)?;
-                if let Some(touched) = self.touched(&held, value, passed)? {
-                    contacts = touched;
-                    continue;
-                }
-            }
-            let step = self.damped(&held, lowest, sense, mobility)?;
-            // Where no edge is driven on, the last step went beyond the equilibrium.
-            let is_beyond = sense > 0.0 && size_of(&step) <= CONVERGED;
-            let back = newton.filter(|_| is_beyond).and_then(|step| back(&contacts, &step, &kept));
-            contacts = back.unwrap_or_else(|| moved(&contacts, &step));
         }
         Err(PathError::NoLanding { control_value: value, steps: STEPS })
     }
@@ -280,6 +221,97 @@ impl Balance<'_> {
             }
         }
         contacts
+    }
+}
+
+/// Edges that run at a held control value.
+struct EdgeRun<'r, 'b> {
+    balance: &'r Balance<'b>,
+    value: f64,
+    sense: f64,
+    mobility: Mobility<'r>,
+    /// The contacts that may not open on the way up.
+    kept: Vec<[f64; 2]>,
+    contacts: Contacts,
+    /// The size of the previous step if it was one of Newton's method, and infinite if not.
+    last: f64,
+    passed: &'r mut Vec<Passed>,
+}
+
+impl EdgeRun<'_, '_> {
+    /// One step; where the edges land or nothing is left, the run is over.
+    fn step(&mut self) -> Result<Option<Option<HeldEdges>>, PathError> {
+        let Self { balance, value, sense, .. } = *self;
+        self.contacts = balance.tidied(std::mem::take(&mut self.contacts), sense, self.passed);
+        if self.contacts.is_empty() {
+            return Ok(Some(None));
+        }
+        if let Some(lane) = balance.lane_of(&self.contacts) {
+            return self.on_lane(lane);
+        }
+        // Only the end of the run, which Newton's method finds, needs all digits.
+        let resolution = if self.last.is_finite() { points } else { points_on_the_way };
+        let held = balance.held(&self.contacts, &resolution(balance.ground, &self.contacts), value)?;
+        if sense < 0.0 && balance.lets_go(&held) {
+            return Ok(None);
+        }
+        let lowest = Balance::least_eigenvalue(&held);
+        let newton = (lowest > 0.0).then(|| held.jacobian.clone().lu().solve(&-&held.excess)).flatten();
+        let newton = newton.filter(|step| step.iter().all(|x| x.is_finite()));
+        let newton = newton.map(|step| balance.beside_corners(&self.contacts, step));
+        let scales = balance.scales(&self.contacts).edges;
+        let size_of = |step: &DVector<f64>| step.component_div(&scales).amax();
+        if let Some(step) = &newton {
+            let size = size_of(step);
+            if self.last.is_finite() && size <= CONVERGED || (size <= 1e-10 && size > 0.3 * self.last) {
+                return self.arrived(held);
+            }
+            let next = moved(&self.contacts, step);
+            if size <= BACK && keeps_widths(&self.contacts, &next, LEFT) {
+                (self.contacts, self.last) = (next, size);
+                return Ok(None);
+            }
+        }
+        self.last = f64::INFINITY;
+        if sense > 0.0 && balance.least_gap(&held)?.is_some_and(|crest| crest.gap < 0.0) {
+            // Checked with all digits: beside an edge the gap is as small as the error.
+            let held = balance.held(&self.contacts, &points(balance.ground, &self.contacts), value)?;
+            if let Some(touched) = balance.touched(&held, value, self.passed)? {
+                self.contacts = touched;
+                return Ok(None);
+            }
+        }
+        let step = balance.damped(&held, lowest, sense, self.mobility)?;
+        // Where no edge is driven on, the last step went beyond the equilibrium.
+        let is_beyond = sense > 0.0 && size_of(&step) <= CONVERGED;
+        let back = newton.filter(|_| is_beyond).and_then(|step| back(&self.contacts, &step, &self.kept));
+        self.contacts = back.unwrap_or_else(|| moved(&self.contacts, &step));
+        Ok(None)
+    }
+
+    /// A disc that runs on its known equilibria.
+    fn on_lane(&mut self, lane: &Lane) -> Result<Option<Option<HeldEdges>>, PathError> {
+        let Self { balance, value, sense, .. } = *self;
+        let run = if sense > 0.0 { EdgeDirection::Outward } else { EdgeDirection::Inward };
+        if balance.is_pinned(self.contacts.disc) {
+            let held = balance.held(&self.contacts, &points(balance.ground, &self.contacts), value)?;
+            if !balance.lets_go(&held) {
+                return Ok(Some(Some(held)));
+            }
+        }
+        match balance.disc_run(lane, &self.contacts, value, run)? {
+            Some(held) => self.arrived(held),
+            None => Ok(Some(None)),
+        }
+    }
+
+    /// Edges at an equilibrium: the run is over, unless a crest touches there.
+    fn arrived(&mut self, held: HeldEdges) -> Result<Option<Option<HeldEdges>>, PathError> {
+        let touches = self.sense > 0.0;
+        let touched = if touches { self.balance.touched(&held, self.value, self.passed)? } else { None };
+        let Some(touched) = touched else { return Ok(Some(Some(held))) };
+        (self.contacts, self.last) = (touched, f64::INFINITY);
+        Ok(None)
     }
 }
 
