@@ -4,7 +4,7 @@ use super::bounds::Bounds;
 use super::parts::{Figure, Mark, Sign};
 use super::scale::Scale;
 use crate::explorer::View;
-use pulloff_engine::measured::{Abscissa, Branches, Segment};
+use pulloff_engine::measured::{Abscissa, Branches, Instrument, Segment};
 use pulloff_engine::preset::Preset;
 
 /// The largest number of points drawn; a fit uses all of them.
@@ -22,9 +22,7 @@ impl MeasuredMarks {
     }
 
     fn new(branches: &Branches, preset: &Preset) -> Self {
-        let data = &preset.data;
-        let offset = data.offset.unwrap_or(0.0);
-        let (baseline, tilt) = (data.baseline.or(branches.baseline).unwrap_or(0.0), data.tilt.unwrap_or(0.0));
+        let Instrument { offset, baseline, tilt } = preset.data.instrument(branches);
         let of = |x: f64, force: f64, radius: f64| {
             let force = force - baseline - tilt * x;
             match (branches.abscissa, preset.reading().spring) {

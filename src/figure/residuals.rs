@@ -42,7 +42,8 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
             return figure;
         }
     };
-    let offset = subject.preset.data.offset.unwrap_or(0.0);
+    let branches = subject.preset.branches().and_then(Result::ok);
+    let offset = branches.map_or(0.0, |branches| subject.preset.data.instrument(&branches).offset);
     let at = |residual: &Residual| (scale.length(residual.datum.point.x - offset), residual.residual);
     let step = residuals.len().div_ceil(DRAWN).max(1);
     let parts = [Segment::Approach, Segment::Retraction].map(|segment| [(segment, false), (segment, true)]);

@@ -13,9 +13,9 @@ use super::distance::Nearest;
 use super::least_squares::LeastSquares;
 use super::path::{Foot, PathPlace};
 use super::prior::Prior;
-use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, Instrument, Paths, START, Target};
+use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, Paths, START, Target};
 use super::track::Mover;
-use crate::measured::Segment;
+use crate::measured::{Instrument, Segment};
 use crate::preset::edge;
 use crate::preset::schema::RANGE_KEYS;
 use nalgebra::{DMatrix, DVector};
@@ -191,7 +191,9 @@ impl LeastSquares for FitProblem {
             let mut column = jacobian.column_mut(j);
             let put = |row: usize, derivative: f64| column[row] = derivative;
             match (shift(target), scale) {
-                (Some(shift), Some(scale)) => self.of_shift(&look.feet, (shift, *scale), put),
+                (Some(shift), Some(scale)) => {
+                    self.of_shift(&look.feet, (shift, target.sign(self.turned) * scale), put);
+                }
                 _ => self.of_model(u, j, look, put)?,
             }
         }

@@ -27,14 +27,15 @@ impl FitProblem {
         let mut held = self.clone();
         let FreeParameter { target, .. } = held.parameters.remove(j);
         let value = self.parameters[j].value(u);
+        let in_points = target.sign(self.turned) * value;
         held.priors.retain(|prior| prior.parameter != j);
         for prior in &mut held.priors {
             prior.parameter -= usize::from(prior.parameter > j);
         }
         match target {
-            Target::Offset => held.instrument.offset = value,
-            Target::Baseline => held.instrument.baseline = value,
-            Target::Tilt => held.instrument.tilt = value,
+            Target::Offset => held.instrument.offset = in_points,
+            Target::Baseline => held.instrument.baseline = in_points,
+            Target::Tilt => held.instrument.tilt = in_points,
             Target::Key(key) => held.preset.set(&key, Value::Number(value)).ok()?,
             // With one of two adhesions held, the other would become the adhesion of both.
             Target::Adhesion(_) => return None,

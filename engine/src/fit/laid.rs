@@ -1,8 +1,8 @@
 //! The preset that a fit leaves: its own, with what was found.
 
-use super::problem::{ADHESION, FitProblem, FreeParameter, Instrument, Target};
+use super::problem::{ADHESION, FitProblem, FreeParameter, Target};
 use super::uncertain::{uncertain, written};
-use crate::measured::Segment;
+use crate::measured::{Instrument, Segment};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::{Preset, Value, edge};
 

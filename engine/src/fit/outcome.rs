@@ -3,7 +3,7 @@
 use super::fitted::Fitted;
 use super::least_squares::Ending;
 use super::options::letter;
-use super::problem::{ADHESION, Instrument};
+use super::problem::ADHESION;
 use super::residuals::Residual;
 use super::rows::Rows;
 use super::scatter::Scatter;
@@ -12,7 +12,7 @@ use super::uncertain::Given;
 use super::verdict::{Reason, Verdict};
 use crate::gap::Gap;
 use crate::measured::points::Turned;
-use crate::measured::{Abscissa, Noise};
+use crate::measured::{Abscissa, Instrument, Noise};
 use crate::preset::Preset;
 use crate::units::{Quantity, number::said};
 
@@ -65,7 +65,7 @@ pub struct Fit {
     pub warnings: Vec<String>,
     /// The preset with the fitted values.
     pub preset: Preset,
-    /// The values between model and instrument.
+    /// The values between model and instrument, in the numbers of the file.
     pub instrument: Instrument,
     /// The points compared with the fit.
     pub residuals: Vec<Residual>,

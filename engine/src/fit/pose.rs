@@ -2,13 +2,13 @@
 
 use super::options::{FitError, Options, target};
 use super::prior::Prior;
-use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, Instrument, START, Target};
+use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, START, Target};
 use super::track::Reach;
 use super::track::begins;
 use super::uncertain::{Uncertain, uncertain};
 use crate::gap::Gap;
 use crate::measured::branches::{MeasuredPoint, median};
-use crate::measured::{Abscissa, Branches, Segment};
+use crate::measured::{Abscissa, Branches, Instrument, Segment};
 use crate::preset::data::BASELINE;
 use crate::preset::data::DataSpec;
 use crate::preset::{BasisSpec, Preset, Value};
@@ -43,17 +43,18 @@ pub fn posed(
         notes.push("the fit is made in the exact basis, whatever basis.kind says".to_owned());
     }
     let mut data = data(branches);
+    let offset = preset.data.instrument(branches).offset;
     let has_waves = preset.gap.feature_length().is_some();
     let mut targets = targets(preset, branches, options)?;
     if let Some(key) = targets.iter().map(Target::key).find(|key| key.starts_with("edge.")) {
-        bare.path.start = pulled(&mut bare, branches, &mut data, &key, notes)?;
+        bare.path.start = pulled(&mut bare, branches, (&mut data, offset), &key, notes)?;
         targets.push(Target::Key(START.to_owned()));
     } else {
         bare.edge.rate = None;
         if options.separate {
             let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
             let attached: Vec<&MeasuredPoint> = retraction.flat_map(|branch| &branch.attached).collect();
-            bare.path.start = begun(&bare, branches, &attached, preset.data.offset)?;
+            bare.path.start = begun(&bare, branches, &attached, offset)?;
             targets.push(Target::Key(START.to_owned()));
         }
     }
@@ -95,6 +96,7 @@ pub fn posed(
         parameters,
         priors,
         instrument,
+        turned: branches.turned,
         data,
         sigma,
         step: branches.noise.step,
@@ -110,7 +112,7 @@ pub fn posed(
 fn pulled(
     bare: &mut Preset,
     branches: &Branches,
-    data: &mut Vec<Datum>,
+    (data, offset): (&mut Vec<Datum>, f64),
     key: &str,
     notes: &mut Vec<String>,
 ) -> Result<Start, FitError> {
@@ -149,7 +151,7 @@ fn pulled(
             bare.edge.rate = Some(rate);
         }
     }
-    begun(bare, branches, &attached, bare.data.offset)
+    begun(bare, branches, &attached, offset)
 }
 
 /// The contact radius at which the points of a retraction begin, according to the first guesses.
@@ -157,7 +159,7 @@ fn begun(
     preset: &Preset,
     branches: &Branches,
     attached: &[&MeasuredPoint],
-    offset: Option<f64>,
+    offset: f64,
 ) -> Result<Start, FitError> {
     let first = &attached[..TURN.min(attached.len())];
     let middle = |of: fn(&MeasuredPoint) -> f64| {
@@ -167,7 +169,7 @@ fn begun(
     let start = if seen.is_finite() && branches.abscissa != Abscissa::Radius {
         Some(seen)
     } else {
-        let x = middle(|point| point.x) - offset.unwrap_or(0.0);
+        let x = middle(|point| point.x) - offset;
         begins(preset, branches.abscissa, x, branches.ranges[0])
     };
     start.filter(|start| *start > 0.0).map(Start::ContactRadius).ok_or(FitError::NoStart)
@@ -247,11 +249,7 @@ fn instrument(
     notes: &mut Vec<String>,
 ) -> Result<Instrument, FitError> {
     let given = &preset.data;
-    let mut instrument = Instrument {
-        offset: given.offset.unwrap_or(0.0),
-        baseline: given.baseline.unwrap_or(0.0),
-        tilt: given.tilt.unwrap_or(0.0),
-    };
+    let mut instrument = given.instrument(branches);
     let is_asked = !options.free.is_empty();
     let mut too = |why: &str| {
         if !targets.contains(&Target::Baseline) {
@@ -326,12 +324,13 @@ fn parameter(preset: &Preset, branches: &Branches, instrument: &Instrument, targ
         _ => f64::NAN,
     };
     let [x, force, _] = branches.ranges.map(|range| range.max(LEAST_UNIT));
+    let in_file = instrument.turned(branches.turned);
     let (start, scale) = match &target {
         Target::Key(key) => (value(key), None),
         Target::Adhesion(_) => (value(ADHESION), None),
-        Target::Offset => (instrument.offset, Some(x)),
-        Target::Baseline => (instrument.baseline, Some(force)),
-        Target::Tilt => (instrument.tilt, Some(force / x)),
+        Target::Offset => (in_file.offset, Some(x)),
+        Target::Baseline => (in_file.baseline, Some(force)),
+        Target::Tilt => (in_file.tilt, Some(force / x)),
     };
     FreeParameter { target, start, scale }
 }

@@ -7,7 +7,8 @@ use super::track::Reach;
 use super::way::Way;
 use crate::elementary::{exp, ln};
 use crate::measured::branches::MeasuredPoint;
-use crate::measured::{Abscissa, Segment};
+use crate::measured::points::Turned;
+use crate::measured::{Abscissa, Instrument, Segment};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::schema::RANGE_KEYS;
 use crate::preset::{Preset, Value, edge};
@@ -33,6 +34,17 @@ pub enum Target {
 }
 
 impl Target {
+    /// The factor by which its value, which is a number of the file, becomes one of the points.
+    pub fn sign(&self, turned: Turned) -> f64 {
+        let [offset, baseline, tilt] = Instrument::signs(turned);
+        match self {
+            Self::Offset => offset,
+            Self::Baseline => baseline,
+            Self::Tilt => tilt,
+            Self::Key(_) | Self::Adhesion(_) => 1.0,
+        }
+    }
+
     /// Its dotted key; for the adhesion of a branch, followed by the branch.
     pub fn key(&self) -> String {
         match self {
@@ -103,17 +115,6 @@ pub struct Datum {
     pub free: bool,
 }
 
-/// The values between model and instrument.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Instrument {
-    /// δ₀.
-    pub offset: f64,
-    /// P₀.
-    pub baseline: f64,
-    /// Its slope.
-    pub tilt: f64,
-}
-
 /// What is fitted.
 #[derive(Debug, Clone)]
 pub struct FitProblem {
@@ -125,8 +126,10 @@ pub struct FitProblem {
     pub parameters: Vec<FreeParameter>,
     /// What is known of them before.
     pub priors: Vec<Prior>,
-    /// The values of the instrument that are held.
+    /// The values of the instrument that are held, in the signs of the points.
     pub instrument: Instrument,
+    /// Whether the signs of x and P are reversed: the parameters are numbers of the file.
+    pub turned: Turned,
     /// The points.
     pub data: Vec<Datum>,
     /// σ of x, P and s.
@@ -208,11 +211,11 @@ impl FitProblem {
         Some(preset)
     }
 
-    /// The instrument at `u`.
+    /// The instrument at `u`, in the signs of the points.
     pub fn instrument_at(&self, u: &[f64]) -> Instrument {
         let mut instrument = self.instrument;
         for (parameter, u) in self.parameters.iter().zip(u) {
-            let value = parameter.value(*u);
+            let value = parameter.target.sign(self.turned) * parameter.value(*u);
             match parameter.target {
                 Target::Offset => instrument.offset = value,
                 Target::Baseline => instrument.baseline = value,

@@ -157,7 +157,8 @@ impl<'a> Posed<'a> {
         warnings.extend(unmoved(&mut fitted));
         warnings.extend(branches.swapped());
         let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
-        let fitted_preset = laid(preset, &problem, (&found, closing, &problem.instrument_at(u)), &mut notes);
+        let instrument = problem.instrument_at(u).turned(problem.turned);
+        let fitted_preset = laid(preset, &problem, (&found, closing, &instrument), &mut notes);
         let lists =
             |c: nalgebra::DMatrix<f64>| c.row_iter().map(|row| row.iter().copied().collect()).collect();
         let left = real.len().saturating_sub(problem.taken()).max(1) as f64;
@@ -184,7 +185,7 @@ impl<'a> Posed<'a> {
             warnings,
             scatter,
             preset: fitted_preset,
-            instrument: problem.instrument_at(u),
+            instrument,
             residuals,
             parameters: fitted,
         })

@@ -100,7 +100,7 @@ impl FitProblem {
                 median(offsets).into_iter().chain(Some(pull_off).filter(|x| has_waves && x.is_finite()));
             let with = |offset| {
                 let mut u = u.clone();
-                u[j] = self.parameters[j].inner(offset);
+                u[j] = self.parameters[j].inner(Target::Offset.sign(self.turned) * offset);
                 u
             };
             let found: Vec<Vec<f64>> = found.map(with).collect();

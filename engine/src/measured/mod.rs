@@ -56,7 +56,7 @@ pub(crate) use apart::SPARSE;
 pub use asked::{Asked, FreePart, ValueRange};
 pub use branches::{BranchError, Branches, MeasuredBranch, Noise, Origin};
 pub use error::CurveReadError;
-pub use points::{Abscissa, Points, PointsError};
+pub use points::{Abscissa, Instrument, Points, PointsError};
 pub use read::{Column, Measured, SeenColumn, columns, parse};
 pub use role::{ColumnRole, ColumnSpec, ColumnSpecError, Segment};
 pub use source::PointsFile;

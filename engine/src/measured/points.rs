@@ -49,6 +49,33 @@ pub struct MeasuredPoint {
 /// Whether the signs of x and of P are reversed.
 pub type Turned = [bool; 2];
 
+/// What lies between the model and the instrument: the x at which the approach is zero, the force reading of no force,
+/// and its slope over x.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Instrument {
+    /// δ₀.
+    pub offset: f64,
+    /// P₀.
+    pub baseline: f64,
+    /// Its slope.
+    pub tilt: f64,
+}
+
+impl Instrument {
+    /// The factors of offset, baseline and tilt by which numbers of the file become those of its points, and back.
+    pub fn signs([x, force]: Turned) -> [f64; 3] {
+        let [x, force] = [x, force].map(|turned| if turned { -1.0 } else { 1.0 });
+        [x, force, x * force]
+    }
+
+    /// The numbers of the file in those of its points, or back.
+    #[must_use]
+    pub fn turned(self, turned: Turned) -> Self {
+        let [x, force, tilt] = Self::signs(turned);
+        Self { offset: x * self.offset, baseline: force * self.baseline, tilt: tilt * self.tilt }
+    }
+}
+
 /// Reverses the signs of x and P.
 pub(super) fn turn(points: &mut [MeasuredPoint], [x, force]: Turned) {
     for point in points {

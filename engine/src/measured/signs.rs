@@ -13,8 +13,10 @@ use super::turns::{one_way, runs};
 const LIKELY: f64 = 0.5;
 /// The notes for a reversed sign of the force.
 const PULLED: &str =
-    "the force is positive before the jump to the free part, where bodies attract: its sign is reversed";
-const FALLS: &str = "the force falls as the bodies are pressed together: its sign is reversed";
+    "the force is positive before the jump to the free part, where bodies attract: its sign is reversed \
+    (data.baseline is in the numbers of the file)";
+const FALLS: &str = "the force falls as the bodies are pressed together: its sign is reversed (data.baseline is in the \
+    numbers of the file)";
 
 /// Whether the signs of x and P are reversed, and which other signs have comparable evidence.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -101,7 +103,10 @@ impl UnsignedPoints<'_> {
     }
 
     fn turned_x(&self) -> String {
-        format!("the {} grows as the bodies move apart: its sign is reversed", self.abscissa.name())
+        format!(
+            "the {} grows as the bodies move apart: its sign is reversed (data.offset is in the numbers of the file)",
+            self.abscissa.name()
+        )
     }
 
     /// Sets the sign of the force once that of x is right. The force rises where the bodies are pressed together; its

@@ -5,7 +5,7 @@
 //! the preset counts.
 
 use crate::measured::points::Turned;
-use crate::measured::{FreePart, PointsFile, Segment};
+use crate::measured::{Branches, FreePart, Instrument, PointsFile, Segment};
 use std::sync::Arc;
 
 /// The key of the file.
@@ -46,7 +46,7 @@ pub struct DataSpec {
     pub columns: String,
     /// Whether the stiffness and the tip radius that the file states are ignored.
     pub is_alone: bool,
-    /// δ₀; `None` is 0.
+    /// δ₀, in the numbers of the file whatever the signs of its columns, as the next two; `None` is 0.
     pub offset: Option<f64>,
     /// P₀; `None` leaves it to the free part.
     pub baseline: Option<f64>,
@@ -69,6 +69,16 @@ pub struct DataSpec {
 }
 
 impl DataSpec {
+    /// What lies between model and instrument, in the signs of `branches`: what is not given is 0, and the baseline that
+    /// of the free part.
+    pub fn instrument(&self, branches: &Branches) -> Instrument {
+        let or_zero = |value: Option<f64>| value.unwrap_or(0.0);
+        let [offset, baseline, tilt] = [self.offset, self.baseline, self.tilt].map(or_zero);
+        let given = Instrument { offset, baseline, tilt }.turned(branches.turned);
+        let found = branches.baseline.filter(|_| self.baseline.is_none());
+        Instrument { baseline: found.unwrap_or(given.baseline), ..given }
+    }
+
     /// The keys that a fit may change.
     pub fn free(&self) -> impl Iterator<Item = &str> {
         self.free.split(',').map(str::trim).filter(|key| !key.is_empty())

@@ -16,7 +16,7 @@ use super::super::scatter::ScatterRow;
 use super::super::verdict::Reason;
 use super::{Evidence, ROUNDING, runs};
 use crate::elementary::{hypot, ln};
-use crate::measured::{Abscissa, Segment};
+use crate::measured::{Abscissa, Instrument, Segment};
 use crate::units::Quantity;
 use crate::units::number::{said, short};
 use nalgebra::DVector;
@@ -107,7 +107,9 @@ fn of_bins(evidence: Evidence, s: f64) -> Vec<Reason> {
     let squares: f64 = bins.iter().map(|bin| off(bin).powi(2)).sum();
     let all = beyond_f(squares / tests, left.clamp(1.0, tests), scatter.degrees);
     if chance(worst) < FALSE_ALARM || all < FALSE_ALARM {
-        let shown = |x: f64| said(&problem.preset.units, Quantity::Length, x);
+        // As the file has it.
+        let [sign, ..] = Instrument::signs(problem.turned);
+        let shown = |x: f64| said(&problem.preset.units, Quantity::Length, sign * x);
         reasons.push(Reason::new(
             "bins",
             off(worst),
