@@ -15,14 +15,19 @@ use super::rows::{ReportTable, RowsError};
 use crate::case::{Case, CaseError};
 use crate::disc::Panels;
 use crate::elementary::hypot;
-use crate::measured::branches::MeasuredPoint;
+use crate::fit::{AdhesionModel, Options, Verdict, fit_own};
+use crate::measured::branches::{MeasuredPoint, median};
+use crate::measured::points::Turned;
 use crate::measured::speed::{Speed, noise, speeds};
-use crate::measured::{Abscissa, Branches, MeasuredBranch};
+use crate::measured::{Abscissa, Branches, Instrument, MeasuredBranch, Segment};
 use crate::preset::Preset;
+use crate::preset::data::OFFSET;
 use crate::problem::{Control, Units};
 use crate::progress::Progress;
 use crate::rate::equation::HeldDisc;
 use crate::root;
+use crate::units::Quantity;
+use crate::units::number::said;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -138,6 +143,7 @@ pub struct SpeedsReport {
 }
 
 /// What turns rows into states.
+#[derive(Clone)]
 struct RowReading {
     panels: Arc<Panels>,
     units: Units,
@@ -145,8 +151,8 @@ struct RowReading {
     pair: MeasuredPair,
     /// The control that the measured way belongs to, reduced.
     control: Control,
-    /// δ₀, P₀ and its slope over x, in base units.
-    instrument: [f64; 3],
+    /// δ₀, P₀ and its slope over x, in base units and in the signs of the points.
+    instrument: Instrument,
     /// σ of x and P.
     sigma: [f64; 2],
 }
@@ -175,15 +181,41 @@ impl RowReading {
         }
     }
 
+    /// P at a row, reduced.
+    fn force(&self, point: &MeasuredPoint) -> f64 {
+        let Instrument { baseline, tilt, .. } = self.instrument;
+        (point.force - baseline - tilt * point.x) / self.units.force
+    }
+
+    /// The x of a row less the approach, or the position, that its force and its contact radius give.
+    fn offset(&self, point: &MeasuredPoint) -> Option<f64> {
+        let s = radius_of(self.abscissa, point)? / self.units.length;
+        if !(s > 0.0 && s <= self.panels.reach()) {
+            return None;
+        }
+        let force = self.force(point);
+        let of_spring = match self.control {
+            Control::Stiffness(k) => force / k,
+            _ => 0.0,
+        };
+        let held = HeldDisc::new(&self.panels, Control::Force, s, force);
+        Some(point.x - (held.approach + of_spring) * self.units.length)
+    }
+
+    /// G at a row with another offset.
+    fn energy_at(&self, point: &MeasuredPoint, offset: f64) -> Option<f64> {
+        let instrument = Instrument { offset, ..self.instrument };
+        Some(Self { instrument, ..self.clone() }.released(point)?.energy)
+    }
+
     /// G at a row; `None` where its radius is not valid, or one for which the gap is not known.
     fn released(&self, point: &MeasuredPoint) -> Option<Released> {
-        let [offset, baseline, tilt] = self.instrument;
-        let force = (point.force - baseline - tilt * point.x) / self.units.force;
+        let force = self.force(point);
         let [sigma_x, sigma_force] = self.sigma;
         let [sigma_x, sigma_force] = [sigma_x / self.units.length, sigma_force / self.units.force];
         let unit = self.units.force / self.units.length;
         let is_known = |s: f64| s > 0.0 && s <= self.panels.reach();
-        let way = (point.x - offset) / self.units.length;
+        let way = (point.x - self.instrument.offset) / self.units.length;
         let (approach, compliance) = match self.control {
             Control::Stiffness(k) => (way - force / k, 1.0 / k),
             _ => (way, 0.0),
@@ -261,13 +293,11 @@ impl SpeedsReport {
         let case = Case::prepare(preset, progress)?;
         let mut notes = preset.notes_of_reading().map_err(SpeedsError::Data)?;
         notes.extend(branches.notes.iter().cloned());
-        let baseline = preset.data.baseline.or(branches.baseline).unwrap_or_else(|| {
+        if preset.data.baseline.or(branches.baseline).is_none() {
             notes.push("no row is apart and data.baseline is not set: the force is used as it is".to_owned());
-            0.0
-        });
+        }
         let [sigma_x, sigma_force, _] = branches.noise.sigma;
-        let of_file: Vec<MeasuredPoint> =
-            branches.list.iter().flat_map(|branch| branch.attached.clone()).collect();
+        let of_file: Vec<MeasuredPoint> = attached(&branches).copied().collect();
         let pair = measured_pair(pair, branches.abscissa, &of_file)?;
         let reach = wanted(&case, &branches);
         let mut reading = RowReading {
@@ -280,10 +310,16 @@ impl SpeedsReport {
             } else {
                 Control::Displacement
             },
-            instrument: [preset.data.offset.unwrap_or(0.0), baseline, preset.data.tilt.unwrap_or(0.0)],
+            instrument: preset.data.instrument(&branches),
             sigma: [sigma_x, sigma_force],
         };
+        let unknown = pair != MeasuredPair::ForceRadius && preset.data.offset.is_none();
+        let found = if unknown { FoundOffset::of(&reading, preset, &branches, progress) } else { None };
+        reading.instrument.offset = found.as_ref().map_or(reading.instrument.offset, FoundOffset::used);
         reading.widen(&of_file, &case, reach, progress);
+        let doubt =
+            if unknown { doubt_of_offset(&reading, preset, &branches, found.as_ref()) } else { None };
+        notes.push(used(&reading, preset, branches.turned));
         let mut rows = Vec::new();
         let mut noises = Vec::new();
         for branch in &branches.list {
@@ -295,7 +331,7 @@ impl SpeedsReport {
             return Err(SpeedsError::Nothing);
         }
         let mut warnings = case.warnings_of_problem();
-        warnings.extend(branches.swapped().into_iter().chain(branches.doubt()));
+        warnings.extend(branches.swapped().into_iter().chain(branches.doubt()).chain(doubt));
         if rows.len() < of_file.len() {
             warnings.push(format!(
                 "{} rows in contact are left out: no contact with tension at its edge has their force there",
@@ -325,6 +361,137 @@ impl SpeedsReport {
     }
 }
 
+/// An offset of x that is not given, in the signs of the points.
+struct FoundOffset {
+    value: f64,
+    error: f64,
+    /// Where it is from.
+    by: &'static str,
+    /// Whether the rows agree with it.
+    is_sure: bool,
+}
+
+impl FoundOffset {
+    const BY_RADII: &'static str = "the contact radii and the forces";
+
+    /// By the contact radii and the forces, which give the approach whatever G is; without radii, by a fit with one G.
+    fn of(
+        reading: &RowReading,
+        preset: &Preset,
+        branches: &Branches,
+        progress: &dyn Progress,
+    ) -> Option<Self> {
+        let offsets: Vec<f64> = attached(branches).filter_map(|point| reading.offset(point)).collect();
+        if let Some(value) = median(offsets.clone()) {
+            let off = median(offsets.iter().map(|offset| (offset - value).abs()).collect())?;
+            // The standard error of a median of normal values.
+            let error = 1.4826 * 1.2533 * off / (offsets.len() as f64).sqrt();
+            return Some(Self { value, error, by: Self::BY_RADII, is_sure: true });
+        }
+        let mut alone = preset.clone();
+        // E* is that of the preset, as it is for G.
+        alone.data.uncertain.clear();
+        let has = |segment| branches.list.iter().any(|branch| branch.segment == segment);
+        let free = ["material.work_of_adhesion", OFFSET].map(str::to_owned);
+        let (alone, free) = AdhesionModel::ShortRange.laid(&alone, &free);
+        let separate = has(Segment::Approach) && has(Segment::Retraction);
+        let options = Options { free, separate, bootstrap: Some((0, 0)), ..Options::default() };
+        let fit = fit_own(&alone, &options, progress).ok()?;
+        let found = fit.parameters.iter().find(|parameter| parameter.key == OFFSET)?;
+        let [sign, ..] = Instrument::signs(branches.turned);
+        Some(Self {
+            value: sign * found.value,
+            error: found.standard_error.unwrap_or(f64::INFINITY),
+            by: "a fit with one G at all rows",
+            is_sure: fit.verdict == Verdict::Describes && fit.turned == branches.turned,
+        })
+    }
+
+    /// The offset that is used: 0 unless the rows refute it.
+    fn used(&self) -> f64 {
+        const SAME: f64 = 3.0;
+        if self.is_sure && self.value.abs() > SAME * self.error { self.value } else { 0.0 }
+    }
+}
+
+/// A sentence on an offset that is not given, with what another one would do: nothing where it would do little.
+fn doubt_of_offset(
+    reading: &RowReading,
+    preset: &Preset,
+    branches: &Branches,
+    found: Option<&FoundOffset>,
+) -> Option<String> {
+    /// A share of G, and of the range of x.
+    const LITTLE: f64 = 0.05;
+    const SHARE: f64 = 0.01;
+    let [sign, ..] = Instrument::signs(branches.turned);
+    let length = |x: f64| said(&preset.units, Quantity::Length, sign * x);
+    let here = reading.instrument.offset;
+    if let Some(found) = found.filter(|found| found.used() != 0.0) {
+        let FoundOffset { value, error, by, .. } = found;
+        let unless = if *by == FoundOffset::BY_RADII {
+            "they hold for the E* and the gap of the preset"
+        } else {
+            "if G changes with the speed of the edge, this offset hides it: fit it with --model rate"
+        };
+        return Some(format!(
+            "data.offset is not given: x = {} ± {} is taken as no approach, by {by}; {unless}. --set data.offset= sets \
+             another",
+            length(*value),
+            said(&preset.units, Quantity::Length, *error)
+        ));
+    }
+    if found.is_some_and(|found| found.is_sure) {
+        return None;
+    }
+    let other = found.map_or(here + SHARE * branches.ranges[0], |found| found.value);
+    let energies = |point: &MeasuredPoint| {
+        let [here, there] = [here, other].map(|offset| reading.energy_at(point, offset));
+        Some((point.row, here?, there?))
+    };
+    let mut all: Vec<(usize, f64, f64)> = attached(branches).filter_map(energies).collect();
+    let change = |(_, here, there): &(usize, f64, f64)| (there / here).ln().abs();
+    all.sort_by(|a, b| change(a).total_cmp(&change(b)));
+    let middle = all.get(all.len() / 2);
+    if middle.is_some_and(|middle| change(middle) < LITTLE) {
+        return None;
+    }
+    let effect = middle.map_or_else(String::new, |(row, here, there)| {
+        let energy = |g: &f64| said(&preset.units, Quantity::EnergyPerArea, *g);
+        let of = if found.is_some() { ", which a fit with one G finds," } else { "" };
+        format!(": in row {row} G is {}, and with {}{of} {}", energy(here), length(other), energy(there))
+    });
+    Some(format!(
+        "data.offset is not given, so x is taken as the approach: with another offset G is another{effect}. Fit it first \
+         (pulloff fit with data.offset free), or give it with --set data.offset="
+    ))
+}
+
+/// What G is computed with, in words.
+fn used(reading: &RowReading, preset: &Preset, turned: Turned) -> String {
+    let units = &preset.units;
+    let gap = preset.gap.radius_of_curvature().map_or_else(
+        || format!("the gap {}", preset.gap.name()),
+        |radius| format!("R = {}", said(units, Quantity::Length, radius)),
+    );
+    let Instrument { offset, baseline, tilt } = reading.instrument.turned(turned);
+    let mut words =
+        vec![format!("E* = {}", said(units, Quantity::Stress, preset.material.effective_modulus)), gap];
+    if reading.pair != MeasuredPair::ForceRadius {
+        words.push(format!("data.offset = {}", said(units, Quantity::Length, offset)));
+    }
+    words.push(format!("data.baseline = {}", said(units, Quantity::Force, baseline)));
+    if tilt != 0.0 {
+        words.push(format!("data.tilt = {}", said(units, Quantity::ForcePerLength, tilt)));
+    }
+    format!("G is computed from {} with {}", reading.pair.words(), words.join(", "))
+}
+
+/// The rows in contact.
+fn attached(branches: &Branches) -> impl Iterator<Item = &MeasuredPoint> {
+    branches.list.iter().flat_map(|branch| &branch.attached)
+}
+
 /// What G is computed from: `asked`, or what the file has.
 fn measured_pair(
     asked: Option<MeasuredPair>,
@@ -345,8 +512,7 @@ fn measured_pair(
 
 /// The radius up to which the gap is wanted: the largest that is measured, or the start radius where that is larger.
 fn wanted(case: &Case, branches: &Branches) -> f64 {
-    let of_branch = |branch: &MeasuredBranch| branch.attached.clone();
-    let measured = branches.list.iter().flat_map(of_branch).map(|point| radius_of(branches.abscissa, &point));
+    let measured = attached(branches).map(|point| radius_of(branches.abscissa, point));
     let largest = measured.flatten().fold(0.0, f64::max) / case.units().length;
     largest.max(case.start).min(case.reduced.largest_contact())
 }
