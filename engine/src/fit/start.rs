@@ -101,6 +101,8 @@ impl FitProblem {
             let with = |offset| {
                 let mut u = u.clone();
                 u[j] = self.parameters[j].inner(Target::Offset.sign(self.turned) * offset);
+                // Where x is zero tells at which radius the first points lie.
+                self.begun(&mut u);
                 u
             };
             let found: Vec<Vec<f64>> = found.map(with).collect();
