@@ -14,7 +14,7 @@ use super::problem::Head;
 use super::rows::{ReportTable, RowsError};
 use crate::case::{Case, CaseError};
 use crate::disc::Panels;
-use crate::elementary::hypot;
+use crate::elementary::{hypot, ln};
 use crate::fit::{AdhesionModel, Options, Verdict, fit_own};
 use crate::measured::branches::{MeasuredPoint, median};
 use crate::measured::points::Turned;
@@ -27,7 +27,7 @@ use crate::progress::Progress;
 use crate::rate::equation::HeldDisc;
 use crate::root;
 use crate::units::Quantity;
-use crate::units::number::said;
+use crate::units::number::{said, short, with_unit};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -317,8 +317,7 @@ impl SpeedsReport {
         let found = if unknown { FoundOffset::of(&reading, preset, &branches, progress) } else { None };
         reading.instrument.offset = found.as_ref().map_or(reading.instrument.offset, FoundOffset::used);
         reading.widen(&of_file, &case, reach, progress);
-        let doubt =
-            if unknown { doubt_of_offset(&reading, preset, &branches, found.as_ref()) } else { None };
+        let doubt = if unknown { doubt_of_offset(&reading, preset, &branches, found.as_ref()) } else { None };
         notes.push(used(&reading, preset, branches.turned));
         let mut rows = Vec::new();
         let mut noises = Vec::new();
@@ -371,6 +370,11 @@ struct FoundOffset {
     is_sure: bool,
 }
 
+/// Offsets within this many errors are the same, and one that changes by less than this share of itself over the radii
+/// is one.
+const SAME: f64 = 3.0;
+const DRIFT: f64 = 0.1;
+
 impl FoundOffset {
     const BY_RADII: &'static str = "the contact radii and the forces";
 
@@ -386,7 +390,12 @@ impl FoundOffset {
             let off = median(offsets.iter().map(|offset| (offset - value).abs()).collect())?;
             // The standard error of a median of normal values.
             let error = 1.4826 * 1.2533 * off / (offsets.len() as f64).sqrt();
-            return Some(Self { value, error, by: Self::BY_RADII, is_sure: true });
+            // Where E* or the gap is wrong, each radius has an offset of its own.
+            let third = offsets.len().div_ceil(3);
+            let ends = [&offsets[..third], &offsets[offsets.len() - third..]].map(|end| median(end.to_vec()));
+            let drift = (ends[0]? - ends[1]?).abs();
+            let is_sure = drift <= (DRIFT * value.abs()).max(2.0 * SAME * error);
+            return Some(Self { value, error, by: Self::BY_RADII, is_sure });
         }
         let mut alone = preset.clone();
         // E* is that of the preset, as it is for G.
@@ -409,7 +418,6 @@ impl FoundOffset {
 
     /// The offset that is used: 0 unless the rows refute it.
     fn used(&self) -> f64 {
-        const SAME: f64 = 3.0;
         if self.is_sure && self.value.abs() > SAME * self.error { self.value } else { 0.0 }
     }
 }
@@ -438,7 +446,7 @@ fn doubt_of_offset(
             "data.offset is not given: x = {} ± {} is taken as no approach, by {by}; {unless}. --set data.offset= sets \
              another",
             length(*value),
-            said(&preset.units, Quantity::Length, *error)
+            with_unit(&preset.units, Quantity::Length, *error, true, |x| short(x, 2))
         ));
     }
     if found.is_some_and(|found| found.is_sure) {
@@ -450,7 +458,7 @@ fn doubt_of_offset(
         Some((point.row, here?, there?))
     };
     let mut all: Vec<(usize, f64, f64)> = attached(branches).filter_map(energies).collect();
-    let change = |(_, here, there): &(usize, f64, f64)| (there / here).ln().abs();
+    let change = |(_, here, there): &(usize, f64, f64)| ln(there / here).abs();
     all.sort_by(|a, b| change(a).total_cmp(&change(b)));
     let middle = all.get(all.len() / 2);
     if middle.is_some_and(|middle| change(middle) < LITTLE) {
@@ -458,7 +466,7 @@ fn doubt_of_offset(
     }
     let effect = middle.map_or_else(String::new, |(row, here, there)| {
         let energy = |g: &f64| said(&preset.units, Quantity::EnergyPerArea, *g);
-        let of = if found.is_some() { ", which a fit with one G finds," } else { "" };
+        let of = found.map_or_else(String::new, |found| format!(", which is that of {},", found.by));
         format!(": in row {row} G is {}, and with {}{of} {}", energy(here), length(other), energy(there))
     });
     Some(format!(
@@ -670,6 +678,71 @@ mod tests {
             (of(MeasuredPair::ForceRadius).energy_release_rate / (2.0 * energy) - 1.0).abs() > 0.1,
             "{s}"
         );
+    }
+
+    #[test]
+    fn an_offset_that_is_not_given_is_found_or_doubted() {
+        const OFFSET_OF_X: f64 = 3e-6;
+        let of = |sign: f64, with_radii: bool, energy: &dyn Fn(f64) -> f64, offset: f64| {
+            let mut text = "approach [m],force [N],contact radius [m],segment\n".to_owned();
+            for i in 0..90 {
+                let s = 1.2e-4 - 5e-7 * f64::from(i);
+                let approach = s * s / R - (TAU * energy(s) * s / E).sqrt();
+                let force = 2.0 * E * (approach * s - s.powi(3) / (3.0 * R));
+                writeln!(text, "{:e},{force:e},{s:e},retraction", sign * (approach + offset)).unwrap();
+            }
+            let mut preset = read("made", PRESET).unwrap();
+            let source = PointsFile::new("made.csv".to_owned(), None, text.as_bytes().into());
+            preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
+            preset.set(data::FREE_PART, Value::Text("none".to_owned())).unwrap();
+            let signs = if sign < 0.0 { "x=-,force=+" } else { "x=+,force=+" };
+            preset.set(data::SIGNS, Value::Text(signs.to_owned())).unwrap();
+            if !with_radii {
+                let columns = "approach=1,force=2,segment=4".to_owned();
+                preset.set(data::COLUMNS, Value::Text(columns)).unwrap();
+            }
+            preset
+        };
+        let even = |_| 0.05;
+        let grows = |s: f64| 0.05 * (1.2e-4 / s).powf(1.5);
+        let compute = |preset: &Preset| {
+            SpeedsReport::compute(preset, Some(MeasuredPair::ForceApproach), &Unwatched).unwrap()
+        };
+        let off = |report: &SpeedsReport, energy: &dyn Fn(f64) -> f64| {
+            let off = |row: &SpeedRow| {
+                (row.energy_release_rate / energy(1.2e-4 - 5e-7 * (row.row - 1) as f64) - 1.0).abs()
+            };
+            report.rows.iter().map(off).fold(0.0, f64::max)
+        };
+        let doubt = |report: &SpeedsReport| {
+            report.warnings.iter().find(|warning| warning.starts_with("data.offset is not given")).cloned()
+        };
+        for sign in [1.0, -1.0] {
+            // By the radii, whatever G is; without them, where one G describes the rows.
+            for (with_radii, energy) in [(true, &grows as &dyn Fn(f64) -> f64), (false, &even)] {
+                let found = compute(&of(sign, with_radii, energy, OFFSET_OF_X));
+                assert!(off(&found, energy) < 1e-3, "{} {}", off(&found, energy), doubt(&found).unwrap());
+                let said = doubt(&found).unwrap();
+                let x = if sign < 0.0 { "x = -3 um" } else { "x = 3 um" };
+                assert!(said.contains(x), "{said}");
+                // The right one is not doubted, given or zero.
+                let mut given = of(sign, with_radii, energy, OFFSET_OF_X);
+                given.set(data::OFFSET, Value::Number(sign * OFFSET_OF_X)).unwrap();
+                for right in [given, of(sign, with_radii, energy, 0.0)] {
+                    let found = compute(&right);
+                    assert!(off(&found, energy) < 1e-5 && doubt(&found).is_none(), "{:?}", found.warnings);
+                }
+            }
+            let found = compute(&of(sign, false, &grows, OFFSET_OF_X));
+            let said = doubt(&found).unwrap();
+            assert!(said.contains("x is taken as the approach") && off(&found, &grows) > 0.1, "{said}");
+            assert!(
+                found
+                    .notes
+                    .iter()
+                    .any(|note| note.contains("with E* = 1000 kPa, R = 1000 um, data.offset = 0"))
+            );
+        }
     }
 
     #[test]
