@@ -164,7 +164,7 @@ impl FitProblem {
                 (0..per).for_each(|k| column[per * i + k] = share * moved(foot, by, weights, k));
             }
         }
-        column.iter().all(|x| x.is_finite()).then_some(column)
+        column.iter().all(|x| x.is_finite()).then(|| self.in_own_noise(column))
     }
 
     /// How the residuals at `u` change with a slope of the force over x.
@@ -172,7 +172,7 @@ impl FitProblem {
         let (_, FootedPaths { feet, .. }) = self.look(u)?;
         let mut column = DVector::zeros(self.per_point() * self.data.len());
         self.of_shift(&feet, (shift(&Target::Tilt)?, 1.0), |row, derivative| column[row] = derivative);
-        column.iter().all(|x| x.is_finite()).then_some(column)
+        column.iter().all(|x| x.is_finite()).then(|| self.in_own_noise(column))
     }
 }
 
@@ -197,7 +197,7 @@ impl LeastSquares for FitProblem {
                 _ => self.of_model(u, j, look, put)?,
             }
         }
-        jacobian.iter().all(|x| x.is_finite()).then_some(jacobian)
+        jacobian.iter().all(|x| x.is_finite()).then(|| self.in_own_noise(jacobian))
     }
 
     fn counts(&self) -> Option<&[f64]> {

@@ -146,12 +146,14 @@ fn directed(
         let of = |axis: usize| Some(fit.noise.sigma[axis]).filter(|sigma| *sigma > 0.0);
         [of(0), of(1), of(2)]
     });
-    let along = |turned: Turned, sigma, options: &Options, progress: &ProgressPart| {
-        let asked = Asked { turned: Some(turned), sigma, ..options.asked };
+    let share = first.as_ref().map_or(options.asked.share, |fit| Some(fit.noise.share));
+    let along = |turned: Turned, (sigma, share), options: &Options, progress: &ProgressPart| {
+        let asked = Asked { turned: Some(turned), sigma, share, ..options.asked };
         let branches = Branches { looks_swapped: branches.looks_swapped, ..points.branches(&asked)? };
         fit_branches(preset, &branches, &Options { asked, ..options.clone() }, progress)
     };
-    let second = along(other, sigma, &options.without_intervals(), &ProgressPart::new(progress, [0.3, 0.6]));
+    let second =
+        along(other, (sigma, share), &options.without_intervals(), &ProgressPart::new(progress, [0.3, 0.6]));
     let alone = |mut fit: Fit, why: &FitError, [taken, left]: [Turned; 2]| {
         fit.notes.push(format!(
             "the points leave it open which way their columns run: {} is taken, as there is no fit with {} ({why}). \
@@ -166,7 +168,12 @@ fn directed(
         (Ok(first), Err(why)) => return Ok(alone(first, &why, [branches.turned, other])),
         (Err(error), Err(_)) => return Err(error),
         (Err(why), Ok(_)) => {
-            let taken = along(other, options.asked.sigma, options, &ProgressPart::new(progress, [0.6, 1.0]))?;
+            let taken = along(
+                other,
+                (options.asked.sigma, options.asked.share),
+                options,
+                &ProgressPart::new(progress, [0.6, 1.0]),
+            )?;
             return Ok(alone(taken, &why, [other, branches.turned]));
         }
     };
@@ -193,7 +200,12 @@ fn directed(
     let mut found = if here < there {
         first
     } else {
-        along(other, options.asked.sigma, options, &ProgressPart::new(progress, [0.6, 1.0]))?
+        along(
+            other,
+            (options.asked.sigma, options.asked.share),
+            options,
+            &ProgressPart::new(progress, [0.6, 1.0]),
+        )?
     };
     found.notes.push(format!(
         "which way the columns run shows only in the fit: with {} chi squared is {}, with {} it is {}. \

@@ -23,6 +23,7 @@
 //! | [`scatter`] | the noise of the rows as neighbours show it |
 //! | `spread` | how that noise varies with the slope of the curve |
 //! | [`chance`] | how likely a statistic is by chance |
+//! | `growing` | noise of the force that grows with it |
 //! | [`judge`] | what speaks against the fit: means along the path, rows apart, ranges, the device's stiffness |
 //! | [`uncertain`] | values that are given with an error |
 //! | [`verdict`] | what it comes to, in one word, and why |
@@ -46,6 +47,7 @@ pub mod determined;
 mod directed;
 pub mod distance;
 pub mod fitted;
+mod growing;
 pub mod intervals;
 pub mod judge;
 mod laid;

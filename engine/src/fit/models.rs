@@ -197,6 +197,7 @@ pub fn fit_models(
         {
             let of = |axis: usize| Some(first.noise.sigma[axis]).filter(|sigma| *sigma > 0.0);
             options.asked.sigma = [of(0), of(1), of(2)];
+            options.asked.share = Some(first.noise.share);
         }
         let part = ProgressPart::new(progress, [i as f64 / count, (i + 1) as f64 / count]);
         fits.push(FittedModel { model, free, fit: fit_own(&laid, &options, &part) });

@@ -99,6 +99,7 @@ pub fn posed(
         turned: branches.turned,
         data,
         sigma,
+        share: 0.0,
         step: branches.noise.step,
         space,
         reach,
@@ -192,8 +193,13 @@ fn data(branches: &Branches) -> Vec<Datum> {
     let mut data = Vec::new();
     for (number, branch) in branches.list.iter().enumerate() {
         for (free, points) in [(false, &branch.attached), (true, &branch.free)] {
-            let datum =
-                |&point: &MeasuredPoint| Datum { point, segment: branch.segment, branch: number, free };
+            let datum = |&point: &MeasuredPoint| Datum {
+                point,
+                segment: branch.segment,
+                branch: number,
+                free,
+                noise: [1.0; 2],
+            };
             data.extend(points.iter().map(datum));
         }
     }

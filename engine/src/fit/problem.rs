@@ -13,7 +13,8 @@ use crate::preset::data::{BASELINE, OFFSET, TILT};
 use crate::preset::schema::RANGE_KEYS;
 use crate::preset::{Preset, Value, edge};
 use crate::problem::{Adhesion, Start, StatedCohesion};
-use nalgebra::DVector;
+use nalgebra::allocator::Allocator;
+use nalgebra::{DVector, DefaultAllocator, Dim, Dyn, OMatrix};
 use std::num::NonZero;
 use std::panic::resume_unwind;
 use std::thread::available_parallelism;
@@ -113,6 +114,8 @@ pub struct Datum {
     pub branch: usize,
     /// Whether the bodies are apart there.
     pub free: bool,
+    /// The noise of each of its residuals in σ: above 1 where that of the force grows with the force.
+    pub noise: [f64; 2],
 }
 
 /// What is fitted.
@@ -134,6 +137,8 @@ pub struct FitProblem {
     pub data: Vec<Datum>,
     /// σ of x, P and s.
     pub sigma: PathPlace,
+    /// The share of P by which its σ grows with it, beside σ of P.
+    pub share: f64,
     /// The step of the converter of the force; 0 where none is seen.
     pub step: f64,
     /// Whether s is measured beside x.
@@ -357,6 +362,20 @@ impl FitProblem {
                 None => residuals[per * i] = self.corrected(datum, at)[1],
             }
         }
-        residuals
+        self.in_own_noise(residuals)
+    }
+
+    /// Residuals in σ, or their derivatives, in the noise of each row.
+    pub(super) fn in_own_noise<C: Dim>(&self, mut of_rows: OMatrix<f64, Dyn, C>) -> OMatrix<f64, Dyn, C>
+    where
+        DefaultAllocator: Allocator<Dyn, C>,
+    {
+        let per = self.per_point();
+        if self.share > 0.0 {
+            for (i, mut row) in of_rows.row_iter_mut().enumerate() {
+                row /= self.data[i / per].noise[i % per];
+            }
+        }
+        of_rows
     }
 }

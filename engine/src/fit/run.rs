@@ -2,6 +2,7 @@
 
 use super::determined::{Determined, determined};
 use super::fitted::{too_small, unmoved, values};
+use super::growing::of_growing;
 use super::intervals::intervals;
 use super::judge::{Evidence, doubts, of_sparse, of_spring, reasons, unseen};
 use super::laid::laid;
@@ -91,6 +92,8 @@ impl<'a> Posed<'a> {
                 last(&mut problem, &u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))?;
             notes.push("no rows show that the edge is pinned between approach and retraction".to_owned());
         }
+        let from = (options.asked.share, branches.noise.from[1], branches.ranges[1]);
+        solved = of_growing(&mut problem, solved, options.robust, from, (&mut notes, progress));
         if branches.noise.from[1] == Origin::Apart {
             solved = of_correlated(&mut problem, solved, options.robust, progress);
         }
@@ -178,7 +181,7 @@ impl<'a> Posed<'a> {
             ending,
             starts,
             snaps: problem.paths(u).map_or(0, |paths| paths.of(Segment::Retraction).snaps),
-            noise: Noise { sigma: problem.sigma, ..branches.noise },
+            noise: Noise { sigma: problem.sigma, share: problem.share, ..branches.noise },
             bootstrapped,
             turned: branches.turned,
             notes,

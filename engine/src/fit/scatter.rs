@@ -112,6 +112,21 @@ impl FitProblem {
     /// Radii that go one way in that order are kept in it: the noise of a radius would shuffle rows whose forces
     /// differ.
     pub(super) fn rows(&self, solved: &SolvedFit, branch: usize, free: bool, part: usize) -> Vec<ScatterRow> {
+        let mut rows = self.in_order(solved, branch, free, part);
+        let sizes = rows.iter().map(|row| row.residual.abs()).collect();
+        let limit = OUTLIER * 1.4826 * median(sizes).unwrap_or(0.0);
+        rows.retain(|row| row.residual.abs() <= limit);
+        rows
+    }
+
+    /// The same with outliers.
+    pub(super) fn in_order(
+        &self,
+        solved: &SolvedFit,
+        branch: usize,
+        free: bool,
+        part: usize,
+    ) -> Vec<ScatterRow> {
         let per = self.per_point();
         let residuals = &solved.minimum.at.residuals;
         let is_wanted = |datum: &Datum| datum.branch == branch && datum.free == free;
@@ -127,9 +142,6 @@ impl FitProblem {
             let radii: Vec<f64> = in_file.iter().map(|row| self.data[row.index].point.x).collect();
             rows = if goes_on(&radii) { in_file } else { rows };
         }
-        let sizes = rows.iter().map(|row| row.residual.abs()).collect();
-        let limit = OUTLIER * 1.4826 * median(sizes).unwrap_or(0.0);
-        rows.retain(|row| row.residual.abs() <= limit);
         rows
     }
 

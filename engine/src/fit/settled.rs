@@ -8,7 +8,7 @@ use crate::progress::Progress;
 use crate::units::{Quantity, number::said};
 
 /// Rounds of the last fit.
-const ROUNDS: usize = 200;
+pub(super) const ROUNDS: usize = 200;
 
 /// The last fit, from `u`. Where `least` is given, σ of P is that of neighbours, but not below the second number; so is
 /// σ of x, not below the first, where that is finite.

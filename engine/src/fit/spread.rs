@@ -11,7 +11,7 @@
 //! there, and the residuals of a steep curve are smaller than those of rows apart.
 
 use super::distance::Nearest;
-use super::problem::FitProblem;
+use super::problem::{Datum, FitProblem};
 use super::scatter::{CLIPPED, LEFT, ScatterRow, variance};
 use super::solve::{LEAST_SCALE, SolvedFit};
 use crate::measured::branches::median;
@@ -22,9 +22,14 @@ pub(super) const LEAST_LEFT: f64 = 0.1;
 /// Fewer rows say nothing about two variances.
 const FEWEST: usize = 20;
 
-/// `n_x²` and `n_P²` of a foot; for a row apart, whose residual is that of P, 0 and 1.
-fn normal(foot: Option<&Nearest>) -> [f64; 2] {
-    foot.map_or([0.0, 1.0], |foot| [0, 1].map(|k| foot.normals[0][k].powi(2)))
+/// The shares of x and of P in the variance of a residual: `n_x²` and `n_P²` of its foot, in the noise of the row; for a
+/// row apart, whose residual is that of P, 0 and 1.
+fn normal(foot: Option<&Nearest>, datum: &Datum) -> [f64; 2] {
+    foot.map_or([0.0, 1.0], |foot| {
+        let [x, p] = [0, 1].map(|k| foot.normals[0][k].powi(2));
+        let whole = datum.noise[0].powi(2);
+        [x / whole, p + x - x / whole]
+    })
 }
 
 /// How the noise of the residuals is spread over the rows.
@@ -40,7 +45,7 @@ impl FitProblem {
     fn normals(&self, solved: &SolvedFit) -> Option<Vec<[f64; 2]>> {
         let u = &solved.minimum.parameters;
         let feet = self.feet(&self.paths(u)?, &self.instrument_at(u))?;
-        Some(feet.iter().map(|foot| normal(foot.as_ref())).collect())
+        Some(feet.iter().zip(&self.data).map(|(foot, datum)| normal(foot.as_ref(), datum)).collect())
     }
 
     /// By how much σ of x and of P are off where neither was known, (√a, √b) from second differences of the rows in

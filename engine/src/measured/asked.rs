@@ -41,6 +41,8 @@ pub struct Asked {
     pub free: FreePart,
     /// σ of x, P and s, where they are known.
     pub sigma: [Option<f64>; 3],
+    /// The share of P by which its σ grows with it; `None` leaves it to the rows, unless σ of P is known.
+    pub share: Option<f64>,
     /// Whether the signs of x and P are reversed, if the user specifies it.
     pub turned: Option<Turned>,
 }

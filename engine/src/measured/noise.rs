@@ -37,6 +37,8 @@ pub struct Noise {
     pub sigma: [f64; 3],
     /// How each was obtained.
     pub from: [Origin; 3],
+    /// The share of P by which its σ grows with it, beside σ of P.
+    pub share: f64,
     /// The step of the converter of the force; 0 if none is seen.
     pub step: f64,
 }

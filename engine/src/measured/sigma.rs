@@ -6,14 +6,24 @@
 //! σ_P = median |P_i − line through neighbours| / …      without one, of the rows in contact, over x; of radii with times over these
 //! σ_x = max(last digit, median |x_{i−1} − 2x_i + x_{i+1}| / 1.652)    both at least 1e-4 of their range
 //! ```
+//!
+//! Where x, P and s are all measured, each in contact shows its noise over the number of the row, the time, and the other
+//! two: the least of these holds least of the noise of another column, and of uneven steps.
 
 use super::free::MeasuredBranch;
 use super::noise::{FLOOR, Noise, Origin, median, scatter_over, variance};
 use super::points::MeasuredPoint;
+use super::speed::noise as noise_in_order;
 use crate::elementary::hypot;
 
 /// The fewest steps between rows apart that determine their noise.
 const FEWEST_APART: usize = 5;
+
+/// Rows in order whose scatter is larger than this part of that over another column lie unevenly.
+const UNEVEN: f64 = 0.8;
+
+/// One column.
+type Column = fn(&MeasuredPoint) -> f64;
 
 /// How much neighbouring rows differ.
 #[derive(Default)]
@@ -26,6 +36,8 @@ struct Neighbours {
     radii: Vec<f64>,
     /// The scatter of the force of each branch in contact.
     in_contact: Vec<f64>,
+    /// That of x, where there are radii beside it.
+    ways_in_contact: Vec<f64>,
 }
 
 impl Neighbours {
@@ -38,11 +50,25 @@ impl Neighbours {
             // they are measured against.
             let touching =
                 || in_order.iter().filter(|point| if of_radius { point.x > 0.0 } else { point.radius > 0.0 });
-            let over = |x: fn(&MeasuredPoint) -> f64, y: fn(&MeasuredPoint) -> f64| {
+            let over = |x: Column, y: Column| {
                 let (x, y): (Vec<f64>, Vec<f64>) = touching().map(|point| (x(point), y(point))).unzip();
                 scatter_over(&x, &y)
             };
-            if has_clock {
+            if !of_radius && touching().next().is_some() {
+                let [x, force, radii]: [Column; 3] =
+                    [|point| point.x, |point| point.force, |point| point.radius];
+                let least = |y: Column, others: [Column; 2]| {
+                    let (times, values): (Vec<f64>, Vec<f64>) =
+                        touching().map(|point| (point.time, y(point))).unzip();
+                    let in_order = Some(noise_in_order(&times, &values)).filter(|_| values.len() > 2);
+                    let of_others = others.into_iter().filter_map(|x| over(x, y)).reduce(f64::min);
+                    // The least of several is a little too small: rows in order are enough unless they are uneven.
+                    of_others.filter(|s| in_order.is_none_or(|own| *s < UNEVEN * own)).or(in_order)
+                };
+                found.ways_in_contact.extend(least(x, [force, radii]));
+                found.in_contact.extend(least(force, [x, radii]));
+                found.radii.extend(least(radii, [x, force]));
+            } else if has_clock {
                 found.radii.extend(over(|point| point.time, |point| point.x));
                 found.in_contact.extend(over(|point| point.time, |point| point.force));
             } else {
@@ -75,7 +101,8 @@ pub(super) fn noise(
     let touches = |point: &&MeasuredPoint| point.x > 0.0;
     let mut in_touch = list.iter().flat_map(|(_, in_order)| in_order).filter(touches).peekable();
     let has_clock = of_radius && in_touch.peek().is_some() && in_touch.all(|point| point.time.is_finite());
-    let Neighbours { forces, ways, radii, in_contact } = Neighbours::of(list, of_radius, has_clock);
+    let Neighbours { forces, ways, radii, in_contact, ways_in_contact } =
+        Neighbours::of(list, of_radius, has_clock);
     let radius = radii.into_iter().reduce(f64::min);
     let neighbours = in_contact.into_iter().reduce(f64::min);
     // Few rows apart show nothing: those in contact say more.
@@ -91,13 +118,15 @@ pub(super) fn noise(
     let known = apart.is_some() || given[1].is_some() || has_clock;
     let of_ways = || median(ways).map(|way| way / 1.652);
     let ways = if of_radius { radius.filter(|_| known) } else { of_ways() };
+    let ways_in_contact = ways_in_contact.into_iter().reduce(f64::min);
     let of = |found: Option<f64>, origin| found.map(|found| (found, origin));
     let found = [
-        of(ways, if of_radius { Origin::Neighbours } else { Origin::Apart }),
+        of(ways, if of_radius { Origin::Neighbours } else { Origin::Apart })
+            .or(of(ways_in_contact, Origin::Neighbours)),
         of(apart, Origin::Apart).or(of(neighbours, Origin::Neighbours)),
         of(radius, Origin::Neighbours),
     ];
-    let mut noise = Noise { sigma: [0.0; 3], from: [Origin::Assumed; 3], step };
+    let mut noise = Noise { sigma: [0.0; 3], from: [Origin::Assumed; 3], share: 0.0, step };
     for axis in 0..3 {
         let floor = FLOOR * ranges[axis];
         if axis == 2 && floor == 0.0 {

@@ -78,6 +78,8 @@ pub struct FitReport {
     pub sigma: Vec<f64>,
     /// Where each comes from.
     pub sigma_from: Vec<Origin>,
+    /// The share of P by which its σ grows with it: σ² = `sigma`² + (share · P)²; 0 where it does not.
+    pub sigma_force_share: f64,
     /// The snaps of the fitted path.
     pub snaps: usize,
     /// The starts that were run, the nearest first.
@@ -407,6 +409,7 @@ impl FitReport {
             },
             abscissa: fit.abscissa.name(),
             sigma: fit.noise.sigma[..measured].to_vec(),
+            sigma_force_share: fit.noise.share,
             sigma_from: fit.noise.from[..measured].to_vec(),
             snaps: fit.snaps,
             starts,
@@ -557,9 +560,14 @@ impl FitReport {
         };
         let _ = writeln!(
             text,
-            "sigma of x {}, of P {}{}",
+            "sigma of x {}, of P {}{}{}",
             sigma(Quantity::Length, 0),
             sigma(Quantity::Force, 1),
+            if self.sigma_force_share > 0.0 {
+                format!(" and {} % of P", short(100.0 * self.sigma_force_share, 3))
+            } else {
+                String::new()
+            },
             if self.sigma.len() > 2 {
                 format!(", of s {}", sigma(Quantity::Length, 2))
             } else {

@@ -61,8 +61,9 @@ pub struct FitArguments {
     /// Standard deviation of x; when left out that of the free part, or the last digit, at least 1e-4 of the range
     #[arg(long, value_name = "LENGTH")]
     pub(super) sigma_x: Option<String>,
-    /// Standard deviation of the force; that of the free part when left out
-    #[arg(long, value_name = "FORCE")]
+    /// Standard deviation of the force, a share of it in per cent, or both: 2uN, 3%, 2uN+3%; when left out that of
+    /// the free part, and the share that neighbouring rows show
+    #[arg(long, value_name = "FORCE", allow_hyphen_values = true)]
     pub(super) sigma_force: Option<String>,
     /// How much points count: huber lets those beyond 1.5 deviations count linearly, none squares all of them
     #[arg(long, value_enum, default_value = "huber")]
@@ -272,18 +273,28 @@ impl FitArguments {
         let number = |what: &str, key: &str, text: &str| typed(preset, what, key, text);
         let (length, force) = ("path.start_approach", "path.start_force");
         let mut asked = Asked::default();
-        for (slot, text, key, what) in
-            [(0, &self.sigma_x, length, "--sigma-x"), (1, &self.sigma_force, force, "--sigma-force")]
-        {
-            let Some(text) = text else { continue };
-            let sigma = number(what, key, text)?;
-            if sigma.is_nan() || sigma <= 0.0 {
-                return Err(Failure::Usage(format!(
-                    "{what} {}: a standard deviation must be above 0",
-                    quote(text)
-                )));
+        let positive = |what: &str, text: &str, sigma: f64| {
+            let why = || format!("{what} {}: a standard deviation must be above 0", quote(text));
+            if sigma > 0.0 { Ok(Some(sigma)) } else { Err(Failure::Usage(why())) }
+        };
+        if let Some(text) = &self.sigma_x {
+            asked.sigma[0] = positive("--sigma-x", text, number("--sigma-x", length, text)?)?;
+        }
+        if let Some(text) = &self.sigma_force {
+            const WHAT: &str = "--sigma-force";
+            let (level, share) = match text.trim().strip_suffix('%') {
+                Some(both) => both
+                    .rsplit_once('+')
+                    .map_or((None, Some(both)), |(level, share)| (Some(level), Some(share))),
+                None => (Some(text.as_str()), None),
+            };
+            if let Some(level) = level {
+                asked.sigma[1] = positive(WHAT, text, number(WHAT, force, level)?)?;
             }
-            asked.sigma[slot] = Some(sigma);
+            if let Some(share) = share {
+                let wrong = |_| Failure::Usage(format!("{WHAT} {}: expected a number before %", quote(text)));
+                asked.share = positive(WHAT, text, 0.01 * share.trim().parse::<f64>().map_err(wrong)?)?;
+            }
         }
         for text in &self.range {
             const EXPECTED: &str = "x=LO..HI or force=LO..HI";
