@@ -111,6 +111,7 @@ impl Wanted {
             scan: self.scan,
             profile: self.profile,
             bootstrap: self.bootstrap,
+            ..Options::default()
         }
     }
 }

@@ -22,6 +22,8 @@ pub struct Options {
     pub robust: bool,
     /// What is used of the points.
     pub asked: Asked,
+    /// Whether `path.rate` is that of this file, and not of the preset.
+    pub is_rate_said: bool,
     /// Whether starts other than the preset's are tried.
     pub scan: bool,
     /// Whether profile intervals are computed.
@@ -37,6 +39,7 @@ impl Default for Options {
             separate: false,
             robust: true,
             asked: Asked::default(),
+            is_rate_said: false,
             scan: true,
             profile: false,
             bootstrap: None,
@@ -82,6 +85,16 @@ pub enum FitError {
          the device, {1}"
     )]
     NoRate(String, &'static str),
+    /// A rate that the times contradict.
+    #[error(
+        "the rate is given as {given}, but the times of the file give {found}: leave out --rate, or correct the times"
+    )]
+    Rate {
+        /// The one given.
+        given: String,
+        /// That of the times, with its error.
+        found: String,
+    },
     /// The points give no branches.
     #[error(transparent)]
     Branches(#[from] BranchError),
@@ -167,7 +180,9 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
         edge::EXPONENT,
     ];
     let fits = row.key.starts_with("gap.") || others.iter().chain(&RANGE_KEYS).any(|key| row.key == *key);
+    // That of a formula may have any sign: a fit keeps the one of its first guess, which is positive.
     let is_positive = match row.kind {
+        _ if row.key.starts_with("gap.parameters.") => true,
         Kind::Positive | Kind::NonNegative => true,
         Kind::Between { min, .. } => min > 0.0,
         _ => false,
@@ -180,6 +195,9 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
     }
     match preset.get(&row.key) {
         Some(Value::Number(value)) if value > 0.0 => Ok(Target::Key(row.key.to_string())),
+        Some(Value::Number(value)) if value < 0.0 => {
+            Err(refused("starts below 0: only positive values can be fitted".to_owned()))
+        }
         Some(_) => {
             Err(refused("starts at 0, which has no logarithm: give it a first guess with --set".to_owned()))
         }

@@ -6,6 +6,7 @@ use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, START, Target};
 use super::track::Reach;
 use super::track::begins;
 use super::uncertain::{Uncertain, uncertain};
+use crate::elementary::hypot;
 use crate::gap::Gap;
 use crate::measured::branches::{MeasuredPoint, median};
 use crate::measured::{Abscissa, Branches, Instrument, Segment};
@@ -13,14 +14,18 @@ use crate::preset::data::BASELINE;
 use crate::preset::data::DataSpec;
 use crate::preset::{BasisSpec, Preset, Value};
 use crate::problem::{Control, Start};
-use crate::units::{Quantity, number::said};
+use crate::units::Quantity;
+use crate::units::number::{said, short, with_unit};
 
 /// The fewest points in contact for each free parameter.
 const PER_PARAMETER: usize = 3;
 /// The number of rows that show where a retraction begins.
 const TURN: usize = 5;
-/// Rates that differ by less than this share count as one.
+/// Halves of a record whose rates differ by less than this share have one.
 const EVEN: f64 = 0.05;
+/// Rates agree within so many of their errors, and a stated one within this share of that of the times.
+const AGREE: f64 = 4.0;
+const SAME: f64 = 0.01;
 /// The units of δ₀ and P₀ are their ranges, but at least this.
 const LEAST_UNIT: f64 = f64::MIN_POSITIVE;
 
@@ -47,7 +52,8 @@ pub fn posed(
     let has_waves = preset.gap.feature_length().is_some();
     let mut targets = targets(preset, branches, options)?;
     if let Some(key) = targets.iter().map(Target::key).find(|key| key.starts_with("edge.")) {
-        bare.path.start = pulled(&mut bare, branches, (&mut data, offset), &key, notes)?;
+        bare.path.start =
+            pulled(&mut bare, branches, (&mut data, offset), (&key, options.is_rate_said), notes)?;
         targets.push(Target::Key(START.to_owned()));
     } else {
         bare.edge.rate = None;
@@ -114,7 +120,7 @@ fn pulled(
     bare: &mut Preset,
     branches: &Branches,
     (data, offset): (&mut Vec<Datum>, f64),
-    key: &str,
+    (key, is_said): (&str, bool),
     notes: &mut Vec<String>,
 ) -> Result<Start, FitError> {
     let before = data.len();
@@ -142,15 +148,7 @@ fn pulled(
             notes.push("the times do not give one constant rate: path.rate is used as given".to_owned());
         }
         (None, Some(_)) => {}
-        (Some(rate), stated) => {
-            let text = |rate| said(&bare.units, Quantity::Speed, rate);
-            let instead = match stated.filter(|stated| (stated / rate - 1.0).abs() > EVEN) {
-                Some(stated) => format!(", not {}", text(stated)),
-                None => String::new(),
-            };
-            notes.push(format!("the times give path.rate = {}{instead}", text(rate)));
-            bare.edge.rate = Some(rate);
-        }
+        (Some(timed), stated) => bare.edge.rate = Some(of_times(bare, timed, stated, is_said, notes)?),
     }
     begun(bare, branches, &attached, offset)
 }
@@ -176,16 +174,59 @@ fn begun(
     start.filter(|start| *start > 0.0).map(Start::ContactRadius).ok_or(FitError::NoStart)
 }
 
-/// The rate of x over the times of a retraction; `None` where it is not even or not known.
-fn even_rate(points: &[&MeasuredPoint]) -> Option<f64> {
-    let rate = |of: &[&MeasuredPoint]| {
-        let (first, last) = (of.first()?, of.last()?);
-        let rate = (first.x - last.x) / (last.time - first.time);
-        (rate > 0.0 && rate.is_finite()).then_some(rate)
-    };
-    let (one, two) = points.split_at(points.len() / 2);
-    let (whole, one, two) = (rate(points)?, rate(one)?, rate(two)?);
-    ((one - two).abs() < EVEN * whole).then_some(whole)
+/// The rate of a file with times: the stated one where these agree with it.
+fn of_times(
+    preset: &Preset,
+    [rate, error]: [f64; 2],
+    stated: Option<f64>,
+    is_said: bool,
+    notes: &mut Vec<String>,
+) -> Result<f64, FitError> {
+    let text = |rate| said(&preset.units, Quantity::Speed, rate);
+    let margin = with_unit(&preset.units, Quantity::Speed, error, true, |x| short(x, 2));
+    let found = format!("{} ± {margin}", text(rate));
+    let agrees = |stated: &f64| (stated - rate).abs() <= (AGREE * error).max(SAME * rate);
+    match stated {
+        None => notes.push(format!("the times give path.rate = {found}")),
+        Some(stated) if agrees(&stated) => {
+            notes.push(format!("path.rate = {} is used as given; the times give {found}", text(stated)));
+            return Ok(stated);
+        }
+        Some(stated) if is_said => return Err(FitError::Rate { given: text(stated), found }),
+        Some(stated) => notes.push(format!(
+            "the times give path.rate = {found}, which is used, not {} of the preset",
+            text(stated)
+        )),
+    }
+    Ok(rate)
+}
+
+/// The rate of x over the times of a retraction and its standard error, by least squares; `None` where it is not even or
+/// not known.
+fn even_rate(points: &[&MeasuredPoint]) -> Option<[f64; 2]> {
+    // By x, noise would decide which half a row belongs to.
+    let mut in_order = points.to_vec();
+    in_order.sort_by_key(|point| point.at);
+    let (one, two) = in_order.split_at(in_order.len() / 2);
+    let (whole, one, two) = (rate(&in_order)?, rate(one)?, rate(two)?);
+    let margin = (EVEN * whole[0]).max(AGREE * hypot(one[1], two[1]));
+    let is_even = whole[0] > 0.0 && (one[0] - two[0]).abs() < margin;
+    // A rate that may as well be another says nothing.
+    (is_even && AGREE * whole[1] < whole[0]).then_some(whole)
+}
+
+/// −dx/dt and its standard error.
+fn rate(points: &[&MeasuredPoint]) -> Option<[f64; 2]> {
+    let n = points.len() as f64;
+    let mean = |of: fn(&MeasuredPoint) -> f64| points.iter().map(|point| of(point)).sum::<f64>() / n;
+    let [time, x] = [mean(|point| point.time), mean(|point| point.x)];
+    let [tt, tx, xx] = points.iter().fold([0.0; 3], |[tt, tx, xx], point| {
+        let [t, x] = [point.time - time, point.x - x];
+        [tt + t * t, tx + t * x, xx + x * x]
+    });
+    let slope = tx / tt;
+    let left = (xx - slope * tx).max(0.0) / (n - 2.0);
+    (points.len() > 2 && slope.is_finite()).then(|| [-slope, (left / tt).sqrt()])
 }
 
 /// The points that are fitted.
@@ -257,6 +298,7 @@ fn instrument(
     let given = &preset.data;
     let mut instrument = given.instrument(branches);
     let is_asked = !options.free.is_empty();
+    let is_held = is_known || given.baseline.is_some() && !targets.contains(&Target::Baseline);
     let mut too = |why: &str| {
         if !targets.contains(&Target::Baseline) {
             targets.push(Target::Baseline);
@@ -273,7 +315,7 @@ fn instrument(
             // A baseline that an earlier fit has left says less than the points.
             instrument.baseline = found;
         }
-        None if is_known => {}
+        None if is_held => {}
         None if branches.abscissa == Abscissa::Radius && is_asked => {
             let off = said(&preset.units, Quantity::Force, tare(branches));
             too(&format!("known to within {off} beforehand, since there is no free part"));
@@ -339,4 +381,53 @@ fn parameter(preset: &Preset, branches: &Branches, instrument: &Instrument, targ
         Target::Tilt => (in_file.tilt, Some(force / x)),
     };
     FreeParameter { target, start, scale }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::tests::{Normal, SPHERE, preset};
+
+    /// A retraction of 100 rows at the rate 2, with noise of x.
+    fn rows(noise: f64) -> Vec<MeasuredPoint> {
+        let mut normal = Normal::new(9);
+        let row = |i: usize| {
+            let time = i as f64;
+            let x = 50.0 - 2.0 * time + noise * normal.next();
+            MeasuredPoint { x, force: 0.0, radius: f64::NAN, time, row: i + 1, at: i + 1 }
+        };
+        let mut rows: Vec<MeasuredPoint> = (0..100).map(row).collect();
+        rows.sort_by(|a, b| b.x.total_cmp(&a.x));
+        rows
+    }
+
+    #[test]
+    fn a_rate_is_that_of_all_rows_and_yields_to_one_that_agrees() {
+        for noise in [1e-3, 0.5, 20.0] {
+            let rows = rows(noise);
+            let [rate, error] = even_rate(&rows.iter().collect::<Vec<_>>()).unwrap();
+            // The error of a slope over 100 even rows.
+            let known = noise / (100.0_f64.powi(3) / 12.0).sqrt();
+            assert!((0.8..1.25).contains(&(error / known)), "{error} {known}");
+            assert!((rate - 2.0).abs() < 3.5 * known, "{rate} {known}");
+        }
+        let mut bent = rows(1e-3);
+        for point in &mut bent {
+            point.x -= 0.02 * point.time.powi(2);
+        }
+        assert_eq!(even_rate(&bent.iter().collect::<Vec<_>>()), None);
+        let preset = preset(SPHERE, 1.0, 0.02, "");
+        let taken = |stated, is_said| {
+            let mut notes = Vec::new();
+            let rate = of_times(&preset, [1.99, 0.01], stated, is_said, &mut notes);
+            (rate, notes.join("; "))
+        };
+        assert_eq!(taken(None, false).0, Ok(1.99));
+        assert_eq!(taken(Some(2.0), true).0, Ok(2.0));
+        let (of_preset, said) = taken(Some(3.0), false);
+        assert_eq!(of_preset, Ok(1.99));
+        assert!(said.contains("1.99 ± 0.01, which is used, not 3 of the preset"), "{said}");
+        let why = taken(Some(3.0), true).0.unwrap_err().to_string();
+        assert!(why.contains("given as 3, but the times of the file give 1.99 ± 0.01"), "{why}");
+    }
 }

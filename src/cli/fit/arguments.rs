@@ -131,8 +131,8 @@ pub(super) struct Several {
     /// file's own; the report says whether the files follow one law
     #[arg(long, conflicts_with_all = ["residuals", "table", "profile", "bootstrap", "poisson"])]
     pub(super) together: bool,
-    /// The rate of the device in each file, in order, or one for all; path.rate when left out. A file with times
-    /// and the position of the device gives its own rate
+    /// The rate of the device in each file, in order, or one for all; when left out that of the times of a file, or
+    /// path.rate. A rate that the times of a file contradict is refused
     #[arg(long, value_name = "RATE,...", value_delimiter = ',')]
     pub(super) rate: Vec<String>,
 }
@@ -323,6 +323,7 @@ impl FitArguments {
             separate: self.separate.is_some(),
             robust: self.robust == Robust::Huber,
             asked,
+            is_rate_said: !self.several.rate.is_empty(),
             scan: !self.no_scan,
             profile: self.profile,
             bootstrap: self.bootstrap.map(|count| (usize::try_from(count).unwrap_or(usize::MAX), self.seed)),
