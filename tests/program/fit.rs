@@ -209,6 +209,10 @@ fn three_speeds_are_fitted_together() {
     assert!(ended.status == 2 && ended.err.contains("two or more files"), "{}", ended.err);
     let ended = fit(&["slow.csv", "fast.csv"], &["--rate", "1um/s,2um/s,3um/s"]);
     assert!(ended.status == 2 && ended.err.contains("3 rates are given for 2 files"), "{}", ended.err);
+    // A rate that the times contradict.
+    let ended = fit(&["slow.csv", "fast.csv"], &["--rate", "0.1um/s,1um/s"]);
+    let said = "fast.csv: the rate is given as 1 um/s, but the times of the file give 10";
+    assert!(ended.status == 2 && ended.err.contains(said), "{}", ended.err);
     let ended = fit(&["slow.csv", "fast.csv"], &["--residuals", "r.csv"]);
     assert!(ended.status == 2 && ended.err.contains("--together"), "{}", ended.err);
 }
@@ -680,6 +684,79 @@ fn the_signs_of_residuals_are_said() {
     let said = "note: units of the CSV: x in m; force in N; the signs of x and force are those of the fit, turned against the \
                 file: x=-,force=-\n";
     assert!(ended.err.contains(said), "{}", ended.err);
+}
+
+/// What a fit says of the instrument of a turned file is what `--set` and `plot` take.
+#[test]
+fn offset_and_baseline_of_a_turned_file_are_numbers_of_the_file() {
+    let home = Home::new();
+    let turned = LENS.lines().map(|line| match line.split(", ").collect::<Vec<_>>()[..] {
+        [x, force, segment] if x.parse::<f64>().is_ok() => {
+            let [x, force] = [x, force].map(|number| -number.parse::<f64>().unwrap());
+            format!("{x}, {force}, {segment}\n")
+        }
+        _ => format!("{line}\n"),
+    });
+    home.file("t.csv", &turned.collect::<String>());
+    home.file("t0.csv", LENS);
+    let drawn = |file: &str, signs: f64| {
+        let fitted = home.run(&[&["fit", file, "lens"], &FREE[..], &["--format=json"]].concat());
+        assert_eq!(fitted.status, 0, "{}", fitted.err);
+        let found: Value = serde_json::from_str(&fitted.out).unwrap();
+        let of = |key: &str| {
+            let mut all = found["parameters"].as_array().unwrap().iter();
+            all.find(|parameter| parameter["key"] == key).unwrap()["value"].as_f64().unwrap()
+        };
+        let [offset, baseline] = [of("data.offset"), of("data.baseline")];
+        assert!((signs * offset - 12.3e-6).abs() < 2e-8 && (signs * baseline - 4e-6).abs() < 5e-7);
+        let [offset, baseline] = [("--offset", offset, "m"), ("--baseline", baseline, "N")]
+            .map(|(name, x, unit)| format!("{name}={x}{unit}"));
+        let plot = home.run(&[
+            "plot",
+            "lens",
+            "--measured",
+            file,
+            &offset,
+            &baseline,
+            "-o",
+            "o.svg",
+            "--data",
+            "--overwrite",
+        ]);
+        assert_eq!(plot.status, 0, "{}", plot.err);
+        home.text("o.csv")
+            .lines()
+            .filter(|line| line.contains("measured"))
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    let [one, other] = [drawn("t0.csv", 1.0), drawn("t.csv", -1.0)];
+    assert!(!one.is_empty() && one.len() == other.len());
+    let numbers = |line: &String| line.split(',').filter_map(|cell| cell.parse().ok()).collect::<Vec<f64>>();
+    for (a, b) in one.iter().zip(&other) {
+        for (a, b) in numbers(a).iter().zip(numbers(b)) {
+            assert!((a - b).abs() <= 1e-6 * a.abs() + 1e-10, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn noise_of_the_force_may_be_given_as_a_share() {
+    let home = Home::new();
+    home.file("a.csv", LENS);
+    let fit =
+        |sigma: &str| home.run(&[&["fit", "a.csv", "lens"], &FREE[..], &["--sigma-force", sigma]].concat());
+    for (sigma, said) in [
+        ("3%", "sigma of P is the root of (2.08"),
+        ("2uN + 3 %", "sigma of P is the root of (2 uN)^2 + (3 % of P)^2"),
+        ("2uN+3%", "of P 2 uN (given) and 3 % of P"),
+    ] {
+        let ended = fit(sigma);
+        assert!(ended.status == 0 && ended.out.contains(said), "{sigma}: {} {}", ended.out, ended.err);
+    }
+    for sigma in ["2uN+x%", "0%", "-3%", "3+%"] {
+        assert_eq!(fit(sigma).status, 2, "{sigma}");
+    }
 }
 
 /// A ball of 10 mm, 50 kPa and 40 mJ/m², retracted, with the force in N though it is in mN, or with δ measured from

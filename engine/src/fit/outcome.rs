@@ -87,19 +87,23 @@ impl Fit {
         self.of_radius().into_iter().chain(together.map(sentence)).collect()
     }
 
-    /// A sentence on a radius of curvature that is held: (R, E*, γ) → (a²R, E*/a, γ/a²) leaves P(δ) of a sphere as it is.
+    /// A sentence on a radius of curvature that is held: (R, E*, γ) → (a²R, E*/a, γ/a²) leaves P(δ) of a sphere as it is, and
+    /// (aR, aE*, γ/a) its P(s).
     fn of_radius(&self) -> Option<String> {
         let gap = &self.preset.gap;
         let radius = gap.radius_of_curvature().filter(|_| gap.feature_length().is_none())?;
         let is_free = |key: &str| self.parameters.iter().any(|fitted| fitted.key.starts_with(key));
-        let has_radii = self.abscissa == Abscissa::Radius || self.noise.sigma[2] > 0.0;
+        let of_radius = self.abscissa == Abscissa::Radius;
+        let has_radii = !of_radius && self.noise.sigma[2] > 0.0;
         let depends = is_free(ADHESION) || is_free("material.effective_modulus");
-        if has_radii || !depends || is_free("gap.radius_of_curvature") {
+        if has_radii || !depends || is_free("gap.") {
             return None;
         }
         let radius = said(&self.preset.units, Quantity::Length, radius);
         Some(format!(
-            "E* and γ hold for R = {radius}, which is not fitted: without contact radii the points show E*√R and γR"
+            "E* and γ hold for R = {radius}, which is not fitted: without {} the points show {}",
+            if of_radius { "an approach" } else { "contact radii" },
+            if of_radius { "E*/R and γE*" } else { "E*√R and γR" },
         ))
     }
 

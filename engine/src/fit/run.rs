@@ -10,7 +10,7 @@ use super::least_squares::Ending;
 use super::options::{FitError, Options};
 use super::outcome::Fit;
 use super::pose::posed;
-use super::problem::{ADHESION, FitProblem, FreeParameter};
+use super::problem::{ADHESION, FitProblem, FreeParameter, Target};
 use super::pulled::is_pulled;
 use super::residuals::{beside, of_part};
 use super::rows::Rows;
@@ -101,11 +101,18 @@ impl<'a> Posed<'a> {
             solved = of_tare(&mut problem, solved, options.robust, (&mut notes, progress));
         }
         if branches.baseline.is_none() {
-            notes.push(
-                "there is no free part: the baseline is held, and its error is not in those of the values (measure until \
-                 the bodies are apart, or give data.baseline); sigma of the force is taken from neighbouring rows"
-                    .to_owned(),
-            );
+            let is_free = problem.parameters.iter().any(|parameter| parameter.target == Target::Baseline);
+            let held = match preset.data.baseline {
+                _ if is_free => "",
+                Some(_) => "the baseline is held as given, and its error is not in those of the values; ",
+                None => {
+                    "the baseline is held, and its error is not in those of the values (measure until the bodies are \
+                     apart, or give data.baseline); "
+                }
+            };
+            notes.push(format!(
+                "there is no free part: {held}sigma of the force is taken from neighbouring rows"
+            ));
         }
         Ok(Self { preset, branches, options, problem, starts, solved, notes })
     }

@@ -8,7 +8,7 @@ use super::way::Way;
 use super::*;
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::measured::Asked;
-use crate::measured::{Abscissa, Points, Segment};
+use crate::measured::{Abscissa, Instrument, Origin, Points, Segment};
 use crate::preset::{Preset, read};
 use crate::progress::{Unwatched, until};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -145,6 +145,32 @@ fn a_sphere_is_found_from_values_three_times_off() {
     let fit =
         run(&preset(SPHERE, 3.9, 0.06, ""), &shifted, &[E, W, "data.offset", "data.baseline", "data.tilt"]);
     close(&fit, &[1.3, 0.02, 0.7, 0.01, 0.002], 1e-8);
+}
+
+#[test]
+fn offset_and_baseline_are_numbers_of_the_file_whatever_its_signs() {
+    let body = Body { state: &sphere(1.3, 0.02, 2.0), compliance: 0.0, most: 1.6 };
+    let free = [E, W, "data.offset", "data.baseline", "data.tilt"];
+    for signs in [[1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
+        let mut points = body.samples(600);
+        for (x, p) in points.x.iter_mut().zip(&mut points.force) {
+            *x = signs[0] * *x + 0.7;
+            *p = signs[1] * *p + 0.01 + 0.002 * *x;
+        }
+        let fit = run(&preset(SPHERE, 3.9, 0.06, ""), &points, &free);
+        assert_eq!(fit.turned, signs.map(|sign| sign < 0.0));
+        close(&fit, &[1.3, 0.02, 0.7, 0.01, 0.002], 1e-7);
+        let left = &fit.preset.data;
+        let written = [left.offset, left.baseline, left.tilt].map(Option::unwrap);
+        let Instrument { offset, baseline, tilt } = fit.instrument;
+        assert!(
+            written.iter().zip([offset, baseline, tilt]).all(|(a, b)| (a - b).abs() < 1e-15),
+            "{written:?}"
+        );
+        // The same numbers, given, leave nothing to move.
+        let again = run(&fit.preset, &points, &[E, W]);
+        close(&again, &[1.3, 0.02], 1e-6);
+    }
 }
 
 #[test]
@@ -324,6 +350,131 @@ fn a_thousand_intervals_hold_the_truth_as_often_as_they_say() {
     }
 }
 
+/// Fits of the sphere of the trials with noise of the force, 1e-3 and a share of it: how many are not described, how
+/// many find that the noise grows, and the root mean square of what E* and γ are off, in errors.
+fn of_growing_noise(seeds: u64, share: f64) -> [f64; 4] {
+    let body = Body { state: &sphere(1.0, 0.02, 1.0), compliance: 0.0, most: 1.1 };
+    let start = preset("shape='sphere'\nradius_of_curvature=1.0", 1.1, 0.018, "");
+    let free = [E, W, "data.offset"].map(str::to_owned).to_vec();
+    let options = Options { free, scan: false, ..Options::default() };
+    let mut found = [0.0; 4];
+    for seed in 0..seeds {
+        let mut points = body.samples(600);
+        let mut normal = Normal::new(seed);
+        points.force.iter_mut().for_each(|p| *p += 1e-3_f64.hypot(share * *p) * normal.next());
+        let fit = fit(&start, &points, &options, &Unwatched).unwrap();
+        found[0] += f64::from(u8::from(fit.verdict != Verdict::Describes));
+        found[1] += f64::from(u8::from(fit.noise.share > 0.0));
+        for (j, truth) in [1.0, 0.02].into_iter().enumerate() {
+            let off = (fit.parameters[j].value - truth) / fit.parameters[j].standard_error.unwrap();
+            found[2 + j] += off * off / seeds as f64;
+        }
+    }
+    [found[0], found[1], found[2].sqrt(), found[3].sqrt()]
+}
+
+#[test]
+fn noise_that_grows_with_the_force_weighs_the_points() {
+    let [refused, grows, e, w] = of_growing_noise(24, 0.03);
+    assert!(refused <= 1.0 && grows >= 24.0, "{refused} {grows}");
+    assert!((0.7..1.3).contains(&e) && (0.7..1.3).contains(&w), "{e} {w}");
+    let [refused, grows, e, w] = of_growing_noise(24, 0.0);
+    assert!(refused <= 1.0 && grows == 0.0, "{refused} {grows}");
+    assert!((0.7..1.3).contains(&e) && (0.7..1.3).contains(&w), "{e} {w}");
+}
+
+#[test]
+fn a_share_of_the_force_can_be_given() {
+    let start = preset("shape='sphere'\nradius_of_curvature=1.0", 1.1, 0.018, "");
+    let options = |share| Options {
+        free: [E, W].map(str::to_owned).to_vec(),
+        asked: Asked { share, ..Asked::default() },
+        ..Options::default()
+    };
+    let [own, given] =
+        [None, Some(0.05)].map(|share| fit(&start, &noisy(2, false), &options(share), &Unwatched).unwrap());
+    assert!(own.noise.share <= 0.0 && (given.noise.share - 0.05).abs() < 1e-15);
+    let chi = [&own, &given].map(|fit| fit.chi_squared_of[0].unwrap());
+    assert!(chi[1] < 0.5 * chi[0], "{chi:?}");
+}
+
+#[test]
+fn noise_of_an_approach_beside_radii_is_that_of_its_rows() {
+    const SEEDS: u64 = 24;
+    let state = sphere(1.0, 0.02, 1.0);
+    let start = preset("shape='sphere'\nradius_of_curvature=1.0", 1.1, 0.018, "");
+    let noise = [3e-3, 1e-2, 2e-3];
+    let mut squares = [0.0; 2];
+    let mut refused = 0;
+    for seed in 0..SEEDS {
+        let mut points = no_points(Abscissa::Approach);
+        let (mut normal, mut radii) = (Normal::new(seed), Vec::new());
+        for i in 0..200 {
+            let s = 1.1 - 0.003 * f64::from(i);
+            let (x, force) = state(s);
+            points.x.push(x + noise[0] * normal.next());
+            points.force.push(force + noise[1] * normal.next());
+            radii.push(s + noise[2] * normal.next());
+            points.segments.as_mut().unwrap().push(Segment::Retraction);
+        }
+        points.radius = Some(radii);
+        let asked = Asked { turned: Some([false; 2]), ..Asked::default() };
+        let options = Options { free: [E, W].map(str::to_owned).to_vec(), asked, ..Options::default() };
+        let fit = fit(&start, &points, &options, &Unwatched).unwrap();
+        assert_eq!(fit.noise.from[0], Origin::Neighbours);
+        for (axis, truth) in noise.into_iter().enumerate() {
+            let ratio = fit.noise.sigma[axis] / truth;
+            assert!((0.6..1.5).contains(&ratio), "{axis}: {ratio}");
+        }
+        refused += usize::from(fit.verdict != Verdict::Describes);
+        for (j, truth) in [1.0, 0.02].into_iter().enumerate() {
+            let off = (fit.parameters[j].value - truth) / fit.parameters[j].standard_error.unwrap();
+            squares[j] += off * off / SEEDS as f64;
+        }
+    }
+    assert!(refused <= 1 && squares.iter().all(|z| (0.5..1.7).contains(z)), "{refused} {squares:?}");
+}
+
+#[test]
+fn what_a_radius_without_an_approach_leaves_open_is_said() {
+    let state = sphere(1.0, 0.02, 1.0);
+    let mut points = no_points(Abscissa::Radius);
+    let mut normal = Normal::new(5);
+    for i in 0..200 {
+        let s = 1.1 - 0.003 * f64::from(i);
+        points.x.push(s + 1e-3 * normal.next());
+        points.force.push(state(s).1 + 0.03 + 1e-3 * normal.next());
+        points.segments.as_mut().unwrap().push(Segment::Retraction);
+    }
+    let mut start = preset("shape='sphere'\nradius_of_curvature=1.0", 1.1, 0.018, "");
+    let fit_of = |start: &Preset| run(start, &points, &[E, W]);
+    let found = fit_of(&start);
+    assert!(found.known_together().iter().any(|said| said.contains("the points show E*/R and γE*")));
+    let said = |fit: &Fit, what: &str| fit.notes.iter().any(|note| note.contains(what));
+    assert!(said(&found, "data.baseline is fitted too") && !said(&found, "the baseline is held"));
+    // A baseline that is given is held.
+    start.set("data.baseline", crate::preset::Value::Number(0.03)).unwrap();
+    let held = fit_of(&start);
+    assert!(said(&held, "the baseline is held as given") && (held.instrument.baseline - 0.03).abs() < 1e-15);
+    assert!(held.parameters.len() == 2 && held.verdict == Verdict::Describes, "{:?}", held.reasons);
+}
+
+#[test]
+fn a_parameter_of_a_formula_can_be_fitted() {
+    let body = Body { state: &sphere(1.3, 0.02, 2.0), compliance: 0.0, most: 1.6 };
+    let of = |radius: f64, more: f64| {
+        let gap = "shape='formula'\nformula='r^2/(2*R) + a*r^4'\n[gap.parameters]";
+        preset(&format!("{gap}\nR={radius}\na={more}"), 1.4, 0.02, "")
+    };
+    let found = run(&of(2.5, 0.0), &body.samples(600), &[E, "gap.parameters.R"]);
+    close(&found, &[1.3, 2.0], 1e-5);
+    assert!(!found.known_together().iter().any(|said| said.contains("not fitted")));
+    let free = vec!["gap.parameters.a".to_owned()];
+    let options = Options { free, ..Options::default() };
+    let refused = fit(&of(2.0, -1e-4), &body.samples(60), &options, &Unwatched);
+    assert!(matches!(refused, Err(FitError::Key { why, .. }) if why.contains("starts below 0")));
+}
+
 #[test]
 fn order_and_units_change_nothing() {
     let points = noisy(5, true);
@@ -399,6 +550,13 @@ fn an_edge_is_pinned_between_two_works_of_adhesion() {
     // The fitted preset has the dead band.
     let closing = fit.preset.edge.closing_work_of_adhesion.unwrap();
     assert!((closing / 0.01 - 1.0).abs() < 0.02, "{closing}");
+    // Where x is zero is found along with it, however far that is from the start.
+    let mut shifted = points.clone();
+    shifted.x.iter_mut().for_each(|x| *x += 3.0);
+    let with_offset = Options { free: [E, W, "data.offset"].map(str::to_owned).to_vec(), ..options.clone() };
+    let moved = super::fit(&preset(SPHERE, 1.5, 0.007, ""), &shifted, &with_offset, &Unwatched).unwrap();
+    close(&moved, &[1.3, 0.01, 0.03, 3.0, MOST], 0.02);
+    assert_eq!(moved.verdict, Verdict::Describes, "{:?}", moved.reasons);
     // One work of adhesion alone does not describe it.
     let one = run(&preset(SPHERE, 1.5, 0.02, ""), &points, &[E, W]);
     assert_eq!(one.verdict, Verdict::DoesNotDescribe);

@@ -12,8 +12,7 @@ use super::turns::{one_way, runs};
 /// Jumps of this share of the clearest one are as likely.
 const LIKELY: f64 = 0.5;
 /// The notes for a reversed sign of the force.
-const PULLED: &str =
-    "the force is positive before the jump to the free part, where bodies attract: its sign is reversed \
+const PULLED: &str = "the force is positive before the jump to the free part, where bodies attract: its sign is reversed \
     (data.baseline is in the numbers of the file)";
 const FALLS: &str = "the force falls as the bodies are pressed together: its sign is reversed (data.baseline is in the \
     numbers of the file)";

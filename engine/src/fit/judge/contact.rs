@@ -80,8 +80,12 @@ fn held(problem: &FitProblem) -> String {
     let offset = problem.abscissa != Abscissa::Radius && !is_free(&|target| *target == Target::Offset);
     let is_stiffness =
         |target: &Target| matches!(target, Target::Key(key) if key.starts_with("path.control"));
+    // Without a free part a baseline is held as it is given.
+    let is_apart = problem.data.iter().any(|datum| datum.free);
+    let baseline = !is_apart && !is_free(&|target| *target == Target::Baseline);
     let likely = [
         offset.then_some("data.offset, where x is zero"),
+        baseline.then_some("data.baseline"),
         (!is_free(&is_stiffness)).then_some("the stiffness of the device"),
     ];
     let likely: Vec<&str> = likely.into_iter().flatten().collect();

@@ -49,7 +49,7 @@ pub(in crate::fit) fn of_spring(
         let words = match found {
             None => {
                 plays |= problem.abscissa == Abscissa::Position;
-                format!("{words}: no fit")
+                format!("{words}: no fit comes to an end, so what k does to the values is not known")
             }
             Some(found) => {
                 let changes: Vec<String> = problem
