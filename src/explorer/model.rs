@@ -113,8 +113,8 @@ pub struct Model {
     /// Which session of the program it is: each opened preset starts another.
     pub session: u64,
     pub preset: Preset,
-    /// Whether the session is in its file as far as is known.
-    pub is_session_kept: bool,
+    /// Whether the session is kept in a file as far as is known, or why it is not.
+    pub kept: Result<(), String>,
     /// The preset as loaded or last saved: any difference is unsaved.
     pub saved: Preset,
     /// The state before the value that is being typed and tried.
@@ -224,7 +224,7 @@ impl Model {
         let comment = loaded.comment();
         let mut model = Self {
             session: 0,
-            is_session_kept: true,
+            kept: Ok(()),
             saved: loaded.preset.clone(),
             preset: loaded.preset,
             untried: None,

@@ -165,11 +165,11 @@ pub fn answer(model: &mut Model, reply: Reply) -> Vec<Effect> {
             None => Vec::new(),
         },
         Reply::SessionSaved(result) => {
-            model.is_session_kept = result.is_ok();
-            let works = || "session saving works again".to_owned();
-            model.refuse(
-                result.err().map_or_else(works, |why| format!("the session is not being saved: {why}")),
-            )
+            model.kept = result;
+            model.refuse(match &model.kept {
+                Ok(()) => "session saving works again".to_owned(),
+                Err(why) => format!("the session is not being saved: {why}"),
+            })
         }
         Reply::File(done) => file_came(model, *done),
     };

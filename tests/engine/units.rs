@@ -540,7 +540,7 @@ fn what_stops_a_curve_and_what_a_gap_cannot_be_is_told_in_units() {
     let words = stop.words(&printer);
     assert!(words.contains("below the contact radius 40 um (a finer"), "{words}");
     assert!(stop.to_string().contains("below the contact radius 2e-5 (a finer"), "{stop}");
-    let unstable = PathError::UnstableStart { contact_radius: 2e-5, searched: 1e-3 };
+    let unstable = PathError::UnstableStart { contact_radius: 2e-5, searched: 1e-3, falls: false };
     // A gap too fine for a table beyond the start, found while a path is followed.
     let fine = Unresolved { radius: 1e-5, largest: 2e-3, panels: 20_000.0 };
     let words = PathError::Table(TableError::TooFine(fine)).words(&printer);

@@ -267,9 +267,9 @@ fn a_folder_that_cannot_be_written_is_a_notice() {
     let why = notice.clone().unwrap_err();
     assert!(why.contains("cannot make the folder"), "{why}");
     // The screen does not promise then that the session keeps anything.
-    assert!(bench.model.is_session_kept);
+    assert_eq!(bench.model.kept, Ok(()));
     answer(&mut bench.model, Reply::SessionSaved(notice));
-    assert!(!bench.model.is_session_kept);
+    assert_eq!(bench.model.kept, Err(why));
     assert!(autosave.finish(Ended::Quit, PATIENCE).is_err());
 }
 

@@ -265,11 +265,8 @@ impl App {
             Id::Quit if self.model.is_unsaved() => {
                 let saves =
                     self.keymap.keys(Id::SaveAs).first().map(|key| format!(", {} saves", key.label()));
-                let kept = if self.model.is_session_kept {
-                    "; the session keeps it"
-                } else {
-                    ", nor is the session"
-                };
+                let kept =
+                    if self.model.kept.is_ok() { "; the session keeps it" } else { ", nor is the session" };
                 let question = format!("Not saved{kept}. y quits, Esc stays{}.", saves.unwrap_or_default());
                 self.ask(question, Id::Quit.into())
             }

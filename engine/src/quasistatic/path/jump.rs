@@ -17,6 +17,7 @@ use crate::annuli::{Contacts, points, points_on_the_way};
 use crate::elementary::cbrt;
 use crate::quasistatic::jump::EdgeDirection;
 use nalgebra::DVector;
+use std::ops::ControlFlow::{self, Break, Continue};
 
 /// The most steps of one run.
 const STEPS: usize = 4000;
@@ -103,7 +104,7 @@ impl Balance<'_> {
         let mut run = EdgeRun { balance: self, value, sense, mobility, kept, contacts: start, last, passed };
         for _ in 0..STEPS {
             self.progress.go_on()?;
-            if let Some(landed) = run.step()? {
+            if let Break(landed) = run.step()? {
                 return Ok(landed);
             }
         }
@@ -224,6 +225,9 @@ impl Balance<'_> {
     }
 }
 
+/// Whether a run goes on, or is over with the edges where they land or with none.
+type RunStep = ControlFlow<Option<HeldEdges>>;
+
 /// Edges that run at a held control value.
 struct EdgeRun<'r, 'b> {
     balance: &'r Balance<'b>,
@@ -240,11 +244,11 @@ struct EdgeRun<'r, 'b> {
 
 impl EdgeRun<'_, '_> {
     /// One step; where the edges land or nothing is left, the run is over.
-    fn step(&mut self) -> Result<Option<Option<HeldEdges>>, PathError> {
+    fn step(&mut self) -> Result<RunStep, PathError> {
         let Self { balance, value, sense, .. } = *self;
         self.contacts = balance.tidied(std::mem::take(&mut self.contacts), sense, self.passed);
         if self.contacts.is_empty() {
-            return Ok(Some(None));
+            return Ok(Break(None));
         }
         if let Some(lane) = balance.lane_of(&self.contacts) {
             return self.on_lane(lane);
@@ -253,7 +257,7 @@ impl EdgeRun<'_, '_> {
         let resolution = if self.last.is_finite() { points } else { points_on_the_way };
         let held = balance.held(&self.contacts, &resolution(balance.ground, &self.contacts), value)?;
         if sense < 0.0 && balance.lets_go(&held) {
-            return Ok(None);
+            return Ok(Continue(()));
         }
         let lowest = Balance::least_eigenvalue(&held);
         let newton = (lowest > 0.0).then(|| held.jacobian.clone().lu().solve(&-&held.excess)).flatten();
@@ -269,7 +273,7 @@ impl EdgeRun<'_, '_> {
             let next = moved(&self.contacts, step);
             if size <= BACK && keeps_widths(&self.contacts, &next, LEFT) {
                 (self.contacts, self.last) = (next, size);
-                return Ok(None);
+                return Ok(Continue(()));
             }
         }
         self.last = f64::INFINITY;
@@ -278,7 +282,7 @@ impl EdgeRun<'_, '_> {
             let held = balance.held(&self.contacts, &points(balance.ground, &self.contacts), value)?;
             if let Some(touched) = balance.touched(&held, value, self.passed)? {
                 self.contacts = touched;
-                return Ok(None);
+                return Ok(Continue(()));
             }
         }
         let step = balance.damped(&held, lowest, sense, self.mobility)?;
@@ -286,32 +290,32 @@ impl EdgeRun<'_, '_> {
         let is_beyond = sense > 0.0 && size_of(&step) <= CONVERGED;
         let back = newton.filter(|_| is_beyond).and_then(|step| back(&self.contacts, &step, &self.kept));
         self.contacts = back.unwrap_or_else(|| moved(&self.contacts, &step));
-        Ok(None)
+        Ok(Continue(()))
     }
 
     /// A disc that runs on its known equilibria.
-    fn on_lane(&mut self, lane: &Lane) -> Result<Option<Option<HeldEdges>>, PathError> {
+    fn on_lane(&mut self, lane: &Lane) -> Result<RunStep, PathError> {
         let Self { balance, value, sense, .. } = *self;
         let run = if sense > 0.0 { EdgeDirection::Outward } else { EdgeDirection::Inward };
         if balance.is_pinned(self.contacts.disc) {
             let held = balance.held(&self.contacts, &points(balance.ground, &self.contacts), value)?;
             if !balance.lets_go(&held) {
-                return Ok(Some(Some(held)));
+                return Ok(Break(Some(held)));
             }
         }
         match balance.disc_run(lane, &self.contacts, value, run)? {
             Some(held) => self.arrived(held),
-            None => Ok(Some(None)),
+            None => Ok(Break(None)),
         }
     }
 
     /// Edges at an equilibrium: the run is over, unless a crest touches there.
-    fn arrived(&mut self, held: HeldEdges) -> Result<Option<Option<HeldEdges>>, PathError> {
+    fn arrived(&mut self, held: HeldEdges) -> Result<RunStep, PathError> {
         let touches = self.sense > 0.0;
         let touched = if touches { self.balance.touched(&held, self.value, self.passed)? } else { None };
-        let Some(touched) = touched else { return Ok(Some(Some(held))) };
+        let Some(touched) = touched else { return Ok(Break(Some(held))) };
         (self.contacts, self.last) = (touched, f64::INFINITY);
-        Ok(None)
+        Ok(Continue(()))
     }
 }
 

@@ -2,10 +2,11 @@
 
 use super::balance::{Balance, HeldEdges, keeps_widths, moved};
 use crate::annuli::{Contacts, Resolution, points};
+use crate::elementary::ln;
 use crate::problem::Control;
 use crate::root::RootBracket;
 use nalgebra::{DMatrix, DVector, Dyn, LU};
-use std::f64::consts::PI;
+use std::f64::consts::{LN_10, PI};
 
 /// The most Newton steps of one correction.
 const ITERATIONS: usize = 10;
@@ -275,7 +276,7 @@ impl<'a, 'b> PathStep<'a, 'b> {
             let stalls = size > 0.3 * last;
             if size <= converged || stalls && (size <= STALLED || self.balance.is_rounding(&held)) {
                 if size > STALLED {
-                    held.state.digits = held.state.digits.min(-size.log10());
+                    held.state.digits = held.state.digits.min(-ln(size) / LN_10);
                 }
                 let mut unit = DVector::zeros(n + 1);
                 unit[n] = 1.0;
