@@ -464,9 +464,7 @@ impl Case {
             return None;
         }
         let radius = said(&self.shown, Quantity::Length, start * self.units().length);
-        Some(format!(
-            "contacts larger than that at the start, {radius}, pull more: start further out for the largest pull"
-        ))
+        Some(format!("larger contacts pull more: start further out than {radius} for the largest pull"))
     }
 
     /// Whether a stable contact larger than that at the start of an unloading has a smaller force, or a smaller approach,

@@ -1,7 +1,7 @@
 //! `pulloff map`: where snaps begin, as lines over two parameters, or the limit points over one.
 
 use super::Failure;
-use super::console::Messages;
+use super::console::{Console, Messages};
 use super::format::{Format, FormatArgument};
 use super::output::{Destination, shown};
 use super::problem::ProblemArguments;
@@ -91,7 +91,7 @@ pub fn run(arguments: &MapArguments) -> Result<ExitCode, Failure> {
             return Err(Failure::Usage(what.to_owned()));
         }
     };
-    let over = arguments.over(&preset, &x, &y)?;
+    let over = arguments.over(&preset, &x, &y, &console)?;
     let stop = StopSignal::catch()?;
     let report = MapReport::compute(&preset, x, &y, CELLS, &console.bar(Some(&stop)))?;
     console.warn(&report.notes);
@@ -136,7 +136,13 @@ impl MapArguments {
     }
 
     /// The map of a sweep, whose axes must be those of the lines.
-    fn over(&self, preset: &Preset, x: &MapAxis, y: &Ordinate) -> Result<Option<MapChart>, Failure> {
+    fn over(
+        &self,
+        preset: &Preset,
+        x: &MapAxis,
+        y: &Ordinate,
+        console: &Console,
+    ) -> Result<Option<MapChart>, Failure> {
         let Some(path) = &self.over else { return Ok(None) };
         let mut results = SweepResults::open(path).map_err(MapChartError::from)?;
         // The lines are in the units of this preset; the sweep may be shown in others.
@@ -155,7 +161,12 @@ impl MapArguments {
                 y.name()
             )));
         }
-        if let Some(other) = other_problem(&results.preset, preset, x, y) {
+        let Ok(swept) = read("the swept preset", &results.preset) else {
+            let why = "a file of its preset is not found from here: whether it is a sweep of the same problem is not checked";
+            console.warn(&[format!("--over {}: {why}", shown(path))]);
+            return Ok(Some(MapChart::of(&results, &results.axes, &self.quantity)?));
+        };
+        if let Some(other) = other_problem(&swept, preset, x, y) {
             let what = format!("--over {}: is a sweep of another problem: {other}", shown(path));
             return Err(Failure::Usage(what));
         }
@@ -163,9 +174,9 @@ impl MapArguments {
     }
 }
 
-/// In which value of the problem the swept preset, of this text, differs from the present one; `None` if they differ in
+/// In which value of the problem the swept preset differs from the present one; `None` if they differ in
 /// the values of the axes at most. How the pressure is found, and where a path begins and ends, may differ.
-fn other_problem(swept: &str, preset: &Preset, x: &MapAxis, y: &Ordinate) -> Option<String> {
+fn other_problem(swept: &Preset, preset: &Preset, x: &MapAxis, y: &Ordinate) -> Option<String> {
     let at_start = |preset: &Preset| {
         let mut preset = preset.clone();
         let axes = [Some(x), if let Ordinate::Key(y) = y { Some(y) } else { None }];
@@ -175,7 +186,7 @@ fn other_problem(swept: &str, preset: &Preset, x: &MapAxis, y: &Ordinate) -> Opt
         }
         preset
     };
-    let [swept, own] = [&read("the swept preset", swept).ok()?, preset].map(at_start);
+    let [swept, own] = [swept, preset].map(at_start);
     let is_device = |key: &str| key == "path.control" && [x.key.as_str(), y.name()].contains(&"compliance");
     let follows =
         |key: &str| [x.key.as_str(), y.name()].iter().any(|axis| groups::changed(axis).contains(&key));

@@ -54,7 +54,7 @@ fn a_start_beyond_the_largest_pull_is_told() {
         let start = format!("path.start_contact_radius={radius}");
         let ended = home.run(&["unload", "lens", "--set", "data.file=none", "--set", &start]);
         assert_eq!(ended.status, 0, "{}", ended.err);
-        ended.err.contains("contacts larger than that at the start, ")
+        ended.err.contains("larger contacts pull more: start further out than ")
     };
     assert!(told("20um") && !told("100um"));
     // Nothing is told of a start that is exactly the one asked for.

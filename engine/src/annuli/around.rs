@@ -24,7 +24,11 @@ const PER_WAVE: f64 = 14.0;
 /// Points of the series that finds a minimum.
 const POINTS: usize = 11;
 
-/// The most radii in one search.
+/// How far beyond what can touch a search goes, in lengths of the gap.
+const OVER: f64 = 0.15;
+
+/// The fewest steps between radii, and the most, in one search.
+const FEWEST_RADII: f64 = 8.0;
 const MOST_RADII: f64 = 20_000.0;
 
 /// A place where the gap has a minimum.
@@ -151,25 +155,28 @@ impl<'a> Around<'a> {
         let mut intervals = contacts.gaps();
         let outermost = contacts.outermost();
         let to = to.min(self.ground.reach());
+        // Up to where the gap rises again, if the last crest is close to the end.
+        let end = (to + OVER * self.ground.length_at(to)).min(self.ground.reach());
         let mut found = Vec::new();
         if to > outermost {
-            intervals.push([outermost, to]);
+            intervals.push([outermost, end]);
         }
         let beside = BESIDE * self.ground.wave;
         for [lo, hi] in intervals {
             let from = if lo > 0.0 { lo + beside } else { 0.0 };
-            let until = if hi < to || outermost >= to { hi - beside } else { hi };
+            let until = if hi < end || outermost >= to { hi - beside } else { hi };
             if until > from {
                 self.minima([from, until], progress, &mut found)?;
             }
         }
+        found.retain(|crest| crest.radius <= to);
         Ok(found)
     }
 
     /// Radii of an interval including both ends, closer together where the gap is fine.
     fn radii(&self, [from, to]: [f64; 2]) -> Vec<f64> {
         let waves = self.ground.lengths_between([from, to]);
-        let steps = (waves * PER_WAVE).ceil().clamp(2.0, MOST_RADII);
+        let steps = (waves * PER_WAVE).ceil().clamp(FEWEST_RADII, MOST_RADII);
         // Evenly spaced, in the lengths of the gap.
         let unit = waves / steps;
         let mut radii = vec![from];
@@ -215,9 +222,7 @@ impl<'a> Around<'a> {
                 found.push(self.minimum([at(k - 1), at(k + 1)]));
             }
         }
-        let corners =
-            self.ground.breaks.iter().filter(|b| self.ground.breaks.len() < 100 && **b > from && **b < to);
-        for corner in corners {
+        for corner in self.ground.stops().iter().filter(|b| **b > from && **b < to) {
             let gap = self.gap(*corner);
             let beside = 1e-4 * self.ground.wave;
             if self.gap(corner - beside) > gap && self.gap(corner + beside) > gap {

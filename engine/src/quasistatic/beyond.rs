@@ -32,8 +32,15 @@ pub fn is_smaller_beyond(
         let device = held.filter(|device| *device != of);
         device.is_none_or(|device| at(s).is_some_and(|at| weighted(device, at.slopes[0], at.slopes[1]) > 0.0))
     };
-    let stretches = Monotone::on(&exact, of, first.panel..last.panel + 1).stretches;
-    let ends = stretches.iter().flat_map(|stretch| stretch.radii.into_iter().zip(stretch.values));
+    // The smallest value of a stable state lies at a limit of what is looked at, or at one of the device.
+    let panels = first.panel..last.panel + 1;
+    let ends = |control: Control| {
+        let stretches = Monotone::on(&exact, control, panels.clone()).stretches;
+        stretches.into_iter().flat_map(|stretch| stretch.radii)
+    };
+    let own = ends(of).filter(|s| is_stable(*s));
+    let of_device = held.filter(|device| *device != of).into_iter().flat_map(ends).filter(|s| *s < far);
+    let value = |s: f64| at(s).map_or(f64::INFINITY, |at| weighted(of, at.approach, at.force));
     let least = here - SMALLER * here.abs();
-    start < far && ends.into_iter().any(|(s, value)| s > start && s <= far && value < least && is_stable(s))
+    start < far && own.chain(of_device).any(|s| s > start && s <= far && value(s) < least)
 }

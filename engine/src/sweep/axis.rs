@@ -425,6 +425,14 @@ impl KeyReader<'_> {
                 if from > to {
                     return Err(given.fault(&format!("{}: {from} is above {to}", given.name)));
                 }
+                let one = Value::Number(1.0);
+                if self.preset.is_some_and(|preset| preset.with_unit(self.key, &one) != one) {
+                    let what = format!(
+                        "{}: {} has a unit: list its values, or draw them as uniform",
+                        given.name, self.key
+                    );
+                    return Err(given.fault(&what));
+                }
                 Ok(Distribution::Integers([from, to]))
             }
             _ => self.normal(given),

@@ -18,8 +18,8 @@ use pulloff_engine::problem::Turn;
 use pulloff_engine::problem::{ContactKind, Control};
 use pulloff_engine::progress::{Stopped, Unwatched};
 use pulloff_engine::quasistatic::path::{
-    Balance, Direction, EVEN, EventKind, Losses, Path, PathError, PathSetting, PathState, Warning, WhyNot,
-    cycle, cycle_on,
+    Balance, Direction, EVEN, Event, EventKind, Losses, Path, PathError, PathSetting, PathState, Warning,
+    WhyNot, cycle, cycle_on,
 };
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -218,6 +218,23 @@ fn loops_with_hardly_any_adhesion_turn_where_those_without_do() {
             assert!(off[0].abs() < 1.0 && off[1].abs() < 0.03 && little.2 > 0.0, "{number} {gamma}: {off:?}");
         }
     }
+}
+
+/// Crests that touch on gaps with corners, close to where nothing further out can touch. The approaches are those of an
+/// independent program, which solves for the pressures of annuli: 0.0220020, and between 0.0496 and 0.0497.
+#[test]
+fn no_touch_is_missed_beside_a_corner() {
+    let touch = |text: &str, turn: f64, crest: f64| {
+        let gap = TypedGap::new(text, Vec::<FormulaParameter>::new(), None).unwrap();
+        let gap = Arc::new(Shape::Formula(Arc::new(gap)));
+        let found = looped(gap, 0.0, Control::Displacement, Turn::Radius(turn), Losses::Once);
+        let at = |event: &&Event| event.radius.is_some_and(|radius| (radius - crest).abs() < 1e-3);
+        found.events.iter().find(at).unwrap().before.as_ref().unwrap().approach
+    };
+    let cusps = touch("r^2/2 + 0.00286*abs(sin(pi*r/0.0415))", 0.17, 0.166);
+    assert!((cusps - 0.022_002).abs() < 1e-6, "{cusps}");
+    let humps = touch("r^2/2 - 0.0049*abs(sin(pi*r/0.1091))", 0.221, 0.2412);
+    assert!((0.0496..0.0497).contains(&humps), "{humps}");
 }
 
 /// Behind a spring that hardly feels the jump, its energy is far larger than the loss.

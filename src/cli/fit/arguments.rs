@@ -275,8 +275,8 @@ impl FitArguments {
         let (length, force) = ("path.start_approach", "path.start_force");
         let mut asked = Asked::default();
         let positive = |what: &str, text: &str, sigma: f64| {
-            let why = || format!("{what} {}: a standard deviation must be above 0", quote(text));
-            if sigma > 0.0 { Ok(Some(sigma)) } else { Err(Failure::Usage(why())) }
+            let why = || format!("{what} {}: a standard deviation must be a number above 0", quote(text));
+            if sigma > 0.0 && sigma.is_finite() { Ok(Some(sigma)) } else { Err(Failure::Usage(why())) }
         };
         if let Some(text) = &self.sigma_x {
             asked.sigma[0] = positive("--sigma-x", text, number("--sigma-x", length, text)?)?;

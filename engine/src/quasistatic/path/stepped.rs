@@ -27,6 +27,9 @@ const HALVINGS: usize = 20;
 /// A gap that counts as zero, in waves.
 pub const ROUNDING: f64 = 1e-11;
 
+/// A gap below zero by this many waves at the start of a step is no rounding.
+const MISSED: f64 = 1e-6;
+
 /// The most crests that may touch one after the other within a step.
 const CRESTS: usize = 8;
 
@@ -241,6 +244,10 @@ impl TakenStep<'_, '_> {
             overlap = -ROUNDING * wave;
             let mut at = at_start(crest);
             let first = at.gap;
+            if first < -MISSED * wave {
+                // An earlier step went past the touch: nothing that is found here is right.
+                return Err(PathError::Lost { control_value: from.held.control_value });
+            }
             if first.is_nan() || first <= 0.0 {
                 // Rounding: the start of the step touches.
                 (self.length, self.end) = (0.0, from.clone());

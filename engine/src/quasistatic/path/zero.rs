@@ -233,7 +233,8 @@ impl Course<'_, '_> {
 fn split_at(contacts: &mut Vec<[f64; 2]>, radius: f64) {
     if let Some(at) = contacts.iter().position(|[lo, hi]| *lo <= radius && radius < *hi) {
         let [lo, hi] = contacts[at];
-        contacts[at] = [radius, hi];
+        // A hole that closes on the axis leaves a ring, however thin the hole.
+        contacts[at] = [radius.max(1e-9 * hi), hi];
         if radius > lo {
             contacts.insert(at, [lo, radius]);
         }
