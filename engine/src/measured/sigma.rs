@@ -23,7 +23,7 @@ const FEWEST_APART: usize = 5;
 const UNEVEN: f64 = 0.8;
 
 /// One column.
-type Column = fn(&MeasuredPoint) -> f64;
+type ColumnOf = fn(&MeasuredPoint) -> f64;
 
 /// How much neighbouring rows differ.
 #[derive(Default)]
@@ -50,14 +50,14 @@ impl Neighbours {
             // they are measured against.
             let touching =
                 || in_order.iter().filter(|point| if of_radius { point.x > 0.0 } else { point.radius > 0.0 });
-            let over = |x: Column, y: Column| {
+            let over = |x: ColumnOf, y: ColumnOf| {
                 let (x, y): (Vec<f64>, Vec<f64>) = touching().map(|point| (x(point), y(point))).unzip();
                 scatter_over(&x, &y)
             };
             if !of_radius && touching().next().is_some() {
-                let [x, force, radii]: [Column; 3] =
+                let [x, force, radii]: [ColumnOf; 3] =
                     [|point| point.x, |point| point.force, |point| point.radius];
-                let least = |y: Column, others: [Column; 2]| {
+                let least = |y: ColumnOf, others: [ColumnOf; 2]| {
                     let (times, values): (Vec<f64>, Vec<f64>) =
                         touching().map(|point| (point.time, y(point))).unzip();
                     let in_order = Some(noise_in_order(&times, &values)).filter(|_| values.len() > 2);
