@@ -667,10 +667,8 @@ fn a_displacement_is_tried_as_a_position_where_it_does_not_describe() {
     assert_eq!(other.status, 0, "{}", other.out);
 }
 
-/// Turned signs are said where the turned numbers are written.
-#[test]
-fn the_signs_of_residuals_are_said() {
-    let home = Home::new();
+/// The rows of the lens with the other sign of x and of the force.
+fn turned_lens() -> String {
     let turned = LENS.lines().map(|line| match line.split(", ").collect::<Vec<_>>()[..] {
         [x, force, segment] if x.parse::<f64>().is_ok() => {
             let [x, force] = [x, force].map(|number| -number.parse::<f64>().unwrap());
@@ -678,7 +676,14 @@ fn the_signs_of_residuals_are_said() {
         }
         _ => format!("{line}\n"),
     });
-    home.file("t.csv", &turned.collect::<String>());
+    turned.collect()
+}
+
+/// Turned signs are said where the turned numbers are written.
+#[test]
+fn the_signs_of_residuals_are_said() {
+    let home = Home::new();
+    home.file("t.csv", &turned_lens());
     let ended = home.run(&["fit", "t.csv", "lens", "--residuals", "r.csv"]);
     assert_eq!(ended.status, 0, "{}", ended.err);
     let said = "note: units of the CSV: x in m; force in N; the signs of x and force are those of the fit, turned against the \
@@ -690,14 +695,7 @@ fn the_signs_of_residuals_are_said() {
 #[test]
 fn offset_and_baseline_of_a_turned_file_are_numbers_of_the_file() {
     let home = Home::new();
-    let turned = LENS.lines().map(|line| match line.split(", ").collect::<Vec<_>>()[..] {
-        [x, force, segment] if x.parse::<f64>().is_ok() => {
-            let [x, force] = [x, force].map(|number| -number.parse::<f64>().unwrap());
-            format!("{x}, {force}, {segment}\n")
-        }
-        _ => format!("{line}\n"),
-    });
-    home.file("t.csv", &turned.collect::<String>());
+    home.file("t.csv", &turned_lens());
     home.file("t0.csv", LENS);
     let drawn = |file: &str, signs: f64| {
         let fitted = home.run(&[&["fit", file, "lens"], &FREE[..], &["--format=json"]].concat());

@@ -141,19 +141,19 @@ fn directed(
     let branches = points.branches(&options.asked)?;
     let Some(other) = branches.or else { return fit_branches(preset, &branches, options, progress) };
     let first = fit_branches(preset, &branches, options, &ProgressPart::new(progress, [0.0, 0.3]));
-    // The second is judged by the noise of the first.
-    let sigma = first.as_ref().map_or(options.asked.sigma, |fit| {
-        let of = |axis: usize| Some(fit.noise.sigma[axis]).filter(|sigma| *sigma > 0.0);
-        [of(0), of(1), of(2)]
-    });
-    let share = first.as_ref().map_or(options.asked.share, |fit| Some(fit.noise.share));
-    let along = |turned: Turned, (sigma, share), options: &Options, progress: &ProgressPart| {
-        let asked = Asked { turned: Some(turned), sigma, share, ..options.asked };
+    let turned = |options: Options, progress: &ProgressPart| {
+        let asked = Asked { turned: Some(other), ..options.asked };
         let branches = Branches { looks_swapped: branches.looks_swapped, ..points.branches(&asked)? };
-        fit_branches(preset, &branches, &Options { asked, ..options.clone() }, progress)
+        fit_branches(preset, &branches, &Options { asked, ..options }, progress)
     };
-    let second =
-        along(other, (sigma, share), &options.without_intervals(), &ProgressPart::new(progress, [0.3, 0.6]));
+    let whole = || turned(options.clone(), &ProgressPart::new(progress, [0.6, 1.0]));
+    // The second is judged by the noise of the first.
+    let mut quick = options.without_intervals();
+    if let Ok(Fit { noise, .. }) = &first {
+        quick.asked.sigma = noise.sigma.map(|sigma| Some(sigma).filter(|sigma| *sigma > 0.0));
+        quick.asked.share = Some(noise.share);
+    }
+    let second = turned(quick, &ProgressPart::new(progress, [0.3, 0.6]));
     let alone = |mut fit: Fit, why: &FitError, [taken, left]: [Turned; 2]| {
         fit.notes.push(format!(
             "the points leave it open which way their columns run: {} is taken, as there is no fit with {} ({why}). \
@@ -167,15 +167,7 @@ fn directed(
         (Ok(first), Ok(second)) => (first, second),
         (Ok(first), Err(why)) => return Ok(alone(first, &why, [branches.turned, other])),
         (Err(error), Err(_)) => return Err(error),
-        (Err(why), Ok(_)) => {
-            let taken = along(
-                other,
-                (options.asked.sigma, options.asked.share),
-                options,
-                &ProgressPart::new(progress, [0.6, 1.0]),
-            )?;
-            return Ok(alone(taken, &why, [other, branches.turned]));
-        }
+        (Err(why), Ok(_)) => return Ok(alone(whole()?, &why, [other, branches.turned])),
     };
     // Signs as in the file stay where they lead to a fit.
     if branches.is_as_in_file && first.verdict == Verdict::Describes {
@@ -197,16 +189,7 @@ fn directed(
     if (here - there).abs() <= CLEAR {
         return Err(FitError::Direction { one: signs_text(taken), other: signs_text(left) });
     }
-    let mut found = if here < there {
-        first
-    } else {
-        along(
-            other,
-            (options.asked.sigma, options.asked.share),
-            options,
-            &ProgressPart::new(progress, [0.6, 1.0]),
-        )?
-    };
+    let mut found = if here < there { first } else { whole()? };
     found.notes.push(format!(
         "which way the columns run shows only in the fit: with {} chi squared is {}, with {} it is {}. \
          --signs or data.signs sets it",

@@ -54,9 +54,9 @@ impl RateError {
             Self::TooManySteps { steps, contact_radius } => {
                 let radius = length(contact_radius);
                 format!(
-                    "the moving edge was abandoned after {steps} steps, at the contact radius {radius}: the drive of an \
-                     edge far slower than the reference speed (below 1e-12 of it at an exponent of 1) is lost in \
-                     rounding, and `unload` is its limit; far faster (above 1e12), time is"
+                    "the moving edge was abandoned after {steps} steps, at the contact radius {radius}: where (v/v0)^n \
+                     is below about 1e-12, the drive of the edge is lost in rounding, and `unload` is the limit; where \
+                     v/v0 is above about 1e12, the time is lost"
                 )
             }
             Self::Beyond { radius } => {

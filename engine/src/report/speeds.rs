@@ -9,25 +9,26 @@
 //! radius, G does not depend on the force, unless the way is that of the other end of a spring. D. Maugis and M.
 //! Barquins, J. Phys. D 11, 1989 (1978).
 
+mod offset;
+
+use self::offset::{FoundOffset, doubt_of_offset};
 use super::columns::columns;
 use super::problem::Head;
 use super::rows::{ReportTable, RowsError};
 use crate::case::{Case, CaseError};
 use crate::disc::Panels;
-use crate::elementary::{hypot, ln};
-use crate::fit::{AdhesionModel, Options, Verdict, fit_own};
-use crate::measured::branches::{MeasuredPoint, median};
+use crate::elementary::hypot;
+use crate::measured::branches::MeasuredPoint;
 use crate::measured::points::Turned;
 use crate::measured::speed::{Speed, noise, speeds};
-use crate::measured::{Abscissa, Branches, Instrument, MeasuredBranch, Segment};
+use crate::measured::{Abscissa, Branches, Instrument, MeasuredBranch};
 use crate::preset::Preset;
-use crate::preset::data::OFFSET;
 use crate::problem::{Control, Units};
 use crate::progress::Progress;
 use crate::rate::equation::HeldDisc;
 use crate::root;
 use crate::units::Quantity;
-use crate::units::number::{said, short, with_unit};
+use crate::units::number::said;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -187,27 +188,6 @@ impl RowReading {
         (point.force - baseline - tilt * point.x) / self.units.force
     }
 
-    /// The x of a row less the approach, or the position, that its force and its contact radius give.
-    fn offset(&self, point: &MeasuredPoint) -> Option<f64> {
-        let s = radius_of(self.abscissa, point)? / self.units.length;
-        if !(s > 0.0 && s <= self.panels.reach()) {
-            return None;
-        }
-        let force = self.force(point);
-        let of_spring = match self.control {
-            Control::Stiffness(k) => force / k,
-            _ => 0.0,
-        };
-        let held = HeldDisc::new(&self.panels, Control::Force, s, force);
-        Some(point.x - (held.approach + of_spring) * self.units.length)
-    }
-
-    /// G at a row with another offset.
-    fn energy_at(&self, point: &MeasuredPoint, offset: f64) -> Option<f64> {
-        let instrument = Instrument { offset, ..self.instrument };
-        Some(Self { instrument, ..self.clone() }.released(point)?.energy)
-    }
-
     /// G at a row; `None` where its radius is not valid, or one for which the gap is not known.
     fn released(&self, point: &MeasuredPoint) -> Option<Released> {
         let force = self.force(point);
@@ -358,121 +338,6 @@ impl SpeedsReport {
     pub fn table(&self) -> Result<ReportTable, RowsError> {
         ReportTable::of(COLUMNS, &self.rows)
     }
-}
-
-/// An offset of x that is not given, in the signs of the points.
-struct FoundOffset {
-    value: f64,
-    error: f64,
-    /// Where it is from.
-    by: &'static str,
-    /// Whether the rows agree with it.
-    is_sure: bool,
-}
-
-/// Offsets within this many errors are the same, and one that changes by less than this share of itself over the radii
-/// is one.
-const SAME: f64 = 3.0;
-const DRIFT: f64 = 0.1;
-
-impl FoundOffset {
-    const BY_RADII: &'static str = "the contact radii and the forces";
-
-    /// By the contact radii and the forces, which give the approach whatever G is; without radii, by a fit with one G.
-    fn of(
-        reading: &RowReading,
-        preset: &Preset,
-        branches: &Branches,
-        progress: &dyn Progress,
-    ) -> Option<Self> {
-        let offsets: Vec<f64> = attached(branches).filter_map(|point| reading.offset(point)).collect();
-        if let Some(value) = median(offsets.clone()) {
-            let off = median(offsets.iter().map(|offset| (offset - value).abs()).collect())?;
-            // The standard error of a median of normal values.
-            let error = 1.4826 * 1.2533 * off / (offsets.len() as f64).sqrt();
-            // Where E* or the gap is wrong, each radius has an offset of its own.
-            let third = offsets.len().div_ceil(3);
-            let ends = [&offsets[..third], &offsets[offsets.len() - third..]].map(|end| median(end.to_vec()));
-            let drift = (ends[0]? - ends[1]?).abs();
-            let is_sure = drift <= (DRIFT * value.abs()).max(2.0 * SAME * error);
-            return Some(Self { value, error, by: Self::BY_RADII, is_sure });
-        }
-        let mut alone = preset.clone();
-        // E* is that of the preset, as it is for G.
-        alone.data.uncertain.clear();
-        let has = |segment| branches.list.iter().any(|branch| branch.segment == segment);
-        let free = ["material.work_of_adhesion", OFFSET].map(str::to_owned);
-        let (alone, free) = AdhesionModel::ShortRange.laid(&alone, &free);
-        let separate = has(Segment::Approach) && has(Segment::Retraction);
-        let options = Options { free, separate, bootstrap: Some((0, 0)), ..Options::default() };
-        let fit = fit_own(&alone, &options, progress).ok()?;
-        let found = fit.parameters.iter().find(|parameter| parameter.key == OFFSET)?;
-        let [sign, ..] = Instrument::signs(branches.turned);
-        Some(Self {
-            value: sign * found.value,
-            error: found.standard_error.unwrap_or(f64::INFINITY),
-            by: "a fit with one G at all rows",
-            is_sure: fit.verdict == Verdict::Describes && fit.turned == branches.turned,
-        })
-    }
-
-    /// The offset that is used: 0 unless the rows refute it.
-    fn used(&self) -> f64 {
-        if self.is_sure && self.value.abs() > SAME * self.error { self.value } else { 0.0 }
-    }
-}
-
-/// A sentence on an offset that is not given, with what another one would do: nothing where it would do little.
-fn doubt_of_offset(
-    reading: &RowReading,
-    preset: &Preset,
-    branches: &Branches,
-    found: Option<&FoundOffset>,
-) -> Option<String> {
-    /// A share of G, and of the range of x.
-    const LITTLE: f64 = 0.05;
-    const SHARE: f64 = 0.01;
-    let [sign, ..] = Instrument::signs(branches.turned);
-    let length = |x: f64| said(&preset.units, Quantity::Length, sign * x);
-    let here = reading.instrument.offset;
-    if let Some(found) = found.filter(|found| found.used() != 0.0) {
-        let FoundOffset { value, error, by, .. } = found;
-        let unless = if *by == FoundOffset::BY_RADII {
-            "they hold for the E* and the gap of the preset"
-        } else {
-            "if G changes with the speed of the edge, this offset hides it: fit it with --model rate"
-        };
-        return Some(format!(
-            "data.offset is not given: x = {} ± {} is taken as no approach, by {by}; {unless}. --set data.offset= sets \
-             another",
-            length(*value),
-            with_unit(&preset.units, Quantity::Length, *error, true, |x| short(x, 2))
-        ));
-    }
-    if found.is_some_and(|found| found.is_sure) {
-        return None;
-    }
-    let other = found.map_or(here + SHARE * branches.ranges[0], |found| found.value);
-    let energies = |point: &MeasuredPoint| {
-        let [here, there] = [here, other].map(|offset| reading.energy_at(point, offset));
-        Some((point.row, here?, there?))
-    };
-    let mut all: Vec<(usize, f64, f64)> = attached(branches).filter_map(energies).collect();
-    let change = |(_, here, there): &(usize, f64, f64)| ln(there / here).abs();
-    all.sort_by(|a, b| change(a).total_cmp(&change(b)));
-    let middle = all.get(all.len() / 2);
-    if middle.is_some_and(|middle| change(middle) < LITTLE) {
-        return None;
-    }
-    let effect = middle.map_or_else(String::new, |(row, here, there)| {
-        let energy = |g: &f64| said(&preset.units, Quantity::EnergyPerArea, *g);
-        let of = found.map_or_else(String::new, |found| format!(", which is that of {},", found.by));
-        format!(": in row {row} G is {}, and with {}{of} {}", energy(here), length(other), energy(there))
-    });
-    Some(format!(
-        "data.offset is not given, so x is taken as the approach: with another offset G is another{effect}. Fit it first \
-         (pulloff fit with data.offset free), or give it with --set data.offset="
-    ))
 }
 
 /// What G is computed with, in words.

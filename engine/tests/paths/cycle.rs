@@ -237,6 +237,18 @@ fn no_touch_is_missed_beside_a_corner() {
     assert!((0.0496..0.0497).contains(&humps), "{humps}");
 }
 
+/// Without adhesion edges are held by the approach, whatever the device; what is told of a path is told of its force.
+#[test]
+fn a_warning_of_a_path_without_adhesion_names_the_value_of_its_device() {
+    let found = looped(wavy(0.0025, 0.05), 0.0, Control::Force, Turn::Approach(0.14), Losses::Once);
+    let at = found.warnings.iter().find_map(|warning| match warning {
+        Warning::Digits { control_value, .. } => Some(*control_value),
+        _ => None,
+    });
+    let at = at.unwrap();
+    assert!(found.states.iter().any(|state| state.force.to_bits() == at.to_bits()), "{at}");
+}
+
 /// Behind a spring that hardly feels the jump, its energy is far larger than the loss.
 #[test]
 fn losses_behind_soft_springs_are_those_under_a_dead_load() {

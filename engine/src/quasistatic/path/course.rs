@@ -229,18 +229,30 @@ impl<'a, 'b> Course<'a, 'b> {
 
 impl Course<'_, '_> {
     pub(super) fn state(&self, held: &HeldEdges) -> PathState {
-        let Record { direction, piece, control, .. } = self.record;
+        let Record { direction, piece, .. } = self.record;
         let state = PathState::new(held, self.balance.work_of_adhesion, direction, piece);
+        PathState { control_value: self.control_value(held), ..state }
+    }
+
+    /// The control value under the device of the path: without adhesion, edges are held by the approach.
+    fn control_value(&self, held: &HeldEdges) -> f64 {
+        let Record { control, .. } = self.record;
         if self.balance.control == control {
-            return state;
+            held.control_value
+        } else {
+            control.value(held.approach, held.force)
         }
-        PathState { control_value: control.value(held.approach, held.force), ..state }
+    }
+
+    /// The refusal of a path that cannot be followed beyond these edges.
+    pub(super) fn lost(&self, held: &HeldEdges) -> PathError {
+        PathError::Lost { control_value: self.control_value(held) }
     }
 
     /// The value by which the turn is measured.
     pub(super) fn measure(&self, held: &HeldEdges) -> f64 {
         match self.turn {
-            Some(Turn::Control(_)) if self.balance.control == self.setting.control => held.control_value,
+            Some(Turn::Control(_)) => self.control_value(held),
             Some(turn) => measure(turn, held, self.setting.control),
             None => f64::NEG_INFINITY,
         }
@@ -253,7 +265,7 @@ impl Course<'_, '_> {
 
     pub(super) fn record(&mut self, held: &HeldEdges) {
         if held.state.digits < self.record.digits.0 {
-            self.record.digits = (held.state.digits, held.control_value);
+            self.record.digits = (held.state.digits, self.control_value(held));
         }
         let state = self.state(held);
         self.record.states.push(state);
@@ -496,7 +508,7 @@ impl Course<'_, '_> {
         let value = before.or(landed).map_or(f64::NAN, |held| held.control_value);
         let by_area = self.by_area([old.as_ref(), new.as_ref()], value, &passed);
         if let Some(held) = landed.filter(|held| held.state.digits < self.record.digits.0) {
-            self.record.digits = (held.state.digits, held.control_value);
+            self.record.digits = (held.state.digits, self.control_value(held));
         }
         self.record.jump(kind, [old, new], radius, by_area, passed);
     }

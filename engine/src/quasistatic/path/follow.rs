@@ -161,7 +161,7 @@ impl Course<'_, '_> {
             let error = AnnuliError::TooManyPoints { points: count, most: MOST_POINTS_IN_ALL };
             PathError::TooMany { error, approach: held.approach }
         } else {
-            PathError::Lost { control_value: held.control_value }
+            self.lost(held)
         }
     }
 

@@ -121,8 +121,7 @@ impl Course<'_, '_> {
 
     /// Follows the contacts up to the next event and past it.
     fn risen(&mut self, from: &HeldEdges) -> Result<HeldEdges, PathError> {
-        let lost = |held: &HeldEdges| PathError::Lost { control_value: held.control_value };
-        let mut point = self.balance.point(from.clone(), 1.0).ok_or_else(|| lost(from))?;
+        let mut point = self.balance.point(from.clone(), 1.0).ok_or_else(|| self.lost(from))?;
         let (mut length, mut past) = (FIRST, Vec::new());
         loop {
             self.counted(&point.held)?;
@@ -130,7 +129,10 @@ impl Course<'_, '_> {
             let mut taken = taken.ok_or_else(|| self.stopped(&point.held))?;
             let side = taken.side;
             length = taken.length;
-            let crest = taken.to_touch(false)?;
+            let crest = taken.to_touch(false).map_err(|error| match error {
+                PathError::Lost { .. } => self.lost(&point.held),
+                other => other,
+            })?;
             let next = taken.end;
             // A gap that closes does so before that touch, or is examined again after it.
             let closed = self.closing(&next.held, crest.as_ref().map(|_| next.held.approach));
@@ -149,7 +151,7 @@ impl Course<'_, '_> {
                 let at_start = self.measure(&point.held) - turn.value();
                 let (_, end) = (taken.step)
                     .located((taken.length, &next), at_start, &mut left)
-                    .ok_or_else(|| lost(&point.held))?;
+                    .ok_or_else(|| self.lost(&point.held))?;
                 self.record(&end.held);
                 // The turn is reached to rounding, whatever its last digit.
                 return Ok(end.held);
