@@ -10,31 +10,26 @@
 //! Barquins, J. Phys. D 11, 1989 (1978).
 
 mod offset;
+mod reading;
 
 use self::offset::{FoundOffset, doubt_of_offset};
+pub use self::reading::MeasuredPair;
+use self::reading::{Released, RowReading, attached, radius_of};
 use super::columns::columns;
 use super::problem::Head;
 use super::rows::{ReportTable, RowsError};
 use crate::case::{Case, CaseError};
-use crate::disc::Panels;
 use crate::elementary::hypot;
 use crate::measured::branches::MeasuredPoint;
 use crate::measured::points::Turned;
 use crate::measured::speed::{Speed, noise, speeds};
 use crate::measured::{Abscissa, Branches, Instrument, MeasuredBranch};
 use crate::preset::Preset;
-use crate::problem::{Control, Units};
+use crate::problem::Control;
 use crate::progress::Progress;
-use crate::rate::equation::HeldDisc;
-use crate::root;
 use crate::units::Quantity;
 use crate::units::number::said;
 use serde::Serialize;
-use std::f64::consts::TAU;
-use std::sync::Arc;
-
-/// How many times the gap may be tabulated further out for radii that are not measured.
-const WIDER: usize = 12;
 
 /// Why there are no speeds.
 #[derive(Debug, thiserror::Error)]
@@ -59,40 +54,6 @@ pub enum SpeedsError {
     /// No row of it is in contact, or none at a radius for which the gap is known.
     #[error("no row is in contact, or none has a contact radius for which the gap is known")]
     Nothing,
-}
-
-/// What G is computed from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MeasuredPair {
-    /// P and s.
-    ForceRadius,
-    /// δ and s.
-    ApproachRadius,
-    /// P and δ.
-    ForceApproach,
-}
-
-impl MeasuredPair {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::ForceRadius, Self::ApproachRadius, Self::ForceApproach];
-
-    /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::ForceRadius => "force-radius",
-            Self::ApproachRadius => "approach-radius",
-            Self::ForceApproach => "force-approach",
-        }
-    }
-
-    /// What it is, in words.
-    fn words(self) -> &'static str {
-        match self {
-            Self::ForceRadius => "force and contact radius",
-            Self::ApproachRadius => "approach and contact radius",
-            Self::ForceApproach => "force and approach",
-        }
-    }
 }
 
 /// One row in contact.
@@ -141,119 +102,6 @@ pub struct SpeedsReport {
     pub sigma: [Option<f64>; 3],
     /// The rows, branch by branch in the order of measurement.
     pub rows: Vec<SpeedRow>,
-}
-
-/// What turns rows into states.
-#[derive(Clone)]
-struct RowReading {
-    panels: Arc<Panels>,
-    units: Units,
-    abscissa: Abscissa,
-    pair: MeasuredPair,
-    /// The control that the measured way belongs to, reduced.
-    control: Control,
-    /// δ₀, P₀ and its slope over x, in base units and in the signs of the points.
-    instrument: Instrument,
-    /// σ of x and P.
-    sigma: [f64; 2],
-}
-
-/// G of one row in base units, its standard deviation without the part from s, and its derivative with respect to s at
-/// what else is measured.
-struct Released {
-    contact_radius: f64,
-    energy: f64,
-    error: f64,
-    by_radius: f64,
-}
-
-impl RowReading {
-    /// Tabulates the gap beyond `reach` until all points have their G: from force and approach, the radius is not known
-    /// beforehand.
-    fn widen(&mut self, points: &[MeasuredPoint], case: &Case, mut reach: f64, progress: &dyn Progress) {
-        for _ in 0..WIDER {
-            let is_wide = points.iter().all(|point| self.released(point).is_some());
-            if is_wide || reach >= case.reduced.largest_contact() {
-                break;
-            }
-            reach = (2.0 * reach).min(case.reduced.largest_contact());
-            let Ok(wider) = case.table.up_to_while(reach, 0, progress) else { break };
-            self.panels = wider;
-        }
-    }
-
-    /// P at a row, reduced.
-    fn force(&self, point: &MeasuredPoint) -> f64 {
-        let Instrument { baseline, tilt, .. } = self.instrument;
-        (point.force - baseline - tilt * point.x) / self.units.force
-    }
-
-    /// G at a row; `None` where its radius is not valid, or one for which the gap is not known.
-    fn released(&self, point: &MeasuredPoint) -> Option<Released> {
-        let force = self.force(point);
-        let [sigma_x, sigma_force] = self.sigma;
-        let [sigma_x, sigma_force] = [sigma_x / self.units.length, sigma_force / self.units.force];
-        let unit = self.units.force / self.units.length;
-        let is_known = |s: f64| s > 0.0 && s <= self.panels.reach();
-        let way = (point.x - self.instrument.offset) / self.units.length;
-        let (approach, compliance) = match self.control {
-            Control::Stiffness(k) => (way - force / k, 1.0 / k),
-            _ => (way, 0.0),
-        };
-        if self.pair != MeasuredPair::ForceApproach {
-            let radius = radius_of(self.abscissa, point)?;
-            let s = radius / self.units.length;
-            if !is_known(s) {
-                return None;
-            }
-            let (held, of_column) = if self.pair == MeasuredPair::ForceRadius {
-                let held = HeldDisc::new(&self.panels, Control::Force, s, force);
-                (held, held.by_control * sigma_force)
-            } else {
-                let held = HeldDisc::new(&self.panels, Control::Displacement, s, approach);
-                (held, hypot(sigma_x, compliance * sigma_force))
-            };
-            let of_opening = 2.0 * held.opening / (TAU * s);
-            let by_radius = of_opening * (held.slope - held.by_radius) - held.energy_release_rate() / s;
-            return Some(Released {
-                contact_radius: radius,
-                energy: signed(&held) * unit,
-                error: (of_opening * of_column).abs() * unit,
-                by_radius: by_radius * unit / self.units.length,
-            });
-        }
-        let held = self.at_force(approach, force)?;
-        let s = held.contact_radius;
-        // δ and P move s, and both of them K: dP = 2s dδ − 2K ds.
-        let of_opening = 2.0 * held.opening / (TAU * s);
-        let of_radius = of_opening * held.slope - held.energy_release_rate() / s;
-        let by_approach = -of_opening + of_radius * s / held.opening;
-        let by_force = -of_radius / (2.0 * held.opening) - by_approach * compliance;
-        Some(Released {
-            contact_radius: s * self.units.length,
-            energy: signed(&held) * unit,
-            error: hypot(by_approach * sigma_x, by_force * sigma_force) * unit,
-            by_radius: 0.0,
-        })
-    }
-
-    /// The disc that has the force `force` at the approach `approach` and pulls at its edge.
-    fn at_force(&self, approach: f64, force: f64) -> Option<HeldDisc> {
-        let at = |s: f64| HeldDisc::new(&self.panels, Control::Displacement, s, approach);
-        let (lo, hi) = (self.panels.smallest(), self.panels.reach());
-        // Below the disc whose edge is free the force rises with s: the disc looked for lies beyond that one.
-        let is_beyond = |held: &HeldDisc| held.opening > 0.0 && held.force < force;
-        if !is_beyond(&at(hi)) {
-            return None;
-        }
-        let [_, found] = root::halved(lo, hi, |s| !is_beyond(&at(s)));
-        Some(at(found)).filter(|held| (held.force - force).abs() <= 1e-6 * (force.abs() + held.force.abs()))
-    }
-}
-
-/// G, negative where the edge is pressed.
-fn signed(held: &HeldDisc) -> f64 {
-    held.energy_release_rate() * if held.opening < 0.0 { -1.0 } else { 1.0 }
 }
 
 impl SpeedsReport {
@@ -360,11 +208,6 @@ fn used(reading: &RowReading, preset: &Preset, turned: Turned) -> String {
     format!("G is computed from {} with {}", reading.pair.words(), words.join(", "))
 }
 
-/// The rows in contact.
-fn attached(branches: &Branches) -> impl Iterator<Item = &MeasuredPoint> {
-    branches.list.iter().flat_map(|branch| &branch.attached)
-}
-
 /// What G is computed from: `asked`, or what the file has.
 fn measured_pair(
     asked: Option<MeasuredPair>,
@@ -388,12 +231,6 @@ fn wanted(case: &Case, branches: &Branches) -> f64 {
     let measured = attached(branches).map(|point| radius_of(branches.abscissa, point));
     let largest = measured.flatten().fold(0.0, f64::max) / case.units().length;
     largest.max(case.start).min(case.reduced.largest_contact())
-}
-
-/// The contact radius that is measured at a point.
-fn radius_of(abscissa: Abscissa, point: &MeasuredPoint) -> Option<f64> {
-    let radius = if abscissa == Abscissa::Radius { point.x } else { point.radius };
-    radius.is_finite().then_some(radius)
 }
 
 /// The rows of one branch in the order of measurement, and the noise of its contact radii.
@@ -430,7 +267,9 @@ mod tests {
     use crate::measured::PointsFile;
     use crate::preset::{Value, data, read};
     use crate::progress::Unwatched;
+    use std::f64::consts::TAU;
     use std::fmt::Write;
+    use std::sync::Arc;
 
     const PRESET: &str = "format = 1\nunits = \"SI\"\n[material]\neffective_modulus = 1e6\nwork_of_adhesion = 0.05\n[gap]\n\
                           shape = \"sphere\"\nradius_of_curvature = 1e-3\n[path]\ncontrol = \"displacement\"\nstart_contact_radius = 1e-4\n";

@@ -1,15 +1,13 @@
 //! An offset of x that is not given: what the rows say of it, and what it does to G.
 
-use super::{RowReading, attached, radius_of};
+use super::reading::{RowReading, attached};
 use crate::elementary::ln;
 use crate::fit::{AdhesionModel, Options, Verdict, fit_own};
 use crate::measured::branches::{MeasuredPoint, median};
 use crate::measured::{Branches, Instrument, Segment};
 use crate::preset::Preset;
 use crate::preset::data::OFFSET;
-use crate::problem::Control;
 use crate::progress::Progress;
-use crate::rate::equation::HeldDisc;
 use crate::units::Quantity;
 use crate::units::number::{said, short, with_unit};
 
@@ -126,27 +124,4 @@ pub(super) fn doubt_of_offset(
         "data.offset is not given, so x is taken as the approach: with another offset G is another{effect}. Fit it first \
          (pulloff fit with data.offset free), or give it with --set data.offset="
     ))
-}
-
-impl RowReading {
-    /// The x of a row less the approach, or the position, that its force and its contact radius give.
-    fn offset(&self, point: &MeasuredPoint) -> Option<f64> {
-        let s = radius_of(self.abscissa, point)? / self.units.length;
-        if !(s > 0.0 && s <= self.panels.reach()) {
-            return None;
-        }
-        let force = self.force(point);
-        let of_spring = match self.control {
-            Control::Stiffness(k) => force / k,
-            _ => 0.0,
-        };
-        let held = HeldDisc::new(&self.panels, Control::Force, s, force);
-        Some(point.x - (held.approach + of_spring) * self.units.length)
-    }
-
-    /// G at a row with another offset.
-    fn energy_at(&self, point: &MeasuredPoint, offset: f64) -> Option<f64> {
-        let instrument = Instrument { offset, ..self.instrument };
-        Some(Self { instrument, ..self.clone() }.released(point)?.energy)
-    }
 }
