@@ -243,7 +243,11 @@ fn rows_are_mended_by_hand_and_counted() {
     let none = fit(&["--free-part", "none", "--segment=retraction", "--range", "x=10um.."]);
     assert_eq!(counted(&none["rows"], "free"), 0);
     let notes = none["notes"].to_string();
-    assert!(notes.contains("there is no free part: the baseline is held"), "{notes}");
+    assert!(notes.contains("data.baseline is fitted too, known to within 20 uN beforehand"), "{notes}");
+    let held =
+        fit(&["--free-part=none", "--segment=retraction", "--range=x=10um..", "--set=data.baseline=4uN"]);
+    let notes = held["notes"].to_string();
+    assert!(notes.contains("there is no free part: the baseline is held as given"), "{notes}");
     let skipped = fit(&["--skip", "50", "--signs", "x=+,f=+"]);
     assert_eq!(skipped["rows"]["approach"]["dropped"], 50);
     assert_eq!(skipped["rows"]["retraction"], fit(&[])["rows"]["retraction"]);

@@ -10,7 +10,6 @@ use crate::elementary::hypot;
 use crate::gap::Gap;
 use crate::measured::branches::{MeasuredPoint, median};
 use crate::measured::{Abscissa, Branches, Instrument, Segment};
-use crate::preset::data::BASELINE;
 use crate::preset::data::DataSpec;
 use crate::preset::{BasisSpec, Preset, Value};
 use crate::problem::{Control, Start};
@@ -67,7 +66,7 @@ pub fn posed(
     let loops = has_waves && data.iter().any(|datum| datum.segment == Segment::Approach);
     let known = known(preset, branches, options)?;
     let is_known = known.iter().any(|known| known.target == Target::Baseline);
-    let instrument = instrument(preset, branches, options, (&mut targets, is_known), notes)?;
+    let instrument = instrument(preset, branches, options, (&mut targets, is_known), notes);
     targets.extend(
         known
             .iter()
@@ -286,49 +285,39 @@ fn known(preset: &Preset, branches: &Branches, options: &Options) -> Result<Vec<
     Ok(known)
 }
 
-/// Where the values between model and instrument start. A baseline that the points show is free too. So is that of
-/// radii without rows apart, within what a tare may be off, unless it `is_known` before with an error of its own.
+/// Where the values between model and instrument start. A baseline that the points show is free too. So is one
+/// that no rows show, within what a tare may be off, unless it `is_known` before with an error of its own.
 fn instrument(
     preset: &Preset,
     branches: &Branches,
     options: &Options,
     (targets, is_known): (&mut Vec<Target>, bool),
     notes: &mut Vec<String>,
-) -> Result<Instrument, FitError> {
+) -> Instrument {
     let given = &preset.data;
     let mut instrument = given.instrument(branches);
     let is_asked = !options.free.is_empty();
-    let is_held = is_known || given.baseline.is_some() && !targets.contains(&Target::Baseline);
-    let mut too = |why: &str| {
-        if !targets.contains(&Target::Baseline) {
-            targets.push(Target::Baseline);
-            notes.push(format!("data.baseline is fitted too, {why}"));
-        }
-    };
-    match branches.baseline {
+    let is_free = targets.contains(&Target::Baseline);
+    let why = match branches.baseline {
         Some(found) if is_asked || given.baseline.is_none() => {
-            too(if given.baseline.is_some() {
-                "since there is a free part: the value given is not used"
-            } else {
-                "since there is a free part"
-            });
             // A baseline that an earlier fit has left says less than the points.
             instrument.baseline = found;
+            let unless = if given.baseline.is_some() { ": the value given is not used" } else { "" };
+            (!is_free).then(|| format!("since there is a free part{unless}"))
         }
-        None if is_held => {}
-        None if branches.abscissa == Abscissa::Radius && is_asked => {
+        None if !is_known && (is_free || is_asked && given.baseline.is_none()) => {
             let off = said(&preset.units, Quantity::Force, tare(branches));
-            too(&format!("known to within {off} beforehand, since there is no free part"));
+            Some(format!("known to within {off} beforehand, since there is no free part"))
         }
-        None if targets.contains(&Target::Baseline) => {
-            return Err(FitError::Key {
-                key: BASELINE.to_owned(),
-                why: "there is no free part, and nothing else shows where the baseline is".to_owned(),
-            });
+        _ => None,
+    };
+    if let Some(why) = why {
+        notes.push(format!("data.baseline is fitted{}, {why}", if is_free { "" } else { " too" }));
+        if !is_free {
+            targets.push(Target::Baseline);
         }
-        _ => {}
     }
-    Ok(instrument)
+    instrument
 }
 
 /// By how much a force without rows apart may be off.

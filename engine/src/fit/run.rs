@@ -102,13 +102,10 @@ impl<'a> Posed<'a> {
         }
         if branches.baseline.is_none() {
             let is_free = problem.parameters.iter().any(|parameter| parameter.target == Target::Baseline);
-            let held = match preset.data.baseline {
-                _ if is_free => "",
-                Some(_) => "the baseline is held as given, and its error is not in those of the values; ",
-                None => {
-                    "the baseline is held, and its error is not in those of the values (measure until the bodies are \
-                     apart, or give data.baseline); "
-                }
+            let held = if is_free {
+                ""
+            } else {
+                "the baseline is held as given, and its error is not in those of the values; "
             };
             notes.push(format!(
                 "there is no free part: {held}sigma of the force is taken from neighbouring rows"

@@ -61,6 +61,9 @@ pub(super) fn of_correlated(
     solve(problem, &solved.minimum.parameters, robust, ROUNDS, progress).unwrap_or(solved)
 }
 
+/// The points contradict an assumed value beyond so many standard deviations.
+const CONTRADICTION: f64 = 2.0;
+
 /// Fits again where the points contradict the assumed tare of the force, 0 ± σ: with the σ of the largest likelihood,
 /// σ² = b² − v, where b is the tare that the points alone give, with the variance v; J. O. Berger, *Statistical
 /// Decision Theory and Bayesian Analysis* (1985), section 3.5.4.
@@ -79,8 +82,10 @@ pub(super) fn of_tare(
     weights[(j, j)] += prior.sigma.powi(-2);
     let Some(both) = weights.try_inverse() else { return solved };
     let off = (solved.minimum.parameters[j] - prior.mean) / (1.0 - both[(j, j)] / prior.sigma.powi(2));
-    let found = off * off - solved.scale.powi(2) * alone[(j, j)];
-    if found.is_nan() || found <= prior.sigma * prior.sigma {
+    let variance = solved.scale.powi(2) * alone[(j, j)];
+    let found = off * off - variance;
+    let expected = prior.sigma * prior.sigma + variance;
+    if found.is_nan() || off * off < CONTRADICTION * CONTRADICTION * expected {
         return solved;
     }
     prior.sigma = found.sqrt();

@@ -9,6 +9,7 @@ use super::*;
 use crate::gap::shapes::split_mix::SplitMix64;
 use crate::measured::Asked;
 use crate::measured::{Abscissa, Instrument, Origin, Points, Segment};
+use crate::preset::data::{BASELINE, OFFSET};
 use crate::preset::{Preset, read};
 use crate::progress::{Unwatched, until};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -398,26 +399,54 @@ fn a_share_of_the_force_can_be_given() {
     assert!(chi[1] < 0.5 * chi[0], "{chi:?}");
 }
 
+/// A retraction of the sphere E = 1, W = 0.02, R = 1 that ends in contact, with radii and normal noise of x, P and s.
+fn in_contact(seed: u64, noise: [f64; 3]) -> Points {
+    let state = sphere(1.0, 0.02, 1.0);
+    let mut points = no_points(Abscissa::Approach);
+    let (mut normal, mut radii) = (Normal::new(seed), Vec::new());
+    for i in 0..200 {
+        let s = 1.1 - 0.003 * f64::from(i);
+        let (x, force) = state(s);
+        points.x.push(x + noise[0] * normal.next());
+        points.force.push(force + noise[1] * normal.next());
+        radii.push(s + noise[2] * normal.next());
+        points.segments.as_mut().unwrap().push(Segment::Retraction);
+    }
+    points.radius = Some(radii);
+    points
+}
+
+#[test]
+fn a_tare_that_no_rows_show_is_found_or_in_the_errors() {
+    const SEEDS: u64 = 12;
+    const TARE: f64 = 6e-3;
+    let start = preset("shape='sphere'\nradius_of_curvature=1.0", 1.1, 0.018, "");
+    for (has_radii, free) in [(true, &[E, W, OFFSET][..]), (false, &[E, W, OFFSET]), (false, &[E, W])] {
+        let (mut squares, mut refused) = (0.0, 0);
+        for seed in 0..SEEDS {
+            let mut points = in_contact(seed, [3e-4, 1e-3, 2e-3]);
+            points.force.iter_mut().for_each(|force| *force += TARE);
+            points.radius = points.radius.filter(|_| has_radii);
+            let fit = run(&start, &points, free);
+            refused += usize::from(fit.verdict != Verdict::Describes);
+            let of = |key: &str| fit.parameters.iter().find(|fitted| fitted.key == key).unwrap();
+            let off = |key: &str, truth| (of(key).value - truth) / of(key).standard_error.unwrap();
+            assert!(off(BASELINE, TARE).abs() < 4.0 && off(E, 1.0).abs() < 4.0);
+            squares += off(W, 0.02).powi(2) / SEEDS as f64;
+        }
+        assert!((0.3..2.0).contains(&squares) && refused <= 1, "{has_radii} {free:?}: {squares} {refused}");
+    }
+}
+
 #[test]
 fn noise_of_an_approach_beside_radii_is_that_of_its_rows() {
     const SEEDS: u64 = 24;
-    let state = sphere(1.0, 0.02, 1.0);
     let start = preset("shape='sphere'\nradius_of_curvature=1.0", 1.1, 0.018, "");
     let noise = [3e-3, 1e-2, 2e-3];
     let mut squares = [0.0; 2];
     let mut refused = 0;
     for seed in 0..SEEDS {
-        let mut points = no_points(Abscissa::Approach);
-        let (mut normal, mut radii) = (Normal::new(seed), Vec::new());
-        for i in 0..200 {
-            let s = 1.1 - 0.003 * f64::from(i);
-            let (x, force) = state(s);
-            points.x.push(x + noise[0] * normal.next());
-            points.force.push(force + noise[1] * normal.next());
-            radii.push(s + noise[2] * normal.next());
-            points.segments.as_mut().unwrap().push(Segment::Retraction);
-        }
-        points.radius = Some(radii);
+        let points = in_contact(seed, noise);
         let asked = Asked { turned: Some([false; 2]), ..Asked::default() };
         let options = Options { free: [E, W].map(str::to_owned).to_vec(), asked, ..Options::default() };
         let fit = fit(&start, &points, &options, &Unwatched).unwrap();

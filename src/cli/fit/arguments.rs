@@ -31,10 +31,10 @@ pub struct FitArguments {
     #[arg(required = true, value_name = "FILE... [PRESET]")]
     pub(super) paths: Vec<OsString>,
     /// The keys to fit, dotted or by their letters: `material.effective_modulus,material.work_of_adhesion` or E*,gamma;
-    /// also data.offset (where x is zero), data.baseline (where P is; where there is a free part, it is always
-    /// fitted) and data.tilt; those of the preset's data.free when left out. Offset, tilt and, without a free
-    /// part, baseline are held at the values of the preset or of --set unless they are free. A baseline that is not given is
-    /// fitted beside contact radii, within 2 % of the largest force
+    /// also data.offset (where x is zero), data.baseline (where P is) and data.tilt; those of the preset's data.free when
+    /// left out. Offset and tilt are held at the values of the preset or of --set unless they are free. The baseline is
+    /// always fitted where there is a free part; without one, it is held if it is given, and fitted within 2 % of
+    /// the largest force if not
     #[arg(long, value_name = "KEY,...", value_delimiter = ',')]
     pub(super) free: Option<Vec<String>>,
     #[command(flatten)]

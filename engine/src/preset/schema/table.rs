@@ -204,7 +204,7 @@ parameters! {
         Choice(&data::SETTINGS_OF) or Described("file");
     data::OFFSET => "delta0" Length "x of the measured curve at which the approach is zero": Finite or Described("0");
     data::BASELINE => "P0" Force "measured force that counts as zero":
-        Finite or Described("the median of its free part; 0 without one");
+        Finite or Described("the median of its free part; without one, 0, and a fit finds it");
     data::TILT => "tilt" ForcePerLength "slope of that force over x": Finite or Described("0");
     DISPLAY[0].0 => "lengths" Number "unit in which lengths are shown":
         Text { max_chars: 20 } or Text("um") only UNITS ["SI"];
