@@ -17,7 +17,7 @@ use crate::problem::{
 };
 use crate::progress::{Progress, Stopped, Unwatched};
 use crate::quasistatic::admissible::{Judge, falls};
-use crate::quasistatic::beyond::is_smaller_beyond;
+use crate::quasistatic::beyond::{is_smaller_beyond, is_smaller_beyond_zone};
 use crate::quasistatic::path::{
     Losses, Path, PathError, PathSetting, ZoneStartError, Zones, cycle, cycle_in_zone, start_in_zone, unload,
     unload_in_zone,
@@ -472,12 +472,14 @@ impl Case {
     pub fn is_cut_off(&self, path: &Path, of: Control) -> bool {
         let least = if of == Control::Force { path.largest_pull() } else { path.farthest() };
         let ends = path.start().zip(least).filter(|(start, least)| start.rings() + least.rings() == 0);
-        let radii = ends.map(|(start, least)| [start.contact_radius, least.contact_radius]);
-        let radii = radii.filter(|_| path.turn.is_none() && self.cohesion.is_none());
-        radii.is_some_and(|[start, least]| {
-            of == Control::Force && path.pulls_most_at_start()
-                || is_smaller_beyond(&self.table, &self.reduced, [start, least], of, Some(path.control))
-        })
+        let Some((start, least)) = ends.filter(|_| path.turn.is_none()) else { return false };
+        let (begun, held) = (start.contact_radius, Some(path.control));
+        if let Some(law) = self.cohesion {
+            let here = if of == Control::Force { least.force } else { least.approach };
+            return is_smaller_beyond_zone((&self.table, &self.reduced, law), (begun, here), of, held);
+        }
+        of == Control::Force && path.pulls_most_at_start()
+            || is_smaller_beyond(&self.table, &self.reduced, [begun, least.contact_radius], of, held)
     }
 
     /// A warning, if a contact of radius `largest` (reduced) is larger than the bodies are round.

@@ -23,13 +23,13 @@
 //! | [`scatter`] | the noise of the rows as neighbours show it |
 //! | `spread` | how that noise varies with the slope of the curve |
 //! | [`chance`] | how likely a statistic is by chance |
-//! | `growing` | noise of the force that grows with it |
 //! | [`judge`] | what speaks against the fit: means along the path, rows apart, ranges, the device's stiffness |
 //! | [`uncertain`] | values that are given with an error |
 //! | [`verdict`] | what it comes to, in one word, and why |
 //! | [`rows`] | what a fit makes of the rows of a file, counted |
 //! | [`residuals`] | the points compared with a curve |
 //! | `settled` | the last fit, with the noise that it shows |
+//! | `shown` | noise of x that was not assumed, and noise of the force that grows with it |
 //! | `laid` | the preset that a fit leaves |
 //! | `run` | all of it, in order |
 //! | [`outcome`] | what it comes to |
@@ -47,7 +47,6 @@ pub mod determined;
 mod directed;
 pub mod distance;
 pub mod fitted;
-mod growing;
 pub mod intervals;
 pub mod judge;
 mod laid;
@@ -67,6 +66,7 @@ pub mod rows;
 mod run;
 pub mod scatter;
 mod settled;
+mod shown;
 pub mod solve;
 mod spread;
 pub mod start;

@@ -2,7 +2,6 @@
 
 use super::determined::{Determined, determined};
 use super::fitted::{too_small, unmoved, values};
-use super::growing::of_growing;
 use super::intervals::intervals;
 use super::judge::{Evidence, doubts, of_sparse, of_spring, reasons, unseen};
 use super::laid::laid;
@@ -16,6 +15,7 @@ use super::residuals::{beside, of_part};
 use super::rows::Rows;
 use super::scatter::Scatter;
 use super::settled::{last, of_correlated, of_tare, unpinned};
+use super::shown::{KnownNoise, of_shown_noise};
 use super::solve::SolvedFit;
 use super::start::{Tried, start};
 use super::uncertain::given;
@@ -92,8 +92,14 @@ impl<'a> Posed<'a> {
                 last(&mut problem, &u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))?;
             notes.push("no rows show that the edge is pinned between approach and retraction".to_owned());
         }
-        let from = (options.asked.share, branches.noise.from[1], branches.ranges[1]);
-        solved = of_growing(&mut problem, solved, options.robust, from, (&mut notes, progress));
+        let [of_way, of_force, _] = branches.noise.from;
+        let known = KnownNoise {
+            share: options.asked.share,
+            from: [of_way, of_force],
+            range: branches.ranges[1],
+            abscissa: branches.abscissa,
+        };
+        solved = of_shown_noise(&mut problem, solved, options.robust, known, (&mut notes, progress));
         if branches.noise.from[1] == Origin::Apart {
             solved = of_correlated(&mut problem, solved, options.robust, progress);
         }
@@ -185,7 +191,7 @@ impl<'a> Posed<'a> {
             ending,
             starts,
             snaps: problem.paths(u).map_or(0, |paths| paths.of(Segment::Retraction).snaps),
-            noise: Noise { sigma: problem.sigma, share: problem.share, ..branches.noise },
+            noise: noise_of(&problem, branches),
             bootstrapped,
             turned: branches.turned,
             notes,
@@ -240,4 +246,14 @@ fn growth(problem: &FitProblem, u: &[f64], what: &Determined, verdict: Verdict) 
         "a fast edge costs K v^n more than gamma, with K = gamma/v0^n = {}{error} in base units{holds}",
         significant(value, 4)
     ))
+}
+
+/// The noise with which a fit weighs its points, and where that is from.
+fn noise_of(problem: &FitProblem, branches: &Branches) -> Noise {
+    let Noise { sigma: [before, ..], mut from, .. } = branches.noise;
+    let [way, ..] = problem.sigma;
+    if branches.abscissa != Abscissa::Radius && way.total_cmp(&before).is_ne() {
+        from[0] = Origin::Neighbours;
+    }
+    Noise { sigma: problem.sigma, share: problem.share, from, ..branches.noise }
 }

@@ -399,13 +399,13 @@ fn a_share_of_the_force_can_be_given() {
     assert!(chi[1] < 0.5 * chi[0], "{chi:?}");
 }
 
-/// A retraction of the sphere E = 1, W = 0.02, R = 1 that ends in contact, with radii and normal noise of x, P and s.
-fn in_contact(seed: u64, noise: [f64; 3]) -> Points {
+/// A retraction of the sphere E = 1, W = 0.02, R = 1 that ends in contact, with radii `step` apart and normal noise of x, P and s.
+fn in_contact(seed: u64, step: f64, noise: [f64; 3]) -> Points {
     let state = sphere(1.0, 0.02, 1.0);
     let mut points = no_points(Abscissa::Approach);
     let (mut normal, mut radii) = (Normal::new(seed), Vec::new());
     for i in 0..200 {
-        let s = 1.1 - 0.003 * f64::from(i);
+        let s = 1.1 - step * f64::from(i);
         let (x, force) = state(s);
         points.x.push(x + noise[0] * normal.next());
         points.force.push(force + noise[1] * normal.next());
@@ -424,7 +424,7 @@ fn a_tare_that_no_rows_show_is_found_or_in_the_errors() {
     for (has_radii, free) in [(true, &[E, W, OFFSET][..]), (false, &[E, W, OFFSET]), (false, &[E, W])] {
         let (mut squares, mut refused) = (0.0, 0);
         for seed in 0..SEEDS {
-            let mut points = in_contact(seed, [3e-4, 1e-3, 2e-3]);
+            let mut points = in_contact(seed, 0.003, [3e-4, 1e-3, 2e-3]);
             points.force.iter_mut().for_each(|force| *force += TARE);
             points.radius = points.radius.filter(|_| has_radii);
             let fit = run(&start, &points, free);
@@ -438,6 +438,27 @@ fn a_tare_that_no_rows_show_is_found_or_in_the_errors() {
     }
 }
 
+/// Without rows apart nothing tells the noise of x beforehand: the slope of the curve does.
+#[test]
+fn noise_of_an_approach_is_seen_where_the_curve_is_steep() {
+    const SEEDS: u64 = 12;
+    const NOISE: f64 = 4e-3;
+    let start = preset("shape='sphere'\nradius_of_curvature=1.0", 1.1, 0.018, "");
+    let mut squares = 0.0;
+    for seed in 0..SEEDS {
+        let mut points = in_contact(seed, 0.0043, [NOISE, 1e-3, 2e-3]);
+        points.radius = None;
+        let fit = run(&start, &points, &[E, W, OFFSET]);
+        let ratio = fit.noise.sigma[0] / NOISE;
+        assert!(fit.noise.from[0] == Origin::Neighbours && (0.7..1.4).contains(&ratio), "{ratio}");
+        squares += ((fit.parameters[0].value - 1.0) / fit.parameters[0].standard_error.unwrap()).powi(2);
+    }
+    assert!((0.3..2.0).contains(&(squares / SEEDS as f64)), "{squares}");
+    let mut points = in_contact(1, 0.0043, [0.0, 1e-3, 0.0]);
+    points.radius = None;
+    assert_eq!(run(&start, &points, &[E, W, OFFSET]).noise.from[0], Origin::Assumed);
+}
+
 #[test]
 fn noise_of_an_approach_beside_radii_is_that_of_its_rows() {
     const SEEDS: u64 = 24;
@@ -446,7 +467,7 @@ fn noise_of_an_approach_beside_radii_is_that_of_its_rows() {
     let mut squares = [0.0; 2];
     let mut refused = 0;
     for seed in 0..SEEDS {
-        let points = in_contact(seed, noise);
+        let points = in_contact(seed, 0.003, noise);
         let asked = Asked { turned: Some([false; 2]), ..Asked::default() };
         let options = Options { free: [E, W].map(str::to_owned).to_vec(), asked, ..Options::default() };
         let fit = fit(&start, &points, &options, &Unwatched).unwrap();

@@ -25,6 +25,19 @@ fn a_wavy_sphere_is_found_through_its_snaps() {
     close(&fit, &[1.0, 0.004, 0.0025], 1e-8);
 }
 
+/// A record may begin in a valley while a crest further in reaches as far.
+#[test]
+fn a_record_that_begins_behind_a_crest_is_found() {
+    const WAVES: &str = "shape='wavy-sphere'\nradius_of_curvature=1.0\namplitude=5e-4\nwavelength=0.015";
+    let mut truth = preset(WAVES, 1.0, 5e-5, "");
+    truth.path.start = crate::problem::Start::ContactRadius(0.12);
+    let (mut points, mut normal) = (unloaded(&truth, 300), Normal::new(3));
+    points.force.iter_mut().for_each(|force| *force += 1e-6 * normal.next());
+    let fit = run(&preset(WAVES, 1.05, 4.8e-5, ""), &points, &[E, W]);
+    assert_eq!(fit.verdict, Verdict::Describes, "{:?}", fit.reasons);
+    close(&fit, &[1.0, 5e-5], 5e-3);
+}
+
 /// Our own unloading of a preset under fixed grips, evenly spaced in the approach, with a free part.
 fn unloaded(preset: &Preset, n: usize) -> Points {
     let case = Case::new(preset).unwrap();

@@ -6,6 +6,7 @@ pub use super::mover::Mover;
 use super::pulled::{TrackState, Trail, is_pulled};
 use crate::case;
 use crate::disc::{Basis, ExactBasis, Local, Place, Solution, Table};
+use crate::gap::Gap;
 use crate::measured::Abscissa;
 use crate::preset::Preset;
 use crate::problem::{Adhesion, Cohesion, Control, Printer, Reduced, StatedCohesion, Units};
@@ -113,9 +114,10 @@ impl Track {
             let trail = Trail::of(preset, &reduced, &table, (held, reach.noise))?;
             return Some(Self::Pull(Arc::new(trail)));
         }
+        let wave = preset.gap.feature_length().map(|length| length / units.length);
         let outermost = match reach.radius {
             Some(radius) => (radius / units.length).min(reduced.largest_contact()),
-            None => outermost(&reduced, &ExactBasis::new(Arc::clone(&table), 1e-3), reach, eye)?,
+            None => outermost(&reduced, &ExactBasis::new(Arc::clone(&table), 1e-3), (reach, eye, wave))?,
         };
         let basis: Arc<dyn Basis> = Arc::new(ExactBasis::new(Arc::clone(&table), outermost));
         let ends = [outermost, INNERMOST * outermost];
@@ -330,7 +332,8 @@ pub(super) fn begins(preset: &Preset, abscissa: Abscissa, x: f64, length: f64) -
         length,
         noise: 0.0,
     };
-    let mut hi = outermost(&reduced, &basis, &reach, &eye)?;
+    let wave = preset.gap.feature_length().map(|length| length / reduced.units.length);
+    let mut hi = outermost(&reduced, &basis, (&reach, &eye, wave))?;
     let mut lo = 0.5 * hi;
     for _ in 0..HALVINGS {
         let middle = 0.5 * (lo + hi);
@@ -340,8 +343,12 @@ pub(super) fn begins(preset: &Preset, abscissa: Abscissa, x: f64, length: f64) -
     Some(hi * reduced.units.length)
 }
 
-/// The reduced radius from which the curve reaches beyond all points.
-fn outermost(reduced: &Reduced, basis: &ExactBasis, reach: &Reach, eye: &Eye) -> Option<f64> {
+/// The reduced radius from which the curve reaches beyond all points, where the waves of the gap have the length `wave`.
+fn outermost(
+    reduced: &Reduced,
+    basis: &ExactBasis,
+    (reach, eye, wave): (&Reach, &Eye, Option<f64>),
+) -> Option<f64> {
     const FIRST: f64 = 1e-7;
     const GROWTH: f64 = 1.5;
     let largest = reduced.largest_contact();
@@ -357,10 +364,37 @@ fn outermost(reduced: &Reduced, basis: &ExactBasis, reach: &Reach, eye: &Eye) ->
         // Small contacts have an approach and a force near zero too: only beyond the pull-off do both rise.
         let rises = here[0] > before[0] && here[1] > before[1];
         if rises && eye.is_enough(state, reach) {
-            return Some((MARGIN * s).min(largest));
+            let enough = |s: f64| {
+                let at = basis.equilibrium(reduced, s)?;
+                Some(eye.is_enough([s, at.approach, at.force], reach))
+            };
+            let last = wave.map_or(s, |wave| beyond_crests(s, wave, largest, &enough));
+            return Some((MARGIN * last).min(largest));
         }
         before = here;
         s *= GROWTH;
     }
     None
+}
+
+/// The last radius from `s` on that does not reach as far as the points: a crest may reach further than the valleys after
+/// it, where the record may begin.
+fn beyond_crests(s: f64, wave: f64, largest: f64, is_enough: &dyn Fn(f64) -> Option<bool>) -> f64 {
+    /// The number of radii in a wave, that of waves without such a radius after which there is none, and that of all.
+    const PER_WAVE: f64 = 12.0;
+    const WAVES: f64 = 4.0;
+    const MOST: usize = 20_000;
+    let (mut last, mut at) = (s, s);
+    for _ in 0..MOST {
+        at += wave / PER_WAVE;
+        if at > (last + WAVES * wave).min(largest) {
+            break;
+        }
+        match is_enough(at) {
+            Some(true) => {}
+            Some(false) => last = at,
+            None => break,
+        }
+    }
+    last
 }

@@ -134,6 +134,24 @@ fn without_restarts(part: &mut [MeasuredPoint]) {
     }
 }
 
+/// Leaves out rows in contact without a contact radius where others have one.
+fn without_radius(
+    list: &mut [(MeasuredBranch, Vec<MeasuredPoint>)],
+    of_radius: bool,
+    notes: &mut Vec<String>,
+) {
+    let attached = || list.iter().flat_map(|(branch, _)| &branch.attached);
+    let seen = attached().filter(|point| !point.radius.is_nan()).count();
+    let unseen = attached().count() - seen;
+    if of_radius || seen == 0 || unseen == 0 {
+        return;
+    }
+    for (branch, _) in list {
+        branch.attached.retain(|point| !point.radius.is_nan());
+    }
+    notes.push(format!("{unseen} rows in contact have no contact radius and are left out"));
+}
+
 impl Points {
     /// The branches of these points.
     ///
@@ -191,6 +209,7 @@ impl Points {
         for (branch, _) in &mut list {
             branch.clears_jump(&noise);
         }
+        without_radius(&mut list, of_radius, &mut notes);
         let forces = list.iter().flat_map(|(branch, _)| branch.free.iter().map(|p| p.force));
         let baseline = median(forces.collect());
         let clipped = at_an_end(&list, step);

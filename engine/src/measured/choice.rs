@@ -106,7 +106,11 @@ pub(super) fn wanted(
     let mut refused = Vec::new();
     let wanted = match header {
         _ if !spec.0.is_empty() => of_person(spec, header, line, cells)?,
-        Some(header) => of_header(header, notes, &mut refused),
+        Some(header) => {
+            let wanted = of_header(header, notes, &mut refused);
+            notes.extend(without_way(header, &wanted));
+            wanted
+        }
         None if cells == 2 => {
             notes.push(
                 "there is no header: the first column is taken as the approach, the second as the force"
@@ -145,6 +149,27 @@ pub(super) fn wanted(
         return Err(CurveReadError::Unknown { line, cells, names: known() });
     }
     Ok(wanted)
+}
+
+/// A note where force and contact radius are used alone, although another column may be the approach.
+fn without_way(header: &Header, wanted: &[WantedColumn]) -> Option<String> {
+    let has = |is: fn(ColumnRole) -> bool| wanted.iter().any(|column| is(column.role));
+    let is_length = |name: &str, unit: Option<&String>| {
+        let of_name = name.rsplit(|c: char| !c.is_alphanumeric()).next().map(str::to_owned);
+        unit.cloned().or(of_name).is_some_and(|unit| unit_of(ColumnRole::Approach, &unit).is_ok())
+    };
+    let mut heads = header.heads.iter().enumerate();
+    let (at, (name, _)) = heads.find(|(at, (name, unit))| {
+        wanted.iter().all(|column| column.at != *at) && is_length(name, unit.as_ref())
+    })?;
+    (has(ColumnRole::is_contact) && !has(ColumnRole::is_way)).then(|| {
+        format!(
+            "column {number}, \"{}\", is not used: if it is the approach, head it \"indentation\", or name all columns, \
+             as in --columns approach={number},force=…,radius=…",
+            quote(name),
+            number = at + 1,
+        )
+    })
 }
 
 /// Whether two columns are a profile of the gap: a radius, or any length, and a length. A name that can only be of a

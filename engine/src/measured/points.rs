@@ -101,7 +101,7 @@ pub struct Points {
     pub segments: Option<Vec<Segment>>,
     /// When each was measured, in seconds or in reduced units; `None` if the file does not say.
     pub time: Option<Vec<f64>>,
-    /// Whether the user says which columns they are, which nothing in them refutes.
+    /// Whether the user, or units in the header, say which columns they are, which nothing in them refutes.
     pub is_said: bool,
 }
 
@@ -291,7 +291,9 @@ impl Measured {
         let time =
             column(ColumnRole::Time).filter(|time| *units != UnitSystem::Reduced || time.unit.is_none());
         let time = time.map(|time| base(time).0);
-        let (segments, is_said) = (self.segments.clone(), self.is_said);
+        // A unit in the header has told a force from a length.
+        let have_units = self.columns.iter().all(|column| column.unit.is_some());
+        let (segments, is_said) = (self.segments.clone(), self.is_said || have_units);
         Ok(Points { abscissa, x, force, radius, steps, segments, time, is_said })
     }
 }

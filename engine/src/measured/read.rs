@@ -90,6 +90,9 @@ pub fn parse(bytes: &[u8], spec: &ColumnSpec) -> Result<Measured, CurveReadError
     if faults.total > 0 {
         return Err(CurveReadError::Faults(faults));
     }
+    if let Some(line) = measured.without_gaps_of_radius() {
+        state.skipped = Some(state.skipped.map_or(line, |first| first.min(line)));
+    }
     let rows = measured.columns.first().map_or(0, |column| column.values.len());
     if state.has_commas() {
         measured.notes.push("decimals are written with a comma: 0,1 is read as 0.1".to_owned());

@@ -97,6 +97,16 @@ impl ColumnRole {
         }
     }
 
+    /// Whether it says how large the contact is.
+    pub(super) fn is_contact(self) -> bool {
+        matches!(self, Self::Radius | Self::Diameter | Self::Area)
+    }
+
+    /// Whether it says how far the bodies have approached.
+    pub(super) fn is_way(self) -> bool {
+        matches!(self, Self::Approach | Self::Position)
+    }
+
     /// Its dimension; none for a segment.
     pub fn dimension(self) -> Option<Dimension> {
         match self {

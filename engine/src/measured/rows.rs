@@ -95,6 +95,9 @@ impl CellFindings {
             let text = cells.get(want.at).copied().unwrap_or_default();
             if want.role == ColumnRole::Time && !want.is_said {
                 row.push((time(text), f64::INFINITY));
+            } else if is_gap(text) && want.role.is_contact() {
+                // Nothing is seen of a contact while the bodies are apart.
+                row.push((f64::NAN, f64::INFINITY));
             } else if is_gap(text) {
                 is_whole = false;
             } else if want.role == ColumnRole::Segment {
@@ -177,6 +180,12 @@ fn time(text: &str) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
+/// Drops the rows that are not to be kept.
+fn kept<T>(rows: &mut Vec<T>, keep: &[bool]) {
+    let mut keep = keep.iter();
+    rows.retain(|_| keep.next().is_none_or(|keep| *keep));
+}
+
 impl Measured {
     /// Creates the columns; `all` is the branch of all rows, if no column gives it.
     pub(super) fn begins(&mut self, wanted: &[WantedColumn], all: Option<Segment>) {
@@ -204,6 +213,43 @@ impl Measured {
             column.values.extend_from_slice(&other.values);
             column.step = column.step.min(other.step);
         }
+    }
+
+    /// Decides what rows without a contact radius are. Beside an approach the force tells whether they are apart. Force over
+    /// radius alone shows it only before the first radius and after the last one; rows between are left out;
+    /// returns the line of the first of these.
+    pub(super) fn without_gaps_of_radius(&mut self) -> Option<usize> {
+        if self.columns.iter().any(|column| column.role.is_way()) {
+            return None;
+        }
+        let radii = self.columns.iter_mut().find(|column| column.role.is_contact())?;
+        let is_seen = |radius: &f64| !radius.is_nan();
+        let seen = radii.values.iter().position(is_seen).zip(radii.values.iter().rposition(is_seen));
+        let (first, last) = seen?;
+        let mut apart = 0;
+        for (row, radius) in radii.values.iter_mut().enumerate() {
+            if radius.is_nan() && !(first..=last).contains(&row) {
+                *radius = 0.0;
+                apart += 1;
+            }
+        }
+        let keep: Vec<bool> = radii.values.iter().map(is_seen).collect();
+        if apart > 0 {
+            self.notes.push(format!(
+                "{apart} rows before the first contact radius or after the last one have none: they are taken to be \
+                 apart"
+            ));
+        }
+        self.skipped += keep.iter().filter(|keep| !**keep).count();
+        let left_out = keep.iter().position(|keep| !keep).map(|row| self.lines[row]);
+        kept(&mut self.lines, &keep);
+        for column in &mut self.columns {
+            kept(&mut column.values, &keep);
+        }
+        if let Some(segments) = &mut self.segments {
+            kept(segments, &keep);
+        }
+        left_out
     }
 
     /// Drops a time column that lacks a number in some row: nothing else needs it.

@@ -560,6 +560,57 @@ fn contact_radii_are_apart_where_they_are_zero_alone() {
     );
 }
 
+/// A microscope sees no contact while the bodies are apart.
+#[test]
+fn rows_without_a_radius_are_apart_or_left_out() {
+    let text = |has_way: bool, gone: &str| {
+        let mut text =
+            if has_way { "delta,force,contact radius\n" } else { "force,contact radius\n" }.to_owned();
+        for i in 0..60 {
+            let s = 0.6 - 0.01 * f64::from(i);
+            let root = (TAU * 0.01 * s).sqrt();
+            // Behind the pull-off at s = 0.158.
+            let is_apart = s < 0.158;
+            let delta = if is_apart { -0.1 - 0.003 * f64::from(i) } else { s * s - root };
+            let force = if is_apart { 0.0 } else { 4.0 / 3.0 * s.powi(3) - 2.0 * s * root };
+            let radius = if is_apart { gone.to_owned() } else { format!("{s:?}") };
+            let radius = if i == 7 { "NaN".to_owned() } else { radius };
+            let way = if has_way { format!("{delta:?},") } else { String::new() };
+            writeln!(text, "{way}{force:?},{radius}").unwrap();
+        }
+        text
+    };
+    for gone in ["", "NaN", "0"] {
+        let found = branches(&text(true, gone)).unwrap();
+        assert_eq!(parts(&found), [[44, 0, 15]], "{gone}");
+        assert!(found.notes.iter().any(|note| note.starts_with("1 rows in contact")), "{:?}", found.notes);
+        assert_eq!(found.baseline, Some(0.0));
+        let measured = parse(text(false, gone).as_bytes(), &ColumnSpec::default()).unwrap();
+        assert_eq!(measured.skipped, 1);
+        assert_eq!(measured.notes.iter().any(|note| note.starts_with("15 rows before")), gone != "0");
+        assert_eq!(parts(&branches(&text(false, gone)).unwrap()), [[44, 0, 15]], "{gone}");
+    }
+}
+
+/// A length that is not used beside force and radius may be the approach under a name that is not known.
+#[test]
+fn a_column_that_may_be_the_approach_is_named() {
+    let notes = |head: &str| {
+        let rows = (0..30).map(|i| f64::from(30 - i)).fold(format!("{head}\n"), |mut text, s| {
+            writeln!(text, "{},{},{s}", s * s, s * s * s - 20.0 * s).unwrap();
+            text
+        });
+        parse(rows.as_bytes(), &ColumnSpec::default()).unwrap().notes.join("; ")
+    };
+    for head in ["x_mm,F_mN,a_um", "x (mm),force (mN),contact radius (um)"] {
+        let told = notes(head);
+        assert!(told.contains("column 1, \"x"), "{told}");
+        assert!(told.contains("--columns approach=1,"), "{told}");
+    }
+    assert_eq!(notes("delta (mm),force (mN),contact radius (um)"), "");
+    assert_eq!(notes("voltage (V),force (mN),contact radius (um)"), "");
+}
+
 #[test]
 fn a_free_part_on_one_branch_alone_is_said_and_none_is_made_up() {
     let rows = jkr(1e-4);

@@ -62,3 +62,4 @@ pub use stepped::{SingularSide, TakenStep};
 pub use unload::unload;
 pub use zone::{ZoneStartError, cycle_in_zone, start_in_zone, unload_in_zone};
 pub use zones::Zones;
+pub(super) use zones::place_of;

@@ -166,7 +166,7 @@ pub(super) fn beyond(solution: &dyn Solution, place: Place, fault: Option<ZoneFa
 }
 
 /// The place of the outermost zone with contact of the radius `s`.
-pub(super) fn place_of(solution: &dyn Solution, s: f64) -> Option<Place> {
+pub(in crate::quasistatic) fn place_of(solution: &dyn Solution, s: f64) -> Option<Place> {
     let contact = |c: f64| solution.place(c).map(|place| solution.edges(place).contact_radius);
     if contact(solution.reach())? < s {
         return None;
