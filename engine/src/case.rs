@@ -28,7 +28,7 @@ use crate::quasistatic::{Curve, CurveStop, Detail};
 use crate::ritz::{Rings, RingsError};
 use crate::theory::jkr::Jkr;
 use crate::theory::maugis::Maugis;
-use crate::units::number::said;
+use crate::units::number::{said, short};
 use crate::units::{Quantity, UnitSystem};
 use std::sync::{Arc, Mutex};
 
@@ -454,7 +454,27 @@ impl Case {
                 self.change_with_range(tabor)
             ));
         }
+        warnings.extend(self.warning_of_slope());
         warnings
+    }
+
+    /// A warning, if the bodies are steep within the contact at the start: h' of a half-space is small beside 1.
+    fn warning_of_slope(&self) -> Option<String> {
+        const RADII: usize = 512;
+        const STEEP: f64 = 1.0;
+        let (shape, start) = (&self.problem.shape, self.start * self.units().length);
+        let wave = shape.feature_length().unwrap_or(start);
+        // The waves near the edge stand for those further in.
+        let from = (start - RADII as f64 * wave / 16.0).max(0.0);
+        let radii = (1..=RADII).map(|i| from + (start - from) * i as f64 / RADII as f64);
+        let steepest = radii.map(|r| shape.jet(r).first.abs()).fold(0.0, f64::max);
+        let is_of_waves = shape.feature_length().is_some();
+        (is_of_waves && steepest > STEEP).then(|| {
+            format!(
+                "the waves are as steep as {}: this theory is for slopes small beside 1",
+                short(steepest, 2)
+            )
+        })
     }
 
     /// A warning, if an unloading starts where larger contacts pull more than all on its way.

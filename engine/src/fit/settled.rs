@@ -91,7 +91,7 @@ pub(super) fn of_tare(
     prior.sigma = found.sqrt();
     let [_, wider] = problem.parameters[j].given(prior);
     notes.push(format!(
-        "the points contradict that: the tare is assumed to be off by {}",
+        "the points contradict so small a tare: {} is taken instead",
         said(&problem.preset.units, Quantity::Force, wider)
     ));
     solve(problem, &solved.minimum.parameters, robust, ROUNDS, progress).unwrap_or(solved)

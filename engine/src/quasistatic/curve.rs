@@ -208,20 +208,28 @@ impl Curve {
     /// The same curve on a solution that reaches further out, to `to` or as far as the gap is known; false when nothing
     /// could be added.
     pub fn reach(&mut self, to: f64) -> bool {
+        self.reach_while(to, &Unwatched).unwrap_or(false)
+    }
+
+    /// The same while `progress` goes on.
+    ///
+    /// # Errors
+    /// [`Stopped`].
+    pub fn reach_while(&mut self, to: f64, progress: &dyn Progress) -> Result<bool, Stopped> {
         let to = to.min(self.equilibrium.problem.largest_contact());
         // Solving the equations of the curve again would give a solution without zones.
         if to <= self.solution.reach() || self.is_of_zones() {
-            return false;
+            return Ok(false);
         }
         let Equilibrium { problem, basis, .. } = &self.equilibrium;
-        let Ok(Some(solution)) = basis.solution(problem, self.innermost(), to, &Unwatched) else {
-            return false;
+        let Some(solution) = basis.solution(problem, self.innermost(), to, progress)? else {
+            return Ok(false);
         };
         let further = solution.reach() > self.solution.reach();
         self.solution = solution;
         self.held =
             self.held.iter().map(|held| Arc::new(Monotone::of(&*self.solution, held.control))).collect();
-        further
+        Ok(further)
     }
 
     /// The stretches of `control` over the whole solution.

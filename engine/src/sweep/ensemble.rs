@@ -4,8 +4,8 @@
 //! sd² = Σ (xᵢ − mean)²/(n − 1),    q_p: linear between the order statistics, at the place (n − 1) p from the first
 //! ```
 //!
-//! The errors of mean and median are their standard deviations over [`RESAMPLES`] bootstrap samples: n values drawn
-//! from the n with replacement. B. Efron, *Bootstrap methods: another look at the jackknife*, Ann. Statist. 7, 1
+//! The error of the mean is sd/√n. That of the median is its standard deviation over [`RESAMPLES`] bootstrap samples, n
+//! values drawn from the n with replacement, times √(n/(n − 1)), as that of the mean would need it. B. Efron, *Bootstrap methods: another look at the jackknife*, Ann. Statist. 7, 1
 //! (1979), doi:10.1214/aos/1176344552. The quantiles are type 7 of R. J. Hyndman and Y. Fan, *Sample quantiles in
 //! statistical packages*, Am. Stat. 50, 361 (1996), doi:10.2307/2684934, like those of `NumPy` and R.
 
@@ -47,7 +47,7 @@ pub struct Statistics {
     pub deviation: Option<f64>,
     /// The quantiles at 5, 25, 50, 75 and 95 %.
     pub quantiles: [f64; 5],
-    /// The standard error of the mean, by the bootstrap.
+    /// The standard error of the mean.
     pub mean_error: Option<f64>,
     /// The standard error of the median, by the bootstrap.
     pub median_error: Option<f64>,
@@ -62,9 +62,10 @@ impl Statistics {
         sorted.sort_unstable_by(f64::total_cmp);
         let count = sorted.len();
         let mean = (count > 0).then(|| sorted.iter().sum::<f64>() / count as f64)?;
-        let [mean_error, median_error] = bootstrap(&sorted, random).map(|error| error.filter(|_| count > 1));
-        let quantiles = of_sorted(&sorted);
-        Some(Self { mean, deviation: deviation(&sorted), quantiles, mean_error, median_error, count })
+        let deviation = deviation(&sorted);
+        let mean_error = deviation.map(|deviation| deviation / (count as f64).sqrt());
+        let median_error = error_of_median(&sorted, random).filter(|_| count > 1);
+        Some(Self { mean, deviation, quantiles: of_sorted(&sorted), mean_error, median_error, count })
     }
 
     /// The numbers in the order of [`STATISTICS`].
@@ -127,9 +128,9 @@ fn quantile(sorted: &[f64], counts: &[u32], share: f64) -> f64 {
     lower
 }
 
-/// The standard deviations of mean and median over bootstrap samples.
-fn bootstrap(sorted: &[f64], random: &mut SplitMix64) -> [Option<f64>; 2] {
-    let mut found = [(); 2].map(|()| Vec::with_capacity(RESAMPLES as usize));
+/// The standard error of the median by the bootstrap.
+fn error_of_median(sorted: &[f64], random: &mut SplitMix64) -> Option<f64> {
+    let mut found = Vec::with_capacity(RESAMPLES as usize);
     let mut counts = vec![0_u32; sorted.len()];
     for _ in 0..RESAMPLES {
         counts.fill(0);
@@ -138,11 +139,10 @@ fn bootstrap(sorted: &[f64], random: &mut SplitMix64) -> [Option<f64>; 2] {
             let at = (u128::from(random.bits()) * sorted.len() as u128) >> 64;
             counts[usize::try_from(at).unwrap_or_default()] += 1;
         }
-        let sum: f64 = sorted.iter().zip(&counts).map(|(x, count)| x * f64::from(*count)).sum();
-        found[0].push(sum / sorted.len() as f64);
-        found[1].push(quantile(sorted, &counts, 0.5));
+        found.push(quantile(sorted, &counts, 0.5));
     }
-    found.map(|values| deviation(&values))
+    let count = sorted.len() as f64;
+    deviation(&found).map(|error| error * (count / (count - 1.0)).sqrt())
 }
 
 #[cfg(test)]

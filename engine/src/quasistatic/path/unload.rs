@@ -56,7 +56,7 @@ pub fn unload(curve: &Curve, setting: &PathSetting<'_>, progress: &dyn Progress)
     let here = if let Some(start) = stable_start(&*curve.solution, &curve.monotone(control), from) {
         start
     } else {
-        run_outward(longer.insert(curve.clone()), control, from)?
+        run_outward(longer.insert(curve.clone()), control, from, progress)?
     };
     let curve = longer.as_ref().unwrap_or(curve);
     let start = curve.state(here.place);
@@ -185,12 +185,17 @@ fn way_back(mut whole: Path) -> Path {
 }
 
 /// Runs from an unstable start outward, at constant control, to the next stable state; `curve` then reaches that far.
-fn run_outward(curve: &mut Curve, control: Control, from: f64) -> Result<Landing, PathError> {
+fn run_outward(
+    curve: &mut Curve,
+    control: Control,
+    from: f64,
+    progress: &dyn Progress,
+) -> Result<Landing, PathError> {
     let limit = (OUTWARD_REACH * from).min(curve.equilibrium.problem.largest_contact().max(from));
     let mut reach = from;
     loop {
         reach = (1.5 * reach).min(limit);
-        curve.reach(reach);
+        curve.reach_while(reach, progress)?;
         // The start may be at a limit point that lay beyond the curve before.
         let monotone = curve.monotone(control);
         if let Some(start) = stable_start(&*curve.solution, &monotone, from) {
