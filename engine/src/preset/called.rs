@@ -13,10 +13,14 @@ use std::borrow::Cow;
 /// The table of the units of the screen.
 const DISPLAY: &str = "display.";
 
-/// Whether a row has this name: its key, the last part of the key, or the symbol on the screen.
+/// Whether a row has this name: its key, the last part of the key, or the symbol on the screen, also without the word
+/// that tells it from the same symbol of another table, as in `n edge`.
 pub fn is_called(row: &Parameter, name: &str) -> bool {
     let last = row.key.rsplit('.').next().unwrap_or_default();
-    !name.is_empty() && [&*row.key, last, &*row.label, &*greek(&row.label)].contains(&name)
+    let table = row.table().unwrap_or_default();
+    let symbol =
+        row.label.strip_suffix(table).and_then(|symbol| symbol.strip_suffix(' ')).unwrap_or(&row.label);
+    !name.is_empty() && [&*row.key, last, &*row.label, &*greek(&row.label), symbol].contains(&name)
 }
 
 /// The rows of a preset, and the groups.
@@ -61,13 +65,15 @@ pub(super) fn key_anywhere(
 ) -> Result<Key, Invalid> {
     let fits = |row: &&Parameter| shape.is_none_or(|shape| row.fits(CHOOSERS[0], shape));
     let rows = PARAMETERS.iter().filter(fits).chain(&GROUPS).filter(|row| !row.key.starts_with(DISPLAY));
-    let rows = rows.filter(|row| is_called(row, name)).collect();
-    let rows = preferred(rows, |row: &&Parameter| row.table().is_some_and(is_used));
+    let rows = rows.filter(|row| is_called(row, name));
     // A formula names its parameters even where they have no values yet.
     let own = formula.filter(|_| shape.is_none_or(|shape| shape == "formula"));
     let own = own.and_then(|text| Formula::parse(text).ok());
     let own = own.filter(|formula| formula.parameters().iter().any(|own| own == name));
     let own = own.map(|_| parameter_key(name).into());
+    let (used, others): (Vec<_>, Vec<_>) =
+        rows.partition(|row: &&Parameter| row.table().is_some_and(is_used));
+    let rows = if used.is_empty() && own.is_none() { others } else { used };
     one(name, rows.into_iter().map(|row| row.key.clone()).chain(own))
         .unwrap_or_else(|| Err(unknown_key(name, shape)))
 }

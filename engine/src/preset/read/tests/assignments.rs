@@ -100,6 +100,16 @@ fn a_key_may_be_given_by_its_last_part_or_its_symbol() {
     assert!(
         messages(WAVY, &both).concat().contains("exponent is short for several: gap.exponent, edge.exponent")
     );
+    // The symbol of an exponent is that of the gap or of the edge, whichever the preset has.
+    assert_eq!(set(&["shape=power-law", "c=1", "n=3"]), set(&power));
+    assert_eq!(set(&["n=0.5"]), set(&["edge.exponent=0.5"]));
+    assert_eq!(set(&["edge.exponent=0.3", "n=0.5", "m=0.4"]), set(&["n=0.5", "edge.closing_exponent=0.4"]));
+    let both = [&power[..], &["edge.exponent=0.5", "n=2"]].concat();
+    assert!(messages(WAVY, &both)[0].ends_with("n is short for several: gap.exponent, edge.exponent"));
+    assert_eq!(
+        set(&["gap.shape=formula", "gap.formula=r^2/(2*n)", "n=2"]),
+        set(&["gap.shape=formula", "gap.formula=r^2/(2*n)", "gap.parameters.n=2"])
+    );
     // A formula names its parameters before they have values.
     let formula = ["gap.shape=formula", "gap.formula=r^2/(2*R) + B*r^4", "gap.parameters.R=1"];
     let of = |last: &'static str| set(&[&formula[..], &[last]].concat());
