@@ -156,7 +156,8 @@ fn ended(failure: &Failure) -> ExitCode {
 }
 
 /// The value names of options that take numbers.
-const NUMBERS: [&str; 8] = ["FORCE", "I/N", "LENGTH", "N", "RADIUS", "SEED", "TIME", "WIDTH"];
+const NUMBERS: [&str; 10] =
+    ["FORCE", "I/N", "LENGTH", "N", "RADIUS", "RATE", "RATE,...", "SEED", "TIME", "WIDTH"];
 
 /// The whole command line, as the help, the completions and the book use it.
 pub fn command() -> clap::Command {

@@ -23,7 +23,7 @@ const RATES: usize = 10_000;
 pub struct PullArguments {
     /// Pull at this rate of what is controlled until the bodies are apart (repeatable; instead of path.rate and
     /// path.steps); log:FROM..TO:COUNT for logarithmically spaced rates
-    #[arg(long, value_name = "RATE", allow_negative_numbers = true)]
+    #[arg(long, value_name = "RATE")]
     rate: Vec<String>,
     /// Find how long the contact bears this dead load, a negative force for a pull (repeatable)
     #[arg(long, value_name = "FORCE", allow_hyphen_values = true)]

@@ -103,6 +103,10 @@ fn what_cannot_be_says_what_could() {
         (vec!["wavy-sphere", "--rate", "1"], "edge.exponent"),
         (vec!["wavy-sphere", "--set", "edge.exponent=0.5"], "no rate"),
         (vec!["wavy-sphere", "--set", "edge.exponent=0.5", "--rate", "0"], "--rate"),
+        (
+            vec!["wavy-sphere", "--set", "edge.exponent=0.5", "--rate", "-1e-6"],
+            "--rate: path.rate = -1e-6 is out of",
+        ),
         (vec!["wavy-sphere", "--set", "edge.exponent=0.5", "--rate", "log:1..2"], "log:FROM..TO:COUNT"),
         (vec!["wavy-sphere", "--set", "edge.exponent=9"], "edge.exponent"),
         (vec!["wavy-sphere", "--set", "path.steps=jump"], "to VALUE at RATE"),
