@@ -286,7 +286,8 @@ impl Model {
     }
 
     pub(super) fn tell(&mut self, level: Level, text: impl Into<String>) {
-        self.message = Some((level, text.into()));
+        // Several mistakes are several lines, and there is one.
+        self.message = Some((level, text.into().replace('\n', "; ")));
     }
 
     pub(super) fn number(&mut self) -> u64 {

@@ -250,7 +250,8 @@ impl Store {
                     let comment = loaded.comment().lines().next().unwrap_or_default().to_owned();
                     (Ok(loaded.preset.title), comment)
                 }
-                Err(error) => (Err(error.to_string()), String::new()),
+                // A list has one line for each preset.
+                Err(error) => (Err(error.to_string().replace('\n', "; ")), String::new()),
             };
             Listed { name, source, title, comment }
         };

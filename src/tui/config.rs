@@ -19,8 +19,7 @@ use crate::store::file::{FileError, read_text};
 use clap::builder::PossibleValue;
 use clap::{Arg, Args, FromArgMatches};
 use etcetera::BaseStrategy;
-use pulloff_engine::text::{closest, quote, show_path};
-use std::fmt;
+use pulloff_engine::text::{closest, listed, quote, show_path};
 use std::io;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -67,24 +66,8 @@ pub enum ConfigError {
     #[error(transparent)]
     File(#[from] FileError),
     /// Some lines are wrong, at least one.
-    #[error("{name}:{}", ListedMistakes(.mistakes))]
+    #[error("{}", listed(.mistakes.iter().map(|ConfigMistake { line, what }| format!("{name}:{line}: {what}"))))]
     Mistakes { name: String, mistakes: Vec<ConfigMistake> },
-}
-
-/// Shows the first mistake, and how many more there are.
-struct ListedMistakes<'a>(&'a [ConfigMistake]);
-
-impl fmt::Display for ListedMistakes<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(first) = self.0.first() {
-            write!(f, "{}: {}", first.line, first.what)?;
-        }
-        match self.0.len() {
-            0 | 1 => Ok(()),
-            2 => f.write_str(" (and 1 more mistake)"),
-            n => write!(f, " (and {} more mistakes)", n - 1),
-        }
-    }
 }
 
 /// The largest number of names in a message.
@@ -282,7 +265,7 @@ mod tests {
             ("[keys]\nstep = 3", "config.toml:2: step takes a key in quotes"),
             ("[keys]\nstep = [\"a\", 3]", "config.toml:2: step takes a key in quotes"),
             ("[keys]\nstep = \"x\nundo = 3", "config.toml:2: "),
-            ("[keys]\na = 1\nb = 2\nc = 3", "(and 2 more mistakes)"),
+            ("[keys]\na = 1\nb = 2\nc = 3", "\nconfig.toml:4: "),
             ("[keys]\nstep = \"a\"\nstep = \"b\"", "config.toml:3: duplicate key"),
         ] {
             assert!(error(text).contains(expected), "{text}: {}", error(text));

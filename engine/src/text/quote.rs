@@ -1,5 +1,6 @@
 //! Foreign text made safe to show: no control character, no hidden and no direction-changing character gets through.
 
+use std::fmt;
 use std::path::Path;
 
 /// How much of a foreign text a message quotes, in characters.
@@ -39,6 +40,16 @@ pub fn sanitize(text: &str, max: usize) -> String {
 /// A label from the parameter table with its Greek letters.
 pub fn greek(label: &str) -> String {
     label.replace("gamma", "γ").replace("lambda", "λ").replace("delta", "δ")
+}
+
+/// One fault a line: a handful of them, and how many more there are.
+pub fn listed(faults: impl Iterator<Item = impl fmt::Display>) -> String {
+    const MOST: usize = 5;
+    let mut lines: Vec<String> = faults.map(|fault| fault.to_string()).collect();
+    let more = lines.len().saturating_sub(MOST);
+    lines.truncate(MOST);
+    lines.extend((more > 0).then(|| format!("and {more} more")));
+    lines.join("\n")
 }
 
 /// A quotation of foreign text for a message.

@@ -1,6 +1,7 @@
 //! What is wrong with a preset, and where it came from.
 
 use crate::preset::invalid::Invalid;
+use crate::text::listed;
 use std::fmt;
 use thiserror::Error;
 
@@ -46,17 +47,10 @@ pub struct ReadError {
 }
 
 impl fmt::Display for ReadError {
-    /// The first mistake, of those just typed if there are any: others may follow from it. Then how many more there are.
+    /// One mistake a line. Those just typed come first: others may follow from them.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let is_typed = |mistake: &&Mistake| matches!(mistake.origin, ValueOrigin::Assignment(_));
-        let typed = self.mistakes.iter().find(is_typed);
-        if let Some(first) = typed.or(self.mistakes.first()) {
-            write!(f, "{first}")?;
-        }
-        match self.mistakes.len() {
-            0 | 1 => Ok(()),
-            2 => f.write_str(" (and 1 more mistake)"),
-            n => write!(f, " (and {} more mistakes)", n - 1),
-        }
+        let (typed, others): (Vec<&Mistake>, Vec<&Mistake>) = self.mistakes.iter().partition(is_typed);
+        f.write_str(&listed(typed.into_iter().chain(others)))
     }
 }
