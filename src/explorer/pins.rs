@@ -182,12 +182,14 @@ impl Pins {
 
     /// Pins `curve` under the smallest free number, which is returned.
     pub fn add(&mut self, curve: &Arc<CurveData>) -> Result<usize, String> {
-        let same = |(_, pinned): &(usize, &Preset)| {
-            let title = curve.setting.preset.title.clone();
-            Preset { title, ..(*pinned).clone() } == curve.setting.preset
+        let own = &curve.setting.preset;
+        // The units of the screen change no curve.
+        let has_all = |of: &Preset, other: &Preset| {
+            differences(of, other).iter().all(|(row, _)| row.key.starts_with("display."))
         };
+        let same = |(_, pinned): &(usize, &Preset)| has_all(own, pinned) && has_all(pinned, own);
         if let Some((number, _)) = self.presets().find(same) {
-            return Err(format!("this curve is pinned already, as {}", letter(number)));
+            return Err(format!("the same values are pinned as {}", letter(number)));
         }
         let number = self.free()?;
         self.shown.push(Pin { number, curve: Arc::clone(curve), elements: None });
@@ -372,7 +374,16 @@ mod tests {
         let mut pins = Pins::default();
         let first = curve("0.001");
         assert_eq!(pins.add(&first), Ok(1));
-        assert!(pins.add(&first).unwrap_err().contains("pinned already, as D"));
+        assert!(pins.add(&first).unwrap_err().contains("the same values are pinned as D"));
+        // What is the same curve on a screen with other units is the same.
+        let name = "fig-9-si";
+        let mut si = read(name, shipped::find(name).unwrap().text).unwrap();
+        let mut of_screen = Pins::default();
+        for unit in ["mN", "uN"] {
+            si.set("display.force", unit.into()).unwrap();
+            let again = of_screen.add(&Arc::new(CurveData::compute(&si, &Staged::unwatched()).unwrap()));
+            assert_eq!(again.is_ok(), unit == "mN");
+        }
         for (number, amplitude) in [(2, "0.0011"), (3, "0.0012"), (4, "0.0013"), (5, "0.0014"), (6, "0.0015")]
         {
             assert_eq!(pins.add(&curve(amplitude)), Ok(number));

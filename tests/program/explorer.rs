@@ -557,7 +557,7 @@ fn pins_and_views_go_on_in_another_preset() {
     assert_eq!(pins.iter().map(|pin| pin.number).collect::<Vec<_>>(), [1, 2]);
     assert!(pins[1].name(&session.model.preset).contains("A 0.002"));
     session.does(Id::Pin).does(Id::Pin);
-    assert!(session.status().contains("pinned already, as F"), "{}", session.status());
+    assert!(session.status().contains("the same values are pinned as F"), "{}", session.status());
     session.does(Command::Unpin(Some(2))).does(Command::Unpin(Some(2)));
     assert!(session.status().contains("no curve is pinned under that letter"));
 }
