@@ -487,7 +487,7 @@ fn a_session_that_was_cut_off_is_offered_and_goes_on_with_the_same_numbers() {
 }
 
 #[test]
-fn an_offer_is_not_in_the_way_of_whoever_types_on() {
+fn an_offer_waits_for_its_answer() {
     let home = Sessions::new();
     let mut pty = home.explore(&[]);
     pty.wait_for(|screen| screen.contains(UP), "the curve");
@@ -503,8 +503,11 @@ fn an_offer_is_not_in_the_way_of_whoever_types_on() {
     pty.exit_code();
     let mut pty = home.explore(&[]);
     pty.wait_for(|screen| screen.contains("Go on?") && screen.contains(UP), "the offer");
-    pty.keys("  ");
-    pty.wait_for(|screen| screen.contains("@ 2 ") && !screen.contains("Go on?"), "two steps of its own");
+    pty.keys("  n  ");
+    pty.wait_for(
+        |screen| screen.contains("@ 2 ") && !screen.contains("Go on?"),
+        "the two steps after the answer",
+    );
     pty.keys("q");
     assert_eq!(pty.exit_code(), 0);
     let names: Vec<String> = home.archive().list().unwrap().into_iter().map(|entry| entry.name).collect();

@@ -1,8 +1,8 @@
 //! Resumed sessions.
 
 use super::state::App;
-use crate::explorer::Effect;
 use crate::explorer::session::Snapshot;
+use crate::explorer::{Effect, Id};
 use crate::tui::overlay::{Dialog, ResumeOffer};
 use crate::tui::theme::Theme;
 use crossterm::event::{KeyCode, KeyEvent};
@@ -16,7 +16,7 @@ impl App {
 
     /// Offers to resume a session.
     pub fn offer(&mut self, what: &str, snapshot: Snapshot) {
-        let question = format!("{what} Enter resumes it, Esc starts afresh.");
+        let question = format!("{what} Enter or y resumes it, Esc or n starts afresh.");
         self.overlay = Some(Dialog::Offer(ResumeOffer { question, snapshot: Box::new(snapshot) }));
     }
 
@@ -33,8 +33,9 @@ impl App {
                 effects
             }
             KeyCode::Esc | KeyCode::Char('n' | 'N') => Vec::new(),
-            // Someone who types on does not want it, and means the key; n says no.
-            _ => self.command_key(key),
+            _ if self.keymap.command(key) == Some(Id::Quit) => self.command_key(key),
+            // A key pressed while the screen comes up must not answer it.
+            _ => self.lay(Dialog::Offer(offer)),
         }
     }
 }
