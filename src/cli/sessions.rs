@@ -21,8 +21,8 @@ pub enum SessionsCommand {
     List,
     /// Say what a session contains
     Show {
-        /// Its name
-        name: String,
+        /// Its name; the newest session when left out
+        name: Option<String>,
         #[command(flatten)]
         format: FormatArgument,
     },
@@ -47,19 +47,7 @@ pub fn run(command: &SessionsCommand) -> Result<ExitCode, Failure> {
     let archive = Archive::open();
     match command {
         SessionsCommand::List => output::print(list(&archive)?)?,
-        SessionsCommand::Show { name, format } => output::print(match format.format {
-            Some(Format::Json) => {
-                let bytes = archive.bytes(name)?;
-                // Read first, because a file that is not a session is an error and must not be printed.
-                archive.summary(name)?;
-                bytes
-            }
-            Some(Format::Csv) => {
-                let text = "--format csv: a session is shown as table or json";
-                return Err(Failure::Usage(text.to_owned()));
-            }
-            Some(Format::Table) | None => shown(&archive, name)?.into_bytes(),
-        })?,
+        SessionsCommand::Show { name, format } => show(&archive, name.as_deref(), format.format)?,
         SessionsCommand::Delete { names, yes } => {
             for name in names {
                 if !yes {
@@ -74,6 +62,26 @@ pub fn run(command: &SessionsCommand) -> Result<ExitCode, Failure> {
         },
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn show(archive: &Archive, name: Option<&str>, format: Option<Format>) -> Result<(), Failure> {
+    let name = match name {
+        Some(name) => name.to_owned(),
+        None => archive.newest()?.ok_or(ArchiveError::Empty)?,
+    };
+    output::print(match format {
+        Some(Format::Json) => {
+            let bytes = archive.bytes(&name)?;
+            // Read first, because a file that is not a session is an error and must not be printed.
+            archive.summary(&name)?;
+            bytes
+        }
+        Some(Format::Csv) => {
+            let text = "--format csv: a session is shown as table or json";
+            return Err(Failure::Usage(text.to_owned()));
+        }
+        Some(Format::Table) | None => shown(archive, &name)?.into_bytes(),
+    })
 }
 
 fn list(archive: &Archive) -> Result<String, Failure> {

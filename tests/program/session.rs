@@ -394,6 +394,8 @@ fn sessions_are_listed_shown_and_deleted() {
     for text in ["preset      wavy-sphere", "ended       quit", "steps       5", "walker      delta 0."] {
         assert!(shown.contains(text), "no {text} in {shown}");
     }
+    let (_, newest, _) = home.run(&["sessions", "show"]);
+    assert!(newest.starts_with("session     wavy-sphere-"), "{newest}");
     let (_, json, _) = home.run(&["sessions", "show", "wavy-sphere-1", "--format=json"]);
     let back = read(json.as_bytes()).unwrap();
     assert_eq!(back.preset, session.model.preset);
