@@ -67,7 +67,9 @@ pub fn run(arguments: &SpeedsArguments) -> Result<ExitCode, Failure> {
         console.note(Some(note));
     }
     if format != Format::Json {
-        console.note(columns::units(COLUMNS, preset.path.control, &preset.units).as_deref());
+        let units = columns::units(COLUMNS, preset.path.control, &preset.units);
+        let of = if format == Format::Table { "table" } else { "CSV" };
+        console.note(units.map(|said| said.replacen("CSV", of, 1)).as_deref());
     }
     sink.write(match format {
         Format::Table => table::rows(&report.table()?),
