@@ -27,7 +27,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
     frame.render_widget(block, area);
     let lines = match (model.path(), pinned) {
         (Some(path), Some(pinned)) => beside(theme, model, unloading(model).unwrap_or(path), pinned),
-        (Some(path), None) => lines(theme, model, path),
+        (Some(path), None) => lines(theme, model, path, usize::from(inner.width)),
         (None, _) => vec![Line::styled(" no path yet", theme.dim())],
     };
     frame.render_widget(Paragraph::new(lines), inner);
@@ -86,7 +86,7 @@ fn common<'a>(model: &'a Model, now: &'a CurveData, pinned: &'a CurveData) -> Sc
     }
 }
 
-fn lines(theme: Theme, model: &Model, path: &PathReport) -> Vec<Line<'static>> {
+fn lines(theme: Theme, model: &Model, path: &PathReport, room: usize) -> Vec<Line<'static>> {
     let Some(curve) = model.curve.as_deref() else { return Vec::new() };
     let scale = Scale::of(curve, model.axes);
     let [length, force, radius] = scale.state_axes();
@@ -106,7 +106,15 @@ fn lines(theme: Theme, model: &Model, path: &PathReport) -> Vec<Line<'static>> {
     for (name, at) in [(" A largest pull", totals.pull()), (" B farthest", totals.farthest.as_ref())] {
         let Some(at) = at else { continue };
         lines.push(Line::raw(name.to_owned()));
-        lines.push(head("  ", shown(&force.symbol, scale.force(at.force))));
+        let mut line = head("  ", shown(&force.symbol, scale.force(at.force)));
+        // A share of Pc also in the unit of the force, if there is one.
+        let units = &model.preset.units;
+        if scale.force.is_some() && units.unit(Quantity::Force).is_some() {
+            let own = with_unit(units, Quantity::Force, at.force, theme.ascii, |x| significant(x, 4));
+            let own = Span::raw(format!("  {own}"));
+            line.spans.extend(Some(own).filter(|own| line.width() + own.width() <= room));
+        }
+        lines.push(line);
         lines.push(state(at));
     }
     if let Some(event) = path.events.iter().find(|event| event.kind == "last-contact") {
@@ -189,8 +197,9 @@ fn cell(x: f64) -> String {
 fn change(now: f64, was: f64) -> String {
     let percent = 100.0 * (now - was) / was;
     match percent.abs() {
-        x if x > 0.0 && x < 0.05 => format!("{percent:+.0e}%"),
-        0.0..10.0 => format!("{percent:+.1}%"),
+        0.0..0.005 => "0%".to_owned(),
+        0.005..1.0 => format!("{percent:+.2}%"),
+        1.0..10.0 => format!("{percent:+.1}%"),
         10.0..1000.0 => format!("{percent:+.0}%"),
         _ => format!("x{}", significant(now / was, 2)),
     }

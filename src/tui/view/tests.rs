@@ -436,10 +436,13 @@ fn a_pin_with_another_critical_force_is_compared_in_forces() {
     let row = text.lines().find(|line| line.contains(" A P ")).unwrap();
     assert!(text.contains("Result P raw δ/R s/λ W") && row.contains(&significant(pinned, 3)), "{text}");
     let mut screen = Screen::new("fig-9-si");
+    let unit =
+        screen.app.model.preset.units.unit(pulloff_engine::units::Quantity::Force).unwrap().to_string();
+    let text = screen.text(120, 40);
+    let row = text.lines().skip_while(|line| !line.starts_with("│ A largest pull ")).nth(1).unwrap();
+    assert!(row.contains("P/Pc -") && row.contains(&format!(" {unit} ")), "{text}");
     screen.keys("p:set gamma=1 J/m^2\r");
     let text = screen.text(120, 40);
-    let units = &screen.app.model.preset.units;
-    let unit = units.unit(pulloff_engine::units::Quantity::Force).unwrap();
     assert!(text.contains(&format!("Result P {unit} δ ")), "{text}");
 }
 

@@ -147,7 +147,7 @@ fn a_pin_has_a_column_in_result_and_the_change_in_per_cent() {
     screen.keys("p");
     let text = screen.text(120, 40);
     assert!(text.contains("now   pin D change"), "{text}");
-    assert!(text.contains("+0.0%"), "{text}");
+    assert!(text.contains(" 0%"), "{text}");
     screen.keys(":set gap.amplitude=0.003\r");
     let text = screen.text(120, 40);
     let row = text.lines().find(|line| line.contains("A P ")).unwrap();
