@@ -149,11 +149,23 @@ fn draw_prompt(frame: &mut Frame<'_>, area: Rect, app: &App, prompt: &Prompt) {
     }
 }
 
+/// The title of a list and its keys; what was typed comes first, since a narrow screen cuts the end.
+fn heading_of(choose: &Choose) -> String {
+    let can_delete = choose.current().is_some_and(|(_, item)| item.delete.is_some());
+    let delete = if can_delete { ", D deletes" } else { "" };
+    let keys = format!("{}: Enter takes{delete}, Esc closes", choose.title);
+    match &*choose.filter {
+        "" => format!("{keys}, letters filter"),
+        filter => format!("with \"{}\": {keys}", sanitize(filter, 20)),
+    }
+}
+
 fn place_of(choose: &Choose, area: Rect) -> Rect {
     let height = u16::try_from(choose.items.len() + 2 + usize::from(choose.has_notes())).unwrap_or(u16::MAX);
     // As wide as its longest line and its title, if the screen allows.
-    let longest = choose.items.iter().map(|item| item.text.chars().count()).max().unwrap_or(0);
-    let longest = u16::try_from(longest + 4).unwrap_or(WIDEST).clamp(76, WIDEST);
+    let longest = choose.items.iter().map(|item| item.text.chars().count() + 4);
+    let longest = longest.max().unwrap_or(0).max(heading_of(choose).chars().count() + 2);
+    let longest = u16::try_from(longest).unwrap_or(WIDEST).clamp(76, WIDEST);
     let (width, height) =
         if choose.picture.is_some() { (110, height.max(PICTURE)) } else { (longest, height) };
     middle(area, width, height)
@@ -174,14 +186,11 @@ pub fn line_at(choose: &Choose, area: Rect, at: Position) -> Option<usize> {
 
 fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose) {
     let area = place_of(choose, area);
-    let can_delete = choose.current().is_some_and(|(_, item)| item.delete.is_some());
-    let delete = if can_delete { ", D deletes" } else { "" };
-    let typed = match &*choose.filter {
-        "" => ", letters filter".to_owned(),
-        filter => format!(", with \"{}\"", sanitize(filter, 20)),
-    };
-    let title = format!("{}: Enter takes{delete}, Esc closes{typed}", choose.title);
-    let block = panel(theme, &theme.whole_words(&title, usize::from(area.width.saturating_sub(2))), true);
+    let block = panel(
+        theme,
+        &theme.whole_words(&heading_of(choose), usize::from(area.width.saturating_sub(2))),
+        true,
+    );
     let mut inner = over(frame, area, &block);
     if let Some(figure) = &choose.picture
         && inner.width >= LIST + NARROWEST
@@ -210,7 +219,9 @@ fn draw_choose(frame: &mut Frame<'_>, area: Rect, theme: Theme, choose: &Choose)
         })
         .collect();
     if shown.is_empty() {
-        lines.push(Line::styled("  no line matches; Backspace deletes a letter", theme.dim()));
+        let typed = sanitize(&choose.filter, 20);
+        let said = format!("  no line matches \"{typed}\"; Backspace deletes a letter");
+        lines.push(Line::styled(theme.text(&said), theme.dim()));
     }
     frame.render_widget(Paragraph::new(lines), inner);
 }

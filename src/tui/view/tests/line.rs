@@ -238,7 +238,7 @@ fn text_typed_in_a_list_keeps_the_lines_that_have_it() {
     assert_eq!(choose.shown().len(), 1);
     assert!(choose.current().unwrap().1.text.starts_with("fig-3-jkr"));
     screen.keys("xx\r");
-    assert!(screen.text(80, 24).contains("no line matches"));
+    assert!(screen.text(80, 24).contains("no line matches \"fig-3xx\""));
     screen.press(KeyCode::Backspace);
     screen.press(KeyCode::Backspace);
     screen.keys("\r");
