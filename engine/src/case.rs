@@ -484,7 +484,7 @@ impl Case {
             return None;
         }
         let radius = said(&self.shown, Quantity::Length, start * self.units().length);
-        Some(format!("larger contacts pull more: start further out than {radius} for the largest pull"))
+        Some(format!("start further out than {radius} for the largest pull: larger contacts pull more"))
     }
 
     /// Whether a stable contact larger than that at the start of an unloading has a smaller force, or a smaller approach,

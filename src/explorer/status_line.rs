@@ -20,7 +20,7 @@ pub(super) fn back_or_anew() -> String {
 /// Why nothing can be walked on a curve that stayed when a newer one was given up.
 pub(super) fn of_before() -> String {
     format!(
-        "the curve shown is for the old values; {} restores them, {} computes it again",
+        "the curve is the old one; {} restores its values, {} computes anew",
         Id::Undo.named(),
         Id::Restart.named()
     )
@@ -174,7 +174,7 @@ fn standing(model: &Model, node: &Node, control: Control) -> String {
             format!("Solved again {kept}, stable. {next} runs to the next event")
         }
         (true, _) => {
-            format!("Stable under {held} control. {step} steps {way}, {next} runs to the next event")
+            format!("Stable under {held} control. {step} steps {way}, {next} to the next event")
         }
         (false, NodeKind::Start | NodeKind::Moved) => {
             format!("This start is unstable under {held} control: {next} lets the edge run outward")

@@ -69,7 +69,7 @@ pub fn figure(subject: &Subject<'_>) -> Figure {
         Control::Stiffness(_) => "the spring",
     };
     let of = if is_one_disc { "" } else { ", of the exact equation of one disc" };
-    let title = format!("limit points under {under}: adhesion over contact radius{of}");
+    let title = format!("limit points under {under}{of}");
     let mut figure = Figure::empty(title, scale.radius_axis("s"), y);
     if case.cohesion.is_some() {
         figure.missing = Some(OF_SHORT_RANGE.to_owned());

@@ -189,7 +189,7 @@ fn a_curve_can_be_given_up_and_undo_takes_the_values_back() {
     assert!(Arc::ptr_eq(&curve(&session), &shown));
     session.does(Id::Axes);
     assert_eq!(session.model.axes, Axes::Raw);
-    assert!(session.status().contains("undo restores them"), "{}", session.status());
+    assert!(session.status().contains("undo restores its values"), "{}", session.status());
     session.does(Id::Undo);
     assert!(!session.model.is_unsaved());
     assert!(Arc::ptr_eq(&curve(&session), &shown));

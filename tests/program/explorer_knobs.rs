@@ -181,7 +181,7 @@ fn nothing_is_walked_on_a_curve_of_other_values() {
     for id in [Id::Step, Id::NextEvent, Id::Run] {
         session.does(id);
         assert_eq!(session.model.history.len(), steps, "{id:?}");
-        assert!(session.status().contains("the curve shown is for the old values"), "{}", session.status());
+        assert!(session.status().contains("the curve is the old one"), "{}", session.status());
     }
     session.does(Id::Undo).does(Id::Step);
     assert_eq!(session.model.history.len(), steps + 1);

@@ -227,7 +227,7 @@ fn a_curve_that_takes_long_can_be_given_up() {
     pty.keys("\x152000\r");
     pty.wait_for(|screen| screen.contains("computing point "), "how many points of the curve are known");
     pty.keys("\x1b");
-    pty.wait_for(|screen| screen.contains("cancelled: the curve shown is for the old values"), "given up");
+    pty.wait_for(|screen| screen.contains("cancelled: the curve is the old one"), "given up");
     pty.wait_for(
         |screen| screen.contains("lost so far 0 of") && screen.contains("unsaved"),
         "the curve of before",

@@ -126,9 +126,7 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, app: &App) {
 
 /// The place whose name is at this column of the header.
 pub fn place_at(app: &App, area: Rect, column: u16) -> Option<Home> {
-    // The key comes after them.
-    let key = places(app).last()?.width();
-    let mut right = usize::from(area.width).checked_sub(key).filter(|_| has_places(app, area.width))?;
+    let mut right = Some(usize::from(area.width)).filter(|_| has_places(app, area.width))?;
     Home::ALL.into_iter().rev().find(|home| {
         let from = right.saturating_sub(home.name().len());
         let is_it = (from..right).contains(&usize::from(column));
@@ -137,7 +135,7 @@ pub fn place_at(app: &App, area: Rect, column: u16) -> Option<Home> {
     })
 }
 
-/// The four places, the current one in capitals, and the key that goes to another.
+/// The key that goes to another place, and the four of them, the current one in capitals.
 fn places(app: &App) -> Vec<Span<'static>> {
     let theme = app.theme;
     let here = app.model.view.home();
@@ -148,8 +146,8 @@ fn places(app: &App) -> Vec<Span<'static>> {
             Span::styled(format!("  {}", home.name()), theme.dim())
         }
     };
-    let key = Span::styled(format!("  {} ", app.keymap.first(Id::Go)), theme.key());
-    Home::ALL.into_iter().map(name).chain([key]).collect()
+    let key = Span::styled(format!("  {}:", app.keymap.first(Id::Go)), theme.key());
+    std::iter::once(key).chain(Home::ALL.into_iter().map(name)).collect()
 }
 
 /// With no more columns than this, nothing of a title can be read.

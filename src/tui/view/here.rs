@@ -130,7 +130,10 @@ fn stable(model: &Model, node: &Node) -> Vec<[&'static str; 2]> {
 }
 
 /// A line that fits, or as many of its pairs as fit.
-fn fitting(theme: Theme, line: Line<'static>, room: usize) -> Option<Line<'static>> {
+fn fitting(theme: Theme, mut line: Line<'static>, room: usize) -> Option<Line<'static>> {
+    while line.width() > room && line.spans.len() > 3 {
+        line.spans.truncate(line.spans.len() - 2);
+    }
     if line.width() <= room {
         return Some(line);
     }

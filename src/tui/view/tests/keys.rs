@@ -103,7 +103,7 @@ fn the_footer_offers_what_the_selected_panel_has_and_g_the_places() {
     assert!(footer(&screen).contains("i cross-hair"), "{}", footer(&screen));
     screen.keys("gm");
     assert!(footer(&screen).contains("Enter quantity"), "{}", footer(&screen));
-    assert!(screen.text(160, 45).lines().next().unwrap().contains("curve  inside  MAP  data  g"));
+    assert!(screen.text(160, 45).lines().next().unwrap().contains("g:  curve  inside  MAP  data"));
     screen.keys("g");
     assert!(
         footer(&screen).starts_with(" c curve  i inside  m map  d data  Esc back"),
@@ -138,6 +138,17 @@ fn choices_are_lists() {
     assert_eq!(screen.app.model.preset.path.control, Control::Stiffness(0.3));
     screen.keys("\rkk\r");
     assert_eq!(screen.app.model.preset.path.control, Control::Displacement);
+}
+
+#[test]
+fn what_comes_next_and_the_keys_of_a_list_are_not_cut() {
+    let mut screen = Screen::new("wavy-sphere");
+    screen.keys("  b");
+    let text = screen.text(80, 24);
+    assert!(text.contains("displacement control. Space steps outward, n to the next event"), "{text}");
+    screen.keys("c");
+    let text = screen.text(120, 40);
+    assert!(text.contains("Esc closes, letters filter"), "{text}");
 }
 
 #[test]

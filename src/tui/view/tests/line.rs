@@ -130,7 +130,7 @@ fn the_header_says_what_the_preset_says_and_what_was_changed_and_a_chart_when_it
     let mut screen = Screen::new("wavy-sphere");
     let header = |screen: &mut Screen| {
         let header = screen.text(160, 45).lines().next().unwrap().to_owned();
-        header.trim_end().strip_suffix("CURVE  inside  map  data  g").unwrap().to_owned()
+        header.trim_end().strip_suffix("g:  CURVE  inside  map  data").unwrap().to_owned()
     };
     let says = "A sphere with waves on it, pulled off by fixed grips: the place to start.";
     assert!(header(&mut screen).contains(says), "{}", header(&mut screen));
