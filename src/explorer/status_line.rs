@@ -9,7 +9,7 @@ use pulloff_engine::preset::edge;
 use pulloff_engine::problem::{Begin, Control};
 use pulloff_engine::quasistatic::EventKind;
 use pulloff_engine::report::number::{loss, short, significant, with_unit};
-use pulloff_engine::report::problem::control_name;
+use pulloff_engine::report::problem::control_word;
 use pulloff_engine::units::Quantity;
 
 /// The ways out of a state from which no walk can continue.
@@ -141,7 +141,7 @@ fn keeps_control(model: &Model, node: &Node, control: Control) -> bool {
 /// Where the walker stands and what a step or the next event does, if nothing else is to be said.
 fn standing(model: &Model, node: &Node, control: Control) -> String {
     let way = if model.inward { "inward" } else { "outward" };
-    let held = control_name(control);
+    let held = control_word(control);
     let kept = match control {
         _ if !keeps_control(model, node, control) => "where the walk begins".to_owned(),
         Control::Stiffness(_) => "with the spring's far end held".to_owned(),
@@ -165,7 +165,7 @@ fn standing(model: &Model, node: &Node, control: Control) -> String {
             format!("Start, stable under {held} control. {next} runs to the first event, {help} helps")
         }
         (true, NodeKind::Solved) if model.is_at_start() && !keeps_control(model, node, control) => {
-            format!("The path does not reach the held value: back at its start; {next} runs on")
+            format!("No state of the new path has the value held: now at its start; {next} runs on")
         }
         (_, NodeKind::Solved) if node.on_path.is_some() => {
             format!("Nearest on the new path to the {held} held; {next} runs to the next event")

@@ -10,7 +10,7 @@ use crate::explorer::{CurveData, View};
 use pulloff_engine::problem::Control;
 use pulloff_engine::report::number::significant;
 use pulloff_engine::report::path::EventReport;
-use pulloff_engine::report::problem::control_name;
+use pulloff_engine::report::problem::control_word;
 
 /// Within this share of the window, a mark is preferred to a nearer state of the curve.
 const NEAR: f64 = 0.025;
@@ -75,7 +75,7 @@ impl What {
             Self::Curve { stable: false } => "unstable".to_owned(),
             Self::Limit { control, number, of, event } => {
                 let event = event.map_or_else(String::new, |event| format!(", event {event}"));
-                format!("limit point of {} control {number} of {of}{event}", control_name(control))
+                format!("limit point of {} control {number} of {of}{event}", control_word(control))
             }
             Self::Landing(event) => format!("landing of event {event}"),
             Self::Pin(number) => format!("on pin {}", letter(number)),

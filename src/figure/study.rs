@@ -132,7 +132,7 @@ fn notes(data: &StudyData, without: usize) -> impl Iterator<Item = String> {
     let missing = without.saturating_sub(count - done);
     let all = [
         (done < count).then(|| format!("{done} of {count}")),
-        is_unchecked.then(|| "may be inadmissible (one disc)".to_owned()),
+        is_unchecked.then(|| "one disc: states may be inadmissible".to_owned()),
         (missing > 0).then(|| format!("{missing} without a value: the cross-hair says why")),
     ];
     all.into_iter().flatten()

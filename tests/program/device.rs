@@ -81,7 +81,7 @@ fn the_walker_stays_and_its_flags_follow_the_device() {
     session.set("path.control", "0.15");
     assert_eq!(session.model.preset.path.control, Control::Stiffness(0.15));
     assert_eq!((session.radius(), session.model.history.nodes().len()), (state, nodes));
-    assert!(session.status().starts_with("Off the path, unstable under stiffness"), "{}", session.status());
+    assert!(session.status().starts_with("Off the path, unstable under spring"), "{}", session.status());
     assert!(session.model.can_jump());
     session.set("path.control", "displacement");
     assert!(session.status().starts_with("Event 1 of"), "{}", session.status());

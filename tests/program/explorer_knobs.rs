@@ -223,7 +223,7 @@ fn a_walk_that_has_not_left_its_start_begins_again_for_values_without_its_state(
     session.does(set("4"));
     assert_eq!(session.kind(), NodeKind::Solved, "{}", session.status());
     assert!(session.model.is_at_start());
-    assert!(session.status().contains("back at its start"), "{}", session.status());
+    assert!(session.status().contains("now at its start"), "{}", session.status());
     session.does(Id::NextEvent);
     assert!(session.status().contains("Event 1 of"), "{}", session.status());
     // Away from its start, the state stays, and turning back solves it again.

@@ -194,7 +194,7 @@ fn the_stiffness_of_the_device_is_a_knob_from_displacement_to_force() {
     pty.wait_for(|screen| screen.contains("STIFFNESS=") && screen.contains("of 2E*s)"), "a stiff device");
     // The walker stays, and is now past the limit point of the softer device.
     pty.keys("{{{{{{{{{{{{");
-    pty.wait_for(|screen| screen.contains("unstable under stiffness control"), "the flags of the walker");
+    pty.wait_for(|screen| screen.contains("unstable under spring control"), "the flags of the walker");
     pty.keys("\r");
     pty.wait_for(|screen| screen.contains("> stiffness ..."), "the list");
     pty.keys("\r");

@@ -334,7 +334,7 @@ fn the_manual_page_has_every_subcommand_and_every_command_with_its_keys() {
         assert!(page.contains(&heading), "no {heading} in\n{page}");
     }
     for text in
-        ["overwrite", "\\fBnext\\-event\\fR", "\\fBset\\fR [KEY=VALUE ...]", "write curve, walk or events"]
+        ["overwrite", "\\fBnext\\-event\\fR", "\\fBset\\fR [KEY=VALUE ...]", "write curve, walk, events"]
     {
         assert!(page.contains(text), "no {text} in\n{page}");
     }

@@ -127,6 +127,11 @@ pub fn control_name(control: Control) -> &'static str {
     }
 }
 
+/// The same in a sentence: a device with a stiffness is a spring.
+pub fn control_word(control: Control) -> &'static str {
+    if let Control::Stiffness(_) = control { "spring" } else { control_name(control) }
+}
+
 /// Every key with its value, nested as in the file.
 fn document(preset: &Preset) -> Map<String, Value> {
     let mut document = Map::new();

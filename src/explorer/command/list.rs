@@ -128,7 +128,7 @@ macro_rules! each_command {
         SaveAs "save-as" "S" "save as" always Nothing Needs("a name") "save the preset under another name"
             { takes: takes("name", saved_as).going_on(names) }
         Export "export" "e" "export" always Nothing Needs("a document and a file")
-            "write curve, walk or events as CSV or JSON, the session as a script, the screen as text"
+            "write curve, walk, events, pull or study as CSV or JSON, a figure, the session as a script, the screen as text"
             { words: "figure plot picture svg pdf csv json image script replay", takes: takes("WHAT FILE", exported).going_on(documents) }
         Copy "copy" "Y" "copy" always Nothing Screen
             "copy the state, the events, the chart or the screen to the terminal's clipboard" { words: "clipboard yank" }

@@ -91,7 +91,7 @@ fn content(model: &Model, what: Export, path: &str) -> Result<Content, String> {
             let pull = model.pull().filter(|pull| pull.is_of(&model.preset));
             let report = pull.and_then(|pull| Some((pull, pull.report.as_ref().ok()?)));
             let (pull, report) =
-                report.ok_or("there is no pull to export: path.rate and the law of the edge make one")?;
+                report.ok_or("there is no pull to export: edge.exponent and path.rate make one")?;
             Content::Pull(Box::new(report.clone()), Box::new(pull.preset.clone()))
         }
         Export::Study => {

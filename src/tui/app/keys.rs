@@ -164,6 +164,10 @@ impl App {
 
     /// Turns the questions of the model into overlays.
     pub(super) fn raise_questions(&mut self) {
+        if let Some(Question::ReplacePreset(..) | Question::ReplaceFile(..)) = self.model.question {
+            // The question says that it exists; that nothing was written would be an answer to it.
+            self.model.message = None;
+        }
         match self.model.question.take() {
             None => {}
             Some(Question::File(key, folder)) => self.choose_file(&key, &folder),
@@ -174,11 +178,11 @@ impl App {
                 self.ask(question.to_owned(), Command::SaveAnyway);
             }
             Some(Question::ReplacePreset(name, with_data)) => {
-                let question = format!("A preset called {name} exists. y replaces it, Esc goes back.");
+                let question = format!("A preset called {name} exists. Replace it? y does, Esc goes back.");
                 self.ask(question, Command::SaveAs { name, replace: true, with_data });
             }
             Some(Question::ReplaceFile(what, path)) => {
-                let question = format!("{} exists. y replaces it, Esc goes back.", sanitize(&path, 60));
+                let question = format!("{} exists. Replace it? y does, Esc goes back.", sanitize(&path, 60));
                 self.ask(question, Command::Export { what, path, replace: true });
             }
         }

@@ -33,7 +33,7 @@ const READING: &[&str] = &[
      and the energy between is lost. A is the largest pull, B the farthest state. A dot is a limit point off the path.",
     "Inadmissible states have the colour of a warning, or ! without colours: outside the disc the next crest would \
      touch. The log lists them after the events; +13 !7 in its corner counts the events and such parts out of sight. \
-     The real path has rings of contact there: its loop is drawn too, loading and unloading in colours of their own; with begin = apart it is the path.",
+     The real path has rings of contact there: its loop is drawn too, loading and unloading in colours of their own; with path.begin = apart the walk follows it.",
     "\u{1}go\u{1} and a letter leads to one of four places, \u{1}next-view\u{1} through the charts there. \
      In the potential m and M are its stable and unstable states, B the barrier before the edge lets go; ^ marks the \
      crests.",

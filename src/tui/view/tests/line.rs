@@ -291,7 +291,7 @@ fn figures_and_the_screen_are_exported_by_a_line() {
     assert!(read("c.txt").contains("lost so far 0 of"));
     // An existing file is replaced only when told.
     screen.keys(&format!(":export screen {}\r", path("c.txt")));
-    assert!(screen.text(100, 30).contains("y replaces it"), "{}", screen.text(100, 30));
+    assert!(screen.text(100, 30).contains("Replace it? y does"), "{}", screen.text(100, 30));
     screen.keys("n").keys(&format!(":export figure {} walk\r", path("d.svg")));
     assert!(screen.text(100, 30).contains("export walk writes it"), "{}", screen.text(100, 30));
     screen.keys("\x1b").keys(&format!(":export figure {} wak\r", path("d.svg")));

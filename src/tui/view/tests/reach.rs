@@ -246,7 +246,7 @@ fn the_screen_is_exported_as_text() {
     screen.keys("n");
     typed(&mut screen, path.to_str().unwrap());
     assert_eq!(std::fs::read_to_string(&path).unwrap(), wanted);
-    assert!(screen.text(120, 40).contains("y replaces it"));
+    assert!(screen.text(120, 40).contains("Replace it? y does"));
     screen.keys("y");
     assert!(std::fs::read_to_string(&path).unwrap().contains("Event 1 of 6"));
     typed(&mut screen, folder.path().join("a.csv").to_str().unwrap());
