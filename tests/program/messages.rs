@@ -59,7 +59,13 @@ fn a_start_beyond_the_largest_pull_is_told() {
     assert!(told("20um") && !told("100um"));
     for (start, is_told) in [("0.3", true), ("0.4", false)] {
         let start = format!("path.start_contact_radius={start}");
-        let sets = ["gap.amplitude=0", "gamma=0.0101", "adhesion=dugdale", "cohesive_strength=1.83", &start];
+        let sets = [
+            "gap.amplitude=0",
+            "gamma=0.0101",
+            "material.adhesion=dugdale",
+            "material.cohesive_strength=1.83",
+            &start,
+        ];
         let with = sets.iter().flat_map(|set| ["--set", set]);
         let ended = home.run(&["unload", "wavy-sphere"].into_iter().chain(with).collect::<Vec<_>>());
         assert_eq!(ended.err.contains("larger contacts pull more"), is_told, "{start}: {}", ended.err);
