@@ -149,7 +149,7 @@ fn without_radius(
     for (branch, _) in list {
         branch.attached.retain(|point| !point.radius.is_nan());
     }
-    notes.push(format!("{unseen} rows in contact have no contact radius and are left out"));
+    notes.push(format!("rows in contact without a contact radius are left out: {unseen}"));
 }
 
 impl Points {

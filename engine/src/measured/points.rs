@@ -134,7 +134,7 @@ pub enum PointsError {
     /// Two stiffnesses, or two tip radii, that differ.
     #[error(
         "the file states {what} of {file}, and {key} is {preset}: set {key} to the value in the file, or \
-         data.settings = \"preset\" if the file's is wrong"
+         data.settings = \"preset\" if the file's is wrong, or data.file = none to remove the file"
     )]
     Contradicts {
         /// What is stated.

@@ -583,7 +583,7 @@ fn rows_without_a_radius_are_apart_or_left_out() {
     for gone in ["", "NaN", "0"] {
         let found = branches(&text(true, gone)).unwrap();
         assert_eq!(parts(&found), [[44, 0, 15]], "{gone}");
-        assert!(found.notes.iter().any(|note| note.starts_with("1 rows in contact")), "{:?}", found.notes);
+        assert!(found.notes.iter().any(|note| note.ends_with("left out: 1")), "{:?}", found.notes);
         assert_eq!(found.baseline, Some(0.0));
         let measured = parse(text(false, gone).as_bytes(), &ColumnSpec::default()).unwrap();
         assert_eq!(measured.skipped, 1);

@@ -178,9 +178,8 @@ mod tests {
         let exact = (found.mean, found.count, found.quantiles);
         assert_eq!(exact, (10.5, 6, [1.25, 2.5, 6.0, 14.0, 28.0]));
         assert!((found.deviation.unwrap() - 11.861_703_081_766_97).abs() < 1e-13);
-        // The error of the mean is known: σ/√n, where σ² divides by n.
-        let exact = found.deviation.unwrap() * (5.0_f64 / 36.0).sqrt();
-        assert!((found.mean_error.unwrap() / exact - 1.0).abs() < 0.07);
+        // scipy.stats.sem(…).
+        assert!((found.mean_error.unwrap() - 4.842_520_005_121_301).abs() < 1e-13);
     }
 
     #[test]
