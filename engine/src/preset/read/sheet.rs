@@ -100,11 +100,8 @@ impl Sheet {
         }
         if matches!(origin, ValueOrigin::Assignment(_)) {
             self.refit = self.refit || row.key == "gap.formula";
-            // Of two assignments none is the later word: both stay, and the contradiction is found.
             let rivals = rivals(&row.key);
-            self.entries.retain(|key, entry| {
-                !rivals.contains(&&**key) || matches!(entry.origin, ValueOrigin::Assignment(_))
-            });
+            self.entries.retain(|key, _| !rivals.contains(&&**key));
             if let (Ok(word), true) = (&value, CHOOSERS.contains(&&*row.key)) {
                 let word = word.to_string();
                 self.entries.retain(|key, entry| {

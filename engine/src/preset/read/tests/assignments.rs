@@ -25,13 +25,7 @@ fn assignments_are_laid_over_the_file_in_order() {
     }
     assert_eq!(set(&["path.control.stiffness=1", "path.control=force"]).path.control, Control::Force);
     assert_eq!(set(&["path.start_force=0.02"]).path.start, Start::Force(0.02));
-    // The last of two values holds, but two starts contradict each other.
-    assert_eq!(set(&["path.start_force=1", "path.start_force=0.02"]).path.start, Start::Force(0.02));
-    assert_eq!(
-        messages(WAVY, &["path.start_force=0.02", "path.start_approach=1"]),
-        ["--set path.start_force=0.02: path.start_force and path.start_approach both set where the path \
-          starts: give exactly one"]
-    );
+    assert_eq!(set(&["path.start_force=0.02", "path.start_approach=1"]).path.start, Start::Approach(1.0));
     assert_eq!(set(&["gap.shape=sphere"]).gap, Shape::Sphere { radius_of_curvature: 1.0 });
 }
 
