@@ -26,6 +26,8 @@ use crate::units::number::{said, short};
 const FEWEST: usize = 40;
 /// A logarithm of the ratio of the likelihoods, twice, that is not chance: that of one value beyond 4 deviations.
 const NO_CHANCE: f64 = 16.0;
+/// The same for more noise of x than was assumed, which only makes errors larger.
+const LIKELY: f64 = 4.0;
 /// The squares of neighbouring second differences of white noise are correlated by 4/9 and 1/36: this many count as one.
 const CORRELATED: f64 = 1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0);
 
@@ -70,7 +72,7 @@ impl FitProblem {
         let grows = is_clear(growing.1, even.1) && share.is_finite();
         let ([way, level, last], likelihood) = if grows { growing } else { even };
         let as_assumed = variances(&rows, [1.0, middle, last], false);
-        let is_wider = way > 1.0 && is_clear(likelihood, as_assumed.1);
+        let is_wider = way > 1.0 && 2.0 * (likelihood - as_assumed.1) > LIKELY * CORRELATED;
         Some(ShownNoise { share: grows.then_some(share), way: is_wider.then_some(way), level })
     }
 

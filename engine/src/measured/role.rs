@@ -102,6 +102,11 @@ impl ColumnRole {
         matches!(self, Self::Radius | Self::Diameter | Self::Area)
     }
 
+    /// Whether it says how much the bodies are pressed together.
+    pub(super) fn is_load(self) -> bool {
+        matches!(self, Self::Force | Self::Deflection)
+    }
+
     /// Whether it says how far the bodies have approached.
     pub(super) fn is_way(self) -> bool {
         matches!(self, Self::Approach | Self::Position)

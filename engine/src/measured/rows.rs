@@ -2,6 +2,7 @@
 
 use super::choice::WantedColumn;
 use super::error::CurveFault;
+use super::noise::{median, range};
 use super::role::{ColumnRole, Segment};
 use super::stated::StatedValue;
 use super::words::{is_gap, last_digit};
@@ -180,6 +181,19 @@ fn time(text: &str) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
+/// This many rows with a radius tell the force beside those without one.
+const BESIDE: usize = 3;
+
+/// Whether rows without a contact radius are apart: their force is constant, and jumped from that of the rows `beside`.
+fn is_apart(force: &[f64], beside: impl Iterator<Item = f64>) -> bool {
+    /// The fewest such rows, and how many times the range of their force the jump is.
+    const FEWEST: usize = 3;
+    const JUMP: f64 = 3.0;
+    let own = median(force.to_vec());
+    let Some((own, beside)) = own.zip(median(beside.collect())) else { return false };
+    force.len() >= FEWEST && (own - beside).abs() > JUMP * range(force.iter().copied())
+}
+
 /// Drops the rows that are not to be kept.
 fn kept<T>(rows: &mut Vec<T>, keep: &[bool]) {
     let mut keep = keep.iter();
@@ -215,29 +229,35 @@ impl Measured {
         }
     }
 
-    /// Decides what rows without a contact radius are. Beside an approach the force tells whether they are apart. Force over
-    /// radius alone shows it only before the first radius and after the last one; rows between are left out;
-    /// returns the line of the first of these.
+    /// Decides what rows without a contact radius are. Beside an approach the force tells whether they are apart. For force
+    /// over radius alone, they are so before the first radius or after the last one, if their force is constant and far
+    /// from that of the rows beside them. All others are left out; returns the line of the first of these.
     pub(super) fn without_gaps_of_radius(&mut self) -> Option<usize> {
         if self.columns.iter().any(|column| column.role.is_way()) {
             return None;
         }
-        let radii = self.columns.iter_mut().find(|column| column.role.is_contact())?;
+        let radii = self.columns.iter().find(|column| column.role.is_contact())?;
         let is_seen = |radius: &f64| !radius.is_nan();
         let seen = radii.values.iter().position(is_seen).zip(radii.values.iter().rposition(is_seen));
         let (first, last) = seen?;
+        let (before, after) = (0..first, last + 1..radii.values.len());
+        let is_seen_row: Vec<bool> = radii.values.iter().map(is_seen).collect();
+        let seen_rows: Vec<usize> = (first..=last).filter(|row| is_seen_row[*row]).collect();
+        let beside = &seen_rows[..BESIDE.min(seen_rows.len())];
+        let beyond = &seen_rows[seen_rows.len().saturating_sub(BESIDE)..];
+        let force = self.columns.iter().find(|column| column.role.is_load())?.values.clone();
+        let radii = self.columns.iter_mut().find(|column| column.role.is_contact())?;
         let mut apart = 0;
-        for (row, radius) in radii.values.iter_mut().enumerate() {
-            if radius.is_nan() && !(first..=last).contains(&row) {
-                *radius = 0.0;
-                apart += 1;
+        for (rows, beside) in [(before, beside), (after, beyond)] {
+            if is_apart(&force[rows.clone()], beside.iter().map(|row| force[*row])) {
+                apart += rows.len();
+                radii.values[rows].fill(0.0);
             }
         }
         let keep: Vec<bool> = radii.values.iter().map(is_seen).collect();
         if apart > 0 {
             self.notes.push(format!(
-                "{apart} rows before the first contact radius or after the last one have none: they are taken to be \
-                 apart"
+                "rows without a contact radius and with a constant force, taken to be apart: {apart}"
             ));
         }
         self.skipped += keep.iter().filter(|keep| !**keep).count();

@@ -587,9 +587,19 @@ fn rows_without_a_radius_are_apart_or_left_out() {
         assert_eq!(found.baseline, Some(0.0));
         let measured = parse(text(false, gone).as_bytes(), &ColumnSpec::default()).unwrap();
         assert_eq!(measured.skipped, 1);
-        assert_eq!(measured.notes.iter().any(|note| note.starts_with("15 rows before")), gone != "0");
+        let is_told = measured.notes.iter().any(|note| note.ends_with("taken to be apart: 15"));
+        assert_eq!(is_told, gone != "0", "{:?}", measured.notes);
         assert_eq!(parts(&branches(&text(false, gone)).unwrap()), [[44, 0, 15]], "{gone}");
     }
+    // A contact that is lost from sight goes on.
+    let lost: String = text(false, "").lines().take(40).map(|line| format!("{line}\n")).collect();
+    let lost = lost.lines().enumerate().fold(String::new(), |mut all, (i, line)| {
+        let (force, _) = line.split_once(',').unwrap();
+        writeln!(all, "{}", if i > 30 { format!("{force},") } else { line.to_owned() }).unwrap();
+        all
+    });
+    let measured = parse(lost.as_bytes(), &ColumnSpec::default()).unwrap();
+    assert_eq!((measured.skipped, measured.lines.len()), (10, 29));
 }
 
 /// A length that is not used beside force and radius may be the approach under a name that is not known.
