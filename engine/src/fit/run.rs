@@ -113,8 +113,15 @@ impl<'a> Posed<'a> {
             } else {
                 "the baseline is held as given, and its error is not in those of the values; "
             };
+            // Too few rows may not show the noise of x, and the baseline then takes up what it does.
+            let is_assumed = !problem.space && noise_of(&problem, branches).from[0] == Origin::Assumed;
+            let unless = if is_assumed && branches.abscissa != Abscissa::Radius {
+                "; sigma of x is assumed to be small: if it is not, the errors are larger (give --sigma-x)"
+            } else {
+                ""
+            };
             notes.push(format!(
-                "there is no free part: {held}sigma of the force is taken from neighbouring rows"
+                "there is no free part: {held}sigma of the force is taken from neighbouring rows{unless}"
             ));
         }
         Ok(Self { preset, branches, options, problem, starts, solved, notes })

@@ -592,8 +592,8 @@ fn rows_without_a_radius_are_apart_or_left_out() {
         assert_eq!(parts(&branches(&text(false, gone)).unwrap()), [[44, 0, 15]], "{gone}");
     }
     // A contact that is lost from sight goes on.
-    let lost: String = text(false, "").lines().take(40).map(|line| format!("{line}\n")).collect();
-    let lost = lost.lines().enumerate().fold(String::new(), |mut all, (i, line)| {
+    let whole = text(false, "");
+    let lost = whole.lines().take(40).enumerate().fold(String::new(), |mut all, (i, line)| {
         let (force, _) = line.split_once(',').unwrap();
         writeln!(all, "{}", if i > 30 { format!("{force},") } else { line.to_owned() }).unwrap();
         all
