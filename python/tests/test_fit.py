@@ -25,7 +25,8 @@ def test_the_truth_is_found_from_afar(tmp_path):
     assert found.parameters["material.effective_modulus"] == pytest.approx(MODULUS, rel=1e-5)
     assert found.parameters["material.work_of_adhesion"] == pytest.approx(GAMMA, rel=1e-5)
     assert found.problem["material.work_of_adhesion"] == found.parameters["material.work_of_adhesion"]
-    assert found.key.tolist() == free and set(found.errors) == set(free)
+    # No row is apart: the baseline is fitted too.
+    assert found.key.tolist() == [*free, "data.baseline"] and set(found.errors) == {*free, "data.baseline"}
     assert found.to_dict()["schema"] == 1 and found.to_dict()["determined"]
     file = tmp_path / "curve.csv"
     table = points()
@@ -59,7 +60,7 @@ def test_points_from_everywhere(tmp_path):
     own = pulloff.Problem(tmp_path / "own.toml")
     assert own.fit(**SIGMA).parameters == wanted.parameters
     only = own.fit(free="material.work_of_adhesion", **SIGMA)
-    assert list(only.parameters) == ["material.work_of_adhesion"]
+    assert list(only.parameters) == ["material.work_of_adhesion", "data.baseline"]
 
 
 def test_units_stand_in_the_names_of_columns():
@@ -99,7 +100,10 @@ def test_ranges_and_segments():
     whole = points()
     near = SPHERE.fit(whole, FREE, x_range=(None, 0.05), **SIGMA)
     assert near.residuals.x.max() <= 0.05 and fitted_rows(near) < len(whole["force"]) == fitted_rows(SPHERE.fit(whole, FREE, **SIGMA))
-    pulled = SPHERE.fit(whole, FREE, force_range=(0.0, None), **SIGMA)
+    # Forces of one sign do not tell the baseline from the work of adhesion.
+    with pytest.raises(pulloff.NotDetermined):
+        SPHERE.fit(whole, FREE, force_range=(0.0, None), **SIGMA)
+    pulled = SPHERE.replace({"data.baseline": 0.0}).fit(whole, FREE, force_range=(0.0, None), **SIGMA)
     assert pulled.residuals.force.min() >= 0.0 and sum(pulled.rows[way]["dropped"] for way in ("approach", "retraction")) > 0
     both = {name: np.concatenate([values[::-1], values]) for name, values in whole.items()}
     both["segment"] = np.array(["approach"] * 60 + ["retraction"] * 60)
