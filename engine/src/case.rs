@@ -458,23 +458,18 @@ impl Case {
         warnings
     }
 
-    /// A warning, if the bodies are steep within the contact at the start: h' of a half-space is small beside 1.
+    /// A warning, if a gap with waves is steep near the edge at the start: the theory of a half-space needs small slopes.
     fn warning_of_slope(&self) -> Option<String> {
         const RADII: usize = 512;
+        const PER_WAVE: f64 = 16.0;
         const STEEP: f64 = 1.0;
         let (shape, start) = (&self.problem.shape, self.start * self.units().length);
-        let wave = shape.feature_length().unwrap_or(start);
-        // The waves near the edge stand for those further in.
-        let from = (start - RADII as f64 * wave / 16.0).max(0.0);
-        let radii = (1..=RADII).map(|i| from + (start - from) * i as f64 / RADII as f64);
+        let width = (RADII as f64 / PER_WAVE * shape.feature_length()?).min(start);
+        let radii = (0..RADII).map(|i| start - width * i as f64 / RADII as f64);
         let steepest = radii.map(|r| shape.jet(r).first.abs()).fold(0.0, f64::max);
-        let is_of_waves = shape.feature_length().is_some();
-        (is_of_waves && steepest > STEEP).then(|| {
-            format!(
-                "the waves are as steep as {}: this theory is for slopes small beside 1",
-                short(steepest, 2)
-            )
-        })
+        let said = short(steepest, 2);
+        let warning = format!("the gap has slopes up to {said}: this theory is for slopes small beside 1");
+        (steepest > STEEP).then_some(warning)
     }
 
     /// A warning, if an unloading starts where larger contacts pull more than all on its way.

@@ -67,9 +67,7 @@ pub fn run(arguments: &SpeedsArguments) -> Result<ExitCode, Failure> {
         console.note(Some(note));
     }
     if format != Format::Json {
-        let units = columns::units(COLUMNS, preset.path.control, &preset.units);
-        let of = if format == Format::Table { "table" } else { "CSV" };
-        console.note(units.map(|said| said.replacen("CSV", of, 1)).as_deref());
+        console.note(columns::units(COLUMNS, preset.path.control, &preset.units).as_deref());
     }
     sink.write(match format {
         Format::Table => table::rows(&report.table()?),

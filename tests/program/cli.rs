@@ -638,13 +638,13 @@ fn csv_of_an_si_preset_has_its_units_beside_it() {
         ended
             .err
             .lines()
-            .filter(|line| line.contains("units of the CSV"))
+            .filter(|line| line.contains("units of the columns"))
             .map(str::to_owned)
             .collect::<Vec<_>>()
     };
     let states = "contact_radius, approach, area_slope in m; force in N; energy in J; contact_stiffness, \
                   tangent_stiffness in N/m";
-    assert_eq!(note(&["trace", "fig-9-si"]), [format!("pulloff: note: units of the CSV: {states}")]);
+    assert_eq!(note(&["trace", "fig-9-si"]), [format!("pulloff: note: units of the columns: {states}")]);
     assert_eq!(note(&["trace", "fig-9-si", "-o", "x.csv"]).len(), 1);
     let theory = &note(&["trace", "fig-9-si", "--theory"])[0];
     assert!(theory.contains("force, exact_force in N"), "{theory}");

@@ -390,7 +390,7 @@ fn an_export_in_si_tells_the_units_of_its_columns() {
         for (file, expected) in [("walk.csv", units), ("walk.json", "")] {
             let path = session.folder.path().join(file).to_str().unwrap().to_owned();
             session.does(Command::Export { what: Export::Walk, path, replace: false });
-            let has_units = session.status().contains("units of the CSV");
+            let has_units = session.status().contains("units of the columns");
             assert_eq!(has_units, !expected.is_empty(), "{name} {file}: {}", session.status());
             assert!(session.status().contains(expected), "{}", session.status());
         }

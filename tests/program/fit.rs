@@ -31,7 +31,7 @@ fn the_truth_of_the_shipped_curve_is_found_and_written() {
         ]
         .concat(),
     );
-    let said = "pulloff: note: units of the CSV: x in m; force in N\n";
+    let said = "pulloff: note: units of the columns: x in m; force in N\n";
     assert_eq!((ended.status, ended.err.as_str()), (0, said));
     let document: Value = serde_json::from_str(&ended.out).unwrap();
     assert_eq!((document["schema"].as_u64(), document["verdict"].as_str()), (Some(1), Some("describes")));
@@ -658,8 +658,10 @@ fn a_displacement_is_tried_as_a_position_where_it_does_not_describe() {
     let first = ended.err.lines().find(|line| line.contains("warning: ")).unwrap();
     assert!(first.contains("x, headed \"displacement\", is read as the approach of the bodies"), "{first}");
     assert!(first.ends_with("position=1,force=2,segment=3. As that, the model describes it"), "{first}");
-    let units = "note: units of the CSV: material.effective_modulus in Pa; ";
-    assert!(ended.err.contains(units) && ended.err.contains("note: units of the CSV: x in m; force in N\n"));
+    let units = "note: units of the columns: material.effective_modulus in Pa; ";
+    assert!(
+        ended.err.contains(units) && ended.err.contains("note: units of the columns: x in m; force in N\n")
+    );
     let text = home.text("d.out.csv");
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let header = reader.headers().unwrap().clone();
@@ -690,7 +692,7 @@ fn the_signs_of_residuals_are_said() {
     home.file("t.csv", &turned_lens());
     let ended = home.run(&["fit", "t.csv", "lens", "--residuals", "r.csv"]);
     assert_eq!(ended.status, 0, "{}", ended.err);
-    let said = "note: units of the CSV: x in m; force in N; the signs of x and force are those of the fit, turned against the \
+    let said = "note: units of the columns: x in m; force in N; the signs of x and force are those of the fit, turned against the \
                 file: x=-,force=-\n";
     assert!(ended.err.contains(said), "{}", ended.err);
 }

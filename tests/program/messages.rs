@@ -46,6 +46,17 @@ fn a_gap_of_any_height_has_no_message_from_inside() {
     }
 }
 
+/// The theory is for small slopes, and waves may be steeper than that.
+#[test]
+fn steep_waves_are_told() {
+    let home = Home::new();
+    for (amplitude, is_told) in [("0.0025", false), ("0.01", true)] {
+        let ended = home.run(&["unload", "wavy-sphere", "--set", &format!("gap.amplitude={amplitude}")]);
+        assert_eq!(ended.status, 0, "{}", ended.err);
+        assert_eq!(ended.err.contains("the gap has slopes up to 1.6: "), is_told, "{}", ended.err);
+    }
+}
+
 /// A path that starts closer than the largest pull says so; one that starts further out does not.
 #[test]
 fn a_start_beyond_the_largest_pull_is_told() {

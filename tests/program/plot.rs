@@ -418,7 +418,10 @@ fn the_only_quantity_of_a_sweep_is_drawn_and_of_several_one_is_chosen() {
         String::from_utf8_lossy(&output.stderr).into_owned()
     };
     let said = sweep("\"largest_pull_force\"");
-    assert!(said.contains("note: units of the CSV: gap.amplitude in m; largest_pull_force in N\n"), "{said}");
+    assert!(
+        said.contains("note: units of the columns: gap.amplitude in m; largest_pull_force in N\n"),
+        "{said}"
+    );
     assert!(structure(&svg(folder.path(), &["--sweep", "r.csv"])).join("\n").contains("largest pull force"));
     sweep("\"largest_pull_force\", \"snap_loss\"");
     let (status, said) = refused(folder.path(), &["--sweep", "r.csv"]);

@@ -306,7 +306,7 @@ fn instrument(
             (!is_free).then(|| format!("since there is a free part{unless}"))
         }
         None if !is_known && (is_free || is_asked && given.baseline.is_none()) => {
-            let off = said(&preset.units, Quantity::Force, tare(branches));
+            let off = said(&preset.units, Quantity::Force, branches.tare());
             Some(format!("known to within {off} beforehand, since there is no free part"))
         }
         _ => None,
@@ -320,13 +320,6 @@ fn instrument(
     instrument
 }
 
-/// By how much a force without rows apart may be off.
-fn tare(branches: &Branches) -> f64 {
-    const SHARE: f64 = 0.02;
-    let forces = branches.list.iter().flat_map(|branch| &branch.attached).map(|point| point.force.abs());
-    SHARE * forces.fold(0.0, f64::max)
-}
-
 /// What is known of a baseline that no rows show.
 fn of_baseline(given: &DataSpec, branches: &Branches, parameters: &[FreeParameter]) -> Option<Prior> {
     let at = parameters.iter().position(|parameter| parameter.target == Target::Baseline);
@@ -334,7 +327,7 @@ fn of_baseline(given: &DataSpec, branches: &Branches, parameters: &[FreeParamete
     unseen.map(|parameter| {
         let inner = |value| parameters[parameter].inner(value);
         let mean = inner(given.baseline.unwrap_or(0.0));
-        Prior { parameter, mean, sigma: inner(tare(branches)) }
+        Prior { parameter, mean, sigma: inner(branches.tare()) }
     })
 }
 

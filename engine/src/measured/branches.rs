@@ -62,6 +62,13 @@ pub struct Branches {
 }
 
 impl Branches {
+    /// By how much a force without rows apart may be off.
+    pub fn tare(&self) -> f64 {
+        const SHARE: f64 = 0.02;
+        let forces = self.list.iter().flat_map(|branch| &branch.attached).map(|point| point.force.abs());
+        SHARE * forces.fold(0.0, f64::max)
+    }
+
     /// A sentence on signs that were assumed although the points leave them open.
     pub fn doubt(&self) -> Option<String> {
         self.or.map(|_| {

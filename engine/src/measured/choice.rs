@@ -1,7 +1,7 @@
 //! Which columns of a table are used, as its header or the user specifies.
 
 use super::error::CurveReadError;
-use super::header::{Header, is_way};
+use super::header::Header;
 use super::names::{named, squashed};
 use super::role::{ColumnPlace, ColumnRole, ColumnSpec, ColumnSpecError, Said, Segment, unit_of};
 use crate::cells::ColumnHead;
@@ -74,7 +74,8 @@ pub(super) fn sides(header: &Header) -> Option<[Vec<WantedColumn>; 2]> {
             side.retain(|column| !is_time(column.role));
         }
     }
-    let is_whole = |wanted: &[WantedColumn]| has(wanted, &is_way) && has(wanted, &is_force);
+    let is_whole =
+        |wanted: &[WantedColumn]| has(wanted, &ColumnRole::is_way) && has(wanted, &ColumnRole::is_force);
     let has_side = |segment| known.iter().any(|column| column.side == Some(segment) && column.unit.is_ok());
     let same = |column: &WantedColumn| {
         retraction.iter().any(|other| other.role == column.role && other.unit == column.unit)
@@ -87,10 +88,6 @@ pub(super) fn sides(header: &Header) -> Option<[Vec<WantedColumn>; 2]> {
 
 fn is_time(role: ColumnRole) -> bool {
     role == ColumnRole::Time
-}
-
-fn is_force(role: ColumnRole) -> bool {
-    [ColumnRole::Force, ColumnRole::Deflection].contains(&role)
 }
 
 /// Which columns are used, in a file whose first row is in the line `row`.
@@ -108,7 +105,7 @@ pub(super) fn wanted(
         _ if !spec.0.is_empty() => of_person(spec, header, line, cells)?,
         Some(header) => {
             let wanted = of_header(header, notes, &mut refused);
-            notes.extend(without_way(header, &wanted));
+            notes.extend(unused_length(header, &wanted));
             wanted
         }
         None if cells == 2 => {
@@ -122,12 +119,12 @@ pub(super) fn wanted(
         None => Vec::new(),
     };
     let has = |is: &dyn Fn(ColumnRole) -> bool| wanted.iter().any(|column: &WantedColumn| is(column.role));
-    if spec.0.is_empty() && cells == 2 && !has(&is_force) && header.is_some_and(is_profile) {
+    if spec.0.is_empty() && cells == 2 && !has(&ColumnRole::is_force) && header.is_some_and(is_profile) {
         return Err(CurveReadError::Profile { line, names: known() });
     }
     for (is, missing) in [
-        (&is_force as &dyn Fn(ColumnRole) -> bool, "force or the deflection"),
-        (&is_way, "approach, the position or the contact radius"),
+        (&ColumnRole::is_force as &dyn Fn(ColumnRole) -> bool, "force or the deflection"),
+        (&ColumnRole::is_way, "approach, the position or the contact radius"),
     ] {
         // If a column of that name has a unit of another quantity, that is the reason.
         if let (false, Some((_, error))) = (has(is), refused.iter().find(|(role, _)| is(*role))) {
@@ -152,7 +149,7 @@ pub(super) fn wanted(
 }
 
 /// A note where force and contact radius are used alone, although another column may be the approach.
-fn without_way(header: &Header, wanted: &[WantedColumn]) -> Option<String> {
+fn unused_length(header: &Header, wanted: &[WantedColumn]) -> Option<String> {
     let has = |is: fn(ColumnRole) -> bool| wanted.iter().any(|column| is(column.role));
     let is_length = |name: &str, unit: Option<&String>| {
         let of_name = name.rsplit(|c: char| !c.is_alphanumeric()).next().map(str::to_owned);
@@ -162,7 +159,7 @@ fn without_way(header: &Header, wanted: &[WantedColumn]) -> Option<String> {
     let (at, (name, _)) = heads.find(|(at, (name, unit))| {
         wanted.iter().all(|column| column.at != *at) && is_length(name, unit.as_ref())
     })?;
-    (has(ColumnRole::is_contact) && !has(ColumnRole::is_way)).then(|| {
+    (has(ColumnRole::is_contact) && !has(ColumnRole::is_approach)).then(|| {
         format!(
             "column {number}, \"{}\", is not used: if it is the approach, head it \"indentation\", or name all columns, \
              as in --columns approach={number},force=…,radius=…",

@@ -2,7 +2,7 @@
 
 use super::lines::TextTable;
 use super::names::{named, squashed};
-use super::role::{ColumnRole, Segment, unit_named};
+use super::role::{Segment, unit_named};
 use super::words::{Words, count_known, is_units, keyed, unit_cells};
 use crate::cells::{ColumnHead, Separator, heads};
 use std::collections::HashMap;
@@ -173,10 +173,4 @@ pub(super) fn same(one: Option<&Header>, other: Option<&Header>) -> bool {
         // A table without a header has that of the table before it.
         _ => true,
     }
-}
-
-/// Whether a column of this role may be x.
-pub(super) fn is_way(role: ColumnRole) -> bool {
-    [ColumnRole::Approach, ColumnRole::Position, ColumnRole::Radius, ColumnRole::Diameter, ColumnRole::Area]
-        .contains(&role)
 }

@@ -103,13 +103,18 @@ impl ColumnRole {
     }
 
     /// Whether it says how much the bodies are pressed together.
-    pub(super) fn is_load(self) -> bool {
+    pub(super) fn is_force(self) -> bool {
         matches!(self, Self::Force | Self::Deflection)
     }
 
     /// Whether it says how far the bodies have approached.
-    pub(super) fn is_way(self) -> bool {
+    pub(super) fn is_approach(self) -> bool {
         matches!(self, Self::Approach | Self::Position)
+    }
+
+    /// Whether it may be x.
+    pub(super) fn is_way(self) -> bool {
+        self.is_approach() || self.is_contact()
     }
 
     /// Its dimension; none for a segment.

@@ -233,28 +233,26 @@ impl Measured {
     /// over radius alone, they are so before the first radius or after the last one, if their force is constant and far
     /// from that of the rows beside them. All others are left out; returns the line of the first of these.
     pub(super) fn without_gaps_of_radius(&mut self) -> Option<usize> {
-        if self.columns.iter().any(|column| column.role.is_way()) {
+        let at = |is: fn(ColumnRole) -> bool| self.columns.iter().position(|column| is(column.role));
+        let (radii, force) = (at(ColumnRole::is_contact)?, at(ColumnRole::is_force)?);
+        if at(ColumnRole::is_approach).is_some() {
             return None;
         }
-        let radii = self.columns.iter().find(|column| column.role.is_contact())?;
+        let force = self.columns[force].values.clone();
+        let radii = &mut self.columns[radii].values;
         let is_seen = |radius: &f64| !radius.is_nan();
-        let seen = radii.values.iter().position(is_seen).zip(radii.values.iter().rposition(is_seen));
-        let (first, last) = seen?;
-        let (before, after) = (0..first, last + 1..radii.values.len());
-        let is_seen_row: Vec<bool> = radii.values.iter().map(is_seen).collect();
-        let seen_rows: Vec<usize> = (first..=last).filter(|row| is_seen_row[*row]).collect();
-        let beside = &seen_rows[..BESIDE.min(seen_rows.len())];
-        let beyond = &seen_rows[seen_rows.len().saturating_sub(BESIDE)..];
-        let force = self.columns.iter().find(|column| column.role.is_load())?.values.clone();
-        let radii = self.columns.iter_mut().find(|column| column.role.is_contact())?;
+        let seen: Vec<usize> = (0..radii.len()).filter(|row| is_seen(&radii[*row])).collect();
+        let (first, last) = (*seen.first()?, *seen.last()?);
+        let few = BESIDE.min(seen.len());
+        let ends = [(0..first, &seen[..few]), (last + 1..radii.len(), &seen[seen.len() - few..])];
         let mut apart = 0;
-        for (rows, beside) in [(before, beside), (after, beyond)] {
+        for (rows, beside) in ends {
             if is_apart(&force[rows.clone()], beside.iter().map(|row| force[*row])) {
                 apart += rows.len();
-                radii.values[rows].fill(0.0);
+                radii[rows].fill(0.0);
             }
         }
-        let keep: Vec<bool> = radii.values.iter().map(is_seen).collect();
+        let keep: Vec<bool> = radii.iter().map(is_seen).collect();
         if apart > 0 {
             self.notes.push(format!(
                 "rows without a contact radius and with a constant force, taken to be apart: {apart}"

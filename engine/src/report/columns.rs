@@ -62,7 +62,7 @@ pub fn sentence<'a>(columns: impl IntoIterator<Item = (&'a str, &'a str)>) -> Op
     }
     let told: Vec<String> =
         groups.iter().map(|(unit, names)| format!("{} in {unit}", names.join(", "))).collect();
-    (!told.is_empty()).then(|| format!("units of the CSV: {}", told.join("; ")))
+    (!told.is_empty()).then(|| format!("units of the columns: {}", told.join("; ")))
 }
 
 #[cfg(test)]
@@ -107,7 +107,7 @@ mod tests {
         let si = UnitSystem::Si(DisplayUnits::default());
         assert_eq!(
             units(trace::COLUMNS, Control::Force, &si).unwrap(),
-            "units of the CSV: contact_radius, approach, area_slope in m; force in N; energy in J; \
+            "units of the columns: contact_radius, approach, area_slope in m; force in N; energy in J; \
              contact_stiffness, tangent_stiffness in N/m"
         );
         let value = |control| units(&["control"], control, &si).unwrap();

@@ -12,7 +12,7 @@
 mod offset;
 mod reading;
 
-use self::offset::{FoundOffset, doubt_of_offset};
+use self::offset::{FoundOffset, doubt_of_baseline, doubt_of_offset};
 pub use self::reading::MeasuredPair;
 use self::reading::{Released, RowReading, attached, radius_of};
 use super::columns::columns;
@@ -121,9 +121,6 @@ impl SpeedsReport {
         let case = Case::prepare(preset, progress)?;
         let mut notes = preset.notes_of_reading().map_err(SpeedsError::Data)?;
         notes.extend(branches.notes.iter().cloned());
-        if preset.data.baseline.or(branches.baseline).is_none() {
-            notes.push("no row is apart and data.baseline is not set: the force is used as it is".to_owned());
-        }
         let [sigma_x, sigma_force, _] = branches.noise.sigma;
         let of_file: Vec<MeasuredPoint> = attached(&branches).copied().collect();
         let pair = measured_pair(pair, branches.abscissa, &of_file)?;
@@ -159,6 +156,7 @@ impl SpeedsReport {
         }
         let mut warnings = case.warnings_of_problem();
         warnings.extend(branches.swapped().into_iter().chain(branches.doubt()).chain(doubt));
+        warnings.extend(doubt_of_baseline(&reading, preset, &branches));
         if rows.len() < of_file.len() {
             warnings.push(format!(
                 "{} rows in contact are left out: no contact with tension at its edge has their force there",
@@ -447,6 +445,26 @@ mod tests {
                     .any(|note| note.contains("with E* = 1000 kPa, R = 1000 um, data.offset = 0"))
             );
         }
+    }
+
+    #[test]
+    fn a_baseline_that_nothing_shows_is_doubted() {
+        let mut text = "contact radius [m],force [N],segment\n".to_owned();
+        for [s, _, force, ..] in rows() {
+            writeln!(text, "{s:e},{force:e},retraction").unwrap();
+        }
+        let mut preset = read("made", PRESET).unwrap();
+        let source = PointsFile::new("made.csv".to_owned(), None, text.as_bytes().into());
+        preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
+        let is_told = |preset: &Preset| {
+            let warnings = SpeedsReport::compute(preset, None, &Unwatched).unwrap().warnings;
+            warnings
+                .iter()
+                .any(|warning| warning.starts_with("no row is apart and data.baseline is not given"))
+        };
+        assert!(is_told(&preset));
+        preset.set(data::BASELINE, Value::Number(0.0)).unwrap();
+        assert!(!is_told(&preset));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! An offset of x that is not given: what the rows say of it, and what it does to G.
+//! An offset of x, or a baseline of the force, that is not given: what the rows say of it, and what it does to G.
 
 use super::reading::{RowReading, attached};
 use crate::elementary::ln;
@@ -51,6 +51,10 @@ impl FoundOffset {
         let mut alone = preset.clone();
         // E* is that of the preset, as it is for G.
         alone.data.uncertain.clear();
+        // G is computed with the force as it is, and so must the offset be.
+        if branches.baseline.is_none() {
+            alone.data.baseline.get_or_insert(0.0);
+        }
         let has = |segment| branches.list.iter().any(|branch| branch.segment == segment);
         let free = ["material.work_of_adhesion", OFFSET].map(str::to_owned);
         let (alone, free) = AdhesionModel::ShortRange.laid(&alone, &free);
@@ -73,6 +77,53 @@ impl FoundOffset {
     }
 }
 
+/// A share of G that does not matter.
+const LITTLE: f64 = 0.05;
+
+/// How much G changes, as the logarithm of a ratio.
+fn change((_, here, there): (usize, f64, f64)) -> f64 {
+    ln(there / here).abs()
+}
+
+/// The row in which G changes as much as in half of all rows, if the instrument is `there` and not that of the reading:
+/// its number and both G.
+fn middle_change(reading: &RowReading, branches: &Branches, there: Instrument) -> Option<(usize, f64, f64)> {
+    let energies = |point: &MeasuredPoint| {
+        let [here, there] =
+            [reading.instrument, there].map(|instrument| reading.energy_with(point, instrument));
+        Some((point.row, here?, there?))
+    };
+    let mut all: Vec<(usize, f64, f64)> = attached(branches).filter_map(energies).collect();
+    all.sort_by(|a, b| change(*a).total_cmp(&change(*b)));
+    all.get(all.len() / 2).copied()
+}
+
+/// A sentence on a baseline that nothing shows, with what a tare would do: nothing where it would do little.
+pub(super) fn doubt_of_baseline(
+    reading: &RowReading,
+    preset: &Preset,
+    branches: &Branches,
+) -> Option<String> {
+    /// Less than with an offset: a tare may be larger than is assumed here.
+    const LITTLE: f64 = 0.01;
+    if preset.data.baseline.or(branches.baseline).is_some() {
+        return None;
+    }
+    let tare = branches.tare();
+    let there = Instrument { baseline: tare, ..reading.instrument };
+    let middle = middle_change(reading, branches, there).filter(|middle| change(*middle) >= LITTLE)?;
+    let (row, here, there) = middle;
+    let energy = |g: f64| said(&preset.units, Quantity::EnergyPerArea, g);
+    let [_, sign, _] = Instrument::signs(branches.turned);
+    Some(format!(
+        "no row is apart and data.baseline is not given, so the force is used as it is: in row {row} G is {}, and with a \
+         baseline of {} it is {}. Fit it first, or give it with --set data.baseline=",
+        energy(here),
+        said(&preset.units, Quantity::Force, sign * tare),
+        energy(there)
+    ))
+}
+
 /// A sentence on an offset that is not given, with what another one would do: nothing where it would do little.
 pub(super) fn doubt_of_offset(
     reading: &RowReading,
@@ -80,8 +131,7 @@ pub(super) fn doubt_of_offset(
     branches: &Branches,
     found: Option<&FoundOffset>,
 ) -> Option<String> {
-    /// A share of G, and of the range of x.
-    const LITTLE: f64 = 0.05;
+    /// A share of the range of x.
     const SHARE: f64 = 0.01;
     let [sign, ..] = Instrument::signs(branches.turned);
     let length = |x: f64| said(&preset.units, Quantity::Length, sign * x);
@@ -104,19 +154,13 @@ pub(super) fn doubt_of_offset(
         return None;
     }
     let other = found.map_or(here + SHARE * branches.ranges[0], |found| found.value);
-    let energies = |point: &MeasuredPoint| {
-        let [here, there] = [here, other].map(|offset| reading.energy_at(point, offset));
-        Some((point.row, here?, there?))
-    };
-    let mut all: Vec<(usize, f64, f64)> = attached(branches).filter_map(energies).collect();
-    let change = |(_, here, there): &(usize, f64, f64)| ln(there / here).abs();
-    all.sort_by(|a, b| change(a).total_cmp(&change(b)));
-    let middle = all.get(all.len() / 2);
+    let there = Instrument { offset: other, ..reading.instrument };
+    let middle = middle_change(reading, branches, there);
     if middle.is_some_and(|middle| change(middle) < LITTLE) {
         return None;
     }
     let effect = middle.map_or_else(String::new, |(row, here, there)| {
-        let energy = |g: &f64| said(&preset.units, Quantity::EnergyPerArea, *g);
+        let energy = |g: f64| said(&preset.units, Quantity::EnergyPerArea, g);
         let of = found.map_or_else(String::new, |found| format!(", which is that of {},", found.by));
         format!(": in row {row} G is {}, and with {}{of} {}", energy(here), length(other), energy(there))
     });

@@ -164,9 +164,8 @@ impl RowReading {
         Some(point.x - (held.approach + of_spring) * self.units.length)
     }
 
-    /// G at a row with another offset.
-    pub(super) fn energy_at(&self, point: &MeasuredPoint, offset: f64) -> Option<f64> {
-        let instrument = Instrument { offset, ..self.instrument };
+    /// G at a row with another instrument.
+    pub(super) fn energy_with(&self, point: &MeasuredPoint, instrument: Instrument) -> Option<f64> {
         Some(Self { instrument, ..self.clone() }.released(point)?.energy)
     }
 
