@@ -256,10 +256,11 @@ fn pair(fits: &[FittedModel], scores: &[f64], [best, other]: [usize; 2]) -> Opti
             short(difference, 3)
         ),
         (false, _) => format!(
-            "the points do not distinguish {} from {}: AIC differs by {}, and {APART} would be needed",
+            "the points do not distinguish {} from {}, whose AIC is {} by {}; {APART} would be needed",
             one.name(),
             two.name(),
-            short(difference, 3).replace('-', "−")
+            if difference < 0.0 { "smaller" } else { "larger" },
+            short(difference.abs(), 3)
         ),
     };
     Some(Pair { models: [one, two], difference, told_apart, sentence })

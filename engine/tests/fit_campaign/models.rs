@@ -78,10 +78,13 @@ fn a_zone_moves_by_closed_forms() {
 #[test]
 fn adhesion_of_a_range_is_found_with_its_model() {
     const MODELS: [AdhesionModel; 2] = [AdhesionModel::ShortRange, AdhesionModel::Dugdale];
-    for (name, mu, least) in [("Tabor 0.5", 0.5, 3), ("Tabor 1", 1.0, 1), ("Tabor 2", 2.0, 0)] {
+    // At 1, two of these three have little noise.
+    for (name, mu, numbers, least) in
+        [("Tabor 0.5", 0.5, 0..3, 3), ("Tabor 1", 1.0, 9..12, 2), ("Tabor 2", 2.0, 0..3, 0)]
+    {
         let kind = DOUBTFUL.iter().find(|kind| kind.name == name).unwrap();
         let mut told = 0;
-        for number in 0..3 {
+        for number in numbers {
             let made = made(kind, number);
             let found = fit_models(&preset(&made), &MODELS, &options(&made.free), &Unwatched).unwrap();
             let ([pair], [_, ranged]) = (&found.pairs[..], &found.fits[..]) else { panic!("{found:#?}") };
