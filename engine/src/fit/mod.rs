@@ -40,6 +40,7 @@
 //! Distances are measured to the curve itself and not along one axis: a residual P − P(x) jumps when the values change
 //! so that the pull-off passes a point, and its intervals then hold the truth in 8 % of trials.
 
+mod bent;
 pub mod chance;
 mod degrees;
 pub mod derivatives;
@@ -89,5 +90,7 @@ pub use verdict::{Reason, Verdict};
 mod tests;
 #[cfg(test)]
 mod tests_of_given;
+#[cfg(test)]
+mod tests_of_records;
 #[cfg(test)]
 mod tests_of_waves;

@@ -116,6 +116,8 @@ pub struct Datum {
     pub free: bool,
     /// The noise of each of its residuals in σ: above 1 where that of the force grows with the force.
     pub noise: [f64; 2],
+    /// What noise makes of its distance on average where the curve is bent within it, in σ.
+    pub bent: f64,
 }
 
 /// What is fitted.
@@ -358,7 +360,10 @@ impl FitProblem {
         let mut residuals = DVector::zeros(per * self.data.len());
         for (i, (datum, foot)) in self.data.iter().zip(feet).enumerate() {
             match foot {
-                Some(foot) => (0..per).for_each(|k| residuals[per * i + k] = foot.residuals[k]),
+                Some(foot) => {
+                    (0..per).for_each(|k| residuals[per * i + k] = foot.residuals[k]);
+                    residuals[per * i] -= datum.bent;
+                }
                 None => residuals[per * i] = self.corrected(datum, at)[1],
             }
         }

@@ -14,9 +14,9 @@
 use super::problem::{Datum, FitProblem};
 use super::solve::SolvedFit;
 use crate::elementary::{exp, ln};
+use crate::measured::Segment;
 use crate::measured::branches::median;
 pub(super) use crate::measured::noise::{CLIPPED, LEFT, variance};
-use crate::measured::{Abscissa, Segment};
 use nalgebra::{DMatrix, DVector};
 
 /// Rows farther off than this many times the scale of all are outliers, and left out.
@@ -109,8 +109,8 @@ pub struct Scatter {
 
 impl FitProblem {
     /// The residuals of one branch, in contact along the path or apart in the order of measurement, without outliers.
-    /// Radii that go one way in that order are kept in it: the noise of a radius would shuffle rows whose forces
-    /// differ.
+    /// Rows in contact that go one way in that order are kept in it: sorted by an x with noise, or by their forces where x
+    /// rests, neighbours would have what is in their residuals.
     pub(super) fn rows(&self, solved: &SolvedFit, branch: usize, free: bool, part: usize) -> Vec<ScatterRow> {
         let mut rows = self.in_order(solved, branch, free, part);
         let sizes = rows.iter().map(|row| row.residual.abs()).collect();
@@ -136,11 +136,17 @@ impl FitProblem {
         let by_file = |row: &ScatterRow| self.data[row.index].point.at;
         if free {
             rows.sort_by_key(by_file);
-        } else if self.abscissa == Abscissa::Radius {
+        } else {
             let mut in_file = rows.clone();
             in_file.sort_by_key(by_file);
-            let radii: Vec<f64> = in_file.iter().map(|row| self.data[row.index].point.x).collect();
-            rows = if goes_on(&radii) { in_file } else { rows };
+            let x = |row: &ScatterRow| self.data[row.index].point.x;
+            if goes_on(&in_file.iter().map(x).collect::<Vec<_>>()) {
+                let falls = |rows: &[ScatterRow]| rows.first().map(x) > rows.last().map(x);
+                if falls(&in_file) != falls(&rows) {
+                    in_file.reverse();
+                }
+                rows = in_file;
+            }
         }
         rows
     }

@@ -185,7 +185,7 @@ fn by_jumps(
             [Segment::Approach, Segment::Retraction].map(|segment| runs(points, of, segment)).concat()
         }
     };
-    let sum = |turned: Turned| -> f64 {
+    let sum = |turned: Turned, may_rest: bool| -> f64 {
         let mut sum = 0.0;
         for piece in &pieces {
             let mut piece = piece.clone();
@@ -193,19 +193,36 @@ fn by_jumps(
             piece.sort_by(|a, b| b.x.total_cmp(&a.x).then(b.force.total_cmp(&a.force)));
             let (x, force): (Vec<f64>, Vec<f64>) = piece.iter().map(|point| (point.x, point.force)).unzip();
             // Where most rows are apart, the outer fifth of all would hold more of them than of the contact.
-            let found = jump(&x, &force).filter(|jump| rises(&x[..jump.at], &force[..jump.at]) == Some(true));
+            let found = jump(&x, &force)
+                .filter(|jump| rises(&x[..jump.at], &force[..jump.at]) == Some(true))
+                .filter(|jump| may_rest || !rests(&x, jump.at));
             sum += found.map_or(0.0, |jump| jump.deviations);
         }
         sum
     };
     let all = [[false, false], [true, false], [false, true], [true, true]];
     let all = all.into_iter().filter(|[x, _]| known.is_none_or(|known| known == *x));
-    let mut found: Vec<(f64, Turned)> = all.map(|turned| (sum(turned), turned)).collect();
-    // Of equals, the first: signs as in the file.
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let (best, turned) = *found.first().filter(|(sum, _)| *sum > 0.0)?;
+    let sums = |may_rest| {
+        let mut found: Vec<(f64, Turned)> =
+            all.clone().map(|turned| (sum(turned, may_rest), turned)).collect();
+        // Of equals, the first: signs as in the file.
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.first().is_some_and(|(sum, _)| *sum > 0.0).then_some(found)
+    };
+    let found = sums(false).or_else(|| sums(true))?;
+    let (best, turned) = *found.first()?;
     let or = found.get(1).filter(|(sum, _)| *sum > LIKELY * best).map(|(_, turned)| *turned);
     Some(Orientation { turned, or, unless_apart: None })
+}
+
+/// Whether x rests over most of the rows from `at` on, as it does while a load is held: their middle half has a far
+/// smaller share of its range than of the rows. x is in order.
+fn rests(x: &[f64], at: usize) -> bool {
+    const SMALL: f64 = 0.05;
+    let (behind, quarter) = (&x[at..], (x.len() - at) / 4);
+    let middle = &behind[quarter..behind.len() - quarter];
+    let share = range(middle.iter().copied()) / range(x.iter().copied());
+    share < SMALL * middle.len() as f64 / x.len() as f64
 }
 
 /// Whether the force before the jump to the free part is below that of the free part, as it is where bodies attract;

@@ -1,15 +1,23 @@
 //! Where x reverses: the branches of a file that names none, in any order and with any number of loops.
 
-use super::noise::range;
+use super::noise::{median, range};
 use super::points::MeasuredPoint;
 use super::role::Segment;
 
 /// x reverses where it comes back by more than this share of its range.
 const TURN: f64 = 0.2;
+/// Noise of x does not reach so many of its deviations from one row to another.
+const NOISE: f64 = 10.0;
 /// Runs of a named branch with fewer rows are ignored; if longer runs hold less than this share of the rows, the rows
 /// are in no order.
 const FEWEST: usize = 5;
 const IN_RUNS: f64 = 0.9;
+
+/// The noise of x: what it differs by from the middle of its neighbours.
+fn noise(points: &[MeasuredPoint]) -> f64 {
+    let bends = points.windows(3).map(|three| (three[0].x - 2.0 * three[1].x + three[2].x).abs());
+    1.4826 * median(bends.collect()).unwrap_or(0.0) / 6_f64.sqrt()
+}
 
 /// The parts of `points` over which x moves in one direction.
 pub(super) fn one_way(points: &[MeasuredPoint]) -> Vec<Vec<MeasuredPoint>> {
@@ -28,8 +36,9 @@ pub(super) fn one_way(points: &[MeasuredPoint]) -> Vec<Vec<MeasuredPoint>> {
         let rises_now = point.x - points[lowest].x > limit && rises != Some(true);
         if falls_now || rises_now {
             let turn = if falls_now { highest } else { lowest };
-            // The first part has no turn before it.
-            if rises.is_some() || turn >= FEWEST {
+            // The first part has no turn before it: it must be longer than what noise makes of rows that rest.
+            let is_part = || (points[turn].x - points[0].x).abs() > NOISE * noise(&points[..=turn]);
+            if rises.is_some() || turn >= FEWEST && is_part() {
                 cuts.push(turn);
             }
             rises = Some(rises_now);
@@ -123,6 +132,13 @@ mod tests {
             "{:?}",
             parts.iter().map(Vec::len).collect::<Vec<_>>()
         );
+        // Rows that rest before they go: the farthest of them is only noise.
+        let at_rest = |i: u32| if i < 100 { (f64::from(i) * 2.4).sin() } else { 2.0 * f64::from(i - 100) };
+        let points_of = |way: &dyn Fn(u32) -> f64| -> Vec<MeasuredPoint> {
+            (0..300).map(|i| MeasuredPoint { x: way(i), ..point(i) }).collect()
+        };
+        assert_eq!(one_way(&points_of(&at_rest)).len(), 1);
+        assert_eq!(one_way(&points_of(&|i| -at_rest(i))).len(), 1);
         // A single sweep has no turn.
         assert_eq!(one_way(&points[..50]).len(), 1);
     }

@@ -10,9 +10,10 @@ use crate::preset::Value;
 use crate::problem::Control;
 use crate::progress::Progress;
 
-/// Rows of the part, and rounds of each fit.
+/// Rows of the part, rounds of each fit, and how often one goes on that has not come to rest.
 const ROWS: usize = 240;
 const ROUNDS: usize = 40;
+const TIMES: usize = 5;
 /// A change of a value, or of its logarithm where it is positive, that counts as none.
 const STILL: f64 = 1e-9;
 /// The same of a logarithm in words, which have a tenth of a per cent.
@@ -39,13 +40,16 @@ pub(in crate::fit) fn of_spring(
     for (factor, words) in [(1.1, "10 % larger"), (0.9, "10 % smaller")] {
         let mut other = problem.clone();
         other.preset.set(KEY, Value::Number(factor * k)).ok()?;
-        let found = solve(&other, &own, robust, ROUNDS, progress);
-        // Another spring moves the points: values that stay where they were have not been fitted to it.
-        let has_moved = |u: &[f64]| u.iter().zip(&own).any(|(a, b)| (a - b).abs() > STILL);
-        let found = found.filter(|found| {
-            let moves = problem.abscissa != Abscissa::Position || has_moved(&found.minimum.parameters);
-            found.minimum.ending == Ending::Converged && moves
+        let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        // Of points that another spring moves off the model, the scale of the residuals may go to and fro without end.
+        let mut ends = std::iter::successors(Some((own.clone(), None)), |(from, _)| {
+            let found = solve(&other, from, robust, ROUNDS, progress)?.minimum;
+            let rests = found.ending == Ending::Converged || apart(&found.parameters, from) < UNSEEN;
+            Some((found.parameters, Some(rests)))
         });
+        let found = ends.by_ref().take(TIMES).find(|(_, rests)| *rests == Some(true)).map(|(u, _)| u);
+        // Another spring moves the points: values that stay where they were have not been fitted to it.
+        let found = found.filter(|u| problem.abscissa != Abscissa::Position || apart(u, &own) > STILL);
         let words = match found {
             None => {
                 plays |= problem.abscissa == Abscissa::Position;
@@ -58,7 +62,7 @@ pub(in crate::fit) fn of_spring(
                     .enumerate()
                     .filter(|(_, parameter)| parameter.scale.is_none())
                     .map(|(j, parameter)| {
-                        let change = found.minimum.parameters[j] - own[j];
+                        let change = found[j] - own[j];
                         plays |= change.abs() >= UNSEEN;
                         let name = letter(&problem.preset, &parameter.key());
                         format!("{name} {:+.1} %", 100.0 * exp_m1(change)).replace('-', "−")
