@@ -458,18 +458,10 @@ impl Case {
         warnings
     }
 
-    /// A warning, if a gap with waves is steep near the edge at the start: the theory of a half-space needs small slopes.
+    /// A warning, if the gap is steep: the theory of a half-space needs small slopes.
     fn warning_of_slope(&self) -> Option<String> {
-        const RADII: usize = 512;
-        const PER_WAVE: f64 = 16.0;
-        const STEEP: f64 = 1.0;
-        let (shape, start) = (&self.problem.shape, self.start * self.units().length);
-        let width = (RADII as f64 / PER_WAVE * shape.feature_length()?).min(start);
-        let radii = (0..RADII).map(|i| start - width * i as f64 / RADII as f64);
-        let steepest = radii.map(|r| shape.jet(r).first.abs()).fold(0.0, f64::max);
-        let said = short(steepest, 2);
-        let warning = format!("the gap has slopes up to {said}: this theory is for slopes small beside 1");
-        (steepest > STEEP).then_some(warning)
+        let said = short(self.problem.shape.steep_slope(self.start * self.units().length)?, 2);
+        Some(format!("the gap has slopes up to {said}: this theory is for slopes small beside 1"))
     }
 
     /// A warning, if an unloading starts where larger contacts pull more than all on its way.

@@ -272,6 +272,7 @@ impl Sweep {
             ensemble::may_write(&self.results.output, &spec, self.results.existing())?;
         }
         let results = self.open(&rows_in, &spec, &console)?;
+        console.warn(&spec.warnings());
         let stop = StopSignal::catch()?;
         let jobs = self.jobs.count();
         let [before, of] = [results.rows, self.shard.len(spec.rows)];

@@ -105,3 +105,23 @@ fn values_given_together_are_refused_together() {
     home.file("lens.pulloff", &format!("open lens\n{lens}\n"));
     assert_eq!(home.run(&["run", "lens.pulloff"]).status, 0);
 }
+
+/// Gaps that only rise may be steep too, and so may some rows of a sweep.
+#[test]
+fn steep_gaps_are_told_in_sweeps_too() {
+    let home = Home::new();
+    let ended = home.run(&["unload", "cone", "--set", "slope=5"]);
+    assert!(ended.err.contains("the gap has slopes up to 5: "), "{}", ended.err);
+    let axis = |to: &str| {
+        format!(
+            "preset='wavy-sphere'\nquantities=['start_contact_radius']\n[[axis]]\nkey='gap.amplitude'\nvalues=[0, {to}]"
+        )
+    };
+    home.file("steep.toml", &axis("0.01"));
+    let ended = home.run(&["sweep", "steep.toml", "-o", "r.csv"]);
+    assert!(ended.err.contains("slopes up to 1.6, at gap.amplitude = 0.01: "), "{}", ended.err);
+    assert!(ended.err.contains("which 1 of 2 rows looked at do not have"), "{}", ended.err);
+    home.file("small.toml", &axis("0.001"));
+    let ended = home.run(&["sweep", "small.toml", "-o", "s.csv"]);
+    assert!(!ended.err.contains("slopes"), "{}", ended.err);
+}

@@ -700,3 +700,20 @@ fn a_start_that_cuts_the_smallest_force_off_is_said() {
         }
     }
 }
+
+/// The pull and the snaps of a loop that turns early are not those of the unloading from the start.
+#[test]
+fn a_sweep_of_a_loop_has_the_numbers_of_that_loop() {
+    let home = Sweeps::new();
+    home.file(
+        "loop.toml",
+        "preset='fig-9-cycle'\nquantities=['largest_pull','cycle_largest_pull','snaps','cycle_snaps']\n\
+         set=['material.work_of_adhesion=0.0002']\n[[axis]]\nkey='path.turn_approach'\nvalues=[0.003, 0.03]",
+    );
+    let (_, _, err) = home.run(&["sweep", "loop.toml", "-o", "r.csv"]);
+    assert!(err.contains("largest_pull, snaps: of the unloading from the start, not of the loop"));
+    let [pull, of_loop] = ["largest_pull", "cycle_largest_pull"].map(|name| home.numbers("r.csv", name));
+    assert!((of_loop[0] + 0.001_209_199).abs() < 1e-9 && (of_loop[1] / pull[1] - 1.0).abs() < 1e-9);
+    assert!((pull[0] / pull[1] - 1.0).abs() < 1e-9);
+    assert_eq!(home.numbers("r.csv", "cycle_snaps"), [0.0, 2.0]);
+}

@@ -126,6 +126,22 @@ impl Shape {
         }
     }
 
+    /// The largest slope within a contact of this radius, if it is not small beside 1; of a gap with waves, near the edge.
+    /// A paraboloid is as steep as its contact is large beside R, which is told where paths are.
+    pub fn steep_slope(&self, contact_radius: f64) -> Option<f64> {
+        const RADII: usize = 512;
+        const PER_WAVE: f64 = 16.0;
+        const STEEP: f64 = 1.0;
+        if matches!(self, Self::Sphere { .. }) {
+            return None;
+        }
+        let near = self.feature_length().map_or(f64::INFINITY, |wave| RADII as f64 / PER_WAVE * wave);
+        let width = near.min(contact_radius);
+        let radii = (0..RADII).map(|i| contact_radius - width * i as f64 / RADII as f64);
+        let steepest = radii.map(|r| self.jet(r).first.abs()).fold(0.0, f64::max);
+        (steepest > STEEP).then_some(steepest)
+    }
+
     /// What was changed in the gap without the user asking for it, in words, with numbers as `units` show them.
     pub fn notes(&self, units: &UnitSystem) -> Vec<String> {
         match self {

@@ -82,17 +82,17 @@ macro_rules! quantities {
 }
 
 quantities! {
-    "largest_pull" "P" Force "smallest force of the unloading, negative: the largest pull; 0 or empty where nothing pulls":
+    "largest_pull" "P" Force "smallest force of the unloading from path.start_contact_radius, negative: the largest pull; 0 or empty where nothing pulls":
         Stage::Least(OnPath::largest_pull, Control::Force);
-    "farthest" "δ" Length "smallest approach of the unloading": Stage::Least(OnPath::farthest, Control::Displacement);
-    "last_contact_force" "P" Force "force at the last contact of the unloading":
+    "farthest" "δ" Length "smallest approach of that unloading": Stage::Least(OnPath::farthest, Control::Displacement);
+    "last_contact_force" "P" Force "force at the last contact of that unloading":
         Stage::Unloading(|path| path.last_contact(|state| state.force));
     "last_contact_approach" "δ" Length "approach at the last contact":
         Stage::Unloading(|path| path.last_contact(|state| state.approach));
     "last_contact_radius" "s" Length "contact radius at the last contact":
         Stage::Unloading(|path| path.last_contact(|state| state.contact_radius));
-    "snaps" "" Count "jumps inward before the last contact": Stage::Unloading(|path| Some(path.snaps()));
-    "snap_loss" "" Energy "energy lost in all of them": Stage::Unloading(|path| Some(path.snap_loss()));
+    "snaps" "" Count "jumps inward of that unloading before the last contact": Stage::Unloading(|path| Some(path.snaps()));
+    "snap_loss" "" Energy "energy lost in these jumps": Stage::Unloading(|path| Some(path.snap_loss()));
     "last_contact_loss" "" Energy "energy lost at the last contact; empty under a dead load":
         Stage::Unloading(OnPath::last_contact_loss);
     "snap_off_approach" "δ" Length "approach at which the zone of adhesion with a range ends; empty for short-range \
@@ -102,6 +102,9 @@ quantities! {
         Stage::Passed;
     "cycle_loss" "" Energy "energy lost in the loop of loading and unloading; empty under a dead load":
         Stage::Loop(OnPath::loss);
+    "cycle_largest_pull" "P" Force "smallest force of that loop, negative: its largest pull; 0 or empty where nothing pulls":
+        Stage::Loop(OnPath::largest_pull);
+    "cycle_snaps" "" Count "jumps inward of that loop before the last contact": Stage::Loop(|whole| Some(whole.snaps()));
     "jump_in_force" "P" Force "force after the jump into the zone of adhesion with a range; empty for short-range \
                                adhesion":
         Stage::Loop(|whole| whole.jump_in(|state| state.force));
@@ -232,11 +235,16 @@ impl SweepQuantity {
 }
 
 impl QuantityColumn {
+    /// Whether it is of the unloading from the start, whatever the loop of the preset is.
+    pub(super) fn is_of_unloading(&self) -> bool {
+        matches!(self.quantity.of, Stage::Unloading(_) | Stage::Least(..))
+    }
+
     /// Whether it is of an unloading of one disc, in problems like `preset`: whether its states are admissible is not
     /// looked for, which takes far longer.
     pub fn is_unchecked(&self, preset: &Preset) -> bool {
         let is_one_disc = preset.basis != BasisSpec::Exact || preset.path.contact == ContactKind::OneDisc;
-        is_one_disc && matches!(self.quantity.of, Stage::Unloading(_) | Stage::Least(..))
+        is_one_disc && self.is_of_unloading()
     }
 }
 

@@ -11,8 +11,10 @@ use crate::gap::shapes::split_mix::SplitMix64;
 use crate::preset::called::key_called;
 use crate::preset::schema::CHOOSERS;
 use crate::preset::{Preset, Value};
+use crate::problem::{Begin, Start};
 use crate::progress::Progress;
 use crate::text::{closest, quote};
+use crate::units::number::short;
 use std::borrow::Cow;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -185,6 +187,43 @@ impl Spec {
             Ok(preset) => measure(&preset, &self.columns, progress),
             Err(fault) => Some(self.lost(fault)),
         }
+    }
+
+    /// What holds for the sweep as a whole, in words: gaps that are too steep, and unloadings beside loops.
+    pub fn warnings(&self) -> Vec<String> {
+        /// So many rows are looked at for their slopes.
+        const LOOKED_AT: u64 = 64;
+        let mut warnings = Vec::new();
+        let count = self.rows.min(LOOKED_AT);
+        let rows = (0..count).map(|i| if count > 1 { i * (self.rows - 1) / (count - 1) } else { 0 });
+        let slope = |row| {
+            let preset = self.problem(row).ok()?;
+            let Start::ContactRadius(start) = preset.path.start else { return None };
+            Some((row, preset.gap.steep_slope(start)?))
+        };
+        let steep: Vec<(u64, f64)> = rows.filter_map(slope).collect();
+        if let Some((row, slope)) = steep.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
+            let values = self.axes.iter().zip(self.values(*row));
+            let values: Vec<String> = values.map(|(axis, value)| format!("{} = {value}", axis.key)).collect();
+            warnings.push(format!(
+                "the gap has slopes up to {}, at {}: this theory is for slopes small beside 1, which {} of {count} rows \
+                 looked at do not have",
+                short(*slope, 2),
+                values.join(", "),
+                steep.len()
+            ));
+        }
+        let of_unloading = self.columns.iter().filter(|column| column.is_of_unloading());
+        let names: Vec<&str> = of_unloading.map(|column| column.quantity.name).collect();
+        let turns = self.axes.iter().any(|axis| axis.key.starts_with("path.turn_"));
+        if !names.is_empty() && (turns || self.preset.path.begin == Begin::Apart) {
+            warnings.push(format!(
+                "{}: of the unloading from the start, not of the loop; of the loop are cycle_loss, cycle_largest_pull and \
+                 cycle_snaps",
+                names.join(", ")
+            ));
+        }
+        warnings
     }
 
     /// A row without any quantities.
