@@ -50,6 +50,8 @@ pub fn run(command: &SessionsCommand) -> Result<ExitCode, Failure> {
         SessionsCommand::Show { name, format } => show(&archive, name.as_deref(), format.format)?,
         SessionsCommand::Delete { names, yes } => {
             for name in names {
+                // A question about what does not exist needs no answer.
+                archive.bytes(name)?;
                 if !yes {
                     ask(&format!("Delete the session {} for good?", sanitize(name, NAME)))?;
                 }

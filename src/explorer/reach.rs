@@ -50,7 +50,7 @@ pub fn why_not(model: &Model, view: View) -> Option<String> {
         }),
         View::Study => study_range(model).err(),
         View::Walk => (model.history.len() < 2)
-            .then(|| format!("nothing walked yet: {} runs to the first event", Id::NextEvent.named())),
+            .then(|| format!("nothing walked yet: {} runs on", Id::NextEvent.named())),
     }
 }
 

@@ -214,7 +214,12 @@ impl Store {
                 let meant = if Path::new(&file).is_file() {
                     Some(file)
                 } else {
-                    closest(&name, known.iter().map(String::as_str)).map(str::to_owned)
+                    let all = known.iter().chain(&self.commands).map(String::as_str);
+                    let is_command = |meant: &str| self.commands.iter().any(|command| command == meant);
+                    let named = |meant: &str| {
+                        if is_command(meant) { format!("the command {meant}") } else { meant.to_owned() }
+                    };
+                    closest(&name, all).map(named)
                 };
                 Err(StoreError::NotFound { name: quote(&name), meant })
             }

@@ -276,7 +276,9 @@ impl Sidecar {
             let what = format!("is not the results of a sweep: there is no {} beside it", show_path(&path));
             return Err(SidecarError::Unknown { path: show_path(results), what });
         }
-        let (text, _) = read_text(&path, 4 * file::LARGEST)?;
+        // Where both are missing, the file that was asked for is the one to name.
+        let missing = !path.exists() && !results.exists();
+        let (text, _) = read_text(if missing { results } else { &path }, 4 * file::LARGEST)?;
         let sidecar: Self = toml::from_str(&text).map_err(|error| unknown(error.message()))?;
         sidecar.shard.parse::<Shard>().map_err(|error| unknown(&format!("shard: {error}")))?;
         Ok((sidecar, text))

@@ -717,3 +717,26 @@ fn a_sweep_of_a_loop_has_the_numbers_of_that_loop() {
     assert!((pull[0] / pull[1] - 1.0).abs() < 1e-9);
     assert_eq!(home.numbers("r.csv", "cycle_snaps"), [0.0, 2.0]);
 }
+
+#[test]
+fn a_deviation_may_be_a_share_of_the_mean() {
+    let home = Sweeps::new();
+    let spec = |deviation: &str| {
+        format!(
+            "preset='wavy-sphere'\nquantities=['critical_force']\n[random]\ndraws=5\nseed=1\n[[axis]]\n\
+             key='material.work_of_adhesion'\ndistribution={{normal={{mean=0.004, deviation={deviation}}}}}\n"
+        )
+    };
+    home.file("number.toml", &spec("0.0002"));
+    home.file("share.toml", &spec("'5%'"));
+    home.sweep("number.toml", "number.csv", &[]);
+    home.sweep("share.toml", "share.csv", &[]);
+    let [number, share] = ["number.csv", "share.csv"].map(|file| home.numbers(file, "critical_force"));
+    assert!(number.len() == 5 && number.iter().zip(&share).all(|(a, b)| (a - b).abs() < 1e-12 * a));
+    home.file("none.toml", &spec("'-5%'"));
+    let (status, _, err) = home.run(&["sweep", "none.toml", "-o", "none.csv"]);
+    assert!(
+        status == 2 && err.contains("axis.distribution.normal.deviation = -0.0002 is out of range"),
+        "{err}"
+    );
+}

@@ -460,9 +460,11 @@ impl KeyReader<'_> {
             _ => None,
         };
         let own = self.preset.and_then(|preset| preset.row(self.key).map(|row| (row, &preset.units)));
-        let x = match bare {
-            Some(x) => own.map_or(x, |(row, units)| row.in_own_unit(units, x)),
-            None => self.number(&deviation)?,
+        let share = deviation.value.as_str().and_then(|text| text.trim().strip_suffix('%'));
+        let x = match (bare, share.map(|share| share.trim().parse::<f64>())) {
+            (Some(x), _) => own.map_or(x, |(row, units)| row.in_own_unit(units, x)),
+            (_, Some(Ok(share))) => 0.01 * share * mean.abs(),
+            _ => self.number(&deviation)?,
         };
         if !(x > 0.0 && x.is_finite()) {
             let what =

@@ -68,6 +68,7 @@ fn an_argument_is_a_name_or_a_path() {
     let message = |argument: &str| store.resolve(argument).unwrap_err().to_string();
     assert_eq!(message("fig9"), "no preset is called \"fig9\"; did you mean fig-9?");
     assert_eq!(message("zzz"), "no preset is called \"zzz\"");
+    assert_eq!(message("trase"), "no preset is called \"trase\"; did you mean the command trace?");
     assert!(message("trace").contains("is a command"));
     assert!(message("Fig-9\u{1b}").contains("is not a preset name"));
     assert!(message("").contains("is not a preset name"));
