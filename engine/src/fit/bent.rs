@@ -60,14 +60,16 @@ pub(super) fn of_bent(
 ) -> SolvedFit {
     /// The number of fits after which b has settled.
     const TIMES: usize = 3;
-    if problem.space {
+    /// So many rows tell whether it matters.
+    const ROWS: usize = 2000;
+    let some = problem.thinned(ROWS);
+    let mean = |bent: &[f64]| bent.iter().map(|b| b * b).sum::<f64>() / bent.len() as f64;
+    let all = problem.data.len() as f64;
+    if problem.space || some.bent(&solved).is_none_or(|bent| (all * mean(&bent)).sqrt() < LEAST) {
         return solved;
     }
     for i in 0..TIMES {
         let Some(bent) = problem.bent(&solved) else { break };
-        if i == 0 && bent.iter().map(|b| b * b).sum::<f64>().sqrt() < LEAST {
-            break;
-        }
         for (datum, b) in problem.data.iter_mut().zip(bent) {
             datum.bent = b;
         }
