@@ -215,11 +215,10 @@ impl Store {
                     Some(file)
                 } else {
                     let all = known.iter().chain(&self.commands).map(String::as_str);
-                    let is_command = |meant: &str| self.commands.iter().any(|command| command == meant);
-                    let named = |meant: &str| {
-                        if is_command(meant) { format!("the command {meant}") } else { meant.to_owned() }
-                    };
-                    closest(&name, all).map(named)
+                    closest(&name, all).map(|meant| {
+                        let is_command = self.commands.iter().any(|command| command == meant);
+                        if is_command { format!("the command {meant}") } else { meant.to_owned() }
+                    })
                 };
                 Err(StoreError::NotFound { name: quote(&name), meant })
             }

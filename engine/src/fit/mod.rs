@@ -29,6 +29,7 @@
 //! | [`rows`] | what a fit makes of the rows of a file, counted |
 //! | [`residuals`] | the points compared with a curve |
 //! | `settled` | the last fit, with the noise that it shows |
+//! | `bias` | the bias of distances where the curve bends within the noise |
 //! | `shown` | noise of x that was not assumed, and noise of the force that grows with it |
 //! | `laid` | the preset that a fit leaves |
 //! | `run` | all of it, in order |
@@ -40,7 +41,7 @@
 //! Distances are measured to the curve itself and not along one axis: a residual P − P(x) jumps when the values change
 //! so that the pull-off passes a point, and its intervals then hold the truth in 8 % of trials.
 
-mod bent;
+mod bias;
 pub mod chance;
 mod degrees;
 pub mod derivatives;

@@ -239,7 +239,7 @@ fn data(branches: &Branches) -> Vec<Datum> {
                 branch: number,
                 free,
                 noise: [1.0; 2],
-                bent: 0.0,
+                bias: 0.0,
             };
             data.extend(points.iter().map(datum));
         }

@@ -116,8 +116,8 @@ pub struct Datum {
     pub free: bool,
     /// The noise of each of its residuals in σ: above 1 where that of the force grows with the force.
     pub noise: [f64; 2],
-    /// What noise makes of its distance on average where the curve is bent within it, in σ.
-    pub bent: f64,
+    /// The bias of its distance where the curve bends within the noise, in σ.
+    pub bias: f64,
 }
 
 /// What is fitted.
@@ -166,6 +166,11 @@ impl Paths {
             (Some(path), Segment::Approach) => path,
             _ => &self.retraction,
         }
+    }
+
+    /// Those of the approach and of the retraction, in units of noise.
+    pub(super) fn scaled(&self, weights: PathPlace) -> [ScaledPath<'_>; 2] {
+        [Segment::Approach, Segment::Retraction].map(|of| ScaledPath::new(self.of(of), weights))
     }
 }
 
@@ -324,9 +329,7 @@ impl FitProblem {
     pub(super) fn feet(&self, paths: &Paths, at: &Instrument) -> Option<Vec<Option<Nearest>>> {
         /// The number of rows from which starting threads is worthwhile.
         const MANY: usize = 20_000;
-        let weights = self.weights();
-        let scaled =
-            [Segment::Approach, Segment::Retraction].map(|of| ScaledPath::new(paths.of(of), weights));
+        let scaled = paths.scaled(self.weights());
         let part = &|part: &[Datum]| -> Option<Vec<Option<Nearest>>> {
             let mut boxes = [0; 2];
             let foot = |datum: &Datum| {
@@ -362,7 +365,7 @@ impl FitProblem {
             match foot {
                 Some(foot) => {
                     (0..per).for_each(|k| residuals[per * i + k] = foot.residuals[k]);
-                    residuals[per * i] -= datum.bent;
+                    residuals[per * i] -= datum.bias;
                 }
                 None => residuals[per * i] = self.corrected(datum, at)[1],
             }

@@ -1,6 +1,6 @@
 //! A whole fit, in order: branches, start, minimum, errors, doubts.
 
-use super::bent::of_bent;
+use super::bias::of_bias;
 use super::determined::{Determined, determined};
 use super::fitted::{too_small, unmoved, values};
 use super::intervals::intervals;
@@ -101,7 +101,7 @@ impl<'a> Posed<'a> {
             abscissa: branches.abscissa,
         };
         solved = of_shown_noise(&mut problem, solved, options.robust, known, (&mut notes, progress));
-        solved = of_bent(&mut problem, solved, options.robust, (&mut notes, progress));
+        solved = of_bias(&mut problem, solved, options.robust, (&mut notes, progress));
         if branches.noise.from[1] == Origin::Apart {
             solved = of_correlated(&mut problem, solved, options.robust, progress);
         }

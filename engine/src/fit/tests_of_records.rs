@@ -20,32 +20,38 @@ fn off(fit: &Fit, truth: &[f64]) -> Vec<f64> {
     off.map(|(of, truth)| (of.value - truth) / of.standard_error.unwrap()).collect()
 }
 
-#[test]
-fn a_load_that_is_held_is_neither_a_free_part_nor_a_misfit() {
+/// How many of twelve records of 400 rows are refused, each of which stays 200 rows long at these rows.
+fn refused(held: &[usize]) -> usize {
     let body = Body { state: &sphere(1.0, 0.02, 1.0), compliance: 0.0, most: 1.1 };
+    let rows = body.samples(400);
     let mut refused = 0;
     for (seed, of_x) in (0..12).zip([0.0, 1e-3, 4e-3].into_iter().cycle()) {
         let mut normal = Normal::new(seed);
-        let rows = body.samples(400);
-        let top = (rows.x[199], rows.force[199]);
         let mut points = Points { segments: None, ..no_points(Abscissa::Approach) };
-        let held = (0..200).map(|_| top);
-        let pairs: Vec<(f64, f64)> = rows.x.into_iter().zip(rows.force).collect();
-        for (x, force) in pairs[..200].iter().copied().chain(held).chain(pairs[200..].iter().copied()) {
-            points.x.push(x + of_x * normal.next());
-            points.force.push(force + 1e-3 * normal.next());
+        for (i, (x, force)) in rows.x.iter().zip(&rows.force).enumerate() {
+            for _ in 0..if held.contains(&i) { 200 } else { 1 } {
+                points.x.push(x + of_x * normal.next());
+                points.force.push(force + 1e-3 * normal.next());
+            }
         }
         let fit = found(&points, &[E, W, OFFSET], "");
         assert_eq!(fit.turned, [false; 2], "{seed}");
         refused += usize::from(fit.verdict != Verdict::Describes);
         assert!(off(&fit, &[1.0, 0.02, 0.0]).iter().all(|z| z.abs() < 4.0), "{seed}: {:?}", fit.parameters);
     }
-    // By chance one of a hundred is refused.
-    assert!(refused <= 1, "{refused}");
+    refused
 }
 
 #[test]
-fn a_curve_that_is_bent_within_the_noise_of_the_radius_is_not_drawn_to_its_hollow_side() {
+fn what_is_held_is_neither_a_free_part_nor_a_misfit() {
+    // Under the largest load, and apart at either end and at both. By chance one of a hundred is refused.
+    for held in [&[199][..], &[0], &[399], &[0, 399]] {
+        assert!(refused(held) <= 1, "{held:?}");
+    }
+}
+
+#[test]
+fn a_curve_that_bends_within_the_noise_of_the_radius_has_no_bias() {
     const SEEDS: u64 = 8;
     let state = sphere(1.0, 0.02, 1.0);
     let (mut squares, mut described) = ([0.0; 2], 0);
@@ -59,7 +65,7 @@ fn a_curve_that_is_bent_within_the_noise_of_the_radius_is_not_drawn_to_its_hollo
             points.segments.as_mut().unwrap().push(Segment::Retraction);
         }
         let fit = found(&points, &[E, W], "");
-        assert!(fit.notes.iter().any(|note| note.contains("bent within the noise")), "{:?}", fit.notes);
+        assert!(fit.notes.iter().any(|note| note.contains("bends within the noise")), "{:?}", fit.notes);
         described += usize::from(fit.verdict == Verdict::Describes);
         for (square, z) in squares.iter_mut().zip(off(&fit, &[1.0, 0.02])) {
             *square += z * z / SEEDS as f64;

@@ -5,14 +5,19 @@ use super::points::MeasuredPoint;
 
 /// A free end varies by less than these shares of the whole range, and of the range at the other end.
 const FLAT: [f64; 2] = [0.1, 0.3];
-/// Rows at an end are at rest in x if they cover less than this share of what the same number of rows covers on
-/// average.
+/// Rows are at rest in x if they cover less than this share of what the same number of rows covers on average.
 const PAUSE: f64 = 0.1;
 /// The shares of the range of x over which the force is examined if it is very noisy.
 const SHARES: [f64; 2] = [0.08, 0.16];
 
 /// From this number of rows on, they show whether the force stands still.
 const MANY: usize = 100;
+
+/// Whether some of the rows, by their x, are at rest.
+pub(super) fn rests(some: &[f64], x: &[f64]) -> bool {
+    let [covered, way] = [some, x].map(|of| range(of.iter().copied()));
+    covered < PAUSE * way * some.len() as f64 / x.len() as f64
+}
 
 /// Whether the curve is free at its low end and at its high end: where y stays constant while x changes.
 pub(super) fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
@@ -25,18 +30,15 @@ pub(super) fn free_end(x: &[f64], y: &[f64]) -> [bool; 2] {
         let fifth = y.len() / 5;
         y[y.len() - 1 - fifth] - y[fifth]
     };
-    // Rows of a pause show nothing.
-    let way = range(x.iter().copied());
-    let stays = |end: &[usize], count: usize| {
-        range(end.iter().map(|&i| x[i])) < PAUSE * way * count as f64 / x.len() as f64
-    };
     let whole = range(y.iter().copied());
     let flat = |here: f64, there: f64| here <= FLAT[0] * whole && here <= FLAT[1] * there;
     // Many rows tell noise from a slope; few rows tell a short free part from the contact.
     for share in [END_SHARE / 4, END_SHARE] {
         let count = (x.len() / share).max(END_ROWS).min(x.len());
         let ends = [&order[..count], &order[order.len() - count..]];
-        if ends.iter().any(|end| stays(end, count)) {
+        // Rows of a pause show nothing.
+        let of = |end: &[usize]| -> Vec<f64> { end.iter().map(|&i| x[i]).collect() };
+        if ends.iter().any(|end| rests(&of(end), x)) {
             continue;
         }
         let [low, high] = ends.map(spread);

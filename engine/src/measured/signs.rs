@@ -3,7 +3,7 @@
 
 use super::apart::jump;
 use super::asked::{FreePart, ValueRange};
-use super::ends::{free_end, still_end};
+use super::ends::{free_end, rests, still_end};
 use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, median, noise_of, range, scatter_over};
 use super::points::{Abscissa, MeasuredPoint, Turned, turn};
 use super::role::Segment;
@@ -11,6 +11,8 @@ use super::turns::{one_way, runs};
 
 /// Jumps of this share of the clearest one are as likely.
 const LIKELY: f64 = 0.5;
+/// Jumps to rows that go on count alone if they have this share of the clearest of all.
+const CLEAR: f64 = 0.25;
 /// The notes for a reversed sign of the force.
 const PULLED: &str = "the force is positive before the jump to the free part, where bodies attract: its sign is reversed \
     (data.baseline is in the numbers of the file)";
@@ -185,6 +187,8 @@ fn by_jumps(
             [Segment::Approach, Segment::Retraction].map(|segment| runs(points, of, segment)).concat()
         }
     };
+    // Most rows behind a jump to a load that is held are at rest: a free part goes on.
+    let middle = |behind: &[f64]| behind[behind.len() / 4..behind.len() - behind.len() / 4].to_vec();
     let sum = |turned: Turned, may_rest: bool| -> f64 {
         let mut sum = 0.0;
         for piece in &pieces {
@@ -195,34 +199,27 @@ fn by_jumps(
             // Where most rows are apart, the outer fifth of all would hold more of them than of the contact.
             let found = jump(&x, &force)
                 .filter(|jump| rises(&x[..jump.at], &force[..jump.at]) == Some(true))
-                .filter(|jump| may_rest || !rests(&x, jump.at));
+                .filter(|jump| may_rest || !rests(&middle(&x[jump.at..]), &x));
             sum += found.map_or(0.0, |jump| jump.deviations);
         }
         sum
     };
-    let all = [[false, false], [true, false], [false, true], [true, true]];
-    let all = all.into_iter().filter(|[x, _]| known.is_none_or(|known| known == *x));
+    let signs = [[false, false], [true, false], [false, true], [true, true]];
+    let signs = signs.into_iter().filter(|[x, _]| known.is_none_or(|known| known == *x));
     let sums = |may_rest| {
         let mut found: Vec<(f64, Turned)> =
-            all.clone().map(|turned| (sum(turned, may_rest), turned)).collect();
+            signs.clone().map(|turned| (sum(turned, may_rest), turned)).collect();
         // Of equals, the first: signs as in the file.
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
         found.first().is_some_and(|(sum, _)| *sum > 0.0).then_some(found)
     };
-    let found = sums(false).or_else(|| sums(true))?;
+    // Bodies rest apart, too: then hardly any jump leads to rows that go on.
+    let all = sums(true)?;
+    let (most, _) = *all.first()?;
+    let found = sums(false).filter(|found| found.iter().any(|(sum, _)| *sum > CLEAR * most)).unwrap_or(all);
     let (best, turned) = *found.first()?;
     let or = found.get(1).filter(|(sum, _)| *sum > LIKELY * best).map(|(_, turned)| *turned);
     Some(Orientation { turned, or, unless_apart: None })
-}
-
-/// Whether x rests over most of the rows from `at` on, as it does while a load is held: their middle half has a far
-/// smaller share of its range than of the rows. x is in order.
-fn rests(x: &[f64], at: usize) -> bool {
-    const SMALL: f64 = 0.05;
-    let (behind, quarter) = (&x[at..], (x.len() - at) / 4);
-    let middle = &behind[quarter..behind.len() - quarter];
-    let share = range(middle.iter().copied()) / range(x.iter().copied());
-    share < SMALL * middle.len() as f64 / x.len() as f64
 }
 
 /// Whether the force before the jump to the free part is below that of the free part, as it is where bodies attract;

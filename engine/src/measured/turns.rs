@@ -1,6 +1,6 @@
 //! Where x reverses: the branches of a file that names none, in any order and with any number of loops.
 
-use super::noise::{median, range};
+use super::noise::{range, scatter_over};
 use super::points::MeasuredPoint;
 use super::role::Segment;
 
@@ -12,12 +12,6 @@ const NOISE: f64 = 10.0;
 /// are in no order.
 const FEWEST: usize = 5;
 const IN_RUNS: f64 = 0.9;
-
-/// The noise of x: what it differs by from the middle of its neighbours.
-fn noise(points: &[MeasuredPoint]) -> f64 {
-    let bends = points.windows(3).map(|three| (three[0].x - 2.0 * three[1].x + three[2].x).abs());
-    1.4826 * median(bends.collect()).unwrap_or(0.0) / 6_f64.sqrt()
-}
 
 /// The parts of `points` over which x moves in one direction.
 pub(super) fn one_way(points: &[MeasuredPoint]) -> Vec<Vec<MeasuredPoint>> {
@@ -37,7 +31,11 @@ pub(super) fn one_way(points: &[MeasuredPoint]) -> Vec<Vec<MeasuredPoint>> {
         if falls_now || rises_now {
             let turn = if falls_now { highest } else { lowest };
             // The first part has no turn before it: it must be longer than what noise makes of rows that rest.
-            let is_part = || (points[turn].x - points[0].x).abs() > NOISE * noise(&points[..=turn]);
+            let is_part = || {
+                let (places, x): (Vec<f64>, Vec<f64>) =
+                    points[..=turn].iter().enumerate().map(|(i, point)| (i as f64, point.x)).unzip();
+                (points[turn].x - points[0].x).abs() > NOISE * scatter_over(&places, &x).unwrap_or(0.0)
+            };
             if rises.is_some() || turn >= FEWEST && is_part() {
                 cuts.push(turn);
             }

@@ -206,11 +206,11 @@ impl Spec {
             let values = self.axes.iter().zip(self.values(*row));
             let values: Vec<String> = values.map(|(axis, value)| format!("{} = {value}", axis.key)).collect();
             warnings.push(format!(
-                "the gap has slopes up to {}, at {}: this theory is for slopes small beside 1, which {} of {count} rows \
-                 looked at do not have",
+                "in {} of {count} rows looked at the gap has slopes above 1, up to {} at {}: this theory is for slopes \
+                 small beside 1",
+                steep.len(),
                 short(*slope, 2),
-                values.join(", "),
-                steep.len()
+                values.join(", ")
             ));
         }
         let of_unloading = self.columns.iter().filter(|column| column.is_of_unloading());

@@ -1,5 +1,5 @@
-//! What noise makes of a distance where the curve is bent within it: rows lie on the hollow side of a curve on average,
-//! by half its curvature where that is small.
+//! The bias of a distance where the curve bends within the noise: rows lie on the hollow side of a curve on average, by
+//! half its curvature where that is small.
 //!
 //! ```text
 //! b_i = Σ_jk w_j w_k r(c_i + σ̂ (z_j, z_k)),     z = 0, ±√3,  w = 2/3, 1/6, 1/6,     c_i: the foot of the row, in σ
@@ -8,7 +8,7 @@
 //! The residual is r − b. The points of Gauss and Hermite are exact for polynomials of the fifth degree; the feet stand
 //! for the true states, and σ̂ is the scale of the residuals, but at most 1. W. A. Fuller, *Measurement Error Models* (1987), section 3.2, gives the term of the curvature.
 
-use super::distance::{Nearest, ScaledPath};
+use super::distance::Nearest;
 use super::problem::FitProblem;
 use super::settled::ROUNDS;
 use super::solve::{SolvedFit, solve};
@@ -20,15 +20,14 @@ const LEAST: f64 = 0.3;
 
 impl FitProblem {
     /// b of each row at the end of a fit; 0 for rows apart.
-    fn bent(&self, solved: &SolvedFit) -> Option<Vec<f64>> {
+    fn biases(&self, solved: &SolvedFit) -> Option<Vec<f64>> {
         const PLACES: [(f64, f64); 3] =
             [(-1.732_050_807_568_877_2, 1.0 / 6.0), (0.0, 2.0 / 3.0), (1.732_050_807_568_877_2, 1.0 / 6.0)];
         let u = &solved.minimum.parameters;
         let paths = self.paths(u)?;
         let feet = self.feet(&paths, &self.instrument_at(u))?;
         let (weights, scale) = (self.weights(), solved.scale.min(1.0));
-        let scaled =
-            [Segment::Approach, Segment::Retraction].map(|of| ScaledPath::new(paths.of(of), weights));
+        let scaled = paths.scaled(weights);
         let mut boxes = [0; 2];
         let mut of_row = |foot: &Nearest, of: usize| {
             let at = |z: [f64; 2]| {
@@ -51,8 +50,8 @@ impl FitProblem {
     }
 }
 
-/// Fits again where the curve is bent within the noise, without what that makes of the distances.
-pub(super) fn of_bent(
+/// Fits again where the curve bends within the noise, without the bias of the distances.
+pub(super) fn of_bias(
     problem: &mut FitProblem,
     mut solved: SolvedFit,
     robust: bool,
@@ -63,15 +62,15 @@ pub(super) fn of_bent(
     /// So many rows tell whether it matters.
     const ROWS: usize = 2000;
     let some = problem.thinned(ROWS);
-    let mean = |bent: &[f64]| bent.iter().map(|b| b * b).sum::<f64>() / bent.len() as f64;
+    let mean = |biases: &[f64]| biases.iter().map(|b| b * b).sum::<f64>() / biases.len() as f64;
     let all = problem.data.len() as f64;
-    if problem.space || some.bent(&solved).is_none_or(|bent| (all * mean(&bent)).sqrt() < LEAST) {
+    if problem.space || some.biases(&solved).is_none_or(|biases| (all * mean(&biases)).sqrt() < LEAST) {
         return solved;
     }
     for i in 0..TIMES {
-        let Some(bent) = problem.bent(&solved) else { break };
-        for (datum, b) in problem.data.iter_mut().zip(bent) {
-            datum.bent = b;
+        let Some(biases) = problem.biases(&solved) else { break };
+        for (datum, b) in problem.data.iter_mut().zip(biases) {
+            datum.bias = b;
         }
         match solve(problem, &solved.minimum.parameters, robust, ROUNDS, progress) {
             Some(found) => solved = found,
@@ -79,8 +78,8 @@ pub(super) fn of_bent(
         }
         if i == 0 {
             notes.push(
-                "the curve is bent within the noise, which draws rows to its hollow side: that is taken off their \
-                 distances, but values may still be off by one or two more of their errors"
+                "the curve bends within the noise, which biases the distances of the rows: the bias is taken off, but \
+                 values may still be off by one or two more of their errors"
                     .to_owned(),
             );
         }
