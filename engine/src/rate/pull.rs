@@ -259,7 +259,8 @@ impl Going<'_> {
             Equation::new(&panels, *control, edge, motion, [self.s, self.t, self.c], way.rate, left);
         let caps = Caps::new(&panels, folds, way.rate, equation.branch.exponent, *wave, *settings);
         let unstable = folds.unstable();
-        let level = way.rate.abs() / folds.slope(&panels, edge.adhesion(motion), self.s);
+        // On unstable equilibria, where a turn may leave the edge, the size of the slope counts.
+        let level = (way.rate / folds.slope(&panels, edge.adhesion(motion), self.s)).abs();
         let rests = way.rate * motion.sense() <= 0.0 && (motion == Motion::Closing || way.rate >= 0.0);
         let adhesion = edge.adhesion(motion) * PI * self.s * self.s;
         let energy = adhesion + self.held().potential(&panels, *control).abs();
@@ -272,7 +273,7 @@ impl Going<'_> {
         let (at, end) = stretch.follow(&mut self.record, progress)?;
         let [drive, _] = equation.branch.drive(level);
         let resolved = level <= 0.0 || drive >= RESOLVED * settings.tolerance;
-        self.snaps.add(&self.record.moments[first..], (way.rate, level, resolved), &unstable);
+        self.snaps.add(&self.record.moments[first..], motion, (way.rate, level, resolved), &unstable);
         let s = at.held.contact_radius;
         self.adhesion += edge.adhesion(motion) * PI * (self.s - s) * (self.s + s);
         if motion == Motion::Closing && self.closed_to.is_none_or(|[largest, _]| s > largest) {

@@ -5,6 +5,7 @@
 //! An edge that runs past a place where there was an equilibrium before is slow there too, but it rests only where it
 //! is about as slow as along the equilibria; in between, the snap goes on.
 
+use super::law::Motion;
 use super::record::Moment;
 use crate::elementary::{exp, ln};
 
@@ -48,14 +49,26 @@ struct BegunSnap {
     least: f64,
 }
 
+/// What a stretch leaves to one of the same motion at the same rate, which goes on with it.
+#[derive(Debug, Clone, Copy)]
+struct SnapStretch {
+    motion: Motion,
+    rate: f64,
+    /// The speed along the equilibria where it began.
+    level: f64,
+    /// The slowest speed since the last snap, and whether it is one of the equilibria.
+    least: f64,
+    is_settled: bool,
+}
+
 /// The snaps of a pull so far.
 #[derive(Debug, Default)]
 pub struct Snaps {
     found: Vec<Snap>,
     /// The one that has not ended with its stretch, and where equilibria are not stable.
     run: Option<(BegunSnap, Vec<[f64; 2]>)>,
-    /// The rate of the last stretch, the slowest speed since the last snap, and whether it is one of the equilibria.
-    before: Option<(f64, f64, bool)>,
+    /// The last stretch.
+    before: Option<SnapStretch>,
 }
 
 impl Snaps {
@@ -67,22 +80,26 @@ impl Snaps {
         self.found
     }
 
-    /// Adds those among the moments of a stretch of one motion at this rate of the control. At its beginning the edge would go at the speed `level`
-    /// if it followed the equilibria; at held control that is 0. Between the radii `unstable`, equilibria are not
-    /// stable. The speed is not `resolved` where the drive along the equilibria is less than the integrator resolves.
+    /// Adds those among the moments of a stretch of one motion at this rate of the control. At its beginning the edge would
+    /// go at the speed `level` if it followed the equilibria; at held control that is 0. Between the radii `unstable`,
+    /// equilibria are not stable. The speed is not `resolved` where the drive along the equilibria is less than the
+    /// integrator resolves.
     pub fn add(
         &mut self,
         moments: &[Moment],
+        motion: Motion,
         (rate, level, resolved): (f64, f64, bool),
         unstable: &[[f64; 2]],
     ) {
         let rests = RESTS[usize::from(!resolved)];
+        let known = self
+            .before
+            .filter(|before| before.motion == motion && before.rate.total_cmp(&rate).is_eq() && rate != 0.0);
+        let level = known.map_or(level, |before| before.level);
         let slow = if level > 0.0 { RUNS * level } else { f64::INFINITY };
         let level = level.max(f64::MIN_POSITIVE);
-        // At the same rate, the slowest speed is known.
-        let known = self.before.filter(|(before, ..)| before.total_cmp(&rate).is_eq() && rate != 0.0);
         let (mut least, mut is_settled) =
-            known.map_or((level, false), |(_, least, settled)| (least, settled));
+            known.map_or((level, false), |before| (before.least, before.is_settled));
         // Another rate does not end a snap as long as the edge is fast for it too; an edge that rests or turns round does.
         let goes_on = |(running, _): &(BegunSnap, Vec<[f64; 2]>)| {
             let [before, now] = [running.low.0.speed, moments.get(1).map_or(0.0, |at| at.speed)];
@@ -132,7 +149,7 @@ impl Snaps {
                 run = Some(begun(crossing(a, b, FASTER * low), least));
             }
         }
-        self.before = Some((rate, least, is_settled));
+        self.before = Some(SnapStretch { motion, rate, level, least, is_settled });
         self.run = run.map(|run| (run, unstable.to_vec()));
     }
 

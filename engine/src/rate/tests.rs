@@ -325,3 +325,24 @@ fn a_snap_goes_on_across_the_border_of_two_parts() {
     let last = faster.last().unwrap();
     assert!(faster.len() == 5 && last.top_speed > 50.0, "{faster:?}");
 }
+
+/// Turns on stable equilibria change nothing but the time: the edge snaps where it would have snapped without them.
+#[test]
+fn snaps_after_turns_begin_where_those_of_a_whole_pull_do() {
+    let table = wavy();
+    let parts = |programme: &[Part]| {
+        puller(&table, 0.6, Control::Displacement).pull(programme, &Unwatched).unwrap().snaps
+    };
+    for rate in [1e-6, 1e-4] {
+        let whole = parts(&[Part::Apart { rate }]);
+        for turns in [[0.0355, 0.0365], [0.03, 0.05], [0.06, 0.07]] {
+            let ramps = turns.map(|to| Part::Ramp { to, rate });
+            let turned = parts(&[ramps.as_slice(), &[Part::Apart { rate }]].concat());
+            let after = turned.iter().filter(|snap| snap.from > snap.to);
+            for (a, b) in after.rev().zip(whole.iter().rev()).take(3) {
+                assert!((a.from - b.from).abs() < 1e-3, "{rate} {turns:?}: {a:?} {b:?}");
+                assert!((a.dissipated / b.dissipated - 1.0).abs() < 0.01, "{rate} {turns:?}: {a:?} {b:?}");
+            }
+        }
+    }
+}
