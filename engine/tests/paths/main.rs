@@ -8,6 +8,7 @@ mod cycle;
 mod dead_band;
 mod elements;
 mod maps;
+mod no_adhesion;
 mod pulls;
 mod range;
 mod stability;

@@ -327,7 +327,7 @@ fn back(contacts: &Contacts, newton: &DVector<f64>, kept: &[[f64; 2]]) -> Option
 }
 
 /// The contacts with one more from `crest` − `half` to `crest` + `half`, a disc at the axis.
-fn with_seed(contacts: &Contacts, crest: f64, half: f64) -> Contacts {
+pub(super) fn with_seed(contacts: &Contacts, crest: f64, half: f64) -> Contacts {
     let mut found = contacts.clone();
     if crest <= half {
         found.disc = found.disc.max(half);

@@ -10,6 +10,7 @@ use super::course::Course;
 use super::error::PathError;
 use super::event::{Direction, Event, EventKind, PathState};
 use super::follow::{FIRST, next_length};
+use super::jump::with_seed;
 use super::setting::{Path, PathStop, TurnReached};
 use crate::annuli::{Around, Contacts, GapMinimum};
 use crate::disc::chebyshev;
@@ -21,6 +22,9 @@ const CLOSING: f64 = 0.02;
 
 /// A new contact begins at an approach that is larger by this share of λ²/ρ.
 const LIFT: f64 = 1e-3;
+
+/// How often the way to the beginning of a new contact is halved.
+const HALVINGS: usize = 20;
 
 /// Points from which a least pressure is found.
 const POINTS: usize = 15;
@@ -95,9 +99,9 @@ impl Course<'_, '_> {
         record.direction = Direction::Unloading;
     }
 
-    /// The contacts with one more that has begun at a crest, a little beyond the approach at which it touches.
-    pub fn begun(&mut self, contacts: &Contacts, crest: f64, delta: f64) -> Result<HeldEdges, PathError> {
-        let mut delta = delta + self.lift();
+    /// The contacts with one more that has begun at a crest, a little beyond the approach `touch`.
+    pub fn begun(&mut self, contacts: &Contacts, crest: f64, touch: f64) -> Result<HeldEdges, PathError> {
+        let mut delta = touch + self.lift();
         match self.turn {
             Some(Turn::Approach(turn)) => delta = delta.min(turn),
             Some(Turn::Control(turn)) if self.setting.control == Control::Displacement => {
@@ -105,16 +109,34 @@ impl Course<'_, '_> {
             }
             _ => {}
         }
-        let start = self
-            .balance
-            .seeded(contacts, crest, delta)
-            .map_err(|error| super::course::beyond(error, delta, 0.0))?;
-        let mut passed = Vec::new();
-        let held = self
-            .balance
-            .run(start, delta, 1.0, self.setting.mobility, &mut passed)
-            .map_err(|error| super::course::beyond(error, delta, 0.0))?
-            .ok_or(PathError::Lost { control_value: delta })?;
+        let seeded = |delta: f64| {
+            let beyond = |error| super::course::beyond(error, delta, 0.0);
+            let start = self.balance.seeded(contacts, crest, delta).map_err(beyond)?;
+            let held = self.balance.run(start, delta, 1.0, self.setting.mobility, &mut Vec::new());
+            held.map_err(beyond)?.ok_or(PathError::Lost { control_value: delta })
+        };
+        let mut held = seeded(delta);
+        // The turn may lie on the way, or at the touch itself, where the outermost edge leaps; and a contact that begins
+        // beside another may be one with it before.
+        let count = contacts.intervals().len() + 1;
+        let is_beyond =
+            |held: &HeldEdges| self.has_turned(held) || held.state.contacts.intervals().len() < count;
+        for _ in 0..HALVINGS {
+            if held.as_ref().is_ok_and(|held| !is_beyond(held)) {
+                break;
+            }
+            delta = 0.5 * (touch + delta);
+            held = seeded(delta).or(held);
+        }
+        let beside = with_seed(contacts, crest, 0.5 * self.balance.narrow());
+        let held = match held {
+            Ok(held) => held,
+            // The two may be one before edges can be told apart.
+            Err(error) => {
+                let closed = self.closing(&beside, touch, None, f64::INFINITY);
+                return closed.and_then(|closed| self.merged(closed)).ok_or(error);
+            }
+        };
         self.record(&held);
         Ok(held)
     }
@@ -134,15 +156,14 @@ impl Course<'_, '_> {
                 other => other,
             })?;
             let next = taken.end;
+            // Where the edge of a contact passes a place at which the gap hardly opens, that place is no crest.
+            let is_inside = |r: f64| next.contacts().intervals().iter().any(|[lo, hi]| *lo <= r && r <= *hi);
+            let crest = crest.filter(|crest| !is_inside(crest.radius));
             // A gap that closes does so before that touch, or is examined again after it.
-            let closed = self.closing(&next.held, crest.as_ref().map(|_| next.held.approach));
-            if let Some((gap, merged)) = closed.filter(|(_, merged)| !self.has_turned(merged)) {
-                let after = self.state(&merged);
-                let mut before = after.clone();
-                split_at(&mut before.contacts, gap);
-                self.record.piece += 1;
-                self.record.continuous(EventKind::Merge, Some(gap), [Some(before), Some(after)]);
-                self.record(&merged);
+            let before = crest.as_ref().map(|_| next.held.approach);
+            let narrow = CLOSING * self.balance.ground.wave;
+            let closed = self.closing(&next.held.state.contacts, next.held.approach, before, narrow);
+            if let Some(merged) = closed.and_then(|closed| self.merged(closed)) {
                 return Ok(merged);
             }
             if let Some(turn) = self.turn.filter(|_| self.has_turned(&next.held)) {
@@ -169,17 +190,35 @@ impl Course<'_, '_> {
         }
     }
 
-    /// Where a narrow gap closes, and the merged contact at that approach, if nothing touches before; up to the
-    /// approach `before`.
-    fn closing(&self, held: &HeldEdges, before: Option<f64>) -> Option<(f64, HeldEdges)> {
-        let contacts = &held.state.contacts;
-        let gaps = contacts.gaps();
-        let (k, [lo, hi]) =
-            gaps.into_iter().enumerate().min_by(|a, b| (a.1[1] - a.1[0]).total_cmp(&(b.1[1] - b.1[0])))?;
-        let wave = self.balance.ground.wave;
+    /// Records the merged contact of [`Self::closing`], if it comes before the turn.
+    fn merged(&mut self, (gap, merged): (f64, HeldEdges)) -> Option<HeldEdges> {
+        if self.has_turned(&merged) {
+            return None;
+        }
+        let after = self.state(&merged);
+        let mut before = after.clone();
+        split_at(&mut before.contacts, gap);
+        self.record.piece += 1;
+        self.record.continuous(EventKind::Merge, Some(gap), [Some(before), Some(after)]);
+        self.record(&merged);
+        Some(merged)
+    }
+
+    /// Where the narrowest gap between these contacts closes, from the approach `at` upward, and the merged contact then, if
+    /// nothing touches before; up to the approach `before`. A gap wider than `narrow` does not close yet.
+    fn closing(
+        &self,
+        contacts: &Contacts,
+        at: f64,
+        before: Option<f64>,
+        narrow: f64,
+    ) -> Option<(f64, HeldEdges)> {
         // A dimple with a corner at the axis never closes: its pressure there would have no bound.
-        let dimple = lo <= 0.0 && self.balance.ground.is_dimpled();
-        if hi - lo > CLOSING * wave || dimple {
+        let never = self.balance.ground.is_dimpled();
+        let gaps = contacts.gaps().into_iter().enumerate().filter(|(_, [lo, _])| !(never && *lo <= 0.0));
+        let (k, [lo, hi]) = gaps.min_by(|a, b| (a.1[1] - a.1[0]).total_cmp(&(b.1[1] - b.1[0])))?;
+        let wave = self.balance.ground.wave;
+        if hi - lo > narrow {
             return None;
         }
         let mut merged = contacts.clone();
@@ -196,12 +235,12 @@ impl Course<'_, '_> {
             let least = chebyshev::least(POINTS, range, |r| around.pressure(r));
             Some((held, least))
         };
-        let (start, [radius, first]) = least(held.approach, &merged)?;
+        let (start, [radius, first]) = least(at, &merged)?;
         if first >= 0.0 {
             return Some((radius, start));
         }
         // Go up until it presses there.
-        let (mut lo, mut f_lo) = (held.approach, first);
+        let (mut lo, mut f_lo) = (at, first);
         let mut step = 1e-4 * wave;
         let mut high = None;
         for _ in 0..40 {
