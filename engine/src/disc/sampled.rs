@@ -26,6 +26,13 @@ const NARROW: f64 = 1e-3;
 /// The outer end of a panel is at most this many times as far out as its inner end.
 const RATIO: f64 = 4.0;
 
+/// Halvings of a panel that begins at the axis: on a gap like r^1.4 no series ends there, and a zone of any size may be
+/// the one that is looked for.
+const AT_AXIS: usize = 40;
+
+/// This many panels on one span show that halving leads nowhere: the equilibria are noise to the digits asked for.
+const MOST: usize = 400;
+
 /// The most panels at the start.
 const PANELS: f64 = 2000.0;
 
@@ -150,15 +157,16 @@ pub fn resolve(
     progress: &dyn Progress,
     panels: &mut Vec<Arc<SampledPanel>>,
 ) -> Result<(), Stopped> {
-    panel(source, span, fineness, 0, progress, panels)
+    let most = panels.len() + MOST;
+    panel(source, span, fineness, (0, most), progress, panels)
 }
 
-/// Adds the panels of a span.
+/// Adds the panels of a span that has been halved `depth` times; beyond `most` panels no more digits are looked for.
 fn panel(
     source: &SampleSource<'_>,
     span: Span,
     fineness: Fineness,
-    depth: usize,
+    (depth, most): (usize, usize),
     progress: &dyn Progress,
     panels: &mut Vec<Arc<SampledPanel>>,
 ) -> Result<(), Stopped> {
@@ -194,18 +202,19 @@ fn panel(
                 tail.is_infinite() || largest(&series[NODES - 3..]) <= tail * largest(series)
             })
         };
-        let is_last = depth >= fineness.halvings;
+        let is_last =
+            panels.len() >= most || depth >= if span.lo > 0.0 { fineness.halvings } else { AT_AXIS };
         if ends(fineness.tail) || is_last && ends(fineness.loose) {
             panels.push(Arc::new(made));
             return Ok(());
         }
     }
-    if depth >= fineness.of_holes {
+    if depth >= if span.lo > 0.0 { fineness.of_holes } else { AT_AXIS } {
         return Ok(());
     }
     let middle = span.radius(0.0);
-    panel(source, Span { hi: middle, ..span }, fineness, depth + 1, progress, panels)?;
-    panel(source, Span { lo: middle, ..span }, fineness, depth + 1, progress, panels)
+    panel(source, Span { hi: middle, ..span }, fineness, (depth + 1, most), progress, panels)?;
+    panel(source, Span { lo: middle, ..span }, fineness, (depth + 1, most), progress, panels)
 }
 
 impl Solution for Sampled {

@@ -54,6 +54,39 @@ fn balanced(path: &Path, share: f64) {
     crate::zones::balanced(path, share, "");
 }
 
+/// On h = cr^n with 1 < n < 2 a zone without contact is in equilibrium at δ = cr^n − 4σ₀r/π − `h_c` with P = −πσ₀r². The
+/// jump in lands where δ = −`h_c` again, the bodies part where δ is least, and the losses are ∫ P dδ up to there.
+#[test]
+fn a_zone_on_a_pointed_gap_jumps_in_and_off_where_it_should() {
+    for (exponent, coefficient, strength, range) in [
+        (1.4, 0.2278, 0.02018, 0.13588),
+        (1.3, 1.1512, 0.13527, 0.07763),
+        (1.05, 0.1, 0.06, 0.3),
+        (1.6, 1.0, 0.01, 0.05),
+    ] {
+        let shape = Shape::PowerLaw(PowerLaw { factor: coefficient, exponent });
+        let cohesion = Cohesion { strength, range };
+        let table = Arc::new(Table::new(Arc::new(shape), 0.5, &Unwatched).unwrap());
+        let setting = PathSetting::new(Control::Displacement);
+        let path = cycle_in_zone(&table, cohesion, Turn::Approach(0.0), &setting, &Unwatched).unwrap();
+        let slope = 4.0 * strength / PI;
+        let lost = |c: f64| {
+            let n = exponent;
+            PI * strength * (n * coefficient * c.powf(n + 2.0) / (n + 2.0) - slope * c.powi(3) / 3.0)
+        };
+        let on = (slope / coefficient).powf(1.0 / (exponent - 1.0));
+        let off = (slope / (exponent * coefficient)).powf(1.0 / (exponent - 1.0));
+        for (kind, c, loss) in [(EventKind::JumpIn, on, lost(on)), (EventKind::SnapOff, off, -lost(off))] {
+            let event = of_kind(&path, kind).unwrap();
+            let at = event.after.as_ref().or(event.before.as_ref()).unwrap();
+            let force = -PI * strength * c * c;
+            assert!((at.force / force - 1.0).abs() < 1e-6, "{exponent} {kind:?}: {} {force}", at.force);
+            let found = event.dissipated.unwrap();
+            assert!((found / loss - 1.0).abs() < 1e-4, "{exponent} {kind:?}: {found:e} {loss:e}");
+        }
+    }
+}
+
 #[test]
 fn slopes_and_energy_are_those_of_differences() {
     for strength in [0.5, 1.0, 4.0] {

@@ -336,8 +336,11 @@ impl Course<'_> {
             self.record.continuous(EventKind::JumpIn, None, [None, Some(after)]);
             return Ok(Landing { place: begin, stretch: 0 });
         }
-        let value = first.values[0];
-        let landing = self.outward(0, value)?;
+        // The first panel may begin outside the axis, where δ has changed already.
+        let Lane { solution, monotone, .. } = &self.lane;
+        let apart =
+            Local { approach: -self.equilibria.zone.cohesion.range, force: 0.0, ..solution.at(begin) };
+        let landing = self.outward(0, monotone.value(&apart))?;
         self.lands(begin, Some(landing))?;
         let after = self.state(landing.place);
         let touched = (after.contact_radius > 0.0).then_some(Passed { kind: PassedKind::Touch, radius: 0.0 });
