@@ -16,7 +16,8 @@ pub struct MeasuredBranch {
     pub attached: Vec<MeasuredPoint>,
     /// The points apart.
     pub free: Vec<MeasuredPoint>,
-    /// How many rows lie within the jump and belong to neither part.
+    /// How many rows lie within the jump, or where none can tell whether the bodies touch already, and belong to neither
+    /// part.
     pub jump: usize,
 }
 
@@ -34,12 +35,44 @@ impl MeasuredBranch {
         // Without a jump, nothing can have been mixed.
         let attached: Vec<&MeasuredPoint> = self.attached.iter().filter(|point| near(point)).collect();
         if attached.iter().filter(|point| pulled(point)).count() * 2 < attached.len() {
-            return;
+            return self.clears_onset(&line, noise);
         }
         let before = self.attached.len() + self.free.len();
         self.attached.retain(|point| !near(point) || pulled(point));
         self.free.retain(|point| !near(point) || !pulled(point));
         self.jump += before - self.attached.len() - self.free.len();
+    }
+}
+
+impl MeasuredBranch {
+    /// Drops the last rows of the free part where the bodies may have touched already: without a jump the force grows from
+    /// nothing, and is seen only where it exceeds the noise.
+    fn clears_onset(&mut self, line: &FreeLine, noise: &Noise) {
+        /// The first rows in contact, whose mean tells the force that is seen.
+        const FIRST: usize = 3;
+        /// A force this many times as large is well seen.
+        const TIMES: f64 = 5.0;
+        /// How far back the force of a cone begins, in distances from the one force to the other: 1/(√5 − 1). The forces of
+        /// blunter bodies begin nearer.
+        const BACK: f64 = 0.81;
+        let pressed = |point: &MeasuredPoint| point.force - line.at(point.x);
+        let Some(first) = self.attached.len().checked_sub(FIRST).map(|from| &self.attached[from..]) else {
+            return;
+        };
+        let mean = |of: &dyn Fn(&MeasuredPoint) -> f64| first.iter().map(of).sum::<f64>() / FIRST as f64;
+        let (x, seen) = (mean(&|point| point.x), mean(&pressed));
+        if seen <= noise.sigma[1] {
+            return;
+        }
+        let Some(well) = self.attached.iter().rev().find(|point| pressed(point) >= TIMES * seen) else {
+            return;
+        };
+        let onset = x - BACK * (well.x - x);
+        let before = self.free.iter().filter(|point| point.x < onset).count();
+        if before >= FIRST * FIRST {
+            self.jump += self.free.len() - before;
+            self.free.retain(|point| point.x < onset);
+        }
     }
 }
 
