@@ -94,8 +94,7 @@ impl Progress for Heard {
     }
 }
 
-/// Says stop from this question on, counted from 0: for tests.
-#[cfg(test)]
+/// Says stop from this question on, counted from 0.
 pub(crate) fn until(questions: usize) -> impl Fn() -> bool {
     let asked = std::cell::Cell::new(0);
     move || {

@@ -72,7 +72,7 @@ pub enum FitError {
         why: String,
     },
     /// A value given with an error in a way that is not possible.
-    #[error("data.uncertain \"{given}\": {why}")]
+    #[error("uncertain value \"{given}\": {why}")]
     Uncertain {
         /// What was given, safe to show.
         given: String,
@@ -135,7 +135,8 @@ pub enum FitError {
     },
     /// No start gives a curve that comes near to the points.
     #[error(
-        "no values near those of the preset give a curve that reaches the points: check the unit of x and of the force"
+        "no values near those of the preset give a curve that reaches the points: check the unit of x and of the force, and \
+         the values that are held"
     )]
     NoStart,
     /// The fit was no longer wanted.
@@ -167,7 +168,7 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
         let known = rows.iter().filter(applies).map(|row| (&*row.key, &*row.label));
         let meant = closest_key(name, known);
         let hint = meant.map_or_else(
-            || "; pulloff presets show has the keys of a preset".to_owned(),
+            || "; pulloff presets keys lists all".to_owned(),
             |key| format!("; did you mean {key}?"),
         );
         return Err(refused(format!("is not a key of this preset{hint}")));

@@ -40,6 +40,8 @@ const ROUNDS: usize = 40;
 /// more than the second.
 const ONE: f64 = 0.01;
 const OTHER: f64 = 0.2;
+/// Points at a larger mean distance, in σ, are not reached, whatever starts end there.
+const REACHED: f64 = 2.0;
 
 /// A start that was run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -331,6 +333,11 @@ fn ranked(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progres
         }
     }
     by_distance(&mut ranked, BEST);
+    // The values of a pull that are given may be guesses that its scan does not come near.
+    if is_pulled(&problem.preset) {
+        let own = problem.candidates(false);
+        ranked.extend(own.into_iter().filter_map(|u| Some((compared.distance(&u)?, u))));
+    }
     ranked
 }
 
@@ -356,10 +363,11 @@ fn best_of(
         });
         let snaps = run.paths(&end.1).map_or(0, |paths| paths.of(Segment::Retraction).snaps);
         tried.push(Tried { distance: end.0, snaps });
-        // Each step of a pull is one more pull, so an end that is reached from two starts far from each other is final.
+        // Each step of a pull is one more pull, so an end near the points that is reached from two starts far from each other
+        // is final.
         let apart = |u: &[f64], v: &[f64]| u.iter().zip(v).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let is_end = |best: &(f64, Vec<f64>)| {
-            apart(&best.1, &end.1) < ONE && from.iter().any(|u| apart(u, &begun) > OTHER)
+            best.0 < REACHED && apart(&best.1, &end.1) < ONE && from.iter().any(|u| apart(u, &begun) > OTHER)
         };
         let is_last = is_pulled && best.as_ref().is_some_and(is_end);
         if best.as_ref().is_none_or(|best| end.0 < best.0) {

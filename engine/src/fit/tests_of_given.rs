@@ -107,7 +107,7 @@ fn what_cannot_be_given_is_refused_with_its_reason() {
         ("data.offset=10%", "must be above 0"),
     ] {
         let error = found(&start(0.8, uncertain), &points).unwrap_err().to_string();
-        assert!(error.starts_with("data.uncertain") && error.contains(why), "{uncertain}: {error}");
+        assert!(error.starts_with("uncertain value") && error.contains(why), "{uncertain}: {error}");
     }
     let separate = Options { free: vec![W.to_owned()], separate: true, ..Options::default() };
     let error = fit(&start(0.8, "gamma=5%"), &points, &separate, &Unwatched).unwrap_err().to_string();

@@ -23,7 +23,8 @@ use super::prior::{Prior, with_derivatives, with_terms};
 use super::problem::{FitProblem, FreeParameter, START, Target};
 use super::run::Posed;
 use super::scatter::Scatter;
-use super::solve::{HUBER, NOTHING, SolvedFit};
+use super::settled;
+use super::solve::{HUBER, NOTHING, SolvedFit, solve};
 use super::verdict::{Reason, Verdict};
 use crate::measured::{Branches, PointsFile};
 use crate::preset::Preset;
@@ -193,6 +194,28 @@ impl<'a> Joint<'a> {
         let at = Evaluated { residuals, jacobian };
         SolvedFit { minimum: Minimum { parameters, at, cost, ..minimum.clone() }, scale }
     }
+
+    /// Half the sum of squares of the points of a curve.
+    fn cost(&self, curve: &JoinedCurve, solved: &SolvedFit) -> f64 {
+        let residuals = DVector::from_vec(curve.problem.real(&solved.minimum.at.residuals));
+        cost(&residuals, None, self.huber() * curve.alone.scale)
+    }
+
+    /// Fits of single curves from where the law of all left them, for those that it fits better than their own fits do:
+    /// these ended in other minima.
+    fn nearer(&self, minimum: &Minimum, progress: &dyn Progress) -> Vec<(usize, SolvedFit)> {
+        let blocks = self.blocks();
+        let each = self.curves.iter().zip(&blocks).enumerate();
+        each.filter_map(|(run, (curve, block))| {
+            let under_law = self.solved((curve, block), minimum);
+            if self.cost(curve, &under_law) >= self.cost(curve, curve.alone) {
+                return None;
+            }
+            let from = &under_law.minimum.parameters;
+            Some((run, solve(curve.problem, from, self.robust, settled::ROUNDS, progress)?))
+        })
+        .collect()
+    }
 }
 
 impl LeastSquares for Joint<'_> {
@@ -252,8 +275,18 @@ pub fn fit_together(
         let part = ProgressPart::new(progress, [share(run), share(run + 1)]);
         posed.push(Posed::new(preset, branches, options, &part).map_err(numbered(run))?);
     }
+    let least_of = |posed: &[Posed<'_>]| {
+        least(&Joint::of(posed, options.robust), progress).ok_or((0, FitError::NoStart))
+    };
+    let mut minimum = least_of(&posed)?;
+    let nearer = Joint::of(&posed, options.robust).nearer(&minimum, progress);
+    if !nearer.is_empty() {
+        for (run, solved) in nearer {
+            posed[run].solved = solved;
+        }
+        minimum = least_of(&posed)?;
+    }
     let joint = Joint::of(&posed, options.robust);
-    let minimum = least(&joint, progress).ok_or((0, FitError::NoStart))?;
     let blocks = joint.blocks();
     let solved: Vec<SolvedFit> =
         joint.curves.iter().zip(&blocks).map(|of| joint.solved(of, &minimum)).collect();
@@ -425,10 +458,7 @@ fn collapse(joint: &Joint, together: &[SolvedFit], scatters: &[Scatter]) -> Coll
     let (mut sum, mut rows, mut own) = (0.0, 0.0, 0);
     for ((curve, together), scatter) in joint.curves.iter().zip(together).zip(scatters) {
         let JoinedCurve { problem, alone, .. } = curve;
-        let [one, other] = [together, alone].map(|solved| {
-            let residuals = DVector::from_vec(problem.real(&solved.minimum.at.residuals));
-            cost(&residuals, None, joint.huber() * alone.scale)
-        });
+        let [one, other] = [together, alone].map(|solved| joint.cost(curve, solved));
         let as_one = scatter.correlation.rows();
         sum += 2.0 * (one - other) / (as_one * noise(problem, alone, joint.robust).powi(2));
         rows += problem.real(&alone.minimum.at.residuals).len() as f64 / as_one;

@@ -10,7 +10,7 @@ use crate::gap::Gap;
 use crate::measured::Abscissa;
 use crate::preset::Preset;
 use crate::problem::{Adhesion, Cohesion, Control, Printer, Reduced, StatedCohesion, Units};
-use crate::progress::Unwatched;
+use crate::progress::{Unwatched, until};
 use crate::quasistatic::path::{PathError, Zones};
 use crate::quasistatic::places::places;
 use crate::quasistatic::{Curve, Detail, Monotone, Sample};
@@ -25,6 +25,9 @@ const INNERMOST: f64 = 1e-3;
 const MARGIN: f64 = 1.15;
 /// Halvings of the outermost edge of a zone.
 const HALVINGS: usize = 40;
+/// Zones that are computed for a path. Those within reach of points take a few thousand; a fit that strays far beyond them
+/// would look for many more.
+const QUESTIONS: usize = 40_000;
 
 /// Beyond this `λ_M` the zone is so thin that the pull-off force is that without a zone to 0.0007 of it, and no fit
 /// goes there.
@@ -146,7 +149,8 @@ impl Track {
             let rises = state.slopes.iter().all(|slope| *slope > 0.0);
             rises && eye.is_enough([state.contact_radius, state.approach, state.force], reach)
         };
-        let zones = Zones::grown(table, law, about(law, wanted.unwrap_or(0.1)), &enough, &Unwatched).ok()?;
+        let about = about(law, wanted.unwrap_or(0.1));
+        let zones = Zones::grown(table, law, about, &enough, &until(QUESTIONS)).ok()?;
         let solution = Arc::clone(&zones.solution);
         let end = solution.reach();
         let outermost = match wanted {
