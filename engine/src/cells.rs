@@ -5,6 +5,7 @@
 
 use crate::text::{is_unsafe, quote};
 use crate::units::{Dimension, Unit};
+use std::borrow::Cow;
 use std::fmt;
 use thiserror::Error;
 
@@ -84,10 +85,7 @@ pub enum CellFault {
     #[error("the {0} is missing")]
     Missing(&'static str),
     /// Not a number.
-    #[error(
-        "the {what} \"{text}\" is not a number{}",
-        if text.contains(',') { " (use a decimal point)" } else { "" }
-    )]
+    #[error("the {what} \"{text}\" is not a number")]
     Number {
         /// What the cell should hold.
         what: &'static str,
@@ -104,22 +102,76 @@ pub enum CellFault {
         /// Its text, safe to show.
         text: String,
     },
+    /// A comma and a point in one number. The text is safe to show.
+    #[error("\"{0}\" has more than one comma or point: write numbers without thousands separators")]
+    Thousands(String),
+    /// A decimal point in a file with decimal commas, or the reverse.
+    #[error(
+        "\"{text}\" has {}: one of them separates thousands; write all decimals alike",
+        if text.contains(',') {
+            format!("a comma, and line {line} has a number with a point")
+        } else {
+            format!("a point, and line {line} has a number with a comma")
+        }
+    )]
+    Marks {
+        /// Its text, safe to show.
+        text: String,
+        /// The line with the other mark.
+        line: usize,
+    },
 }
 
-/// The number in a cell that holds `what`.
-///
-/// # Errors
-/// [`CellFault`].
-pub fn number(text: &str, what: &'static str) -> Result<f64, CellFault> {
-    if text.is_empty() {
-        return Err(CellFault::Missing(what));
+/// Reads the numbers of a file, and knows how it writes decimals.
+#[derive(Debug, Default)]
+pub struct Decimals {
+    /// The line of the first number with a decimal point, and of the first with a decimal comma.
+    marks: [Option<usize>; 2],
+}
+
+impl Decimals {
+    /// The number in a cell of `line` that holds `what`, and its text with a decimal point.
+    ///
+    /// # Errors
+    /// [`CellFault`].
+    pub fn number<'a>(
+        &mut self,
+        line: usize,
+        text: &'a str,
+        what: &'static str,
+    ) -> Result<(f64, Cow<'a, str>), CellFault> {
+        let marks = text.bytes().filter(|byte| [b',', b'.'].contains(byte)).count();
+        let comma = text.contains(',');
+        if comma && marks > 1 {
+            return Err(CellFault::Thousands(quote(text)));
+        }
+        if marks == 1 {
+            let [same, other] = if comma { [1, 0] } else { [0, 1] };
+            self.marks[same] = self.marks[same].or(Some(line));
+            if let Some(line) = self.marks[other] {
+                return Err(CellFault::Marks { text: quote(text), line });
+            }
+        }
+        if text.is_empty() {
+            return Err(CellFault::Missing(what));
+        }
+        let mut plain = Cow::Borrowed(text);
+        if comma || text.contains(['\u{2212}', 'd', 'D']) {
+            // 1.5D-05 is how Fortran writes 1.5e-05.
+            plain = text.replace(',', ".").replace('\u{2212}', "-").replace(['d', 'D'], "e").into();
+        }
+        let number: f64 = plain.parse().map_err(|_| CellFault::Number { what, text: quote(text) })?;
+        if number.abs() <= LARGEST_NUMBER {
+            // -0 becomes 0, so that rows can be compared as numbers.
+            Ok((number + 0.0, plain))
+        } else {
+            Err(CellFault::Range { what, text: quote(text) })
+        }
     }
-    let number: f64 = text.parse().map_err(|_| CellFault::Number { what, text: quote(text) })?;
-    if number.abs() <= LARGEST_NUMBER {
-        // -0 becomes 0, so that rows can be compared as numbers.
-        Ok(number + 0.0)
-    } else {
-        Err(CellFault::Range { what, text: quote(text) })
+
+    /// What to say of decimals that are written with a comma.
+    pub fn note(&self) -> Option<String> {
+        self.marks[1].map(|_| "decimals are written with a comma: 0,1 is read as 0.1".to_owned())
     }
 }
 

@@ -5,7 +5,8 @@ use super::problem::store;
 use super::{Failure, output};
 use crate::store::Source;
 use clap::Subcommand;
-use pulloff_engine::text::{sanitize, show_path};
+use pulloff_engine::preset::{Parameter, manual};
+use pulloff_engine::text::{quote, sanitize, show_path};
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -28,6 +29,12 @@ pub enum PresetsCommand {
         /// Delete it without asking
         #[arg(long, short)]
         yes: bool,
+    },
+    /// List all keys that a preset can have, with their meanings, values and defaults
+    Keys {
+        /// The first letters of the keys, as in gap. or edge.
+        #[arg(default_value = "")]
+        beginning: String,
     },
     /// Say where your own presets are kept
     Path,
@@ -71,10 +78,32 @@ pub fn run(command: &PresetsCommand) -> Result<ExitCode, Failure> {
             store.delete(name)?;
             let _ = writeln!(std::io::stderr(), "pulloff: deleted {}", show_path(&path));
         }
+        PresetsCommand::Keys { beginning } => {
+            let keys = manual::keys().filter(|row| row.key.starts_with(&**beginning));
+            let text: String = keys.map(|row| described(&row)).collect();
+            if text.is_empty() {
+                let what = format!("no key begins with {}; pulloff presets keys lists all", quote(beginning));
+                return Err(Failure::Usage(what));
+            }
+            output::print(text)?;
+        }
         PresetsCommand::Path => match store.folder() {
             Some(folder) => output::print(format!("{}\n", show_path(folder)))?,
             None => return Err(Failure::Usage("no home folder is known: set XDG_CONFIG_HOME".to_owned())),
         },
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// A key in two lines.
+fn described(row: &Parameter) -> String {
+    let dimension = if row.dimension.is_empty() { String::new() } else { format!(" ({})", row.dimension) };
+    format!(
+        "{}  ({})\n    {}{dimension}: {}; default: {}\n",
+        row.key,
+        row.label,
+        row.meaning,
+        row.allowed(),
+        row.fallback_text()
+    )
 }

@@ -10,6 +10,7 @@ use pulloff_engine::preset::edge::RATE;
 use pulloff_engine::report::pull::{AskedPulls, COLUMNS, FAILURE_COLUMNS, MOMENT_COLUMNS};
 use pulloff_engine::report::{PullReport, columns, json, table};
 use pulloff_engine::text::quote;
+use pulloff_engine::units::range_ends;
 use std::process::ExitCode;
 
 /// The key as whose value a dead load is read.
@@ -91,12 +92,12 @@ fn rates(preset: &Preset, text: &str) -> Result<Vec<f64>, Failure> {
     let Some(range) = text.strip_prefix("log:") else { return Ok(vec![one(text)?]) };
     let expected = "expected log:FROM..TO:COUNT, as in log:1e-6..1e2:100";
     let (ends, count) = range.rsplit_once(':').ok_or_else(|| wrong(text, expected))?;
-    let (from, to) = ends.split_once("..").ok_or_else(|| wrong(text, expected))?;
+    let (from, to) = range_ends(ends).ok_or_else(|| wrong(text, expected))?;
     let count: usize = count.trim().parse().map_err(|_| wrong(text, expected))?;
     if !(2..=RATES).contains(&count) {
         return Err(wrong(text, &format!("the count must be a whole number from 2 to {RATES}")));
     }
-    let (from, to) = (one(from)?, one(to)?);
+    let (from, to) = (one(&from)?, one(to)?);
     let factor = pulloff_engine::elementary::ln(to / from);
     let share = |k: usize| k as f64 / (count - 1) as f64;
     Ok((0..count)

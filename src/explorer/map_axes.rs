@@ -6,6 +6,7 @@ use pulloff_engine::preset::schema::Kind;
 use pulloff_engine::preset::{Key, Parameter, Preset};
 use pulloff_engine::report::map::Ordinate;
 use pulloff_engine::stability::{COMPLIANCE, MapAxis};
+use pulloff_engine::units::range_ends;
 use serde::{Deserialize, Serialize};
 
 /// The groups on the axes, for a gap with one wave.
@@ -94,7 +95,7 @@ pub fn typed(preset: &Preset, text: &str) -> Result<MapAxis, String> {
     let (key, range) = text.split_once('=').ok_or_else(expected)?;
     let (key, range) = (key.trim(), range.trim());
     let (logarithmic, range) = range.strip_prefix("log:").map_or((false, range), |rest| (true, rest));
-    let (from, to) = range.split_once("..").filter(|_| !key.contains(':')).ok_or_else(expected)?;
+    let (from, to) = range_ends(range).filter(|_| !key.contains(':')).ok_or_else(expected)?;
     let called = if key == COMPLIANCE { key.to_owned() } else { key_called(preset, key)?.into_owned() };
     let key = &*called;
     let unit = preset.gap.length().unwrap_or(1.0) * preset.material.effective_modulus;
@@ -112,7 +113,7 @@ pub fn typed(preset: &Preset, text: &str) -> Result<MapAxis, String> {
         }
         preset.number(&row, text.trim()).map_err(|invalid| invalid.to_string())
     };
-    let range = [number(from)?, number(to)?];
+    let range = [number(&from)?, number(to)?];
     MapAxis::new(key, range, logarithmic, 1.0 / unit).map_err(|error| error.to_string())
 }
 

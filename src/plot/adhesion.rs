@@ -12,6 +12,7 @@ use pulloff_engine::quasistatic::path::PathSetting;
 use pulloff_engine::quasistatic::{Detail, Losses};
 use pulloff_engine::report::number::significant;
 use pulloff_engine::theory::maugis::Maugis;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::f64::consts::PI;
 
 /// The names of the figures.
@@ -39,9 +40,8 @@ fn loops(name: &'static str, preset: &'static str) -> Result<Over, PaperError> {
     let setting = PathSetting { losses: Losses::Once, detail: Detail::Borders, ..setting };
     let of = |case: &Case| case.cycle(Some(Turn::Approach(TURN)), &setting, &Unwatched);
     let short = of(&Case::new(&preset)?)?.losses();
-    let mut over = Over { name, points: Vec::new(), ends: None };
-    for k in 0..COUNT {
-        let maugis = FROM * (TO / FROM).powf(f64::from(k) / f64::from(COUNT - 1));
+    let at = |k| FROM * (TO / FROM).powf(f64::from(k) / f64::from(COUNT - 1));
+    let loop_at = |maugis| {
         let mut preset = preset.clone();
         // The preset has R = E* = 1.
         preset.material.adhesion =
@@ -49,13 +49,16 @@ fn loops(name: &'static str, preset: &'static str) -> Result<Over, PaperError> {
         match of(&Case::with_range(&preset, &Unwatched)?) {
             Ok(path) if path.is_whole() => {
                 let pull = path.largest_pull().map_or(f64::NAN, |at| -at.force / (PI * gamma));
-                over.points.push([maugis, path.losses() / short, pull]);
+                Ok(Some([maugis, path.losses() / short, pull]))
             }
-            Ok(_) | Err(CaseError::Path { .. }) => over.ends = Some(maugis),
-            Err(error) => return Err(error.into()),
+            Ok(_) | Err(CaseError::Path { .. }) => Ok(None),
+            Err(error) => Err(PaperError::from(error)),
         }
-    }
-    Ok(over)
+    };
+    // One loop takes up to a second.
+    let loops = (0..COUNT).into_par_iter().map(|k| loop_at(at(k))).collect::<Result<Vec<_>, _>>()?;
+    let ends = (0..COUNT).zip(&loops).rfind(|(_, found)| found.is_none()).map(|(k, _)| at(k));
+    Ok(Over { name, points: loops.into_iter().flatten().collect(), ends })
 }
 
 /// Both figures.

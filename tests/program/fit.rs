@@ -520,9 +520,9 @@ fn an_error_of_what_is_given_is_in_those_of_the_values() {
     };
     refused(
         "gap.radius_of_curvatre=3%",
-        &["data.uncertain", "gap.radius_of_curvatre=3%", "did you mean gap.radius_of_curvature"],
+        &["uncertain value", "gap.radius_of_curvatre=3%", "did you mean gap.radius_of_curvature"],
     );
-    refused("R=0%", &["data.uncertain", "above 0"]);
+    refused("R=0%", &["uncertain value", "above 0"]);
     refused("R", &["expected KEY=ERROR"]);
 }
 

@@ -125,3 +125,58 @@ fn steep_gaps_are_told_in_sweeps_too() {
     let ended = home.run(&["sweep", "small.toml", "-o", "s.csv"]);
     assert!(!ended.err.contains("slopes"), "{}", ended.err);
 }
+
+/// The gap is a length: a parameter of a formula has no mass or time that no other parameter takes away.
+#[test]
+fn a_parameter_of_a_formula_has_a_unit_that_a_gap_can_have() {
+    let home = Home::new();
+    let preset = |formula: &str, parameters: &str| {
+        format!(
+            "units = \"SI\"\n[material]\neffective_modulus = \"1 MPa\"\nwork_of_adhesion = \"50 mJ/m^2\"\n[gap]\nshape = \
+             \"formula\"\nformula = \"{formula}\"\n[gap.parameters]\n{parameters}\n[path]\nstart_contact_radius = \"80 um\"\n"
+        )
+    };
+    home.file("wrong.toml", &preset("r^2/(2*R)", "R = \"3.2 mN\""));
+    let expected = "wrong.toml:9: gap.parameters.R: expected a length or another quantity without mass and time, since the gap \
+                    is a length, got 3.2 mN, a force";
+    home.refused(&["unload", "wrong.toml"], &[expected]);
+    // A drop of a liquid under a pressure has a radius of 2 gamma/p.
+    let drop = preset("r^2*p/(4*G)", "p = \"45 Pa\"\nG = \"72 mN/m\"");
+    for (name, text) in [("right.toml", preset("r^2/(2*R)", "R = \"3.2 mm\"")), ("drop.toml", drop)] {
+        home.file(name, &text.replace("80 um", "300 um"));
+        home.quiet(&["unload", name]);
+    }
+}
+
+/// What a command leaves out is told: the speed of an edge plays no part in a path.
+#[test]
+fn a_path_says_that_it_has_no_speed() {
+    let home = Home::new();
+    let said = |command: &str, set: &str| home.quiet(&[command, "wavy-sphere", "--set", set]);
+    for command in ["unload", "cycle"] {
+        assert!(said(command, "edge.exponent=0.6").contains("plays no part here"), "{command}");
+        assert!(!said(command, "gap.amplitude=0.002").contains("plays no part here"), "{command}");
+    }
+}
+
+/// Every key can be found without the explorer, and is named where one is not known.
+#[test]
+fn all_keys_are_listed() {
+    let home = Home::new();
+    let all = home.quiet(&["presets", "keys"]);
+    for key in
+        ["edge.exponent  (n edge)", "gap.waves.N.phase", "groups.adhesion", "path.steps", "data.offset"]
+    {
+        assert!(all.lines().any(|line| line.starts_with(key)), "{key}: {all}");
+    }
+    let some = home.quiet(&["presets", "keys", "edge."]);
+    assert!(
+        some.lines().step_by(2).all(|line| line.starts_with("edge.")) && some.lines().count() > 4,
+        "{some}"
+    );
+    home.refused(&["presets", "keys", "egde"], &["no key begins with egde"]);
+    home.refused(
+        &["unload", "--set", "xyzzy.foo=1"],
+        &["unknown key xyzzy.foo; pulloff presets keys lists all"],
+    );
+}

@@ -3,6 +3,7 @@
 use super::points::Turned;
 use super::role::Segment;
 use crate::text::quote;
+use crate::units::range_ends;
 use thiserror::Error;
 
 /// Limits of values, as the file has them.
@@ -85,12 +86,12 @@ impl ValueRange {
         expected: &'static str,
         number: Number<'_>,
     ) -> Result<Self, AskedError> {
-        let (lo, hi) = range.split_once("..").ok_or_else(|| form(text, expected))?;
+        let (lo, hi) = range_ends(range).ok_or_else(|| form(text, expected))?;
         let end = |text: &str, open: f64| match text.trim() {
             "" => Ok(open),
             text => number(text).map_err(AskedError::Number),
         };
-        let span = Self { lo: end(lo, f64::NEG_INFINITY)?, hi: end(hi, f64::INFINITY)? };
+        let span = Self { lo: end(&lo, f64::NEG_INFINITY)?, hi: end(hi, f64::INFINITY)? };
         if span.lo < span.hi { Ok(span) } else { Err(AskedError::Empty(quote(text))) }
     }
 }

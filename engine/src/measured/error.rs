@@ -32,33 +32,6 @@ pub enum CurveFault {
         /// What is wrong.
         fault: CellFault,
     },
-    /// A comma and a point in one number.
-    #[error(
-        "column {number}: \"{text}\" has more than one comma or point: write numbers without thousands separators"
-    )]
-    Thousands {
-        /// The column, from 1.
-        number: usize,
-        /// Its text, safe to show.
-        text: String,
-    },
-    /// A decimal point in a file with decimal commas, or the reverse.
-    #[error(
-        "column {number}: \"{text}\" has {}: one of them separates thousands; write all decimals alike",
-        if text.contains(',') {
-            format!("a comma, and line {line} has a number with a point")
-        } else {
-            format!("a point, and line {line} has a number with a comma")
-        }
-    )]
-    Marks {
-        /// The column, from 1.
-        number: usize,
-        /// Its text, safe to show.
-        text: String,
-        /// The line with the other mark.
-        line: usize,
-    },
     /// An unknown branch.
     #[error(
         "column {number}: the segment \"{text}\" is not known: expected approach or retraction, or False or True"
@@ -85,7 +58,7 @@ pub enum CurveReadError {
     Faults(Faults<CurveFault>),
     /// Too few or too many rows.
     #[error(
-        "has {rows} rows{}, and a measured curve has {lo} to {hi}",
+        "has {rows} rows of numbers{}, and a measured curve has {lo} to {hi}",
         if *skipped > 0 { format!(" besides {skipped} without a number") } else { String::new() },
         lo = ROW_RANGE.start(),
         hi = ROW_RANGE.end()

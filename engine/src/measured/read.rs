@@ -94,9 +94,7 @@ pub fn parse(bytes: &[u8], spec: &ColumnSpec) -> Result<Measured, CurveReadError
         state.skipped = Some(state.skipped.map_or(line, |first| first.min(line)));
     }
     let rows = measured.columns.first().map_or(0, |column| column.values.len());
-    if state.has_commas() {
-        measured.notes.push("decimals are written with a comma: 0,1 is read as 0.1".to_owned());
-    }
+    measured.notes.extend(state.decimals.note());
     if let Some(line) = state.skipped {
         let skipped = measured.skipped;
         let rows = if skipped == 1 { "1 row has" } else { &format!("{skipped} rows have") };

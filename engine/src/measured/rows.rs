@@ -6,7 +6,7 @@ use super::noise::{median, range};
 use super::role::{ColumnRole, Segment};
 use super::stated::StatedValue;
 use super::words::{is_gap, last_digit};
-use crate::cells::{self, CellFault, Faults};
+use crate::cells::{self, CellFault, Decimals, Faults};
 use crate::text::quote;
 use crate::units::Unit;
 use std::f64::consts::PI;
@@ -70,8 +70,8 @@ pub struct Measured {
 /// What the cells of all rows have revealed.
 #[derive(Default)]
 pub(super) struct CellFindings {
-    /// The line of the first number with a decimal point, and of the first with a decimal comma.
-    marks: [Option<usize>; 2],
+    /// How decimals are written.
+    pub decimals: Decimals,
     /// The line of the first row that was left out.
     pub skipped: Option<usize>,
     /// What is wrong.
@@ -138,37 +138,11 @@ impl CellFindings {
         text: &str,
         want: &WantedColumn,
     ) -> Result<Option<(f64, f64)>, CurveFault> {
-        let (number, what) = (want.at + 1, want.role.word());
-        let marks = text.bytes().filter(|byte| [b',', b'.'].contains(byte)).count();
-        let comma = text.contains(',');
-        if comma && marks > 1 {
-            return Err(CurveFault::Thousands { number, text: quote(text) });
-        }
-        if marks == 1 {
-            let [same, other] = if comma { [1, 0] } else { [0, 1] };
-            self.marks[same] = self.marks[same].or(Some(line));
-            if let Some(line) = self.marks[other] {
-                return Err(CurveFault::Marks { number, text: quote(text), line });
-            }
-        }
-        let mut plain = std::borrow::Cow::Borrowed(text);
-        if comma || text.contains(['\u{2212}', 'd', 'D']) {
-            // 1.5D-05 is how Fortran writes 1.5e-05.
-            plain = text.replace(',', ".").replace('\u{2212}', "-").replace(['d', 'D'], "e").into();
-        }
-        match cells::number(&plain, what) {
-            Ok(value) => Ok(Some((value, last_digit(&plain)))),
+        match self.decimals.number(line, text, want.role.word()) {
+            Ok((value, plain)) => Ok(Some((value, last_digit(&plain)))),
             Err(CellFault::Range { .. }) => Ok(None),
-            Err(CellFault::Number { .. }) => {
-                Err(CurveFault::Cell { number, fault: CellFault::Number { what, text: quote(text) } })
-            }
-            Err(fault) => Err(CurveFault::Cell { number, fault }),
+            Err(fault) => Err(CurveFault::Cell { number: want.at + 1, fault }),
         }
-    }
-
-    /// Whether decimals are written with a comma.
-    pub(super) fn has_commas(&self) -> bool {
-        self.marks[1].is_some()
     }
 }
 

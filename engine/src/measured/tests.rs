@@ -345,7 +345,7 @@ fn two_hundred_broken_files_are_a_sentence_each() {
     for (text, expected) in [
         (&b"1 2\n\0\n"[..], "line 2: holds a zero byte"),
         (b"PK\x03\x04", "read in Python with pulloff.read_afm(path)"),
-        (b"", "has 0 rows, and a measured curve has 8 to 1000000"),
+        (b"", "has 0 rows of numbers, and a measured curve has 8 to 1000000"),
         (b"1\n2\n", "1 columns without a header"),
         (b"1 2 3\n", "3 columns without a header"),
         (b"delta [nN], force\n1,2\n", "the unit \"nN\" of approach is not a unit of length"),

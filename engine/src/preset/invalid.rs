@@ -9,7 +9,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Invalid {
     /// No row of the table has this key.
-    #[error("unknown key {key}{}", hint(.meant.as_ref()))]
+    #[error("unknown key {key}{}", of_unknown(.meant.as_ref()))]
     UnknownKey {
         /// The key as written.
         key: String,
@@ -236,6 +236,11 @@ pub enum Invalid {
 
 fn hint(key: Option<&Key>) -> String {
     key.map_or_else(String::new, |key| format!("; did you mean {key}?"))
+}
+
+/// What an unknown key may have been meant as, or where all keys are listed.
+fn of_unknown(meant: Option<&Key>) -> String {
+    if meant.is_none() { "; pulloff presets keys lists all".to_owned() } else { hint(meant) }
 }
 
 /// What a parameter without a value may have been meant as.

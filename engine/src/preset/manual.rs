@@ -1,17 +1,26 @@
-//! The key table as Markdown, for the manual.
+//! The keys in the order in which a reader meets them, and their table as Markdown, for the manual.
 
 use super::family;
 use super::groups;
-use super::schema::PARAMETERS;
+use super::schema::{PARAMETERS, Parameter};
 use std::fmt::Write;
+
+/// All keys; those of families by examples, such as `gap.waves.N.phase`.
+pub fn keys() -> impl Iterator<Item = Parameter> {
+    let shape = PARAMETERS.iter().rposition(|row| row.table() == Some("gap")).map_or(0, |last| last + 1);
+    let (before, after) = PARAMETERS.split_at(shape);
+    before
+        .iter()
+        .cloned()
+        .chain(family::examples())
+        .chain(after.iter().cloned())
+        .chain(groups::GROUPS.iter().cloned())
+}
 
 /// One row per key: key, symbol, meaning with its dimension, values, default.
 pub fn key_table() -> String {
     let mut text = String::from("| key | on screen | meaning | values | default |\n|---|---|---|---|---|\n");
-    let shape = PARAMETERS.iter().rposition(|row| row.table() == Some("gap")).map_or(0, |last| last + 1);
-    let (before, after) = PARAMETERS.split_at(shape);
-    let families: Vec<_> = family::examples().collect();
-    for row in before.iter().chain(&families).chain(after).chain(&groups::GROUPS) {
+    for row in keys() {
         let dimension =
             if row.dimension.is_empty() { String::new() } else { format!(" ({})", row.dimension) };
         // Writing to a string cannot fail.

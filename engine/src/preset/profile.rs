@@ -5,7 +5,8 @@
 //! r [um], h (nm)                   one header before the first row, with the units in brackets, parentheses, or
 //!                                  of length behind a slash or a space: r / um, h nm
 //! 0.0, 0.00                        cells parted by semicolons, tabs, commas or spaces: what the first row shows,
-//! 0.5, 0.13                        in this order; numbers with a decimal point
+//! 0.5, 0.13                        in this order; where no comma separates cells, one may
+//!                                  mark the decimals
 //! ```
 //!
 //! A header with a unit for one column and none for the other is refused. If there is no header, the last remark above
@@ -16,7 +17,7 @@
 //! The cells are separated as in any table from an instrument: [`cells`].
 
 use crate::cells::{
-    self, CellFault, ColumnHead, LineFault, Separator, heads, is_header, is_unprintable, number, remark,
+    self, CellFault, ColumnHead, Decimals, LineFault, Separator, heads, is_header, is_unprintable, remark,
 };
 use crate::text::{NotText, decode, quote};
 use crate::units::{Quantity, Unit};
@@ -207,7 +208,7 @@ pub fn parse(bytes: &[u8]) -> Result<ProfileColumns, TextError> {
     let (text, note) = decode(bytes).map_err(TextError::NotText)?;
     let mut faults = ProfileFaults::default();
     let mut rows: Vec<ProfileRow> = Vec::new();
-    let mut separator = None;
+    let (mut separator, mut decimals) = (None, Decimals::default());
     // The header, or a remark that may serve as one.
     let (mut header, mut candidate) = (None, None);
     for (line, text) in text.lines().enumerate().map(|(i, text)| (i + 1, text.trim())) {
@@ -233,7 +234,7 @@ pub fn parse(bytes: &[u8]) -> Result<ProfileColumns, TextError> {
             continue;
         }
         let separator = *separator.get_or_insert_with(|| Separator::of(text));
-        match row(text, separator) {
+        match row(line, text, separator, &mut decimals) {
             Ok((radius, gap)) => rows.push(ProfileRow { line, radius, gap }),
             Err(fault) => faults.add(line, fault),
         }
@@ -243,6 +244,7 @@ pub fn parse(bytes: &[u8]) -> Result<ProfileColumns, TextError> {
     if let Some(separator) = separator {
         (columns.header, columns.units) = units(header, candidate, separator)?;
     }
+    columns.notes.extend(decimals.note());
     gather(rows, &mut columns, &mut faults);
     if faults.total > 0 {
         return Err(TextError::Faults(faults));
@@ -286,7 +288,12 @@ fn units(
 }
 
 /// The radius and the gap of a row.
-fn row(text: &str, separator: Separator) -> Result<(f64, f64), ProfileFault> {
+fn row(
+    line: usize,
+    text: &str,
+    separator: Separator,
+    decimals: &mut Decimals,
+) -> Result<(f64, f64), ProfileFault> {
     let cells = separator.cells(text);
     let &[radius, gap] = cells.as_slice() else {
         return Err(match cells.len() {
@@ -294,6 +301,7 @@ fn row(text: &str, separator: Separator) -> Result<(f64, f64), ProfileFault> {
             many => ProfileFault::Cells(many),
         });
     };
+    let mut number = |text, what| decimals.number(line, text, what).map(|(number, _)| number);
     let (radius, gap) = (number(radius, COLUMNS[0])?, number(gap, COLUMNS[1])?);
     if radius < 0.0 { Err(ProfileFault::Negative(radius)) } else { Ok((radius, gap)) }
 }

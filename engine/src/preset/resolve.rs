@@ -92,7 +92,7 @@ fn parameter_of(key: &str) -> Option<&str> {
 }
 
 /// The number of a parameter of a formula, or of one end of its range, in SI. Its dimension must be that of the
-/// parameter's own unit; it may be any if the program does not know that unit.
+/// parameter's own unit; it may be any if the program does not know that unit and a gap, which is a length, can have it.
 fn of_parameter(values: &Values, parameter: &str, typed: &TypedValue) -> Result<f64, String> {
     match (stated_unit(values, parameter), &typed.unit) {
         (Some(stated), Some(own)) if stated.dimension() != own.dimension() => Err(format!(
@@ -101,8 +101,32 @@ fn of_parameter(values: &Values, parameter: &str, typed: &TypedValue) -> Result<
             stated.ascii(),
             own.measures()
         )),
+        (None, Some(own)) if is_mechanical(own) && !may_cancel(values, parameter) => Err(format!(
+            "expected a length or another quantity without mass and time, since the gap is a length, got {typed}, {}",
+            own.measures()
+        )),
         _ => typed.in_own_si().map_err(|cause| cause.to_string()),
     }
+}
+
+/// Whether a unit has a mass or a time in it.
+fn is_mechanical(unit: &Unit) -> bool {
+    let dimension = unit.dimension();
+    (dimension.kilogram, dimension.second) != (0, 0)
+}
+
+/// Whether a parameter of the formula other than this one may cancel the mass or the time of this one: one that has such
+/// a unit itself, or that is a bare number.
+fn may_cancel(values: &Values, parameter: &str) -> bool {
+    let mut others = values.iter().filter(|(key, _)| is_parameter(key) && &***key != parameter);
+    others.any(|(key, value)| match (stated_unit(values, key), value) {
+        (Some(stated), _) => is_mechanical(&stated),
+        (None, Value::Typed(text)) => match parse_quantity(text) {
+            Ok(typed) => typed.unit.is_some_and(|own| is_mechanical(&own)),
+            Err(_) => true,
+        },
+        (None, _) => true,
+    })
 }
 
 /// The unit given beside a parameter of a formula, if the program knows it.

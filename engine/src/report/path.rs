@@ -330,6 +330,13 @@ impl PathReport {
         warnings.extend(path.warnings.iter().map(|w| w.words(&printer)));
         let mut notes = if is_loop || in_zone { problem_notes(case) } else { case.notes(begins) };
         notes.extend(note_of_range(preset, case));
+        if preset.edge.exponent.is_some() {
+            notes.push(
+                "the law of the edge's speed (edge.exponent) plays no part here: this is a path slower than any speed; a \
+                 pull follows the law"
+                    .to_owned(),
+            );
+        }
         if is_loop && matches!(preset.basis, BasisSpec::Rings { .. }) {
             notes.push(
                 "a loop is computed with exact states, without ring elements, whatever the basis".to_owned(),

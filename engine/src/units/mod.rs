@@ -23,4 +23,4 @@ pub mod value;
 pub use dimension::{Dimension, Quantity};
 pub use system::{DisplayUnits, Shown, UnitSystem};
 pub use unit::{Unit, UnitError};
-pub use value::{TypedValue, ValueError, parse_quantity};
+pub use value::{TypedValue, ValueError, parse_quantity, range_ends};

@@ -4,6 +4,7 @@ use super::dimension::{Dimension, Quantity};
 use super::unit::{Unit, UnitError};
 use crate::expression::program::Program;
 use crate::expression::{FormulaError, grammar};
+use std::borrow::Cow;
 use std::fmt;
 use thiserror::Error;
 
@@ -60,6 +61,16 @@ fn wanted(quantity: Quantity) -> String {
         Some(unit) => format!("{} such as {unit}", quantity.name()),
         None => quantity.name().to_owned(),
     }
+}
+
+/// The two ends of a range as typed, `FROM..TO`; a unit behind the second end alone belongs to both: `1..5 um`.
+pub fn range_ends(text: &str) -> Option<(Cow<'_, str>, &str)> {
+    let (from, to) = text.split_once("..")?;
+    let unit = |text: &str| parse_quantity(text.trim()).ok().map(|typed| typed.unit);
+    Some(match (unit(from), unit(to)) {
+        (Some(None), Some(Some(unit))) => (format!("{} {}", from.trim(), unit.ascii()).into(), to),
+        _ => (from.into(), to),
+    })
 }
 
 /// Parses a value: an expression of numbers, then a unit if there is one. If the expression ends with a division by a
@@ -183,6 +194,19 @@ mod tests {
         ] {
             assert_eq!(si(text, quantity), Ok(expected), "{text}");
         }
+    }
+
+    #[test]
+    fn a_unit_behind_a_range_belongs_to_both_ends() {
+        let ends = |text| range_ends(text).map(|(from, to)| (from.into_owned(), to.to_owned()));
+        let some = |from: &str, to: &str| Some((from.to_owned(), to.to_owned()));
+        assert_eq!(ends("1..5 um"), some("1 um", "5 um"));
+        assert_eq!(ends("-1/2 .. 5mJ/m^2"), some("-1/2 mJ/m^2", " 5mJ/m^2"));
+        assert_eq!(ends("1 nm..5 um"), some("1 nm", "5 um"));
+        assert_eq!(ends("1..5"), some("1", "5"));
+        assert_eq!(ends("..5 um"), some("", "5 um"));
+        assert_eq!(ends("1 um.."), some("1 um", ""));
+        assert_eq!(ends("1 um"), None);
     }
 
     #[test]

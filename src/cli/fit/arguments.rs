@@ -178,6 +178,8 @@ pub(super) fn with_points(
 pub(super) fn refused(path: &Path, error: &FitError) -> Failure {
     let named = format!("{}: {error}", show_path(path));
     match error {
+        // These do not come from the file of points.
+        FitError::Key { .. } | FitError::Uncertain { .. } => Failure::Usage(error.to_string()),
         FitError::NoStart | FitError::Stopped(Stopped) => Failure::Incomplete(named),
         _ => Failure::Usage(named),
     }

@@ -260,7 +260,7 @@ fn what_cannot_be_read_is_refused_in_a_sentence() {
         (
             "no numbers at all",
             format!("{head}{}", "1;NaN\n".repeat(30)),
-            "has 0 rows besides 30 without a number",
+            "has 0 rows of numbers besides 30 without a number",
         ),
         (
             "a first row with a fault",

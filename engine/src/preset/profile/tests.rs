@@ -130,6 +130,17 @@ fn units_that_are_no_lengths_and_missing_ones_are_refused_by_name_with_their_lin
     }
 }
 
+#[test]
+fn decimals_may_have_a_comma_where_no_comma_separates_cells() {
+    for separator in [";", "; ", "\t"] {
+        let read = good(&rows(separator).replace('.', ","));
+        let with_points = good(&rows(separator));
+        assert_eq!((read.radii, read.gaps), (with_points.radii, with_points.gaps), "{separator:?}");
+        assert_eq!(read.notes, ["decimals are written with a comma: 0,1 is read as 0.1"]);
+        assert_eq!(with_points.notes, [""; 0]);
+    }
+}
+
 /// Rows at these radii.
 fn at(radii: impl Iterator<Item = f64>) -> String {
     radii.map(|r| format!("{r},{}\n", r * r)).collect::<Vec<_>>().concat()
@@ -186,9 +197,9 @@ fn every_fault_has_its_line() {
     assert_eq!(with("1,7"), "line 11: the radius 1.0 has a different gap in line 3");
     assert_eq!(with("1\u{1b}[2J,7"), "line 11: holds control or invisible characters");
     assert_eq!(with(&"1".repeat(3000)), "line 11: has 3000 bytes, more than the 2048 allowed");
-    assert!(
-        refused("0;0\n1,5;2\n").contains("line 2: the radius \"1,5\" is not a number (use a decimal point)")
-    );
+    assert!(refused("0;0\n1,5;2\n2.5;3\n").starts_with(
+        "line 3: \"2.5\" has a point, and line 2 has a number with a comma: one of them separates thousands"
+    ));
     // A first line that was meant to be a row is not swallowed as a header.
     assert!(refused(&format!("1.0, abc\n{}", rows(","))).starts_with("line 1: "));
     assert!(refused(&format!("abc, 1.0\n{}", rows(","))).starts_with("line 1: "));
