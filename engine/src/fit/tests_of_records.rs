@@ -87,3 +87,30 @@ fn what_another_spring_would_give_is_known_whatever_the_noise() {
         assert!(told.contains("; with k 10 % smaller: E* "), "{seed}: {told}");
     }
 }
+
+/// The force of a Hertzian contact grows from nothing: rows that touch already do not count as apart.
+#[test]
+fn the_first_rows_of_a_hertzian_contact_are_not_the_free_part() {
+    const SEEDS: u64 = 12;
+    let (mut described, mut square) = (0, 0.0);
+    for seed in 0..SEEDS {
+        let mut normal = Normal::new(seed);
+        let mut points = no_points(Abscissa::Approach);
+        for segment in [Segment::Approach, Segment::Retraction] {
+            for i in 0..200 {
+                let row = if segment == Segment::Approach { i } else { 199 - i };
+                let delta = -0.01 + 0.03 * f64::from(row) / 199.0;
+                let force = 4.0 / 3.0 * delta.max(0.0).powf(1.5);
+                points.x.push(delta + 2.4e-5 * normal.next());
+                points.force.push(force + 7.5e-6 * normal.next());
+                points.segments.as_mut().unwrap().push(segment);
+            }
+        }
+        let start = preset(SPHERE, 3.0, 0.0, "");
+        let free = [E, OFFSET].map(str::to_owned).to_vec();
+        let fit = fit(&start, &points, &Options { free, ..Options::default() }, &Unwatched).unwrap();
+        described += u64::from(fit.verdict == Verdict::Describes);
+        square += off(&fit, &[1.0, 0.0]).iter().map(|z| z * z).sum::<f64>() / (2 * SEEDS) as f64;
+    }
+    assert!(described + 1 >= SEEDS && square < 2.0, "{described} {square}");
+}
