@@ -1,4 +1,4 @@
-//! `pulloff presets`: list, show, delete, and where they are kept.
+//! `pulloff presets`: list, show, delete, their keys, and where they are kept.
 
 use super::console::ask;
 use super::problem::store;
@@ -97,12 +97,11 @@ pub fn run(command: &PresetsCommand) -> Result<ExitCode, Failure> {
 
 /// A key in two lines.
 fn described(row: &Parameter) -> String {
-    let dimension = if row.dimension.is_empty() { String::new() } else { format!(" ({})", row.dimension) };
     format!(
-        "{}  ({})\n    {}{dimension}: {}; default: {}\n",
+        "{}  ({})\n    {}: {}; default: {}\n",
         row.key,
         row.label,
-        row.meaning,
+        manual::meaning(row),
         row.allowed(),
         row.fallback_text()
     )

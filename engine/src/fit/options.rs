@@ -4,6 +4,7 @@ use super::problem::{ADHESION, Target};
 use crate::measured::Asked;
 use crate::measured::{Abscissa, BranchError};
 use crate::preset::data::{BASELINE, OFFSET, TILT};
+use crate::preset::invalid::of_unknown;
 use crate::preset::schema::{CHOOSERS, Kind, RANGE_KEYS, Row};
 use crate::preset::{Preset, Value, edge};
 use crate::progress::Stopped;
@@ -166,11 +167,7 @@ pub fn target(preset: &Preset, abscissa: Abscissa, name: &str) -> Result<Target,
     else {
         let applies = |row: &&Row| row.fits(CHOOSERS[0], preset.gap.name());
         let known = rows.iter().filter(applies).map(|row| (&*row.key, &*row.label));
-        let meant = closest_key(name, known);
-        let hint = meant.map_or_else(
-            || "; pulloff presets keys lists all".to_owned(),
-            |key| format!("; did you mean {key}?"),
-        );
+        let hint = of_unknown(closest_key(name, known));
         return Err(refused(format!("is not a key of this preset{hint}")));
     };
     let others = [

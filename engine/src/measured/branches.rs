@@ -13,7 +13,7 @@
 use super::asked::{Asked, FreePart, ValueRange, signs_text};
 use super::converter::{Clipped, clipped, quantum, without_repeats};
 pub use super::free::MeasuredBranch;
-use super::free::{as_elsewhere, branch, never_pulls, one_sided, same_free_force};
+use super::free::{as_elsewhere, branch, clear, never_pulls, one_sided};
 pub(crate) use super::noise::median;
 use super::noise::{END_ROWS, range};
 pub use super::noise::{FLOOR, Noise, Origin};
@@ -210,12 +210,7 @@ impl Points {
             range(used.iter().map(|p| p.radius)),
         ];
         let noise = noise(&list, asked.sigma, (self.steps, step), ranges, of_radius);
-        if asked.free == FreePart::Found {
-            same_free_force(&mut list, &noise, &mut notes);
-        }
-        for (branch, _) in &mut list {
-            branch.clears_jump(&noise);
-        }
+        clear(&mut list, asked.free, &noise, &mut notes);
         without_radius(&mut list, of_radius, &mut notes);
         let forces = list.iter().flat_map(|(branch, _)| branch.free.iter().map(|p| p.force));
         let baseline = median(forces.collect());

@@ -23,7 +23,7 @@ pub struct MeasuredBranch {
 
 impl MeasuredBranch {
     /// Drops the rows around the jump that noise in x may have put on the wrong side.
-    pub(super) fn clears_jump(&mut self, noise: &Noise) {
+    fn clears_jump(&mut self, noise: &Noise) {
         /// Rows within this many σ of x from the jump may lie on either side.
         const NEAR: f64 = 5.0;
         let [Some(last), Some(first)] = [self.attached.last(), self.free.first()] else { return };
@@ -35,30 +35,34 @@ impl MeasuredBranch {
         // Without a jump, nothing can have been mixed.
         let attached: Vec<&MeasuredPoint> = self.attached.iter().filter(|point| near(point)).collect();
         if attached.iter().filter(|point| pulled(point)).count() * 2 < attached.len() {
-            return self.clears_onset(&line, noise);
+            return;
         }
         let before = self.attached.len() + self.free.len();
         self.attached.retain(|point| !near(point) || pulled(point));
         self.free.retain(|point| !near(point) || !pulled(point));
         self.jump += before - self.attached.len() - self.free.len();
     }
-}
 
-impl MeasuredBranch {
     /// Drops the last rows of the free part where the bodies may have touched already: without a jump the force grows from
     /// nothing, and is seen only where it exceeds the noise.
-    fn clears_onset(&mut self, line: &FreeLine, noise: &Noise) {
+    fn clears_onset(&mut self, noise: &Noise) {
         /// The first rows in contact, whose mean tells the force that is seen.
         const FIRST: usize = 3;
+        /// Fewer rows apart are all kept.
+        const FEWEST: usize = 9;
         /// A force this many times as large is well seen.
         const TIMES: f64 = 5.0;
         /// How far back the force of a cone begins, in distances from the one force to the other: 1/(√5 − 1). The forces of
         /// blunter bodies begin nearer.
         const BACK: f64 = 0.81;
-        let pressed = |point: &MeasuredPoint| point.force - line.at(point.x);
         let Some(first) = self.attached.len().checked_sub(FIRST).map(|from| &self.attached[from..]) else {
             return;
         };
+        if self.free.len() < FEWEST {
+            return;
+        }
+        let line = FreeLine::of(&self.free);
+        let pressed = |point: &MeasuredPoint| point.force - line.at(point.x);
         let mean = |of: &dyn Fn(&MeasuredPoint) -> f64| first.iter().map(of).sum::<f64>() / FIRST as f64;
         let (x, seen) = (mean(&|point| point.x), mean(&pressed));
         if seen <= noise.sigma[1] {
@@ -69,7 +73,7 @@ impl MeasuredBranch {
         };
         let onset = x - BACK * (well.x - x);
         let before = self.free.iter().filter(|point| point.x < onset).count();
-        if before >= FIRST * FIRST {
+        if before >= FEWEST {
             self.jump += self.free.len() - before;
             self.free.retain(|point| point.x < onset);
         }
@@ -180,9 +184,28 @@ impl FreeLine {
     }
 }
 
+/// Settles which rows of all branches are apart, and drops those that may lie on either side of the jump or of the onset.
+pub(super) fn clear(
+    list: &mut [(MeasuredBranch, Vec<MeasuredPoint>)],
+    asked: FreePart,
+    noise: &Noise,
+    notes: &mut Vec<String>,
+) {
+    if asked == FreePart::Found {
+        same_free_force(list, noise, notes);
+    }
+    for (branch, _) in list {
+        branch.clears_jump(noise);
+        // What a user says is apart is apart.
+        if asked == FreePart::Found {
+            branch.clears_onset(noise);
+        }
+    }
+}
+
 /// Returns rows to the contact if they are constant at a force other than that of the branch with most rows apart: a
 /// record that ends near its smallest force looks like that.
-pub(super) fn same_free_force(
+fn same_free_force(
     list: &mut [(MeasuredBranch, Vec<MeasuredPoint>)],
     noise: &Noise,
     notes: &mut Vec<String>,

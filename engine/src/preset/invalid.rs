@@ -9,7 +9,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Invalid {
     /// No row of the table has this key.
-    #[error("unknown key {key}{}", of_unknown(.meant.as_ref()))]
+    #[error("unknown key {key}{}", of_unknown(.meant.as_deref()))]
     UnknownKey {
         /// The key as written.
         key: String,
@@ -239,8 +239,9 @@ fn hint(key: Option<&Key>) -> String {
 }
 
 /// What an unknown key may have been meant as, or where all keys are listed.
-fn of_unknown(meant: Option<&Key>) -> String {
-    if meant.is_none() { "; pulloff presets keys lists all".to_owned() } else { hint(meant) }
+pub(crate) fn of_unknown(meant: Option<&str>) -> String {
+    meant
+        .map_or_else(|| "; pulloff presets keys lists all".to_owned(), |key| format!("; did you mean {key}?"))
 }
 
 /// What a parameter without a value may have been meant as.

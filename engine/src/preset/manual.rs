@@ -17,19 +17,26 @@ pub fn keys() -> impl Iterator<Item = Parameter> {
         .chain(groups::GROUPS.iter().cloned())
 }
 
+/// What a key means, with its dimension.
+pub fn meaning(row: &Parameter) -> String {
+    if row.dimension.is_empty() {
+        row.meaning.to_string()
+    } else {
+        format!("{} ({})", row.meaning, row.dimension)
+    }
+}
+
 /// One row per key: key, symbol, meaning with its dimension, values, default.
 pub fn key_table() -> String {
     let mut text = String::from("| key | on screen | meaning | values | default |\n|---|---|---|---|---|\n");
     for row in keys() {
-        let dimension =
-            if row.dimension.is_empty() { String::new() } else { format!(" ({})", row.dimension) };
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "| `{}` | {} | {}{dimension} | {} | {} |",
+            "| `{}` | {} | {} | {} | {} |",
             row.key,
             row.label,
-            row.meaning,
+            meaning(&row),
             row.allowed(),
             row.fallback_text()
         );

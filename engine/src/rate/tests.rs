@@ -339,7 +339,7 @@ fn snaps_after_turns_begin_where_those_of_a_whole_pull_do() {
             let ramps = turns.map(|to| Part::Ramp { to, rate });
             let turned = parts(&[ramps.as_slice(), &[Part::Apart { rate }]].concat());
             let after = turned.iter().filter(|snap| snap.from > snap.to);
-            for (a, b) in after.rev().zip(whole.iter().rev()).take(3) {
+            for (a, b) in after.rev().zip(whole.iter().rev()).take(4) {
                 assert!((a.from - b.from).abs() < 1e-3, "{rate} {turns:?}: {a:?} {b:?}");
                 assert!((a.dissipated / b.dissipated - 1.0).abs() < 0.01, "{rate} {turns:?}: {a:?} {b:?}");
             }

@@ -332,8 +332,8 @@ impl PathReport {
         notes.extend(note_of_range(preset, case));
         if preset.edge.exponent.is_some() {
             notes.push(
-                "the law of the edge's speed (edge.exponent) plays no part here: this is a path slower than any speed; a \
-                 pull follows the law"
+                "the law of the edge's speed (edge.exponent) plays no part here: a path is infinitely slow; a pull follows \
+                 the law"
                     .to_owned(),
             );
         }

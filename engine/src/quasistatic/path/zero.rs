@@ -102,13 +102,6 @@ impl Course<'_, '_> {
     /// The contacts with one more that has begun at a crest, a little beyond the approach `touch`.
     pub fn begun(&mut self, contacts: &Contacts, crest: f64, touch: f64) -> Result<HeldEdges, PathError> {
         let mut delta = touch + self.lift();
-        match self.turn {
-            Some(Turn::Approach(turn)) => delta = delta.min(turn),
-            Some(Turn::Control(turn)) if self.setting.control == Control::Displacement => {
-                delta = delta.min(turn);
-            }
-            _ => {}
-        }
         let seeded = |delta: f64| {
             let beyond = |error| super::course::beyond(error, delta, 0.0);
             let start = self.balance.seeded(contacts, crest, delta).map_err(beyond)?;
@@ -119,24 +112,23 @@ impl Course<'_, '_> {
         // The turn may lie on the way, or at the touch itself, where the outermost edge leaps; and a contact that begins
         // beside another may be one with it before.
         let count = contacts.intervals().len() + 1;
-        let is_beyond =
-            |held: &HeldEdges| self.has_turned(held) || held.state.contacts.intervals().len() < count;
+        let is_apart = |held: &HeldEdges| held.state.contacts.intervals().len() >= count;
         for _ in 0..HALVINGS {
-            if held.as_ref().is_ok_and(|held| !is_beyond(held)) {
+            if held.as_ref().is_ok_and(|held| is_apart(held) && !self.has_turned(held)) {
                 break;
             }
             delta = 0.5 * (touch + delta);
             held = seeded(delta).or(held);
         }
-        let beside = with_seed(contacts, crest, 0.5 * self.balance.narrow());
-        let held = match held {
-            Ok(held) => held,
-            // The two may be one before edges can be told apart.
-            Err(error) => {
-                let closed = self.closing(&beside, touch, None, f64::INFINITY);
-                return closed.and_then(|closed| self.merged(closed)).ok_or(error);
+        // The two may be one before edges can be told apart.
+        if !held.as_ref().is_ok_and(is_apart) {
+            let beside = with_seed(contacts, crest, 0.5 * self.balance.narrow());
+            let closed = self.closing(&beside, touch, None, f64::INFINITY);
+            if let Some(merged) = closed.and_then(|closed| self.merged(closed)) {
+                return Ok(merged);
             }
-        };
+        }
+        let held = held?;
         self.record(&held);
         Ok(held)
     }
