@@ -121,12 +121,11 @@ struct ResultLane {
 struct RequestSlot<T> {
     wish: Mutex<Option<T>>,
     filled: Condvar,
-    waiting: AtomicBool,
 }
 
 impl<T> RequestSlot<T> {
     fn empty() -> Self {
-        Self { wish: Mutex::new(None), filled: Condvar::new(), waiting: AtomicBool::new(false) }
+        Self { wish: Mutex::new(None), filled: Condvar::new() }
     }
 
     fn lock(&self) -> MutexGuard<'_, Option<T>> {
@@ -135,15 +134,19 @@ impl<T> RequestSlot<T> {
 
     fn put(&self, wish: T) {
         *self.lock() = Some(wish);
-        self.waiting.store(true, Ordering::Release);
         self.filled.notify_one();
+    }
+
+    /// Whether a newer request waits. There is no flag beside the request: set a moment late, it would stop the very
+    /// request that it announced, and nobody would answer.
+    fn is_waiting(&self) -> bool {
+        self.lock().is_some()
     }
 
     fn take(&self) -> T {
         let mut wish = self.lock();
         loop {
             if let Some(taken) = wish.take() {
-                self.waiting.store(false, Ordering::Release);
                 return taken;
             }
             wish = self.filled.wait(wish).unwrap_or_else(PoisonError::into_inner);
@@ -229,7 +232,7 @@ fn curves(slot: &RequestSlot<Box<Wish>>, given_up: &AtomicU64, reply: &dyn Fn(Re
         let begun = Instant::now();
         let pace = RefCell::new(ProgressPace::begin());
         let id = wish.id;
-        let outdated = for_good(|| slot.waiting.load(Ordering::Acquire) && begun.elapsed() <= PATIENCE);
+        let outdated = for_good(|| slot.is_waiting() && begun.elapsed() <= PATIENCE);
         let stop = |stage| {
             if pace.borrow_mut().is_due(stage) {
                 reply(Reply::Stage { id, stage });
@@ -254,7 +257,7 @@ fn results(lane: &ResultLane, reply: &dyn Fn(Reply)) {
         let outdated = AtomicBool::new(false);
         let stop = || {
             let is_early = task.patience.is_zero() || begun.elapsed() <= task.patience;
-            let now = lane.slot.waiting.load(Ordering::Acquire) && is_early;
+            let now = lane.slot.is_waiting() && is_early;
             outdated.fetch_or(now, Ordering::AcqRel) || now || lane.stopped.load(Ordering::Acquire) >= task.id
         };
         task.run(&stop, &mut |found| reply(Reply::Found(found)));
@@ -288,5 +291,20 @@ fn file_lane(store: &Store, jobs: &Receiver<Box<Job>>, reply: &dyn Fn(Reply)) {
     let mut saves = Saves::default();
     while let Ok(job) = jobs.recv() {
         reply(Reply::File(Box::new(saves.run(store, *job))));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::RequestSlot;
+
+    #[test]
+    fn the_newest_request_is_taken_and_then_none_waits() {
+        let slot = RequestSlot::empty();
+        slot.put(1);
+        slot.put(2);
+        assert!(slot.is_waiting());
+        assert_eq!(slot.take(), 2);
+        assert!(!slot.is_waiting());
     }
 }

@@ -238,8 +238,7 @@ fn a_drop_while_walking() {
         session.pty.keys(&"[".repeat(12));
         session.pty.keys(":step 9999\r");
         // Before its first states there is nothing to keep.
-        let walks = |screen: &str| screen.contains("walking") && !screen.contains("Here, step 0");
-        session.pty.wait_for(walks, "the walk");
+        session.pty.wait_for(|screen| screen.contains("walking") && has_walked(screen), "the walk");
         session.drop_by(drop);
         far.assert_clean();
         far.assert_resumes();
@@ -285,7 +284,8 @@ fn a_drop_while_saving() {
                 break;
             }
         }
-        session.pty.wait_for(changed, "a change");
+        // The change makes a state of its own; a resumed session would make it too, and not be the same.
+        session.pty.wait_for(|screen| changed(screen) && has_walked(screen), "the state after a change");
         // The save waits for another saver in the same folder, so it is still under way at the drop.
         let folder = store.folder().expect("a folder");
         let ours = FolderLock::acquire(folder, LIMIT).expect("a lock").expect("a lock");
@@ -298,6 +298,11 @@ fn a_drop_while_saving() {
         far.assert_clean();
         far.assert_resumes();
     }
+}
+
+/// Whether there are states beyond the first.
+fn has_walked(screen: &str) -> bool {
+    !screen.contains("Here, step 0")
 }
 
 /// Whether one of the open files listed there is `file`.
