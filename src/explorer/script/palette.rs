@@ -64,7 +64,10 @@ pub fn palette(
     }
     let offers = (row.takes.offers)(&Typing { model, words, word, files });
     let entries = offers.iter().map(|offer| PaletteEntry::offer(before, offer));
-    ranked(entries.collect(), |entry| rank(&entry.line[start..], &entry.says, "", word))
+    let compared = |entry: &PaletteEntry| {
+        rank(&[entry.line[start..].to_lowercase(), entry.says.to_lowercase(), String::new()], word)
+    };
+    ranked(entries, compared).into_iter().map(|(_, entry)| entry).collect()
 }
 
 /// All commands, those of `first` before the others.
@@ -74,11 +77,16 @@ fn commands(first: &[Id], model: &Model) -> Vec<PaletteEntry> {
     of_pane.chain(others).map(|row| PaletteEntry::command(row, model)).collect()
 }
 
-/// Everything that has all words of `text`, or else as many as possible.
+/// Everything that has all words of `text`, or else as many as possible; nothing for a text longer than any search.
 fn anything(text: &str, keyed: Option<Id>, model: &Model, files: FolderNames<'_>) -> Vec<PaletteEntry> {
+    /// The longest text, in bytes, and the most words: the list is made again for every letter, also for those of a
+    /// text that was pasted by mistake.
+    const LONGEST: usize = 255;
+    const MOST: usize = 12;
     let wanted: Vec<&str> = text.split_whitespace().collect();
-    let known =
-        |line: &str| called(line).map_or_else(String::new, |row| format!("{} {}", row.short, row.words));
+    if text.len() > LONGEST || wanted.len() > MOST {
+        return Vec::new();
+    }
     let last = wanted.last().copied().unwrap_or_default();
     let offered = ROWS.iter().flat_map(|row| {
         let before = format!("{} ", row.name);
@@ -89,17 +97,19 @@ fn anything(text: &str, keyed: Option<Id>, model: &Model, files: FolderNames<'_>
     let mut found: Vec<PaletteEntry> =
         keyed.chain(of_key(&wanted, model)).chain(of_event(&wanted, model)).collect();
     let all = ROWS.iter().map(|row| PaletteEntry::command(row, model)).chain(offered);
-    let all: Vec<PaletteEntry> = all.filter(|entry| found.iter().all(|key| key.line != entry.line)).collect();
+    // How many words each entry lacks, and how well it matches the others.
+    let compared = |entry: &PaletteEntry| {
+        let known =
+            called(&entry.line).map_or_else(String::new, |row| format!("{} {}", row.short, row.words));
+        let texts = [&entry.line, &entry.says, &known].map(|text| text.to_lowercase());
+        let ranks: Vec<u8> = wanted.iter().filter_map(|word| rank(&texts, word)).collect();
+        Some((wanted.len() - ranks.len(), ranks.into_iter().max()?))
+    };
+    let others = ranked(all.filter(|entry| found.iter().all(|key| key.line != entry.line)), compared);
     // If nothing has all words, take what has most of them.
-    let most = if found.is_empty() { wanted.len() } else { 1 };
-    let rest = (0..most).map(|missing| {
-        ranked(all.clone(), |entry| {
-            let of = |word: &&str| rank(&entry.line, &entry.says, &known(&entry.line), word);
-            let ranks: Vec<u8> = wanted.iter().filter_map(of).collect();
-            ranks.iter().max().copied().filter(|_| ranks.len() + missing >= wanted.len())
-        })
-    });
-    found.extend(rest.into_iter().find(|rest| !rest.is_empty()).unwrap_or_default());
+    let least = if found.is_empty() { others.first().map_or(0, |((lacks, _), _)| *lacks) } else { 0 };
+    let best = others.into_iter().take_while(|((lacks, _), _)| *lacks <= least);
+    found.extend(best.map(|(_, entry)| entry));
     found
 }
 
@@ -127,33 +137,36 @@ fn of_event(wanted: &[&str], model: &Model) -> Option<PaletteEntry> {
     is_meant.then(|| PaletteEntry::new(format!("move-to event {number}"), format!("the {kind}")))
 }
 
-/// The entries that have a rank, the best first; equal ranks keep their order.
-fn ranked(entries: Vec<PaletteEntry>, rank: impl Fn(&PaletteEntry) -> Option<u8>) -> Vec<PaletteEntry> {
-    let mut found: Vec<_> =
-        entries.into_iter().filter_map(|entry| rank(&entry).map(|rank| (rank, entry))).collect();
+/// The entries that have a rank, with it, the best first; equal ranks keep their order.
+fn ranked<R: Ord + Copy>(
+    entries: impl Iterator<Item = PaletteEntry>,
+    rank: impl Fn(&PaletteEntry) -> Option<R>,
+) -> Vec<(R, PaletteEntry)> {
+    let mut found: Vec<_> = entries.filter_map(|entry| rank(&entry).map(|rank| (rank, entry))).collect();
     found.sort_by_key(|(rank, _)| *rank);
-    found.into_iter().map(|(_, entry)| entry).collect()
+    found
 }
 
-/// How well a line and its description match a word: 0 is best; `None` if they do not contain it. `words` are synonyms.
-fn rank(line: &str, says: &str, words: &str, word: &str) -> Option<u8> {
-    let [line, says, words, word] = [line, says, words, word].map(str::to_lowercase);
+/// How well a line, its description and its synonyms, all in lower case, match a word: 0 is best; `None` if they do not
+/// contain it.
+fn rank([line, says, words]: &[String; 3], word: &str) -> Option<u8> {
+    let word = &*word.to_lowercase();
     let has =
         |text: &str, is_it: &dyn Fn(&str) -> bool| text.split(|c: char| !c.is_alphanumeric()).any(is_it);
-    let begins = |text: &str| has(text, &|part| part.starts_with(&word));
+    let begins = |text: &str| has(text, &|part| part.starts_with(word));
     let is_in = |text: &str| has(text, &|part| part == word);
     if line == word {
         Some(0)
-    } else if line.starts_with(&word) || is_in(&line) || is_in(&words) {
+    } else if line.starts_with(word) || is_in(line) || is_in(words) {
         Some(1)
-    } else if begins(&line) || begins(&words) {
+    } else if begins(line) || begins(words) {
         Some(2)
-    } else if line.contains(&word) {
+    } else if line.contains(word) {
         Some(3)
-    } else if begins(&says) {
+    } else if begins(says) {
         Some(4)
     } else {
-        says.contains(&word).then_some(5)
+        says.contains(word).then_some(5)
     }
 }
 
@@ -224,6 +237,9 @@ mod tests {
         for line in ["zzz", "set title=\"a ", "quit 3", "pins A", "pins L"] {
             assert_eq!(found(line), [], "{line}");
         }
+        // Text that nobody searches for costs nothing.
+        assert!(!found(&"largest ".repeat(12)).is_empty());
+        assert_eq!(found(&"largest ".repeat(13)), []);
     }
 
     #[test]

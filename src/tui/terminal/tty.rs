@@ -65,6 +65,8 @@ pub(super) struct Tty {
     mouse: AtomicBool,
     /// Held during one write.
     turn: Mutex<()>,
+    /// Held while the terminal is given back.
+    giving: Mutex<()>,
 }
 
 impl Tty {
@@ -78,6 +80,7 @@ impl Tty {
             hands: AtomicU32::new(0),
             mouse: AtomicBool::new(false),
             turn: Mutex::new(()),
+            giving: Mutex::new(()),
         };
         if LINE.set(line).is_err() {
             return Err(io::Error::new(io::ErrorKind::AlreadyExists, "the terminal is already taken"));
@@ -92,27 +95,36 @@ impl Tty {
 
     /// Sets raw mode, alternate screen, no cursor, marked pastes. Taking it again sets all of them anew.
     pub(super) fn take(&self) -> io::Result<()> {
-        let _turn = self.my_turn();
-        let mut before = self.before.lock().unwrap_or_else(PoisonError::into_inner);
-        let ours = self.is_taken();
-        if !ours {
-            // A shell may have changed the modes since.
-            *before = retry_on_intr(|| tcgetattr(&self.fd))?;
-        }
-        let mut raw = before.clone();
-        raw.make_raw();
-        raw.special_codes[SpecialCodeIndex::VMIN] = 1;
-        raw.special_codes[SpecialCodeIndex::VTIME] = 0;
-        retry_on_intr(|| tcsetattr(&self.fd, OptionalActions::Now, &raw))?;
-        self.hands.fetch_add(if ours { 2 } else { 1 }, Ordering::SeqCst);
-        self.send(TAKE, TAKE_PATIENCE)?;
-        if self.mouse.load(Ordering::SeqCst) { self.send(MOUSE_ON, TAKE_PATIENCE) } else { Ok(()) }
+        let (hands, rest) = {
+            let _turn = patient(&self.turn);
+            let mut before = self.before.lock().unwrap_or_else(PoisonError::into_inner);
+            let ours = self.is_taken();
+            if !ours {
+                // A shell may have changed the modes since.
+                *before = retry_on_intr(|| tcgetattr(&self.fd))?;
+            }
+            let mut raw = before.clone();
+            raw.make_raw();
+            raw.special_codes[SpecialCodeIndex::VMIN] = 1;
+            raw.special_codes[SpecialCodeIndex::VTIME] = 0;
+            // It is ours before the modes are, so that a thread that ends the program now undoes them.
+            let more = if ours { 2 } else { 1 };
+            let hands = self.hands.fetch_add(more, Ordering::SeqCst).wrapping_add(more);
+            retry_on_intr(|| tcsetattr(&self.fd, OptionalActions::Now, &raw))?;
+            // Before any frame, which would be drawn on the other screen.
+            (hands, self.written(TAKE)?)
+        };
+        let until = Some(Instant::now() + TAKE_PATIENCE);
+        self.write_ours(hands, rest, until)?;
+        if self.mouse.load(Ordering::SeqCst) { self.write_ours(hands, MOUSE_ON, until) } else { Ok(()) }
     }
 
-    /// Gives the terminal back as it was. Works from any thread, any number of times, in less than 200 ms.
+    /// Gives the terminal back as it was. Works from any thread, any number of times, in less than 200 ms. If another
+    /// thread is giving it back, it has done so when this returns.
     ///
     /// There is nobody to report a failure to: a terminal that cannot be restored is gone.
     pub(super) fn give_back(&self) {
+        let _giving = patient(&self.giving);
         let hands = self.hands.load(Ordering::SeqCst);
         if !is_ours(hands)
             || self
@@ -122,7 +134,7 @@ impl Tty {
         {
             return;
         }
-        let _turn = self.my_turn();
+        let _turn = patient(&self.turn);
         // Output that nobody has read would come before the string that undoes the modes, if there were room for it at
         // all.
         let _ = tcflush(&self.fd, QueueSelector::OFlush);
@@ -131,16 +143,44 @@ impl Tty {
         let _ = self.send(GIVE_BACK, PATIENCE);
     }
 
+    /// Writes what there is room for now; returns the rest.
+    fn written<'a>(&self, bytes: &'a [u8]) -> io::Result<&'a [u8]> {
+        match rustix::io::write(&self.fd, bytes) {
+            Ok(written) => Ok(bytes.get(written..).unwrap_or_default()),
+            Err(Errno::AGAIN | Errno::INTR) => Ok(bytes),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Writes while the terminal has not changed hands, until `until` or as long as it takes. What does not fit by then
+    /// is dropped, and so is the rest when the terminal is given back: it belongs to a screen that is no longer shown.
+    fn write_ours(&self, hands: u32, bytes: &[u8], until: Option<Instant>) -> io::Result<()> {
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            {
+                let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+                if !is_ours(hands) || self.hands.load(Ordering::SeqCst) != hands {
+                    return Ok(());
+                }
+                rest = self.written(rest)?;
+            }
+            let left = until.map(|until| until.saturating_duration_since(Instant::now()));
+            if left.is_some_and(|left| left.is_zero()) {
+                return Ok(());
+            }
+            if !rest.is_empty() {
+                self.wait(PollFlags::OUT, left)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Writes outside a frame, for at most `patience`; what does not fit by then is dropped.
     pub(super) fn send(&self, bytes: &[u8], patience: Duration) -> io::Result<()> {
         let until = Instant::now() + patience;
         let mut rest = bytes;
         loop {
-            match rustix::io::write(&self.fd, rest) {
-                Ok(written) => rest = rest.get(written..).unwrap_or_default(),
-                Err(Errno::AGAIN | Errno::INTR) => {}
-                Err(error) => return Err(error.into()),
-            }
+            rest = self.written(rest)?;
             let left = until.saturating_duration_since(Instant::now());
             if rest.is_empty() || left.is_zero() {
                 return Ok(());
@@ -165,7 +205,7 @@ impl Tty {
         if !matches!(waiting, Ok(1..)) {
             return;
         }
-        let _turn = self.my_turn();
+        let _turn = patient(&self.turn);
         // In the background this would stop us.
         if self.is_taken()
             && self.in_foreground()
@@ -193,47 +233,28 @@ impl Tty {
             Err(error) => Err(error.into()),
         }
     }
+}
 
-    /// The turn to write; `None` after waiting [`PATIENCE`] for it.
-    ///
-    /// It is never held longer than one non-blocking write takes, unless the terminal could not be reopened.
-    fn my_turn(&self) -> Option<MutexGuard<'_, ()>> {
-        let until = Instant::now() + PATIENCE;
-        loop {
-            match self.turn.try_lock() {
-                Ok(turn) => return Some(turn),
-                Err(TryLockError::Poisoned(turn)) => return Some(turn.into_inner()),
-                Err(TryLockError::WouldBlock) if Instant::now() < until => {
-                    thread::sleep(Duration::from_millis(1));
-                }
-                Err(TryLockError::WouldBlock) => return None,
+/// The lock; `None` after waiting [`PATIENCE`] for it.
+///
+/// The turn to write is never held longer than one non-blocking write takes, unless the terminal could not be reopened.
+fn patient(lock: &Mutex<()>) -> Option<MutexGuard<'_, ()>> {
+    let until = Instant::now() + PATIENCE;
+    loop {
+        match lock.try_lock() {
+            Ok(held) => return Some(held),
+            Err(TryLockError::Poisoned(held)) => return Some(held.into_inner()),
+            Err(TryLockError::WouldBlock) if Instant::now() < until => {
+                thread::sleep(Duration::from_millis(1));
             }
+            Err(TryLockError::WouldBlock) => return None,
         }
     }
 }
 
 impl FrameSink for Tty {
-    // If the terminal is given back meanwhile, the rest is dropped: it belongs to a screen that is no longer shown.
     fn write_frame(&self, frame: &[u8]) -> io::Result<()> {
-        let hands = self.hands.load(Ordering::SeqCst);
-        let mut rest = frame;
-        while !rest.is_empty() {
-            {
-                let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
-                if !is_ours(hands) || self.hands.load(Ordering::SeqCst) != hands {
-                    return Ok(());
-                }
-                match rustix::io::write(&self.fd, rest) {
-                    Ok(written) => rest = rest.get(written..).unwrap_or_default(),
-                    Err(Errno::AGAIN | Errno::INTR) => {}
-                    Err(error) => return Err(error.into()),
-                }
-            }
-            if !rest.is_empty() {
-                self.wait(PollFlags::OUT, None)?;
-            }
-        }
-        Ok(())
+        self.write_ours(self.hands.load(Ordering::SeqCst), frame, None)
     }
 
     fn take_mouse(&self, wanted: bool) -> io::Result<()> {
