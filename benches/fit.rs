@@ -76,6 +76,7 @@ fn unloaded(preset: &Preset) -> Points {
         segments,
         time: None,
         is_said: false,
+        skipped: 0,
     }
 }
 

@@ -8,7 +8,7 @@
 //! | `edge` | how fast the edge goes |
 //! | `rate` | does the work of adhesion grow with the speed of the edge |
 //! | `untold` | could the points tell that it does |
-//! | `touch` | do the bodies pull before they touch |
+//! | `touch` | do the bodies pull before they touch, or are they apart after it |
 //! | `spring` | what would another spring give |
 //!
 //! This file asks whether the values are physically plausible.
@@ -30,7 +30,7 @@ pub(super) use spring::of_spring;
 use super::fitted::Fitted;
 use super::fitted::NORMAL;
 use super::path::Foot;
-use super::problem::{ADHESION, FitProblem, Paths};
+use super::problem::{ADHESION, FitProblem, FreeParameter, Paths};
 use super::pulled::is_pulled;
 use super::scatter::Scatter;
 use super::solve::SolvedFit;
@@ -101,6 +101,7 @@ pub(super) fn reasons(evidence: Evidence, preset: &Preset, clipped: Option<Clipp
     reasons.extend(in_contact.into_iter().chain(tilt));
     reasons.extend(scores::of_shape(evidence));
     reasons.extend(scores::of_branches(evidence));
+    reasons.extend(touch::of_late(evidence));
     if preset.cohesion().is_some() {
         reasons.extend(range::of_zone(problem, solved));
     } else if !is_pulled(&problem.preset) {
@@ -128,6 +129,21 @@ pub(super) fn of_sparse(branches: &Branches, preset: &Preset) -> Option<Reason> 
          force of such rows, or --free-part"
     );
     (most < SPARSE).then(|| Reason::new("sparse", most as f64, sentence))
+}
+
+/// A sentence on rows that may belong to either part, if they are many and a work of adhesion is fitted: they lie about the
+/// pull-off, which shows it.
+pub(super) fn of_unclear(branches: &Branches, fitted: &[Fitted]) -> Option<String> {
+    const SHARE: f64 = 0.1;
+    let is_fitted = fitted.iter().any(|fitted| fitted.key.starts_with(ADHESION));
+    let unclear: usize = branches.list.iter().map(|branch| branch.jump).sum();
+    let all: usize = branches.list.iter().map(|of| of.attached.len() + of.free.len() + of.jump).sum();
+    (is_fitted && unclear as f64 >= SHARE * all as f64).then(|| {
+        format!(
+            "{unclear} of {all} rows lie where the noise hides whether the bodies are apart, and are left out: the work of \
+             adhesion and the offset may be off by several of their errors"
+        )
+    })
 }
 
 /// Rows at the end of the range of a converter.
@@ -234,6 +250,7 @@ pub(super) fn doubts(
             ));
         }
     }
+    doubts.extend(unknown(problem, fitted));
     let free = problem.data.iter().filter(|datum| datum.free).count().max(1) as f64;
     if let Some(s) = scatter.contact.filter(|s| is_known && *s > NOISIER + OF_FEW / free.sqrt()) {
         doubts.push(format!(
@@ -243,6 +260,22 @@ pub(super) fn doubts(
         ));
     }
     doubts
+}
+
+/// A sentence on positive values whose errors are larger than they are. A work of adhesion has a sentence of its own.
+fn unknown(problem: &FitProblem, fitted: &[Fitted]) -> Option<String> {
+    let is_unknown = |(fitted, parameter): &(&Fitted, &FreeParameter)| {
+        let is_positive = parameter.scale.is_none() && !fitted.key.starts_with(ADHESION);
+        is_positive && fitted.standard_error.is_some_and(|error| error >= fitted.value)
+    };
+    let all = fitted.iter().zip(&problem.parameters).filter(is_unknown);
+    let keys: Vec<&str> = all.map(|(fitted, _)| &*fitted.key).collect();
+    (!keys.is_empty()).then(|| {
+        format!(
+            "the error is larger than the value of {}: the points hardly say more than that it is positive",
+            keys.join(" and of ")
+        )
+    })
 }
 
 /// The largest contact radius and approach of the feet.

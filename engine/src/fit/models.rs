@@ -249,8 +249,7 @@ fn pair(fits: &[FittedModel], scores: &[f64], [best, other]: [usize; 2]) -> Opti
             short(difference, 3)
         ),
         (true, false) => format!(
-            "{} is nearer to the points than {}, whose AIC is larger by {}, but its own verdict is not that it \
-             describes them",
+            "{} is nearer to the points than {}, whose AIC is larger by {}, but it does not describe them",
             one.name(),
             two.name(),
             short(difference, 3)

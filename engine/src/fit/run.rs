@@ -4,7 +4,7 @@ use super::bias::of_bias;
 use super::determined::{Determined, determined};
 use super::fitted::{too_small, unmoved, values};
 use super::intervals::intervals;
-use super::judge::{Evidence, doubts, of_sparse, of_spring, reasons, unseen};
+use super::judge::{Evidence, doubts, of_sparse, of_spring, of_unclear, reasons, unseen};
 use super::laid::laid;
 use super::least_squares::Ending;
 use super::options::{FitError, Options};
@@ -177,7 +177,8 @@ impl<'a> Posed<'a> {
         let mut warnings = doubts(evidence, &fitted, (&reasons, is_known));
         warnings.extend(too_small(&fitted));
         warnings.extend(unmoved(&mut fitted));
-        warnings.extend(branches.swapped());
+        warnings.extend(of_unclear(branches, &fitted));
+        warnings.extend(branches.swapped().into_iter().chain(branches.unread()));
         let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
         let instrument = problem.instrument_at(u).turned(problem.turned);
         let fitted_preset = laid(preset, &problem, (&found, closing, &instrument), &mut notes);

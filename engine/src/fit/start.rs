@@ -3,10 +3,10 @@
 //! E* runs over five decades; at each value γ is such that the smallest force is that of the points, and δ₀ is the
 //! median offset. Other free keys are tried at a few multiples of their values.
 
-use super::least_squares::LeastSquares;
+use super::least_squares::{LeastSquares, cost};
 use super::problem::{ADHESION, Datum, FitProblem, START, Target};
 use super::pulled::is_pulled;
-use super::solve::{SolvedFit, solve};
+use super::solve::{HUBER, solve};
 use super::track::begins;
 use crate::elementary::ln;
 use crate::gap::Gap;
@@ -16,6 +16,7 @@ use crate::preset::edge;
 use crate::preset::schema::RANGE_KEYS;
 use crate::problem::{Adhesion, Cohesion, Control};
 use crate::progress::{Progress, ProgressPart};
+use nalgebra::DVector;
 
 /// Values of E*, and the decades they span.
 const MODULI: usize = 31;
@@ -52,7 +53,47 @@ pub struct Tried {
     pub snaps: usize,
 }
 
+/// Where a start ends.
+#[derive(Debug, Clone)]
+struct End {
+    u: Vec<f64>,
+    residuals: DVector<f64>,
+    /// Their scale, in σ.
+    scale: f64,
+    /// Their mean, in σ.
+    distance: f64,
+    /// Whether rows are apart where it holds the bodies in contact.
+    is_late: bool,
+}
+
+impl End {
+    /// Whether it is nearer to the points than another one: by what a fit minimizes, at the scale of the better one, or by
+    /// the mean distance where neither is near them. One that has contact where the bodies are apart must be much nearer.
+    fn is_nearer(&self, other: &Self, robust: bool) -> bool {
+        const MUCH: f64 = 1.5;
+        let huber = if robust { HUBER * self.scale.min(other.scale) } else { f64::INFINITY };
+        let is_near = self.distance.min(other.distance) < REACHED;
+        let far = |end: &Self| {
+            let far = if is_near { cost(&end.residuals, None, huber) } else { end.distance };
+            if end.is_late { MUCH * far } else { far }
+        };
+        far(self) < far(other)
+    }
+}
+
 impl FitProblem {
+    /// The end that is reached from `u`; `u` itself where nothing is.
+    fn end_from(&self, u: Vec<f64>, robust: bool, progress: &dyn Progress) -> Option<End> {
+        let solved = solve(self, &u, robust, ROUNDS, progress).map(|solved| solved.minimum.parameters);
+        let of = |u: Vec<f64>| {
+            let residuals = self.residuals(&u)?;
+            let (scale, distance) = (self.scale(&residuals), self.distance(&u)?);
+            let is_late = self.is_late(&u, scale);
+            Some(End { u, residuals, scale, distance, is_late })
+        };
+        solved.and_then(of).or_else(|| of(u))
+    }
+
     /// The mean distance at `u`.
     fn distance(&self, u: &[f64]) -> Option<f64> {
         let residuals = self.residuals(u)?;
@@ -236,6 +277,42 @@ impl FitProblem {
         Some((u, tried))
     }
 
+    /// Where a pull ends that leaves the end `best` a few times, one value far off: its valleys are long, and two of them may
+    /// lie side by side.
+    fn left(&self, mut best: End, robust: bool, progress: &dyn Progress) -> End {
+        /// How often, while that leads anywhere.
+        const TIMES: usize = 3;
+        const KEYS: [&str; 3] = ["material.effective_modulus", edge::REFERENCE_SPEED, START];
+        const FACTORS: [[f64; 2]; 3] = [[0.7, 1.4], [0.1, 10.0], [0.7, 1.4]];
+        for _ in 0..TIMES {
+            let (before, from) = (best.distance, best.u.clone());
+            for (key, factors) in KEYS.into_iter().zip(FACTORS) {
+                let places = self.index(|target| target.key() == key);
+                for (j, factor) in places.into_iter().flat_map(|j| factors.map(|factor| (j, factor))) {
+                    let mut next = from.clone();
+                    next[j] += ln(factor);
+                    if key != START {
+                        self.begun(&mut next);
+                    }
+                    let end = self.end_from(next, robust, progress);
+                    if let Some(end) = end.filter(|end| end.is_nearer(&best, robust)) {
+                        best = end;
+                    }
+                }
+            }
+            if best.distance > (1.0 - ONE) * before {
+                break;
+            }
+        }
+        best
+    }
+
+    /// What became of a start that led to `end`.
+    fn tried(&self, end: &End) -> Tried {
+        let snaps = self.paths(&end.u).map_or(0, |paths| paths.of(Segment::Retraction).snaps);
+        Tried { distance: end.distance, snaps }
+    }
+
     /// The candidates, that of the preset first.
     fn candidates(&self, scan: bool) -> Vec<Vec<f64>> {
         let own: Vec<f64> =
@@ -292,7 +369,7 @@ pub fn start(
         return problem.pinned(robust, progress);
     }
     let ranked = ranked(problem, scan, robust, progress);
-    best_of(&problem.thinned(RUN), ranked, robust, progress)
+    best_of(&problem.thinned(RUN), ranked, (scan, robust), progress)
 }
 
 /// The candidates nearest to the points, each with its distance, the nearest first.
@@ -334,9 +411,13 @@ fn ranked(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progres
     }
     by_distance(&mut ranked, BEST);
     // The values of a pull that are given may be guesses that its scan does not come near.
-    if is_pulled(&problem.preset) {
+    if scan && is_pulled(&problem.preset) {
         let own = problem.candidates(false);
-        ranked.extend(own.into_iter().filter_map(|u| Some((compared.distance(&u)?, u))));
+        let at = problem.instrument_at(&own[0]);
+        let settled = compared.settled(own[0].clone(), least - at.baseline).into_iter().flatten();
+        let own: Vec<Vec<f64>> = own.iter().cloned().chain(settled).collect();
+        let own = own.into_iter().filter_map(|u| Some((compared.distance(&u)?, u)));
+        ranked = own.chain(ranked).collect();
     }
     ranked
 }
@@ -345,32 +426,28 @@ fn ranked(problem: &FitProblem, scan: bool, robust: bool, progress: &dyn Progres
 fn best_of(
     run: &FitProblem,
     ranked: Vec<(f64, Vec<f64>)>,
-    robust: bool,
+    (scan, robust): (bool, bool),
     progress: &dyn Progress,
 ) -> Option<(Vec<f64>, Vec<Tried>)> {
-    let mut best: Option<(f64, Vec<f64>)> = None;
+    let mut best: Option<End> = None;
     let mut tried = Vec::new();
     let count = ranked.len() as f64;
     let is_pulled = is_pulled(&run.preset);
     let mut from: Vec<Vec<f64>> = Vec::new();
-    for (i, (before, u)) in ranked.into_iter().enumerate() {
+    for (i, (_, begun)) in ranked.into_iter().enumerate() {
         progress.report(0.6 + 0.4 * i as f64 / count);
-        let solved = solve(run, &u, robust, ROUNDS, progress);
-        let begun = u.clone();
-        let end = solved.map_or((before, u), |SolvedFit { minimum, .. }| {
-            let distance = run.distance(&minimum.parameters).unwrap_or(before);
-            (distance, minimum.parameters)
-        });
-        let snaps = run.paths(&end.1).map_or(0, |paths| paths.of(Segment::Retraction).snaps);
-        tried.push(Tried { distance: end.0, snaps });
+        let Some(end) = run.end_from(begun.clone(), robust, progress) else { continue };
+        tried.push(run.tried(&end));
         // Each step of a pull is one more pull, so an end near the points that is reached from two starts far from each other
         // is final.
         let apart = |u: &[f64], v: &[f64]| u.iter().zip(v).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let is_end = |best: &(f64, Vec<f64>)| {
-            best.0 < REACHED && apart(&best.1, &end.1) < ONE && from.iter().any(|u| apart(u, &begun) > OTHER)
+        let is_end = |best: &End| {
+            best.distance < REACHED
+                && apart(&best.u, &end.u) < ONE
+                && from.iter().any(|u| apart(u, &begun) > OTHER)
         };
         let is_last = is_pulled && best.as_ref().is_some_and(is_end);
-        if best.as_ref().is_none_or(|best| end.0 < best.0) {
+        if best.as_ref().is_none_or(|best| end.is_nearer(best, robust)) {
             best = Some(end);
         }
         if is_last {
@@ -378,5 +455,13 @@ fn best_of(
         }
         from.push(begun);
     }
-    best.map(|(_, u)| (u, tried))
+    let mut best = best?;
+    if is_pulled && scan {
+        let end = run.left(best.clone(), robust, progress);
+        if end.is_nearer(&best, robust) {
+            tried.push(run.tried(&end));
+            best = end;
+        }
+    }
+    Some((best.u, tried))
 }

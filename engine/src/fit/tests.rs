@@ -34,7 +34,17 @@ impl Normal {
 /// No points yet, each of which will be of a branch.
 pub(super) fn no_points(abscissa: Abscissa) -> Points {
     let (x, force, segments) = (Vec::new(), Vec::new(), Some(Vec::new()));
-    Points { abscissa, x, force, radius: None, steps: [1e-30; 3], segments, time: None, is_said: false }
+    Points {
+        abscissa,
+        x,
+        force,
+        radius: None,
+        steps: [1e-30; 3],
+        segments,
+        time: None,
+        is_said: false,
+        skipped: 0,
+    }
 }
 
 /// A loading device with a body: δ and P as functions of s.
@@ -245,6 +255,7 @@ fn what_cannot_be_told_apart_is_refused_and_named() {
         segments,
         time: None,
         is_said: false,
+        skipped: 0,
     };
     let fit = run(&preset(&SPHERE.replace("2.0", "1.5"), 3.9, 0.007, ""), &three, &["R", E, W]);
     close(&fit, &[2.0, 1.3, 0.02], 1e-7);
@@ -295,6 +306,7 @@ fn a_long_free_part_does_not_hide_which_way_the_columns_run() {
             segments: None,
             time: None,
             is_said: false,
+            skipped: 0,
         };
         let found = points.branches(&Asked::default()).unwrap();
         let contact = found.list[0].attached.len() as f64;

@@ -75,6 +75,7 @@ fn over_approach(x: Vec<f64>, force: Vec<f64>, segments: Vec<Segment>) -> Points
         segments: Some(segments),
         time: None,
         is_said: false,
+        skipped: 0,
     }
 }
 

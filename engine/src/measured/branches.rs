@@ -55,6 +55,8 @@ pub struct Branches {
     pub notes: Vec<String>,
     /// How many rows of the approach and of the retraction the file has, used or not.
     pub rows: [usize; 2],
+    /// How many more the file has, without a number in a column that is used.
+    pub skipped: usize,
     /// How many rows belong to pauses.
     pub pauses: usize,
     /// The end of a converter's range at which rows in contact lie.
@@ -75,6 +77,19 @@ impl Branches {
             format!(
                 "the points leave it open which way their columns run: {} is assumed. Set --signs or data.signs",
                 signs_text(self.turned)
+            )
+        })
+    }
+
+    /// A sentence on rows without numbers, if they are many.
+    pub fn unread(&self) -> Option<String> {
+        const SHARE: usize = 4;
+        let all = self.skipped + self.rows[0] + self.rows[1];
+        (SHARE * self.skipped >= all).then(|| {
+            format!(
+                "{} of {all} rows have no number in a column that is used, and are left out: look whether a part of the \
+                 curve is missing",
+                self.skipped
             )
         })
     }
@@ -227,6 +242,7 @@ impl Points {
         let or = or.or(unless_apart);
         Ok(Branches {
             abscissa,
+            skipped: self.skipped,
             list,
             noise,
             baseline,

@@ -103,6 +103,8 @@ pub struct Points {
     pub time: Option<Vec<f64>>,
     /// Whether the user, or units in the header, say which columns they are, which nothing in them refutes.
     pub is_said: bool,
+    /// How many rows of the file are left out, since a column that is used has no number there.
+    pub skipped: usize,
 }
 
 /// Why columns yield no points.
@@ -294,7 +296,7 @@ impl Measured {
         // A unit in the header has told a force from a length.
         let have_units = self.columns.iter().all(|column| column.unit.is_some());
         let (segments, is_said) = (self.segments.clone(), self.is_said || have_units);
-        Ok(Points { abscissa, x, force, radius, steps, segments, time, is_said })
+        Ok(Points { abscissa, x, force, radius, steps, segments, time, is_said, skipped: self.skipped })
     }
 }
 

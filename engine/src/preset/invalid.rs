@@ -210,7 +210,7 @@ pub enum Invalid {
         meant: Option<Key>,
     },
     /// A contact radius where the gap is not known.
-    #[error("{key} = {value} is out of range: the gap is known only up to the radius {largest}")]
+    #[error("{key} = {value} is out of range: it must be less than {largest}, up to which the gap is known")]
     Beyond {
         /// The key.
         key: Key,

@@ -581,7 +581,10 @@ impl FitReport {
             format!("; neighbouring points in contact show a noise of {} sigma", short(s, 3))
         });
         let correlated = if self.rows_that_count_as_one > 1.0 {
-            format!("; {} rows of noise count as one", short(self.rows_that_count_as_one, 2))
+            format!(
+                "; the noise of neighbouring rows is alike, and {} rows count as one",
+                short(self.rows_that_count_as_one, 2)
+            )
         } else {
             String::new()
         };

@@ -118,7 +118,7 @@ pub struct RunReport {
     pub moments: Vec<MomentRow>,
 }
 
-/// How long a dead load is borne.
+/// How long a dead load holds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct FailureReport {
@@ -382,9 +382,9 @@ impl PullReport {
             let force = shown(units, Quantity::Force, failure.force);
             let line = match failure.time {
                 Some(time) => {
-                    format!("a dead load of {force} is borne for {}", shown(units, Quantity::Time, time))
+                    format!("a dead load of {force} holds for {}", shown(units, Quantity::Time, time))
                 }
-                None => format!("a dead load of {force} is borne for ever"),
+                None => format!("a dead load of {force} holds indefinitely"),
             };
             let _ = writeln!(text, "{line}");
         }

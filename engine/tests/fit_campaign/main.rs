@@ -27,6 +27,7 @@ mod campaign;
 mod device;
 mod directions;
 mod kinds;
+mod minima;
 mod models;
 mod record;
 mod rows;

@@ -325,3 +325,33 @@ fn three_speeds_have_one_law_better_known_than_that_of_each() {
     let found = three(1.2, 300);
     assert!(!found.collapse.collapses && found.verdict == Verdict::DoesNotDescribe, "{:?}", found.collapse);
 }
+
+#[test]
+fn a_pull_is_found_from_guesses_two_and_five_times_off() {
+    let peel = Peel {
+        radius: 1e-3,
+        modulus: 1e6,
+        adhesion: 0.05,
+        exponent: 0.5,
+        reference: 1e-6,
+        speed: 1e-5,
+        stiffness: 500.0,
+        begin: 1.2e-4,
+    };
+    for seed in 0..3 {
+        let mut made =
+            Pulled::new(peel, Seen::Position, [230.0, 0.002], seed).made(&["E*", "v0", "data.offset"]);
+        let guessed = [
+            ("effective_modulus = 1e6", "effective_modulus = 2e6"),
+            ("work_of_adhesion = 1e-1", "work_of_adhesion = 5e-2"),
+            ("exponent = 0.4", "exponent = 0.5"),
+        ];
+        for (truth, guess) in guessed {
+            assert!(made.preset.contains(truth), "{}", made.preset);
+            made.preset = made.preset.replace(truth, guess);
+        }
+        let found = outcome(0, &made, &fitted(&made, &options(&made.free)));
+        println!("{found:#?}");
+        assert!(found.is_trusted() && found.off() < 4.0, "{found:#?}");
+    }
+}

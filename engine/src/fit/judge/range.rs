@@ -65,9 +65,10 @@ pub(in super::super) fn unseen(
                 if worse > WORSE {
                     return None;
                 }
+                let than = if worse < 0.0 { "smaller" } else { "larger" };
                 format!(
-                    "adhesion at the edge alone fits as well, with a chi squared larger by {}",
-                    short(worse, 2)
+                    "adhesion at the edge alone fits as well, with a chi squared {than} by {}",
+                    short(worse.abs(), 2)
                 )
             }
         }

@@ -1,9 +1,10 @@
-//! Whether the bodies pull before they touch: at an edge without a range the first contact is at δ = 0, and the force before it is that of
-//! bodies apart.
+//! Whether the bodies pull before they touch, or are apart where they must have touched. At an edge without a range the first contact is
+//! at δ = 0, and with a range γ/σ₀ at δ = −γ/σ₀; the force before it is that of bodies apart.
 //!
 //! A median of m rows is known to 1.2533 s/√m; a deviation beyond five of these is not chance.
 
-use super::super::problem::Target;
+use super::super::problem::{Datum, FitProblem, Target};
+use super::super::pulled::is_pulled;
 use super::super::verdict::Reason;
 use super::{Evidence, ROUNDING};
 use crate::measured::branches::median;
@@ -19,18 +20,73 @@ const OF_MEDIAN: f64 = 1.2533;
 const NO_CHANCE: f64 = 5.0;
 const BEFORE: f64 = 3.0;
 
-/// Rows of an approach that pull where the model has the bodies apart.
-pub(super) fn of_touch(Evidence { problem, solved, scatter, inner }: Evidence) -> Option<Reason> {
-    if problem.abscissa == Abscissa::Radius {
-        return None;
-    }
+/// The noise of the rows in contact in σ, and how far the first touch and a row may be off.
+fn margin(Evidence { problem, solved, scatter, inner }: Evidence) -> Option<[f64; 2]> {
     let s = scatter.contact?.max(solved.scale).max(ROUNDING);
-    let instrument = problem.instrument_at(&solved.minimum.parameters);
     let offset = problem.parameters.iter().position(|parameter| parameter.target == Target::Offset);
     let error = offset.zip(inner).map_or(0.0, |(j, inner)| {
         s * inner[(j, j)].max(0.0).sqrt() * problem.parameters[j].scale.unwrap_or(0.0)
     });
-    let margin = BEFORE * (error + problem.sigma[0]);
+    Some([s, BEFORE * (error + problem.sigma[0])])
+}
+
+impl FitProblem {
+    /// How far beyond the first contact of the model at `u` the rows of an approach lie that are still apart, more than
+    /// `margin` beyond it and far from its path; `s` is the noise in σ. The bodies cannot come nearer without touching.
+    fn late(&self, u: &[f64], [s, margin]: [f64; 2]) -> Option<Vec<f64>> {
+        if self.abscissa == Abscissa::Radius || is_pulled(&self.preset) {
+            return None;
+        }
+        let instrument = self.instrument_at(u);
+        let range = self.preset_at(u, Segment::Approach)?.cohesion().map_or(0.0, |cohesion| cohesion.range);
+        let beyond = |datum: &Datum| datum.point.x - (instrument.offset - range);
+        let is_inside =
+            |datum: &&Datum| datum.free && datum.segment == Segment::Approach && beyond(datum) > margin;
+        let mut inside = self.data.iter().filter(is_inside).peekable();
+        inside.peek()?;
+        let weights = self.weights();
+        let paths = self.paths(u)?;
+        let [approach, _] = paths.scaled([weights[0], weights[1], 0.0]);
+        let mut hint = 0;
+        let mut is_off = |datum: &&Datum| {
+            let force = datum.point.force - instrument.baseline - instrument.tilt * datum.point.x;
+            let place = [(datum.point.x - instrument.offset) * weights[0], force * weights[1], 0.0];
+            approach.nearest(place, &mut hint).is_some_and(|foot| foot.residuals[0].abs() > NO_CHANCE * s)
+        };
+        Some(inside.filter(|datum| is_off(datum)).map(beyond).collect())
+    }
+
+    /// Whether rows of an approach are apart where the model at `u` holds the bodies in contact.
+    pub(in super::super) fn is_late(&self, u: &[f64], s: f64) -> bool {
+        let late = self.late(u, [s.max(ROUNDING), BEFORE * self.sigma[0]]);
+        late.is_some_and(|late| late.len() > FEWEST)
+    }
+}
+
+/// Rows of an approach that are apart where the model holds the bodies in contact.
+pub(super) fn of_late(evidence: Evidence) -> Option<Reason> {
+    let Evidence { problem, solved, .. } = evidence;
+    let late = problem.late(&solved.minimum.parameters, margin(evidence)?)?;
+    let most = late.iter().copied().fold(0.0, f64::max);
+    (late.len() > FEWEST).then(|| {
+        let sentence = format!(
+            "on the approach the bodies are apart where the model has them in contact: {} rows, up to {} beyond its \
+             first contact",
+            late.len(),
+            said(&problem.preset.units, Quantity::Length, most)
+        );
+        Reason::new("late", most, sentence)
+    })
+}
+
+/// Rows of an approach that pull where the model has the bodies apart.
+pub(super) fn of_touch(evidence: Evidence) -> Option<Reason> {
+    let Evidence { problem, solved, scatter, .. } = evidence;
+    if problem.abscissa == Abscissa::Radius {
+        return None;
+    }
+    let [s, margin] = margin(evidence)?;
+    let instrument = problem.instrument_at(&solved.minimum.parameters);
     let apart = |x: f64| instrument.offset - x;
     let of_branch = |branch: usize| -> Option<Reason> {
         let of = |free: bool| {
