@@ -128,7 +128,7 @@ mod tests {
             (
                 "radius=5",
                 "radius=19",
-                "p.toml:8: path.start_contact_radius = 19.0 is out of range: the gap is known",
+                "p.toml:8: path.start_contact_radius = 19.0 is out of range: it must be less than",
             ),
             ("[path]\nstart_contact_radius=5\n", "", "p.toml: path.start_contact_radius = 250.0"),
         ] {
