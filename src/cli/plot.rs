@@ -78,7 +78,7 @@ pub struct PlotArguments {
     /// The reading of the measured curve at zero force [default: the median of its free part]
     #[arg(long, value_name = "FORCE", conflicts_with = "sweep", allow_hyphen_values = true)]
     baseline: Option<String>,
-    /// The width of the figure on paper in millimetres, or one or two columns of a journal (86 and 178 mm)
+    /// The width of the figure on paper in millimetres, or one-column or two-columns of a journal (86 and 178 mm)
     #[arg(long, value_name = "WIDTH", default_value = "one-column", value_parser = width)]
     width: Width,
     /// Also write the data, to FILE.csv

@@ -78,6 +78,10 @@ fn ranges_steps_and_rows() {
     let found = document(&[&WAVY[..], &steps].concat());
     assert_eq!(found["runs"][0]["rate"], Value::Null);
     assert!(found["runs"][0]["last_contact"].is_object());
+    let early = ["--set", "path.steps=to -2 at 0.01; hold 5; apart at 0.02"];
+    let early = pulloff(&[&WAVY[..], &early].concat()).success();
+    let said = String::from_utf8_lossy(&early.get_output().stderr).into_owned();
+    assert!(said.contains("the bodies are apart in step 1 of 3: the steps after it are not made"), "{said}");
     let moments = pulloff(&[&WAVY[..], &["--rate", "1", "--rows", "moments", "--format", "csv"]].concat());
     let text = String::from_utf8(moments.success().get_output().stdout.clone()).unwrap();
     assert!(

@@ -434,6 +434,7 @@ fn best_of(
     let count = ranked.len() as f64;
     let is_pulled = is_pulled(&run.preset);
     let mut from: Vec<Vec<f64>> = Vec::new();
+    let mut is_final = false;
     for (i, (_, begun)) in ranked.into_iter().enumerate() {
         progress.report(0.6 + 0.4 * i as f64 / count);
         let Some(end) = run.end_from(begun.clone(), robust, progress) else { continue };
@@ -446,17 +447,17 @@ fn best_of(
                 && apart(&best.u, &end.u) < ONE
                 && from.iter().any(|u| apart(u, &begun) > OTHER)
         };
-        let is_last = is_pulled && best.as_ref().is_some_and(is_end);
+        is_final = is_pulled && best.as_ref().is_some_and(is_end);
         if best.as_ref().is_none_or(|best| end.is_nearer(best, robust)) {
             best = Some(end);
         }
-        if is_last {
+        if is_final {
             break;
         }
         from.push(begun);
     }
     let mut best = best?;
-    if is_pulled && scan {
+    if is_pulled && scan && !is_final {
         let end = run.left(best.clone(), robust, progress);
         if end.is_nearer(&best, robust) {
             tried.push(run.tried(&end));

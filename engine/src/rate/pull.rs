@@ -85,6 +85,8 @@ pub struct Pull {
     pub holds: Vec<f64>,
     /// Steps of the integrator.
     pub steps: usize,
+    /// How many parts of the programme were begun: those after the last contact are not.
+    pub begun: usize,
 }
 
 /// The state of a pull in progress.
@@ -141,8 +143,9 @@ impl Puller<'_> {
         let start = going.resting(0.0);
         let elastic = HeldDisc::new(&going.panels, self.control, s, c).potential(&going.panels, self.control);
         going.record.add(start, 0.0);
-        let mut holds = Vec::new();
+        let (mut holds, mut begun) = (Vec::new(), 0);
         for part in programme {
+            begun += 1;
             going.part(*part, progress)?;
             if going.is_apart {
                 break;
@@ -157,7 +160,7 @@ impl Puller<'_> {
         if !matches!(programme, [Part::Apart { .. }]) {
             going.record.moved.clear();
         }
-        Ok(going.finished(start, elastic, holds))
+        Ok(going.finished(start, elastic, (holds, begun)))
     }
 
     /// The table as far as the contact can grow.
@@ -310,7 +313,7 @@ impl Going<'_> {
         self.record.add(self.resting(self.record.dissipated), force_rate);
     }
 
-    fn finished(mut self, start: Moment, elastic: f64, holds: Vec<f64>) -> Pull {
+    fn finished(mut self, start: Moment, elastic: f64, (holds, begun): (Vec<f64>, usize)) -> Pull {
         let control = self.puller.control;
         let last = self.held();
         let stored = last.potential(&self.panels, control);
@@ -361,6 +364,7 @@ impl Going<'_> {
             closed_to: self.closed_to,
             holds,
             steps: self.record.steps,
+            begun,
         }
     }
 }

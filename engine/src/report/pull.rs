@@ -323,6 +323,13 @@ impl PullReport {
             let part = progress::ProgressPart::new(progress, [k as f64 / count, (k + 1) as f64 / count]);
             let pull = puller.pull(&parts, &part).map_err(refused)?;
             warnings.extend(limits(preset, &case, &factors, rate.as_ref(), &pull, progress));
+            if parts[pull.begun..].iter().any(|part| !matches!(part, Part::Apart { .. })) {
+                warnings.push(format!(
+                    "the bodies are apart in step {} of {}: the steps after it are not made",
+                    pull.begun,
+                    parts.len()
+                ));
+            }
             runs.push(factors.run(*rate, &pull, case.control));
         }
         let mut failures = Vec::new();

@@ -45,11 +45,16 @@ pub struct Unit {
     factors: Vec<Factor>,
 }
 
+/// What a comma after a number may have been meant as.
+fn of_comma(found: &str) -> &'static str {
+    if found == "','" { " (use a decimal point)" } else { "" }
+}
+
 /// Why a text is not a unit, and where.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum UnitError {
     /// Something else in the place of a unit.
-    #[error("column {}: expected a unit such as um, mN, kPa or mJ/m^2, found {found}", place.column)]
+    #[error("column {}: expected a unit such as um, mN, kPa or mJ/m^2, found {found}{}", place.column, of_comma(found))]
     Expected {
         /// Where.
         place: TextPlace,

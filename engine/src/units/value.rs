@@ -262,7 +262,7 @@ mod tests {
             (
                 "1,5 um",
                 Quantity::Length,
-                "column 2: expected a unit such as um, mN, kPa or mJ/m^2, found ','",
+                "column 2: expected a unit such as um, mN, kPa or mJ/m^2, found ',' (use a decimal point)",
             ),
         ] {
             assert_eq!(si(text, quantity), Err(message.to_owned()), "{text}");
