@@ -79,9 +79,8 @@ pub enum Opening {
     Resume(Box<HeldSession>),
 }
 
-/// How long the last write of a session may take when the person quits, and when something else ends the program, which
-/// should be gone two seconds after its terminal.
-const PATIENCE: [Duration; 2] = [Duration::from_secs(5), Duration::from_millis(1500)];
+/// How long the last write of a session may take when the person quits, and when something else ends the program.
+const PATIENCE: [Duration; 2] = [Duration::from_secs(5), Duration::from_millis(800)];
 
 /// How long quitting waits for a file being written: the shell is waiting too.
 const SAVE_PATIENCE: Duration = Duration::from_secs(10);

@@ -77,7 +77,9 @@ impl End {
             let far = if is_near { cost(&end.residuals, None, huber) } else { end.distance };
             if end.is_late { MUCH * far } else { far }
         };
-        far(self) < far(other)
+        // Less than half of χ² tells nothing, and the first of two equal ends stays.
+        let nothing = if is_near { 0.25 * self.scale.min(other.scale).powi(2) } else { 0.0 };
+        far(self) < far(other) - nothing
     }
 }
 
@@ -289,6 +291,9 @@ impl FitProblem {
             for (key, factors) in KEYS.into_iter().zip(FACTORS) {
                 let places = self.index(|target| target.key() == key);
                 for (j, factor) in places.into_iter().flat_map(|j| factors.map(|factor| (j, factor))) {
+                    if progress.stop() {
+                        return best;
+                    }
                     let mut next = from.clone();
                     next[j] += ln(factor);
                     if key != START {

@@ -235,40 +235,39 @@ fn same_free_force(
 
 /// Takes the last rows of a branch as apart if another branch has rows apart and these have the same force: with few rows
 /// the force may go from contact to zero without a visible jump. This is done for short branches, and for approaches that
-/// begin where a retraction is apart, since bodies that close touch further in than bodies that open.
+/// begin where a retraction is well apart, since bodies that close touch further in than bodies that open.
 pub(super) fn as_elsewhere(list: &mut [(MeasuredBranch, Vec<MeasuredPoint>)]) {
     /// Forces are equal within this many times the range of those apart, or within this share of the range of the
     /// branch; and the fewest such rows.
     const SAME: f64 = 3.0;
     const SHARE: f64 = 0.02;
     const FEWEST: usize = 2;
-    /// The fewest rows of an approach that lie where a retraction is apart, and how many of them must have its force.
-    const FEWEST_THERE: usize = 4;
+    /// The fewest rows of an approach that lie where a retraction is well apart, and how many of them must have its force.
+    const FEWEST_THERE: usize = 3;
     const MOST_THERE: f64 = 0.9;
     let forces: Vec<f64> = list.iter().flat_map(|(branch, _)| branch.free.iter().map(|p| p.force)).collect();
     let Some(level) = median(forces.clone()) else { return };
     let spread = range(forces.into_iter());
-    let opened = list.iter().filter(|(branch, _)| branch.segment == Segment::Retraction);
-    let opened: Vec<f64> =
-        opened.filter_map(|(branch, _)| branch.free.first()).map(|point| point.x).collect();
-    let apart = opened.iter().copied().reduce(f64::min);
+    // The middle of the rows apart: without a jump, the first of them may still be in contact.
+    let of_middle = |branch: &MeasuredBranch| median(branch.free.iter().map(|point| point.x).collect());
+    let opened = list.iter().map(|(branch, _)| branch).filter(|branch| branch.segment == Segment::Retraction);
+    let apart = opened.filter_map(of_middle).reduce(f64::min);
     for (branch, _) in list {
         if !branch.free.is_empty() {
             continue;
         }
         let whole = range(branch.attached.iter().map(|point| point.force));
-        let count = |times: f64| {
-            let limit = (times * spread).max(SHARE * whole);
-            let same = |point: &&MeasuredPoint| (point.force - level).abs() <= limit;
-            let there = branch.attached.iter().filter(|point| apart.is_some_and(|x| point.x <= x));
-            let (of_all, of_same) = (there.clone().count(), there.filter(same).count());
-            let begins_apart = of_all >= FEWEST_THERE && of_same as f64 >= MOST_THERE * of_all as f64;
-            (branch.attached.iter().rev().take_while(same).count(), begins_apart)
-        };
         let is_short = branch.attached.len() < SPARSE;
-        let (same, begins_apart) = count(if is_short { SAME } else { 1.0 });
-        if same >= FEWEST && (is_short || (begins_apart && branch.segment == Segment::Approach)) {
-            branch.free = branch.attached.split_off(branch.attached.len() - same);
+        let limit = if is_short { (SAME * spread).max(SHARE * whole) } else { spread };
+        let same = |point: &&MeasuredPoint| (point.force - level).abs() <= limit;
+        let there = || branch.attached.iter().filter(|point| apart.is_some_and(|x| point.x <= x));
+        let (of_all, of_same) = (there().count(), there().filter(same).count());
+        let begins_apart = branch.segment == Segment::Approach
+            && of_all >= FEWEST_THERE
+            && of_same as f64 >= MOST_THERE * of_all as f64;
+        let count = branch.attached.iter().rev().take_while(same).count();
+        if count >= FEWEST && (is_short || begins_apart) {
+            branch.free = branch.attached.split_off(branch.attached.len() - count);
         }
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! The curves in `minima/` come from programs that share no code with the engine, with normal noise of the force: `range`
 //! from Maugis' equations at a Tabor number of 1.5, `spring` and `few_rows` from quasi-static loops on waves by
-//! quadrature, `pull` from the rate equation of an edge on waves. The presets begin up to twice off.
+//! quadrature, `pull` from the rate equation of an edge on waves, `begins_in_contact` from the equations of Hertz. The presets
+//! begin up to three times off.
 
 use super::kinds::Made;
 use super::trial::{fitted, options, outcome};
@@ -66,5 +67,16 @@ fn a_pull_is_found_beside_another_minimum() {
             ("edge.reference_speed", 8.135_167e-7),
             ("data.offset", 8.071_997e-4),
         ],
+    );
+}
+
+/// Without adhesion the rows apart of a retraction begin within the contact, as far as the noise shows.
+#[test]
+fn an_approach_that_begins_in_contact_has_no_rows_apart() {
+    is_right(
+        include_str!("minima/begins_in_contact.csv"),
+        include_str!("minima/begins_in_contact.toml"),
+        &["E*", "data.offset"],
+        &[(MODULUS, 1e6), ("data.offset", 1.23e-5)],
     );
 }

@@ -96,7 +96,7 @@ impl Tty {
     /// Sets raw mode, alternate screen, no cursor, marked pastes. Taking it again sets all of them anew.
     pub(super) fn take(&self) -> io::Result<()> {
         let (hands, rest) = {
-            let _turn = patient(&self.turn);
+            let _turn = patient(&self.turn, PATIENCE);
             let mut before = self.before.lock().unwrap_or_else(PoisonError::into_inner);
             let ours = self.is_taken();
             if !ours {
@@ -110,7 +110,10 @@ impl Tty {
             // It is ours before the modes are, so that a thread that ends the program now undoes them.
             let more = if ours { 2 } else { 1 };
             let hands = self.hands.fetch_add(more, Ordering::SeqCst).wrapping_add(more);
-            retry_on_intr(|| tcsetattr(&self.fd, OptionalActions::Now, &raw))?;
+            if let Err(error) = retry_on_intr(|| tcsetattr(&self.fd, OptionalActions::Now, &raw)) {
+                self.hands.fetch_sub(more, Ordering::SeqCst);
+                return Err(error.into());
+            }
             // Before any frame, which would be drawn on the other screen.
             (hands, self.written(TAKE)?)
         };
@@ -124,7 +127,7 @@ impl Tty {
     ///
     /// There is nobody to report a failure to: a terminal that cannot be restored is gone.
     pub(super) fn give_back(&self) {
-        let _giving = patient(&self.giving);
+        let _giving = patient(&self.giving, 2 * PATIENCE);
         let hands = self.hands.load(Ordering::SeqCst);
         if !is_ours(hands)
             || self
@@ -134,7 +137,7 @@ impl Tty {
         {
             return;
         }
-        let _turn = patient(&self.turn);
+        let _turn = patient(&self.turn, PATIENCE);
         // Output that nobody has read would come before the string that undoes the modes, if there were room for it at
         // all.
         let _ = tcflush(&self.fd, QueueSelector::OFlush);
@@ -205,7 +208,7 @@ impl Tty {
         if !matches!(waiting, Ok(1..)) {
             return;
         }
-        let _turn = patient(&self.turn);
+        let _turn = patient(&self.turn, PATIENCE);
         // In the background this would stop us.
         if self.is_taken()
             && self.in_foreground()
@@ -235,11 +238,11 @@ impl Tty {
     }
 }
 
-/// The lock; `None` after waiting [`PATIENCE`] for it.
+/// The lock; `None` after waiting `patience` for it.
 ///
 /// The turn to write is never held longer than one non-blocking write takes, unless the terminal could not be reopened.
-fn patient(lock: &Mutex<()>) -> Option<MutexGuard<'_, ()>> {
-    let until = Instant::now() + PATIENCE;
+fn patient(lock: &Mutex<()>, patience: Duration) -> Option<MutexGuard<'_, ()>> {
+    let until = Instant::now() + patience;
     loop {
         match lock.try_lock() {
             Ok(held) => return Some(held),

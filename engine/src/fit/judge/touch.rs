@@ -3,10 +3,12 @@
 //!
 //! A median of m rows is known to 1.2533 s/√m; a deviation beyond five of these is not chance.
 
+use super::super::path::PathPlace;
 use super::super::problem::{Datum, FitProblem, Target};
 use super::super::pulled::is_pulled;
 use super::super::verdict::Reason;
 use super::{Evidence, ROUNDING};
+use crate::elementary::hypot;
 use crate::measured::branches::median;
 use crate::measured::{Abscissa, Segment};
 use crate::units::Quantity;
@@ -51,7 +53,9 @@ impl FitProblem {
         let mut is_off = |datum: &&Datum| {
             let force = datum.point.force - instrument.baseline - instrument.tilt * datum.point.x;
             let place = [(datum.point.x - instrument.offset) * weights[0], force * weights[1], 0.0];
-            approach.nearest(place, &mut hint).is_some_and(|foot| foot.residuals[0].abs() > NO_CHANCE * s)
+            // From the foot itself: beyond an end of the path, the distance along its normal may be nothing.
+            let off = |at: PathPlace| hypot(place[0] - at[0] * weights[0], place[1] - at[1] * weights[1]);
+            approach.nearest(place, &mut hint).is_some_and(|foot| off(foot.at) > NO_CHANCE * s)
         };
         Some(inside.filter(|datum| is_off(datum)).map(beyond).collect())
     }
@@ -71,7 +75,7 @@ pub(super) fn of_late(evidence: Evidence) -> Option<Reason> {
     (late.len() > FEWEST).then(|| {
         let sentence = format!(
             "on the approach the bodies are apart where the model has them in contact: {} rows, up to {} beyond its \
-             first contact",
+             first contact. --segment retraction leaves the approach out",
             late.len(),
             said(&problem.preset.units, Quantity::Length, most)
         );
