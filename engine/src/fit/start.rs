@@ -55,7 +55,7 @@ pub struct Tried {
 
 /// Where a start ends.
 #[derive(Debug, Clone)]
-struct End {
+struct FitEnd {
     u: Vec<f64>,
     residuals: DVector<f64>,
     /// Their scale, in σ.
@@ -66,7 +66,7 @@ struct End {
     is_late: bool,
 }
 
-impl End {
+impl FitEnd {
     /// Whether it is nearer to the points than another one: by what a fit minimizes, at the scale of the better one, or by
     /// the mean distance where neither is near them. One that has contact where the bodies are apart must be much nearer.
     fn is_nearer(&self, other: &Self, robust: bool) -> bool {
@@ -85,13 +85,13 @@ impl End {
 
 impl FitProblem {
     /// The end that is reached from `u`; `u` itself where nothing is.
-    fn end_from(&self, u: Vec<f64>, robust: bool, progress: &dyn Progress) -> Option<End> {
+    fn end_from(&self, u: Vec<f64>, robust: bool, progress: &dyn Progress) -> Option<FitEnd> {
         let solved = solve(self, &u, robust, ROUNDS, progress).map(|solved| solved.minimum.parameters);
         let of = |u: Vec<f64>| {
             let residuals = self.residuals(&u)?;
             let (scale, distance) = (self.scale(&residuals), self.distance(&u)?);
             let is_late = self.is_late(&u, scale);
-            Some(End { u, residuals, scale, distance, is_late })
+            Some(FitEnd { u, residuals, scale, distance, is_late })
         };
         solved.and_then(of).or_else(|| of(u))
     }
@@ -281,7 +281,7 @@ impl FitProblem {
 
     /// Where a pull ends that leaves the end `best` a few times, one value far off: its valleys are long, and two of them may
     /// lie side by side.
-    fn left(&self, mut best: End, robust: bool, progress: &dyn Progress) -> End {
+    fn left(&self, mut best: FitEnd, robust: bool, progress: &dyn Progress) -> FitEnd {
         /// How often, while that leads anywhere.
         const TIMES: usize = 3;
         const KEYS: [&str; 3] = ["material.effective_modulus", edge::REFERENCE_SPEED, START];
@@ -313,7 +313,7 @@ impl FitProblem {
     }
 
     /// What became of a start that led to `end`.
-    fn tried(&self, end: &End) -> Tried {
+    fn tried(&self, end: &FitEnd) -> Tried {
         let snaps = self.paths(&end.u).map_or(0, |paths| paths.of(Segment::Retraction).snaps);
         Tried { distance: end.distance, snaps }
     }
@@ -434,7 +434,7 @@ fn best_of(
     (scan, robust): (bool, bool),
     progress: &dyn Progress,
 ) -> Option<(Vec<f64>, Vec<Tried>)> {
-    let mut best: Option<End> = None;
+    let mut best: Option<FitEnd> = None;
     let mut tried = Vec::new();
     let count = ranked.len() as f64;
     let is_pulled = is_pulled(&run.preset);
@@ -447,7 +447,7 @@ fn best_of(
         // Each step of a pull is one more pull, so an end near the points that is reached from two starts far from each other
         // is final.
         let apart = |u: &[f64], v: &[f64]| u.iter().zip(v).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let is_end = |best: &End| {
+        let is_end = |best: &FitEnd| {
             best.distance < REACHED
                 && apart(&best.u, &end.u) < ONE
                 && from.iter().any(|u| apart(u, &begun) > OTHER)

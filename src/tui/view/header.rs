@@ -6,7 +6,7 @@ use crate::explorer::{Axes, Home, Id, Model};
 use crate::tui::app::App;
 use crate::tui::keymap::Keymap;
 use pulloff_engine::problem::Control;
-use pulloff_engine::report::number::{significant, with_unit};
+use pulloff_engine::report::number::{short, significant, with_unit};
 use pulloff_engine::text::greek;
 use pulloff_engine::units::Quantity;
 use ratatui::Frame;
@@ -39,8 +39,7 @@ fn heading(app: &App, warnings: &[String], room: u16) -> Vec<Span<'static>> {
     }
     let control = match model.preset.path.control {
         Control::Stiffness(k) => {
-            let k =
-                with_unit(&model.preset.units, Quantity::ForcePerLength, k, theme.ascii, |k| k.to_string());
+            let k = with_unit(&model.preset.units, Quantity::ForcePerLength, k, theme.ascii, |k| short(k, 6));
             format!("STIFFNESS={k}")
         }
         other => other.to_string().to_uppercase(),
