@@ -354,7 +354,7 @@ class Problem:
         control : {"displacement", "force"} or float, optional
             As for :meth:`unload`.
         hold_force : float or sequence of float
-            Dead loads, negative for a pull; ``failures`` of the result says how long each is borne.
+            Dead loads, negative for a pull; ``failures`` of the result says how long each holds.
         """
         rates = [float(x) for x in np.atleast_1d([] if rate is None else rate)]
         loads = [float(x) for x in np.atleast_1d(hold_force)]

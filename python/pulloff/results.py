@@ -207,7 +207,7 @@ class Pull(Result):
 
     @property
     def failures(self) -> List[Dict[str, Any]]:
-        """Dead loads with the time for which each is borne; ``None`` if an equilibrium bears it."""
+        """Dead loads with the time for which each holds; ``None`` if it holds indefinitely."""
         return list(self._said()["failures"])
 
     def _title(self) -> str:

@@ -302,6 +302,24 @@ fn what_does_not_use_the_points_takes_values_that_contradict_them() {
 }
 
 #[test]
+fn many_rows_without_numbers_are_told() {
+    let home = Home::new();
+    let without = |share: usize| {
+        let of = |(i, line): (usize, &str)| match line.split(", ").collect::<Vec<_>>()[..] {
+            [x, _, segment] if i.is_multiple_of(share) && !line.contains("force") => {
+                format!("{x}, , {segment}\n")
+            }
+            _ => format!("{line}\n"),
+        };
+        home.file("a.csv", &LENS.lines().enumerate().map(of).collect::<String>());
+        home.run(&[&["fit", "a.csv", "lens"], &FREE[..]].concat()).err
+    };
+    let said = "rows have no number in a column that is used, and are left out";
+    assert!(without(3).contains(said));
+    assert!(!without(10).contains(said));
+}
+
+#[test]
 fn what_is_not_determined_has_a_status_of_its_own() {
     let home = Home::new();
     let ended =

@@ -167,3 +167,9 @@ pub fn piece(rest: &str) -> String {
     let word: String = rest.chars().take_while(char::is_ascii_alphanumeric).take(NAME).collect();
     if word.is_empty() { quoted(first) } else { word }
 }
+
+/// The same after a complete number, where a comma may have been meant as a decimal point.
+pub fn piece_after_number(rest: &str) -> String {
+    let found = piece(rest);
+    if rest.starts_with(',') { format!("{found} (use a decimal point)") } else { found }
+}

@@ -3,7 +3,9 @@
 //! The grammar is given at the head of [`super`]. Every loop moves forward and every descent is counted, so the time
 //! and the stack that a text takes are bounded by its length: [`LENGTH`], [`DEPTH`], [`OPERATIONS`].
 
-use super::error::{DEPTH, FormulaError, LENGTH, NAME, OPERATIONS, SyntaxProblem, TextPlace, piece};
+use super::error::{
+    DEPTH, FormulaError, LENGTH, NAME, OPERATIONS, SyntaxProblem, TextPlace, piece, piece_after_number,
+};
 use super::function::{Binary, Function, RADIUS, Unary, constant};
 use super::program::{Op, Program};
 use winnow::ascii::{digit0, digit1, multispace0};
@@ -104,12 +106,10 @@ fn leading(text: &str, variables: bool) -> Result<(Program, usize), FormulaError
 
 /// What is wrong with `rest`, which follows a complete operand.
 fn after_operand(rest: &str, expected: &'static str) -> SyntaxProblem {
-    let found = piece(rest);
     match rest.chars().next() {
-        Some(c) if c.is_ascii_alphanumeric() || c == '(' => SyntaxProblem::Juxtaposed { found },
+        Some(c) if c.is_ascii_alphanumeric() || c == '(' => SyntaxProblem::Juxtaposed { found: piece(rest) },
         Some(c) if !c.is_ascii() => SyntaxProblem::not_ascii(c),
-        Some(',') => SyntaxProblem::Operator { expected, found: format!("{found} (use a decimal point)") },
-        _ => SyntaxProblem::Operator { expected, found },
+        _ => SyntaxProblem::Operator { expected, found: piece_after_number(rest) },
     }
 }
 

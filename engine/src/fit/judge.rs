@@ -140,8 +140,8 @@ pub(super) fn of_unclear(branches: &Branches, fitted: &[Fitted]) -> Option<Strin
     let all: usize = branches.list.iter().map(|of| of.attached.len() + of.free.len() + of.jump).sum();
     (is_fitted && unclear as f64 >= SHARE * all as f64).then(|| {
         format!(
-            "{unclear} of {all} rows lie where the noise hides whether the bodies are apart, and are left out: the work of \
-             adhesion and the offset may be off by several of their errors"
+            "{unclear} of {all} rows are left out, as they lie within a jump or where the noise hides whether the bodies are \
+             apart: the work of adhesion and the offset may be off by several of their errors"
         )
     })
 }
@@ -272,8 +272,8 @@ fn unknown(problem: &FitProblem, fitted: &[Fitted]) -> Option<String> {
     let keys: Vec<&str> = all.map(|(fitted, _)| &*fitted.key).collect();
     (!keys.is_empty()).then(|| {
         format!(
-            "the error is larger than the value of {}: the points hardly say more than that it is positive",
-            keys.join(" and of ")
+            "the points show hardly more than the order of magnitude of {}: the error is larger than the value",
+            keys.join(" and ")
         )
     })
 }

@@ -279,8 +279,8 @@ impl FitProblem {
         Some((u, tried))
     }
 
-    /// Where a pull ends that leaves the end `best` a few times, one value far off: its valleys are long, and two of them may
-    /// lie side by side.
+    /// The end of a pull that is reached by leaving `best` a few times, each time with one value changed by a large factor:
+    /// the valleys of a pull are long, and two of them may lie side by side.
     fn left(&self, mut best: FitEnd, robust: bool, progress: &dyn Progress) -> FitEnd {
         /// How often, while that leads anywhere.
         const TIMES: usize = 3;

@@ -16,7 +16,7 @@
 //! | [`record`] | moments, sums, least forces |
 //! | [`snaps`] | the snaps among them |
 //! | [`pull`] | a programme of ramps and holds |
-//! | [`failure`] | how long a dead load is borne |
+//! | [`failure`] | how long a dead load holds |
 //! | [`settings`] | the settings of the integrator |
 //! | [`error`] | why there is no pull |
 //!

@@ -9,7 +9,7 @@ use super::dimension::Dimension;
 use super::table::{JOULE, NONE, NamedUnit, Prefix, SECOND, lookup};
 use crate::expression::TextPlace;
 use crate::expression::error::NAME;
-use crate::expression::error::piece;
+use crate::expression::error::{piece, piece_after_number};
 use std::fmt;
 use thiserror::Error;
 use winnow::ascii::{digit1, multispace0};
@@ -45,16 +45,11 @@ pub struct Unit {
     factors: Vec<Factor>,
 }
 
-/// What a comma after a number may have been meant as.
-fn of_comma(found: &str) -> &'static str {
-    if found == "','" { " (use a decimal point)" } else { "" }
-}
-
 /// Why a text is not a unit, and where.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum UnitError {
     /// Something else in the place of a unit.
-    #[error("column {}: expected a unit such as um, mN, kPa or mJ/m^2, found {found}{}", place.column, of_comma(found))]
+    #[error("column {}: expected a unit such as um, mN, kPa or mJ/m^2, found {found}", place.column)]
     Expected {
         /// Where.
         place: TextPlace,
@@ -132,7 +127,7 @@ impl Unit {
             let at = place(&input);
             let Some(name) = word(&mut input) else {
                 let goes_on = input.starts_with(|c: char| c.is_ascii_digit() || "+-(".contains(c));
-                let found = piece(&input);
+                let found = if factors.is_empty() { piece_after_number(&input) } else { piece(&input) };
                 return Err(if goes_on && !factors.is_empty() {
                     UnitError::Behind { place: at, found }
                 } else {

@@ -111,7 +111,9 @@ impl Tty {
             let more = if ours { 2 } else { 1 };
             let hands = self.hands.fetch_add(more, Ordering::SeqCst).wrapping_add(more);
             if let Err(error) = retry_on_intr(|| tcsetattr(&self.fd, OptionalActions::Now, &raw)) {
-                self.hands.fetch_sub(more, Ordering::SeqCst);
+                // Unless it was given back meanwhile.
+                let was = hands.wrapping_sub(more);
+                let _ = self.hands.compare_exchange(hands, was, Ordering::SeqCst, Ordering::SeqCst);
                 return Err(error.into());
             }
             // Before any frame, which would be drawn on the other screen.
@@ -238,9 +240,8 @@ impl Tty {
     }
 }
 
-/// The lock; `None` after waiting `patience` for it.
-///
-/// The turn to write is never held longer than one non-blocking write takes, unless the terminal could not be reopened.
+/// The lock; `None` after waiting `patience` for it. Nobody holds the turn to write longer than one non-blocking write
+/// takes, unless the terminal could not be reopened.
 fn patient(lock: &Mutex<()>, patience: Duration) -> Option<MutexGuard<'_, ()>> {
     let until = Instant::now() + patience;
     loop {
