@@ -11,18 +11,28 @@
 //! inward like the other paths. Reduced units.
 
 use super::mover::Mover;
-use crate::disc::Table;
+use super::track::{Eye, Reach};
+use crate::disc::{Basis, ExactBasis, Table};
+use crate::elementary::pow;
 use crate::preset::Preset;
 use crate::problem::{Control, Part, Reduced, Start};
 use crate::progress::Unwatched;
 use crate::rate::variation::{ADHESION, EXPONENT, MomentSlopes, RATE, START, STIFFNESS};
 use crate::rate::{EdgeLaw, Moment, MovingEdge, PullSettings, Puller};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// The error of a step of the integrator as a share of the noise, and its smallest and largest value as a share of the
 /// radius.
 const OF_NOISE: f64 = 1e-3;
 const TOLERANCE: [f64; 2] = [1e-8, 1e-5];
+/// G of an edge that follows the device exceeds γ by at least this share: a slower pull is quasi-static to a share that no
+/// points show, and rounding would make its speeds uncertain. Nor does it by more than this many times: of a faster pull no
+/// points show γ, and the steps become many.
+const EXCESS: [f64; 2] = [1e-8, 1e6];
+/// A pull begins at most this many ranges of x beyond the points. One that begins further off has nothing to do with them,
+/// and goes over thousands of waves.
+const FAR: f64 = 10.0;
 /// The number of states that the polynomial for a derivative goes through.
 const AROUND: usize = 4;
 /// Moments nearer to each other than this share of the whole way count as one.
@@ -57,26 +67,36 @@ impl Trail {
     pub(super) fn of(
         preset: &Preset,
         reduced: &Reduced,
-        table: &Table,
-        (held, noise): (Control, f64),
+        table: &Arc<Table>,
+        (eye, reach): (&Eye, &Reach),
+        held: Control,
     ) -> Option<Self> {
         let units = reduced.units;
         let Start::ContactRadius(start) = preset.path.start else { return None };
-        let (rate, speed) = (preset.edge.rate?, preset.edge.reference_speed?);
+        let (rate, speed, exponent) =
+            (preset.edge.rate?, preset.edge.reference_speed?, preset.edge.exponent?);
         let opening = reduced.work_of_adhesion;
         let closing = preset.edge.closing_work_of_adhesion.map(|gamma| gamma / units.work_of_adhesion);
         let unit = if held == Control::Force { units.force } else { units.length };
         let rate = rate / unit * (units.length / speed);
-        let tolerance = (OF_NOISE * noise).clamp(TOLERANCE[0], TOLERANCE[1]);
+        let [slowest, fastest] = EXCESS.map(|excess| pow(excess, 1.0 / exponent));
+        let start = (start / units.length).min(reduced.largest_contact());
+        let begun = ExactBasis::new(Arc::clone(table), start).equilibrium(reduced, start)?;
+        let beyond = eye.x([start, begun.approach, begun.force]) - reach.turn[0];
+        if rate > fastest || beyond > FAR * reach.length {
+            return None;
+        }
+        let rate = rate.max(slowest);
+        let tolerance = (OF_NOISE * reach.noise).clamp(TOLERANCE[0], TOLERANCE[1]);
         let puller = Puller {
             table,
             control: held,
             edge: MovingEdge {
-                law: EdgeLaw::symmetric(preset.edge.exponent?),
+                law: EdgeLaw::symmetric(exponent),
                 opening,
                 closing: closing.filter(|closing| *closing < opening).unwrap_or(opening),
             },
-            start: (start / units.length).min(reduced.largest_contact()),
+            start,
             wave: reduced.gap.feature_length(),
             rise: None,
             settings: PullSettings { tolerance, derivatives: true, ..PullSettings::default() },
@@ -185,4 +205,36 @@ fn state(moment: &Moment, along: f64, held: Control, [rate, by_control, radius]:
     let rates = [-v, delta, 2.0 * (s * delta + opening * v)];
     let whole = by_control + v / radius;
     TrackState { along, at: [s, approach, force], slopes: rates.map(|x| -x / whole) }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fit::path::FitPath;
+    use crate::fit::tests::preset;
+    use crate::fit::track::Reach;
+    use crate::fit::way::Way;
+    use crate::measured::Abscissa;
+    use crate::problem::Start;
+
+    /// How many corners the path of a pull of the wavy sphere has, with points within 0.1 of x = 0.
+    fn corners(start: f64, speed: f64, exponent: f64) -> Option<usize> {
+        const WAVES: &str = "shape='wavy-sphere'\nradius_of_curvature=1.0\namplitude=0.0025\nwavelength=0.05";
+        let edge = format!("rate=1e-3\n[edge]\nreference_speed={speed:e}\nexponent={exponent}");
+        let mut preset = preset(WAVES, 1.0, 4e-3, &edge);
+        preset.path.start = Start::ContactRadius(start);
+        let reach = Reach { most: [0.1; 3], turn: [0.0; 2], radius: None, length: 0.1, noise: 1e-3 };
+        let path = FitPath::new(&preset, Abscissa::Approach, &reach, Way::Down);
+        path.map(|path| path.vertices.len())
+    }
+
+    #[test]
+    fn a_fit_loses_no_time_with_pulls_far_from_any_points() {
+        let usual = corners(0.5, 1e-2, 0.5).unwrap();
+        // A quasi-static pull whose law says so with a share of 1e-11, where the integrator would take hundreds of thousands of steps.
+        let slow = corners(0.5, 3e3, 1.6).unwrap();
+        assert!(slow < 10 * usual, "{slow} {usual}");
+        assert_eq!(corners(0.5, 1e-15, 0.9), None, "G is 1e10 times the work of adhesion");
+        assert!(corners(0.9, 1e-2, 0.5).is_some());
+        assert_eq!(corners(40.0, 1e-2, 0.5), None, "the points are within 0.1, the pull begins at 1600");
+    }
 }

@@ -114,7 +114,7 @@ impl Track {
             return Self::in_zone(&table, (law, holds_range, radius), eye, reach, held);
         }
         if is_pulled(preset) {
-            let trail = Trail::of(preset, &reduced, &table, (held, reach.noise))?;
+            let trail = Trail::of(preset, &reduced, &table, (eye, reach), held)?;
             return Some(Self::Pull(Arc::new(trail)));
         }
         let wave = preset.gap.feature_length().map(|length| length / units.length);
