@@ -154,6 +154,38 @@ impl TargetRadius {
     }
 }
 
+/// By how much h' jumps at the break `q`, from which the next one is at least twice as far as `free`; `None` where it does
+/// not.
+fn jump_at(gap: &dyn Gap, q: f64, free: f64) -> Option<f64> {
+    /// A few units in the last place off: the break is known to the last bit, but not on which side it lies.
+    const OFF: f64 = 4.0 * f64::EPSILON;
+    /// Further off by this factor each time, and how well two jumps must agree.
+    const FURTHER: f64 = 16.0;
+    const TIMES: usize = 5;
+    const AGREES: f64 = 0.01;
+    let over = |off: f64| {
+        let [outer, inner] = [q * (1.0 + off), q * (1.0 - off)].map(|r| gap.jet(r).first);
+        let jump = outer - inner;
+        (jump.is_finite() && jump.abs() > NO_JUMP * (outer.abs() + inner.abs())).then_some(jump)
+    };
+    // Where the two sides of `min` or `max` differ by less than rounding, one of them holds over more than a few units, and
+    // no jump is seen there. Further off the jump of a corner stays the same, and anything else grows.
+    let mut off = OFF;
+    for _ in 0..TIMES {
+        let further = FURTHER * off;
+        if further * q >= free {
+            break;
+        }
+        if let [Some(jump), Some(next)] = [over(off), over(further)]
+            && (jump - next).abs() <= AGREES * next.abs()
+        {
+            return Some(jump);
+        }
+        off = further;
+    }
+    over(OFF)
+}
+
 impl Sources {
     /// The samples of `gap` on `spans`, panels from the axis outward, and its jumps at those of `breaks` that have one.
     ///
@@ -169,14 +201,10 @@ impl Sources {
         let (parts, samples) = spans.iter().map(part).collect::<Result<(Vec<_>, Vec<_>), _>>()?;
         let samples = Clusters::new(samples, MANY);
         let mut jumps = Vec::new();
-        for &q in breaks {
-            // A few units in the last place off: the break is known to the last bit, but not on which side it lies.
-            let (out, inward) = (q * (1.0 + 4.0 * f64::EPSILON), q * (1.0 - 4.0 * f64::EPSILON));
-            let [outer, inner] = [out, inward].map(|r| gap.jet(r).first);
-            let jump = outer - inner;
-            if jump.is_finite() && jump.abs() > NO_JUMP * (outer.abs() + inner.abs()) {
-                jumps.push([q, jump]);
-            }
+        for (i, &q) in breaks.iter().enumerate() {
+            let before = i.checked_sub(1).map_or(0.0, |i| breaks[i]);
+            let after = breaks.get(i + 1).copied().unwrap_or(f64::INFINITY);
+            jumps.extend(jump_at(gap, q, 0.5 * (q - before).min(after - q)).map(|jump| [q, jump]));
         }
         Ok(Self { parts, samples, jumps })
     }

@@ -422,6 +422,24 @@ mod tests {
     }
 
     #[test]
+    fn a_corner_is_seen_where_both_sides_are_equal_to_rounding() {
+        // h' = 0.48 up to q and 0.43 beyond: g = s (0.43 π/2 + 0.05 arcsin(q/s)) there, whose slope has no bound at q.
+        let q = 0.21_f64;
+        for text in ["min(0.43*r, 0.48*r-0.0105)", "min(0.48*r-0.0105, 0.43*r)", "0.48*r-0.05*max(r-0.21, 0)"]
+        {
+            let panels = made(&formula(text), 0.5).up_to(0.5).unwrap();
+            for beyond in [1e-9, 1e-6, 1e-3, 0.1, 1.0] {
+                let s = q * (1.0 + beyond);
+                let [[value, _, slope]] = panels.values_at(&[s]);
+                let of_angle = 0.43 * FRAC_PI_2 + 0.05 * (q / s).asin();
+                let exact = of_angle - 0.05 * q / (s * s - q * q).sqrt();
+                assert!((value / (s * of_angle) - 1.0).abs() < 1e-11, "{text} {beyond}: {value}");
+                assert!((slope / exact - 1.0).abs() < 1e-6, "{text} {beyond}: {slope} {exact}");
+            }
+        }
+    }
+
+    #[test]
     fn g_and_its_integrals_are_those_of_a_plain_quadrature() {
         let waves = [(0.003, 0.07, 0.0), (-0.001, 0.2, 1.1)];
         let waves = waves.map(|(amplitude, wavelength, phase)| Harmonic { amplitude, wavelength, phase });

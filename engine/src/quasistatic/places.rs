@@ -13,7 +13,9 @@ pub const MOST_STATES: f64 = 20_000.0;
 pub fn radii(from: f64, to: f64, ratio: f64, step: f64) -> Vec<f64> {
     // If there would be too many steps they grow, so that the last one is still at `to`.
     let step = step.max(2.0 * (from - to) / MOST_STATES);
-    let inner = std::iter::successors(Some(from), |s| Some(s - (ratio * s).min(step)));
+    // A panel beside a corner may be a few units in the last place wide, and steps within it change nothing.
+    let inner =
+        std::iter::successors(Some(from), |s| Some(s - (ratio * s).min(step)).filter(|next| next < s));
     let mut radii: Vec<f64> = inner.take_while(|s| *s > to).collect();
     radii.push(to);
     radii
@@ -57,4 +59,17 @@ pub fn places(solution: &dyn Solution, from: f64, to: f64, detail: Detail) -> Ve
         }
     }
     places
+}
+
+#[cfg(test)]
+mod tests {
+    use super::radii;
+
+    #[test]
+    fn steps_below_the_last_digit_end() {
+        let outer = 0.1_f64.next_up();
+        assert_eq!(radii(outer, 0.1, 0.025, 1e-18), [outer, 0.1]);
+        let even = radii(2.0, 1.0, 1.0, 0.25);
+        assert_eq!(even, [2.0, 1.75, 1.5, 1.25, 1.0]);
+    }
 }
