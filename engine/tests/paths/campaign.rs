@@ -303,7 +303,10 @@ fn stops(name: &str, times: usize, computed: &dyn Fn(&dyn Progress) -> Result<bo
     let mut random = fastrand::Rng::with_seed(questions);
     for k in 0..times {
         let last = if k == 0 { questions - 1 } else { random.u64(0..questions) };
-        assert_eq!(ended(last).0, Ok(true), "{name}: stopped at question {last} of {questions}");
+        let (found, asked) = ended(last);
+        // Another test may have had a table made meanwhile: a run with fewer questions is over before it is stopped.
+        let is_over = found == Ok(false) && asked <= last;
+        assert!(is_over || found == Ok(true), "{name}: {found:?}, stopped at question {last} of {questions}");
     }
 }
 
