@@ -15,7 +15,7 @@ use super::pulled::is_pulled;
 use super::residuals::{beside, of_part};
 use super::rows::Rows;
 use super::scatter::Scatter;
-use super::settled::{last, of_correlated, of_tare, unpinned};
+use super::settled::{last, of_correlated, of_tare, unpinned, unseen_start};
 use super::shown::{KnownNoise, of_shown_noise};
 use super::solve::SolvedFit;
 use super::start::{Tried, start};
@@ -28,6 +28,9 @@ use crate::preset::{Preset, edge};
 use crate::progress::{Progress, ProgressPart};
 use crate::units::number::significant;
 use nalgebra::DVector;
+
+/// How far before the first points an edge is held to start where they do not show it, as a share of its radius.
+const BEFORE: f64 = 0.05;
 
 /// Fits the free keys of `preset` to `branches`.
 pub(super) fn fit_branches(
@@ -92,6 +95,14 @@ impl<'a> Posed<'a> {
             solved =
                 last(&mut problem, &u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))?;
             notes.push("no rows show that the edge is pinned between approach and retraction".to_owned());
+        }
+        if let Some(j) = unseen_start(&problem, &solved) {
+            let mut u = solved.minimum.parameters;
+            problem.begun(&mut u);
+            problem = problem.holding(j, u.remove(j) + BEFORE).ok_or(FitError::NoStart)?;
+            solved =
+                last(&mut problem, &u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))?;
+            notes.push("the points do not show at which contact radius the edge started: one just before their first row is taken".to_owned());
         }
         let [of_way, of_force, _] = branches.noise.from;
         let known = KnownNoise {

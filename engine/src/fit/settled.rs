@@ -3,6 +3,7 @@
 use super::options::FitError;
 use super::prior::Prior;
 use super::problem::{FitProblem, START, Target};
+use super::pulled::is_pulled;
 use super::solve::{SolvedFit, solve};
 use crate::progress::Progress;
 use crate::units::{Quantity, number::said};
@@ -40,9 +41,20 @@ pub(super) fn last(
 /// The number of the contact radius at which an edge is pinned, where the points determine it worse than to a tenth:
 /// then the works of adhesion of both branches are the same, and there is no line between them.
 pub(super) fn unpinned(problem: &FitProblem, solved: &SolvedFit) -> Option<usize> {
+    start_of(problem, solved).filter(|_| problem.pins())
+}
+
+/// The number of the contact radius at which a pull begins, where the points determine it worse than to a tenth: a slow
+/// edge is at its equilibrium before the first of them.
+pub(super) fn unseen_start(problem: &FitProblem, solved: &SolvedFit) -> Option<usize> {
+    start_of(problem, solved).filter(|_| is_pulled(&problem.preset))
+}
+
+/// The number of the contact radius at which an edge starts, where the points determine it worse than to a tenth.
+fn start_of(problem: &FitProblem, solved: &SolvedFit) -> Option<usize> {
     const LEAST: f64 = 10.0;
     let j = problem.parameters.iter().position(|parameter| parameter.target == Target::Key(START.to_owned()));
-    j.filter(|j| problem.pins() && solved.minimum.at.jacobian.column(*j).norm() < LEAST * solved.scale)
+    j.filter(|j| solved.minimum.at.jacobian.column(*j).norm() < LEAST * solved.scale)
 }
 
 /// Fits again where the noise is correlated from row to row: σ is then larger than differences of neighbours tell, by

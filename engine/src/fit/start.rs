@@ -246,7 +246,7 @@ impl FitProblem {
 
     /// Sets the contact radius at which a pull begins, or an edge is pinned, where that is free, to what the values
     /// give at the first points.
-    fn begun(&self, u: &mut [f64]) {
+    pub(super) fn begun(&self, u: &mut [f64]) {
         let Some(&j) = self.index(|target| target.key() == START).first() else { return };
         let at = self.instrument_at(u);
         let x = self.reach.turn[0] - if self.abscissa == Abscissa::Radius { 0.0 } else { at.offset };

@@ -1,6 +1,6 @@
 //! Where the force stays constant at an end of a branch, as it does where the bodies are apart.
 
-use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, median, noise_of, range};
+use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, median, noise_of, range, scatter};
 use super::points::MeasuredPoint;
 
 /// A free end varies by less than these shares of the whole range, and of the range at the other end.
@@ -135,20 +135,36 @@ pub(super) fn stands_still(force: &[f64]) -> bool {
         return false;
     }
     let (before, end) = force.split_at(force.len() - count);
-    let thirds: Vec<f64> =
-        end.chunks((count / 3).max(1)).take(3).filter_map(|part| median(part.to_vec())).collect();
     let noise = noise_of(force);
     let floor = FLOOR * range(force.iter().copied());
-    // The median of m rows is known to 1.25 σ/√m; the range of three such medians is below 3.3 of these errors in 95 of
-    // 100 cases, and below 5 in all but a few of 1000.
-    let error = 1.25 * noise / (count as f64 / 3.0).sqrt();
-    let goes_on = range(thirds.iter().copied()) > 5.0 * error + floor;
+    let error = median_error(noise, count);
     let level = median(end.to_vec()).unwrap_or(0.0);
     let next = median(before[before.len() - count..].to_vec()).unwrap_or(0.0);
     // The same level again before it: a smallest force is rounder than that.
-    !goes_on
+    !goes_on(end, noise, floor)
         && ((next - level).abs() <= 2.0 * error + floor
             || filtered(before).iter().any(|p| *p < level - BEYOND * noise - floor))
+}
+
+/// The error of the median of a third of `count` rows: that of m rows is known to 1.25 σ/√m.
+fn median_error(noise: f64, count: usize) -> f64 {
+    1.25 * noise / (count as f64 / 3.0).sqrt()
+}
+
+/// Whether values with this noise change from third to third: the range of three such medians is below 3.3 of their errors
+/// in 95 of 100 cases, and below 5 in all but a few of 1000.
+fn goes_on(values: &[f64], noise: f64, floor: f64) -> bool {
+    let thirds = values.chunks((values.len() / 3).max(1)).take(3);
+    let medians = thirds.filter_map(|part| median(part.to_vec()));
+    range(medians) > 5.0 * median_error(noise, values.len()) + floor
+}
+
+/// Whether noise hides how the force of the last quarter of these rows changes, from the contact to the free end.
+pub(crate) fn is_hidden(force: &[f64]) -> bool {
+    const SHARE: usize = 4;
+    let count = force.len() / SHARE;
+    let end = &force[force.len() - count..];
+    count >= END_ROWS && !goes_on(end, scatter(end), FLOOR * range(force.iter().copied()))
 }
 
 /// The running median of five rows, of fewer at the ends.

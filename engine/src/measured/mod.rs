@@ -55,6 +55,7 @@ mod words;
 pub(crate) use apart::SPARSE;
 pub use asked::{Asked, FreePart, ValueRange};
 pub use branches::{BranchError, Branches, MeasuredBranch, Noise, Origin};
+pub(crate) use ends::is_hidden;
 pub use error::CurveReadError;
 pub use points::{Abscissa, Instrument, Points, PointsError};
 pub use read::{Column, Measured, SeenColumn, columns, parse};
