@@ -9,7 +9,7 @@ pub enum FormatError {
     #[error("{name}: a figure's file ends in .{}", PictureFormat::ENDINGS.join(" or ."))]
     Ending { name: String },
     /// This build does not include the format.
-    #[error("this build cannot write {name} (feature `{feature}` is off); use .svg")]
+    #[error("this build cannot write {name} (feature `{feature}` is off); use .{}", PictureFormat::ENDINGS.join(" or ."))]
     Missing { name: &'static str, feature: &'static str },
 }
 

@@ -11,6 +11,7 @@ use pulloff::figure::Role;
 use pulloff::figure::Subject;
 use pulloff::store::Store;
 use pulloff_engine::preset::write;
+use pulloff_engine::sweep::QuantityColumn;
 use rustix::process::Signal;
 use std::path::Path;
 
@@ -51,7 +52,9 @@ fn assert_same(ours: &Model, theirs: &Model) {
 /// Steps, jumps, undo, branches, knobs, controls, pins and views.
 fn story() -> Vec<Command> {
     let set = |key: &'static str, text: &str| Command::Set { key: key.into(), text: text.to_owned() };
-    let mut story = vec![Command::Steps(3)];
+    let (column, over) = (QuantityColumn::named("peak_force").unwrap(), "gap.amplitude=0.001..0.003");
+    let study = Command::Study { column, over: Some(over.to_owned()) };
+    let mut story = vec![study, Command::Show(View::ForceApproach), Command::Steps(3)];
     story.extend(
         [Id::Halve, Id::Step, Id::NextEvent, Id::Jump, Id::Undo, Id::Undo, Id::Reverse].map(Into::into),
     );

@@ -56,6 +56,9 @@ pub fn posed(
         targets.push(Target::Key(START.to_owned()));
     } else {
         bare.edge.rate = None;
+        if options.is_rate_said {
+            notes.push("--rate plays no part, as no key of edge is fitted".to_owned());
+        }
         if options.separate {
             let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
             let attached: Vec<&MeasuredPoint> = retraction.flat_map(|branch| &branch.attached).collect();

@@ -529,9 +529,10 @@ impl FitReport {
                 let _ = writeln!(text, "{key}: 95 % by the profile of chi squared {}", interval(found));
             }
             if let (Some(found), Some([count, block])) = (parameter.bootstrap_interval, self.bootstrap) {
+                let drawn = if block > 1 { format!(" in blocks of {block}") } else { String::new() };
                 let _ = writeln!(
                     text,
-                    "{key}: 95 % of {count} fits to blocks of {block} rows {}",
+                    "{key}: 95 % of {count} fits to rows drawn at random{drawn} {}",
                     interval(found)
                 );
             }

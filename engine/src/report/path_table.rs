@@ -36,9 +36,10 @@ fn opening(report: &PathReport) -> String {
         let start = &start.state;
         let _ = writeln!(
             text,
-            "start: delta {}  P {}  contact {}",
+            "start: delta {}  P {}  {} {}",
             shown(Quantity::Length, start.approach),
             shown(Quantity::Force, start.force),
+            head(units, "contact", Quantity::Length),
             held(units, start, 6)
         );
     }
@@ -107,7 +108,11 @@ fn row(units: &UnitSystem, event: &EventReport) -> Vec<String> {
         kind,
         contacts(before),
         landed(contacts(after)),
-        if still { crest(before) } else { format!("{}>{}", crest(before), crest(after)) },
+        if still || [before, after].map(crest) == [dash(), dash()] {
+            crest(before)
+        } else {
+            format!("{}>{}", crest(before), crest(after))
+        },
         of(before, Quantity::Length, |state| state.approach),
         landed(of(after, Quantity::Length, |state| state.approach)),
         of(before, Quantity::Force, |state| state.force),

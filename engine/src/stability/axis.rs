@@ -1,10 +1,11 @@
 //! One key of a preset over a range: an axis of a map.
 
 use crate::elementary::{ln, pow};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// How the values of an axis are distributed over it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Spacing {
     /// Equal steps.
     Linear,
@@ -15,11 +16,12 @@ pub enum Spacing {
 }
 
 /// A number of a preset over a range, in SI or reduced units.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MapAxis {
     /// The dotted key, or [`COMPLIANCE`].
     pub key: String,
     /// The ends, ascending; the upper one may be infinite with [`Spacing::Share`].
+    #[serde(with = "crate::exact")]
     pub range: [f64; 2],
     /// How its values are spread.
     pub spacing: Spacing,

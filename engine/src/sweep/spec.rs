@@ -206,10 +206,10 @@ impl Spec {
             let values = self.axes.iter().zip(self.values(*row));
             let values: Vec<String> = values.map(|(axis, value)| format!("{} = {value}", axis.key)).collect();
             warnings.push(format!(
-                "in {} of {count} rows looked at the gap has slopes above 1, up to {} at {}: this theory is for slopes \
-                 small beside 1",
+                "in {} of {count} rows looked at the gap is too steep, with slopes of up to {} at {}: this theory is for \
+                 slopes small beside 1",
                 steep.len(),
-                short(*slope, 2),
+                short(*slope, 3),
                 values.join(", ")
             ));
         }

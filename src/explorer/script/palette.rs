@@ -103,13 +103,20 @@ fn anything(text: &str, keyed: Option<Id>, model: &Model, files: FolderNames<'_>
             called(&entry.line).map_or_else(String::new, |row| format!("{} {}", row.short, row.words));
         let texts = [&entry.line, &entry.says, &known].map(|text| text.to_lowercase());
         let ranks: Vec<u8> = wanted.iter().filter_map(|word| rank(&texts, word)).collect();
-        Some((wanted.len() - ranks.len(), ranks.into_iter().max()?))
+        let (lacks, worst) = (wanted.len() - ranks.len(), ranks.into_iter().max()?);
+        // A word within another one of a description means little where the others are not found.
+        (lacks == 0 || worst < WITHIN).then_some((lacks, worst))
     };
     let others = ranked(all.filter(|entry| found.iter().all(|key| key.line != entry.line)), compared);
     // If nothing has all words, take what has most of them.
     let least = if found.is_empty() { others.first().map_or(0, |((lacks, _), _)| *lacks) } else { 0 };
     let best = others.into_iter().take_while(|((lacks, _), _)| *lacks <= least);
-    found.extend(best.map(|(_, entry)| entry));
+    // What lacks a word may not be what was meant: it is typed for a look first.
+    let offered = |((lacks, _), entry): ((usize, u8), PaletteEntry)| PaletteEntry {
+        is_whole: entry.is_whole && lacks == 0,
+        ..entry
+    };
+    found.extend(best.map(offered));
     found
 }
 
@@ -147,6 +154,9 @@ fn ranked<R: Ord + Copy>(
     found
 }
 
+/// The rank of a word that is only found within another one of the description.
+const WITHIN: u8 = 5;
+
 /// How well a line, its description and its synonyms, all in lower case, match a word: 0 is best; `None` if they do not
 /// contain it.
 fn rank([line, says, words]: &[String; 3], word: &str) -> Option<u8> {
@@ -166,7 +176,7 @@ fn rank([line, says, words]: &[String; 3], word: &str) -> Option<u8> {
     } else if begins(says) {
         Some(4)
     } else {
-        says.contains(word).then_some(5)
+        says.contains(word).then_some(WITHIN)
     }
 }
 
@@ -234,7 +244,7 @@ mod tests {
             assert_eq!(entry, Some((first, is_whole)), "{line}: {found:?}");
         }
         // One letter is that of a pin, not the beginning of `all`.
-        for line in ["zzz", "set title=\"a ", "quit 3", "pins A", "pins L"] {
+        for line in ["zzz", "theme light", "set title=\"a ", "quit 3", "pins A", "pins L"] {
             assert_eq!(found(line), [], "{line}");
         }
         // Text that nobody searches for costs nothing.

@@ -14,6 +14,8 @@ use crate::explorer::view::{Axes, Overlays, ScreenPanel, View, Window};
 use crate::store::{Fingerprint, Loaded, Source};
 use pulloff_engine::preset::Preset;
 use pulloff_engine::problem::Control;
+use pulloff_engine::stability::MapAxis;
+use pulloff_engine::sweep::QuantityColumn;
 use serde::{Deserialize, Serialize};
 
 /// What a person made in a session. A clone shares the walk with it, as a snapshot does with its model.
@@ -53,6 +55,16 @@ pub struct SessionLook {
     pub device: Option<bool>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<MapAxes>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub study: Option<SavedStudy>,
+}
+
+/// The quantity that is studied, by its name, and the range over which it is where that is not the usual one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SavedStudy {
+    pub quantity: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub over: Option<MapAxis>,
 }
 
 impl SessionLook {
@@ -72,6 +84,7 @@ impl SessionLook {
             stiffness: model.stiffness,
             device: model.device,
             map: model.map_axes.clone(),
+            study: Some(SavedStudy { quantity: model.studied.name(), over: model.studied_over.clone() }),
         }
     }
 
@@ -82,6 +95,11 @@ impl SessionLook {
         (model.overlays, model.inward) = (self.overlays, self.inward);
         (model.event, model.device) = (self.event, self.device);
         model.map_axes = self.map;
+        if let Some(study) = self.study
+            && let Ok(column) = QuantityColumn::named(&study.quantity)
+        {
+            (model.studied, model.studied_over) = (column, study.over);
+        }
         model.parameter = self.parameter.min(model.knobs().len().saturating_sub(1));
         for (view, window) in self.windows.into_iter().filter(|(_, window)| window.is_possible()) {
             model.windows[view as usize] = window;
