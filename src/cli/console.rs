@@ -47,8 +47,13 @@ impl Console {
 
     /// Writes warnings, one per line; `--strict` counts them.
     pub fn warn(&self, warnings: &[String]) {
+        self.warn_beside(warnings, 0);
+    }
+
+    /// The same where the first `told` of them are in a result on the same terminal.
+    pub fn warn_beside(&self, warnings: &[String], told: usize) {
         self.warned.set(self.warned.get() + warnings.len());
-        for warning in warnings {
+        for warning in &warnings[told..] {
             self.say(&format!("warning: {warning}"));
         }
     }

@@ -16,7 +16,7 @@ use clap::Args;
 use pulloff_engine::gap::Shape;
 use pulloff_engine::preset::Preset;
 use pulloff_engine::text::sanitize;
-use std::io::{ErrorKind, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// Whether existing files are replaced.
@@ -41,6 +41,11 @@ impl Destination {
     /// The named file, or standard output where there is none.
     pub fn path(&self) -> &Path {
         self.output.as_deref().unwrap_or(Path::new(stream::STANDARD))
+    }
+
+    /// Whether what goes there is read where messages are.
+    pub fn is_terminal(&self) -> bool {
+        self.path() == Path::new(stream::STANDARD) && io::stdout().is_terminal() && io::stderr().is_terminal()
     }
 
     /// The only output of a command that reads `inputs`.

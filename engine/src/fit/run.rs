@@ -2,7 +2,7 @@
 
 use super::bias::of_bias;
 use super::determined::{Determined, determined};
-use super::fitted::{too_small, unmoved, values};
+use super::fitted::{Fitted, too_small, unmoved, values};
 use super::intervals::intervals;
 use super::judge::{Evidence, doubts, of_sparse, of_spring, of_unclear, reasons, unseen};
 use super::laid::laid;
@@ -119,24 +119,7 @@ impl<'a> Posed<'a> {
         if preset.data.uncertain.is_empty() {
             solved = of_tare(&mut problem, solved, options.robust, (&mut notes, progress));
         }
-        if branches.baseline.is_none() {
-            let is_free = problem.parameters.iter().any(|parameter| parameter.target == Target::Baseline);
-            let held = if is_free {
-                ""
-            } else {
-                "the baseline is held as given, and its error is not in those of the values; "
-            };
-            // Too few rows may not show the noise of x, and the baseline then takes up what it does.
-            let is_assumed = !problem.space && noise_of(&problem, branches).from[0] == Origin::Assumed;
-            let unless = if is_assumed && branches.abscissa != Abscissa::Radius {
-                "; sigma of x is assumed to be small: if it is not, the errors are larger (give --sigma-x)"
-            } else {
-                ""
-            };
-            notes.push(format!(
-                "there is no free part: {held}sigma of the force is taken from neighbouring rows{unless}"
-            ));
-        }
+        notes.extend(of_no_free_part(&problem, branches));
         Ok(Self { preset, branches, options, problem, starts, solved, notes })
     }
 
@@ -183,13 +166,8 @@ impl<'a> Posed<'a> {
         reasons.extend(of_sparse(branches, preset));
         let verdict = verdict(ending, what.errors.is_some(), &reasons);
         notes.extend(growth(&problem, u, &what, verdict));
-        let is_known = [Origin::Given, Origin::Apart].contains(&branches.noise.from[1]);
         let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
-        let mut warnings = doubts(evidence, &fitted, (&reasons, is_known));
-        warnings.extend(too_small(&fitted));
-        warnings.extend(unmoved(&mut fitted));
-        warnings.extend(of_unclear(branches, &fitted));
-        warnings.extend(branches.swapped().into_iter().chain(branches.unread()));
+        let warnings = warned(evidence, branches, &reasons, &mut fitted);
         let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
         let instrument = problem.instrument_at(u).turned(problem.turned);
         let fitted_preset = laid(preset, &problem, (&found, closing, &instrument), &mut notes);
@@ -224,6 +202,43 @@ impl<'a> Posed<'a> {
             parameters: fitted,
         })
     }
+}
+
+/// What is doubtful about a fit, whatever its verdict; values that have not moved are marked among `fitted`.
+fn warned(
+    evidence: Evidence<'_>,
+    branches: &Branches,
+    reasons: &[Reason],
+    fitted: &mut [Fitted],
+) -> Vec<String> {
+    let is_known = [Origin::Given, Origin::Apart].contains(&branches.noise.from[1]);
+    let mut warnings = doubts(evidence, fitted, (reasons, is_known));
+    warnings.extend(too_small(fitted));
+    warnings.extend(unmoved(fitted));
+    warnings.extend(of_unclear(branches, fitted));
+    warnings.extend(branches.swapped().into_iter().chain(branches.unread()));
+    warnings
+}
+
+/// What is known of the force where no rows are apart.
+fn of_no_free_part(problem: &FitProblem, branches: &Branches) -> Option<String> {
+    if branches.baseline.is_some() {
+        return None;
+    }
+    let is_free = problem.parameters.iter().any(|parameter| parameter.target == Target::Baseline);
+    let held = if is_free {
+        ""
+    } else {
+        "the baseline is held as given, and its error is not in those of the values; "
+    };
+    // Too few rows may not show the noise of x, and the baseline then takes up what it does.
+    let is_assumed = !problem.space && noise_of(problem, branches).from[0] == Origin::Assumed;
+    let unless = if is_assumed && branches.abscissa != Abscissa::Radius {
+        "; sigma of x is assumed to be small: if it is not, the errors are larger (give --sigma-x)"
+    } else {
+        ""
+    };
+    Some(format!("there is no free part: {held}sigma of the force is taken from neighbouring rows{unless}"))
 }
 
 /// What a fit comes to.

@@ -236,26 +236,51 @@ impl<'a> TextLayout<'a> {
         preset: &Preset,
         forced: Option<&BTreeSet<Key>>,
     ) -> Option<String> {
-        let wanted = self.wanted(preset);
-        let same = |key: &str| before.is_some_and(|before| before.get(key) == preset.get(key));
+        let (wanted, changes) = (self.wanted(preset), TextChanges { before, preset, forced });
         let mut edits = Edits::default();
-        let (mut kept, mut gone) = (BTreeSet::new(), BTreeSet::new());
-        // Values that the text holds as an inline table; they are replaced as a whole.
-        let mut replaced: Vec<&Route> = Vec::new();
-        for want in &wanted {
+        let (mut kept, replaced) = self.put(&wanted, &changes, &mut edits)?;
+        let is_kept = |leaf: &&Leaf| {
+            let key = key_of(leaf);
+            // Some keys only spell out a default, such as reduced units.
+            let is_idle = changes.leaves(&key) && preset.get(&key).is_none() && forced.is_some();
+            is_idle
+                || wanted.iter().any(|want| want.route == leaf.route)
+                || replaced.iter().any(|whole| leaf.route.starts_with(whole))
+        };
+        let (stays, goes): (Vec<&Leaf>, Vec<&Leaf>) = self.leaves.iter().partition(is_kept);
+        kept.extend(stays.iter().map(|leaf| leaf.place.section));
+        self.take(&stays, &goes, &kept, &mut edits)?;
+        let edited = edits.made(self.text);
+        // The first line, if the program wrote it, states the units.
+        Some(match before.and_then(|before| edited.strip_prefix(head(&before.units))) {
+            Some(rest) => format!("{}{rest}", head(&preset.units)),
+            None => edited,
+        })
+    }
+
+    /// Writes what is wanted, and returns the sections that are kept for it and the values that are replaced as a whole
+    /// because the text holds them as an inline table.
+    fn put<'b>(
+        &self,
+        wanted: &'b [WantedValue],
+        changes: &TextChanges<'_>,
+        edits: &mut Edits,
+    ) -> Option<(BTreeSet<usize>, Vec<&'b Route>)> {
+        let (mut kept, mut replaced) = (BTreeSet::new(), Vec::new());
+        for want in wanted {
             let there = self.leaves.iter().find(|leaf| leaf.route == want.route);
             // A parameter that gains or loses a range is replaced as a whole.
             let parts = PARAMETER_KEYS.map(|part| format!("{}.{part}", want.key));
-            let is_same = same(&want.key)
-                && parts.iter().all(|part| same(part))
-                && forced.is_some_and(|keys| !keys.contains(&want.key));
+            let is_same = changes.leaves(&want.key)
+                && parts.iter().all(|part| changes.leaves(part))
+                && changes.forced.is_some_and(|keys| !keys.contains(&want.key));
             match (there, self.holders.get(&want.route)) {
                 (Some(leaf), _) => {
                     kept.insert(leaf.place.section);
                     // The rows of a file may be in memory, whatever its name.
                     let is_file = want.key == "gap.file" || want.key == data::FILE;
                     if !(if is_file {
-                        leaf.string == preset.get(&want.key).map(|value| value.to_string())
+                        leaf.string == changes.preset.get(&want.key).map(|value| value.to_string())
                     } else {
                         is_same
                     }) {
@@ -266,20 +291,16 @@ impl<'a> TextLayout<'a> {
                     replaced.push(&want.route);
                     edits.set(self.text, place, &[], Some(&want.value))?;
                 }
-                (None, _) if !is_same => self.add(want, &mut edits, &mut kept)?,
+                (None, _) if !is_same => self.add(want, edits, &mut kept)?,
                 (None, _) => {}
             }
         }
-        let is_kept = |leaf: &&Leaf| {
-            let key = key_of(leaf);
-            // Some keys only spell out a default, such as reduced units.
-            let is_idle = same(&key) && preset.get(&key).is_none() && forced.is_some();
-            is_idle
-                || wanted.iter().any(|want| want.route == leaf.route)
-                || replaced.iter().any(|whole| leaf.route.starts_with(whole))
-        };
-        let (stays, goes): (Vec<&Leaf>, Vec<&Leaf>) = self.leaves.iter().partition(is_kept);
-        kept.extend(stays.iter().map(|leaf| leaf.place.section));
+        Some((kept, replaced))
+    }
+
+    /// Takes out the values that go, and the tables that have lost all their keys.
+    fn take(&self, stays: &[&Leaf], goes: &[&Leaf], kept: &BTreeSet<usize>, edits: &mut Edits) -> Option<()> {
+        let mut gone = BTreeSet::new();
         // From the last to the first: removing a wave does not change the numbers of those before it.
         for leaf in goes.iter().rev() {
             let place = &leaf.place;
@@ -295,16 +316,11 @@ impl<'a> TextLayout<'a> {
             let below = |set: &BTreeSet<usize>| {
                 set.iter().any(|other| self.sections[*other].route.starts_with(&section.route))
             };
-            if below(&gone) && !below(&kept) {
+            if below(&gone) && !below(kept) {
                 edits.take_line(self.text, section.header.start, section.header.end, "");
             }
         }
-        let edited = edits.made(self.text);
-        // The first line, if the program wrote it, states the units.
-        Some(match before.and_then(|before| edited.strip_prefix(head(&before.units))) {
-            Some(rest) => format!("{}{rest}", head(&preset.units)),
-            None => edited,
-        })
+        Some(())
     }
 
     /// Adds a value at the end of its table, and marks the section that contains it as `kept`.
@@ -373,6 +389,21 @@ fn end_of_line(text: &str, at: usize) -> usize {
 /// A value without surrounding spaces.
 fn printed(value: &Value) -> String {
     value.to_string().trim().to_owned()
+}
+
+/// From which preset to which a text is edited, and the keys that are written even if they stay as they are; without them
+/// all are.
+struct TextChanges<'a> {
+    before: Option<&'a Preset>,
+    preset: &'a Preset,
+    forced: Option<&'a BTreeSet<Key>>,
+}
+
+impl TextChanges<'_> {
+    /// Whether the value of this key stays as it is.
+    fn leaves(&self, key: &str) -> bool {
+        self.before.is_some_and(|before| before.get(key) == self.preset.get(key))
+    }
 }
 
 /// Changes to a text, made all at once.

@@ -59,7 +59,11 @@ impl<'a> FinishedFits<'a> {
             self.compared = Some(ModelsReport::new(&show_path(path), models, arguments.poisson));
         }
         let report = FitReport::new(&show_path(path), found, arguments.poisson);
-        self.console.warn(&report.doubts);
+        // A table gives the reasons too.
+        let is_told = models.fits.len() == 1
+            && self.sinks.format == Format::Table
+            && arguments.destination.is_terminal();
+        self.console.warn_beside(&report.doubts, if is_told { report.reasons.len() } else { 0 });
         // A rerun computes again what was cut off.
         if let Some(table) = self.sinks.table.as_mut().filter(|_| stop.signal().is_none()) {
             let fingerprint = table.fingerprint(path);
