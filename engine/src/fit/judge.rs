@@ -37,7 +37,7 @@ use super::solve::SolvedFit;
 use super::verdict::Reason;
 use crate::elementary::hypot;
 use crate::measured::converter::Clipped;
-use crate::measured::{Abscissa, Branches, MeasuredBranch, SPARSE, is_hidden};
+use crate::measured::{Abscissa, Branches, SPARSE, is_hidden};
 use crate::preset::Preset;
 use crate::problem::Groups;
 use crate::problem::groups::LARGE_TABOR;
@@ -115,29 +115,34 @@ pub(super) fn reasons(evidence: Evidence, preset: &Preset, clipped: Option<Clipp
     reasons
 }
 
-/// Branches with so few rows, or so much noise at their ends, that rows apart would not be seen, where nothing says that
-/// there are none or what their force is.
-pub(super) fn of_sparse(branches: &Branches, preset: &Preset) -> Option<Reason> {
+/// Whether the file shows no rows apart, and nothing else says that there are none or what their force is.
+fn is_apart_unknown(branches: &Branches, preset: &Preset) -> bool {
     let is_said =
         branches.baseline.is_some() || preset.data.baseline.is_some() || !preset.data.free_part.is_empty();
-    if is_said || branches.abscissa == Abscissa::Radius {
-        return None;
-    }
-    const REMEDY: &str = "give data.baseline, the force of such rows, or --free-part, which may be none";
+    !is_said && branches.abscissa != Abscissa::Radius
+}
+
+/// Branches with so few rows that rows apart would not be seen.
+pub(super) fn of_sparse(branches: &Branches, preset: &Preset) -> Option<Reason> {
     let most = branches.list.iter().map(|branch| branch.attached.len()).max()?;
-    if most < SPARSE {
-        let sentence =
-            format!("branches of at most {most} rows do not show whether any rows are apart: {REMEDY}");
-        return Some(Reason::new("sparse", most as f64, sentence));
-    }
-    let forces =
-        |branch: &MeasuredBranch| branch.attached.iter().map(|point| point.force).collect::<Vec<_>>();
-    let hidden = branches.list.iter().find(|branch| is_hidden(&forces(branch)))?;
     let sentence = format!(
-        "the force of the last rows of the {} changes by less than its noise, and does not show whether they are apart: {REMEDY}",
-        hidden.segment.name()
+        "branches of at most {most} rows do not show whether any rows are apart: give data.baseline, the \
+         force of such rows, or --free-part"
     );
-    Some(Reason::new("sparse", hidden.attached.len() as f64, sentence))
+    let is_sparse = most < SPARSE && is_apart_unknown(branches, preset);
+    is_sparse.then(|| Reason::new("sparse", most as f64, sentence))
+}
+
+/// A sentence on a branch whose rows would not show that they are apart, as their noise is too large.
+pub(super) fn of_hidden(branches: &Branches, preset: &Preset) -> Option<String> {
+    let hidden = branches.list.iter().find(|branch| is_hidden(&branch.attached))?;
+    is_apart_unknown(branches, preset).then(|| {
+        format!(
+            "the force of the last quarter of the {} changes by less than its noise: if those rows are apart, the values are \
+             wrong. Give --free-part, which may be none, or data.baseline",
+            hidden.segment.name()
+        )
+    })
 }
 
 /// A sentence on rows that may belong to either part, if they are many and a work of adhesion is fitted: they lie about the

@@ -27,6 +27,7 @@
 //! | [`uncertain`] | values that are given with an error |
 //! | [`verdict`] | what it comes to, in one word, and why |
 //! | [`rows`] | what a fit makes of the rows of a file, counted |
+//! | [`reach`] | how far a path goes, and how its states are seen |
 //! | [`residuals`] | the points compared with a curve |
 //! | `settled` | the last fit, with the noise that it shows |
 //! | `bias` | the bias of distances where the curve bends within the noise |
@@ -62,6 +63,7 @@ pub mod pose;
 pub mod prior;
 pub mod problem;
 mod pulled;
+pub mod reach;
 pub mod residuals;
 mod rings;
 pub mod rows;

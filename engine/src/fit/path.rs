@@ -5,7 +5,8 @@
 //! the pull-off by the unstable stretch that begins there; or the path of loading from the first touch.
 
 use super::pulled::TrackState;
-use super::track::{Eye, Mover, Reach, Track};
+use super::reach::{Eye, Reach};
+use super::track::{Mover, Track};
 use super::way::{Leg, Way, WayEvidence, legs};
 use crate::disc::{self, Local};
 use crate::elementary::hypot;

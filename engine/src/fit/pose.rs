@@ -3,7 +3,7 @@
 use super::options::{FitError, Options, target};
 use super::prior::Prior;
 use super::problem::{ADHESION, Datum, FitProblem, FreeParameter, START, Target};
-use super::track::Reach;
+use super::reach::Reach;
 use super::track::begins;
 use super::uncertain::{Uncertain, uncertain};
 use crate::elementary::hypot;

@@ -3,7 +3,7 @@
 use super::distance::{Nearest, ScaledPath};
 use super::path::{FitPath, PathPlace};
 use super::prior::Prior;
-use super::track::Reach;
+use super::reach::Reach;
 use super::way::Way;
 use crate::elementary::{exp, ln};
 use crate::measured::branches::MeasuredPoint;

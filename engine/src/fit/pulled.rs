@@ -11,7 +11,7 @@
 //! inward like the other paths. Reduced units.
 
 use super::mover::Mover;
-use super::track::{Eye, Reach};
+use super::reach::{Eye, Reach};
 use crate::disc::{Basis, ExactBasis, Table};
 use crate::elementary::pow;
 use crate::preset::Preset;
@@ -210,8 +210,8 @@ fn state(moment: &Moment, along: f64, held: Control, [rate, by_control, radius]:
 #[cfg(test)]
 mod tests {
     use crate::fit::path::FitPath;
+    use crate::fit::reach::Reach;
     use crate::fit::tests::preset;
-    use crate::fit::track::Reach;
     use crate::fit::way::Way;
     use crate::measured::Abscissa;
     use crate::problem::Start;

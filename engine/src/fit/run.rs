@@ -4,7 +4,7 @@ use super::bias::of_bias;
 use super::determined::{Determined, determined};
 use super::fitted::{Fitted, too_small, unmoved, values};
 use super::intervals::intervals;
-use super::judge::{Evidence, doubts, of_sparse, of_spring, of_unclear, reasons, unseen};
+use super::judge::{Evidence, doubts, of_hidden, of_sparse, of_spring, of_unclear, reasons, unseen};
 use super::laid::laid;
 use super::least_squares::Ending;
 use super::options::{FitError, Options};
@@ -167,7 +167,7 @@ impl<'a> Posed<'a> {
         let verdict = verdict(ending, what.errors.is_some(), &reasons);
         notes.extend(growth(&problem, u, &what, verdict));
         let residuals = beside(&problem, &solved.minimum.at.residuals, solved.scale);
-        let warnings = warned(evidence, branches, &reasons, &mut fitted);
+        let warnings = warned(evidence, (preset, branches), &reasons, &mut fitted);
         let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
         let instrument = problem.instrument_at(u).turned(problem.turned);
         let fitted_preset = laid(preset, &problem, (&found, closing, &instrument), &mut notes);
@@ -207,7 +207,7 @@ impl<'a> Posed<'a> {
 /// What is doubtful about a fit, whatever its verdict; values that have not moved are marked among `fitted`.
 fn warned(
     evidence: Evidence<'_>,
-    branches: &Branches,
+    (preset, branches): (&Preset, &Branches),
     reasons: &[Reason],
     fitted: &mut [Fitted],
 ) -> Vec<String> {
@@ -216,6 +216,7 @@ fn warned(
     warnings.extend(too_small(fitted));
     warnings.extend(unmoved(fitted));
     warnings.extend(of_unclear(branches, fitted));
+    warnings.extend(of_hidden(branches, preset));
     warnings.extend(branches.swapped().into_iter().chain(branches.unread()));
     warnings
 }

@@ -1,9 +1,10 @@
 //! Known values from made curves: closed forms of JKR's sphere and of the cone, and our own unloading of a wavy sphere.
 
 use super::least_squares::Ending;
+use super::mover::Mover;
 use super::path::FitPath;
 use super::problem::START;
-use super::track::{Mover, Reach};
+use super::reach::Reach;
 use super::way::Way;
 use super::*;
 use crate::gap::shapes::split_mix::SplitMix64;

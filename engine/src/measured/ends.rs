@@ -1,6 +1,6 @@
 //! Where the force stays constant at an end of a branch, as it does where the bodies are apart.
 
-use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, median, noise_of, range, scatter};
+use super::noise::{BEYOND, END_ROWS, END_SHARE, FLOOR, median, noise_of, range, scatter_over};
 use super::points::MeasuredPoint;
 
 /// A free end varies by less than these shares of the whole range, and of the range at the other end.
@@ -160,11 +160,13 @@ fn goes_on(values: &[f64], noise: f64, floor: f64) -> bool {
 }
 
 /// Whether noise hides how the force of the last quarter of these rows changes, from the contact to the free end.
-pub(crate) fn is_hidden(force: &[f64]) -> bool {
+pub(crate) fn is_hidden(points: &[MeasuredPoint]) -> bool {
     const SHARE: usize = 4;
-    let count = force.len() / SHARE;
-    let end = &force[force.len() - count..];
-    count >= END_ROWS && !goes_on(end, scatter(end), FLOOR * range(force.iter().copied()))
+    let end = &points[points.len() - points.len() / SHARE..];
+    let (x, force): (Vec<f64>, Vec<f64>) = end.iter().map(|point| (point.x, point.force)).unzip();
+    let floor = FLOOR * range(points.iter().map(|point| point.force));
+    // Neighbours differ by the slope too.
+    scatter_over(&x, &force).is_some_and(|noise| end.len() >= END_ROWS && !goes_on(&force, noise, floor))
 }
 
 /// The running median of five rows, of fewer at the ends.
