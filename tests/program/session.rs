@@ -52,7 +52,8 @@ fn assert_same(ours: &Model, theirs: &Model) {
 /// Steps, jumps, undo, branches, knobs, controls, pins and views.
 fn story() -> Vec<Command> {
     let set = |key: &'static str, text: &str| Command::Set { key: key.into(), text: text.to_owned() };
-    let (column, over) = (QuantityColumn::named("peak_force").unwrap(), "gap.amplitude=0.001..0.003");
+    let (column, over) =
+        (QuantityColumn::named("peak_force").expect("a quantity"), "gap.amplitude=0.001..0.003");
     let study = Command::Study { column, over: Some(over.to_owned()) };
     let mut story = vec![study, Command::Show(View::ForceApproach), Command::Steps(3)];
     story.extend(
