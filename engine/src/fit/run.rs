@@ -29,9 +29,6 @@ use crate::progress::{Progress, ProgressPart};
 use crate::units::number::significant;
 use nalgebra::DVector;
 
-/// How far before the first points an edge is held to start where they do not show it, as a share of its radius.
-const BEFORE: f64 = 0.05;
-
 /// Fits the free keys of `preset` to `branches`.
 pub(super) fn fit_branches(
     preset: &Preset,
@@ -97,12 +94,12 @@ impl<'a> Posed<'a> {
             notes.push("no rows show that the edge is pinned between approach and retraction".to_owned());
         }
         if let Some(j) = unseen_start(&problem, &solved) {
-            let mut u = solved.minimum.parameters;
-            problem.begun(&mut u);
-            problem = problem.holding(j, u.remove(j) + BEFORE).ok_or(FitError::NoStart)?;
-            solved =
-                last(&mut problem, &u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))?;
-            notes.push("the points do not show at which contact radius the edge started: one just before their first row is taken".to_owned());
+            (problem, solved) = held_start(problem, solved, j, &|problem, u| {
+                last(problem, u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))
+            })?;
+            notes.push(
+                "the points do not show at which contact radius the edge started, and it is held".to_owned(),
+            );
         }
         let [of_way, of_force, _] = branches.noise.from;
         let known = KnownNoise {
@@ -201,6 +198,36 @@ impl<'a> Posed<'a> {
             residuals,
             parameters: fitted,
         })
+    }
+}
+
+/// The problem with the contact radius `j`, at which a pull starts, held, and its minimum as `solve` finds it. The edge starts
+/// just before the first points, or, where it moves already at the first of them, as far out as it was found.
+fn held_start(
+    problem: FitProblem,
+    solved: SolvedFit,
+    j: usize,
+    solve: &dyn Fn(&mut FitProblem, &[f64]) -> Result<SolvedFit, FitError>,
+) -> Result<(FitProblem, SolvedFit), FitError> {
+    /// How far before them, as a share of the radius.
+    const BEFORE: f64 = 0.05;
+    /// A larger cost than this, in squares of the scale of the residuals, shows that the edge moves already.
+    const MOVES: f64 = 5.0;
+    // σ of the force may change from fit to fit.
+    let cost = |problem: &FitProblem, cost: f64| cost * problem.sigma[1].powi(2);
+    let mut u = solved.minimum.parameters;
+    let free = u[j];
+    problem.begun(&mut u);
+    let near = u.remove(j) + BEFORE;
+    let held = |at: f64| {
+        let mut held = problem.holding(j, at).ok_or(FitError::NoStart)?;
+        let solved = solve(&mut held, &u)?;
+        Ok((held, solved))
+    };
+    let most = cost(&problem, solved.minimum.cost + MOVES * solved.scale.powi(2));
+    match held(near) {
+        Ok((held, solved)) if cost(&held, solved.minimum.cost) <= most => Ok((held, solved)),
+        _ => held(free),
     }
 }
 

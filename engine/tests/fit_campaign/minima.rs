@@ -2,7 +2,7 @@
 //!
 //! The curves in `minima/` come from programs that share no code with the engine, with normal noise of the force: `range`
 //! from Maugis' equations at a Tabor number of 1.5, `spring` and `few_rows` from quasi-static loops on waves by
-//! quadrature, `pull` and `slow` from the rate equation of an edge, `begins_in_contact` from the equations of Hertz, `hidden`
+//! quadrature, `pull`, `slow` and `moving` from the rate equation of an edge, `begins_in_contact` from the equations of Hertz, `hidden`
 //! from those of Johnson, Kendall and Roberts. The presets begin up to three times off.
 
 use super::kinds::Made;
@@ -97,9 +97,21 @@ fn a_slow_pull_does_not_show_where_it_began() {
         ("data.offset", 4.943_965e-7),
     ];
     let found = found(SLOW[0], SLOW[1], &FREE, &truth);
-    let is_held = |said: &String| said.contains("do not show at which contact radius the edge started");
+    let is_held =
+        |said: &String| said.contains("do not show at which contact radius the edge started, and it is held");
     assert!(found.said.iter().any(is_held), "{found:#?}");
     assert!(found.is_trusted() && found.off() < 4.0, "{found:#?}");
+}
+
+/// Rows that begin in the middle of a pull do not show where it began either, but the edge moves at the first of them.
+#[test]
+fn an_edge_that_moves_at_the_first_row_started_further_out() {
+    is_right(
+        include_str!("minima/moving.csv"),
+        include_str!("minima/moving.toml"),
+        &["E*", "gamma", "v0"],
+        &[(MODULUS, 1.290_133), (ADHESION, 1.039_681e-3), ("edge.reference_speed", 2.480_630e-3)],
+    );
 }
 
 /// With a noise as large as the pull-off force, nothing tells rows apart from rows in contact near the largest pull.
