@@ -138,8 +138,8 @@ pub(super) fn of_hidden(branches: &Branches, preset: &Preset) -> Option<String> 
     let hidden = branches.list.iter().find(|branch| is_hidden(&branch.attached))?;
     is_apart_unknown(branches, preset).then(|| {
         format!(
-            "the force of the last quarter of the {} changes by less than its noise: if those rows are apart, the values are \
-             wrong. Give --free-part, which may be none, or data.baseline",
+            "over the outermost quarter of the {} the force changes by less than its noise: if those rows are apart, the \
+             values are wrong. Give --free-part, which may be none, or data.baseline",
             hidden.segment.name()
         )
     })

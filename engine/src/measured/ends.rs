@@ -159,7 +159,8 @@ fn goes_on(values: &[f64], noise: f64, floor: f64) -> bool {
     range(medians) > 5.0 * median_error(noise, values.len()) + floor
 }
 
-/// Whether noise hides how the force of the last quarter of these rows changes, from the contact to the free end.
+/// Whether noise hides how the force changes over the outermost quarter of these rows, which run from the contact to the free
+/// end.
 pub(crate) fn is_hidden(points: &[MeasuredPoint]) -> bool {
     const SHARE: usize = 4;
     let end = &points[points.len() - points.len() / SHARE..];
