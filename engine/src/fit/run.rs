@@ -94,7 +94,7 @@ impl<'a> Posed<'a> {
             notes.push("no rows show that the edge is pinned between approach and retraction".to_owned());
         }
         if let Some(j) = unseen_start(&problem, &solved) {
-            (problem, solved) = held_start(problem, solved, j, &|problem, u| {
+            (problem, solved) = held_start(&problem, solved, j, |problem, u| {
                 last(problem, u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))
             })?;
             notes.push(
@@ -204,10 +204,10 @@ impl<'a> Posed<'a> {
 /// The problem with the contact radius `j`, at which a pull starts, held, and its minimum as `solve` finds it. The edge starts
 /// just before the first points, or, where it moves already at the first of them, as far out as it was found.
 fn held_start(
-    problem: FitProblem,
+    problem: &FitProblem,
     solved: SolvedFit,
     j: usize,
-    solve: &dyn Fn(&mut FitProblem, &[f64]) -> Result<SolvedFit, FitError>,
+    solve: impl Fn(&mut FitProblem, &[f64]) -> Result<SolvedFit, FitError>,
 ) -> Result<(FitProblem, SolvedFit), FitError> {
     /// How far before them, as a share of the radius.
     const BEFORE: f64 = 0.05;
@@ -224,7 +224,7 @@ fn held_start(
         let solved = solve(&mut held, &u)?;
         Ok((held, solved))
     };
-    let most = cost(&problem, solved.minimum.cost + MOVES * solved.scale.powi(2));
+    let most = cost(problem, solved.minimum.cost + MOVES * solved.scale.powi(2));
     match held(near) {
         Ok((held, solved)) if cost(&held, solved.minimum.cost) <= most => Ok((held, solved)),
         _ => held(free),
