@@ -212,6 +212,9 @@ fn three_speeds_are_fitted_together() {
     let ended = fit(&["slow.csv", "fast.csv"], &["--rate", "0.1um/s,1um/s"]);
     let said = "fast.csv: the rate is given as 1 um/s, but the times of the file give 10";
     assert!(ended.status == 2 && ended.err.contains(said), "{}", ended.err);
+    // Without a key of the edge there is no rate.
+    let ended = home.run(&["fit", "slow.csv", "soft.toml", "--free", "E*", "--rate", "7um/s", "--accept"]);
+    assert!(ended.out.contains("--rate plays no part, as no key of edge is fitted"), "{}", ended.out);
     let ended = fit(&["slow.csv", "fast.csv"], &["--residuals", "r.csv"]);
     assert!(ended.status == 2 && ended.err.contains("--together"), "{}", ended.err);
 }

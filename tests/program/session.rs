@@ -177,13 +177,13 @@ fn what_is_no_session_is_refused_in_words() {
     let bytes = document(&session.model);
     let text = String::from_utf8(bytes.clone()).unwrap();
     let told = |text: &str| read(text.as_bytes()).unwrap_err().to_string();
-    let future = text.replacen("\"format\":5", "\"format\":6", 1).replacen("0.1.0", "9.9.9", 1);
+    let future = text.replacen("\"format\":6", "\"format\":7", 1).replacen("0.1.0", "9.9.9", 1);
     assert!(
-        told(&future).contains("format 6 (it was written by pulloff 9.9.9); this one reads format 5"),
+        told(&future).contains("format 7 (it was written by pulloff 9.9.9); this one reads format 6"),
         "{}",
         told(&future)
     );
-    assert!(matches!(summary(future.as_bytes()), Err(Unreadable::Format { format: 6, .. })));
+    assert!(matches!(summary(future.as_bytes()), Err(Unreadable::Format { format: 7, .. })));
     // Of another format, only the format number is read.
     assert!(matches!(read(br#"{"format":4,"program_version":"3"}"#), Err(Unreadable::Format { .. })));
     for cut in (0..bytes.len() - 2).step_by(97) {

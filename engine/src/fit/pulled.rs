@@ -230,7 +230,8 @@ mod tests {
     #[test]
     fn a_fit_loses_no_time_with_pulls_far_from_any_points() {
         let usual = corners(0.5, 1e-2, 0.5).unwrap();
-        // A quasi-static pull whose law says so with a share of 1e-11, where the integrator would take hundreds of thousands of steps.
+        // G exceeds the work of adhesion by a share of 1e-11: without a bound the integrator takes hundreds of thousands of
+        // steps.
         let slow = corners(0.5, 3e3, 1.6).unwrap();
         assert!(slow < 10 * usual, "{slow} {usual}");
         assert_eq!(corners(0.5, 1e-15, 0.9), None, "G is 1e10 times the work of adhesion");

@@ -25,8 +25,10 @@ use crate::elementary::{ln, pow};
 use crate::measured::branches::FLOOR;
 use crate::measured::{Abscissa, Branches, Noise, Origin, Segment};
 use crate::preset::{Preset, edge};
+use crate::problem::Start;
 use crate::progress::{Progress, ProgressPart};
-use crate::units::number::significant;
+use crate::units::Quantity;
+use crate::units::number::{said, significant};
 use nalgebra::DVector;
 
 /// Fits the free keys of `preset` to `branches`.
@@ -97,9 +99,12 @@ impl<'a> Posed<'a> {
             (problem, solved) = held_start(&problem, solved, j, |problem, u| {
                 last(problem, u, options.robust, least, &ProgressPart::new(progress, [0.8, 0.85]))
             })?;
-            notes.push(
-                "the points do not show at which contact radius the edge started, and it is held".to_owned(),
-            );
+            if let Start::ContactRadius(radius) = problem.preset.path.start {
+                let at = said(&preset.units, Quantity::Length, radius);
+                notes.push(format!(
+                    "the points do not show at which contact radius the edge started: it is held at {at}"
+                ));
+            }
         }
         let [of_way, of_force, _] = branches.noise.from;
         let known = KnownNoise {

@@ -98,7 +98,7 @@ fn a_slow_pull_does_not_show_where_it_began() {
     ];
     let found = found(SLOW[0], SLOW[1], &FREE, &truth);
     let is_held =
-        |said: &String| said.contains("do not show at which contact radius the edge started, and it is held");
+        |said: &String| said.contains("do not show at which contact radius the edge started: it is held at");
     assert!(found.said.iter().any(is_held), "{found:#?}");
     assert!(found.is_trusted() && found.off() < 4.0, "{found:#?}");
 }

@@ -55,8 +55,7 @@ pub struct SessionLook {
     pub device: Option<bool>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub map: Option<MapAxes>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub study: Option<SavedStudy>,
+    pub study: SavedStudy,
 }
 
 /// The quantity that is studied, by its name, and the range over which it is where that is not the usual one.
@@ -84,7 +83,7 @@ impl SessionLook {
             stiffness: model.stiffness,
             device: model.device,
             map: model.map_axes.clone(),
-            study: Some(SavedStudy { quantity: model.studied.name(), over: model.studied_over.clone() }),
+            study: SavedStudy { quantity: model.studied.name(), over: model.studied_over.clone() },
         }
     }
 
@@ -95,10 +94,8 @@ impl SessionLook {
         (model.overlays, model.inward) = (self.overlays, self.inward);
         (model.event, model.device) = (self.event, self.device);
         model.map_axes = self.map;
-        if let Some(study) = self.study
-            && let Ok(column) = QuantityColumn::named(&study.quantity)
-        {
-            (model.studied, model.studied_over) = (column, study.over);
+        if let Ok(column) = QuantityColumn::named(&self.study.quantity) {
+            (model.studied, model.studied_over) = (column, self.study.over);
         }
         model.parameter = self.parameter.min(model.knobs().len().saturating_sub(1));
         for (view, window) in self.windows.into_iter().filter(|(_, window)| window.is_possible()) {
