@@ -22,8 +22,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// The paths at some values, and the feet of the points on them.
 pub struct FootedPaths {
-    paths: Paths,
-    feet: Vec<Option<Nearest>>,
+    pub(super) paths: Paths,
+    pub(super) feet: Vec<Option<Nearest>>,
 }
 
 /// How the scaled point moves relative to its foot, per unit of u.
@@ -82,7 +82,6 @@ impl FitProblem {
 
     /// The paths on either side of `u` in the parameter `j`, with the step between them; where one has other snaps,
     /// `paths` takes its place.
-    /// left out.
     fn either_side(&self, u: &[f64], j: usize, paths: &Paths) -> Option<([Option<Paths>; 2], f64)> {
         let step = paths.of(Segment::Retraction).step();
         let beside = |h: f64| {

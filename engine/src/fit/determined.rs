@@ -1,7 +1,7 @@
 //! What the points determine: covariance, condition, and the direction in which they say nothing.
 //!
 //! ```text
-//! C = H⁻¹ (JᵀVRVJ + K) H⁻¹,    H = JᵀΦJ + K
+//! C = H⁻¹ (JᵀVRVJ + K) H⁻¹,    H = JᵀΦJ + K,    J as in `folds`
 //! Φ_i = E ψ'(r_i) = erf(t/√2),    V_i² = E ψ(r_i)² = s_i² [erf(t/√2) − √(2/π) t exp(−t²/2) + t² erfc(t/√2)],    t = c/s_i
 //! ```
 //!
@@ -84,6 +84,10 @@ pub fn determined(problem: &FitProblem, solved: &SolvedFit, scatter: &Scatter, r
         let words = words(&problem.preset, &problem.parameters, &at.jacobian, u, &weakest);
         return Determined { condition, direction: Some(words), ..none };
     };
+    // Whether all values are determined, the fit itself says; how well, the folds do too.
+    let beside = problem.beside_folds(solved);
+    let solved = beside.as_ref().unwrap_or(solved);
+    let at = &solved.minimum.at;
     let Sandwich { points, bread, noisy, spread } =
         sandwich(problem, solved, &inner, &scatter.correlation, robust);
     let known = with_derivatives(DMatrix::zeros(0, p), &problem.priors, 1.0);

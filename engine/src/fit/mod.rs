@@ -31,6 +31,7 @@
 //! | [`residuals`] | the points compared with a curve |
 //! | `settled` | the last fit, with the noise that it shows |
 //! | `bias` | the bias of distances where the curve bends within the noise |
+//! | `folds` | what rows beside a fold of the curve tell |
 //! | `shown` | noise of x that was not assumed, and noise of the force that grows with it |
 //! | `laid` | the preset that a fit leaves |
 //! | `run` | all of it, in order |
@@ -50,6 +51,7 @@ pub mod determined;
 mod directed;
 pub mod distance;
 pub mod fitted;
+mod folds;
 pub mod intervals;
 pub mod judge;
 mod laid;

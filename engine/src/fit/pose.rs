@@ -50,21 +50,9 @@ pub fn posed(
     let offset = preset.data.instrument(branches).offset;
     let has_waves = preset.gap.feature_length().is_some();
     let mut targets = targets(preset, branches, options)?;
-    if let Some(key) = targets.iter().map(Target::key).find(|key| key.starts_with("edge.")) {
-        bare.path.start =
-            pulled(&mut bare, branches, (&mut data, offset), (&key, options.is_rate_said), notes)?;
+    if let Some(start) = started(&mut bare, (branches, options), (&mut data, offset), &targets, notes)? {
+        bare.path.start = start;
         targets.push(Target::Key(START.to_owned()));
-    } else {
-        bare.edge.rate = None;
-        if options.is_rate_said {
-            notes.push("--rate plays no part, as no key of edge is fitted".to_owned());
-        }
-        if options.separate {
-            let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
-            let attached: Vec<&MeasuredPoint> = retraction.flat_map(|branch| &branch.attached).collect();
-            bare.path.start = begun(&bare, branches, &attached, offset)?;
-            targets.push(Target::Key(START.to_owned()));
-        }
     }
     let loops = has_waves && data.iter().any(|datum| datum.segment == Segment::Approach);
     let known = known(preset, branches, options)?;
@@ -87,11 +75,7 @@ pub fn posed(
         return Err(FitError::Few { points: attached, parameters: parameters.len(), needed });
     }
     let abscissa = branches.abscissa;
-    let at = |target: &Target| parameters.iter().position(|parameter| parameter.target == *target);
-    let mut priors: Vec<Prior> = known
-        .iter()
-        .filter_map(|known| at(&known.target).map(|at| known.prior(&parameters[at], at)))
-        .collect();
+    let mut priors = priors(&known, &parameters);
     if !is_known {
         priors.extend(of_baseline(&preset.data, branches, &parameters));
     }
@@ -114,6 +98,39 @@ pub fn posed(
         loops,
         counts: None,
     })
+}
+
+/// Where the path of a fit starts that follows a pull or has works of adhesion of its own on either branch; `None` for
+/// any other, whose path depends on no start.
+fn started(
+    bare: &mut Preset,
+    (branches, options): (&Branches, &Options),
+    (data, offset): (&mut Vec<Datum>, f64),
+    targets: &[Target],
+    notes: &mut Vec<String>,
+) -> Result<Option<Start>, FitError> {
+    if let Some(key) = targets.iter().map(Target::key).find(|key| key.starts_with("edge.")) {
+        return pulled(bare, branches, (data, offset), (&key, options.is_rate_said), notes).map(Some);
+    }
+    bare.edge.rate = None;
+    if options.is_rate_said {
+        notes.push("--rate plays no part, as no key of edge is fitted".to_owned());
+    }
+    if !options.separate {
+        return Ok(None);
+    }
+    let retraction = branches.list.iter().filter(|branch| branch.segment == Segment::Retraction);
+    let attached: Vec<&MeasuredPoint> = retraction.flat_map(|branch| &branch.attached).collect();
+    begun(bare, branches, &attached, offset).map(Some)
+}
+
+/// What is known beforehand of the parameters.
+fn priors(known: &[Uncertain], parameters: &[FreeParameter]) -> Vec<Prior> {
+    let of = |known: &Uncertain| {
+        let at = parameters.iter().position(|parameter| parameter.target == known.target)?;
+        Some(known.prior(&parameters[at], at))
+    };
+    known.iter().filter_map(of).collect()
 }
 
 /// Makes `bare` a pull at the rate of the retraction and keeps only the points of the retraction; returns where it

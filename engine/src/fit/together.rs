@@ -410,6 +410,8 @@ fn known(
     let [mut points, mut bread] = [DMatrix::<f64>::zeros(p, p), DMatrix::zeros(p, p)];
     for (curve, (solved, scatter)) in all() {
         let own = curve.part(&inner) * curve.weight().powi(2);
+        let beside = curve.problem.beside_folds(solved);
+        let solved = beside.as_ref().unwrap_or(solved);
         let sandwich = sandwich(curve.problem, solved, &own, &scatter.correlation, joint.robust);
         // Rows and columns are each smaller by this factor, and so is the noise of the points.
         let (of_points, of_bread) = (curve.weight().powi(4), curve.weight().powi(2));
