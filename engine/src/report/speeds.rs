@@ -9,24 +9,26 @@
 //! radius, G does not depend on the force, unless the way is that of the other end of a spring. D. Maugis and M.
 //! Barquins, J. Phys. D 11, 1989 (1978).
 
+mod branch;
 mod offset;
 mod reading;
 
+use self::branch::BranchReading;
+pub use self::branch::SpeedRow;
 use self::offset::{FoundOffset, doubt_of_baseline, doubt_of_offset};
 pub use self::reading::MeasuredPair;
-use self::reading::{Released, RowReading, attached, radius_of};
+use self::reading::{RowReading, attached, radius_of};
 use super::columns::columns;
 use super::problem::Head;
 use super::rows::{ReportTable, RowsError};
 use crate::case::{Case, CaseError};
-use crate::elementary::hypot;
 use crate::measured::branches::MeasuredPoint;
 use crate::measured::points::Turned;
-use crate::measured::speed::{Speed, noise, speeds};
-use crate::measured::{Abscissa, Branches, Instrument, MeasuredBranch};
+use crate::measured::{Abscissa, Branches, Instrument};
 use crate::preset::Preset;
 use crate::problem::Control;
 use crate::progress::Progress;
+use crate::quasistatic::admissible::Judge;
 use crate::units::Quantity;
 use crate::units::number::said;
 use serde::Serialize;
@@ -54,30 +56,6 @@ pub enum SpeedsError {
     /// No row of it is in contact, or none at a radius for which the gap is known.
     #[error("no row is in contact, or none has a contact radius for which the gap is known")]
     Nothing,
-}
-
-/// One row in contact.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct SpeedRow {
-    /// When it was taken, in seconds, or in reduced units; null where the file does not say.
-    pub time: Option<f64>,
-    /// s, measured, or from force and approach.
-    pub contact_radius: f64,
-    /// −ds/dt: positive where the contact recedes; null without times.
-    pub speed: Option<f64>,
-    /// G; negative where the edge is pressed, K < 0.
-    pub energy_release_rate: f64,
-    /// The standard deviation of G, from the noise of the columns.
-    pub error: f64,
-    /// The standard deviation of the speed, from the noise of the contact radius.
-    pub speed_error: Option<f64>,
-    /// The number of rows in the window from which the speed is found.
-    pub window: Option<usize>,
-    /// `approach` or `retraction`.
-    pub segment: &'static str,
-    /// Its number among the rows that are read, from 1.
-    pub row: usize,
 }
 
 /// The columns as CSV; they never change, new ones come after them.
@@ -137,6 +115,7 @@ impl SpeedsReport {
             },
             instrument: preset.data.instrument(&branches),
             sigma: [sigma_x, sigma_force],
+            judge: Judge::new(&case.reduced, &case.table),
         };
         let unknown = pair != MeasuredPair::ForceRadius && preset.data.offset.is_none();
         let found = if unknown { FoundOffset::of(&reading, preset, &branches, progress) } else { None };
@@ -146,8 +125,11 @@ impl SpeedsReport {
         notes.push(used(&reading, preset, branches.turned));
         let mut rows = Vec::new();
         let mut noises = Vec::new();
+        let mut ambiguous = 0;
         for branch in &branches.list {
-            let (of_branch, noise) = of_branch(&reading, branch);
+            let read = BranchReading::of(&reading, branch);
+            ambiguous += read.ambiguous;
+            let (of_branch, noise) = read.rows();
             rows.extend(of_branch);
             noises.extend(noise);
         }
@@ -157,12 +139,7 @@ impl SpeedsReport {
         let mut warnings = case.warnings_of_problem();
         warnings.extend(branches.swapped().into_iter().chain(branches.doubt()).chain(doubt));
         warnings.extend(doubt_of_baseline(&reading, preset, &branches));
-        if rows.len() < of_file.len() {
-            warnings.push(format!(
-                "{} rows in contact are left out: no contact with tension at its edge has their force there",
-                of_file.len() - rows.len()
-            ));
-        }
+        warnings.extend(doubts_of_rows(of_file.len() - rows.len(), ambiguous));
         if rows.iter().all(|row| row.speed.is_none()) {
             notes.push("no column gives the times, so no row has a speed".to_owned());
         }
@@ -184,6 +161,23 @@ impl SpeedsReport {
     pub fn table(&self) -> Result<ReportTable, RowsError> {
         ReportTable::of(COLUMNS, &self.rows)
     }
+}
+
+/// Sentences on rows without a contact, and on those that have several.
+fn doubts_of_rows(left_out: usize, ambiguous: usize) -> Vec<String> {
+    let mut doubts = Vec::new();
+    if left_out > 0 {
+        doubts.push(format!(
+            "{left_out} rows in contact are left out: no contact with tension at its edge has their force there"
+        ));
+    }
+    if ambiguous > 0 {
+        doubts.push(format!(
+            "{ambiguous} rows have the force and the approach of several contacts: G is that of the one whose radius is \
+             nearest to those of the rows around it, and may be wrong. A column of contact radii would tell"
+        ));
+    }
+    doubts
 }
 
 /// What G is computed with, in words.
@@ -231,34 +225,6 @@ fn wanted(case: &Case, branches: &Branches) -> f64 {
     largest.max(case.start).min(case.reduced.largest_contact())
 }
 
-/// The rows of one branch in the order of measurement, and the noise of its contact radii.
-fn of_branch(reading: &RowReading, branch: &MeasuredBranch) -> (Vec<SpeedRow>, Option<f64>) {
-    let mut points = branch.attached.clone();
-    points.sort_by_key(|point| point.at);
-    let found: Vec<(MeasuredPoint, Released)> =
-        points.into_iter().filter_map(|point| Some((point, reading.released(&point)?))).collect();
-    let is_timed = found.iter().all(|(point, _)| point.time.is_finite());
-    let radii: Vec<f64> = found.iter().map(|(_, released)| released.contact_radius).collect();
-    let numbers: Vec<f64> = (0..found.len()).map(|i| i as f64).collect();
-    let times: Vec<f64> =
-        if is_timed { found.iter().map(|(point, _)| point.time).collect() } else { numbers };
-    let sigma = noise(&times, &radii);
-    let speeds = if is_timed { speeds(&times, &radii, sigma) } else { vec![None; found.len()] };
-    let row = |((point, released), speed): (&(MeasuredPoint, Released), Option<Speed>)| SpeedRow {
-        time: is_timed.then_some(point.time),
-        contact_radius: released.contact_radius,
-        speed: speed.map(|speed| -speed.value),
-        energy_release_rate: released.energy,
-        error: hypot(released.error, released.by_radius * sigma),
-        speed_error: speed.map(|speed| speed.error),
-        window: speed.map(|speed| speed.rows),
-        segment: branch.segment.name(),
-        row: point.row,
-    };
-    let rows = found.iter().zip(speeds).map(row).collect();
-    (rows, Some(sigma).filter(|_| !found.is_empty()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -296,7 +262,12 @@ mod tests {
     }
 
     fn report(text: &str) -> SpeedsReport {
-        let mut preset = read("made", PRESET).unwrap();
+        of_text(PRESET, text)
+    }
+
+    fn of_text(preset: &str, text: &str) -> SpeedsReport {
+        let mut preset = read("made", preset).unwrap();
+        preset.set(data::OFFSET, Value::Number(0.0)).unwrap();
         let source = PointsFile::new("made.csv".to_owned(), None, text.as_bytes().into());
         preset.set(data::FILE, Value::Points(Arc::new(source))).unwrap();
         preset.set(data::FREE_PART, Value::Text("none".to_owned())).unwrap();
@@ -348,6 +319,37 @@ mod tests {
             assert!(row.speed.is_none() && row.time.is_none());
         }
         assert!(found.notes.iter().any(|note| note.contains("no column gives the times")));
+    }
+
+    /// g falls with s for a while, so two discs have the force and the approach of a row; h = r² − b r⁴ + c r⁶ has
+    /// g = 2s² − 8/3 b s⁴ + 16/5 c s⁶.
+    #[test]
+    fn of_two_contacts_with_one_force_and_approach_the_one_among_its_neighbours_is_taken() {
+        let [b, c, energy] = [1.8_f64, 1.0, 7e-5];
+        let made = |i: usize| {
+            let s = 1.0 - 1e-3 * i as f64;
+            let g = 2.0 * s.powi(2) - 8.0 / 3.0 * b * s.powi(4) + 3.2 * c * s.powi(6);
+            let area = 2.0 / 3.0 * s.powi(3) - 8.0 / 15.0 * b * s.powi(5) + 3.2 / 7.0 * c * s.powi(7);
+            let approach = g - (TAU * energy * s).sqrt();
+            [s, approach, 2.0 * (approach * s - area)]
+        };
+        let mut text = "approach,force,segment\n".to_owned();
+        for i in 0..100 {
+            let [_, approach, force] = made(i);
+            writeln!(text, "{approach:e},{force:e},retraction").unwrap();
+        }
+        let gap = "shape = \"formula\"\nformula = \"r^2 - 1.8*r^4 + r^6\"\n";
+        let preset = format!(
+            "format = 1\n[material]\neffective_modulus = 1.0\nwork_of_adhesion = 1e-4\n[gap]\n{gap}[path]\n\
+             control = \"displacement\"\nstart_contact_radius = 1.0\n"
+        );
+        let found = of_text(&preset, &text);
+        assert_eq!(found.rows.len(), 100);
+        for row in &found.rows {
+            let [s, ..] = made(row.row - 1);
+            assert!((row.contact_radius / s - 1.0).abs() < 1e-6, "{row:?} {s}");
+            assert!((row.energy_release_rate / energy - 1.0).abs() < 1e-4, "{row:?}");
+        }
     }
 
     #[test]

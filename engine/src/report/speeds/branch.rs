@@ -1,0 +1,157 @@
+//! The rows of one branch: G of each, of several contacts with its force and approach the one among its neighbours, and
+//! the speed of the edge.
+
+use super::reading::{MeasuredPair, Released, RowReading};
+use crate::elementary::hypot;
+use crate::measured::branches::MeasuredPoint;
+use crate::measured::speed::{Speed, noise, speeds};
+use crate::measured::{MeasuredBranch, Segment};
+use serde::Serialize;
+
+/// One row in contact.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SpeedRow {
+    /// When it was taken, in seconds, or in reduced units; null where the file does not say.
+    pub time: Option<f64>,
+    /// s, measured, or from force and approach.
+    pub contact_radius: f64,
+    /// −ds/dt: positive where the contact recedes; null without times.
+    pub speed: Option<f64>,
+    /// G; negative where the edge is pressed, K < 0.
+    pub energy_release_rate: f64,
+    /// The standard deviation of G, from the noise of the columns.
+    pub error: f64,
+    /// The standard deviation of the speed, from the noise of the contact radius.
+    pub speed_error: Option<f64>,
+    /// The number of rows in the window from which the speed is found.
+    pub window: Option<usize>,
+    /// `approach` or `retraction`.
+    pub segment: &'static str,
+    /// Its number among the rows that are read, from 1.
+    pub row: usize,
+}
+
+/// The rows of one branch with their G, in the order of measurement.
+pub(super) struct BranchReading {
+    found: Vec<(MeasuredPoint, Released)>,
+    segment: Segment,
+    /// How many of them have several contacts.
+    pub(super) ambiguous: usize,
+}
+
+impl BranchReading {
+    /// Of several contacts of a row, those are taken between which the radius jumps least over the branch.
+    pub(super) fn of(reading: &RowReading, branch: &MeasuredBranch) -> Self {
+        let mut points = branch.attached.clone();
+        points.sort_by_key(|point| point.at);
+        if reading.pair != MeasuredPair::ForceApproach {
+            let found = points.into_iter().filter_map(|point| Some((point, reading.released(&point)?)));
+            return Self { found: found.collect(), segment: branch.segment, ambiguous: 0 };
+        }
+        let mut points_with: Vec<(MeasuredPoint, Vec<Released>)> =
+            points.into_iter().map(|point| (point, reading.all_released(&point))).collect();
+        points_with.retain(|(_, released)| !released.is_empty());
+        let radii = |(_, released): &(MeasuredPoint, Vec<Released>)| {
+            released.iter().map(|released| released.contact_radius).collect()
+        };
+        let taken = steadiest(&points_with.iter().map(radii).collect::<Vec<_>>());
+        let mut ambiguous = 0;
+        let mut found = Vec::new();
+        for ((point, released), taken) in points_with.iter().zip(taken) {
+            // Where another contact could be, only the neighbours tell.
+            let is_other = |(at, other): (usize, &Released)| at != taken && reading.stays_apart(point, other);
+            ambiguous += usize::from(released.iter().enumerate().any(is_other));
+            found.push((*point, released[taken]));
+        }
+        Self { found, segment: branch.segment, ambiguous }
+    }
+
+    /// The rows with their speeds, and the noise of their contact radii.
+    pub(super) fn rows(self) -> (Vec<SpeedRow>, Option<f64>) {
+        let Self { found, segment, .. } = self;
+        let is_timed = found.iter().all(|(point, _)| point.time.is_finite());
+        let radii: Vec<f64> = found.iter().map(|(_, released)| released.contact_radius).collect();
+        let numbers: Vec<f64> = (0..found.len()).map(|i| i as f64).collect();
+        let times: Vec<f64> =
+            if is_timed { found.iter().map(|(point, _)| point.time).collect() } else { numbers };
+        let sigma = noise(&times, &radii);
+        let speeds = if is_timed { speeds(&times, &radii, sigma) } else { vec![None; found.len()] };
+        let row = |((point, released), speed): (&(MeasuredPoint, Released), Option<Speed>)| SpeedRow {
+            time: is_timed.then_some(point.time),
+            contact_radius: released.contact_radius,
+            speed: speed.map(|speed| -speed.value),
+            energy_release_rate: released.energy,
+            error: hypot(released.error, released.by_radius * sigma),
+            speed_error: speed.map(|speed| speed.error),
+            window: speed.map(|speed| speed.rows),
+            segment: segment.name(),
+            row: point.row,
+        };
+        let rows = found.iter().zip(speeds).map(row).collect();
+        (rows, Some(sigma).filter(|_| !found.is_empty()))
+    }
+}
+
+/// Of the radii of each row, ascending, the number of the one with which the radius jumps least over all rows; of equals
+/// the largest.
+///
+/// A radius that moves on to the next row by less than half its distance from the others of both rows does not jump,
+/// however it scatters: a sum of all its steps would only find the one that depends least on the noise.
+fn steadiest(rows: &[Vec<f64>]) -> Vec<usize> {
+    let alone = |radii: &[f64], at: usize| {
+        let others = radii.iter().enumerate().filter(|(other, _)| *other != at);
+        others.map(|(_, other)| (other - radii[at]).abs()).fold(f64::INFINITY, f64::min)
+    };
+    // The least way of the jumps up to each radius of a row, and the radius of the previous row that it comes from.
+    let mut ways: Vec<Vec<(f64, usize)>> = Vec::new();
+    for (i, radii) in rows.iter().enumerate() {
+        let way = |to: usize| {
+            let previous = i.checked_sub(1).map_or(&[][..], |i| &rows[i]);
+            let jump = |from: usize| {
+                let step = (radii[to] - previous[from]).abs();
+                if step < 0.5 * alone(previous, from).min(alone(radii, to)) { 0.0 } else { step }
+            };
+            let ways = (0..previous.len()).rev().map(|from| (ways[i - 1][from].0 + jump(from), from));
+            ways.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0))
+        };
+        ways.push((0..radii.len()).map(way).collect());
+    }
+    let least =
+        |ways: &Vec<(f64, usize)>| (0..ways.len()).rev().min_by(|a, b| ways[*a].0.total_cmp(&ways[*b].0));
+    let mut at = ways.last().and_then(least).unwrap_or(0);
+    let mut taken = Vec::new();
+    for ways in ways.iter().rev() {
+        taken.push(at);
+        at = ways[at].1;
+    }
+    taken.reverse();
+    taken
+}
+
+#[cfg(test)]
+mod tests {
+    use super::steadiest;
+
+    #[test]
+    fn the_radius_jumps_least_over_all_rows() {
+        // Step by step the radius would go from 3 to 3.2, and back.
+        assert_eq!(steadiest(&[vec![3.0], vec![2.9, 3.2], vec![2.8], vec![1.0, 2.7]]), [0, 0, 0, 1]);
+        assert_eq!(steadiest(&[vec![5.0], vec![1.0, 4.0, 9.0]]), [0, 1]);
+        // Nothing tells these apart.
+        assert_eq!(steadiest(&[vec![1.0, 2.0], vec![1.1, 2.1]]), [1, 1]);
+        assert!(steadiest(&[]).is_empty());
+    }
+
+    #[test]
+    fn a_radius_that_hardly_depends_on_the_noise_is_not_taken_for_that() {
+        // Both ends of the branch are at 2, and 1 lies in between as well.
+        let noise = |i: usize| if i.is_multiple_of(2) { 0.1 } else { -0.1 };
+        let row = |i: usize| {
+            let wide = 2.0 + noise(i);
+            if (20..4000).contains(&i) { vec![1.0 + 0.01 * noise(i), wide] } else { vec![wide] }
+        };
+        let rows: Vec<_> = (0..4200).map(row).collect();
+        assert!(steadiest(&rows).iter().zip(&rows).all(|(taken, row)| *taken + 1 == row.len()));
+    }
+}
