@@ -60,6 +60,10 @@ pub static JOULE: NamedUnit = named("J", ENERGY, 0);
 static GRAM: NamedUnit = named("g", Dimension::new(0, 1, 0), -3);
 /// The second.
 pub static SECOND: NamedUnit = named("s", Dimension::new(0, 0, 1), 0);
+static MINUTE: NamedUnit =
+    NamedUnit { mantissa: 6.0, prefixed: false, ..named("min", Dimension::new(0, 0, 1), 1) };
+static HOUR: NamedUnit =
+    NamedUnit { mantissa: 3.6, prefixed: false, ..named("h", Dimension::new(0, 0, 1), 3) };
 static ELECTRONVOLT: NamedUnit = NamedUnit { mantissa: 1.602_176_634, ..named("eV", ENERGY, -19) };
 // The second character is the ångström sign, which looks the same.
 static ANGSTROM: NamedUnit =
@@ -83,13 +87,15 @@ static DEGREE: NamedUnit = NamedUnit {
 };
 
 /// The units by name.
-pub static UNITS: [&NamedUnit; 17] = [
+pub static UNITS: [&NamedUnit; 19] = [
     &METRE,
     &NEWTON,
     &PASCAL,
     &JOULE,
     &GRAM,
     &SECOND,
+    &MINUTE,
+    &HOUR,
     &ELECTRONVOLT,
     &ANGSTROM,
     &MICRON,
