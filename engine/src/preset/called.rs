@@ -28,12 +28,14 @@ pub fn settable(preset: &Preset) -> impl Iterator<Item = Parameter> {
     preset.rows().map(Cow::into_owned).chain(GROUPS.iter().cloned())
 }
 
-/// The rows with this name: if some have a value in this preset, only those; if not, those of its shape, if there are
-/// some. What is shown in which unit is no value of the problem, and has no short names.
+/// The rows with this name: if some have a value of their own in this preset, only those; if not, those of its shape, if
+/// there are some. What is shown in which unit is no value of the problem, and has no short names.
 pub fn rows_called(preset: &Preset, name: &str) -> Vec<Parameter> {
     let rows = settable(preset).filter(|row| row.key == name || !row.key.starts_with(DISPLAY));
     let rows = rows.filter(|row| is_called(row, name));
-    let (own, others): (Vec<_>, Vec<_>) = rows.partition(|row| preset.get(&row.key).is_some());
+    // A group always has a value, which other values give.
+    let has_own = |row: &Parameter| groups::row(&row.key).is_none() && preset.get(&row.key).is_some();
+    let (own, others): (Vec<_>, Vec<_>) = rows.partition(has_own);
     if own.is_empty() { preferred(others, |row| row.fits(CHOOSERS[0], preset.gap.name())) } else { own }
 }
 
