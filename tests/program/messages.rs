@@ -119,8 +119,7 @@ fn steep_gaps_are_told_in_sweeps_too() {
     };
     home.file("steep.toml", &axis("0.01"));
     let ended = home.run(&["sweep", "steep.toml", "-o", "r.csv"]);
-    let told =
-        "in 1 of 2 rows looked at the gap is too steep, with slopes of up to 1.62 at gap.amplitude = 0.01: ";
+    let told = "in 1 of 2 rows the gap is too steep, with slopes of up to 1.62 at gap.amplitude = 0.01: ";
     assert!(ended.err.contains(told), "{}", ended.err);
     home.file("small.toml", &axis("0.001"));
     let ended = home.run(&["sweep", "small.toml", "-o", "s.csv"]);

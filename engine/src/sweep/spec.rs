@@ -192,7 +192,7 @@ impl Spec {
     /// What holds for the sweep as a whole, in words: gaps that are too steep, and unloadings beside loops.
     pub fn warnings(&self) -> Vec<String> {
         /// So many rows are looked at for their slopes.
-        const LOOKED_AT: u64 = 64;
+        const LOOKED_AT: u64 = 1000;
         let mut warnings = Vec::new();
         let count = self.rows.min(LOOKED_AT);
         let rows = (0..count).map(|i| if count > 1 { i * (self.rows - 1) / (count - 1) } else { 0 });
@@ -205,9 +205,11 @@ impl Spec {
         if let Some((row, slope)) = steep.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
             let values = self.axes.iter().zip(self.values(*row));
             let values: Vec<String> = values.map(|(axis, value)| format!("{} = {value}", axis.key)).collect();
+            let of =
+                if count < self.rows { format!("{count} rows looked at") } else { format!("{count} rows") };
             warnings.push(format!(
-                "in {} of {count} rows looked at the gap is too steep, with slopes of up to {} at {}: this theory is for \
-                 slopes small beside 1",
+                "in {} of {of} the gap is too steep, with slopes of up to {} at {}: this theory is for slopes small \
+                 beside 1",
                 steep.len(),
                 short(*slope, 3),
                 values.join(", ")
