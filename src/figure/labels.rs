@@ -12,6 +12,9 @@ const SHORTEST: f64 = 0.08;
 /// The smallest distance between labels, as a share of the map.
 const APART: f64 = 0.045;
 
+/// The smallest distance of a label from the border, as a share of the map.
+const INSIDE: f64 = 0.03;
+
 /// Where along a line its label may be placed, the best position first.
 const ALONG: [f64; 7] = [0.5, 0.35, 0.65, 0.2, 0.8, 0.1, 0.9];
 
@@ -72,10 +75,17 @@ pub fn counts(report: &MapReport, x: &Places, y: &Places) -> Vec<Mark> {
     marks
 }
 
-/// Adds the crest of each line of the figure, where there is room beside its other marks; lines across which the count
-/// does not change have none.
+/// Adds the crest of the longest line of each kind at each crest, where there is room beside the other marks of the figure;
+/// lines across which the count does not change have none. Numbers move inward from the border.
 pub fn crests(report: &MapReport, x: &Places, y: &Places, figure: &mut Figure) {
     let bounds = figure.places();
+    for at in 0..figure.marks.len() {
+        let Mark { sign, at: place } = figure.marks[at];
+        if let (Sign::Snaps(_), Some((x, y))) = (sign, bounds.share(figure.place(place))) {
+            let [x, y] = [x, y].map(|share| share.clamp(INSIDE, 1.0 - INSIDE));
+            figure.marks[at].at = figure.values_at(bounds.at((x, y)));
+        }
+    }
     let is_line =
         |row: &&MapRow| matches!(row.kind, "fold" | "cusp" | "landing") && row.changes != Some(false);
     let rows: Vec<&MapRow> = report.rows.iter().filter(is_line).filter(|row| row.line.is_some()).collect();
@@ -86,16 +96,21 @@ pub fn crests(report: &MapReport, x: &Places, y: &Places, figure: &mut Figure) {
         .chunk_by(of_line)
         .filter_map(|rows| {
             let points: Vec<(f64, f64)> = rows.iter().filter_map(place).collect();
-            Some((length(&points), rows[0].crest?, points))
+            Some((length(&points), rows[0].kind, rows[0].crest?, points))
         })
         .collect();
     lines.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut taken: Vec<(f64, f64)> = figure.marks.iter().filter_map(|mark| share(mark.at)).collect();
-    for (whole, crest, points) in lines.into_iter().filter(|(whole, ..)| *whole >= SHORTEST) {
+    let mut told = Vec::new();
+    for (whole, kind, crest, points) in lines.into_iter().filter(|(whole, ..)| *whole >= SHORTEST) {
+        if told.contains(&(kind, crest)) {
+            continue;
+        }
         let is_free =
             |at: &(f64, f64)| taken.iter().all(|other| (at.0 - other.0).hypot(at.1 - other.1) > APART);
         if let Some(at) = ALONG.into_iter().filter_map(|share| along(&points, share * whole)).find(is_free) {
             taken.push(at);
+            told.push((kind, crest));
             let at = figure.values_at(bounds.at(at));
             figure.marks.push(Mark { sign: Sign::OfCrest(crest), at });
         }

@@ -19,10 +19,12 @@ fn role(row: &MapRow) -> (Role, &'static str) {
     match (row.kind, row.stable) {
         ("fold", Some("inward")) => (Role::Unstable, "maximum, stable inward"),
         ("fold", _) => (Role::Stable, "minimum, stable outward"),
-        ("cusp" | "landing", _) if row.changes == Some(false) => (Role::Unchanged, "the count stays"),
+        ("cusp" | "landing", _) if row.changes == Some(false) => {
+            (Role::Unchanged, "number of snaps unchanged")
+        }
         ("landing", _) => (Role::Landings, "line of landings"),
         ("start", _) => (Role::Starts, "limit point at the start"),
-        ("change", _) => (Role::Starts, "the count changes"),
+        ("change", _) => (Role::Starts, "number of snaps changes"),
         _ => (Role::Cusps, "line of cusps"),
     }
 }

@@ -279,6 +279,14 @@ fn legend(figure: &Figure) -> Vec<LegendEntry> {
             add(entry(name, stamp.color, LegendShape::Marker(stamp.shape), ""));
         }
     }
+    // What is written on a map.
+    let is_written = |is: fn(Sign) -> bool| figure.marks.iter().any(|mark| is(mark.sign));
+    if is_written(|sign| matches!(sign, Sign::Snaps(_))) {
+        add(entry("1, 2, …: number of snaps", "none", LegendShape::Line, ""));
+    }
+    if is_written(|sign| matches!(sign, Sign::OfCrest(_))) {
+        add(entry("c1, c2, …: crest of the line", "none", LegendShape::Line, ""));
+    }
     for area in &figure.areas {
         add(match area.meaning {
             Meaning::Lost => hatched(Meaning::Lost.name()),

@@ -493,7 +493,7 @@ fn the_cross_hair_on_a_map_counts_the_snaps() {
     let path = screen.app.model.path().unwrap();
     let snaps = path.events.iter().filter(|event| event.kind == "snap").count();
     assert!(text.contains(&format!("{snaps} snaps; + A 0.0025")), "{text}");
-    for said in ["swallowtail", "the count stays", "line of landings"] {
+    for said in ["swallowtail", "number of snaps unchanged", "line of landings"] {
         assert!(text.contains(said), "{said}: {text}");
     }
 }
