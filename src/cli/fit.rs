@@ -80,5 +80,5 @@ fn one(
     progress: &dyn Progress,
 ) -> Result<Models, Failure> {
     let preset = with_points(path, loaded, said)?;
-    fit_models(&preset, models, options, progress).map_err(|error| refused(path, &error))
+    fit_models(&preset, models, options, progress).map_err(|error| refused(path, &preset, &error))
 }

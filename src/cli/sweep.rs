@@ -80,6 +80,7 @@ const EXAMPLE: &str = "A spec:
   key = \"gap.amplitude\"
   linear = { from = 0, to = 0.005, count = 51 }
 or logarithmic = { from, to, count }, values = [...], distribution = {...}; further axes follow in the same form.
+`ensemble = { members = 400, seed = 7 }` gives the mean and the spread over random surfaces and distributions.
 `pulloff sweep quantities` lists the quantities.";
 
 /// What is swept, and where to.

@@ -87,7 +87,9 @@ impl Background for FitProgress {
         let watch = Told { percent: Cell::new(0), progress, tell: RefCell::new(told) };
         let found = fit_own(preset, &options, &watch).map(Arc::new).map_err(|error| {
             let can_be_mended = !matches!(error, FitError::NoStart | FitError::Stopped(Stopped));
-            WordedFault { text: format!("not fitted: {error}"), can_be_mended }
+            let units = if matches!(error, FitError::NoStart) { preset.note_of_units() } else { None };
+            let units = units.map_or_else(String::new, |units| format!("; {units}"));
+            WordedFault { text: format!("not fitted: {error}{units}"), can_be_mended }
         });
         Some(Self::Done(found))
     }

@@ -149,7 +149,10 @@ pub enum PointsError {
         preset: String,
     },
     /// A deflection or a position without a spring.
-    #[error("the {0} needs the stiffness of the spring: set path.control.stiffness")]
+    #[error(
+        "the {0} needs the stiffness of the spring: set path.control.stiffness; if the device is rigid, the column is the \
+         approach: --columns or data.columns says so, as in \"approach=2\""
+    )]
     NoSpring(&'static str),
     /// A column that does not vary.
     #[error("the {0} is the same in all rows")]

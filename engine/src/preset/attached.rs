@@ -135,9 +135,7 @@ impl Preset {
                  spring, set --columns or data.columns to {columns}"
             )
         }));
-        if self.units != UnitSystem::Reduced {
-            notes.extend(without_unit(&measured));
-        }
+        notes.extend(self.note_of_units());
         if self.data.is_alone {
             let spring = match self.path.control {
                 Control::Stiffness(k) => Some(k),
@@ -151,6 +149,13 @@ impl Preset {
             notes.extend(left_out.map(|what| format!("{what} is left out: data.settings = \"preset\"")));
         }
         Ok(notes)
+    }
+
+    /// Which columns of its measured curve have no unit, and how they are read; `None` where none lacks one.
+    pub fn note_of_units(&self) -> Option<String> {
+        let source = self.data.source.as_ref().filter(|_| self.units != UnitSystem::Reduced)?;
+        let measured = source.measured(&self.data.columns).ok()?;
+        without_unit(&measured)
     }
 
     /// The other way to read its x, where the file leaves it open and a spring makes a difference.

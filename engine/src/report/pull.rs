@@ -31,8 +31,8 @@ pub enum PullError {
     Case(#[from] CaseError),
     /// Nothing says how fast an edge is.
     #[error(
-        "{key} is not set: an edge has a speed if edge.exponent (often 0.2 to 1) and edge.reference_speed are given, \
-         as with --set (in reduced units the reference speed defaults to 1)"
+        "{key} is not set: an edge has a speed if edge.exponent (often 0.2 to 1) and edge.reference_speed are \
+         given (in reduced units the reference speed defaults to 1)"
     )]
     NoLaw {
         /// The key.

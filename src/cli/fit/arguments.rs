@@ -174,9 +174,11 @@ pub(super) fn with_points(
     Ok(preset)
 }
 
-/// Why a file could not be fitted.
-pub(super) fn refused(path: &Path, error: &FitError) -> Failure {
-    let named = format!("{}: {error}", show_path(path));
+/// Why a file could not be fitted; where no values reach its points, also how columns without a unit are read.
+pub(super) fn refused(path: &Path, preset: &Preset, error: &FitError) -> Failure {
+    let units = preset.note_of_units().filter(|_| matches!(error, FitError::NoStart));
+    let units = units.map_or_else(String::new, |units| format!("; {units}"));
+    let named = format!("{}: {error}{units}", show_path(path));
     match error {
         // These do not come from the file of points.
         FitError::Key { .. } | FitError::Uncertain { .. } => Failure::Usage(error.to_string()),

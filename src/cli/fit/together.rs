@@ -45,7 +45,7 @@ pub(super) fn run(
     if found.is_err() {
         stopped("stopped: nothing was fitted")?;
     }
-    let found = found.map_err(|(run, error)| refused(&files[run], &error))?;
+    let found = found.map_err(|(run, error)| refused(&files[run], &presets[run], &error))?;
     let names: Vec<String> = files.iter().map(|path| show_path(path)).collect();
     let report = TogetherReport::new(&names, &found);
     console.warn(&report.doubts);
