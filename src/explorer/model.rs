@@ -319,7 +319,7 @@ impl Model {
     pub fn shows_its_curve(&self) -> bool {
         self.curve.as_ref().is_some_and(|curve| {
             let [ours, its] = [&self.preset, &curve.setting.preset].map(|preset| &preset.path);
-            let same_way = curve.along.is_none() || (ours.begin, ours.turn) == (its.begin, its.turn);
+            let same_way = ours.begin == its.begin && (curve.along.is_none() || ours.turn == its.turn);
             let same_device = (ours.control, ours.contact) == (its.control, its.contact);
             curve.base.is_of(&self.preset) && same_device && same_way
         })

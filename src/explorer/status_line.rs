@@ -160,6 +160,9 @@ fn standing(model: &Model, node: &Node, control: Control) -> String {
         };
     }
     match (node.stability.under(control), &node.kind) {
+        (true, NodeKind::Start) if model.preset.path.begin == Begin::Apart => {
+            format!("The bodies have touched, event 1, and are at rest. {next} runs to the next event")
+        }
         (true, NodeKind::Start) => {
             let help = Id::Help.named();
             format!("Start, stable under {held} control. {next} runs to the first event, {help} helps")
@@ -214,7 +217,12 @@ fn happened(model: &Model, node: &Node) -> Option<String> {
             }
             EventKind::LastContact | EventKind::SnapOff => {
                 let what = if event.kind == EventKind::SnapOff { "Snap-off" } else { "Last contact" };
-                format!("{what}: apart{}. {}", lost.unwrap_or_default(), back_or_anew())
+                let whole = match model.preset.path.begin {
+                    Begin::Apart => "",
+                    Begin::Disc => ", begin=apart with the approach",
+                };
+                let start = Id::Restart.named();
+                format!("{what}: apart{}. {start} starts again{whole}", lost.unwrap_or_default())
             }
             _ => {
                 format!(

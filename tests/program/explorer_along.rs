@@ -219,3 +219,39 @@ fn another_device_or_turn_has_another_path_and_the_walker_stands_on_it() {
         to_the_end(&mut session);
     }
 }
+
+/// What was walked on the path that began elsewhere is none of its events.
+#[test]
+fn another_beginning_starts_the_walk_again() {
+    for keys in [&[][..], &[("material.closing_work_of_adhesion", "0.002")]] {
+        let mut session = Session::new("wavy-sphere");
+        for (key, value) in keys {
+            session.set(key, value).does(Id::Restart);
+        }
+        while !session.model.history.current().unwrap().is_apart() {
+            session.does(Id::NextEvent);
+        }
+        let apart = session.model.history.cursor();
+        let happened = |session: &Session| {
+            let log = session.model.log();
+            log.entries.iter().filter(|entry| entry.mark == EventMark::Done).count()
+        };
+        let before = happened(&session);
+        assert!(before > 3, "{keys:?}");
+        session.set("path.begin", "apart");
+        assert_eq!(happened(&session), 1, "{keys:?}: only the first touch");
+        assert_eq!(
+            session.status(),
+            "The bodies have touched, event 1, and are at rest. next-event runs to the next event"
+        );
+        // In one command, both are taken back.
+        session.does(Id::Undo);
+        assert_eq!((session.model.history.cursor(), happened(&session)), (apart, before), "{keys:?}");
+        session.does(Id::Redo);
+        assert_eq!(happened(&session), 1, "{keys:?}");
+        // At another value the walker stays on its way.
+        session.does(Id::NextEvent).set("gap.amplitude", "0.0026");
+        assert!(session.model.history.current().unwrap().state.contact_radius > 0.0);
+        assert!(!matches!(session.model.history.current().unwrap().kind, NodeKind::Start), "{keys:?}");
+    }
+}

@@ -266,5 +266,7 @@ fn the_journal_says_what_was_done_and_leaves_out_what_was_not() {
     assert_eq!(Journal::of(kept.clone()).kept(), kept);
     // A newly opened preset starts a new journal.
     session.does(Command::Open("fig-3-jkr".to_owned())).does(Id::Restart);
-    assert_eq!(session.model.journal.lines(), ["restart"]);
+    assert!(session.model.journal.lines().is_empty(), "the walk stands where it begins");
+    session.does(Id::Step).does(Id::Restart);
+    assert_eq!(session.model.journal.lines(), ["step 1", "restart"]);
 }

@@ -1,6 +1,6 @@
 //! A curve arrived, failed or was given up.
 
-use super::walk::{begin_walk, walk};
+use super::walk::{begin_walk, restart, walk};
 use crate::explorer::command::Id;
 use crate::explorer::curve::CurveData;
 use crate::explorer::effect::Effect;
@@ -59,6 +59,9 @@ pub(super) fn curve_came(
         Ok(curve) => {
             model.curve_error = None;
             let first = model.history.current().is_none();
+            let begin = |curve: &CurveData| curve.setting.preset.path.begin;
+            let begins_elsewhere =
+                model.curve.as_deref().is_some_and(|before| begin(before) != begin(&curve));
             model.curve = Some(Arc::clone(&curve));
             model.event = model.event.min(model.log_lines().saturating_sub(1));
             if first {
@@ -75,6 +78,10 @@ pub(super) fn curve_came(
             }
             let is_stale =
                 model.history.current().is_some_and(|node| matches!(node.kind, NodeKind::Stale(_)));
+            if begins_elsewhere && !is_tried {
+                // What was walked is not part of this path: its events would count as done, and their losses as lost.
+                return Some(restart(model));
+            }
             if is_tried && is_stale { None } else { solve_again(model) }
         }
     }

@@ -86,10 +86,6 @@ fn tell_idle(model: &mut Model, key: &str, changed: &Preset) {
     if matches!(key, "path.rate" | "path.steps") && is_given && changed.edge.exponent.is_none() {
         model.tell(Level::Info, format!("{key} has no effect until edge.exponent gives the edge a speed"));
     }
-    if key == "path.begin" {
-        let start = Id::Restart.named();
-        model.tell(Level::Info, format!("the walker stays; {start} goes to where the path now begins"));
-    }
 }
 
 /// Says that the values are the same already.

@@ -318,6 +318,17 @@ fn mark_stale(model: &mut Model, request: u64, reason: &str) {
     if again { model.history.push_beside(stale) } else { model.history.push(stale) }
 }
 
+/// Whether `node` is where the path begins.
+fn has_begun(model: &Model, node: &Node) -> bool {
+    let begin = model.preset.path.begin;
+    let is_start = match node.kind {
+        NodeKind::Start => true,
+        NodeKind::Moved => begin == Begin::Disc && model.is_at_start(),
+        _ => false,
+    };
+    is_start && node.begins && node.setting.preset.path.begin == begin && model.is_on_curve(node)
+}
+
 /// Back to where the walk begins; without a curve, the curve is requested again.
 pub(in crate::explorer) fn restart(model: &mut Model) -> Vec<Effect> {
     model.inward = true;
@@ -327,6 +338,9 @@ pub(in crate::explorer) fn restart(model: &mut Model) -> Vec<Effect> {
     }
     let begin = model.preset.path.begin;
     model.inward = begin == Begin::Disc;
+    if model.history.current().is_some_and(|node| has_begun(model, node)) {
+        return Vec::new();
+    }
     let action = model.curve.as_deref().map(|curve| Action::beginning(begin, curve));
     action.map_or_else(Vec::new, |action| walk(model, action))
 }

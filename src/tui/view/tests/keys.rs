@@ -50,7 +50,8 @@ fn sentences_name_the_keys_of_a_person() {
         screen.press(KeyCode::F(2));
         screen.keys("J");
     }
-    says(&screen, "F4 goes back, F6 starts again");
+    says(&screen, "apart, lost");
+    says(&screen, ". F6 starts again, begin=apart with the approach");
     screen.press(KeyCode::F(3));
     says(&screen, "the bodies are apart: F4 goes back, F6 starts again");
     // What was lost there is no loss of other values.
