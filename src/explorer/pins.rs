@@ -265,10 +265,16 @@ fn labelled_in(row: &Row, value: &Value, units: &UnitSystem, (between, digits): 
     format!("{}{between}{shown}", row.label)
 }
 
-/// The values of `pinned` that differ from those of `now`, as labels and values; only the first few.
+/// The values of `pinned` that differ from those of `now`, as labels and values; if there are none, those that only
+/// `now` has. Only the first few.
 pub fn name(pinned: &Preset, now: &Preset) -> String {
-    // A value that only the other preset has is not named.
-    named(&differences(pinned, now), &now.units).unwrap_or_else(|| "same values".to_owned())
+    let lacking = || {
+        let mut others = differences(now, pinned);
+        // The units of the screen change no curve.
+        others.retain(|(row, _)| !row.key.starts_with("display."));
+        named(&others, &now.units).map(|lacking| format!("without {lacking}"))
+    };
+    named(&differences(pinned, now), &now.units).or_else(lacking).unwrap_or_else(|| "same values".to_owned())
 }
 
 /// Each value in which `after` differs from `before`, as label and both values: `A 0.0025 → 0.0031`.
@@ -363,6 +369,15 @@ mod tests {
         // The name changes as the preset does.
         assert_eq!(name(&now, &preset(&[("gap.amplitude", "0.002")])), "A 0.0025");
         assert!(name(&now, &preset(&[("gap.shape", "sphere")])).starts_with("gap wavy-sphere, A 0.0025"));
+        // One that lacks a value is not the same either.
+        let mut with_range = now.clone();
+        with_range
+            .assign_all(&[
+                ("material.adhesion".into(), "dugdale".into()),
+                ("material.cohesive_strength".into(), "1".into()),
+            ])
+            .unwrap();
+        assert_eq!(name(&now, &with_range), "without adhesion dugdale, sigma0 1");
     }
 
     #[test]
