@@ -178,7 +178,7 @@ impl CurveData {
                 (limit.control, shown(&Sample { contact_radius, approach, force, slopes }))
             })
             .collect();
-        progress.enter(CurveStage::Events(0));
+        progress.enter(CurveStage::Events);
         let told = |path: Result<Path, CaseError>| match path {
             Err(CaseError::Stopped(stopped)) => Err(stopped),
             path => Ok(path.map_err(|error| error.to_string())),

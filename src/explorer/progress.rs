@@ -13,8 +13,8 @@ pub enum CurveStage {
     /// The equilibria are being computed: the number of the current one, from 1.
     Curve(usize),
     Limits,
-    /// The unloading is being followed: the number of events found.
-    Events(usize),
+    /// The path is being followed for its events.
+    Events,
 }
 
 impl CurveStage {
@@ -25,7 +25,7 @@ impl CurveStage {
             Self::Basis(share) => format!("basis {:.0} %", (100.0 * share).floor().clamp(0.0, 99.0)),
             Self::Curve(done) => format!("point {done}"),
             Self::Limits => "limit points".to_owned(),
-            Self::Events(found) => format!("event {}", found + 1),
+            Self::Events => "events".to_owned(),
         }
     }
 }
@@ -64,7 +64,6 @@ impl Progress for Staged<'_> {
         let stage = self.stage.get();
         self.stage.set(match stage {
             CurveStage::Curve(number) => CurveStage::Curve(number + 1),
-            CurveStage::Events(found) => CurveStage::Events(found + 1),
             stage => stage,
         });
         (self.stop)(stage)
@@ -136,14 +135,14 @@ mod tests {
             CurveStage::Basis(_) => 0,
             CurveStage::Curve(_) => 1,
             CurveStage::Limits => 2,
-            CurveStage::Events(_) => 3,
+            CurveStage::Events => 3,
         };
         assert!(told.is_sorted_by_key(part), "{told:?}");
         let counted: Vec<_> = told.iter().filter(|stage| part(stage) == 1).copied().collect();
         let expected: Vec<_> = (1..=counted.len()).map(CurveStage::Curve).collect();
         assert!(counted == expected && !counted.is_empty(), "{counted:?}");
         assert!(told.iter().any(|stage| part(stage) == 0), "the rings are built in blocks");
-        assert!(told.contains(&CurveStage::Limits) && told.contains(&CurveStage::Events(5)));
+        assert!(told.contains(&CurveStage::Limits) && told.contains(&CurveStage::Events));
         assert_eq!(CurveStage::Basis(0.999).text(), "basis 99 %");
     }
 }

@@ -39,7 +39,7 @@ fn a_session_from_opening_to_finding_the_preset_again() {
     let export = home.path().join("walk.csv");
     let env = [("XDG_CONFIG_HOME", config.to_str().unwrap()), ("HOME", home.path().to_str().unwrap())];
     let mut pty = Pty::spawn(program(), &[], &env, 100, 30);
-    pty.wait_for(|screen| screen.contains("lost so far 0 of"), "the curve and its events");
+    pty.wait_for(|screen| screen.contains("lost up to here 0 of"), "the curve and its events");
 
     // Steps, one and several.
     pty.keys(" ");
@@ -101,7 +101,7 @@ fn a_session_from_opening_to_finding_the_preset_again() {
 
     // The preset is there again, from the list.
     let mut pty = Pty::spawn(program(), &[], &env, 100, 30);
-    pty.wait_for(|screen| screen.contains("lost so far 0 of"), "the curve");
+    pty.wait_for(|screen| screen.contains("lost up to here 0 of"), "the curve");
     pty.keys("o");
     pty.wait_for(|screen| screen.contains("lab-3"), "the list");
     pty.press_until("j", |screen| word_after(screen, "> "), |screen| screen.contains("> lab-3"));
@@ -114,7 +114,7 @@ fn a_session_from_opening_to_finding_the_preset_again() {
 #[test]
 fn every_view_a_closer_look_and_a_pin() {
     let mut pty = Pty::spawn(program(), &["fig-8"], &[], 80, 24);
-    pty.wait_for(|screen| screen.contains("lost so far 0 of"), "the curve");
+    pty.wait_for(|screen| screen.contains("lost up to here 0 of"), "the curve");
     for (keys, title) in [
         ("t", "s/λ over δ"),
         ("t", "unloading: P/Pc"),
@@ -164,7 +164,7 @@ fn every_view_a_closer_look_and_a_pin() {
 #[test]
 fn quitting_with_unsaved_changes_asks_first() {
     let mut pty = Pty::spawn(program(), &["fig-8"], &[], 80, 24);
-    pty.wait_for(|screen| screen.contains("lost so far 0 of"), "the curve");
+    pty.wait_for(|screen| screen.contains("lost up to here 0 of"), "the curve");
     pty.keys("}");
     pty.wait_for(|screen| screen.contains("unsaved"), "a change");
     pty.keys("q");
@@ -186,7 +186,7 @@ fn a_bad_preset_is_an_error_before_the_screen_is_taken() {
 #[test]
 fn the_stiffness_of_the_device_is_a_knob_from_displacement_to_force() {
     let mut pty = Pty::spawn(program(), &[], &[], 120, 40);
-    pty.wait_for(|screen| screen.contains("lost so far 0 of"), "the curve");
+    pty.wait_for(|screen| screen.contains("lost up to here 0 of"), "the curve");
     pty.keys("n");
     pty.wait_for(|screen| screen.contains("Event 1 of"), "a limit point of the displacement");
     select(&mut pty, "control");
@@ -219,7 +219,7 @@ fn the_stiffness_of_the_device_is_a_knob_from_displacement_to_force() {
 #[test]
 fn a_curve_that_takes_long_can_be_given_up() {
     let mut pty = Pty::spawn(program(), &["fig-9"], &[], 100, 30);
-    pty.wait_for(|screen| screen.contains("lost so far 0 of"), "the curve");
+    pty.wait_for(|screen| screen.contains("lost up to here 0 of"), "the curve");
     select(&mut pty, "N ");
     // Two thousand rings take seconds to factorize.
     pty.keys("\r");
@@ -229,7 +229,7 @@ fn a_curve_that_takes_long_can_be_given_up() {
     pty.keys("\x1b");
     pty.wait_for(|screen| screen.contains("cancelled: the curve is the old one"), "given up");
     pty.wait_for(
-        |screen| screen.contains("lost so far 0 of") && screen.contains("unsaved"),
+        |screen| screen.contains("lost up to here 0 of") && screen.contains("unsaved"),
         "the curve of before",
     );
     pty.keys("u");
@@ -243,7 +243,7 @@ fn a_curve_that_takes_long_can_be_given_up() {
 #[test]
 fn a_formula_is_typed_and_its_parameters_are_knobs() {
     let mut pty = Pty::spawn(program(), &["formula"], &[], 100, 30);
-    pty.wait_for(|screen| screen.contains("lost so far 0 of"), "the curve");
+    pty.wait_for(|screen| screen.contains("lost up to here 0 of"), "the curve");
     select(&mut pty, "h(r)");
     pty.wait_for(|screen| !screen.contains("computing"), "all of it");
     let waves = chart(&pty.screen());
@@ -264,7 +264,10 @@ fn a_formula_is_typed_and_its_parameters_are_knobs() {
     pty.wait_for(|screen| on_curve(screen) && chart(screen) != waves, "the curve before stays");
     // Taken back as a whole.
     pty.keys("\x1b");
-    pty.wait_for(|screen| screen.contains("lost so far 0 of") && !screen.contains("unsaved"), "as it was");
+    pty.wait_for(
+        |screen| screen.contains("lost up to here 0 of") && !screen.contains("unsaved"),
+        "as it was",
+    );
     pty.keys("\r");
     pty.wait_for(|screen| screen.contains("the curve follows"), "the prompt");
     pty.keys("\x15");
@@ -318,7 +321,7 @@ fn a_shape_is_chosen_and_a_profile_loaded() {
     let config = home.path().join("config");
     let env = [("XDG_CONFIG_HOME", config.to_str().unwrap())];
     let mut pty = Pty::spawn(program(), &[], &env, 120, 40);
-    pty.wait_for(|screen| screen.contains("lost so far 0 of"), "the curve");
+    pty.wait_for(|screen| screen.contains("lost up to here 0 of"), "the curve");
     // Two lines above the amplitude.
     pty.keys("kk");
     pty.wait_for(|screen| screen.contains(">gap"), "the shape");
@@ -364,7 +367,7 @@ fn place(pty: &Pty, text: &str) -> (usize, usize) {
 }
 
 fn ready(pty: &Pty) {
-    pty.wait_for(|screen| screen.contains("lost so far 0 of"), "the curve and its events");
+    pty.wait_for(|screen| screen.contains("lost up to here 0 of"), "the curve and its events");
 }
 
 #[test]

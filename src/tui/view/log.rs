@@ -19,8 +19,6 @@ use ratatui::style::Style;
 use ratatui::text::Line;
 use ratatui::widgets::Paragraph;
 
-/// From this width on, columns name their units.
-const UNITS: usize = 96;
 /// With this many lines inside, there is room for the course of the control.
 const BAR_ROWS: u16 = 4;
 
@@ -147,7 +145,7 @@ fn mark(theme: Theme, mark: EventMark) -> &'static str {
     }
 }
 
-/// The largest pull, the energy lost so far, the loss over the whole path and what was passed by, as much of it as fits.
+/// The largest pull, the energy lost up to here, the loss over the whole path and what was passed by, as much of it as fits.
 fn sums(model: &Model, log: &Log, room: usize) -> String {
     let Some(path) = model.path() else { return String::new() };
     let units = &model.preset.units;
@@ -183,12 +181,12 @@ fn sums(model: &Model, log: &Log, room: usize) -> String {
     // What else would be lost is not known where a path stops before its end.
     let ends = if path.has_reached_its_end { "" } else { ", ends early" };
     [
-        format!("{at_rate}{slow}{pull}lost so far {of}{passed}{ends}"),
-        format!("{at_rate}{slow}{pull}lost so far {of}{ends}"),
-        format!("{slow}{pull}lost so far {of}{passed}{ends}"),
-        format!("{slow}{pull}lost so far {of}{ends}"),
+        format!("{at_rate}{slow}{pull}lost up to here {of}{passed}{ends}"),
+        format!("{at_rate}{slow}{pull}lost up to here {of}{ends}"),
+        format!("{slow}{pull}lost up to here {of}{passed}{ends}"),
+        format!("{slow}{pull}lost up to here {of}{ends}"),
         format!("{short}{pull}lost {of}{ends}"),
-        format!("{slow}lost so far {of}{ends}"),
+        format!("{slow}lost up to here {of}{ends}"),
         format!("{short}lost {of}{ends}"),
         format!("{short}lost {of}"),
     ]
@@ -270,38 +268,47 @@ const COLUMNS: [(u8, bool); 10] = [
     (0, true),
 ];
 
-/// The lines of the entries, with as many columns as fit; the first line shown contains the column names.
+/// The lines of the entries, with as many columns as fit; the first line shown contains the column names, with their
+/// units where all columns fit beside them.
 fn table(model: &Model, theme: Theme, entries: &[LogEntry], named: usize, room: usize) -> Vec<String> {
     let Some(curve) = model.curve.as_deref() else { return Vec::new() };
     let scale = Scale::of(curve, model.axes);
     let [length, force, radius] = scale.state_axes();
-    let is_held = model.control().is_some_and(|control| control == Control::Force);
+    let control = model.control().unwrap_or(model.preset.path.control);
     let rows: Vec<[String; 10]> =
-        entries.iter().map(|entry| cells(entry, scale, &model.preset.units, theme, is_held)).collect();
-    // The charts say over what they are scaled: a column has only the letter, and its unit if there is room.
-    let letter = |axis: &Axis| {
-        let letter = axis.symbol.split('/').next().unwrap_or_default().to_owned();
-        let has_unit = room >= UNITS && !axis.shown.is_empty();
-        if has_unit { format!("{letter} ({})", axis.shown) } else { letter }
-    };
+        entries.iter().map(|entry| cells(entry, scale, &model.preset.units, theme, control)).collect();
     let energy =
         model.preset.units.unit(Quantity::Energy).map_or_else(String::new, |unit| format!(" ({unit})"));
-    let lost = if room >= UNITS { format!("lost{energy}") } else { String::new() };
-    let heads = ["", "", &letter(&length), "", &letter(&force), "", &letter(&radius), "", "", &lost]
-        .map(str::to_owned);
+    // The charts say over what they are scaled: where there is no room for that, a column has only the letter.
+    let names = |is_short: bool| {
+        let name = |axis: &Axis| match (is_short, axis.shown.is_empty()) {
+            (true, _) => axis.symbol.split('/').next().unwrap_or_default().to_owned(),
+            (false, true) => axis.symbol.clone(),
+            (false, false) => format!("{} ({})", axis.symbol, axis.shown),
+        };
+        let lost = if is_short { String::new() } else { format!("lost{energy}") };
+        ["", "", &name(&length), "", &name(&force), "", &name(&radius), "", "", &lost].map(str::to_owned)
+    };
     let width = |at: usize| rows.iter().map(|row| row[at].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..COLUMNS.len()).map(width).collect();
-    let full = |at: usize| match (widths[at], heads[at].chars().count()) {
-        (0, _) => 0,
-        (width, 0) => width + 1,
-        (width, head) => width + head + 2,
+    let fit = |heads: &[String; 10]| {
+        let full = |at: usize| match (widths[at], heads[at].chars().count()) {
+            (0, _) => 0,
+            (width, 0) => width + 1,
+            (width, head) => width + head + 2,
+        };
+        let mut kept: Vec<usize> = (0..COLUMNS.len()).filter(|at| widths[*at] > 0).collect();
+        let all = kept.len();
+        while kept.iter().map(|at| full(*at)).sum::<usize>() > room + 1 {
+            let worst = kept.iter().copied().max_by_key(|at| COLUMNS[*at].0);
+            let Some(worst) = worst.filter(|at| COLUMNS[*at].0 > 0) else { break };
+            kept.retain(|at| *at != worst);
+        }
+        (kept.len() == all, kept)
     };
-    let mut kept: Vec<usize> = (0..COLUMNS.len()).filter(|at| widths[*at] > 0).collect();
-    while kept.iter().map(|at| full(*at)).sum::<usize>() > room + 1 {
-        let worst = kept.iter().copied().max_by_key(|at| COLUMNS[*at].0);
-        let Some(worst) = worst.filter(|at| COLUMNS[*at].0 > 0) else { break };
-        kept.retain(|at| *at != worst);
-    }
+    let [named_in_full, letters] = [false, true].map(names);
+    let (is_whole, kept) = fit(&named_in_full);
+    let (heads, kept) = if is_whole { (named_in_full, kept) } else { (letters.clone(), fit(&letters).1) };
     let text = |(i, row): (usize, &[String; 10])| {
         let cell = |at: &usize| {
             let (text, width) = (&row[*at], widths[*at]);
@@ -325,7 +332,7 @@ fn cells(
     scale: Scale<'_>,
     units: &UnitSystem,
     theme: Theme,
-    is_held: bool,
+    control: Control,
 ) -> [String; 10] {
     let event = &entry.event;
     let number = entry.number.map_or_else(String::new, |number| number.to_string());
@@ -356,8 +363,11 @@ fn cells(
     };
     let fault = if event.admissible == Some(false) { " !" } else { "" };
     // What is held does not change.
-    let (delta_after, load_after) =
-        if is_held { (delta_after, String::new()) } else { (String::new(), load_after) };
+    let (delta_after, load_after) = match control {
+        Control::Force => (delta_after, String::new()),
+        Control::Displacement => (String::new(), load_after),
+        Control::Stiffness(_) => (delta_after, load_after),
+    };
     [
         format!("{}{number}", mark(theme, entry.mark)),
         event.kind.replace('-', " "),

@@ -91,12 +91,26 @@ fn lines(theme: Theme, model: &Model, path: &PathReport, room: usize) -> Vec<Lin
     let scale = Scale::of(curve, model.axes);
     let [length, force, radius] = scale.state_axes();
     let shown = |symbol: &str, x: f64| pair(theme, &format!("{symbol} "), &significant(x, 4));
+    let unit = |axis: &Axis| {
+        theme.text(&if axis.shown.is_empty() { String::new() } else { format!(" {}", axis.shown) })
+    };
     let state = |at: &StateReport| {
+        let [of_approach, of_radius] = [&length, &radius].map(unit);
         let approach = shown(&length.symbol, scale.length(at.approach));
         let radius = shown(&radius.symbol, scale.radius(at.contact_radius));
-        Line::from(
-            [vec![Span::raw("  ")], approach.to_vec(), vec![Span::raw("  ")], radius.to_vec()].concat(),
-        )
+        let is_one = of_approach == of_radius;
+        let line = |[of_approach, of_radius]: [String; 2]| {
+            let between = Span::raw(format!("{of_approach}  "));
+            let parts = [vec![Span::raw("  ")], approach.to_vec(), vec![between], radius.to_vec()].concat();
+            Line::from([parts, vec![Span::raw(of_radius)]].concat())
+        };
+        let with_units = line([of_approach, of_radius.clone()]);
+        // One unit for both, where there is no room for two.
+        let with_one = line([String::new(), if is_one { of_radius } else { String::new() }]);
+        [with_units, with_one]
+            .into_iter()
+            .find(|line| line.width() <= room)
+            .unwrap_or_else(|| line([String::new(), String::new()]))
     };
     let head = |name: &str, value: [Span<'static>; 2]| {
         Line::from([vec![Span::raw(theme.text(name))], value.to_vec()].concat())

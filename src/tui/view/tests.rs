@@ -228,7 +228,7 @@ fn a_panel_can_have_the_whole_screen_and_an_event_its_number_on_the_curve() {
     let text = screen.text(80, 24);
     assert!(!text.contains("Problem") && text.contains("P/Pc over δ"), "{text}");
     screen.press(KeyCode::Tab);
-    assert!(screen.text(80, 24).contains("lost so far"));
+    assert!(screen.text(80, 24).contains("lost up to here"));
     screen.keys("z");
     assert!(screen.text(80, 24).contains("Problem"));
     // The selected one is reversed.
@@ -481,13 +481,13 @@ fn what_lies_behind_a_turned_value_is_passed_by_and_did_not_happen_at_it() {
     screen.keys(">");
     let text = screen.text(160, 45);
     assert!(
-        text.contains("-1 ") && text.contains("- passed by") && text.contains("lost so far 0 of"),
+        text.contains("-1 ") && text.contains("- passed by") && text.contains("lost up to here 0 of"),
         "{text}"
     );
     // The total stays that of the path, as in Result.
     let path = screen.app.model.path().unwrap();
     let [all, passed] = [path.totals.dissipated.unwrap(), path.events[0].dissipated.unwrap()].map(loss);
-    let sums = format!("lost so far 0 of {all}, {passed} passed by");
+    let sums = format!("lost up to here 0 of {all}, {passed} passed by");
     assert!(text.contains(&sums) && text.contains(&format!("lost {all}")), "{sums} {text}");
     assert!(screen.text(80, 24).contains(&format!("0 of {all}")), "{text}");
     screen.keys("nn>");

@@ -288,7 +288,7 @@ fn figures_and_the_screen_are_exported_by_a_line() {
     let read = |name: &str| std::fs::read_to_string(path(name)).unwrap();
     assert!(read("a.svg").starts_with("<svg") && read("b.svg").contains("γ"));
     assert_ne!(read("a.svg"), read("b.svg"));
-    assert!(read("c.txt").contains("lost so far 0 of"));
+    assert!(read("c.txt").contains("lost up to here 0 of"));
     // An existing file is replaced only when told.
     screen.keys(&format!(":export screen {}\r", path("c.txt")));
     assert!(screen.text(100, 30).contains("Replace it? y does"), "{}", screen.text(100, 30));
