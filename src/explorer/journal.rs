@@ -161,19 +161,24 @@ impl Journal {
         self.ended(&WalkOutcome::Paused, false);
     }
 
+    /// Where a replay must begin for `walking`: that is not part of the curve of one disc, and only a restart asks for it.
+    fn begun(&self, walking: &OpenWalk) -> Begin {
+        let begin = walking.curve.setting.preset.path.begin;
+        match (&walking.action, &self.kept.replay) {
+            // A path belongs to one beginning.
+            _ if walking.curve.along.is_some() => begin,
+            (Action::Begin, _) => Begin::Apart,
+            (Action::MoveTo(s), _) if s.total_cmp(&walking.curve.case.start).is_eq() => Begin::Disc,
+            (_, Some(replay)) => replay.preset.path.begin,
+            (_, None) => begin,
+        }
+    }
+
     /// The walk is over; `is_stale` if it leaves the state marked as not solved.
     pub(super) fn ended(&mut self, outcome: &WalkOutcome, is_stale: bool) {
         let Some(walking) = self.walking.take() else { return };
         let mut preset = walking.curve.setting.preset.clone();
-        // Where a walk begins is not part of the curve: only a restart asks for it.
-        preset.path.begin = match (&walking.action, &self.kept.replay) {
-            // A path belongs to one beginning.
-            _ if walking.curve.along.is_some() => preset.path.begin,
-            (Action::Begin, _) => Begin::Apart,
-            (Action::MoveTo(s), _) if s.total_cmp(&walking.curve.case.start).is_eq() => Begin::Disc,
-            (_, Some(replay)) => replay.preset.path.begin,
-            (_, None) => preset.path.begin,
-        };
+        preset.path.begin = self.begun(&walking);
         let preset = &preset;
         let way = Some((walking.inward, walking.length));
         let is_solve = matches!(walking.action, Action::Solve { .. });

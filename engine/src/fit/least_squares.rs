@@ -206,6 +206,38 @@ pub fn minimize<P: LeastSquares>(
     minimize_from(problem, start, problem.evaluate(start)?, settings, progress)
 }
 
+/// The damping μ, raised by ever larger factors while steps fail.
+struct Damping {
+    mu: f64,
+    growth: f64,
+}
+
+impl Damping {
+    /// The first one, and the largest that is tried.
+    const FIRST: f64 = 1e-3;
+    const LARGEST: f64 = 1e16;
+
+    /// False where it becomes too large.
+    fn raise(&mut self) -> bool {
+        (self.mu, self.growth) = (self.mu * self.growth, 2.0 * self.growth);
+        self.mu <= Self::LARGEST
+    }
+
+    /// After a step with this gain, as a share of the predicted one.
+    fn lower(&mut self, gain: f64) {
+        self.mu *= f64::max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0).powi(3));
+        self.growth = 2.0;
+    }
+}
+
+/// The cost, the residuals with those of what is known before, and the look at `u`; `None` where the cost is not finite.
+fn looked_at<P: LeastSquares>(problem: &P, u: &[f64], c: f64) -> Option<(f64, DVector<f64>, P::Look)> {
+    let (residuals, look) = problem.look(u)?;
+    let residuals = with_terms(residuals, problem.priors(), u);
+    let cost = cost(&residuals, problem.counts(), c);
+    cost.is_finite().then_some((cost, residuals, look))
+}
+
 /// The same where the residuals and derivatives at the start, `at`, are known.
 pub fn minimize_from<P: LeastSquares>(
     problem: &P,
@@ -214,9 +246,6 @@ pub fn minimize_from<P: LeastSquares>(
     settings: &MinimizationSettings,
     progress: &dyn Progress,
 ) -> Option<Minimum> {
-    /// The first damping, its smallest change and the largest that is tried.
-    const FIRST: f64 = 1e-3;
-    const LARGEST: f64 = 1e16;
     /// This many rounds, each with a gain that no value shows, end it.
     const IDLE: usize = 6;
     const SHOWN: f64 = 1e-10;
@@ -229,7 +258,7 @@ pub fn minimize_from<P: LeastSquares>(
         return None;
     }
     let mut scales = DVector::zeros(u.len());
-    let (mut mu, mut growth) = (FIRST, 2.0);
+    let mut damping = Damping { mu: Damping::FIRST, growth: 2.0 };
     let end = |u: Vec<f64>, at: Evaluated, cost, ending, rounds| {
         Some(Minimum { parameters: u, at: at.of_points(priors.len()), cost, ending, rounds })
     };
@@ -242,21 +271,18 @@ pub fn minimize_from<P: LeastSquares>(
             *scale = f64::max(*scale, *length);
         }
         loop {
-            let Some(step) = factored.step(mu, &scales) else {
-                (mu, growth) = (mu * growth, 2.0 * growth);
-                if mu > LARGEST {
-                    return end(u, at, best, Ending::Converged, round);
+            let Some(step) = factored.step(damping.mu, &scales) else {
+                if damping.raise() {
+                    continue;
                 }
-                continue;
+                return end(u, at, best, Ending::Converged, round);
             };
             let moved = (&factored.r * &step).norm();
             let size = (2.0 * best).sqrt() + settings.resolution * (at.residuals.len() as f64).sqrt();
             let is_last = moved <= settings.tolerance * size;
             let next: Vec<f64> = u.iter().zip(step.iter()).map(|(u, h)| u + h).collect();
-            let found = problem.look(&next).map(|(r, look)| (with_terms(r, priors, &next), look));
-            let found = found.map(|(r, look)| (cost(&r, counts, c), r, look));
-            let found = found.filter(|(cost, ..)| cost.is_finite());
-            let predicted = moved * moved + 2.0 * mu * step.component_mul(&scales).norm_squared();
+            let found = looked_at(problem, &next, c);
+            let predicted = moved * moved + 2.0 * damping.mu * step.component_mul(&scales).norm_squared();
             let gain = found.as_ref().map_or(-1.0, |(cost, ..)| 2.0 * (best - cost) / predicted);
             if let Some((cost, residuals, look)) =
                 found.filter(|(cost, ..)| *cost < best || (is_last && *cost <= best))
@@ -265,8 +291,7 @@ pub fn minimize_from<P: LeastSquares>(
                 let evaluated = Evaluated { residuals, jacobian: with_derivatives(jacobian, priors, 1.0) };
                 idle = if best - cost <= f64::max(SHOWN * best, settings.nothing) { idle + 1 } else { 0 };
                 (u, at, best) = (next, evaluated, cost);
-                mu *= f64::max(1.0 / 3.0, 1.0 - (2.0 * gain - 1.0).powi(3));
-                growth = 2.0;
+                damping.lower(gain);
                 if is_last || idle >= IDLE {
                     return end(u, at, best, Ending::Converged, round + 1);
                 }
@@ -275,8 +300,7 @@ pub fn minimize_from<P: LeastSquares>(
             if is_last {
                 return end(u, at, best, Ending::Converged, round + 1);
             }
-            (mu, growth) = (mu * growth, 2.0 * growth);
-            if mu > LARGEST {
+            if !damping.raise() {
                 return end(u, at, best, Ending::Converged, round);
             }
         }

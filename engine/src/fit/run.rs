@@ -29,7 +29,7 @@ use crate::problem::Start;
 use crate::progress::{Progress, ProgressPart};
 use crate::units::Quantity;
 use crate::units::number::{said, significant};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 /// Fits the free keys of `preset` to `branches`.
 pub(super) fn fit_branches(
@@ -156,12 +156,7 @@ impl<'a> Posed<'a> {
             _ => None,
         };
         let found = problem.preset_at(u, Segment::Retraction).ok_or(FitError::NoStart)?;
-        let ending = match solved.minimum.ending {
-            _ if progress.stop() => Ending::Cancelled,
-            // A range that shrinks without end has no minimum.
-            Ending::Rounds if is_unseen => Ending::Converged,
-            ending => ending,
-        };
+        let ending = ended(solved.minimum.ending, is_unseen, progress);
         let evidence =
             Evidence { problem: &problem, solved: &solved, scatter: &scatter, inner: what.inner.as_ref() };
         let mut reasons = reasons(evidence, &found, branches.clipped);
@@ -173,14 +168,12 @@ impl<'a> Posed<'a> {
         let closing = problem.preset_at(u, Segment::Approach).map(|preset| preset.material.work_of_adhesion);
         let instrument = problem.instrument_at(u).turned(problem.turned);
         let fitted_preset = laid(preset, &problem, (&found, closing, &instrument), &mut notes);
-        let lists =
-            |c: nalgebra::DMatrix<f64>| c.row_iter().map(|row| row.iter().copied().collect()).collect();
         let left = real.len().saturating_sub(problem.taken()).max(1) as f64;
         Ok(Fit {
             verdict,
             reasons,
             abscissa: branches.abscissa,
-            correlations: what.correlations.map(lists),
+            correlations: what.correlations.as_ref().map(rows_of),
             chi_squared: real.iter().map(|r| r * r).sum::<f64>() / left,
             chi_squared_of: [false, true].map(|free| of_part(&problem, &solved, free)),
             degrees,
@@ -204,6 +197,21 @@ impl<'a> Posed<'a> {
             parameters: fitted,
         })
     }
+}
+
+/// How a fit ends whose minimization ended so, and of which one direction may be `unseen`.
+fn ended(ending: Ending, unseen: bool, progress: &dyn Progress) -> Ending {
+    match ending {
+        _ if progress.stop() => Ending::Cancelled,
+        // A range that shrinks without end has no minimum.
+        Ending::Rounds if unseen => Ending::Converged,
+        ending => ending,
+    }
+}
+
+/// The rows of a matrix.
+fn rows_of(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
 }
 
 /// The problem with the contact radius `j`, at which a pull starts, held, and its minimum as `solve` finds it. The edge starts

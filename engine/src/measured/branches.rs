@@ -13,7 +13,7 @@
 use super::asked::{Asked, FreePart, ValueRange, signs_text};
 use super::converter::{Clipped, clipped, quantum, without_repeats};
 pub use super::free::MeasuredBranch;
-use super::free::{as_elsewhere, branch, clear, never_pulls, one_sided};
+use super::free::{OrderedBranch, as_elsewhere, branch, clear, never_pulls, one_sided};
 pub(crate) use super::noise::median;
 use super::noise::{END_ROWS, range};
 pub use super::noise::{FLOOR, Noise, Origin};
@@ -157,11 +157,7 @@ fn without_restarts(part: &mut [MeasuredPoint]) {
 }
 
 /// Leaves out rows in contact without a contact radius where others have one.
-fn without_radius(
-    list: &mut [(MeasuredBranch, Vec<MeasuredPoint>)],
-    of_radius: bool,
-    notes: &mut Vec<String>,
-) {
+fn without_radius(list: &mut [OrderedBranch], of_radius: bool, notes: &mut Vec<String>) {
     let attached = || list.iter().flat_map(|(branch, _)| &branch.attached);
     let seen = attached().filter(|point| !point.radius.is_nan()).count();
     let unseen = attached().count() - seen;
@@ -194,26 +190,7 @@ impl Points {
         }
         let Orientation { turned, or, unless_apart } = self.directed(&mut points, asked, &mut notes)?;
         let free = self.free_part(&points, asked.free, turned)?;
-        // Contact radii, which are zero while apart, are never turned.
-        let ordered = asked.sigma[0].is_some() || of_radius;
-        let mut parts = self.parts(&points, ordered, &mut notes)?;
-        for (_, part) in &mut parts {
-            without_restarts(part);
-        }
-        let (rows, pauses) = self.counted(&parts);
-        let is_wanted = |segment| asked.segment.is_none_or(|wanted| wanted == segment);
-        let mut list: Vec<(MeasuredBranch, Vec<MeasuredPoint>)> = parts
-            .into_iter()
-            .filter(|(segment, _)| is_wanted(*segment))
-            .map(|(segment, in_order)| (branch(segment, &in_order, of_radius, free), in_order))
-            .collect();
-        if list.is_empty() {
-            return Err(BranchError::NoSegment(asked.segment.map_or("branch", Segment::name)));
-        }
-        list.sort_by_key(|(branch, _)| branch.segment == Segment::Retraction);
-        if asked.free == FreePart::Found {
-            as_elsewhere(&mut list);
-        }
+        let (mut list, rows, pauses) = self.listed(&points, asked, free, &mut notes)?;
         let used: Vec<&MeasuredPoint> =
             list.iter().flat_map(|(branch, _)| branch.attached.iter().chain(&branch.free)).collect();
         if used.len() < END_ROWS {
@@ -256,6 +233,39 @@ impl Points {
             pauses,
             clipped,
         })
+    }
+
+    /// The branches that are wanted, the approach first, each with its points in order, before what noise hides is cleared; and
+    /// how many rows there are by branch and in pauses.
+    fn listed(
+        &self,
+        points: &[MeasuredPoint],
+        asked: &Asked,
+        free: FreePart,
+        notes: &mut Vec<String>,
+    ) -> Result<(Vec<OrderedBranch>, [usize; 2], usize), BranchError> {
+        let of_radius = self.abscissa == Abscissa::Radius;
+        // Contact radii, which are zero while apart, are never turned.
+        let ordered = asked.sigma[0].is_some() || of_radius;
+        let mut parts = self.parts(points, ordered, notes)?;
+        for (_, part) in &mut parts {
+            without_restarts(part);
+        }
+        let (rows, pauses) = self.counted(&parts);
+        let is_wanted = |segment| asked.segment.is_none_or(|wanted| wanted == segment);
+        let mut list: Vec<OrderedBranch> = parts
+            .into_iter()
+            .filter(|(segment, _)| is_wanted(*segment))
+            .map(|(segment, in_order)| (branch(segment, &in_order, of_radius, free), in_order))
+            .collect();
+        if list.is_empty() {
+            return Err(BranchError::NoSegment(asked.segment.map_or("branch", Segment::name)));
+        }
+        list.sort_by_key(|(branch, _)| branch.segment == Segment::Retraction);
+        if asked.free == FreePart::Found {
+            as_elsewhere(&mut list);
+        }
+        Ok((list, rows, pauses))
     }
 
     /// The points requested, in the order in which they were measured, with the signs of the file.
@@ -423,7 +433,7 @@ impl Points {
 }
 
 /// The end of a converter's range at which rows in contact lie.
-fn at_an_end(list: &[(MeasuredBranch, Vec<MeasuredPoint>)], step: Option<f64>) -> Option<Clipped> {
+fn at_an_end(list: &[OrderedBranch], step: Option<f64>) -> Option<Clipped> {
     let mut rows: Vec<MeasuredPoint> =
         list.iter().flat_map(|(_, in_order)| in_order.iter().copied()).collect();
     rows.sort_by_key(|point| point.at);

@@ -21,6 +21,9 @@ pub struct MeasuredBranch {
     pub jump: usize,
 }
 
+/// A branch, and all its points in the order of measurement.
+pub(super) type OrderedBranch = (MeasuredBranch, Vec<MeasuredPoint>);
+
 impl MeasuredBranch {
     /// Drops the rows around the jump that noise in x may have put on the wrong side.
     fn clears_jump(&mut self, noise: &Noise) {
@@ -185,12 +188,7 @@ impl FreeLine {
 }
 
 /// Settles which rows of all branches are apart, and drops those that may lie on either side of the jump or of the onset.
-pub(super) fn clear(
-    list: &mut [(MeasuredBranch, Vec<MeasuredPoint>)],
-    asked: FreePart,
-    noise: &Noise,
-    notes: &mut Vec<String>,
-) {
+pub(super) fn clear(list: &mut [OrderedBranch], asked: FreePart, noise: &Noise, notes: &mut Vec<String>) {
     if asked == FreePart::Found {
         same_free_force(list, noise, notes);
     }
@@ -205,11 +203,7 @@ pub(super) fn clear(
 
 /// Returns rows to the contact if they are constant at a force other than that of the branch with most rows apart: a
 /// record that ends near its smallest force looks like that.
-fn same_free_force(
-    list: &mut [(MeasuredBranch, Vec<MeasuredPoint>)],
-    noise: &Noise,
-    notes: &mut Vec<String>,
-) {
+fn same_free_force(list: &mut [OrderedBranch], noise: &Noise, notes: &mut Vec<String>) {
     /// Levels are equal within this many of their errors, or within this share of the range of the branch.
     const SAME: f64 = 6.0;
     const SHARE: f64 = 0.1;
@@ -236,7 +230,7 @@ fn same_free_force(
 /// Takes the last rows of a branch as apart if another branch has rows apart and these have the same force: with few rows
 /// the force may go from contact to zero without a visible jump. This is done for short branches, and for approaches that
 /// begin where a retraction is well apart, since bodies that close touch further in than bodies that open.
-pub(super) fn as_elsewhere(list: &mut [(MeasuredBranch, Vec<MeasuredPoint>)]) {
+pub(super) fn as_elsewhere(list: &mut [OrderedBranch]) {
     /// Forces are equal within this many times the range of those apart, or within this share of the range of the
     /// branch; and the fewest such rows.
     const SAME: f64 = 3.0;

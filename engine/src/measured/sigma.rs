@@ -10,7 +10,7 @@
 //! Where x, P and s are all measured, each in contact shows its noise over the number of the row, the time, and the other
 //! two: the least of these holds least of the noise of another column, and of uneven steps.
 
-use super::free::MeasuredBranch;
+use super::free::OrderedBranch;
 use super::noise::{FLOOR, Noise, Origin, median, scatter_over, variance};
 use super::points::MeasuredPoint;
 use super::speed::noise as noise_in_order;
@@ -43,7 +43,7 @@ struct Neighbours {
 impl Neighbours {
     /// Those of all branches. For radii with times, `has_clock`, the radius and the force each show their own noise over
     /// time, because a clock has none.
-    fn of(list: &[(MeasuredBranch, Vec<MeasuredPoint>)], of_radius: bool, has_clock: bool) -> Self {
+    fn of(list: &[OrderedBranch], of_radius: bool, has_clock: bool) -> Self {
         let mut found = Self::default();
         for (branch, in_order) in list {
             // Nothing is known about radii where the bodies are apart. In contact they vary slowly with the quantity
@@ -92,7 +92,7 @@ impl Neighbours {
 
 /// σ of x, P and s, the rows in the order of the file.
 pub(super) fn noise(
-    list: &[(MeasuredBranch, Vec<MeasuredPoint>)],
+    list: &[OrderedBranch],
     given: [Option<f64>; 3],
     (steps, converter): ([f64; 3], Option<f64>),
     ranges: [f64; 3],
