@@ -62,8 +62,9 @@ static GRAM: NamedUnit = named("g", Dimension::new(0, 1, 0), -3);
 pub static SECOND: NamedUnit = named("s", Dimension::new(0, 0, 1), 0);
 static MINUTE: NamedUnit =
     NamedUnit { mantissa: 6.0, prefixed: false, ..named("min", Dimension::new(0, 0, 1), 1) };
+// Not h, which is what heights and gaps are called.
 static HOUR: NamedUnit =
-    NamedUnit { mantissa: 3.6, prefixed: false, ..named("h", Dimension::new(0, 0, 1), 3) };
+    NamedUnit { alias: "hour", mantissa: 3.6, prefixed: false, ..named("hr", Dimension::new(0, 0, 1), 3) };
 static ELECTRONVOLT: NamedUnit = NamedUnit { mantissa: 1.602_176_634, ..named("eV", ENERGY, -19) };
 // The second character is the ångström sign, which looks the same.
 static ANGSTROM: NamedUnit =
@@ -177,7 +178,7 @@ mod tests {
                 }
             }
         }
-        for word in ["", "k", "mkm", "kdeg", "um2", "PA", "n m", "metre", "min", "kmicron"] {
+        for word in ["", "k", "mkm", "kdeg", "um2", "PA", "n m", "metre", "kmin", "kmicron"] {
             assert_eq!(lookup(word), None, "{word}");
         }
     }

@@ -311,7 +311,7 @@ mod tests {
             (" N  m^-1 ", 1.0, "a force per length", "N/m", "N/m"),
             ("N*m", 1.0, "an energy", "N m", "N m"),
             ("kPa", 1e3, "a stress", "kPa", "kPa"),
-            ("h", 3600.0, "a time", "h", "h"),
+            ("hr", 3600.0, "a time", "hr", "hr"),
             ("um/min", 1e-6 / 60.0, "a speed", "µm/min", "um/min"),
             ("N / mm^2", 1e6, "a stress", "N/mm²", "N/mm^2"),
             ("GPa", 1e9, "a stress", "GPa", "GPa"),
