@@ -5,7 +5,8 @@
 //! ```
 //!
 //! It contains no law of adhesion, only E* and the gap. G follows from any two of force, approach and contact radius;
-//! from force and approach, s follows first, because at a held approach the force falls with s. From approach and
+//! from force and approach, s follows first: at a held approach the force falls with s where the edge pulls, and of several
+//! such stretches `branch` takes one. From approach and
 //! radius, G does not depend on the force, unless the way is that of the other end of a spring. D. Maugis and M.
 //! Barquins, J. Phys. D 11, 1989 (1978).
 

@@ -49,21 +49,24 @@ impl BranchReading {
             let found = points.into_iter().filter_map(|point| Some((point, reading.released(&point)?)));
             return Self { found: found.collect(), segment: branch.segment, ambiguous: 0 };
         }
-        let mut points_with: Vec<(MeasuredPoint, Vec<Released>)> =
+        let mut rows: Vec<(MeasuredPoint, Vec<Released>)> =
             points.into_iter().map(|point| (point, reading.all_released(&point))).collect();
-        points_with.retain(|(_, released)| !released.is_empty());
-        let radii = |(_, released): &(MeasuredPoint, Vec<Released>)| {
-            released.iter().map(|released| released.contact_radius).collect()
+        rows.retain(|(_, released)| !released.is_empty());
+        let candidates = |(point, all): &(MeasuredPoint, Vec<Released>)| {
+            let holds = |released: &Released| all.len() < 2 || reading.stays_apart(point, released);
+            let one =
+                |of: &Released| Candidate { radius: of.contact_radius, spread: of.spread, holds: holds(of) };
+            all.iter().map(one).collect()
         };
-        let taken = steadiest(&points_with.iter().map(radii).collect::<Vec<_>>());
-        let mut ambiguous = 0;
-        let mut found = Vec::new();
-        for ((point, released), taken) in points_with.iter().zip(taken) {
-            // Where another contact could be, only the neighbours tell.
-            let is_other = |(at, other): (usize, &Released)| at != taken && reading.stays_apart(point, other);
-            ambiguous += usize::from(released.iter().enumerate().any(is_other));
-            found.push((*point, released[taken]));
-        }
+        let all: Vec<Vec<Candidate>> = rows.iter().map(candidates).collect();
+        let taken = steadiest(&all);
+        // Where another contact could be, only the neighbours tell.
+        let is_open = |(of_row, taken): &(&Vec<Candidate>, &usize)| {
+            of_row.iter().enumerate().any(|(at, candidate)| at != **taken && candidate.holds)
+        };
+        let ambiguous = all.iter().zip(&taken).filter(is_open).count();
+        let found =
+            rows.iter().zip(taken).map(|((point, released), taken)| (*point, released[taken])).collect();
         Self { found, segment: branch.segment, ambiguous }
     }
 
@@ -93,29 +96,47 @@ impl BranchReading {
     }
 }
 
-/// Of the radii of each row, ascending, the number of the one with which the radius jumps least over all rows; of equals
-/// the largest.
+/// A contact that a row may have.
+struct Candidate {
+    radius: f64,
+    /// The standard deviation of the radius.
+    spread: f64,
+    /// Whether the bodies stay apart around it.
+    holds: bool,
+}
+
+/// Of the candidates of each row, by their radii, the number of the one with which the radius jumps least over all rows; of
+/// equals the largest.
 ///
-/// A radius that moves on to the next row by less than half its distance from the others of both rows does not jump,
-/// however it scatters: a sum of all its steps would only find the one that depends least on the noise.
-fn steadiest(rows: &[Vec<f64>]) -> Vec<usize> {
-    let alone = |radii: &[f64], at: usize| {
-        let others = radii.iter().enumerate().filter(|(other, _)| *other != at);
-        others.map(|(_, other)| (other - radii[at]).abs()).fold(f64::INFINITY, f64::min)
+/// A radius does not jump by less than half its distance from the others of both rows, or than its noise: a sum of all
+/// steps would only find the one that depends least on the noise. One that overlaps in all rows where another does not costs a
+/// jump of its own size: a state that cannot last may still be passed through.
+fn steadiest(rows: &[Vec<Candidate>]) -> Vec<usize> {
+    /// Steps of so many standard deviations are noise.
+    const NOISE: f64 = 4.0;
+    let alone = |of_row: &[Candidate], at: usize| {
+        let others = of_row.iter().enumerate().filter(|(other, _)| *other != at);
+        others.map(|(_, other)| (other.radius - of_row[at].radius).abs()).fold(f64::INFINITY, f64::min)
     };
-    // The least way of the jumps up to each radius of a row, and the radius of the previous row that it comes from.
+    // The least way of the jumps up to each candidate of a row, and the candidate of the previous row that it comes from.
     let mut ways: Vec<Vec<(f64, usize)>> = Vec::new();
-    for (i, radii) in rows.iter().enumerate() {
+    for (i, of_row) in rows.iter().enumerate() {
+        let any_holds = of_row.iter().any(|candidate| candidate.holds);
         let way = |to: usize| {
             let previous = i.checked_sub(1).map_or(&[][..], |i| &rows[i]);
             let jump = |from: usize| {
-                let step = (radii[to] - previous[from]).abs();
-                if step < 0.5 * alone(previous, from).min(alone(radii, to)) { 0.0 } else { step }
+                let [a, b] = [&previous[from], &of_row[to]];
+                let step = (b.radius - a.radius).abs();
+                let is_near = step < 0.5 * alone(previous, from).min(alone(of_row, to));
+                if is_near { 0.0 } else { (step - NOISE * hypot(a.spread, b.spread)).max(0.0) }
             };
+            let overlaps = any_holds && !of_row[to].holds;
+            let cost = if overlaps { of_row[to].radius / rows.len() as f64 } else { 0.0 };
             let ways = (0..previous.len()).rev().map(|from| (ways[i - 1][from].0 + jump(from), from));
-            ways.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0))
+            let (way, from) = ways.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0));
+            (way + cost, from)
         };
-        ways.push((0..radii.len()).map(way).collect());
+        ways.push((0..of_row.len()).map(way).collect());
     }
     let least =
         |ways: &Vec<(f64, usize)>| (0..ways.len()).rev().min_by(|a, b| ways[*a].0.total_cmp(&ways[*b].0));
@@ -131,16 +152,22 @@ fn steadiest(rows: &[Vec<f64>]) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::steadiest;
+    use super::{Candidate, steadiest};
+
+    /// Rows of candidates with these radii, all admissible and with the noise 0.01.
+    fn taken(rows: &[Vec<f64>]) -> Vec<usize> {
+        let candidate = |radius: &f64| Candidate { radius: *radius, spread: 0.01, holds: true };
+        steadiest(&rows.iter().map(|row| row.iter().map(candidate).collect()).collect::<Vec<_>>())
+    }
 
     #[test]
     fn the_radius_jumps_least_over_all_rows() {
         // Step by step the radius would go from 3 to 3.2, and back.
-        assert_eq!(steadiest(&[vec![3.0], vec![2.9, 3.2], vec![2.8], vec![1.0, 2.7]]), [0, 0, 0, 1]);
-        assert_eq!(steadiest(&[vec![5.0], vec![1.0, 4.0, 9.0]]), [0, 1]);
+        assert_eq!(taken(&[vec![3.0], vec![2.9, 3.2], vec![2.8], vec![1.0, 2.7]]), [0, 0, 0, 1]);
+        assert_eq!(taken(&[vec![5.0], vec![1.0, 4.0, 9.0]]), [0, 1]);
         // Nothing tells these apart.
-        assert_eq!(steadiest(&[vec![1.0, 2.0], vec![1.1, 2.1]]), [1, 1]);
-        assert!(steadiest(&[]).is_empty());
+        assert_eq!(taken(&[vec![1.0, 2.0], vec![1.1, 2.1]]), [1, 1]);
+        assert!(taken(&[]).is_empty());
     }
 
     #[test]
@@ -152,6 +179,18 @@ mod tests {
             if (20..4000).contains(&i) { vec![1.0 + 0.01 * noise(i), wide] } else { vec![wide] }
         };
         let rows: Vec<_> = (0..4200).map(row).collect();
-        assert!(steadiest(&rows).iter().zip(&rows).all(|(taken, row)| *taken + 1 == row.len()));
+        assert!(taken(&rows).iter().zip(&rows).all(|(taken, row)| *taken + 1 == row.len()));
+    }
+
+    #[test]
+    fn an_overlap_is_passed_through_but_does_not_last() {
+        let with = |overlapping: usize| {
+            let row = |i: usize| {
+                let one = |radius, holds| Candidate { radius, spread: 0.01, holds };
+                if i < overlapping { vec![one(1.0, true), one(2.0, false)] } else { vec![one(2.0, true)] }
+            };
+            steadiest(&(0..100).map(row).collect::<Vec<_>>())[0]
+        };
+        assert_eq!([with(10), with(90)], [1, 0]);
     }
 }

@@ -72,6 +72,8 @@ pub(super) struct RowReading {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Released {
     pub(super) contact_radius: f64,
+    /// The standard deviation of a radius that force and approach give; 0 for one that is measured.
+    pub(super) spread: f64,
     pub(super) energy: f64,
     pub(super) error: f64,
     pub(super) by_radius: f64,
@@ -158,6 +160,7 @@ impl RowReading {
         let by_radius = of_opening * (held.slope - held.by_radius) - held.energy_release_rate() / s;
         Some(Released {
             contact_radius: radius,
+            spread: 0.0,
             energy: signed(&held) * self.unit(),
             error: (of_opening * of_column).abs() * self.unit(),
             by_radius: by_radius * self.unit() / self.units.length,
@@ -175,8 +178,10 @@ impl RowReading {
             let of_radius = of_opening * held.slope - held.energy_release_rate() / s;
             let by_approach = -of_opening + of_radius * s / held.opening;
             let by_force = -of_radius / (2.0 * held.opening) - by_approach * compliance;
+            let spread = hypot(s * sigma_x, (0.5 + compliance * s) * sigma_force) / held.opening;
             Released {
                 contact_radius: s * self.units.length,
+                spread: spread * self.units.length,
                 energy: signed(&held) * self.unit(),
                 error: hypot(by_approach * sigma_x, by_force * sigma_force) * self.unit(),
                 by_radius: 0.0,
