@@ -16,6 +16,7 @@ use crate::progress::Progress;
 use crate::text::{closest, quote};
 use crate::units::number::short;
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -191,17 +192,15 @@ impl Spec {
 
     /// What holds for the sweep as a whole, in words: gaps that are too steep, and unloadings beside loops.
     pub fn warnings(&self) -> Vec<String> {
-        /// So many rows are looked at for their slopes.
-        const LOOKED_AT: u64 = 1000;
         let mut warnings = Vec::new();
-        let count = self.rows.min(LOOKED_AT);
-        let rows = (0..count).map(|i| if count > 1 { i * (self.rows - 1) / (count - 1) } else { 0 });
+        let rows = self.looked_at();
+        let count = rows.len() as u64;
         let slope = |row| {
             let preset = self.problem(row).ok()?;
             let Start::ContactRadius(start) = preset.path.start else { return None };
             Some((row, preset.gap.steep_slope(start)?))
         };
-        let steep: Vec<(u64, f64)> = rows.filter_map(slope).collect();
+        let steep: Vec<(u64, f64)> = rows.into_iter().filter_map(slope).collect();
         if let Some((row, slope)) = steep.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
             let values = self.axes.iter().zip(self.values(*row));
             let values: Vec<String> = values.map(|(axis, value)| format!("{} = {value}", axis.key)).collect();
@@ -226,6 +225,27 @@ impl Spec {
             ));
         }
         warnings
+    }
+
+    /// The rows that are looked at for their slopes: some, evenly, and the corners of a grid, where slopes are steepest.
+    fn looked_at(&self) -> BTreeSet<u64> {
+        const EVENLY: u64 = 64;
+        /// A grid of more axes has too many corners.
+        const AXES: usize = 5;
+        let count = self.rows.min(EVENLY);
+        let evenly = (0..count).map(|i| if count > 1 { i * (self.rows - 1) / (count - 1) } else { 0 });
+        let mut rows: BTreeSet<u64> = evenly.collect();
+        if self.design == Design::Grid && self.axes.len() <= AXES {
+            for corner in 0..1_u64 << self.axes.len() {
+                // Counted as in `point`.
+                let digits = self.axes.iter().enumerate().map(|(at, axis)| {
+                    let count = axis.count().unwrap_or(1).max(1);
+                    (count, if corner >> at & 1 == 1 { count - 1 } else { 0 })
+                });
+                rows.insert(digits.fold(0, |row, (count, digit)| row * count + digit));
+            }
+        }
+        rows
     }
 
     /// A row without any quantities.
