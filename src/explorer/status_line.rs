@@ -219,10 +219,10 @@ fn happened(model: &Model, node: &Node) -> Option<String> {
                 let what = if event.kind == EventKind::SnapOff { "Snap-off" } else { "Last contact" };
                 let whole = match model.preset.path.begin {
                     Begin::Apart => "",
-                    Begin::Disc => ", begin=apart with the approach",
+                    Begin::Disc => "; begin=apart: whole loop",
                 };
                 let start = Id::Restart.named();
-                format!("{what}: apart{}. {start} starts again{whole}", lost.unwrap_or_default())
+                format!("{what}: apart{}. {start} restarts{whole}", lost.unwrap_or_default())
             }
             _ => {
                 format!(

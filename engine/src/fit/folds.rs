@@ -1,12 +1,13 @@
-//! What a row beside a fold of the curve tells: that the fold lies between this row and the next one, and no more.
+//! What a row beside a fold of the curve tells: that the fold lies between this row and one of its neighbours, and no more.
 //!
 //! ```text
-//! ∂r/∂u = −(f n_x ∂x/∂u + n_P ∂P/∂u),     f = 1/√(1 + Δ²/(3 σ_x²)),     Δ the distance to the neighbouring row
+//! ∂r/∂u = −(f n_x ∂x/∂u + n_P ∂P/∂u),     f = 1/√(1 + Δ²/(3 σ_x²)),     Δ the distance to the further neighbour
 //! ```
 //!
 //! Where the curve turns within the noise of the force, a row beyond the fold lies at its distance in x from it, and one
 //! within lies on the curve. So one row holds the fold as if it were known to `σ_x`, while the fold may be anywhere as far as
-//! the next row, with a variance of Δ²/3 about that row. The values are as they were; only their errors are those of the other rows.
+//! the neighbour, with a variance of Δ²/3 about that row. Only the covariance takes this into account: the values stay, and so
+//! does what is said for or against the fit.
 
 use super::derivatives::FootedPaths;
 use super::distance::Nearest;

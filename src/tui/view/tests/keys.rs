@@ -51,7 +51,7 @@ fn sentences_name_the_keys_of_a_person() {
         screen.keys("J");
     }
     says(&screen, "apart, lost");
-    says(&screen, ". F6 starts again, begin=apart with the approach");
+    says(&screen, ". F6 restarts; begin=apart: whole loop");
     screen.press(KeyCode::F(3));
     says(&screen, "the bodies are apart: F4 goes back, F6 starts again");
     // What was lost there is no loss of other values.
