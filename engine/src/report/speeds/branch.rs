@@ -54,14 +54,17 @@ impl BranchReading {
         rows.retain(|(_, released)| !released.is_empty());
         let candidates = |(point, all): &(MeasuredPoint, Vec<Released>)| {
             let holds = |released: &Released| all.len() < 2 || reading.stays_apart(point, released);
-            let one =
-                |of: &Released| Candidate { radius: of.contact_radius, spread: of.spread, holds: holds(of) };
+            let one = |of: &Released| PossibleContact {
+                radius: of.contact_radius,
+                spread: of.spread,
+                holds: holds(of),
+            };
             all.iter().map(one).collect()
         };
-        let all: Vec<Vec<Candidate>> = rows.iter().map(candidates).collect();
+        let all: Vec<Vec<PossibleContact>> = rows.iter().map(candidates).collect();
         let taken = steadiest(&all);
         // Where another contact could be, only the neighbours tell.
-        let is_open = |(of_row, taken): &(&Vec<Candidate>, &usize)| {
+        let is_open = |(of_row, taken): &(&Vec<PossibleContact>, &usize)| {
             of_row.iter().enumerate().any(|(at, candidate)| at != **taken && candidate.holds)
         };
         let ambiguous = all.iter().zip(&taken).filter(is_open).count();
@@ -97,7 +100,7 @@ impl BranchReading {
 }
 
 /// A contact that a row may have.
-struct Candidate {
+struct PossibleContact {
     radius: f64,
     /// The standard deviation of the radius.
     spread: f64,
@@ -111,10 +114,10 @@ struct Candidate {
 /// A radius does not jump by less than half its distance from the others of both rows, or than its noise: a sum of all
 /// steps would only find the one that depends least on the noise. One that overlaps in all rows where another does not costs a
 /// jump of its own size: a state that cannot last may still be passed through.
-fn steadiest(rows: &[Vec<Candidate>]) -> Vec<usize> {
+fn steadiest(rows: &[Vec<PossibleContact>]) -> Vec<usize> {
     /// Steps of so many standard deviations are noise.
     const NOISE: f64 = 4.0;
-    let alone = |of_row: &[Candidate], at: usize| {
+    let alone = |of_row: &[PossibleContact], at: usize| {
         let others = of_row.iter().enumerate().filter(|(other, _)| *other != at);
         others.map(|(_, other)| (other.radius - of_row[at].radius).abs()).fold(f64::INFINITY, f64::min)
     };
@@ -152,11 +155,11 @@ fn steadiest(rows: &[Vec<Candidate>]) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Candidate, steadiest};
+    use super::{PossibleContact, steadiest};
 
     /// Rows of candidates with these radii, all admissible and with the noise 0.01.
     fn taken(rows: &[Vec<f64>]) -> Vec<usize> {
-        let candidate = |radius: &f64| Candidate { radius: *radius, spread: 0.01, holds: true };
+        let candidate = |radius: &f64| PossibleContact { radius: *radius, spread: 0.01, holds: true };
         steadiest(&rows.iter().map(|row| row.iter().map(candidate).collect()).collect::<Vec<_>>())
     }
 
@@ -186,7 +189,7 @@ mod tests {
     fn an_overlap_is_passed_through_but_does_not_last() {
         let with = |overlapping: usize| {
             let row = |i: usize| {
-                let one = |radius, holds| Candidate { radius, spread: 0.01, holds };
+                let one = |radius, holds| PossibleContact { radius, spread: 0.01, holds };
                 if i < overlapping { vec![one(1.0, true), one(2.0, false)] } else { vec![one(2.0, true)] }
             };
             steadiest(&(0..100).map(row).collect::<Vec<_>>())[0]
