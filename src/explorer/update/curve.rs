@@ -59,9 +59,9 @@ pub(super) fn curve_came(
         Ok(curve) => {
             model.curve_error = None;
             let first = model.history.current().is_none();
-            let begin = |curve: &CurveData| curve.setting.preset.path.begin;
-            let begins_elsewhere =
-                model.curve.as_deref().is_some_and(|before| begin(before) != begin(&curve));
+            let begin = curve.setting.preset.path.begin;
+            let walker = model.history.current();
+            let begins_elsewhere = walker.is_some_and(|node| node.setting.preset.path.begin != begin);
             model.curve = Some(Arc::clone(&curve));
             model.event = model.event.min(model.log_lines().saturating_sub(1));
             if first {
